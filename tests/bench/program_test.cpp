@@ -176,7 +176,7 @@ TEST_F(BenchProgram, Plot_OfEveryStudy_GivesFigureAndTable) {
       {"accuracy --quick --entries 16 --case easy --method gauss --method cpu-double", "| Gauss-Legendre rule |"},
       {"effects --quick --entries 9 --case surroundings", "| surroundings | hemispherical | 250 K |"},
       {"throughput --quick --entries 64 --case grids --case arithmetic", "| v-cavity | 4 × 4 × 4 |"},
-      {"peers --quick --case integral --method gauss --method hcubature --method vulkan-float",
+      {"peers --quick --case integral --method gauss --method hcubature --method vulkan-float --method vulkan-table",
        "| libcubature -O2, one core | integral | 100 |"}};
   for (const Plotted& plotted : list) {
     SCOPED_TRACE(plotted.study);

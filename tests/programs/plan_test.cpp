@@ -160,7 +160,7 @@ TEST_F(Plan, BeamAlone_IsComputedInThePrecisionThatTheToleranceAsksFor) {
   }
 }
 
-TEST_F(Plan, Mirrors_NeedNoDevice) {
+TEST_F(Plan, Mirrors_NeedNoDeviceAndNoPlan) {
   for (const char* mode : {"hemispherical", "bistatic"}) {
     const Outcome outcome =
         without_device({"table", "scene.toml", "-o", "t.nc", "--set", "grid.sigma=0", "--json", "--set",
@@ -168,6 +168,7 @@ TEST_F(Plan, Mirrors_NeedNoDevice) {
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(json::parse(outcome.out)["device"], "none");
     EXPECT_EQ(read_table(at("t.nc"))[Quantity::kRhoI].size(), 8U);
+    EXPECT_EQ(plan({"--set", "grid.sigma=0"})["moments"], 0);
   }
 }
 
@@ -228,12 +229,6 @@ TEST_F(Plan, ManyEntries_PredictionFromSomeIsNearly) {
   EXPECT_FALSE(predicted["first_attempt"]["is_exact"]);
   const double evaluations = spent["evaluations"];
   EXPECT_NEAR(predicted["evaluations"], evaluations, 2.0 * kSampling * evaluations);  // directions differ
-}
-
-TEST_F(Plan, Mirrors_NothingIsPlanned) {
-  const json predicted = plan({"--set", "grid.sigma=0"});
-  EXPECT_EQ(predicted["moments"], 0);
-  EXPECT_EQ(predicted["evaluations"], 0.0);
 }
 
 TEST_F(Plan, NoDevice_PlansAllTheSame) {

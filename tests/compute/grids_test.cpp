@@ -118,7 +118,7 @@ TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
       }
     }
   }
-  // Whether many indices have a basis depends on the draw.
+  // The draw decides if many indices have a basis.
   if (sharing == Sharing::kShapes) {
     EXPECT_GT(2 * evaluator.report().interpolated, entries);
   } else if (sharing != Sharing::kIndices) {

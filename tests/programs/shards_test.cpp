@@ -304,7 +304,7 @@ TEST_F(Resume, AfterCtrlC_SaysHowToGoOn_AndGivesTheSameBits) {
   EXPECT_NE(resumed.out.find("2621440"), std::string::npos) << resumed.out;
 }
 
-// What is left of an interrupted run, damaged in several ways.
+// The rest of an interrupted run, damaged in several ways.
 TEST_F(Resume, OverADamagedPartialFile_GivesTheSameBits) {
   make_whole();
   ASSERT_EQ(interrupted(SIGINT).status, 130);

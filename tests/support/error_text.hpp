@@ -6,7 +6,7 @@
 
 namespace dolp {
 
-/// What a call says as it throws an Error.
+/// The message of the Error that a call throws.
 template <class Error = InputError, class Call>
 std::string error_text(const Call& call) {
   try {

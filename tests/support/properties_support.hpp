@@ -137,7 +137,7 @@ inline std::unique_ptr<ModelEvaluator> make_evaluator(Kernel kernel, VulkanOptio
   return std::make_unique<FixedPrecision>(precision, std::make_unique<VulkanEvaluator>(options));
 }
 
-/// What tests of each kernel with each model are about.
+/// The parameter of tests of each kernel with each model.
 using KernelAndModel = std::tuple<Kernel, Model>;
 
 inline std::string kernel_and_model_name(const testing::TestParamInfo<KernelAndModel>& test) {

@@ -11,7 +11,7 @@
 
 namespace dolp {
 
-/// What some evaluations took.
+/// The cost of some evaluations.
 struct Work {
   double evaluations = 0.0;  ///< of the integrand
   double kernel_s = 0.0;     ///< time on the device (timestamps), or of the loop on the CPU

@@ -61,7 +61,7 @@ class BackgroundTask {
   bool is_running() const { return state_ == State::kRunning; }
   /// From 0 to 1.
   double progress() const { return progress_; }
-  /// What the progress counts; empty where work has one phase. The work sets it, and progress begins anew.
+  /// The phase whose progress it is; empty where work has one phase. The work sets it, and progress begins anew.
   std::string phase() const;
   void set_phase(const std::string& phase);
   /// The message, or the reason of a failure, in one line.

@@ -288,7 +288,7 @@ TEST_F(Library, AProgressThatReturnsFalse_Cancels_AndLeavesNoFile) {
   EXPECT_TRUE(std::filesystem::is_empty(at("")));
 }
 
-// What is there is read in parts, the second of which is not.
+// A file that is there is read in parts; the second part never is.
 TEST_F(Library, Cancelled_WhileAKeptShardIsRead_IsHonoured) {
   const dolp::Scene scene =
       scene_.with({{"surface.masking", "none"}, {"surface.distribution", "gaussian"}, {"accuracy.tolerance", 1e-2}})

@@ -1,4 +1,4 @@
-// What stands behind the window: edits of the scene, choices that exclude one another, the worker, measured points.
+// The parts behind the window: edits of the scene, choices that exclude one another, the worker, measured points.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -13,8 +13,9 @@ real cosine(real2 half_phi) { return (half_phi.x - half_phi.y) * (half_phi.x + h
 
 // atan(y) for y >= 0.
 real arc_tangent(real y) {
-  real angle = atan_unit(y <= real(1.0) ? y : real(1.0) / y);
-  return y <= real(1.0) ? angle : real(0.5) * kPi - angle;
+  bool is_small = y <= real(1.0);
+  real angle = atan_unit(choose(is_small, y, real(1.0) / y));
+  return choose(is_small, angle, real(0.5) * kPi - angle);
 }
 
 // phi.
@@ -57,35 +58,29 @@ Arc make_arc(real2 from, real2 to) {
   arc.centre_cos = from.x * to.x - from.y * to.y;
   arc.centre_sin = from.y * to.x + from.x * to.y;
   arc.extent = arc.quarter / (real(1.0) + sqrt(real(1.0) + arc.quarter * arc.quarter));
-  arc.section = kSectionCentre;
   arc.is_critical = false;
   arc.resolution = real(0.0);
-  arc.origin = phase(from);
   arc.span = real(4.0) * arc_tangent(arc.quarter);
-  if (starts_at_0 || ends_at_pi) {
-    arc.origin = starts_at_0 ? real(0.0) : kPi;
-    arc.centre_cos = starts_at_0 ? real(1.0) : real(-1.0);
-    arc.centre_sin = real(0.0);
-    arc.extent = arc.quarter;
-    arc.section = kSectionHalf;
-  }
-  if (starts_at_0 && ends_at_pi) {
-    arc.extent = real(1.0);
-    arc.section = kSectionCircle;
-  }
+  // Even about an end at 0 or pi; the whole half circle begins and ends there.
+  bool is_half = starts_at_0 || ends_at_pi;
+  bool is_circle = starts_at_0 && ends_at_pi;
+  arc.origin = choose(is_half, choose(starts_at_0, real(0.0), kPi), phase(from));
+  arc.centre_cos = choose(is_half, choose(starts_at_0, real(1.0), real(-1.0)), arc.centre_cos);
+  arc.centre_sin = choose(is_half, real(0.0), arc.centre_sin);
+  arc.extent = choose(is_circle, real(1.0), choose(is_half, arc.quarter, arc.extent));
+  arc.section = is_half ? kSectionHalf : kSectionCentre;
+  arc.section = is_circle ? kSectionCircle : arc.section;
   return arc;
 }
 
-// The arc between two azimuths with a square root, or another singularity, at one of them: at its end, otherwise at its
-// beginning.
-Arc make_root_arc(real2 from, real2 to, bool at_end) {
-  Arc arc = make_arc(from, to);
-  real2 root = at_end ? to : from;
-  arc.centre_cos = cosine(root);
-  arc.centre_sin = real(2.0) * root.x * root.y;
-  arc.origin = phase(root);
-  arc.extent = at_end ? -arc.quarter : arc.quarter;
-  arc.section = kSectionCluster;
+// The same arc with a square root, or another singularity, at its end or its beginning, if it has one.
+Arc with_root(Arc arc, bool at_end, bool has_root) {
+  real2 root = choose(at_end, arc.to, arc.from);
+  arc.centre_cos = choose(has_root, cosine(root), arc.centre_cos);
+  arc.centre_sin = choose(has_root, real(2.0) * root.x * root.y, arc.centre_sin);
+  arc.origin = choose(has_root, phase(root), arc.origin);
+  arc.extent = choose(has_root, choose(at_end, -arc.quarter, arc.quarter), arc.extent);
+  arc.section = has_root ? kSectionCluster : arc.section;
   return arc;
 }
 
@@ -100,13 +95,13 @@ struct Azimuth {
 // sinh(a))^2, a = asinh(1 / sqrt(resolution)), which spaces the nodes by ratios down to the resolution and by squares
 // below.
 real2 place_on_arc(Arc arc, real2 node) {
-  if (!kTotalReflection || arc.resolution <= real(0.0)) return node;
+  if (!kTotalReflection) return node;
   real scale = real(1.0) / sqrt(arc.resolution);  // sinh(a)
   real a = asinh_real(scale);
   real v = sqrt(node.x);
   real2 hyperbolic = sinh_cosh(a * v);
   real y = hyperbolic.x / scale;
-  return real2(y * y, node.y * a * y * hyperbolic.y / (scale * v));
+  return choose(arc.resolution > real(0.0), real2(y * y, node.y * a * y * hyperbolic.y / (scale * v)), node);
 }
 
 Azimuth azimuth(Arc arc, real2 node) {
@@ -150,9 +145,10 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
     // 1 - sin(alpha) = cos^2(alpha) / (1 + sin(alpha)).
     real sec = sqrt(sec2);
     real cos_limit = sqrt(real(0.5) / (sec * (sec + t)));
-    bool limited = has_split_line && cos_limit < c;
+    bool is_beyond = cos_limit < c;
+    bool limited = has_split_line && is_beyond;
     lines.end[0] = same_zenith;
-    lines.end[1] = limited ? line_at(real(0.5) * (cos_limit + c) * sec2 - c, st) : same_zenith;
+    lines.end[1] = choose(limited, line_at(real(0.5) * (cos_limit + c) * sec2 - c, st), same_zenith);
     lines.end[2] = lines.horizon;
     lines.arcs = 3;
     lines.leaving = 3;
@@ -163,14 +159,16 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
     real2 shaded = line_at(c, st);
     real level = c * (real(3.0) * t * t - real(1.0)) / (real(3.0) - t * t);
     lines.end[0] = t < real(1.0) ? shaded : same_zenith;
-    lines.end[1] = t < real(1.0) ? line_at(level, st) : same_zenith;
+    lines.end[1] = choose(t < real(1.0), line_at(level, st), same_zenith);
     lines.end[2] = lines.horizon;
     lines.arcs = 3;
     lines.leaving = 3;
     if (kHasDirect) {
-      bool shaded_leaves = t >= real(1.0) && t * t < real(3.0);
+      bool is_steep = t >= real(1.0);
+      bool is_below_60 = t * t < real(3.0);
+      bool shaded_leaves = is_steep && is_below_60;
       lines.end[2] = shaded_leaves ? shaded : lines.horizon;
-      lines.end[3] = (shaded_leaves || t < real(1.0)) ? lines.horizon : shaded;
+      lines.end[3] = (shaded_leaves || !is_steep) ? lines.horizon : shaded;
       lines.end[4] = facing;
       lines.arcs = 5;
       lines.leaving = shaded_leaves ? 4 : 3;

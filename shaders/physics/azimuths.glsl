@@ -85,16 +85,19 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
   AzimuthSums sums = no_azimuths();
   bool is_critical = kTotalReflection && index.critical_cos > real(0.0);
   real2 last = real2(real(1.0), real(0.0));
-  for (int part = 0; part < (is_critical ? 2 * lines.arcs : lines.arcs); ++part) {
-    int zone = is_critical ? part >> 1 : part;
-    bool is_second = is_critical && (part & 1) == 1;
+  int halves = is_critical ? 1 : 0;
+  for (int part = 0; part < (lines.arcs << halves); ++part) {
+    int zone = part >> halves;
+    bool is_odd = (part & 1) == 1;
+    bool is_second = is_critical && is_odd;
+    bool is_first_half = is_critical && !is_second;
     real2 from = last;
     real2 to = lines.end[zone];
-    if (!is_critical || is_second) last = to;
-    if (is_critical) {
+    last = is_first_half ? last : to;
+    if (kTotalReflection) {
       real2 middle = clamp_half_angle(lines.critical, from, to);
       from = is_second ? middle : from;
-      to = is_second ? to : middle;
+      to = is_first_half ? middle : to;
     }
     real2 start = from;
     for (int corner = 0; corner <= slope.sky.corners; ++corner) {
@@ -104,12 +107,13 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
       // invocation needs it. It counts as an iteration, see worst_iterations of host/compute/plan/kernel_data.hpp.
       for (bool is_due = is_before(start, stop); is_due; is_due = false) {
         bool is_first = !is_before(from, start);
-        Arc arc = make_arc(start, stop);
-        if (is_first) {
-          arc = zone_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits, start, stop, zone);
-        }
-        if (is_critical && (is_second ? is_first : !is_before(stop, to))) {
-          arc = critical_arc(theta, index, slope.t, slope.digits, start, stop, !is_second, arc);
+        Arc arc = masked_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits,
+                             make_arc(start, stop), zone, is_first);
+        if (kTotalReflection) {
+          bool is_last = !is_before(stop, to);
+          bool is_beside = is_second ? is_first : is_last;
+          is_beside = is_critical && is_beside;
+          arc = critical_arc(theta, index, slope.t, slope.digits, arc, !is_second, is_beside);
         }
         real nodes = arc_nodes(rule, theta, row.shape[0], index, slope.has_split_line, slope.t, slope.digits, arc, zone);
         int order = order_between(nodes, slope.most_azimuths);

@@ -8,6 +8,11 @@ CONST real kLn2Low = real(1.42860682030941723212e-6);      // ln 2 - kLn2High
 CONST real kInverseLn2 = real(1.44269504088896340736);
 CONST real kSqrtHalf = real(0.70710678118654752440);
 
+// One of two values, both of which are computed. `c ? a : b` is a branch unless a and b are names or constants, and some
+// drivers analyse a loop in a time that doubles with every branch in it.
+real choose(bool condition, real yes, real no) { return condition ? yes : no; }
+real2 choose(bool condition, real2 yes, real2 no) { return condition ? yes : no; }
+
 // The product of two complex numbers.
 real2 multiply(real2 a, real2 b) { return real2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x); }
 
@@ -80,15 +85,17 @@ real atanh_series(real z2) {
 real log1p_real(real u) {
   precise real v = real(1.0) + u;
   precise real above_one = v - real(1.0);
-  precise real lost = u < real(1.0) ? u - above_one : real(1.0) - (v - u);
+  precise real lost_of_u = u - above_one;
+  precise real lost_of_one = real(1.0) - (v - u);
   int exponent;
   real mantissa = frexp(v, exponent);
-  real k = real(exponent) - (mantissa < kSqrtHalf ? real(1.0) : real(0.0));
-  mantissa = mantissa < kSqrtHalf ? mantissa + mantissa : mantissa;
+  bool is_low = mantissa < kSqrtHalf;
+  real k = real(exponent) - (is_low ? real(1.0) : real(0.0));
+  mantissa = choose(is_low, mantissa + mantissa, mantissa);
   real z = (mantissa - real(1.0)) / (mantissa + real(1.0));
   real z2 = z * z;
   real series = real(2.0) * (z + z * z2 * atanh_series(z2));
-  return k * kLn2High + (series + (k * kLn2Low + lost / v));
+  return k * kLn2High + (series + (k * kLn2Low + choose(u < real(1.0), lost_of_u, lost_of_one) / v));
 }
 
 // ln(x) for 0 < x <= 1, coarse below 1e-30.
@@ -96,14 +103,15 @@ real log_unit(real x) { return -log1p_real((real(1.0) - x) / max(x, real(1e-30))
 
 // ln(1 + u^2) for u >= 0, also where u^2 overflows: there it is 2 ln(u).
 real log1p_square(real u) {
-  real logarithm = log1p_real(u > real(1e9) ? u - real(1.0) : u * u);
-  return u > real(1e9) ? real(2.0) * logarithm : logarithm;
+  bool is_large = u > real(1e9);
+  real logarithm = log1p_real(choose(is_large, u - real(1.0), u * u));
+  return choose(is_large, real(2.0) * logarithm, logarithm);
 }
 
 // asinh(y) for y >= 0; ln(2 y) where y^2 might overflow.
 real asinh_real(real y) {
   real y2 = y * y;
-  return log1p_real(y > real(1e9) ? real(2.0) * y - real(1.0) : y + y2 / (real(1.0) + sqrt(real(1.0) + y2)));
+  return log1p_real(choose(y > real(1e9), real(2.0) * y - real(1.0), y + y2 / (real(1.0) + sqrt(real(1.0) + y2))));
 }
 
 // (sinh(x), cosh(x)) for 0 <= x <= 80.

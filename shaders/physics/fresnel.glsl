@@ -18,7 +18,7 @@ struct Fresnel {
 real2 sqrt_upper(real re, real im) {
   real modulus = sqrt(re * re + im * im);
   real larger = sqrt(real(0.5) * (modulus + abs(re)));
-  real smaller = larger > real(0.0) ? real(0.5) * im / larger : real(0.0);
+  real smaller = choose(larger > real(0.0), real(0.5) * im / larger, real(0.0));
   return real2(re >= real(0.0) ? larger : smaller, re >= real(0.0) ? smaller : larger);
 }
 

@@ -108,7 +108,7 @@ ShadowPlace shadow_place(ShapeNode shape, real cos_theta, real sin_theta, real t
   ShadowPlace place;
   place.kappa = s * sqrt(real(1.0) + t * t) / (cos_theta + s * t);
   place.is_limited = d > real(0.0);
-  real far = place.is_limited ? (difference * t + twice_product) / d : mu;
+  real far = choose(place.is_limited, (difference * t + twice_product) / d, mu);
   far = min(far, masking_node_tau(shape, kMaskingNodes - 1u));
   place.far = far;
   place.gap = far - mu;

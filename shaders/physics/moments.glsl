@@ -23,35 +23,35 @@ Piece make_piece(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task 
   }
   piece.digits = digits_of_piece(rule, theta, shape, a, b, largest_mass);
   piece.root_at_a = task.root_at_start;
-  piece.root_at_b = b < shape.cut && task.root_at_end;
+  bool ends_before_cut = b < shape.cut;
+  piece.root_at_b = ends_before_cut && task.root_at_end;
   // A root beside an end that is near, measured by the piece, counts as the end's own.
   real end = piece.start + piece.extent;
-  piece.root_before = piece.start;
-  piece.root_after = end;
-  if (task.root_before_start) {
-    real x = asinh_real(task.before / shape.scale);
-    bool is_near = piece.start - x < kNearRoot * piece.extent;
-    piece.root_at_a = piece.root_at_a || is_near;
-    piece.root_before = is_near ? piece.start : x;
-  }
-  if (task.root_after_end && b < shape.cut) {
-    real x = asinh_real(task.after / shape.scale);
-    bool is_near = x - end < kNearRoot * piece.extent;
-    piece.root_at_b = piece.root_at_b || is_near;
-    piece.root_after = is_near ? end : x;
-  }
+  real before = asinh_real(task.before / shape.scale);
+  bool is_near_a = piece.start - before < kNearRoot * piece.extent;
+  bool has_near_a = task.root_before_start && is_near_a;
+  bool has_far_a = task.root_before_start && !is_near_a;
+  piece.root_at_a = piece.root_at_a || has_near_a;
+  piece.root_before = choose(has_far_a, before, piece.start);
+  real after = asinh_real(task.after / shape.scale);
+  bool has_after = task.root_after_end && ends_before_cut;
+  bool is_near_b = after - end < kNearRoot * piece.extent;
+  bool has_near_b = has_after && is_near_b;
+  bool has_far_b = has_after && !is_near_b;
+  piece.root_at_b = piece.root_at_b || has_near_b;
+  piece.root_after = choose(has_far_b, after, end);
   piece.order = order_between(slope_nodes(rule, theta, shape, index, task.has_split_line, piece), largest_order());
   return piece;
 }
 
 // (y, dy/dv) of a piece.
 real2 place_on_piece(Piece piece, real v) {
-  if (piece.root_at_a && piece.root_at_b) {
-    return real2(v * v * (real(3.0) - real(2.0) * v), real(6.0) * v * (real(1.0) - v));
-  }
-  if (piece.root_at_a) return real2(v * v, real(2.0) * v);
-  if (piece.root_at_b) return real2(v * (real(2.0) - v), real(2.0) * (real(1.0) - v));
-  return real2(v, real(1.0));
+  bool has_both = piece.root_at_a && piece.root_at_b;
+  real2 both = real2(v * v * (real(3.0) - real(2.0) * v), real(6.0) * v * (real(1.0) - v));
+  real2 at_a = real2(v * v, real(2.0) * v);
+  real2 at_b = real2(v * (real(2.0) - v), real(2.0) * (real(1.0) - v));
+  real2 one_or_none = choose(piece.root_at_a, at_a, choose(piece.root_at_b, at_b, real2(v, real(1.0))));
+  return choose(has_both, both, one_or_none);
 }
 
 // Sums over the slopes of a piece by one rule, for each member of a row.
@@ -82,7 +82,8 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
   SkyPlace sky = sky_place();
   real mass[DOLP_WIDTH];
   for (int g = 0; g < DOLP_WIDTH; ++g) mass[g] = real(0.0);
-  int order = is_coarse ? min(coarse_order(piece.order), largest_order()) : piece.order;
+  int fewer = min(coarse_order(piece.order), largest_order());
+  int order = is_coarse ? fewer : piece.order;
   real all = weight_of_shape(theta, shape);
   int first_node = rule_offset(kSectionGauss, order);
   for (int i = 0; i < order; ++i) {
@@ -120,7 +121,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
   }
   // Normalising by the known share of the facets cancels the error of the density alone.
   for (int g = 0; g < DOLP_WIDTH; ++g) {
-    real ratio = mass[g] > real(0.0) ? piece.mass[g] / mass[g] : real(1.0);
+    real ratio = choose(mass[g] > real(0.0), piece.mass[g] / mass[g], real(1.0));
     sums.member[g] *= ratio;
     sums.sky[g] = add_scaled(no_sky(), ratio, sums.sky[g]);
     sums.behind[g] *= ratio;
@@ -151,7 +152,7 @@ RowMoments piece_moments(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
   real reached = min(task.last, cut);
   RowMoments result;
   for (int g = 0; g < DOLP_WIDTH; ++g) {
-    real beyond = (task.piece == 0) ? theta.c * slope_tail(row.shape[g], reached) : real(0.0);
+    real beyond = choose(task.piece == 0, theta.c * slope_tail(row.shape[g], reached), real(0.0));
     real4 sums = fine.member[g];
     real4 difference = abs(sums - coarse.member[g]);
     real2 direct = fine.direct[g];

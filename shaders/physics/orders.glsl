@@ -34,7 +34,7 @@ struct Singularity {
 // acos(u).
 real arc_cosine(real u) {
   real angle = real(2.0) * atan_unit(sqrt((real(1.0) - abs(u)) / (real(1.0) + abs(u))));
-  return u < real(0.0) ? kPi - angle : angle;
+  return choose(u < real(0.0), kPi - angle, angle);
 }
 
 // arccos(a + i b), from the distances of cos(phi) to +-1 (Hull, Fairgrieve and Tang 1997).
@@ -53,7 +53,8 @@ int order_between(real nodes, int limit) { return int(clamp(floor(nodes + real(0
 // by chance more often than not: there it is the finer one.
 int coarse_order(int order) {
   int fewer = (8 * order + 5) / 10;
-  return (fewer < 3) ? order + 1 : fewer;
+  int more = order + 1;
+  return (fewer < 3) ? more : fewer;
 }
 
 // ---- Slope axis ----------------------------------------------------------------------------------------------------
@@ -98,9 +99,11 @@ real digits_of_slope(RuleNode rule, ThetaNode theta, real all, real digits, int 
 // the distance from it.
 real piece_cost(Piece piece, real re, real im) {
   real2 z = real2((re - piece.start) / piece.extent, im / piece.extent);
-  real from_root = piece.root_at_b ? real(1.0) - z.x : z.x;
-  if (piece.root_at_a) from_root = z.x < real(0.5) ? z.x : from_root;  // the nearer one
-  real2 y = (piece.root_at_a || piece.root_at_b) ? sqrt_upper(from_root, z.y) : z;
+  bool is_nearer_to_a = z.x < real(0.5);
+  bool starts_at_a = piece.root_at_a && is_nearer_to_a;
+  bool starts_at_b = piece.root_at_b && !starts_at_a;
+  bool has_root = piece.root_at_a || piece.root_at_b;
+  real2 y = choose(has_root, sqrt_upper(choose(starts_at_b, real(1.0) - z.x, z.x), z.y), z);
   return nodes_per_digit(acosh_above_1(gap_beside_unit(y.x, y.y)));
 }
 
@@ -120,7 +123,7 @@ real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, 
   real unit = max(theta.s, real(1e-6)) * shape.scale;
   real x = (re - theta.c) / unit;
   real bent = asinh_real(abs(x));
-  return piece_cost(piece, x < real(0.0) ? -bent : bent, im / (unit * max(abs(x), real(1.0))));
+  return piece_cost(piece, choose(x < real(0.0), -bent, bent), im / (unit * max(abs(x), real(1.0))));
 }
 
 // The same from Fresnel's branch point cos(beta) = b on a line where arcs end: the horizon, sec(alpha) = 2 b / c, or
@@ -143,7 +146,7 @@ real diverging_nodes(ThetaNode theta, ShapeNode shape, Piece piece) {
   real width = theta.s / max(theta.c, real(1e-12)) + kPi * shape.two_q_minus_3 / shape.m;
   real beside = real(0.5) * width / sqrt(shape.scale * shape.scale + t * t);
   bool is_below = piece.start + real(0.5) * piece.extent < cusp;
-  real cost = piece_cost(piece, is_below ? cusp + beside : cusp - beside, real(0.0));
+  real cost = piece_cost(piece, choose(is_below, cusp + beside, cusp - beside), real(0.0));
   return max(piece.digits + kInverseLn10 * log_unit(min(beside / piece.extent, real(1.0))), real(0.0)) * cost;
 }
 
@@ -157,15 +160,17 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
     cost = max(cost, piece_cost(piece, real_part_of_asinh(shape.m / shape.scale), real(0.5) * kPi));
   }
   cost = max(cost, fresnel_piece_cost(theta, shape, piece, index.pole_re, index.pole_im));
-  if (index.critical_cos <= real(0.0)) {
-    cost = max(cost, fresnel_piece_cost(theta, shape, piece, index.branch_re, index.branch_im));
-    cost = max(cost, line_piece_cost(theta, shape, index, piece, real(2.0)));
-    if (kMasking == DOLP_MASKING_INTEGRAL) cost = max(cost, line_piece_cost(theta, shape, index, piece, real(1.0)));
-  }
-  if (piece.root_before < piece.start) cost = max(cost, piece_cost(piece, piece.root_before, real(0.0)));
-  if (piece.root_after > piece.start + piece.extent) cost = max(cost, piece_cost(piece, piece.root_after, real(0.0)));
+  real branch = max(fresnel_piece_cost(theta, shape, piece, index.branch_re, index.branch_im),
+                    line_piece_cost(theta, shape, index, piece, real(2.0)));
+  if (kMasking == DOLP_MASKING_INTEGRAL) branch = max(branch, line_piece_cost(theta, shape, index, piece, real(1.0)));
+  cost = max(cost, choose(index.critical_cos <= real(0.0), branch, real(0.0)));
+  real before = piece_cost(piece, piece.root_before, real(0.0));
+  cost = max(cost, choose(piece.root_before < piece.start, before, real(0.0)));
+  real after = piece_cost(piece, piece.root_after, real(0.0));
+  cost = max(cost, choose(piece.root_after > piece.start + piece.extent, after, real(0.0)));
   // The roots of v^2 (3 - 2v) = y meet at v = -1/2 and 3/2.
-  if (piece.root_at_a && piece.root_at_b) cost = max(cost, nodes_per_digit(acosh_above_1(real(1.0))));
+  bool has_two_roots = piece.root_at_a && piece.root_at_b;
+  cost = max(cost, choose(has_two_roots, nodes_per_digit(acosh_above_1(real(1.0))), real(0.0)));
   real roots = (piece.root_at_a ? real(1.0) : real(0.0)) + (piece.root_at_b ? real(1.0) : real(0.0));
   // The gaussian falls ever faster in X: all of it in the last unit.
   real steepest = (kDistribution == DOLP_GAUSSIAN) ? max(piece.extent, real(1.0)) : real(1.0);
@@ -174,11 +179,12 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
   real digits = piece.digits + kMoreDigits * max(piece.digits - kPlainDigits, real(0.0));
   real nodes = rule.t_nodes + roots + rule.t_fall * resolved + (digits + rule.t_digits) * cost;
   // Split at smith's cusp, the gaussian's L has an essential singularity at an end: see line_nodes.
-  if (kMasking == DOLP_MASKING_SMITH && kDistribution == DOLP_GAUSSIAN && has_split_line) {
-    nodes = max(nodes, rule.t_nodes + essential_nodes(shape, piece.digits));
+  if (kMasking == DOLP_MASKING_SMITH && kDistribution == DOLP_GAUSSIAN) {
+    nodes = max(nodes, choose(has_split_line, rule.t_nodes + essential_nodes(shape, piece.digits), real(0.0)));
   }
-  if (is_diverging(shape) && has_split_line) {
-    nodes = max(nodes, rule.t_nodes + roots + diverging_nodes(theta, shape, piece));
+  if (kMasking == DOLP_MASKING_SMITH && kDistribution == DOLP_CAUCHY) {
+    bool is_split = is_diverging(shape) && has_split_line;
+    nodes = max(nodes, choose(is_split, rule.t_nodes + roots + diverging_nodes(theta, shape, piece), real(0.0)));
   }
   return max(nodes, real(2.0));
 }
@@ -188,40 +194,42 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
 // Nodes for each digit on an arc, from the singularity's place in the abscissa of the arc's rule. Rules that are even
 // about the arc's centre converge as one of half the nodes in the square of their abscissa, clusters are in its root.
 real arc_cost(Arc arc, Singularity at) {
-  if (arc.section == kSectionCircle) return nodes_per_digit(at.im);
   real re = abs(at.re - arc.origin) / arc.span;
   real im = at.im / arc.span;
-  re = (at.re - arc.origin) * arc.extent < real(0.0) ? -re : re;  // beyond the arc's beginning
-  real2 y = real2(re, im);
-  if (arc.section == kSectionHalf) y = real2(re * re - im * im, real(2.0) * re * im);
-  if (arc.section == kSectionCluster) y = sqrt_upper(re, im);
-  return nodes_per_digit(acosh_above_1(gap_beside_unit(y.x, y.y)));
+  re = choose((at.re - arc.origin) * arc.extent < real(0.0), -re, re);  // beyond the arc's beginning
+  real2 y = choose(arc.section == kSectionHalf, real2(re * re - im * im, real(2.0) * re * im), real2(re, im));
+  y = choose(arc.section == kSectionCluster, sqrt_upper(re, im), y);
+  real mu = acosh_above_1(gap_beside_unit(y.x, y.y));
+  return nodes_per_digit(choose(arc.section == kSectionCircle, at.im, mu));
 }
 
 // The singularities of Fresnel's coefficients: R_p's pole, at cos(beta) = -1 / sqrt(N^2 + 1), and the branch point of
-// w, at cos^2(beta) = 1 - N^2. Beside a critical line w goes as the abscissa v of the cluster and the pole w = -N^2
-// cos(beta) lies at v = -N^2 critical_cos / w of the arc's other end; beyond the line w is imaginary. Those at the
-// bounce whose facet is turned by (cos, sin) from the vertical: cos(beta) = c sin + s x cos.
+// w, at cos^2(beta) = 1 - N^2, at the bounce whose facet is turned by (cos, sin) from the vertical: cos(beta) = c sin +
+// s x cos.
 real bounce_cost(ThetaNode theta, IndexNode index, real2 facet, Arc arc) {
   real slant = theta.s * facet.x;
   real size = max(abs(slant), real(1e-15));
-  real sign = (slant < real(0.0)) ? real(-1.0) : real(1.0);
+  real sign = choose(slant < real(0.0), real(-1.0), real(1.0));
   real offset = theta.c * facet.y;
   Singularity pole = singularity_at(sign * (index.pole_re - offset) / size, index.pole_im / size);
   Singularity branch = singularity_at(sign * (index.branch_re - offset) / size, index.branch_im / size);
   return max(arc_cost(arc, pole), arc_cost(arc, branch));
 }
 
+// Beside a critical line w goes as the abscissa v of the cluster and the pole w = -N^2 cos(beta) lies at v = -N^2
+// critical_cos / w of the arc's other end; beyond the line w is imaginary.
+real critical_cost(ThetaNode theta, IndexNode index, real t, Arc arc) {
+  real sec = sqrt(real(1.0) + t * t);
+  real2 end = choose(arc.extent < real(0.0), arc.from, arc.to);
+  real cos_beta = (theta.c + theta.s * t * cosine(end)) / sec;
+  real w2 = cos_beta * cos_beta - index.critical_cos * index.critical_cos;
+  real v = abs(index.n2m1_re + real(1.0)) * index.critical_cos / max(sqrt(abs(w2)), real(1e-15));
+  v = min(v, real(1e9));
+  real gap = choose(w2 > real(0.0), gap_beside_unit(-v, real(0.0)), gap_beside_unit(real(0.0), v));
+  return nodes_per_digit(acosh_above_1(gap));
+}
+
 real fresnel_cost(RuleNode rule, ThetaNode theta, IndexNode index, real t, Arc arc) {
-  if (arc.is_critical) {
-    real sec = sqrt(real(1.0) + t * t);
-    real2 end = (arc.extent < real(0.0)) ? arc.from : arc.to;
-    real cos_beta = (theta.c + theta.s * t * cosine(end)) / sec;
-    real w2 = cos_beta * cos_beta - index.critical_cos * index.critical_cos;
-    real v = abs(index.n2m1_re + real(1.0)) * index.critical_cos / max(sqrt(abs(w2)), real(1e-15));
-    v = min(v, real(1e9));
-    return nodes_per_digit(acosh_above_1((w2 > real(0.0)) ? gap_beside_unit(-v, real(0.0)) : gap_beside_unit(real(0.0), v)));
-  }
   real r = real(1.0) / sqrt(real(1.0) + t * t);
   real2 turn = real2(t * r, r);
   real cost = bounce_cost(theta, index, turn, arc);
@@ -238,13 +246,13 @@ real fresnel_cost(RuleNode rule, ThetaNode theta, IndexNode index, real t, Arc a
       cost = max(cost, bounce_cost(theta, index, facet, arc));
     }
   }
-  return cost;
+  return kTotalReflection ? choose(arc.is_critical, critical_cost(theta, index, t, arc), cost) : cost;
 }
 
 // Singularities of the masking of the reflected ray: the in-plane slopes' density at cot(theta_r) = +- i m, and for
 // `integral` the pole of kappa at cot(theta_r) = -t.
 real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
-  if (kMasking != DOLP_MASKING_SMITH && (kMasking != DOLP_MASKING_INTEGRAL || zone == 0)) return real(0.0);
+  if (kMasking != DOLP_MASKING_SMITH && kMasking != DOLP_MASKING_INTEGRAL) return real(0.0);
   real sec2 = real(1.0) + t * t;
   real st = max(theta.s * t, real(1e-15));
   real scale = real(0.5) * sec2 / st;
@@ -252,10 +260,14 @@ real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
   // cos(theta_r) = i m / sqrt(1 - m^2)
   real width = real(1.0) - shape.m * shape.m;
   real cos_r = shape.m / sqrt(max(abs(width), real(1e-6)));
-  Singularity density = singularity_at(offset + ((width > real(0.0)) ? real(0.0) : cos_r * scale),
-                                       (width > real(0.0)) ? cos_r * scale : real(0.0));
+  real place = cos_r * scale;
+  bool is_imaginary = width > real(0.0);
+  Singularity density = singularity_at(offset + choose(is_imaginary, real(0.0), place), choose(is_imaginary, place, real(0.0)));
   real cost = arc_cost(arc, density);
-  if (kMasking == DOLP_MASKING_INTEGRAL) cost = max(cost, arc_cost(arc, singularity_at(offset - t / sqrt(sec2) * scale, real(0.0))));
+  if (kMasking == DOLP_MASKING_INTEGRAL) {
+    cost = max(cost, arc_cost(arc, singularity_at(offset - t / sqrt(sec2) * scale, real(0.0))));
+    cost = choose(zone == 0, real(0.0), cost);
+  }
   return cost;
 }
 
@@ -264,7 +276,7 @@ real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
 // (t - tan(theta/2))^2 / (2 s t). The gaussian's L is smooth, but grows beyond bounds toward imaginary theta_r: by the
 // digits wanted at 1 / (m sqrt(digits ln 10)).
 real cusp_nodes(ThetaNode theta, ShapeNode shape, real t, real digits, Arc arc) {
-  if (kMasking != DOLP_MASKING_SMITH || shape.cusp_digits < real(-100.0)) return real(0.0);
+  if (kMasking != DOLP_MASKING_SMITH) return real(0.0);
   real away = t - theta.s / (real(1.0) + theta.c);
   real beside = real(0.0);
   if (kDistribution == DOLP_GAUSSIAN) {
@@ -273,73 +285,84 @@ real cusp_nodes(ThetaNode theta, ShapeNode shape, real t, real digits, Arc arc) 
   }
   real rise = (real(1.0) + theta.c) * (away * away + beside * beside) / (real(2.0) * max(theta.s * t, real(1e-30)));
   real wanted = max(digits + shape.cusp_digits, real(0.0));
-  return wanted * arc_cost(arc, Singularity(real(0.0), max(acosh_above_1(rise), real(1e-3))));
+  real nodes = wanted * arc_cost(arc, Singularity(real(0.0), max(acosh_above_1(rise), real(1e-3))));
+  return choose(shape.cusp_digits < real(-100.0), real(0.0), nodes);
 }
 
-// The arc of a zone without total reflection.
-Arc zone_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_line, real t, real digits, real2 from,
-             real2 to, int zone) {
-  Arc arc = make_arc(from, to);
-  if (kMasking == DOLP_MASKING_SMITH && has_split_line) {
+// The first arc of a zone, with the singularity that the masking has at its beginning.
+Arc masked_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_line, real t, real digits, Arc arc,
+               int zone, bool is_first) {
+  bool has_root = is_first && has_split_line;
+  if (kMasking == DOLP_MASKING_SMITH) {
     real wanted = max(digits + shape.cusp_digits, real(0.0));
-    if (cusp_nodes(theta, shape, t, digits, arc) > rule.cluster_stretch * wanted) return make_root_arc(from, to, false);
+    bool is_cusp = cusp_nodes(theta, shape, t, digits, arc) > rule.cluster_stretch * wanted;
+    return with_root(arc, false, has_root && is_cusp);
   }
-  // Where the limit b of `integral` meets pi/2, G goes as the distance to the power 2q - 1.
-  bool is_rough_line = kMasking == DOLP_MASKING_INTEGRAL && kDistribution == DOLP_CAUCHY && zone == 2 &&
-                       has_split_line && shape.q_minus_1 + real(1.0) < rule.cluster_below_q;
-  return is_rough_line ? make_root_arc(from, to, false) : arc;
+  if (kMasking == DOLP_MASKING_INTEGRAL && kDistribution == DOLP_CAUCHY) {
+    // Where the limit b meets pi/2, G goes as the distance to the power 2q - 1.
+    bool is_rough = shape.q_minus_1 + real(1.0) < rule.cluster_below_q;
+    bool is_line = zone == 2 && is_rough;
+    return with_root(arc, false, has_root && is_line);
+  }
+  return arc;
 }
 
-// The arc on one side of the critical line, or the whole zone where the line lies beyond. w^2 = cos^2(beta) -
-// critical_cos^2 + i Im N^2 vanishes at or beside its end, as far away as w^2 there is of its range on the arc. Where
-// that is far, the arc is like any other; where it is negligible, the root counts as sharp: the change
-// by it is of the order of the resolution to the power 3/2.
-Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, real2 from, real2 to, bool at_end, Arc otherwise) {
+// An arc that may lie on one side of the critical line. w^2 = cos^2(beta) - critical_cos^2 + i Im N^2 vanishes at or
+// beside its end, as far away as w^2 there is of its range on the arc. Where that is far, the arc is like any other;
+// where it is negligible, the root counts as sharp: the change by it is of the order of the resolution to the power 3/2.
+Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc, bool at_end, bool is_beside) {
   real level = index.critical_cos * index.critical_cos;
   real r2 = real(1.0) / (real(1.0) + t * t);
-  real e_root = theta.c + theta.s * t * cosine(at_end ? to : from);
-  real e_far = theta.c + theta.s * t * cosine(at_end ? from : to);
+  real e_root = theta.c + theta.s * t * cosine(choose(at_end, arc.to, arc.from));
+  real e_far = theta.c + theta.s * t * cosine(choose(at_end, arc.from, arc.to));
   real at_root = r2 * e_root * e_root - level;
   real range = max(abs(r2 * e_far * e_far - level), real(1e-30));
   real resolution = min(sqrt(at_root * at_root + index.n2m1_im * index.n2m1_im) / range, real(1.0));
-  if (resolution > kWideResolution) return otherwise;
-  Arc arc = make_root_arc(from, to, at_end);
-  arc.is_critical = true;
+  bool is_narrow = resolution <= kWideResolution;
+  arc.is_critical = is_beside && is_narrow;
+  arc = with_root(arc, at_end, arc.is_critical);
   // Rounding leaves the line itself a little beside its place.
-  bool is_felt = resolution > kSharpResolution && digits + real(1.5) * kInverseLn10 * log_unit(resolution) > real(0.0);
-  arc.resolution = is_felt ? resolution : real(0.0);
+  bool is_smoothed = resolution > kSharpResolution;
+  bool is_felt = digits + real(1.5) * kInverseLn10 * log_unit(resolution) > real(0.0);
+  bool is_resolved = is_smoothed && is_felt;
+  is_resolved = is_resolved && arc.is_critical;
+  arc.resolution = choose(is_resolved, resolution, real(0.0));
   return arc;
 }
 
 // The gaussian's G goes as exp(-1/distance^2) there.
 real line_nodes(ShapeNode shape, bool has_split_line, real digits, int zone) {
-  bool is_line = kMasking == DOLP_MASKING_INTEGRAL && kDistribution == DOLP_GAUSSIAN && zone == 2 && has_split_line;
-  return is_line ? essential_nodes(shape, digits) : real(0.0);
+  if (kMasking != DOLP_MASKING_INTEGRAL || kDistribution != DOLP_GAUSSIAN) return real(0.0);
+  bool is_line = has_split_line && zone == 2;
+  return choose(is_line, essential_nodes(shape, digits), real(0.0));
 }
 
 // A smoothed square root has singularities at v = asinh(sqrt(+-i)) / a = (0.76 +- 0.57 i) / a in the abscissa of
 // place_on_arc; they carry resolution^(3/2) of the whole.
 real resolution_nodes(real digits, real resolution) {
-  if (resolution <= real(0.0)) return real(0.0);
   real wanted = max(digits + real(1.5) * kInverseLn10 * log_unit(resolution), real(0.0));
   real a = asinh_real(real(1.0) / sqrt(resolution));
-  return wanted * nodes_per_digit(acosh_above_1(gap_beside_unit(real(0.76) / a, real(0.57) / a)));
+  real nodes = wanted * nodes_per_digit(acosh_above_1(gap_beside_unit(real(0.76) / a, real(0.57) / a)));
+  return choose(resolution <= real(0.0), real(0.0), nodes);
 }
 
 // Nodes of an arc. With fewer than two on the whole half circle cos(2 phi) would not average out.
 real arc_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, real t, real digits,
                Arc arc, int zone) {
   real map = nodes_per_digit(asinh_real(real(1.0) / max(abs(arc.extent), real(1e-9))));  // dphi = 4 dtau / (1 + tau^2)
-  if (arc.section == kSectionHalf) map = real(0.5) * map;
-  if (arc.section == kSectionCircle) map = real(0.0);
+  map = choose(arc.section == kSectionHalf, real(0.5) * map, map);
+  map = choose(arc.section == kSectionCircle, real(0.0), map);
   real cost = max(max(map, fresnel_cost(rule, theta, index, t, arc)), masking_cost(theta, shape, t, arc, zone));
   // Before a rule converges it must resolve cos(phi) to cos(3 phi), for which it takes nodes in proportion to the arc,
   // and how place_on_arc spreads its nodes, e^(2 a v); a cluster's dphi goes as its abscissa, half a node more.
-  real base = rule.phi_nodes * arc.span + (arc.section == kSectionCluster ? real(1.0) : real(0.5));
-  if (arc.resolution > real(0.0)) base += real(0.5) * asinh_real(real(1.0) / sqrt(arc.resolution));
+  real base = rule.phi_nodes * arc.span + choose(arc.section == kSectionCluster, real(1.0), real(0.5));
+  if (kTotalReflection) {
+    real spread = real(0.5) * asinh_real(real(1.0) / sqrt(arc.resolution));
+    base += choose(arc.resolution > real(0.0), spread, real(0.0));
+  }
   real nodes = base + (digits + rule.phi_digits) * cost;
   nodes = max(nodes, base + cusp_nodes(theta, shape, t, digits, arc));
-  nodes = max(nodes, base + resolution_nodes(digits, arc.resolution));
+  if (kTotalReflection) nodes = max(nodes, base + resolution_nodes(digits, arc.resolution));
   nodes = max(nodes, base + line_nodes(shape, has_split_line, digits, zone));
-  return (arc.section == kSectionCircle) ? max(nodes, real(2.0)) : nodes;
+  return choose(arc.section == kSectionCircle, max(nodes, real(2.0)), nodes);
 }

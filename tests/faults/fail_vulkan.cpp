@@ -1,10 +1,11 @@
 // Preloaded into a program, lets its calls of Vulkan fail. Environment:
 //   DOLP_FAIL_VULKAN     FUNCTION:N:RESULT, the N-th call, or FUNCTION:N+:RESULT, that and all after; e.g.
-//                        vkQueueSubmit:3:-4 loses the device at the third submission
+//                        vkQueueSubmit:3:-4 loses the device at the third submission; RESULT never: it does not return
 //   DOLP_VULKAN_MEMORY   bytes: every larger piece of device memory is refused
 //   DOLP_VULKAN_WITHOUT  float64, compute or version: devices that lack double precision, compute queues or Vulkan 1.2
 //   DOLP_COUNT_SUBMISSIONS a file that gets the number of submissions when the program ends
 #include <dlfcn.h>
+#include <unistd.h>
 #include <vulkan/vulkan.h>
 
 #include <atomic>
@@ -29,11 +30,13 @@ struct Fault {
     function = text.substr(0, first);
     call = std::stoul(text.substr(first + 1));
     all_after = text[second - 1] == '+';
-    result = static_cast<VkResult>(std::stoi(text.substr(second + 1)));
+    never_returns = text.substr(second + 1) == "never";
+    if (!never_returns) result = static_cast<VkResult>(std::stoi(text.substr(second + 1)));
   }
   std::string function;
   unsigned long call = 0;
   bool all_after = false;
+  bool never_returns = false;
   VkResult result = VK_SUCCESS;
 };
 
@@ -45,7 +48,9 @@ VkResult fault_of(const char* function) {
   static std::atomic<unsigned long> calls{0};
   if (fault.function != function) return VK_SUCCESS;
   const unsigned long call = ++calls;
-  return call == fault.call || (fault.all_after && call > fault.call) ? fault.result : VK_SUCCESS;
+  const bool fails = call == fault.call || (fault.all_after && call > fault.call);
+  while (fails && fault.never_returns) ::pause();
+  return fails ? fault.result : VK_SUCCESS;
 }
 
 bool lacks(const char* what) {

@@ -1,8 +1,13 @@
 """Faults of Vulkan devices and their drivers. Each kind of fault yields the exit status of every try."""
+import json
+import os
 import pathlib
+import signal
+import subprocess
 import tempfile
+import time
 
-from attempt import DEVICE, DONE, FOLDERS, LARGE, MEMORY
+from attempt import DEVICE, DONE, FOLDERS, INTERRUPTED, LARGE, MEMORY, TIMEOUT_S, Broken
 
 VULKAN_CALLS = ("vkCreateInstance", "vkEnumeratePhysicalDevices", "vkCreateDevice", "vkCreateCommandPool",
                 "vkAllocateCommandBuffers", "vkCreateBuffer", "vkAllocateMemory", "vkBindBufferMemory", "vkMapMemory",
@@ -75,4 +80,27 @@ def broken_driver_file(driver):
             yield driver.try_once("eval", (), (DEVICE,), environment=fault)
 
 
-KINDS = (lost_device, lost_devices, device_memory, vulkan_call, lacking_driver, broken_driver_file)
+def endless_compilation(driver):
+    """the driver never finishes compiling a kernel"""
+    driver.expect("eval")
+    fault = driver.preload("vulkan", DOLP_FAIL_VULKAN="vkCreateComputePipelines:1+:never", DOLP_COMPILATION_LIMIT_S="0.5")
+    for command in ("eval", "table"):
+        driver.expect(command)
+        yield driver.try_once(command, (), (DEVICE,), environment=fault)
+    patient = {**fault, "DOLP_COMPILATION_LIMIT_S": "1000"}
+    with driver.attempt("table", environment=patient) as attempt, attempt.start() as process:
+        time.sleep(1)  # a signal before the compilation begins ends the program too
+        process.terminate()
+        err = process.communicate(timeout=TIMEOUT_S)[1].decode()
+        attempt.check(process.returncode, err, (INTERRUPTED, -signal.SIGTERM))
+        yield process.returncode
+    environment = {**os.environ, "DOLP_VALIDATION": "0", **fault}
+    devices = subprocess.run([driver.program, "devices", "--json"], env=environment, capture_output=True, timeout=TIMEOUT_S,
+                             check=False)
+    device = json.loads(devices.stdout)["devices"][0]
+    if devices.returncode != DEVICE or device["usable"] or "did not finish compiling" not in device["why_not"]:
+        raise Broken(f"devices ends with {devices.returncode} and calls {device} usable")
+    yield devices.returncode
+
+
+KINDS = (lost_device, lost_devices, device_memory, vulkan_call, lacking_driver, broken_driver_file, endless_compilation)

@@ -262,7 +262,7 @@ DOLP_EXPORT Report verify(const std::filesystem::path& table, const TableCheckOp
 /// Computes the model's hard cases and compares them with stored references. Errors: InputError, DeviceError.
 DOLP_EXPORT Report verify_device(const DeviceCheckOptions& options = {});
 
-/// The limits of all devices, and how well each computes a few ordinary cases.
+/// The limits of all devices, and how well each computes a few ordinary cases. is_good: a device is usable.
 DOLP_EXPORT Report device_report();
 
 }  // namespace dolp

@@ -1,6 +1,7 @@
 // Tables and devices against references.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -82,6 +83,10 @@ Report verify_device(const DeviceCheckOptions& options) {
   return public_report(hard_case_report(report, options.all), report.failures() == 0);
 }
 
-Report device_report() { return public_report(device_report(list_devices())); }
+Report device_report() {
+  const ReportBuilder report = device_report(list_devices());
+  const bool is_any_usable = std::ranges::any_of(report.json()["devices"], [](const auto& d) { return d["usable"] == true; });
+  return public_report(report, is_any_usable);
+}
 
 }  // namespace dolp

@@ -146,6 +146,7 @@ Report Evaluator::write_mueller(const Scene& scene, const std::filesystem::path&
     const bool is_float = impl_->options.evaluator != "reference" &&
                           mueller_precision(own.accuracy, evaluator->has_double()) == Precision::kFloat;
     const double accuracy = is_float ? kScatteringErrorFloat : kScatteringErrorDouble;
+    const bool lacks_double = is_float && !evaluator->has_double();
     const auto nans = std::ranges::count_if(results, [](const MuellerMatrix& f) { return std::isnan(f[0]); });
     ReportBuilder report;
     report.line("{}", key("title", own.title));
@@ -153,6 +154,9 @@ Report Evaluator::write_mueller(const Scene& scene, const std::filesystem::path&
     add_evaluation(report, evaluator->report(), seconds_since(start));
     report.row("error", "<= {:g} of m00; tolerance {:g}", key("worst_error_estimate", accuracy),
                key("tolerance", own.accuracy.tolerance));
+    report.row_if(accuracy > own.accuracy.tolerance, "warning",
+                  "the tolerance is not met: {} precision gives {:g} of m00{}", is_float ? "float" : "double", accuracy,
+                  lacks_double ? ", and the device has no double precision" : "");
     report.row_if(nans > 0, "nan", "{} of {} geometries: f is not finite there, or takes over 1000 bounces",
                   key("without_value", nans), results.size());
     add_left_out(report, points);

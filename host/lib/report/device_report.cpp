@@ -1,5 +1,7 @@
 #include "report/device_report.hpp"
 
+#include <fmt/format.h>
+
 #include <dolp/errors.hpp>
 #include <optional>
 #include <string>
@@ -7,6 +9,7 @@
 
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "model/choices.hpp"
+#include "model/moments.hpp"
 #include "verify/qualification.hpp"
 
 namespace dolp {
@@ -59,24 +62,36 @@ ReportBuilder quality_report(const Quality& quality) {
   return report;
 }
 
+/// The reason why a device that the driver calls usable is not: its kernels do not compile or run.
+std::string why_not_usable(const Device& device, const Quality& in_float) {
+  if (!device.usable) return device.why_not;
+  return in_float.measured ? "" : in_float.why_not;
+}
+
 ReportBuilder device_report(const Device& device, std::size_t position) {
+  const Quality in_float = quality_in(device, position, Precision::kFloat);
+  Device examined = device;
+  examined.why_not = why_not_usable(device, in_float);
+  examined.usable = examined.why_not.empty();
+  const Quality in_double = quality_in(examined, position, Precision::kDouble);
   ReportBuilder report;
   report.line("{}: {} ({})", key("index", position), key("name", device.name), type_name(device.type));
   report.line("   {}, Vulkan {}", key("driver", device.driver), key("api_version", device.api_version));
-  report.line("   {}{}", device.usable ? "usable" : "not usable: ", key("why_not", device.why_not));
+  report.line("   {}{}", examined.usable ? "usable" : "not usable: ", key("why_not", examined.why_not));
   report.line(
-      "   double precision {}, storage buffer {:.0f} MiB, heap {:.0f} MiB, {} workgroups, subgroup {}, timestamps {}",
-      device.has_double ? "yes" : "no", static_cast<double>(device.max_storage_buffer_bytes) / kMebibyte,
+      "   double precision {}{}, storage buffer {:.0f} MiB, heap {:.0f} MiB, {} workgroups, subgroup {}, timestamps {}",
+      device.has_double ? "yes" : "no",
+      device.has_double ? "" : fmt::format(" (tolerances below {:g} are out of reach)", kLeastFloatTolerance),
+      static_cast<double>(device.max_storage_buffer_bytes) / kMebibyte,
       static_cast<double>(device.memory_bytes) / kMebibyte, key("max_workgroups", device.max_workgroups),
       key("subgroup_size", device.subgroup_size), device.timestamps ? "yes" : "no");
   report.values({{"type", type_name(device.type)},
-                 {"usable", device.usable},
+                 {"usable", examined.usable},
                  {"float64", device.has_double},
                  {"max_storage_buffer_bytes", device.max_storage_buffer_bytes},
                  {"heap_bytes", device.memory_bytes},
                  {"timestamps", device.timestamps}});
-  for (const Precision precision : {Precision::kFloat, Precision::kDouble}) {
-    const Quality quality = quality_in(device, position, precision);
+  for (const Quality& quality : {in_float, in_double}) {
     report.add((std::string("quality/") + quality.precision).c_str(), quality_report(quality));
   }
   return report;

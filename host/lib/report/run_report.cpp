@@ -113,6 +113,10 @@ ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, std::o
   add_work(report, run.evaluation, summary.entries);
   report.value("rule", rule_text(scene.accuracy.tolerance, run.evaluation));
   add_errors(report, run, scene.accuracy.tolerance);
+  const bool lacks_double = scene.accuracy.precision == Precision::kAuto && run.evaluation.evaluator == "vulkan" &&
+                            run.evaluation.precision == "float" && scene.accuracy.tolerance < kLeastFloatTolerance;
+  report.row_if(lacks_double, "warning", "the device has no double precision: tolerances below {:g} are out of reach",
+                kLeastFloatTolerance);
   report.row_if(summary.check.entries > 0, "checked",
                 "{} entries by a rule of another kind: largest difference {:.2g} of the bounds{}",
                 key("self_check/entries", summary.check.entries),

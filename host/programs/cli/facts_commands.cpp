@@ -9,6 +9,7 @@
 
 #include "base/text.hpp"
 #include "cli/commands.hpp"
+#include "terminal/exit_status.hpp"
 
 namespace dolp::cli {
 namespace {
@@ -127,9 +128,11 @@ int run_materials(const Options& options) {
 }
 
 int run_devices(const Options& options) {
-  const int status = finish(device_report(), options);
+  const Report report = device_report();
+  print(report, options);
   require_device(options.device);
-  return status;
+  if (!report.is_good) throw DeviceError("no Vulkan device is usable; the report says why");
+  return kExitDone;
 }
 
 int run_plan(const Options& options) {

@@ -20,6 +20,7 @@
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
 #include "cli/completion.hpp"
+#include "device/result.hpp"
 #include "terminal/exit_status.hpp"
 #include "terminal/guarded.hpp"
 
@@ -132,6 +133,6 @@ int main(int argc, char** argv) {
   std::set_new_handler(dolp::cli::end_out_of_memory);
   dolp::cli::keep_freed_memory();
   const int status = dolp::guarded("dolp", [&] { return dolp::cli::parse_and_run(argc, argv); });
-  if (status == dolp::kExitMemory) ::_exit(status);  // libraries need memory to clean up
+  if (status == dolp::kExitMemory || dolp::vulkan::driver_is_busy()) ::_exit(status);  // libraries could not clean up
   return status;
 }

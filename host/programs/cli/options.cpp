@@ -52,7 +52,8 @@ void print(const Report& report, const Options& options) {
 
 int finish(const Report& report, const Options& options) {
   print(report, options);
-  return options.strict && !report.is_good ? kExitAccuracy : kExitDone;
+  if (!options.strict || report.is_good) return kExitDone;
+  return fail("dolp", kExitAccuracy, "--strict: the tolerance is not met everywhere");
 }
 
 }  // namespace dolp::cli

@@ -12,7 +12,13 @@ volatile std::sig_atomic_t is_interrupted = 0;  // the only state that a signal 
 
 void watch_for_interrupts() {
   struct sigaction action {};  // without SA_RESTART
-  action.sa_handler = [](int) { is_interrupted = 1; };
+  action.sa_handler = [](int number) {
+    if (is_interrupted) {
+      std::signal(number, SIG_DFL);
+      std::raise(number);
+    }
+    is_interrupted = 1;
+  };
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction before {};
     sigaction(signal, nullptr, &before);

@@ -1,10 +1,10 @@
-// Ctrl-C and similar signals set a flag instead of ending the process.
+// The first Ctrl-C or similar signal sets a flag instead of ending the process; a second one ends it.
 #pragma once
 
 namespace dolp {
 
-/// From here on SIGINT, SIGTERM and SIGHUP only make interrupted() true, and interrupt waiting calls. Signals that
-/// are ignored, as by nohup, stay ignored.
+/// After this call the first SIGINT, SIGTERM or SIGHUP only makes interrupted() true and interrupts waiting calls; the
+/// second ends the process. Signals that are ignored, as by nohup, stay ignored.
 void watch_for_interrupts();
 
 bool interrupted();

@@ -81,7 +81,8 @@ void add_properties_1_2(VkPhysicalDevice physical, dolp::Device& description) {
                                               .pNext = &driver};
   VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &subgroup};
   vkGetPhysicalDeviceProperties2(physical, &properties);
-  description.driver = std::string(driver.driverName) + ' ' + driver.driverInfo;
+  description.driver = driver.driverName;
+  if (driver.driverInfo[0] != '\0') description.driver += std::string(" ") + driver.driverInfo;
   description.subgroup_size = subgroup.subgroupSize;
 }
 

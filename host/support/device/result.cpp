@@ -3,6 +3,7 @@
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <future>
 #include <system_error>
@@ -10,6 +11,15 @@
 #include <vector>
 
 namespace dolp::vulkan {
+namespace {
+
+std::atomic<bool> is_busy{false};
+
+}  // namespace
+
+DeviceTimeout::DeviceTimeout(const std::string& message) : DeviceError(message) { is_busy = true; }
+
+bool driver_is_busy() { return is_busy; }
 
 std::string result_name(VkResult result) {
   switch (result) {

@@ -8,10 +8,15 @@
 
 namespace dolp::vulkan {
 
-/// A submission did not finish in time. Its command buffer and buffers are still in use: they must not be destroyed.
+/// The driver did not finish a submission or a compilation in time, or before the user interrupted it. It still uses
+/// what it was given: none of the device's objects may be destroyed.
 struct DeviceTimeout : DeviceError {
-  using DeviceError::DeviceError;
+  explicit DeviceTimeout(const std::string& message);
 };
+
+/// True after a DeviceTimeout. The program must end without cleaning up, which would pull the driver from under its
+/// threads.
+bool driver_is_busy();
 
 /// The device is of no more use; another one, even of the same hardware, may be.
 struct DeviceLost : DeviceError {

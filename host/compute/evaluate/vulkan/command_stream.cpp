@@ -1,10 +1,14 @@
 #include "evaluate/vulkan/command_stream.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <utility>
 
+#include "base/interrupt.hpp"
 #include "base/stopwatch.hpp"
 #include "device/buffer.hpp"
 #include "device/result.hpp"
@@ -14,6 +18,7 @@ namespace dolp::vulkan {
 namespace {
 
 constexpr double kNanosecondsPerSecond = 1e9;
+constexpr double kInterruptIntervalS = 0.02;
 
 struct BarrierScopes {
   VkPipelineStageFlags from_stage, to_stage;
@@ -114,10 +119,14 @@ double CommandStream::submit_and_wait(double timeout_s) {
   const VkFence fence = fence_.get();
   const auto start = std::chrono::steady_clock::now();
   check(vkQueueSubmit(device_.queue(), 1, &info, fence), "submitting work");
-  const auto timeout_ns = static_cast<std::uint64_t>(timeout_s * kNanosecondsPerSecond);
-  const VkResult result = vkWaitForFences(device_.get(), 1, &fence, VK_TRUE, timeout_ns);
-  if (result == VK_TIMEOUT) {
-    throw DeviceTimeout("the Vulkan device did not finish a tile within " + std::to_string(timeout_s) + " s");
+  VkResult result = VK_TIMEOUT;
+  while (result == VK_TIMEOUT) {
+    const double slice_s = std::min(timeout_s, kInterruptIntervalS);
+    result =
+        vkWaitForFences(device_.get(), 1, &fence, VK_TRUE, static_cast<std::uint64_t>(slice_s * kNanosecondsPerSecond));
+    if (result == VK_TIMEOUT && (interrupted() || seconds_since(start) > timeout_s)) {
+      throw DeviceTimeout(fmt::format("the Vulkan device did not finish a tile within {:g} s", timeout_s));
+    }
   }
   const double host_s = seconds_since(start);
   if (result != VK_SUCCESS) vkDeviceWaitIdle(device_.get());  // only the wait failed: the work may still be running

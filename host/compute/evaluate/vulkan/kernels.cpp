@@ -1,7 +1,16 @@
 #include "evaluate/vulkan/kernels.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <future>
+#include <thread>
+
+#include "base/interrupt.hpp"
+#include "base/stopwatch.hpp"
+#include "base/text.hpp"
 #include "device/result.hpp"
 #include "plan/rows.hpp"
 #include "spirv.hpp"
@@ -25,6 +34,58 @@ std::span<const std::uint32_t> module_of(const KernelVariant& variant, bool floa
   if (variant.sky > 0) return float64 ? spirv::moments_sky_double : spirv::moments_sky_float;
   if (variant.width == kRowWidth) return float64 ? spirv::moments_rows_double : spirv::moments_rows_float;
   return float64 ? spirv::moments_double : spirv::moments_float;
+}
+
+/// Has the driver compile a variant of a module.
+UniquePipeline compile(VkDevice device, VkPipelineLayout layout, std::uint32_t local_size,
+                       std::span<const std::uint32_t> spirv, const KernelVariant& variant) {
+  const VkShaderModuleCreateInfo module_info{
+      .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = spirv.size_bytes(), .pCode = spirv.data()};
+  VkShaderModule created_module = VK_NULL_HANDLE;
+  check(vkCreateShaderModule(device, &module_info, nullptr, &created_module), "creating a shader module");
+  const UniqueShaderModule shader(device, created_module);
+
+  // The enumerators are the values of interface.glsl.
+  const std::array<std::uint32_t, 7> values{local_size,
+                                            static_cast<std::uint32_t>(variant.distribution),
+                                            static_cast<std::uint32_t>(variant.masking),
+                                            variant.has_total_reflection ? 1U : 0U,
+                                            variant.is_multiple ? 1U : 0U,
+                                            variant.has_direct ? 1U : 0U,
+                                            variant.sky};
+  constexpr std::uint32_t kSize = sizeof(std::uint32_t);
+  const std::array<VkSpecializationMapEntry, 7> entries{{{DOLP_SPEC_LOCAL_SIZE, 0, kSize},
+                                                         {DOLP_SPEC_DISTRIBUTION, kSize, kSize},
+                                                         {DOLP_SPEC_MASKING, 2 * kSize, kSize},
+                                                         {DOLP_SPEC_TOTAL_REFLECTION, 3 * kSize, kSize},
+                                                         {DOLP_SPEC_MULTIPLE, 4 * kSize, kSize},
+                                                         {DOLP_SPEC_DIRECT, 5 * kSize, kSize},
+                                                         {DOLP_SPEC_SKY, 6 * kSize, kSize}}};
+  const VkSpecializationInfo constants{.mapEntryCount = static_cast<std::uint32_t>(entries.size()),
+                                       .pMapEntries = entries.data(),
+                                       .dataSize = sizeof values,
+                                       .pData = values.data()};
+  const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                                         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                                                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                                                   .module = shader.get(),
+                                                   .pName = "main",
+                                                   .pSpecializationInfo = &constants},
+                                         .layout = layout};
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline), "creating a pipeline");
+  return UniquePipeline(device, pipeline);
+}
+
+constexpr auto kInterruptInterval = std::chrono::milliseconds(20);
+constexpr double kDefaultCompilationLimitS =
+    120.0;  // SwiftShader needs 7 s of an idle processor for the largest kernel
+constexpr const char* kCompilationLimit = "DOLP_COMPILATION_LIMIT_S";
+
+/// Seconds that a driver may take for a kernel.
+double compilation_limit_s() {
+  const char* const wish = std::getenv(kCompilationLimit);
+  return wish != nullptr ? parse_number(wish).value_or(kDefaultCompilationLimitS) : kDefaultCompilationLimitS;
 }
 
 }  // namespace
@@ -144,42 +205,23 @@ VkPipeline Kernels::pipeline(const KernelVariant& variant) {
 }
 
 UniquePipeline Kernels::create(std::span<const std::uint32_t> spirv, const KernelVariant& variant) const {
-  const VkShaderModuleCreateInfo module_info{
-      .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = spirv.size_bytes(), .pCode = spirv.data()};
-  VkShaderModule created_module = VK_NULL_HANDLE;
-  check(vkCreateShaderModule(device_.get(), &module_info, nullptr, &created_module), "creating a shader module");
-  const UniqueShaderModule shader(device_.get(), created_module);
-
-  // The enumerators are the values of interface.glsl.
-  const std::array<std::uint32_t, 7> values{local_size(),
-                                            static_cast<std::uint32_t>(variant.distribution),
-                                            static_cast<std::uint32_t>(variant.masking),
-                                            variant.has_total_reflection ? 1U : 0U,
-                                            variant.is_multiple ? 1U : 0U,
-                                            variant.has_direct ? 1U : 0U,
-                                            variant.sky};
-  constexpr std::uint32_t kSize = sizeof(std::uint32_t);
-  const std::array<VkSpecializationMapEntry, 7> entries{{{DOLP_SPEC_LOCAL_SIZE, 0, kSize},
-                                                         {DOLP_SPEC_DISTRIBUTION, kSize, kSize},
-                                                         {DOLP_SPEC_MASKING, 2 * kSize, kSize},
-                                                         {DOLP_SPEC_TOTAL_REFLECTION, 3 * kSize, kSize},
-                                                         {DOLP_SPEC_MULTIPLE, 4 * kSize, kSize},
-                                                         {DOLP_SPEC_DIRECT, 5 * kSize, kSize},
-                                                         {DOLP_SPEC_SKY, 6 * kSize, kSize}}};
-  const VkSpecializationInfo constants{.mapEntryCount = static_cast<std::uint32_t>(entries.size()),
-                                       .pMapEntries = entries.data(),
-                                       .dataSize = sizeof values,
-                                       .pData = values.data()};
-  const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-                                         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                                                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                                                   .module = shader.get(),
-                                                   .pName = "main",
-                                                   .pSpecializationInfo = &constants},
-                                         .layout = layout_.get()};
-  VkPipeline pipeline = VK_NULL_HANDLE;
-  check(vkCreateComputePipelines(device_.get(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline), "creating a pipeline");
-  return UniquePipeline(device_.get(), pipeline);
+  // A driver may compile for ever, and cannot be told to stop: it does so on a thread that can be left behind.
+  std::packaged_task<UniquePipeline()> compilation(
+      [device = device_.get(), layout = layout_.get(), local_size = local_size(), spirv, variant] {
+        return compile(device, layout, local_size, spirv, variant);
+      });
+  std::future<UniquePipeline> pipeline = compilation.get_future();
+  std::thread(std::move(compilation)).detach();
+  const auto start = std::chrono::steady_clock::now();
+  const double limit_s = compilation_limit_s();
+  while (pipeline.wait_for(kInterruptInterval) != std::future_status::ready) {
+    if (interrupted() || seconds_since(start) > limit_s) {
+      throw DeviceTimeout(fmt::format(
+          "the Vulkan driver did not finish compiling a kernel within {:g} s; {} sets another limit, in seconds",
+          limit_s, kCompilationLimit));
+    }
+  }
+  return pipeline.get();
 }
 
 }  // namespace dolp::vulkan

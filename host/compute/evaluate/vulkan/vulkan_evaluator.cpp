@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/interrupt.hpp"
 #include "base/stopwatch.hpp"
 #include "device/context.hpp"
 #include "device/result.hpp"
@@ -190,15 +191,16 @@ VulkanEvaluator::~VulkanEvaluator() = default;
 
 template <class Result, class Request>
 std::vector<Result> VulkanEvaluator::compute(const Request& request, const Progress& progress) {
-  if (!impl_) throw DeviceError("the Vulkan device was given up after a tile that did not finish in time");
+  if (!impl_) throw DeviceError("the Vulkan device was given up after work that did not finish in time");
   check_entries(request);
   if (count_of(request) == 0) return {};
   for (bool is_new_device = false;;) {
     try {
       return impl_->compute(request, progress, report_);
     } catch (const vulkan::DeviceTimeout&) {
-      // Vulkan forbids destroying objects that a submission still uses, so they all live until the end of the process.
+      // Vulkan forbids destroying objects that the driver still uses, so they all live until the end of the process.
       static_cast<void>(impl_.release());
+      if (interrupted()) throw Cancelled();
       throw;
     } catch (const vulkan::DeviceLost&) {
       if (is_new_device) throw;

@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# Runs dolp on SwiftShader, a Vulkan driver of another kind than lavapipe: second_driver_test.sh DOLP SOURCE
+#
+# Debian's package chromium-common has the driver. The test downloads it and installs nothing. Exit status 77: this system has no
+# such package.
+set -euo pipefail
+dolp=$1
+source=$2
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+
+apt-cache show chromium-common >/dev/null 2>&1 || exit 77
+apt-get -qq download chromium-common 2>/dev/null
+dpkg-deb --fsys-tarfile chromium-common_*.deb | tar -x ./usr/lib/chromium/libvk_swiftshader.so
+cat > driver.json <<JSON
+{"file_format_version": "1.0.0",
+ "ICD": {"library_path": "$folder/usr/lib/chromium/libvk_swiftshader.so", "api_version": "1.3.0"}}
+JSON
+export VK_DRIVER_FILES=$folder/driver.json VK_ICD_FILENAMES=$folder/driver.json
+export DOLP_COMPILATION_LIMIT_S=600  # on a busy machine
+
+fail() {
+  echo "second_driver_test.sh: $1" >&2
+  exit 1
+}
+expect() {  # TEXT FILE
+  grep -qF -- "$1" "$2" || { cat "$2"; fail "\"$1\" is not in $2"; }
+}
+
+"$dolp" devices > devices.txt
+expect "   usable" devices.txt
+expect "double precision no (tolerances below 2e-06 are out of reach)" devices.txt
+expect "SwiftShader driver, Vulkan" devices.txt
+
+# The independent reference confirms tables of each masking, and of total reflection and direct emission.
+grid="{from=0, to=89, count=7}"
+for settings in "masking=none" "masking=integral" "masking=smith" "masking=v-cavity" "distribution=gaussian" "n=0.7"; do
+  "$dolp" table "$source/host/scenes/stainless_steel.toml" -o table.nc --quiet --set "surface.$settings" \
+    --set "grid.theta_deg=$grid" --set "grid.sigma=[0.05, 0.3, 0.9]"
+  "$dolp" verify table.nc --samples 20 > verify.txt || { cat verify.txt; fail "the table with $settings is wrong"; }
+done
+"$dolp" table "$source/host/scenes/clear_sky.toml" -o table.nc --quiet --set "grid.theta_deg=$grid"
+"$dolp" verify table.nc --samples 5 > verify.txt || { cat verify.txt; fail "the table of a clear sky is wrong"; }
+
+"$dolp" table "$source/host/scenes/stainless_steel.toml" -o table.nc --set grid.theta_deg=[60] --set grid.sigma=[0.3] \
+  --tolerance 1e-8 > table.txt
+expect "the device has no double precision: tolerances below 2e-06 are out of reach" table.txt
+
+printf 'theta_i_deg,theta_r_deg,delta_phi_deg\n30,40,170\n' > beams.csv
+status=0
+"$dolp" mueller "$source/host/scenes/stainless_steel.toml" --points beams.csv -o mueller.csv --tolerance 1e-8 --strict \
+  > mueller.txt 2> strict.txt || status=$?
+[[ $status == 1 ]] || fail "mueller --strict ends with $status"
+expect "float precision gives 1e-05 of m00, and the device has no double precision" mueller.txt
+expect "--strict: the tolerance is not met everywhere" strict.txt

@@ -154,7 +154,7 @@ struct EffectBounds::Sums {
   double most_polarisation = kInfinity;
 };
 
-EffectBounds::EffectBounds(const SceneValues& scene, const EntriesExtent& extent)
+EffectBounds::EffectBounds(const SceneModel& scene, const EntriesExtent& extent)
     : scene_(scene), is_bistatic_(scene.geometry.mode == Mode::kBistatic) {
   const SpectralRule rule = spectral_rule(scene);
   for (const SpectralSample& sample : rule.samples) {

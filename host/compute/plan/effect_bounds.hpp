@@ -40,7 +40,7 @@ EntriesExtent extent_of(const SceneEntries& entries);
 /// exitances, bistatic ones times pi; sums over a band are those of the spectral rule's samples.
 class EffectBounds {
  public:
-  EffectBounds(const SceneValues& scene, const EntriesExtent& extent);
+  EffectBounds(const SceneModel& scene, const EntriesExtent& extent);
 
   /// Bound of the change of (Q/I, U/I), at any entry, if `part` is dropped from `kept`; infinite where no bound is
   /// known, and always for the further bounces and the diffuse part. Exactly 0 where the part contributes nothing.
@@ -58,7 +58,7 @@ class EffectBounds {
   Sums sums(const KeptEffects& kept) const;
   Sums added_by(Part part, const KeptEffects& kept) const;
 
-  SceneValues scene_;
+  SceneModel scene_;
   bool is_bistatic_;
   SpectralSample total_;       ///< sums of the absolute values of the samples' factors; the emitted ones are signed
   double sky_above_ = 0.0;     ///< what a profile adds to its mean at most,

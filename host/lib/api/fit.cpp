@@ -54,6 +54,9 @@ std::vector<Settings> combinations(const FitOptions& options) {
     if (std::ranges::find(options.vary, comparison.key, &FitRange::key) != options.vary.end()) {
       throw InputError(fmt::format("{}: varies and cannot be compared too", comparison.key));
     }
+    if (std::ranges::count(options.compare, comparison.key, &Comparison::key) > 1) {
+      throw InputError(fmt::format("{}: is compared twice; give all of its values at once", comparison.key));
+    }
     const SceneKey* const known = find_scene_key(comparison.key);
     for (const std::string& word : comparison.words) {
       const bool is_plain = known != nullptr && known->description.type == Key::Type::kWord && !word.starts_with('"');

@@ -24,7 +24,7 @@ void fill_curves(TableHead& head, const SceneValues& scene) {
     std::vector<double> wavelengths = scene.grid[Axis::kWavelength];
     std::ranges::sort(wavelengths);
     for (const double wavelength_um : wavelengths) {
-      const SceneValues at = at_wavelength(scene, wavelength_um);
+      const SceneModel at = at_wavelength(scene, wavelength_um);
       const OpticalConstants& index = at.surface.material.constant;
       const auto add = [&](Curve& curve, double value) {
         curve.wavelength_um.push_back(wavelength_um);

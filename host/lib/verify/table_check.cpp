@@ -172,8 +172,7 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
   const SceneEntries grid = SceneEntries::of_grid(table.axes, scene.surface.material.constant);
   for (const std::size_t position : sample.positions) entries.push_back(grid[position]);
   ReferenceEvaluator reference({.relative_tolerance = kReferenceTolerance});
-  const std::vector<PointResult> results =
-      evaluate_scene(scene, {entries, table.axes[Axis::kWavelength]}, reference, progress);
+  const std::vector<PointResult> results = evaluate_scene(scene, grid.chosen(sample.positions), reference, progress);
 
   TableCheck check;
   check.entries = table.size();

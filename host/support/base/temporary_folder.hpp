@@ -1,4 +1,4 @@
-// A folder for files that last as long as an object.
+// Places for temporary files.
 #pragma once
 
 #include <cstdlib>
@@ -9,12 +9,22 @@
 
 namespace dolp {
 
+/// The system's folder for temporary files, TMPDIR or /tmp. Errors: IoError when it is not there.
+inline std::filesystem::path temporary_files() {
+  try {
+    return std::filesystem::temp_directory_path();
+  } catch (const std::filesystem::filesystem_error& error) {
+    throw IoError(error.path1().string() + ": " + error.code().message() +
+                  ", and it is to hold temporary files; set TMPDIR to another folder");
+  }
+}
+
 /// A new folder among the system's temporary ones, removed with all that is in it at the end.
 class TemporaryFolder {
  public:
   /// `name`: begins the folder's name. Errors: IoError.
   explicit TemporaryFolder(const std::string& name = "dolp") {
-    std::string path = (std::filesystem::temp_directory_path() / (name + "-XXXXXX")).string();
+    std::string path = (temporary_files() / (name + "-XXXXXX")).string();
     if (::mkdtemp(path.data()) == nullptr) throw IoError(path + ": cannot create the folder");
     path_ = path;
   }

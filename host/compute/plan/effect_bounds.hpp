@@ -15,7 +15,7 @@ namespace dolp {
 bool is_kept(const KeptEffects& kept, Part part);
 KeptEffects without(KeptEffects kept, Part part);
 
-/// Ranges of the parameters of all entries.
+/// Ranges of the parameters of some entries.
 struct EntriesExtent {
   std::vector<double> theta_deg;
   SlopeShape roughest;                    ///< the largest sigma and the smallest q
@@ -23,7 +23,8 @@ struct EntriesExtent {
   std::vector<OpticalConstants> indices;  ///< of the entries' own
 };
 
-EntriesExtent extent_of(const SceneEntries& entries);
+/// The extent of a grid, which has each direction at each wavelength; else those of the points at each wavelength.
+std::vector<EntriesExtent> extents_of(const SceneEntries& entries);
 
 /// Bounds of the change that each part of a scene causes at any of the entries.
 ///

@@ -11,12 +11,14 @@ namespace dolp {
 
 /// The system's folder for temporary files, TMPDIR or /tmp. Errors: IoError when it is not there.
 inline std::filesystem::path temporary_files() {
-  try {
-    return std::filesystem::temp_directory_path();
-  } catch (const std::filesystem::filesystem_error& error) {
-    throw IoError(error.path1().string() + ": " + error.code().message() +
-                  ", and it is to hold temporary files; set TMPDIR to another folder");
+  std::filesystem::path folder = "/tmp";
+  for (const char* const name : {"TEMPDIR", "TEMP", "TMP", "TMPDIR"}) {
+    const char* const given = std::getenv(name);
+    if (given && *given != '\0') folder = given;
   }
+  std::error_code unknown;
+  if (std::filesystem::is_directory(folder, unknown)) return folder;
+  throw IoError(folder.string() + ": there is no such folder for temporary files; set TMPDIR to another");
 }
 
 /// A new folder among the system's temporary ones, removed with all that is in it at the end.

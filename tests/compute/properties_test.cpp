@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluate/cpu/cpu_evaluator.hpp"
 #include "model/angles.hpp"
 #include "properties_support.hpp"
 
@@ -146,6 +147,24 @@ TEST_P(KernelProperties, OrderOfAxes_TilesAndBlocks_ChangeNoBit) {
     for (std::size_t i = 0; i < expected.size(); ++i) {
       if (!request.is_wanted(i)) continue;
       EXPECT_TRUE(same(expected[i], actual[other.place_of[i]])) << "entry " << i << " in round " << round;
+    }
+  }
+}
+
+// More shapes than have masking tables at the same time.
+TEST(CpuEvaluator, ManyShapes_HaveTheBitsOfEachByItself) {
+  constexpr std::size_t kShapes = 9000;
+  MomentsRequest request{.masking = Masking::kSmith, .tolerance = 1e-2, .theta_deg = {30.0, 70.0}, .indices = {{1.5, 0.0}}, .sigma = {0.3}, .q = {}};
+  for (std::size_t i = 0; i < kShapes; ++i) request.q.push_back(2.0 + 1e-4 * static_cast<double>(i));
+  const std::vector<Moments> all = CpuEvaluator().evaluate(request, {});
+  for (const std::size_t shape : {std::size_t{0}, std::size_t{4095}, std::size_t{4096}, kShapes - 1}) {
+    MomentsRequest own = request;
+    own.q = {request.q[shape]};
+    const std::vector<Moments> one = CpuEvaluator().evaluate(own, {});
+    for (std::size_t theta = 0; theta < 2; ++theta) {
+      EXPECT_EQ(all[theta * kShapes + shape].r_i, one[theta].r_i) << shape;
+      EXPECT_EQ(all[theta * kShapes + shape].r_q, one[theta].r_q) << shape;
+      EXPECT_GT(one[theta].r_i, 0.0);
     }
   }
 }

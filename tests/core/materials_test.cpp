@@ -329,7 +329,7 @@ TEST(Sun_BetweenNodes, IsAPowerOfWavelength) {
 TEST(AtWavelength, SourceAndMaterial_AreThoseOfTheirTablesThere) {
   const SceneValues scene = parse(kMinimal, {"source.preset=sun", "surface.material=iron"});
   for (const double um : {4.0, 8.3}) {
-    const SceneValues at = at_wavelength(scene, um);
+    const SceneModel at = at_wavelength(scene, um);
     EXPECT_EQ(at.source->irradiance, sun_irradiance().at(um));
     EXPECT_EQ(at.surface.material.constant, find_material("iron", {um, um}, "").constant);
   }

@@ -12,6 +12,7 @@
 #include "scene_support.hpp"
 #include "spectrum/planck.hpp"
 #include "spectrum/sky_factors.hpp"
+#include "temporary_file.hpp"
 
 namespace dolp {
 namespace {
@@ -136,6 +137,17 @@ TEST(SceneReader, Profile_TakesThePlaceOfATemperature) {
   EXPECT_TRUE(contains(error_of(sky + "profile = \"overcast\"\ntemperature_K = 250\n"), "cannot be combined with"));
   EXPECT_TRUE(contains(error_of(sky), "missing"));
   EXPECT_TRUE(contains(error_of(sky + "profile = \"cloudy\"\n"), "s.toml:9: surroundings.profile = \"cloudy\""));
+}
+
+// Of one temperature it is no profile any more.
+TEST(SceneReader, ProfileKnownAtOtherWavelengths_IsRefused) {
+  for (const std::string horizon_K : {"250", "260"}) {
+    std::string rows = "wavelength_um,zenith_deg,temperature_K\n";
+    for (const std::string um : {"3", "5"}) rows += um + ",0,250\n" + um + ",90," + horizon_K + '\n';
+    const TemporaryFile file("sky.csv", rows);
+    const std::string message = error_of(kMinimal + "[surroundings]\nprofile = \"" + file.path() + "\"\n");
+    EXPECT_TRUE(message.ends_with("known at 3 to 5 um, and the spectrum is 10.6 um")) << message;
+  }
 }
 
 }  // namespace

@@ -69,6 +69,20 @@ TEST_F(TableFiles, CheckOutputPath_WrongPaths_AreRefusedBeforeAnyWork) {
   EXPECT_EQ(names(), std::vector<std::string>{"folder.nc"});
 }
 
+// Its parts would be in files with longer names.
+TEST_F(TableFiles, TableOutput_NameTooLongForAPartialFile_IsRefusedBeforeAnyWork) {
+  const TableValues table = sample_table(2, 1, 1);
+  const TableLayout layout{table, table.quantities(), true};
+  const std::vector<TableBox> parts(2);
+  for (const std::size_t length : {240, 245, 250}) {
+    const fs::path path = at(std::string(length - 3, 'n') + ".nc");
+    const auto begin = [&] { TableOutput({.path = path, .layout = layout, .parts = parts, .identity = "a 1"}); };
+    const std::string error = error_text<IoError>(begin);
+    EXPECT_EQ(error.find("File name too long") != std::string::npos, length > 240) << error;
+    EXPECT_EQ(names(), std::vector<std::string>{}) << length;
+  }
+}
+
 TEST_F(TableFiles, CheckWritable_ReadOnlyFolder_IsRefused) {
   fs::create_directory(at("locked"));
   fs::permissions(at("locked"), fs::perms::owner_read | fs::perms::owner_exec);

@@ -97,6 +97,17 @@ theta_deg = [20, 60]
   EXPECT_TRUE(plan.needs_beams);
 }
 
+// Each point belongs to one extent, and each wavelength has its own: the work is linear in both.
+TEST(ExtentsOf, PointsAtTheirWavelengths_AreEachInOne) {
+  const SceneEntries points({{10.0, {0.1, 2.0}, {}, 1}, {20.0, {0.3, 3.0}, {}, 0}, {30.0, {0.2, 4.0}, {}, 1}}, {8.0, 9.0});
+  const std::vector<EntriesExtent> extents = extents_of(points);
+  ASSERT_EQ(extents.size(), 2U);
+  EXPECT_EQ(extents[0].theta_deg, std::vector<double>{20.0});
+  EXPECT_EQ(extents[1].theta_deg, (std::vector<double>{10.0, 30.0}));
+  EXPECT_EQ(extents[1].roughest, (SlopeShape{0.2, 2.0}));
+  EXPECT_EQ(extents[1].smoothest, (SlopeShape{0.1, 4.0}));
+}
+
 TEST(EffectBounds, RandomScenes_HoldWhatEachPartChanges) {
   std::cout << "seed " << kSeed + 1 << '\n';
   RandomScenes scenes(kSeed + 1);
@@ -105,7 +116,7 @@ TEST(EffectBounds, RandomScenes_HoldWhatEachPartChanges) {
     SceneValues scene = scenes.next();
     scene.accuracy.tolerance = 1e-3;
     const std::vector<SceneEntry> entries = scenes.entries(scene);
-    const EffectBounds bounds(scene, extent_of(entries));
+    const EffectBounds bounds(scene, extents_of(entries).front());
     const std::vector<PointResult> whole = run(scene, entries, keep_everything(scene));
     for (const Part part : kParts) {
       const double bound = bounds.bound(part, {});

@@ -41,6 +41,20 @@ std::vector<PointResult> in_parts(const SceneValues& scene, const std::vector<Sc
   return results.take();
 }
 
+TEST(ChosenEntries, OfAGrid_HaveTheWavelengthsAmongThemAlone) {
+  Axes axes = axes_of({10.0, 20.0}, {0.1}, {2.0});
+  axes[Axis::kWavelength] = {8.0, 9.0, 10.0, 11.0};
+  const SceneEntries grid = SceneEntries::of_grid(axes, {});
+  const std::vector<std::size_t> positions = {2, 3, 7};
+  const SceneEntries chosen = grid.chosen(positions);
+  EXPECT_EQ(chosen.wavelength_um().size(), 2U);  // of three entries
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const SceneEntry whole = grid[positions[i]];
+    EXPECT_EQ(chosen[i].theta_deg, whole.theta_deg);
+    EXPECT_EQ(chosen.wavelength_um()[chosen[i].wavelength], grid.wavelength_um()[whole.wavelength]);
+  }
+}
+
 void expect_same_bits(const SceneValues& scene, bool device) {
   const SceneEntries grid = grid_entries(scene);
   const std::vector<PointResult> whole = in_parts(scene, {grid}, device);

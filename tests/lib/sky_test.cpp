@@ -292,7 +292,7 @@ TEST(Sky, Bounds_OfTheProfile_HoldForTheBuiltInSkies) {
   for (const char* name : {"clear-sky", "overcast"}) {
     SceneValues scene = scene_under(*built_in_sky(name));
     const SceneEntries entries = {{60.0, {0.2, 3.0}, {}}, {80.0, {0.2, 3.0}, {}}};
-    const EffectBounds bounds(scene, extent_of(entries));
+    const EffectBounds bounds(scene, extents_of(entries).front());
     CpuEvaluator cpu;
     const std::vector<PointResult> whole = evaluate_scene(scene, entries, cpu, {}, plan_to_keep(scene, {}));
     const std::vector<PointResult> uniform =

@@ -26,6 +26,8 @@ const std::string kEvalLine = "eval scene.toml --points points.csv -o out.csv";
 const std::vector<std::string> kTable = split_at(kTableLine, ' ');
 const std::vector<std::string> kEval = split_at(kEvalLine, ' ');
 
+const std::string kLongName(300, 'n');
+
 std::string scene_with(const std::string& text, const std::string& replacement) {
   std::string scene = kScene;
   return scene.replace(scene.find(text), text.size(), replacement);
@@ -78,6 +80,8 @@ const std::vector<Mistake> kMistakes = {
     // Outputs; even root can make no file in /proc.
     {"table scene.toml -o none/out.nc", {"none/out.nc"}, kIo},
     {"table scene.toml -o /proc/out.nc", {"/proc/out.nc"}, kIo},
+    {"table scene.toml -o " + kLongName + ".nc", {".nc: cannot create the file: File name too long"}, kIo},
+    {"eval scene.toml --points points.csv -o " + kLongName, {"n: cannot create the file: File name too long"}, kIo},
     {"eval scene.toml --points points.csv -o .", {"folder"}, kIo},
     {"eval scene.toml --points points.csv -o /dev/full", {"/dev/full", "No space left"}, kIo}};
 
@@ -91,6 +95,28 @@ TEST_F(CommandLine, Mistake_OneLineAndNothingWritten) {
     EXPECT_EQ(names(), kInputFiles);
   }
   expect_refused(dolp(joined(kTable, {"--tolerance", ""})), "must not be empty");
+}
+
+TEST_F(CommandLine, InputThatCannotBeLookedAt_IsRefusedWithTheReason) {
+  fs::create_symlink("loop.nc", at("loop.nc"));
+  const std::vector<std::pair<std::string, std::string>> inputs = {
+      {"loop.nc", "Too many levels of symbolic links"}, {kLongName, "File name too long"}};
+  for (const auto& [input, reason] : inputs) {
+    for (const std::string& line :
+         {"table " + input + " -o o.nc", "eval scene.toml --points " + input + " -o o.csv",
+          "lookup " + input + " --points points.csv -o o.csv", "verify " + input, "merge " + input + " -o o.nc",
+          "fit scene.toml --vary surface.n=1:2 --data " + input, kTableLine + " --set surroundings.profile=" + input,
+          kTableLine + " --set surface.material_file=" + input, kTableLine + " --set source.file=" + input}) {
+      SCOPED_TRACE(line);
+      expect_refused(dolp(split_at(line, ' ')), "cannot be read: " + reason);
+    }
+  }
+}
+
+TEST_F(CommandLine, TemporaryFolderMissing_IsNamed) {
+  Command wanted = command(split_at("eval scene.toml --points points.csv -o /dev/null --evaluator cpu", ' '));
+  wanted.environment = {{"TMPDIR", "/none/such"}};
+  expect_refused(run(wanted), "/none/such: there is no such folder for temporary files; set TMPDIR", kIo);
 }
 
 TEST_F(CommandLine, ToleranceThatFloatMisses_IsSaidOfWhat) {

@@ -276,6 +276,9 @@ TEST_F(FitProgram, BadInput_IsOneLineThatSaysWhatIsAllowed) {
   expect_message(with({"--compare", "surface.masking"}), "must be KEY=WORD,WORD,...");
   expect_message(with({"--compare", "surface.masking=some,other"}), "must be one of none, v-cavity, integral, smith");
   expect_message(with({"--compare", "surface.sigma=0.1,0.2"}), "surface.sigma: varies and cannot be compared too");
+  expect_message(with({"--compare", "surface.masking=none", "--compare", "surface.masking=smith"}),
+                 "surface.masking: is compared twice; give all of its values at once");
+  expect_message(with({"--compare", "surface.masking=smith,none,smith"}), "surface.masking = smith: is compared twice");
   expect_message({"--data", "none.csv", "--vary", "surface.sigma=0.1:1"}, "none.csv: cannot be read");
   put("one.csv", "theta_deg,dolp\n30,0.1\n");
   expect_message({"--data", "one.csv", "--vary", "surface.sigma=0.1:1", "--vary", "surface.n=1:2"},

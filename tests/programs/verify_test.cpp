@@ -230,6 +230,17 @@ TEST_F(Verify, EntriesThatAreNan_AreComparedAsSuch) {
   EXPECT_TRUE(failures[0]["stored"].is_null());
 }
 
+TEST_F(Verify, IntensityThatOverflows_IsNotWrong) {
+  put("sky.csv", "zenith_deg,radiance\n0,1e308\n90,9e307\n");
+  const TableValues table = make_table({"--set", "surroundings.profile=sky.csv"});
+  EXPECT_EQ(table.status, std::vector<std::uint32_t>(16, 4));
+  EXPECT_EQ(table[Quantity::kStokesU], std::vector<double>(16, 0.0));
+  const nlohmann::json json = verify_json(kDone);
+  EXPECT_EQ(json["passed"], true);
+  put_value(at("t.nc"), Quantity::kRhoI, 3, table[Quantity::kRhoI][3] * 1.01);
+  EXPECT_EQ(verify_json(kAccuracy)["failures"].size(), 1U);
+}
+
 TEST_F(Verify, ReducedVariables_AreComparedAsFarAsTheyAreThere) {
   TableValues table = make_table();
   for (const Quantity quantity :

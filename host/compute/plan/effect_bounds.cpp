@@ -126,17 +126,19 @@ EntriesExtent extent_of_grid(const SceneEntries& entries) {
 
 }  // namespace
 
-EntriesExtent extent_of(const SceneEntries& entries) {
-  if (entries.is_grid()) return extent_of_grid(entries);
-  EntriesExtent extent{{}, {0.0, kInfinity}, {kInfinity, 0.0}, {}};
+std::vector<EntriesExtent> extents_of(const SceneEntries& entries) {
+  if (entries.is_grid()) return {extent_of_grid(entries)};
+  std::vector<EntriesExtent> extents(std::max<std::size_t>(1, entries.wavelength_um().size()),
+                                     {{}, {0.0, kInfinity}, {kInfinity, 0.0}, {}});
   for (const SceneEntry& entry : entries.all()) {
+    EntriesExtent& extent = extents[entry.wavelength];
     extent.theta_deg.push_back(entry.theta_deg);
     extent.roughest = {std::max(extent.roughest.sigma, entry.shape.sigma), std::min(extent.roughest.q, entry.shape.q)};
     extent.smoothest = {std::min(extent.smoothest.sigma, entry.shape.sigma),
                         std::max(extent.smoothest.q, entry.shape.q)};
     if (entry.index) extent.indices.push_back(*entry.index);
   }
-  return extent;
+  return extents;
 }
 
 bool is_kept(const KeptEffects& kept, Part part) { return kept.*flag(part); }
@@ -154,7 +156,7 @@ struct EffectBounds::Sums {
   double most_polarisation = kInfinity;
 };
 
-EffectBounds::EffectBounds(const SceneValues& scene, const EntriesExtent& extent)
+EffectBounds::EffectBounds(const SceneModel& scene, const EntriesExtent& extent)
     : scene_(scene), is_bistatic_(scene.geometry.mode == Mode::kBistatic) {
   const SpectralRule rule = spectral_rule(scene);
   for (const SpectralSample& sample : rule.samples) {

@@ -15,7 +15,7 @@ namespace dolp {
 bool is_kept(const KeptEffects& kept, Part part);
 KeptEffects without(KeptEffects kept, Part part);
 
-/// Ranges of the parameters of all entries.
+/// Ranges of the parameters of some entries.
 struct EntriesExtent {
   std::vector<double> theta_deg;
   SlopeShape roughest;                    ///< the largest sigma and the smallest q
@@ -23,7 +23,8 @@ struct EntriesExtent {
   std::vector<OpticalConstants> indices;  ///< of the entries' own
 };
 
-EntriesExtent extent_of(const SceneEntries& entries);
+/// The extent of a grid, which has each direction at each wavelength; else those of the points at each wavelength.
+std::vector<EntriesExtent> extents_of(const SceneEntries& entries);
 
 /// Bounds of the change that each part of a scene causes at any of the entries.
 ///
@@ -40,7 +41,7 @@ EntriesExtent extent_of(const SceneEntries& entries);
 /// exitances, bistatic ones times pi; sums over a band are those of the spectral rule's samples.
 class EffectBounds {
  public:
-  EffectBounds(const SceneValues& scene, const EntriesExtent& extent);
+  EffectBounds(const SceneModel& scene, const EntriesExtent& extent);
 
   /// Bound of the change of (Q/I, U/I), at any entry, if `part` is dropped from `kept`; infinite where no bound is
   /// known, and always for the further bounces and the diffuse part. Exactly 0 where the part contributes nothing.
@@ -58,7 +59,7 @@ class EffectBounds {
   Sums sums(const KeptEffects& kept) const;
   Sums added_by(Part part, const KeptEffects& kept) const;
 
-  SceneValues scene_;
+  SceneModel scene_;
   bool is_bistatic_;
   SpectralSample total_;       ///< sums of the absolute values of the samples' factors; the emitted ones are signed
   double sky_above_ = 0.0;     ///< what a profile adds to its mean at most,

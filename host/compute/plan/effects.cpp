@@ -16,12 +16,13 @@ constexpr std::array kDroppingOrder = {Part::kMoments,  Part::kSource,       Par
 
 /// The bounds of a scene at each wavelength of its entries.
 std::vector<EffectBounds> bounds_of(const SceneValues& scene, const SceneEntries& entries) {
-  const EntriesExtent extent = extent_of(entries);
+  const std::vector<EntriesExtent> extents = extents_of(entries);
   std::vector<EffectBounds> bounds;
   for (const double wavelength_um : entries.wavelength_um()) {
-    bounds.emplace_back(at_wavelength(scene, wavelength_um), extent);
+    const std::size_t own = std::min(bounds.size(), extents.size() - 1);
+    bounds.emplace_back(at_wavelength(scene, wavelength_um), extents[own]);
   }
-  if (bounds.empty()) bounds.emplace_back(scene, extent);
+  if (bounds.empty()) bounds.emplace_back(scene, extents.front());
   return bounds;
 }
 

@@ -95,6 +95,13 @@ std::optional<std::size_t> SceneEntries::position_of(std::size_t in_whole) const
   return position;
 }
 
+SceneEntries SceneEntries::chosen(std::span<const std::size_t> positions) const {
+  std::vector<SceneEntry> points;
+  points.reserve(positions.size());
+  for (const std::size_t position : positions) points.push_back((*this)[position]);
+  return with_own_wavelengths(std::move(points), wavelength_um());
+}
+
 std::vector<SceneEntries> SceneEntries::parts(std::size_t most) const {
   if (empty()) return {};
   if (size() <= most) return {*this};

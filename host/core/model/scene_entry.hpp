@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <ranges>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -70,6 +71,8 @@ class SceneEntries {
   /// The index of an entry, of a grid with an axis of n or k.
   OpticalConstants index_at(const PerAxis& place) const;
 
+  /// The entries at some positions, as points with the wavelengths among them.
+  SceneEntries chosen(std::span<const std::size_t> positions) const;
   /// Parts of at most `most` entries each: of a grid as many directions of all wavelengths and indices as fit, else
   /// parts of these, each a grid; of points consecutive ones.
   std::vector<SceneEntries> parts(std::size_t most) const;

@@ -20,7 +20,7 @@ constexpr double kRightAngle_deg = 90.0;
 
 using enum Quantity;
 
-EmissionModel emission_model(const SceneValues& scene) {
+EmissionModel emission_model(const SceneModel& scene) {
   return scene.emission ? scene.emission->model : EmissionModel::kMoments;
 }
 
@@ -83,7 +83,7 @@ bool reflectance_diverges(const Surface& surface, const Direction& direction, st
 /// Equation: the terms of I and Q that grow fastest as cos(theta) -> 0, times a factor that makes them finite: D r,
 /// D being the surroundings without the emission that the moments subtract; with D = 0, pi B + E0 r_i and E0 r_q, and
 /// the path. The fresnel emission vanishes there.
-Stokes grazing_stokes(const SceneValues& scene, const SpectralRule& rule, std::span<const SkyFactor> sky,
+Stokes grazing_stokes(const SceneModel& scene, const SpectralRule& rule, std::span<const SkyFactor> sky,
                       std::span<const Moments> moments) {
   const Surface& surface = scene.surface;
   const bool fresnel = emission_model(scene) == EmissionModel::kFresnel;
@@ -108,7 +108,7 @@ bool is_isothermal(const SpectralRule& rule) {
 }
 
 /// Result at 90 degrees where rho diverges.
-PointResult grazing_limit(const SceneValues& scene, const SpectralRule& rule, std::span<const SkyFactor> sky,
+PointResult grazing_limit(const SceneModel& scene, const SpectralRule& rule, std::span<const SkyFactor> sky,
                           const Direction& direction, std::span<const Moments> moments) {
   const Surface& surface = scene.surface;
   PointResult result = outside_domain();
@@ -133,7 +133,7 @@ PointResult grazing_limit(const SceneValues& scene, const SpectralRule& rule, st
 
 }  // namespace
 
-Radiometry::Radiometry(const SceneValues& scene, const KeptEffects& kept, double dropped,
+Radiometry::Radiometry(const SceneModel& scene, const KeptEffects& kept, double dropped,
                        const std::shared_ptr<const SkyBasis>& sky)
     : scene_(scene),
       beam_specular_(scene.surface.specular),

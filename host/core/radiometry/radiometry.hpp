@@ -29,7 +29,7 @@ class Radiometry {
   /// Disabled terms contribute nothing; without the moments the specular part of rho counts as 0, `point` ignores the
   /// numbers in its Moments, and quantities that need them are NaN. `dropped` widens the error estimates. `sky`: the
   /// basis of the moments with a sky; null: that of the scene alone.
-  explicit Radiometry(const SceneValues& scene, const KeptEffects& kept = {}, double dropped = 0.0,
+  explicit Radiometry(const SceneModel& scene, const KeptEffects& kept = {}, double dropped = 0.0,
                       const std::shared_ptr<const SkyBasis>& sky = nullptr);
 
   /// The indices at which `point` wants moments, in its order, and their weights.
@@ -59,7 +59,7 @@ class Radiometry {
 
   PointResult finished(PointResult result) const;
 
-  SceneValues scene_;  ///< with the surface as the terms of the moments use it
+  SceneModel scene_;  ///< with the surface as the terms of the moments use it
   double beam_specular_;
   KeptEffects kept_;
   double dropped_;  ///< bound of the change of DOLP by dropped effects

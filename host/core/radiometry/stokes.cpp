@@ -147,7 +147,7 @@ void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance
   sum.i_error += kRadianceRounding * path_exitance;
 }
 
-Bracket bracket(const SceneValues& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,
+Bracket bracket(const SceneModel& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,
                 std::span<const Emissivity> direct, double cos_theta) {
   Stokes single = stokes_sum(rule, reflectances, {}, EmissionModel::kMoments, cos_theta, true);
   double q = 0.0;

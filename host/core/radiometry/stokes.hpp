@@ -60,7 +60,7 @@ void add_beam(Stokes& sum, const Surface& surface, double k_s, const SpectralRul
 /// Applies a path: its transmittance multiplies the sums, its radiance is added.
 void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance);
 
-Bracket bracket(const SceneValues& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,
+Bracket bracket(const SceneModel& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,
                 std::span<const Emissivity> direct, double cos_theta);
 
 /// Bound of the relative error of a value with this bound of its absolute one.

@@ -114,18 +114,16 @@ Spectrum known_range(const Material& material) {
   return {std::max(n_um.front(), k_um.front()), std::min(n_um.back(), k_um.back())};
 }
 
-bool covers(const Material& material, const Spectrum& spectrum) {
+void check_covers(const Material& material, const Spectrum& spectrum, const std::string& prefix) {
   const Spectrum known = known_range(material);
-  return known.min_um <= spectrum.min_um && spectrum.max_um <= known.max_um;
+  if (known.min_um <= spectrum.min_um && spectrum.max_um <= known.max_um) return;
+  throw InputError(fmt::format("{}n and k of \"{}\" are known at {}, and the spectrum is {}", prefix, material.name,
+                               wavelength_text(known.min_um, known.max_um),
+                               wavelength_text(spectrum.min_um, spectrum.max_um)));
 }
 
 Material fit_to_spectrum(const Material& material, const Spectrum& spectrum, const std::string& prefix) {
-  if (!covers(material, spectrum)) {
-    const Spectrum known = known_range(material);
-    throw InputError(fmt::format("{}n and k of \"{}\" are known at {}, and the spectrum is {}", prefix, material.name,
-                                 wavelength_text(known.min_um, known.max_um),
-                                 wavelength_text(spectrum.min_um, spectrum.max_um)));
-  }
+  check_covers(material, spectrum, prefix);
   if (spectrum.is_band()) return material;
   return {
       material.name, material.source, material.at(spectrum.min_um), {}, {}, std::make_shared<const Material>(material)};

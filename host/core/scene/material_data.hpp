@@ -42,11 +42,11 @@ void append_index(Material& material, double wavelength_um, std::optional<double
 /// The wavelengths at which a tabulated material has both n and k.
 Spectrum known_range(const Material& material);
 
-/// True if a tabulated material has n and k over the whole spectrum.
-bool covers(const Material& material, const Spectrum& spectrum);
+/// Refuses a tabulated material that has no n and k over the whole spectrum; `prefix` begins the message.
+void check_covers(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
 /// A tabulated material as a scene uses it: over a band its tables, at a single wavelength the constant index there.
-/// Errors: InputError that begins with `prefix` where the tables do not cover the spectrum.
+/// Errors: those of check_covers.
 Material fit_to_spectrum(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
 }  // namespace dolp

@@ -109,9 +109,8 @@ struct SceneNames {
 
 class SceneDocument;
 
-struct SceneValues {
-  std::string title;
-  SceneNames names;
+/// What the model reads: a scene without its grid, names and texts.
+struct SceneModel {
   Surface surface;
   std::optional<Emission> emission;
   std::optional<Source> source;
@@ -119,9 +118,14 @@ struct SceneValues {
   std::optional<Path> path;
   Spectrum spectrum;
   Geometry geometry;
+  Accuracy accuracy;
+};
+
+struct SceneValues : SceneModel {
+  std::string title;
+  SceneNames names;
   Axes grid;                     ///< in the user's order; sigma and q fall back to [surface]
   std::vector<double> wind_m_s;  ///< that give the grid's values of sigma; empty where the scene has sigma itself
-  Accuracy accuracy;
   std::string path_name;                          ///< as given on the command line, for messages
   std::string text;                               ///< the file, verbatim
   std::vector<std::string> files;                 ///< that the scene names, as the process finds them
@@ -129,8 +133,7 @@ struct SceneValues {
   std::shared_ptr<const SceneDocument> document;  ///< text and settings as TOML; none of a scene that was not read
 };
 
-/// The same scene at one wavelength, without its grid and texts.
-/// Errors: InputError, where n, k or E0 are not known there.
-SceneValues at_wavelength(const SceneValues& scene, double wavelength_um);
+/// The scene at one wavelength. Errors: InputError, where n, k or E0 are not known there.
+SceneModel at_wavelength(const SceneModel& scene, double wavelength_um);
 
 }  // namespace dolp

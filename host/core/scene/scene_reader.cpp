@@ -243,7 +243,10 @@ void load_profile(SceneValues& scene, const SceneDocument& document, const std::
   const std::string prefix = document.prefix("surroundings.profile");
   std::optional<SkyProfile> profile = built_in_sky(scene.names.profile);
   if (!profile && known && known->profile) profile = known->profile;
-  if (!profile && !known && !std::filesystem::exists(resolve_path(scene.names.profile, scene_path))) {
+  std::error_code unknown;
+  const std::filesystem::file_status file =
+      std::filesystem::status(resolve_path(scene.names.profile, scene_path), unknown);
+  if (!profile && !known && file.type() == std::filesystem::file_type::not_found) {
     std::vector<std::string> names;
     for (const BuiltInSky& sky : built_in_skies()) names.emplace_back(sky.name);
     throw InputError(fmt::format("{}no such file, and no built-in sky: {}; the nearest is {}", prefix, join(names),
@@ -253,11 +256,11 @@ void load_profile(SceneValues& scene, const SceneDocument& document, const std::
     profile = read_file_of(scene, scene.names.profile, scene_path, prefix, known,
                            [&](const std::string& path) { return read_sky_profile(path, prefix); });
   }
+  if (!profile->wavelength_um.empty()) check_covers({profile->wavelength_um, {}}, all_wavelengths(scene), prefix);
   if (const std::optional<double> everywhere = profile->only_temperature()) {
     scene.surroundings->temperature_K = *everywhere;
     return;
   }
-  if (!profile->wavelength_um.empty()) check_covers({profile->wavelength_um, {}}, all_wavelengths(scene), prefix);
   scene.surroundings->profile = std::make_shared<const SkyProfile>(std::move(*profile));
 }
 

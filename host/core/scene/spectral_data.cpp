@@ -91,21 +91,31 @@ std::string wavelength_text(double min_um, double max_um) {
   return min_um == max_um ? fmt::format("{} um", min_um) : fmt::format("{} to {} um", min_um, max_um);
 }
 
-SceneValues at_wavelength(const SceneValues& scene, double wavelength_um) {
-  SceneValues at = scene;
-  at.spectrum = {wavelength_um, wavelength_um};
-  at.grid = {};
-  at.text.clear();
-  at.settings.clear();
-  at.document = nullptr;
-  const Material& material = scene.surface.material;
-  if (material.tabulated) at.surface.material = fit_to_spectrum(*material.tabulated, at.spectrum, "surface.material: ");
-  at.surface.material.tabulated.reset();
-  if (at.source && at.source->kind == Source::Kind::kTabulated) {
-    check_covers(at.source->table, at.spectrum, "source: ");
-    at.source->irradiance = at.source->table.at(wavelength_um);
+SceneModel at_wavelength(const SceneModel& scene, double wavelength_um) {
+  SceneModel at{.surface = scene.surface,
+                .emission = scene.emission,
+                .source = std::nullopt,  // its table may be long
+                .surroundings = scene.surroundings,
+                .path = scene.path,
+                .spectrum = {wavelength_um, wavelength_um},
+                .geometry = scene.geometry,
+                .accuracy = scene.accuracy};
+  Material& material = at.surface.material;
+  if (material.tabulated) {
+    check_covers(*material.tabulated, at.spectrum, "surface.material: ");
+    material.constant = material.tabulated->at(wavelength_um);
+    material.tabulated.reset();
+  }
+  if (!scene.source) return at;
+  const Source& source = *scene.source;
+  at.source = {.kind = source.kind,
+               .irradiance = source.irradiance,
+               .relative_irradiance = source.relative_irradiance,
+               .scale = source.scale};
+  if (source.kind == Source::Kind::kTabulated) {
+    check_covers(source.table, at.spectrum, "source: ");
+    at.source->irradiance = source.table.at(wavelength_um);
     at.source->kind = Source::Kind::kFlat;
-    at.source->table = {};
   }
   return at;
 }

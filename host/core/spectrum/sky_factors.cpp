@@ -39,7 +39,7 @@ Eigen::VectorXd SkySampler::at(double wavelength_um) const {
   return exitances;
 }
 
-std::shared_ptr<const SkyBasis> sky_basis(const SceneValues& scene, const std::vector<double>& wavelength_um) {
+std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, const std::vector<double>& wavelength_um) {
   if (!scene.surroundings || !scene.surroundings->profile) return nullptr;
   std::vector<Eigen::VectorXd> functions;
   const auto add = [&](const SpectralRule& rule) {

@@ -54,7 +54,7 @@ struct FineNode {
   std::vector<double> sky = {};
 };
 
-double source_irradiance(const SceneValues& scene, double wavelength_um, double emitted) {
+double source_irradiance(const SceneModel& scene, double wavelength_um, double emitted) {
   const Source& source = *scene.source;
   switch (source.kind) {
     case Source::Kind::kFlat:
@@ -73,17 +73,17 @@ double path_exitance(const Path& path, double wavelength_um) {
   return std::numbers::pi * (1.0 - path.transmittance) * planck_radiance(wavelength_um, *path.temperature_K);
 }
 
-const SkyProfile* profile_of(const SceneValues& scene) {
+const SkyProfile* profile_of(const SceneModel& scene) {
   return scene.surroundings ? scene.surroundings->profile.get() : nullptr;
 }
 
 /// None for a scene without a profile.
-std::optional<SkySampler> sampler_of(const SceneValues& scene) {
+std::optional<SkySampler> sampler_of(const SceneModel& scene) {
   const SkyProfile* profile = profile_of(scene);
   return profile ? std::optional<SkySampler>(*profile) : std::nullopt;
 }
 
-FineNode fine_node(const SceneValues& scene, const std::optional<SkySampler>& sampler, double wavelength_um,
+FineNode fine_node(const SceneModel& scene, const std::optional<SkySampler>& sampler, double wavelength_um,
                    double weight) {
   const double emitted =
       scene.emission ? std::numbers::pi * planck_radiance(wavelength_um, scene.emission->temperature_K) : 0.0;
@@ -107,7 +107,7 @@ FineNode fine_node(const SceneValues& scene, const std::optional<SkySampler>& sa
   return node;
 }
 
-std::vector<double> temperatures(const SceneValues& scene) {
+std::vector<double> temperatures(const SceneModel& scene) {
   std::vector<double> result;
   if (scene.emission) result.push_back(scene.emission->temperature_K);
   const SkyProfile* profile = profile_of(scene);
@@ -122,7 +122,7 @@ std::vector<double> temperatures(const SceneValues& scene) {
   return result;
 }
 
-bool is_one_piece(const SceneValues& scene, double from_um, double to_um) {
+bool is_one_piece(const SceneModel& scene, double from_um, double to_um) {
   if (to_um > kPieceWavelengthRatio * from_um) return false;
   return std::ranges::all_of(temperatures(scene), [&](double temperature_K) {
     if (temperature_K == 0.0) return true;
@@ -133,7 +133,7 @@ bool is_one_piece(const SceneValues& scene, double from_um, double to_um) {
   });
 }
 
-void append_fine_nodes(const SceneValues& scene, const std::optional<SkySampler>& sampler, double from_um, double to_um,
+void append_fine_nodes(const SceneModel& scene, const std::optional<SkySampler>& sampler, double from_um, double to_um,
                        std::vector<FineNode>& nodes) {
   const double middle_um = 0.5 * (from_um + to_um);
   if (!is_one_piece(scene, from_um, to_um)) {
@@ -163,7 +163,7 @@ std::vector<double> segment_ends(double from_um, double to_um,
   return ends;
 }
 
-std::vector<FineNode> fine_nodes(const SceneValues& scene, double from_um, double to_um) {
+std::vector<FineNode> fine_nodes(const SceneModel& scene, double from_um, double to_um) {
   const bool tabulated = scene.source && scene.source->kind == Source::Kind::kTabulated;
   const SkyProfile* profile = profile_of(scene);
   const std::vector<double> of_source = tabulated ? scene.source->table.wavelength_um : std::vector<double>{};
@@ -208,7 +208,7 @@ void add(SpectralSample& sample, const FineNode& node, double factor) {
   sample.width += factor * node.width;
 }
 
-std::vector<SpectralSample> samples_at(const SceneValues& scene, const std::vector<double>& nodes_um,
+std::vector<SpectralSample> samples_at(const SceneModel& scene, const std::vector<double>& nodes_um,
                                        const std::vector<FineNode>& fine) {
   std::vector<SpectralSample> samples(nodes_um.size());
   for (std::size_t j = 0; j < nodes_um.size(); ++j) {
@@ -224,7 +224,7 @@ std::vector<SpectralSample> samples_at(const SceneValues& scene, const std::vect
 
 /// Relative error of the smooth surface's absorptances at one cosine, integrated with one of the factors.
 template <typename Factor>
-double probe_error(const SceneValues& scene, const std::vector<SpectralSample>& samples,
+double probe_error(const SceneModel& scene, const std::vector<SpectralSample>& samples,
                    const std::vector<FineNode>& fine, double cosine, Factor factor) {
   double whole = 0.0;
   SmoothAbsorptance exact{0.0, 0.0};
@@ -246,7 +246,7 @@ double probe_error(const SceneValues& scene, const std::vector<SpectralSample>& 
   return std::max(std::abs(exact.s - approximate.s), std::abs(exact.p - approximate.p)) / part;
 }
 
-double nodes_error(const SceneValues& scene, const std::vector<SpectralSample>& samples,
+double nodes_error(const SceneModel& scene, const std::vector<SpectralSample>& samples,
                    const std::vector<FineNode>& fine) {
   double worst = 0.0;
   for (const double cosine : kProbeCosines) {
@@ -272,7 +272,7 @@ void append_merged(std::vector<SpectralSample>& samples, const SpectralSample& s
 }
 
 /// Adds one segment of the material to a rule.
-void append_segment(const SceneValues& scene, double from_um, double to_um, SpectralRule& rule) {
+void append_segment(const SceneModel& scene, double from_um, double to_um, SpectralRule& rule) {
   const std::vector<FineNode> fine = fine_nodes(scene, from_um, to_um);
   for (const FineNode& node : fine) rule.path_exitance += node.path;
   std::vector<SpectralSample> samples;
@@ -286,7 +286,7 @@ void append_segment(const SceneValues& scene, double from_um, double to_um, Spec
   for (const SpectralSample& sample : samples) append_merged(rule.samples, sample);
 }
 
-SpectralRule single_wavelength_rule(const SceneValues& scene, double wavelength_um) {
+SpectralRule single_wavelength_rule(const SceneModel& scene, double wavelength_um) {
   const FineNode node = fine_node(scene, sampler_of(scene), wavelength_um, 1.0);
   SpectralSample sample;
   sample.wavelength_um = wavelength_um;
@@ -303,7 +303,7 @@ std::vector<OpticalConstants> SpectralRule::indices() const {
   return result;
 }
 
-SpectralRule spectral_rule(const SceneValues& scene) {
+SpectralRule spectral_rule(const SceneModel& scene) {
   if (!scene.spectrum.is_band()) return single_wavelength_rule(scene, scene.spectrum.min_um);
   SpectralRule rule;
   rule.relative_error = kPieceRelativeError;

@@ -37,7 +37,7 @@ struct SpectralRule {
 /// the material otherwise, as many as the reflectances of the smooth surface require.
 ///
 /// Accuracy: band sums to 1e-9 relative (tests SpectralRule_*Band*).
-SpectralRule spectral_rule(const SceneValues& scene);
+SpectralRule spectral_rule(const SceneModel& scene);
 
 /// The rule with the factors of dropped effects set to 0.
 SpectralRule kept_rule(SpectralRule rule, const KeptEffects& kept);

@@ -8,6 +8,7 @@
 
 #include "base/atomic_file.hpp"
 #include "base/hash.hpp"
+#include "base/temporary_folder.hpp"
 #include "base/text.hpp"
 #include "table/table_file.hpp"
 #include "table/table_store.hpp"
@@ -74,11 +75,12 @@ struct TableOutput::Impl {
   explicit Impl(Job of_run) : job(std::move(of_run)), format(format_of(job.path)) {
     check_output_path(job.path);
     if (is_resumable()) {
+      check_writable(progress_path(job.path));
       file.emplace(job.path, partial_path(job.path));
     } else if (format == TableFormat::kNetcdf) {
       file.emplace(job.path);
     } else if (job.parts.size() != 1) {
-      file.emplace(job.path == "-" ? fs::temp_directory_path() / "dolp" : job.path);
+      file.emplace(job.path == "-" ? temporary_files() / "dolp" : job.path);
     }
     const bool was_empty = file && file->size() == 0;
     try {

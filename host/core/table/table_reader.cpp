@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "base/text.hpp"
 #include "model/scene_entry.hpp"
 #include "table/hdf5_handle.hpp"
 #include "table/table_file.hpp"
@@ -26,7 +27,7 @@ namespace fs = std::filesystem;
 // deflate, which other tools apply, leaves no less than a 1032nd of the bytes.
 constexpr std::size_t kMostShrinking = 1032;
 // The text of a scene has at most 16 MiB.
-constexpr std::size_t kMostTextBytes = 64U << 20U;
+constexpr std::size_t kMostStoredTextBytes = 64U << 20U;
 
 constexpr const char* kPartHint =
     "as in a part of a table; in Python dolp.lookup(xarray.load_dataset(FILE), ...) takes parts";
@@ -35,12 +36,10 @@ constexpr const char* kPartHint =
 class Reader {
  public:
   explicit Reader(const fs::path& path) : path_(path) {
-    if (!fs::exists(path)) fail("there is no such file");
-    if (!fs::is_regular_file(path)) fail("is not a regular file");
+    check_regular_file(path.string(), path.string() + ": ");
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // messages are ours
-    bytes_ = fs::file_size(path);
     file_ = {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
-    if (!file_) fail("is not a NetCDF table of dolp, or cannot be read");
+    if (!file_ || H5Fget_filesize(file_.id(), &bytes_) < 0) fail("is not a NetCDF table of dolp, or cannot be read");
   }
 
   [[noreturn]] void fail(const std::string& what) const { throw InputError(path_.string() + ": " + what); }
@@ -48,7 +47,6 @@ class Reader {
     if (code < 0) fail(what + ": cannot be read; the file is damaged");
   }
 
-  std::size_t bytes() const { return bytes_; }
   const Hdf5Handle& file() const { return file_; }
 
   /// A variable whose values are in this file; nothing where it is not there.
@@ -91,7 +89,7 @@ class Reader {
 
  private:
   fs::path path_;
-  std::size_t bytes_ = 0;
+  hsize_t bytes_ = 0;
   Hdf5Handle file_;
 };
 
@@ -119,7 +117,7 @@ std::vector<double> read_list(const Reader& reader, const std::string& name, std
 std::string fixed_text(const Reader& reader, const Hdf5Handle& attribute, const Hdf5Handle& type,
                        const std::string& name) {
   const std::size_t length = H5Tget_size(type.id());
-  if (length > kMostTextBytes) reader.fail(name + ": the text is too long");
+  if (length > kMostStoredTextBytes) reader.fail(name + ": the text is too long");
   reader.check_claim(name, length);
   std::string text(length, '\0');
   reader.check(H5Aread(attribute.id(), type.id(), text.data()), name);
@@ -195,8 +193,6 @@ std::vector<Attribute> read_attributes(const Reader& reader) {
   return attributes;
 }
 
-constexpr std::size_t kMostLongTextBytes = 8 * kMostTextBytes;  // numbers of a file take more when all have their name
-
 /// The texts that are variables because they are too long for attributes.
 void append_long_texts(const Reader& reader, std::vector<Attribute>& attributes) {
   for (const char* name :
@@ -207,7 +203,7 @@ void append_long_texts(const Reader& reader, std::vector<Attribute>& attributes)
     reader.check(type ? 0 : -1, name);
     const std::vector<hsize_t> shape = reader.shape_of(variable, name);
     const bool is_text = is_of_class(type.id(), H5T_STRING) && H5Tget_size(type.id()) == 1 && shape.size() == 1;
-    if (!is_text || shape[0] > kMostLongTextBytes) reader.fail(std::string(name) + ": is no text, or too long");
+    if (!is_text || shape[0] > kMostStoredTextBytes) reader.fail(std::string(name) + ": is no text, or too long");
     reader.check_claim(name, shape[0]);
     std::string text(shape[0], '\0');
     reader.read(variable, name, type.id(), text.data());

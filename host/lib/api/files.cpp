@@ -206,7 +206,7 @@ Report merge(const std::vector<std::filesystem::path>& shards, const std::filesy
   for (const std::filesystem::path& shard : shards) names.push_back(shard.string());
   check_output_is_no_input(path, names);
   check_output_path(path);
-  const std::size_t entries = merge_shards(names, path, history);
+  const std::size_t entries = ShardSet(names).merge(path, history);
   ReportBuilder report;
   report.line("{} entries of {} shards", key("entries", entries), key("shards", shards.size()));
   report.row("written", "{}", key("output", path.string()));

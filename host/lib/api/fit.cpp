@@ -47,20 +47,28 @@ void check_loss(Loss loss, ModelError error, const std::vector<MeasuredData>& da
   }
 }
 
+void check_comparison(const Comparison& comparison, const FitOptions& options) {
+  const std::string& name = comparison.key;
+  if (std::ranges::find(options.vary, name, &FitRange::key) != options.vary.end())
+    throw InputError(name + ": varies and cannot be compared too");
+  if (std::ranges::count(options.compare, name, &Comparison::key) > 1)
+    throw InputError(name + ": is compared twice; give all of its values at once");
+  if (comparison.words.empty()) throw InputError(name + ": is compared without a value");
+  const SceneKey* const known = find_scene_key(name);
+  for (const std::string& word : comparison.words) {
+    if (std::ranges::count(comparison.words, word) > 1)
+      throw InputError(fmt::format("{} = {}: is compared twice", name, one_line(word)));
+    const bool is_plain = known != nullptr && known->description.type == Key::Type::kWord && !word.starts_with('"');
+    if (!is_plain || std::ranges::count(known->description.words, word) > 0) continue;
+    throw InputError(fmt::format("{} = {}: must be {}", name, one_line(word), known->description.allowed()));
+  }
+}
+
 /// All combinations of the compared settings, one list each; one empty list where nothing is compared.
 std::vector<Settings> combinations(const FitOptions& options) {
   std::vector<Settings> all = {{}};
   for (const Comparison& comparison : options.compare) {
-    if (std::ranges::find(options.vary, comparison.key, &FitRange::key) != options.vary.end()) {
-      throw InputError(fmt::format("{}: varies and cannot be compared too", comparison.key));
-    }
-    const SceneKey* const known = find_scene_key(comparison.key);
-    for (const std::string& word : comparison.words) {
-      const bool is_plain = known != nullptr && known->description.type == Key::Type::kWord && !word.starts_with('"');
-      if (!is_plain || std::ranges::count(known->description.words, word) > 0) continue;
-      throw InputError(
-          fmt::format("{} = {}: must be {}", comparison.key, one_line(word), known->description.allowed()));
-    }
+    check_comparison(comparison, options);
     std::vector<Settings> more;
     for (const Settings& one : all) {
       for (const std::string& word : comparison.words) {

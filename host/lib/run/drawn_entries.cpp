@@ -22,9 +22,7 @@ std::vector<std::size_t> drawn_positions(std::size_t size, std::size_t count) {
 
 SceneEntries drawn_entries(const SceneEntries& entries, std::size_t count) {
   if (entries.size() <= count) return entries;
-  std::vector<SceneEntry> drawn;
-  for (const std::size_t position : drawn_positions(entries.size(), count)) drawn.push_back(entries[position]);
-  return {std::move(drawn), entries.wavelength_um()};
+  return entries.chosen(drawn_positions(entries.size(), count));
 }
 
 }  // namespace dolp

@@ -48,8 +48,9 @@ struct Stretch {
 
 class Forecast {
  public:
-  Forecast(const SceneValues& scene, const EffectPlan& plan) : scene_(scene), plan_(plan) {
-    std::ranges::copy_if(kAllAxes, std::back_inserter(axes_), [&](Axis axis) { return scene.grid[axis].size() > 1; });
+  Forecast(const SceneValues& scene, const EffectPlan& plan) : scene_(scene), grid_(scene.grid), plan_(plan) {
+    scene_.wind_m_s.clear();
+    std::ranges::copy_if(kAllAxes, std::back_inserter(axes_), [&](Axis axis) { return grid_[axis].size() > 1; });
     lines_ = axes_.size() > 1 ? kLines : 1;
   }
 
@@ -60,7 +61,7 @@ class Forecast {
       for (const Axis other : axes_) {
         if (other != axis) wanted /= is_read_with_four(other) ? kWeightsOfFour : kWeightsOfSix;
       }
-      const std::size_t values = scene_.grid[axis].size();
+      const std::size_t values = grid_[axis].size();
       const double error = error_with(axis, values);
       forecasts.push_back({axis, values, error, wanted, needed(axis, values, error, wanted)});
     }
@@ -114,7 +115,7 @@ class Forecast {
     const std::size_t first = std::min(centred, values - length);
     Stretch stretch;
     for (const Axis each : kAllAxes) {
-      const std::vector<double>& whole = scene_.grid[each];
+      const std::vector<double>& whole = grid_[each];
       std::vector<double>& own = stretch.axes[each];
       if (whole.empty()) continue;
       if (each != axis) {
@@ -138,9 +139,8 @@ class Forecast {
     std::vector<double> wavelengths;
     std::vector<SceneEntries> grids;
     for (const Stretch& stretch : stretches) {
-      SceneValues scene = scene_;
-      scene.grid = stretch.axes;
-      const SceneEntries& own = grids.emplace_back(grid_entries(scene));
+      scene_.grid = stretch.axes;
+      const SceneEntries& own = grids.emplace_back(grid_entries(scene_));
       for (std::size_t i = 0; i < own.size(); ++i) {
         all.push_back(own[i]);
         all.back().wavelength += static_cast<std::uint32_t>(wavelengths.size());
@@ -152,6 +152,7 @@ class Forecast {
     auto next = results.begin();
     for (std::size_t i = 0; i < stretches.size(); ++i) {
       const auto end = next + static_cast<std::ptrdiff_t>(grids[i].size());
+      scene_.grid = stretches[i].axes;
       TableValues table = table_part(table_layout(scene_, plan_, stretches[i].axes), grids[i], {next, end});
       next = end;
       std::ranges::fill(table[Quantity::kErrorEstimate], 0.0);  // what remains is the interpolation's
@@ -162,7 +163,8 @@ class Forecast {
     return errors;
   }
 
-  const SceneValues& scene_;
+  SceneValues scene_;  ///< with the grid of a stretch
+  const Axes& grid_;   ///< the whole
   const EffectPlan& plan_;
   CpuEvaluator evaluator_;
   std::vector<Axis> axes_;

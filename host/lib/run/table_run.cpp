@@ -151,31 +151,6 @@ std::optional<Shard> shard_of(const TableHead& head) {
   return is_shard ? std::optional(shard) : std::nullopt;
 }
 
-/// The complete set of a table's shards.
-struct ShardSet {
-  SceneValues scene;
-  TableLayout layout;
-  std::size_t count = 0;
-  std::map<std::size_t, std::string> paths;  ///< by number
-  SelfCheck check;
-  double wall_s = 0.0;
-  std::string devices;
-};
-
-/// Refuses a shard that is not of the same table as the first.
-void check_same_table(const ShardSet& set, const Shard& shard, const TableReader& reader, const std::string& path) {
-  const TableHead& head = reader.head();
-  const TableHead& first = set.layout.head;
-  if (const auto differs = difference(text_of(head, kIdentity), text_of(first, kIdentity)))
-    throw InputError(fmt::format("{}: is a shard of another table: it has {}", path, *differs));
-  const bool has_same_curves = spectral_data_of(head) == spectral_data_of(first);
-  if (shard.count != set.count || reader.quantities() != set.layout.quantities ||
-      reader.has_status() != set.layout.has_status || head.stokes_units != first.stokes_units || !has_same_curves) {
-    throw InputError(fmt::format("{}: is shard {}, of another table than {}: it has other variables or units", path,
-                                 shard_text(shard), set.paths.begin()->second));
-  }
-}
-
 Axes axes_of_shard(const SceneValues& scene, const Shard& shard, const std::string& path) {
   try {
     return shard_entries(scene, shard).axes();
@@ -184,52 +159,58 @@ Axes axes_of_shard(const SceneValues& scene, const Shard& shard, const std::stri
   }
 }
 
-void add_shard(ShardSet& set, const std::string& path) {
-  const TableReader reader(path);
-  const TableHead& head = reader.head();
-  const std::optional<Shard> shard = shard_of(head);
-  if (!shard) throw InputError(path + ": is no shard of a table (attribute shard)");
-  if (text_of(head, kIdentity).empty()) throw InputError(path + ": has no text attribute " + kIdentity);
-  if (set.paths.empty()) {
-    set.scene = table_scene(head, path);
-    set.layout = {head, reader.quantities(), reader.has_status()};
-    set.layout.head.axes = set.scene.grid;
-    fill_used(set.layout.head, set.scene);
-    set.count = shard->count;
-  } else {
-    check_same_table(set, *shard, reader, path);
+/// What the shards of a table say of their runs, together.
+class MergedRun {
+ public:
+  void add(const TableHead& head) {
+    const double most = static_cast<double>(kMostTableEntries);
+    check_.entries += static_cast<std::size_t>(std::min(number_of(head, "self_check_entries"), most));
+    check_.worst_ratio = std::max(check_.worst_ratio, number_of(head, "self_check_worst_ratio"));
+    wall_s_ += number_of(head, "wall_time_s");
+    const std::string device = text_of(head, "device");
+    if (devices_.find(device) == std::string::npos) devices_ += (devices_.empty() ? "" : "; ") + device;
   }
-  if (head.axes != axes_of_shard(set.scene, *shard, path))
-    throw InputError(fmt::format("{}: does not have the axes of shard {}", path, shard_text(*shard)));
-  const auto [place, is_new] = set.paths.emplace(shard->number, path);
-  if (!is_new) throw InputError(fmt::format("{}: is shard {}, as {} is", path, shard_text(*shard), place->second));
-  const double most = static_cast<double>(kMostTableEntries);
-  set.check.entries += static_cast<std::size_t>(std::min(number_of(head, "self_check_entries"), most));
-  set.check.worst_ratio = std::max(set.check.worst_ratio, number_of(head, "self_check_worst_ratio"));
-  set.wall_s += number_of(head, "wall_time_s");
-  const std::string device = text_of(head, "device");
-  if (set.devices.find(device) == std::string::npos) set.devices += (set.devices.empty() ? "" : "; ") + device;
-}
 
-ShardSet shard_set(const std::vector<std::string>& paths) {
-  constexpr std::size_t kMostNamed = 20;
-  ShardSet set;
-  for (const std::string& path : paths) add_shard(set, path);
-  std::vector<std::string> missing;
-  for (std::size_t i = 1; i <= set.count && missing.size() < kMostNamed; ++i) {
-    if (!set.paths.contains(i)) missing.push_back(shard_text({i, set.count}));
+  /// The attributes of the whole table; `first` is a shard's.
+  std::vector<Attribute> attributes(const TableHead& first, const std::string& command_line) const {
+    return {{"history", history_text(command_line)},
+            {"device", devices_},
+            {"driver", text_of(first, "driver")},
+            {"evaluator", text_of(first, "evaluator")},
+            {"precision", text_of(first, "precision")},
+            {"effects", text_of(first, "effects")},
+            {"rule", text_of(first, "rule")},
+            {"self_check_entries", static_cast<double>(check_.entries)},
+            {"self_check_worst_ratio", check_.worst_ratio},
+            {"wall_time_s", wall_s_}};
   }
-  const std::size_t unnamed = set.count - set.paths.size() - missing.size();
-  if (unnamed > 0) missing.push_back(fmt::format("{} more", unnamed));
-  if (!missing.empty()) throw InputError("missing shards: " + join(missing));
-  return set;
-}
 
-/// The attributes of a shard that also hold for the whole table; the others are those of `run`.
-void keep_attributes(std::vector<Attribute>& attributes, const std::vector<Attribute>& run) {
+ private:
+  SelfCheck check_;
+  double wall_s_ = 0.0;
+  std::string devices_;
+};
+
+/// A shard's attributes that also hold for the whole table.
+std::vector<Attribute> without_run(std::vector<Attribute> attributes) {
+  const std::vector<Attribute> run = MergedRun().attributes({}, "");
   std::erase_if(attributes, [&](const Attribute& attribute) {
     return attribute.name == kShard || std::ranges::find(run, attribute.name, &Attribute::name) != run.end();
   });
+  return attributes;
+}
+
+/// Copies a shard into its place in the table.
+void merge_shard(TableOutput& output, const TableReader& reader, const SceneEntries& own) {
+  ValueSums sums;
+  for (const TableBox& box : boxes_in_order(own.counts(), kMergedAtOnce)) {
+    TableValues part = reader.read(box);
+    add(sums, reader.sums_of(part, box));
+    PerAxis first = own.first();
+    for (std::size_t axis = 0; axis < first.size(); ++axis) first[axis] += box.first[axis];
+    output.write(std::move(part), first, "");
+  }
+  reader.check_hash(sums);
 }
 
 }  // namespace
@@ -310,37 +291,70 @@ bool is_there(const SceneValues& scene, const TableJob& job) {
   }
 }
 
-std::size_t merge_shards(const std::vector<std::string>& shards, const fs::path& path,
-                         const std::string& command_line) {
-  ShardSet set = shard_set(shards);
-  const TableHead& head = set.layout.head;
-  std::vector<Attribute> run = {{"history", history_text(command_line)},
-                                {"device", set.devices},
-                                {"driver", text_of(head, "driver")},
-                                {"evaluator", text_of(head, "evaluator")},
-                                {"precision", text_of(head, "precision")},
-                                {"effects", text_of(head, "effects")},
-                                {"rule", text_of(head, "rule")},
-                                {"self_check_entries", static_cast<double>(set.check.entries)},
-                                {"self_check_worst_ratio", set.check.worst_ratio},
-                                {"wall_time_s", set.wall_s}};
-  keep_attributes(set.layout.head.attributes, run);
-  TableOutput output({.path = path, .layout = set.layout});
-  for (const auto& [number, own_path] : set.paths) {
-    const TableReader reader(own_path);
-    const SceneEntries own = shard_entries(set.scene, {number, set.count});
-    ValueSums sums;
-    for (const TableBox& box : boxes_in_order(own.counts(), kMergedAtOnce)) {
-      TableValues part = reader.read(box);
-      add(sums, reader.sums_of(part, box));
-      PerAxis first = own.first();
-      for (std::size_t axis = 0; axis < first.size(); ++axis) first[axis] += box.first[axis];
-      output.write(std::move(part), first, "");
-    }
-    reader.check_hash(sums);
+ShardSet::ShardSet(const std::vector<std::string>& paths) {
+  constexpr std::size_t kMostNamed = 20;
+  for (const std::string& path : paths) {
+    const TableReader reader(path);
+    if (paths_.empty()) begin(reader, path);
+    const std::size_t number = checked_number(reader, path);
+    const auto [place, is_new] = paths_.emplace(number, path);
+    if (!is_new)
+      throw InputError(fmt::format("{}: is shard {}, as {} is", path, shard_text({number, count_}), place->second));
   }
-  output.finish(run);
-  return set.layout.head.size();
+  std::vector<std::string> missing;
+  for (std::size_t i = 1; i <= count_ && missing.size() < kMostNamed; ++i) {
+    if (!paths_.contains(i)) missing.push_back(shard_text({i, count_}));
+  }
+  const std::size_t unnamed = count_ - paths_.size() - missing.size();
+  if (unnamed > 0) missing.push_back(fmt::format("{} more", unnamed));
+  if (!missing.empty()) throw InputError("missing shards: " + join(missing));
+}
+
+void ShardSet::begin(const TableReader& first, const std::string& path) {
+  const std::optional<Shard> shard = shard_of(first.head());
+  if (!shard) return;
+  scene_ = table_scene(first.head(), path);
+  layout_ = {first.head(), first.quantities(), first.has_status()};
+  layout_.head.axes = scene_.grid;
+  fill_used(layout_.head, scene_);
+  count_ = shard->count;
+}
+
+std::size_t ShardSet::checked_number(const TableReader& reader, const std::string& path) const {
+  const TableHead& head = reader.head();
+  const TableHead& first = layout_.head;
+  const std::optional<Shard> shard = shard_of(head);
+  if (!shard) throw InputError(path + ": is no shard of a table (attribute shard)");
+  const std::string identity = text_of(head, kIdentity);
+  if (identity.empty()) throw InputError(path + ": has no text attribute " + kIdentity);
+  if (const auto differs = difference(identity, text_of(first, kIdentity)))
+    throw InputError(fmt::format("{}: is a shard of another table: it has {}", path, *differs));
+  const bool has_same_curves = spectral_data_of(head) == spectral_data_of(first);
+  if (shard->count != count_ || reader.quantities() != layout_.quantities ||
+      reader.has_status() != layout_.has_status || head.stokes_units != first.stokes_units || !has_same_curves) {
+    throw InputError(fmt::format("{}: is shard {}, of another table than {}: it has other variables or units", path,
+                                 shard_text(*shard), paths_.begin()->second));
+  }
+  if (head.axes != axes_of_shard(scene_, *shard, path))
+    throw InputError(fmt::format("{}: does not have the axes of shard {}", path, shard_text(*shard)));
+  return shard->number;
+}
+
+std::size_t ShardSet::merge(const fs::path& path, const std::string& command_line) const {
+  TableLayout layout = layout_;
+  layout.head.attributes = without_run(layout_.head.attributes);
+  TableOutput output({.path = path, .layout = std::move(layout)});
+  MergedRun run;
+  for (const auto& [number, own_path] : paths_) {
+    const TableReader reader(own_path);
+    const std::size_t is_now = checked_number(reader, own_path);
+    if (is_now != number)
+      throw InputError(fmt::format("{}: is shard {} now, and was {}", own_path, shard_text({is_now, count_}), number));
+    run.add(reader.head());
+    merge_shard(output, reader, shard_entries(scene_, {number, count_}));
+  }
+  output.finish(run.attributes(layout_.head, command_line));
+  return layout_.head.size();
 }
 
 }  // namespace dolp

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "run/run_summary.hpp"
 #include "run/scene_run.hpp"
 #include "scene/scene.hpp"
+#include "table/table_reader.hpp"
 
 namespace dolp {
 
@@ -39,10 +41,26 @@ RunOutcome write_table(const SceneValues& scene, const TableJob& job, const Eval
 /// True where the job's path already holds the undamaged table of its shard, of the same identity.
 bool is_there(const SceneValues& scene, const TableJob& job);
 
-/// Joins all shards of a table into one, which are opened one at a time. Returns the entries.
-/// Errors: InputError that names a shard that is missing, there twice, or of another table, and how that differs; those
-/// of TableReader and TableOutput.
-std::size_t merge_shards(const std::vector<std::string>& shards, const std::filesystem::path& path,
-                         const std::string& command_line);
+/// The complete set of a table's shards, which are opened one at a time.
+class ShardSet {
+ public:
+  /// Errors: InputError that names a shard that is missing, there twice, or of another table, and how that differs;
+  /// those of TableReader.
+  explicit ShardSet(const std::vector<std::string>& paths);
+
+  /// Joins the shards into one table. Returns its entries.
+  /// Errors: those of the constructor, since another file may have taken a shard's place; those of TableOutput.
+  std::size_t merge(const std::filesystem::path& path, const std::string& command_line) const;
+
+ private:
+  void begin(const TableReader& first, const std::string& path);
+  /// The number of an open shard that belongs to the set.
+  std::size_t checked_number(const TableReader& reader, const std::string& path) const;
+
+  SceneValues scene_;
+  TableLayout layout_;  ///< with the first shard's attributes
+  std::size_t count_ = 0;
+  std::map<std::size_t, std::string> paths_;  ///< by number
+};
 
 }  // namespace dolp

@@ -116,7 +116,7 @@ std::uint64_t scene_seed(const SceneValues& scene) {
 std::string scene_hash(const SceneValues& scene) { return fmt::format("fnv1a64:{:016x}", scene_seed(scene)); }
 
 void check_may_hold_scene(const std::string& path) {
-  if (!std::filesystem::exists(path)) throw InputError(path + ": there is no such file");
+  check_regular_file(path, path + ": ");
   const std::string suffix = std::filesystem::path(path).extension().string();
   if (suffix == ".csv" || suffix == ".npy") {
     throw InputError(

@@ -108,6 +108,8 @@ CheckedValue compare(const TableValues& table, const Compared& compared, std::si
   value.stated = bound_of(compared.bound, dolp_estimate, rho_estimate, reference);
   value.reference_error =
       bound_of(compared.bound, reference[Quantity::kErrorEstimate], reference[Quantity::kRhoErrorEstimate], reference);
+  // Where neither side has an estimate, as of an intensity that overflows, nothing is stated.
+  if (std::isnan(value.stated) && !std::isfinite(value.reference_error)) value.stated = value.reference_error = kInfinity;
   const std::uint32_t status = table.status.empty() ? kToleranceNotMet : table.status[i];
   value.complaint = complaint_about(value, allowed_error(compared.bound, status, tolerance, reference));
   return value;
@@ -172,8 +174,7 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
   const SceneEntries grid = SceneEntries::of_grid(table.axes, scene.surface.material.constant);
   for (const std::size_t position : sample.positions) entries.push_back(grid[position]);
   ReferenceEvaluator reference({.relative_tolerance = kReferenceTolerance});
-  const std::vector<PointResult> results =
-      evaluate_scene(scene, {entries, table.axes[Axis::kWavelength]}, reference, progress);
+  const std::vector<PointResult> results = evaluate_scene(scene, grid.chosen(sample.positions), reference, progress);
 
   TableCheck check;
   check.entries = table.size();

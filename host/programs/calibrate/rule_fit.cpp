@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <vector>
 
 #include "base/numbers.hpp"
@@ -43,13 +44,15 @@ std::vector<Moments> computed(const MomentsRequest& request, const RuleModel& mo
   const std::unique_ptr<CpuKernel> kernel = make_cpu_kernel_double(data);
   const SlopeSampling sampling(data);
   std::vector<Moments> moments(data.size());
+  std::vector<std::uint32_t> shapes(data.shapes.size());
+  std::iota(shapes.begin(), shapes.end(), 0U);
+  if (data.needs_masking_table()) kernel->build_masking_tables(std::move(shapes));
   const auto one = [&](std::size_t i) {
     if (has_slope_samples(request)) {
       sampling.compute(sampled_entries(request, data, i, i + 1).front(), *kernel, kDoubleRoundoff, moments);
       return;
     }
     const MomentsEntry entry = data[i];
-    kernel->build_masking_table(entry.shape);
     moments[i] = moments_from_kernel(kernel->moments(entry, {}), data, entry, kDoubleRoundoff);
   };
   parallel_for(moments.size(), one, nullptr);

@@ -20,7 +20,8 @@ std::filesystem::path Preferences::default_path() {
 
 void Preferences::load(const std::filesystem::path& path) {
   path_ = path;
-  if (!std::filesystem::exists(path)) return;
+  std::error_code unknown;
+  if (!std::filesystem::exists(path, unknown)) return;
   const toml::table table = read_toml(path.string());
   is_light = table["light"].value_or(false);
   zoom_by(table["zoom"].value_or(0));

@@ -46,9 +46,13 @@ def encodable(name: str, text: str, errors: str = "strict") -> str:
 
 def input_path(name: str, path: Path) -> str:
     text = native_path(name, path)
-    if os.path.exists(text):
-        return text
-    raise MissingFileError(f"{text}: there is no such file")
+    try:
+        os.stat(text)
+    except (FileNotFoundError, NotADirectoryError, ValueError):
+        raise MissingFileError(f"{text}: there is no such file") from None
+    except OSError as error:
+        raise InputError(f"{text}: cannot be read: {error.strerror}") from None
+    return text
 
 
 def check_key(key: str) -> str:

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/interrupt.hpp"
+#include "base/temporary_folder.hpp"
 
 namespace dolp {
 namespace {
@@ -159,13 +160,18 @@ void check_writable(const fs::path& path) {
     return;
   }
   if (target.filename().empty()) fail(path, "is not a file name");
+  const fs::path folder = folder_of(target);
+  const fs::file_status found = fs::status(folder, error);
+  if (found.type() == fs::file_type::none)
+    fail(path, "cannot look at the folder " + folder.string() + ": " + error.message());
+  if (!fs::is_directory(found)) fail(path, "there is no folder " + folder.string());
   struct stat existing {};
+  const bool exists = ::stat(target.c_str(), &existing) == 0;
+  if (!exists && errno != ENOENT) fail_errno(path, "cannot create the file");
   // Root may write to read-only files, but did not ask for it.
-  if (::stat(target.c_str(), &existing) == 0 && (existing.st_mode & kWriteBits) == 0) {
+  if (exists && (existing.st_mode & kWriteBits) == 0) {
     fail(path, "is read-only; remove it first, or write to another file");
   }
-  const fs::path folder = folder_of(target);
-  if (!fs::is_directory(folder, error)) fail(path, "there is no folder " + folder.string());
   if (::access(folder.c_str(), W_OK | X_OK) != 0) fail_errno(path, "cannot write to the folder " + folder.string());
 }
 
@@ -213,7 +219,7 @@ AtomicFile::AtomicFile(const fs::path& path) {
   check_writable(path);
   const fs::path target = follow_links(path);
   const bool is_device = is_device_or_pipe(target);
-  impl_ = std::make_unique<Impl>(path, target, create_temporary(is_device ? fs::temp_directory_path() / "-" : target));
+  impl_ = std::make_unique<Impl>(path, target, create_temporary(is_device ? temporary_files() / "-" : target));
   if (!is_device) keep_permissions(impl_->own.file, target);
 }
 

@@ -15,7 +15,8 @@ std::filesystem::path follow_links(std::filesystem::path path);
 
 /// Refuses an output path of any suffix, before anything is computed for it; "-" is standard output.
 ///
-/// Errors: IoError when it is a folder or a file that is read-only, or its folder is missing or cannot be written to.
+/// Errors: IoError when it is a folder, a file that is read-only or a name that is too long, or its folder is missing
+/// or cannot be written to.
 void check_writable(const std::filesystem::path& path);
 
 /// A file under way to `path`: written in any order, then synced and renamed. Until then it has no name where the file

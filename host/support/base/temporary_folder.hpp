@@ -1,4 +1,4 @@
-// A folder for files that last as long as an object.
+// Places for temporary files.
 #pragma once
 
 #include <cstdlib>
@@ -9,12 +9,24 @@
 
 namespace dolp {
 
+/// The system's folder for temporary files, TMPDIR or /tmp. Errors: IoError when it is not there.
+inline std::filesystem::path temporary_files() {
+  std::filesystem::path folder = "/tmp";
+  for (const char* const name : {"TEMPDIR", "TEMP", "TMP", "TMPDIR"}) {
+    const char* const given = std::getenv(name);
+    if (given && *given != '\0') folder = given;
+  }
+  std::error_code unknown;
+  if (std::filesystem::is_directory(folder, unknown)) return folder;
+  throw IoError(folder.string() + ": there is no such folder for temporary files; set TMPDIR to another");
+}
+
 /// A new folder among the system's temporary ones, removed with all that is in it at the end.
 class TemporaryFolder {
  public:
   /// `name`: begins the folder's name. Errors: IoError.
   explicit TemporaryFolder(const std::string& name = "dolp") {
-    std::string path = (std::filesystem::temp_directory_path() / (name + "-XXXXXX")).string();
+    std::string path = (temporary_files() / (name + "-XXXXXX")).string();
     if (::mkdtemp(path.data()) == nullptr) throw IoError(path + ": cannot create the folder");
     path_ = path;
   }

@@ -148,6 +148,14 @@ std::string read_named_file(const std::string& path, const std::string& prefix, 
   return read_text(path, prefix, most_bytes);
 }
 
+void check_regular_file(const std::string& path, const std::string& prefix) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (is_regular_file(status)) return;
+  if (status.type() == std::filesystem::file_type::not_found) throw InputError(prefix + "there is no such file");
+  throw InputError(prefix + (error ? "cannot be read: " + error.message() : "is not a regular file"));
+}
+
 std::string input_name(const std::string& path) { return path == "-" ? "stdin" : path; }
 
 std::string shell_quoted(const std::string& text) {

@@ -57,6 +57,9 @@ void check_named_file(const std::string& path, const std::string& prefix);
 std::string read_named_file(const std::string& path, const std::string& prefix,
                             std::size_t most_bytes = kMostTextBytes);
 
+/// Refuses a path that is no regular file, or that cannot be looked at. Errors: InputError that begins with `prefix`.
+void check_regular_file(const std::string& path, const std::string& prefix);
+
 /// The name of an input for messages: "stdin" for "-".
 std::string input_name(const std::string& path);
 

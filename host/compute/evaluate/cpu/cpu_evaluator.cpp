@@ -1,5 +1,6 @@
 #include "evaluate/cpu/cpu_evaluator.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <memory>
@@ -17,6 +18,8 @@ namespace dolp {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kTablesAtOnce = 4096;  // masking tables, of 4 or 7 KiB each
 
 std::unique_ptr<CpuKernel> make_kernel(const KernelData& data, bool in_double) {
   return in_double ? make_cpu_kernel_double(data) : make_cpu_kernel_float(data);
@@ -36,31 +39,32 @@ std::vector<std::size_t> wanted_entries(const MomentsRequest& request) {
   return entries;
 }
 
-std::vector<std::size_t> shapes_of(const KernelData& data, const std::vector<std::size_t>& entries) {
-  std::vector<char> is_used(data.shapes.size(), 0);
-  for (const std::size_t i : entries) is_used[data[i].shape] = 1;
-  std::vector<std::size_t> shapes;
-  for (std::size_t shape = 0; shape < is_used.size(); ++shape) {
-    if (is_used[shape] != 0) shapes.push_back(shape);
-  }
-  return shapes;
-}
-
-/// Moments entry by entry.
+/// Moments entry by entry, in blocks of shapes.
 std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData& data, CpuKernel& kernel,
                                 double unit_roundoff, const Progress& progress) {
-  const std::vector<std::size_t> entries = wanted_entries(request);
-  const std::vector<std::size_t> shapes = shapes_of(data, entries);
-  parallel_for(
-      shapes.size(), [&](std::size_t i) { kernel.build_masking_table(shapes[i]); }, nullptr);
+  std::vector<std::size_t> entries = wanted_entries(request);
+  std::ranges::stable_sort(entries, {}, [&](std::size_t i) { return data[i].shape; });
   std::vector<Moments> moments(request.size());
-  const auto one = [&](std::size_t i) {
-    const MomentsEntry entry = data[entries[i]];
-    std::vector<double> sky(sky_sums(data));
-    const kernel::MomentsNode node = kernel.moments(entry, sky);
-    moments[entries[i]] = moments_from_kernel(node, data, entry, unit_roundoff, sky);
-  };
-  parallel_for(entries.size(), one, progress);
+  for (std::size_t first = 0, last = 0; first < entries.size(); first = last) {
+    std::vector<std::uint32_t> shapes;
+    for (; last < entries.size(); ++last) {
+      const std::uint32_t shape = data[entries[last]].shape;
+      if (!shapes.empty() && shapes.back() == shape) continue;
+      if (shapes.size() == kTablesAtOnce) break;
+      shapes.push_back(shape);
+    }
+    kernel.build_masking_tables(std::move(shapes));
+    const auto one = [&](std::size_t i) {
+      const MomentsEntry entry = data[entries[first + i]];
+      std::vector<double> sky(sky_sums(data));
+      const kernel::MomentsNode node = kernel.moments(entry, sky);
+      moments[entries[first + i]] = moments_from_kernel(node, data, entry, unit_roundoff, sky);
+    };
+    const Progress of_all = [&](std::size_t done, std::size_t) {
+      return !progress || progress(first + done, entries.size());
+    };
+    parallel_for(last - first, one, of_all);
+  }
   return moments;
 }
 

@@ -1,9 +1,10 @@
 // The shaders' own source compiled as C++, in float and in double: a translation unit for each precision.
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "plan/kernel_data.hpp"
 
@@ -14,8 +15,9 @@ class CpuKernel {
  public:
   virtual ~CpuKernel() = default;
 
-  /// Fills the masking table of one shape; needed before `moments` of its entries when the data needs tables.
-  virtual void build_masking_table(std::size_t shape) = 0;
+  /// Makes the masking tables of some shapes, in ascending order, in place of earlier ones. When the data needs tables,
+  /// `moments` takes entries of these shapes only.
+  virtual void build_masking_tables(std::vector<std::uint32_t> shapes) = 0;
   /// Adds DOLP_SKY_PARTS sums for each function of the data's sky to `sky`.
   virtual kernel::MomentsNode moments(const MomentsEntry& entry, std::span<double> sky) = 0;
 

@@ -1,12 +1,15 @@
 // Body of cpu_kernel_float.cpp and cpu_kernel_double.cpp, which define DOLP_KERNEL_NAMESPACE, real, real2 and real4
 // first.
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
+#include <utility>
 #include <vector>
 
+#include "base/parallel_ranges.hpp"
 #include "evaluate/kernel/cpu_kernel.hpp"
 #include "plan/convert_reals.hpp"
 
@@ -79,11 +82,15 @@ class SourceKernel final : public CpuKernel {
   explicit SourceKernel(const KernelData& data)
       : data_(data),
         rule_(convert_reals<real, KernelSource::RuleNode, double>(data.rule)),
-        source_(KernelSource::of(data)) {
-    if (data.needs_masking_table()) source_.masking_table.resize(data.shapes.size() * KernelSource::kMaskingNodes);
-  }
+        source_(KernelSource::of(data)) {}
 
-  void build_masking_table(std::size_t shape) override { source_.build_masking_table(shape_node(shape), table(shape)); }
+  void build_masking_tables(std::vector<std::uint32_t> shapes) override {
+    shapes_ = std::move(shapes);
+    source_.masking_table.resize(shapes_.size() * KernelSource::kMaskingNodes);
+    parallel_for(
+        shapes_.size(), [&](std::size_t i) { source_.build_masking_table(shape_node(shapes_[i]), table_at(i)); },
+        nullptr);
+  }
 
   kernel::MomentsNode moments(const MomentsEntry& entry, std::span<double> sky) override {
     const KernelSource::Row row{{shape_node(entry.shape)}, {table(entry.shape)}};
@@ -116,7 +123,10 @@ class SourceKernel final : public CpuKernel {
   }
 
  private:
-  static uint table(std::size_t shape) { return static_cast<uint>(shape * KernelSource::kMaskingNodes); }
+  static uint table_at(std::size_t place) { return static_cast<uint>(place * KernelSource::kMaskingNodes); }
+  uint table(std::uint32_t shape) const {
+    return table_at(static_cast<std::size_t>(std::ranges::lower_bound(shapes_, shape) - shapes_.begin()));
+  }
 
 #if DOLP_MOST_SKY > 0
   static void add_function(std::size_t k, const KernelSource::RowMoments& part, std::span<double> sums) {
@@ -143,6 +153,7 @@ class SourceKernel final : public CpuKernel {
   const KernelData& data_;
   KernelSource::RuleNode rule_;
   KernelSource source_;
+  std::vector<std::uint32_t> shapes_;  ///< with a masking table
 };
 
 }  // namespace dolp::DOLP_KERNEL_NAMESPACE

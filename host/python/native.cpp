@@ -158,6 +158,19 @@ py::object object_of(const dolp::Value& value) {
   return std::visit(object, value.content());
 }
 
+/// Warns of each remark in Python, at the line that called the package. Errors: the warning where Python makes it one.
+void warn(const std::vector<std::string>& remarks) {
+  constexpr int kCaller = 2;  // the first frame is the package's
+  const py::object category = py::module_::import("dolp._native").attr("InputWarning");
+  for (const std::string& remark : remarks)
+    py::module_::import("warnings").attr("warn")(text_of(remark), category, kCaller);
+}
+
+dolp::Scene with_warnings(dolp::Scene scene) {
+  warn(scene.remarks());
+  return scene;
+}
+
 /// The value of a key; None where the scene has no such thing. Errors: InputError.
 py::object value_of_key(const dolp::Scene& scene, const std::string& key) {
   const auto object = [](const auto& value) -> py::object { return value ? py::cast(*value) : py::none(); };
@@ -287,16 +300,24 @@ PYBIND11_MODULE(_native, module) {
   add_error(module, "InputError", PyExc_ValueError, "A scene, points, a table or an argument is wrong.");
   add_error(module, "DeviceError", PyExc_RuntimeError, "There is no usable Vulkan device, or it was lost.");
   add_error(module, "IoError", PyExc_OSError, "A file could not be read or written.");
+  add_error(module, "InputWarning", PyExc_UserWarning,
+            "Input is accepted but was probably meant otherwise, or lacks data that the scene assumes.");
   py::register_exception_translator(translate);
 
   const auto from_text = [](const py::str& text, const Values& values, const py::str& name) {
     return dolp::Scene::from_text(bytes_of(text), settings_of(values), bytes_of(name));
   };
   py::class_<dolp::Scene>(module, "Scene")
-      .def_static("from_file", [](const std::filesystem::path& path,
-                                  const Values& values) { return dolp::Scene::from_file(path, settings_of(values)); })
-      .def_static("from_text", from_text)
-      .def("with_", [](const dolp::Scene& scene, const Values& values) { return scene.with(settings_of(values)); })
+      .def_static("from_file",
+                  [](const std::filesystem::path& path, const Values& values) {
+                    return with_warnings(dolp::Scene::from_file(path, settings_of(values)));
+                  })
+      .def_static("from_text",
+                  [from_text](const py::str& text, const Values& values, const py::str& name) {
+                    return with_warnings(from_text(text, values, name));
+                  })
+      .def("with_", [](const dolp::Scene& scene,
+                       const Values& values) { return with_warnings(scene.with(settings_of(values))); })
       .def("toml", [](const dolp::Scene& scene) { return text_of(scene.toml()); })
       .def("values", &values_of)
       .def("value", [](const dolp::Scene& scene, const py::str& key) { return value_of_key(scene, bytes_of(key)); })
@@ -353,6 +374,7 @@ PYBIND11_MODULE(_native, module) {
              for (const auto& [csv, values] : data) {
                const std::string name = "data" + (data.size() > 1 ? std::to_string(sets.size() + 1) : "");
                sets.push_back(dolp::MeasuredData::from_csv(csv, name, settings_of(values)));
+               warn(sets.back().remarks);
              }
              dolp::FitOptions options{.vary = ranges_of(vary), .starts = starts, .seed = seed, .plot = plot};
              for (const auto& [key, words] : compare) options.compare.push_back({key, words});

@@ -263,24 +263,30 @@ TEST(MaterialFile_Wrong, NamesFileAndLine) {
   const std::vector<Case> cases = {
       {"e.csv", "", "e.csv:1: no values of n"},
       {"e.csv", "8,1.5,0\n", "e.csv:1: the columns must be named first"},
-      {"e.csv", "wl,n,k\n8,1.5\n", "e.csv:2: 8,1.5: 2 values; 3 are expected"},
+      {"e.csv", "wl,n,k\n8,1.5\n", "e.csv:2: k: the value is missing; must be a number in [-1e-05, 1e6]"},
       {"e.csv", "wl,n,k\n8,x,1\n", "e.csv:2: n = x: not a number"},
-      {"e.csv", "wl,n,k\n8,0,1\n", "e.csv:2: n = 0: must be in (0, 1e6]"},
-      {"e.csv", "wl,n,k\n8,1,-1\n", "e.csv:2: k = -1: must be in [0, 1e6]"},
-      {"e.csv", "wl,n,k\n8,1,1\n8,1,1\n", "e.csv:3: wavelength_um = 8: must be greater than 8"},
-      {"e.csv", "wl,n,k\n0.01,1,1\n", "e.csv:2: wavelength_um = 0.01: must be in [0.1, 1e4]"},
-      {"e.csv", "wl,k\n8,1\n", "e.csv:1: no values of n"},
+      {"e.csv", "wl,n,k\n8,0,1\n", "e.csv:2: n = 0: out of range; must be a number in (0, 1e6]"},
+      {"e.csv", "wl,n,k\n8,1,-1\n", "e.csv:2: k = -1: out of range; must be a number in [-1e-05, 1e6]"},
+      {"e.csv", "wl,n,k\n8,1,1\n7,2,1\n8,1.5,1\n", "e.csv:4: wavelength_um = 8: has n = 1 and 1.5"},
+      {"e.csv", "wl,n\n8,1\nwl,n\n7,1\n", "e.csv:4: wavelength_um = 7: must be greater than 8"},
+      {"e.csv", "wl,n,k\n8,1,-0.05\n", "e.csv:2: k = -0.05: out of range"},
+      {"e.csv", "wl,n,k\n0.01,1,1\n", "e.csv:1: no values of n at wavelengths in [0.1, 1e4] um"},
+      {"e.csv", "wl,n,k\n-8,1,1\n", "e.csv:2: wavelength_um = -8: out of range"},
+      {"e.csv", "wavelength_nm,n,k\n8,1,1\n",
+       "column \"wavelength_nm\" is unknown; the nearest known is wavelength_um"},
+      {"e.csv", "wl\tn\n8\t1\n", "e.csv:1: wl n: cells must be separated by commas, not tabs"},
+      {"e.csv", "wl,n\n8;1,5\n", "e.csv:2: 8;1,5: cells must be separated by commas, not semicolons"},
+      {"e.txt", "# a record\nDATA:\n  - type: tabulated n\n", "e.txt:1: is a YAML record; the name must end in .yml"},
+      {"e.csv", "wl,k\n8,1\n", "e.csv:1: no values of n, only of k"},
       {"e.yml", "DATA:\n  - type: formula 10\n", "e.yml:2: type = formula 10: must be tabulated nk"},
       {"e.yml", "DATA:\n  - type: formula 1\n    coefficients: 0 1 0.1\n", "e.yml:2: wavelength_range: missing"},
       {"e.yml", formula("8 14", ""), "e.yml:2: coefficients: missing; a DATA item must have it"},
       {"e.yml", formula("8 14", "0 1"), "e.yml:4: coefficients = 0 1: 2 numbers; formula 1 takes 1, 3, 5,"},
       {"e.yml", formula("8 14", "0 1 x"), "e.yml:4: coefficients = x: not a number"},
       {"e.yml", formula("8", "0 1 0.1"), "e.yml:3: wavelength_range = 8: must be two numbers, in um"},
-      {"e.yml", formula("14 8", "0 1 0.1"), "e.yml:3: wavelength_um = 8: must be greater than 14"},
-      {"e.yml", formula("0.01 14", "0 1 0.1"), "e.yml:3: wavelength_um = 0.01: must be in [0.1, 1e4]"},
-      {"e.yml", formula("8 14", "-3 1 0.1"), "e.yml:3: n = "},
-      {"e.yml", formula("8 14", "0 1 11"), "e.yml:3: n = "},
-      {"e.yml", formula("8 14", "0 0.5 11"), "e.yml:4: n = "},
+      {"e.yml", formula("8 14", "-3 1 0.1"), "e.yml:4: n is in (0, 1e6] nowhere in the range of the formula"},
+      {"e.yml", formula("8 20", "0 1 11"), "n and k of \"e.yml\" are known at 11.01"},
+      {"e.yml", formula("8 14", "0 0.5 11"), "n = nan of \"e.yml\" at 10.6 um: the formula has a pole there"},
       {"e.yml", formula("1 5", "0 1 0.1"), "known at 1 to 5 um, and the spectrum is 10.6 um"},
       {"e.yml", formula("8 14", "0 1 0.1") + "  - type: tabulated n\n    data: 20 1\n",
        "e.yml:5: type = tabulated n: n is given twice"},
@@ -291,17 +297,62 @@ TEST(MaterialFile_Wrong, NamesFileAndLine) {
       {"e.yml", "a: *b\n", "e.yml:1: not valid YAML: "},
       {"e.yml", std::string(1U << 20U, '['), "e.yml:1: nested too deeply"},
       {"e.yml", "a: &a [*a]\nDATA: *a\n", "a DATA item has the keys type and data"},
-      {"e.yml", std::string(3U << 20U, ' '), "is longer than 2097152 bytes"},
+      {"e.yml", std::string(5U << 20U, ' '), "is longer than 4194304 bytes"},
       {"e.yml", "DATA:\n  - type: tabulated n\n    data: |\n        8 1 1\n",
-       "e.yml:4: 8 1 1: 3 values; 2 are expected"},
+       "e.yml:4: 1: one value too many after column n; there are 2 columns"},
       {"e.yml", "DATA:\n  - type: tabulated n\n    rows: 1\n",
        "e.yml:3: rows: 1: a DATA item has the keys type and data"},
-      {"e.yml", "n: 1\n", "e.yml:1: no values of n"},
+      {"e.yml", "n: 1\n", "e.yml:1: no values of n: it has no list DATA"},
+      {"e.yml", "- SHELF: main\n", "e.yml:1: no values of n: it is a catalogue"},
+      {"e.yml", "ABOUT: a metal\n", "e.yml:1: no values of n: it describes a material"},
+      {"e.yml", "wl,n\n8,1\n", "e.yml:1: no values of n: it has no keys; a CSV must have another name"},
+      {"e.yml", "DATA:\n  - type: tabulated k\n    data: 8 1\n",
+       "e.yml:1: no values of n, only of k, at wavelengths in [0.1, 1e4] um"},
   };
   for (const Case& row : cases) {
     const TemporaryFile file(row.name, row.text);
     const std::string error = error_of(kMinimal, {"surface.material_file=" + file.path()});
     EXPECT_TRUE(contains(error, row.expected)) << error << "\nwithout: " << row.expected;
+  }
+}
+
+// Everything a record of the database may have beyond two tidy columns.
+TEST(MaterialFile_UntidyRecord, IsTheTidyOne) {
+  const OpticalConstants half_way{1.75, 0.2};
+  const std::string nk = "DATA:\n  - type: tabulated nk\n    data: |\n";
+  const std::string rows = "      8 1.5 0.1\n      10 2 0.3\n";
+  const std::string n = "DATA:\n  - type: tabulated n\n    data: |\n      8 1.5\n      10 2\n";
+  for (const auto& [name, text] : {
+           std::pair("tidy.yml", nk + rows),
+           {"x-rays.yml", nk + "      1.033E-05 0 -1\n" + rows + "      2e4 9 9\n"},
+           {"repeated.yml", nk + rows + "      10 2 0.3\n"},
+           {"unsorted.yml", nk + "      10 2 0.3\n      8 1.5 0.1\n"},
+           {"range.yml", nk + rows + "    wavelength_range: 8 10\n"},
+           {"long.yml", "COMMENTS: " + std::string(3U << 20U, 'x') + "\n" + nk + rows},
+           {"k below.yml", n + "  - type: tabulated k\n    data: |\n      7 -2e-7\n      8 0.1\n      10 0.3\n"},
+           {"descending.csv", "wavelength_um,n,k\n10,2,0.3\n8,1.5,0.1\n,,\n"},
+           {"by name.csv", "K,N,WL\n0.1,1.5,8\n0.3,2,10\n"},
+       }) {
+    const TemporaryFile file(name, text);
+    expect_near(read_material_file(file.path(), {9.0, 9.0}, "").constant, half_way, name);
+  }
+}
+
+TEST(MaterialFile_KBelowZeroByNoise, CountsAsZero) {
+  const TemporaryFile file("n.csv", "wl,n,k\n8,1.5,-2e-7\n12,2.5,0\n");
+  const Material material = read_material_file(file.path(), {8.0, 12.0}, "");
+  EXPECT_EQ(material.at(8.0), (OpticalConstants{1.5, 0.0}));
+  EXPECT_EQ(material.least_k, -2e-7);
+}
+
+// A formula with a pole at 11 um, and no real n from 11 / sqrt(1.5) = 8.98 um to it.
+TEST(MaterialFile_FormulaWithAPole, HoldsWhereTheSpectrumHasNone) {
+  const TemporaryFile file("f.yml", formula("20 0.05", "0 0.5 11"));
+  const std::string set = "surface.material_file=" + file.path();
+  EXPECT_NEAR(read_material_file(file.path(), {8.0, 8.0}, "").at(8.0).n, std::sqrt(1.0 - 32.0 / 57.0), kDigits);
+  EXPECT_EQ(error_of(kMinimal, {set, "grid.wavelength_um=[8, 12]", "spectrum.wavelength_um=8"}), "no error");
+  for (const std::string spectrum : {"grid.wavelength_um=[8, 10, 12]", "spectrum.band_um=[8, 12]"}) {
+    EXPECT_TRUE(contains(error_of(kMinimal, {set, spectrum}), " um: the formula has a pole there")) << spectrum;
   }
 }
 
@@ -347,13 +398,22 @@ TEST(IrradianceFile_Wrong, NamesFileAndLine) {
   };
   const std::vector<Case> cases = {
       {"", "e.csv:1: no rows"},
-      {"# only\nwavelength,irradiance\n", "e.csv:1: no rows"},
-      {"wavelength,irradiance\nother,names\n", "e.csv:2: wavelength_um = other: not a number"},
-      {"8,1,2\n", "e.csv:1: 3 columns"},
-      {"8,1\n9\n", "e.csv:2: 1 columns"},
-      {"8,-1\n", "e.csv:1: irradiance = -1: must be in [0, inf)"},
+      {"# only\nwavelength_um,irradiance\n", "e.csv:1: no rows"},
+      {"wavelength_um,irradiance\nother,names\n", "e.csv:2: wavelength_um = other: not a number"},
+      {"wavelength,irradiance\n8,1\n", "e.csv:1: column \"wavelength\" is unknown; the nearest known is wavelength_um"},
+      {"wavelength_um,temperature_K\n8,300\n", "e.csv:1: column \"temperature_K\" is unknown; allowed are"},
+      {"wavelength_um,irradiance_W_m2_nm\n8,1\n",
+       "column \"irradiance_W_m2_nm\" is unknown; the nearest known is irradiance, allowed are wavelength_um, "
+       "irradiance (W "
+       "m-2 um-1)"},
+      {"wavelength_um,reflectance_percent\n8,1\n", "column \"reflectance_percent\" is unknown; allowed are"},
+      {"wavelength_um\n8\n", "e.csv:1: column \"irradiance\" is missing, a number in [0, inf)"},
+      {"8;1\n", "e.csv:1: 8;1: cells must be separated by commas, not semicolons"},
+      {"8,1,2\n", "e.csv:1: 2: one value too many after column irradiance"},
+      {"8,1\n9\n", "e.csv:2: irradiance: the value is missing"},
+      {"8,-1\n", "e.csv:1: irradiance = -1: out of range; must be a number in [0, inf)"},
       {"8,nan\n", "e.csv:1: irradiance = nan: not a number"},
-      {"9,1\n8,1\n", "e.csv:2: wavelength_um = 8: must be greater than 9"},
+      {"9,1\n8,1\n9,2\n", "e.csv:3: wavelength_um = 9: has irradiance = 1 and 2"},
       {"8,1\n10,1\n", "known at 8 to 10 um, and the spectrum is 10.6 um"},
   };
   for (const Case& row : cases) {
@@ -372,6 +432,15 @@ TEST(NamedFile_ThatIsNoRegularFile, IsRefused) {
       const std::string error = error_of(kMinimal, {std::string(key).append("=").append(path)});
       EXPECT_TRUE(error.ends_with(": is not a regular file")) << error;
     }
+  }
+}
+
+TEST(IrradianceFile_Columns, AreFoundByName) {
+  for (const char* text :
+       {"10,1\n11,3\n", "wavelength_um,irradiance\n10,1\n11,3\n", "irradiance,wavelength_um\n1,10\n3,11\n",
+        "wavelength_um,irradiance_W_m2_um\n11,3\n10,1\n,\n", "0.01,9\n10,1\n10,1\n11,3\n"}) {
+    const TemporaryFile file("e.csv", text);
+    EXPECT_EQ(read_irradiance_file(file.path(), "").at(10.5), 2.0) << text;
   }
 }
 

@@ -68,6 +68,13 @@ TEST(Points_Results, AreLeftOut_AndNamed) {
   EXPECT_EQ(*points[Axis::kSigma], std::vector<double>{0.2});
 }
 
+TEST(Points_UpperCase_AndLastRowsWithoutValues, AreTaken) {
+  const Points points = directions("Theta_deg,N\n60,1.5\n,\n , \n\n");
+  EXPECT_EQ(points.size(), 1U);
+  EXPECT_EQ(*points[Axis::kN], std::vector<double>{1.5});
+  EXPECT_EQ(points.header, "Theta_deg,N");
+}
+
 TEST(Points_HeaderAlone, IsAnEmptyList) {
   for (const char* text : {"theta_deg", "theta_deg\n", "theta_deg\r\n\r\n"}) {
     const Points points = directions(text);
@@ -93,12 +100,23 @@ TEST(PointsError_EveryOne, NamesFileLineColumnValueAndRange) {
       {"theta\n1\n", "p.csv:1: column \"theta\" is unknown; the nearest known is theta_deg"},
       {"theta_deg,\n1\n", "p.csv:1: column \"\" is unknown"},
       {"theta_i_deg\n1\n", "p.csv:1: column \"theta_i_deg\" is unknown; the nearest known is theta_deg"},
-      {"1,2\n", "p.csv:1: column \"1\" is unknown"},
+      {"1,2\n", "p.csv:1: the columns must be named first: theta_deg, sigma"},
+      {"id\n1\n", "p.csv:1: column \"id\" is unknown; allowed are theta_deg"},
+      {"theta_deg;sigma\n1;0.1\n", "p.csv:1: theta_deg;sigma: cells must be separated by commas, not semicolons; "},
+      {"theta_deg\tsigma\n1\t0.1\n", "p.csv:1: theta_deg sigma: cells must be separated by commas, not tabs; "},
+      {"theta_deg sigma\n1 0.1\n", "p.csv:1: theta_deg sigma: cells must be separated by commas, not blanks; "},
+      {"k\n1 2\n", "p.csv:2: 1 2: cells must be separated by commas, not blanks; "},
+      {"theta_deg,sigma\n1;0.1\n", "p.csv:2: 1;0.1: cells must be separated by commas, not semicolons; numbers must"},
+      {"theta_deg,sigma\n1,5,0,1\n",
+       "p.csv:2: 0: one value too many after column sigma; there are 2 columns; numbers "},
+      {"theta_deg,sigma\n\"1,5\",0.1\n",
+       "p.csv:2: theta_deg = 1,5: not a number; must be a number in [0, 90]; numbers must have a decimal point"},
       {"q,q\n2,2\n", "p.csv:1: column \"q\" appears twice"},
       {"theta_deg,sigma\n1,0.1\n2\n", "p.csv:3: sigma: the value is missing; must be a number in [0, 10]"},
       {"theta_deg,sigma\n1,\n", "p.csv:2: sigma: the value is missing"},
       {"theta_deg,sigma\n ,1\n", "p.csv:2: theta_deg: the value is missing; must be a number in [0, 90]"},
       {"theta_deg\n1\n\n2\n", "p.csv:3: theta_deg: the value is missing"},
+      {"theta_deg,q\n1,2\n,\n1,2\n", "p.csv:3: theta_deg: the value is missing"},
       {"theta_deg\n1,2\n", "p.csv:2: 2: one value too many after column theta_deg"},
       {"theta_deg\n1,\n", "p.csv:2: : one value too many after column theta_deg"},
       {"theta_deg\n91\n", "p.csv:2: theta_deg = 91: out of range; must be a number in [0, 90]"},
@@ -115,8 +133,8 @@ TEST(PointsError_EveryOne, NamesFileLineColumnValueAndRange) {
 }
 
 TEST(PointsError_NotANumber, IsRefusedWhateverItsForm) {
-  for (const char* cell : {"1e", "nan", "NaN", "inf", "-inf", "1.5x", "x", "0x10", "1 2", "--1", "+-1", "+", "1e999",
-                           "1d3", "1;5", "1_0"}) {
+  for (const char* cell :
+       {"1e", "nan", "NaN", "inf", "-inf", "1.5x", "x", "0x10", "--1", "+-1", "+", "1e999", "1d3", "1_0"}) {
     const std::string expected = std::string("p.csv:2: k = ") + cell + ": not a number; must be a number in [0, 1e6]";
     EXPECT_EQ(error_of(std::string("k\n") + cell + "\n"), expected);
   }

@@ -27,7 +27,10 @@ TEST(SkyProfile, BadFile_IsOneLineThatNamesFileLineAndWhatIsAllowed) {
     const char* message;
   };
   for (const auto& [text, message] : {
-           Case{"", "sky.csv:1: no rows; columns zenith_deg and temperature_K or radiance are expected"},
+           Case{"",
+                "sky.csv:1: the file is empty; a line of column names is expected: zenith_deg, temperature_K, radiance "
+                "(W m-2 "
+                "sr-1 um-1), wavelength_um"},
            Case{"zenith_deg,temperature_K\n", "sky.csv:1: no rows; zenith_deg from 0 to 90 is expected"},
            Case{"temperature_K\n200\n", "sky.csv:1: column \"zenith_deg\" is missing, a number in [0, 90]"},
            Case{"zenith_deg\n0\n",
@@ -37,27 +40,30 @@ TEST(SkyProfile, BadFile_IsOneLineThatNamesFileLineAndWhatIsAllowed) {
                 "sky.csv:1: needs one of the columns temperature_K, a number in [0, 1e4], and radiance, W m-2 sr-1 "
                 "um-1; both are there"},
            Case{"zenith_deg,height\n0,1\n",
-                "sky.csv:1: column \"height\": unknown; must be zenith_deg, temperature_K or radiance, wavelength_um"},
+                "sky.csv:1: column \"height\" is unknown; allowed are zenith_deg, temperature_K, radiance (W m-2 sr-1 "
+                "um-1), "
+                "wavelength_um"},
            Case{"zenith_deg,temperature_K\n10,200\n90,250\n",
-                "sky.csv:2: zenith_deg = 10: must be 0 in the first row; the last has 90"},
-           Case{"zenith_deg,temperature_K\n0,200\n80,250\n",
-                "sky.csv:3: zenith_deg ends at 80; must be 90 in the last row"},
-           Case{"zenith_deg,temperature_K\n0,200\n50,250\n40,260\n90,270\n",
-                "sky.csv:4: zenith_deg = 40: must be greater than 50, the one before, up to 90"},
+                "sky.csv:2: zenith_deg = 10: must be 0 in one row, and 90 in another"},
+           Case{"zenith_deg,temperature_K\n0,200\n80,250\n", "sky.csv:3: zenith_deg = 80: must be 90 in one row"},
+           Case{"zenith_deg,temperature_K\n0,200\n50,250\n90,270\n50,260\n",
+                "sky.csv:5: zenith_deg = 50: is in line 3 too"},
            Case{"zenith_deg,temperature_K\n0,200\n95,250\n",
                 "sky.csv:3: zenith_deg = 95: out of range; must be a number in [0, 90]"},
            Case{"zenith_deg,temperature_K\n0,cold\n90,250\n",
                 "sky.csv:2: temperature_K = cold: not a number; must be a number in [0, 1e4]"},
-           Case{"zenith_deg,temperature_K\n0\n90,250\n", "sky.csv:2: 1 cells; 2 are expected"},
+           Case{"zenith_deg,temperature_K\n0\n90,250\n",
+                "sky.csv:2: temperature_K: the value is missing; must be a number in [0, 1e4]"},
            Case{"zenith_deg,radiance\n0,-1\n90,1\n",
                 "sky.csv:2: radiance = -1: out of range; must be a number in [0, inf)"},
            Case{"wavelength_um,zenith_deg,radiance\n8,0,1\n8,90,1\n9,0,1\n",
-                "sky.csv:4: a row with zenith_deg = 90 is missing after this one"},
-           Case{"wavelength_um,zenith_deg,radiance\n8,0,1\n8,90,1\n9,30,1\n9,90,1\n",
-                "sky.csv:4: zenith_deg = 30: must be 0, as at the first wavelength"},
-           Case{"wavelength_um,zenith_deg,radiance\n8,0,1\n8,90,1\n7,0,1\n7,90,1\n",
-                "sky.csv:4: wavelength_um = 7: must not be below 8, the one before; rows go by wavelength, then by "
-                "zenith"},
+                "sky.csv:4: zenith_deg = 0: must be 90 in one row"},
+           Case{"wavelength_um,zenith_deg,radiance\n8,0,1\n8,90,1\n9,0,1\n9,30,1\n9,90,1\n",
+                "sky.csv:5: zenith_deg = 30: each wavelength must have the same zeniths, and the first has 90"},
+           Case{
+               "zenith_deg;radiance\n0;1\n90;1\n",
+               "sky.csv:1: zenith_deg;radiance: cells must be separated by commas, not semicolons; numbers must have a "
+               "decimal point"},
        }) {
     EXPECT_EQ(refusal_of(text), message);
   }
@@ -70,6 +76,13 @@ TEST(SkyProfile, Text_ReadsBackAsTheSameProfile) {
     EXPECT_EQ(profile.text(), text);
     EXPECT_EQ(parse_sky_profile(profile.text(), "sky.csv").hash(), profile.hash());
   }
+}
+
+TEST(SkyProfile, RowsInAnyOrder_AreTheSameProfile) {
+  const char* const sorted = "wavelength_um,zenith_deg,radiance\n8,0,1\n8,30,2\n8,90,3\n9,0,4\n9,30,5\n9,90,6\n";
+  const char* const descending =
+      "radiance,wavelength_um,zenith_deg\n6,9,90\n5,9,30\n4,9,0\n3,8,90\n2,8,30\n1,8,0\n,,\n";
+  EXPECT_EQ(parse_sky_profile(descending, "s").text(), sorted);
 }
 
 TEST(SkyProfile, BetweenRows_IsAStraightLine) {

@@ -43,6 +43,7 @@ struct Mistake {
 
 const std::vector<Mistake> kMistakes = {
     {"tabel scene.toml", {"tabel", "nearest command is table"}},
+    {"frobnicate", {"frobnicate: unknown command or option (see dolp --help)"}},
     {kTableLine + " --sigma 3", {"--sigma 3: ", "--set surface.sigma=VALUE", "(see dolp table --help)"}},
     {kTableLine + " --tolerence 1e-3", {"--tolerence 1e-3: unknown here; did you mean --tolerance?"}},
     {kTableLine + " --tolerance 1", {"--tolerance 1: 1 is out of"}},
@@ -74,6 +75,8 @@ const std::vector<Mistake> kMistakes = {
      {"surroundings.profile=clear: no such file, and no built-in sky: clear-sky, overcast; the nearest is clear-sky"}},
     {kTableLine, {"scene.toml:2"}, kInput, scene_with("[surface]", "[surface")},
     {kTableLine, {"scene.toml:3", "surface.m", "surface.n"}, kInput, scene_with("n = 1.5", "m = 1.5")},
+    {kTableLine + " --set surroundings.profile=mine.csv",
+     {"mine.csv: no such file, and no built-in sky: clear-sky, overcast\n"}},
     {"eval scene.toml --points none.csv -o o.csv", {"none.csv"}},
     {kEvalLine, {"points.csv:1", "angle", "theta_deg"}, kInput, kScene, "angle\n10\n"},
     {kEvalLine, {"theta_deg"}, kInput, kScene, "sigma\n0.1\n"},
@@ -117,6 +120,26 @@ TEST_F(CommandLine, TemporaryFolderMissing_IsNamed) {
   Command wanted = command(split_at("eval scene.toml --points points.csv -o /dev/null --evaluator cpu", ' '));
   wanted.environment = {{"TMPDIR", "/none/such"}};
   expect_refused(run(wanted), "/none/such: there is no such folder for temporary files; set TMPDIR", kIo);
+}
+
+TEST_F(CommandLine, InputThatWasProbablyMeantOtherwise_IsOneWarningAndGoesOn) {
+  put("n.csv", "wavelength_um,n\n8,1.5\n12,1.6\n");
+  put("radians.csv", "theta_deg,dolp\n0.5,0.01\n1.2,0.1\n");
+  put("nm.csv", "theta_deg,wavelength_um\n60,8000\n");
+  for (const auto& [line, warning] :
+       {std::pair("plan scene.toml --set emission.temperature_K=25", "--set emission.temperature_K=25: 25 K is cold"),
+        {"table scene.toml -o t.csv --evaluator cpu --set surface.material_file=n.csv",
+         "=n.csv: the file has no k, so that k = 0"},
+        {"plan scene.toml --quiet --set geometry.mode=bistatic",
+         "=bistatic: without [source] nothing depends on theta"},
+        {"eval scene.toml --points nm.csv -o o.csv --evaluator cpu", "nm.csv:1: wavelength_um is in micrometres"},
+        {"fit scene.toml --data radians.csv --vary surface.n=1.4:1.6 --starts 1 --evaluator cpu",
+         "radians.csv: theta_deg is at most 1.2 degrees"}}) {
+    const Outcome outcome = dolp(split_at(line, ' '));
+    EXPECT_EQ(outcome.status, kDone) << line << outcome.err;
+    expect_one_line(outcome.err, "dolp: warning: ");
+    expect_one_line(outcome.err, warning);
+  }
 }
 
 TEST_F(CommandLine, ToleranceThatFloatMisses_IsSaidOfWhat) {

@@ -10,6 +10,7 @@ import sys
 import threading
 import time
 import unittest
+import warnings
 
 import numpy as np
 import xarray as xr
@@ -23,6 +24,19 @@ LONG_AXES = "theta_deg=np.linspace(0, 89, 200), sigma=np.linspace(0.05, 2, 100),
 
 
 class Calls(PackageCase):
+    def test_input_probably_meant_otherwise_is_a_warning_at_the_call(self):
+        with self.assertWarnsRegex(dolp.InputWarning, "emission.temperature_K = 25: 25 K is cold") as caught:
+            cold = self.scene.with_({"title": "cold"}), dolp.Scene(self.scene, {"emission.temperature_K": 25})
+        self.assertEqual(caught.filename, __file__)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            dolp.Scene(self.scene, {"emission.temperature_K": 290})
+            pickle.loads(pickle.dumps(cold[1]))
+            with self.assertRaises(dolp.InputWarning):
+                cold[1].with_({"title": "still cold"})
+        with self.assertWarnsRegex(dolp.InputWarning, "data: theta_deg is at most 1.2 degrees"):
+            dolp.fit(self.scene, {"theta_deg": [0.5, 1.2], "dolp": [0.01, 0.1]}, {"surface.n": (1.4, 1.6)}, starts=1, evaluator="cpu")
+
     def test_scenes_can_be_copied_and_sent(self):
         (self.folder / "n.csv").write_text("wavelength_um,n,k\n8,1.5,0.1\n14,1.45,0.2\n")
         with open(self.folder / "scene.toml", encoding="utf-8") as file:

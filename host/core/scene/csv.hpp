@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,8 +19,8 @@ struct CsvForm {
 
 /// Goes through a text line by line: `for (CsvReader row(text, name); row.next();)`.
 ///
-/// Accepts what split_lines does; a cell in double quotes may hold separators, and is what is between the quotes. All
-/// views are into `text`.
+/// Accepts what split_lines does; a cell in double quotes may hold separators, and is what is between the quotes.
+/// Leaves out rows without any value at the end of the text. All views are into `text`.
 class CsvReader {
  public:
   CsvReader(std::string_view text, std::string name, CsvForm form = {});
@@ -30,6 +31,8 @@ class CsvReader {
   /// The line, and its cells, without blanks at both ends.
   std::string_view line() const { return line_; }
   const std::vector<std::string_view>& cells() const { return cells_; }
+  /// True if a cell is a number.
+  bool has_numbers() const;
 
   std::size_t line_number() const;
 
@@ -41,9 +44,6 @@ class CsvReader {
   /// Errors: InputError that names file, line, column and value and, with `range`, what is allowed.
   double number(std::size_t cell, std::string_view column, const NumberRange* range = nullptr) const;
 
-  /// The position of a column in this line of names. Errors: InputError where it is missing.
-  std::size_t position(std::string_view column, const NumberRange& range) const;
-
  private:
   std::vector<std::string_view> lines_;
   std::string name_;
@@ -52,5 +52,52 @@ class CsvReader {
   std::string_view line_;
   std::vector<std::string_view> cells_;
 };
+
+/// A column that a file may have.
+struct CsvColumn {
+  std::string name;
+  NumberRange range = {};
+  bool is_required = false;
+  std::string other_name = {};  ///< that the column may have too
+  std::string unit = {};        ///< for messages, where the name has none
+};
+
+/// The columns of a file, found by the names in its header, in any order and in upper or lower case.
+class CsvColumns {
+ public:
+  /// Columns called as one of `ignored` are left out.
+  /// Errors: InputError for a name that is unknown, with the nearest known one if it is near, or appears twice; for a
+  /// required column that is missing; for another separator; for a line of numbers.
+  CsvColumns(const CsvReader& header, std::vector<CsvColumn> known, const std::vector<std::string>& ignored = {});
+
+  /// All known columns in their order, of rows without a header.
+  explicit CsvColumns(std::vector<CsvColumn> known);
+  /// Reads the header as well. Errors: InputError for a text without one.
+  static CsvColumns first_of(CsvReader& reader, std::vector<CsvColumn> known,
+                             const std::vector<std::string>& ignored = {});
+
+  bool has(std::string_view name) const { return cell_of(name).has_value(); }
+
+  /// The column of each cell, as its position among the known ones; nullopt for one that is left out.
+  const std::vector<std::optional<std::size_t>>& cells() const { return cells_; }
+
+  /// The number that a row has in a column; nullopt for a column that the file lacks.
+  /// Errors: InputError with column, value and range, and for a row with more cells than the header.
+  std::optional<double> number(const CsvReader& row, std::string_view name) const;
+  double number_at(const CsvReader& row, std::size_t cell) const;
+
+  /// Refuses a row with other separators, or with more cells than the header.
+  void check_width(const CsvReader& row) const;
+
+ private:
+  std::optional<std::size_t> cell_of(std::string_view name) const;
+
+  std::vector<CsvColumn> known_;
+  std::vector<std::optional<std::size_t>> cells_;
+  std::vector<std::string> names_;  // in the file
+};
+
+/// Message about a column that is none of `known`: what is allowed, and the nearest name if it is near.
+std::string unknown_column(std::string_view name, const std::vector<CsvColumn>& known);
 
 }  // namespace dolp

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <dolp/errors.hpp>
 
@@ -14,6 +15,8 @@
 
 namespace dolp {
 namespace {
+
+constexpr int kFormulaSteps = 1000;
 
 /// A line of host/data/materials.csv.
 enum IndexColumn : std::size_t { kIndexName = 0, kWavelength = 1, kN = 2, kK = 3, kIndexColumns = 4 };
@@ -122,8 +125,21 @@ void check_covers(const Material& material, const Spectrum& spectrum, const std:
                                wavelength_text(spectrum.min_um, spectrum.max_um)));
 }
 
+void check_formula(const Material& material, const Spectrum& spectrum, const std::string& prefix) {
+  if (material.n.formula.number == 0) return;
+  const int steps = spectrum.is_band() ? kFormulaSteps : 1;
+  for (int i = 0; i <= steps; ++i) {
+    const double wavelength_um = std::lerp(spectrum.min_um, spectrum.max_um, static_cast<double>(i) / steps);
+    const double n = material.n.at(wavelength_um);
+    if (kNRange.contains(n)) continue;
+    throw InputError(fmt::format("{}n = {} of \"{}\" at {} um: the formula has a pole there; n must be in {}", prefix,
+                                 std::isnan(n) ? std::abs(n) : n, material.name, wavelength_um, kNRange.text()));
+  }
+}
+
 Material fit_to_spectrum(const Material& material, const Spectrum& spectrum, const std::string& prefix) {
   check_covers(material, spectrum, prefix);
+  check_formula(material, spectrum, prefix);
   if (spectrum.is_band()) return material;
   return {
       material.name, material.source, material.at(spectrum.min_um), {}, {}, std::make_shared<const Material>(material)};

@@ -19,19 +19,18 @@ const std::vector<Material>& built_in_materials();
 /// Errors: InputError that begins with `prefix`: unknown name, with the nearest.
 const Material& named_material(std::string_view name, const std::string& prefix);
 
-/// The same for use over `spectrum`. Errors: likewise, and for a spectrum that its table does not cover, with the range
-/// of the table.
+/// The built-in material called `name`, for use over `spectrum`. Errors: those of named_material and fit_to_spectrum.
 Material find_material(std::string_view name, const Spectrum& spectrum, const std::string& prefix);
 
 /// A user's file of n and k over wavelength [um], linear in between, for use over `spectrum`.
 ///
 /// `.yml`, `.yaml`: a "full database record" of refractiveindex.info whose DATA items are tabulated nk, n or k, or a
 /// formula 1 to 9 for n, with or without tabulated k.
-/// Anything else: CSV with a line of column names, `wl` or `wavelength_um` first, then n, k or both; a further such
-/// line begins a further table, as in the CSV that refractiveindex.info exports. # begins a comment line. A file
-/// without k has k = 0.
-/// Errors: InputError with file and line; `prefix` begins the message when the file cannot be opened or does not cover
-/// the spectrum.
+/// Anything else: CSV with the columns `wavelength_um` (or `wl`), n, k or both; a further line of names begins a
+/// further table, as in the CSV that refractiveindex.info exports. # begins a comment line. A file without k has k = 0,
+/// and so has a k that is below 0 by up to 1e-5. Rows of a table are as append_rows takes them.
+/// Errors: InputError with file and line; `prefix` begins the message when the file cannot be opened; those of
+/// fit_to_spectrum.
 Material read_material_file(const std::string& path, const Spectrum& spectrum, const std::string& prefix);
 
 /// Appends n, k or both at one wavelength to the material's tables, after checking their ranges; `where` begins the
@@ -45,8 +44,11 @@ Spectrum known_range(const Material& material);
 /// Refuses a tabulated material that has no n and k over the whole spectrum; `prefix` begins the message.
 void check_covers(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
+/// Refuses a material whose formula has a pole in the spectrum. Looks at 1001 wavelengths of a band.
+void check_formula(const Material& material, const Spectrum& spectrum, const std::string& prefix);
+
 /// A tabulated material as a scene uses it: over a band its tables, at a single wavelength the constant index there.
-/// Errors: those of check_covers.
+/// Errors: InputError as check_covers and check_formula.
 Material fit_to_spectrum(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
 }  // namespace dolp

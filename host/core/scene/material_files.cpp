@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstddef>
 #include <dolp/errors.hpp>
+#include <optional>
+#include <utility>
 
 #include <dolp/number_range.hpp>
 #include "base/text.hpp"
@@ -17,56 +19,64 @@
 namespace dolp {
 namespace {
 
-// Ten times the longest records of the database; any text of that size is read within seconds.
-constexpr std::size_t kMostRecordBytes = 2U << 20U;
-// A formula that has poles or roots of n^2 inside its range is wrong; this many wavelengths are checked for them.
-constexpr int kFormulaChecks = 1000;
+// The longest record of the database has 2.6 MB. A text of this size takes up to 2 s and 0.7 GB.
+constexpr std::size_t kMostRecordBytes = 4U << 20U;
+// Wavelengths at which the range of a formula is cut where it has no index.
+constexpr int kRangeSteps = 1000;
+// Noise of a measured k around 0. More than this below 0 is another convention, or a mistake.
+constexpr double kKNoise = 1e-5;
+constexpr NumberRange kNoisyKRange{-kKNoise, kKRange.max};
 
-/// Contents of the rows of a table after the wavelength.
-struct Columns {
-  bool has_n = false;
-  bool has_k = false;
-  std::size_t count() const { return 1U + (has_n ? 1U : 0U) + (has_k ? 1U : 0U); }
-};
+/// n and k of a file, table by table. Rows of a table are in any order.
+class IndexRows {
+ public:
+  explicit IndexRows(Material& material) : material_(material) {}
 
-void append_row(Material& material, const Columns& columns, const CsvReader& row) {
-  const std::size_t cells = row.cells().size();
-  if (cells != columns.count()) {
-    row.fail(fmt::format("{}: {} values; {} are expected", one_line(row.line()), cells, columns.count()));
-  }
-  std::optional<double> n, k;
-  const double wavelength_um = row.number(0, "wavelength_um");
-  if (columns.has_n) n = row.number(1, "n");
-  if (columns.has_k) k = row.number(cells - 1, "k");
-  append_index(material, wavelength_um, n, k, row.where());
-}
-
-/// The columns called "n", "k" or "nk"; nullopt for another text.
-std::optional<Columns> columns_of(std::string_view names) {
-  if (names != "n" && names != "k" && names != "nk") return std::nullopt;
-  return Columns{names.front() == 'n', names.back() == 'k'};
-}
-
-/// The columns that a line of names announces, nullopt where it announces none.
-std::optional<Columns> parse_column_names(const std::vector<std::string_view>& cells) {
-  const std::string first = lower_case(cells[0]);
-  if (first != "wl" && first != "wavelength_um") return std::nullopt;
-  std::string others;
-  for (std::size_t i = 1; i < cells.size(); ++i) others += lower_case(cells[i]);
-  return columns_of(others);
-}
-
-void parse_csv(Material& material, std::string_view text) {
-  std::optional<Columns> columns;
-  for (CsvReader row(text, material.source); row.next();) {
-    if (const auto named = parse_column_names(row.cells())) {
-      columns = named;
-    } else if (columns) {
-      append_row(material, *columns, row);
-    } else {
-      row.fail("the columns must be named first: wavelength_um (or wl), then n, k or both");
+  void add(const CsvReader& row, const CsvColumns& columns) {
+    const double wavelength_um = columns.number(row, "wavelength_um").value();
+    if (!kWavelengthUmRange.contains(wavelength_um)) return;
+    if (const std::optional<double> n = columns.number(row, "n")) n_.push_back({wavelength_um, *n, row.line_number()});
+    if (const std::optional<double> k = columns.number(row, "k")) {
+      material_.least_k = std::min(material_.least_k, *k);
+      k_.push_back({wavelength_um, std::max(*k, 0.0), row.line_number()});
     }
   }
+
+  /// Appends the rows to the material's tables.
+  void end_table() {
+    append_rows(material_.n, std::exchange(n_, {}), {"n", 0.0, kNRange}, material_.source);
+    append_rows(material_.k, std::exchange(k_, {}), {"k", 0.0, kKRange}, material_.source);
+  }
+
+ private:
+  Material& material_;
+  std::vector<SpectralRow> n_, k_;
+};
+
+/// The columns of a table of n, k or both. Rows outside of kWavelengthUmRange are left out.
+std::vector<CsvColumn> index_columns(bool has_n = true, bool has_k = true) {
+  std::vector<CsvColumn> columns = {{"wavelength_um", kPositiveRange, true, "wl"}};
+  if (has_n) columns.push_back({"n", kNRange});
+  if (has_k) columns.push_back({"k", kNoisyKRange});
+  return columns;
+}
+
+/// True for a text that has the list of a record.
+bool is_record_text(std::string_view text) { return text.starts_with("DATA:") || text.find("\nDATA:") != text.npos; }
+
+void parse_csv(Material& material, IndexRows& rows, std::string_view text) {
+  if (is_record_text(text)) throw InputError(material.source + ":1: is a YAML record; the name must end in .yml");
+  std::optional<CsvColumns> columns;
+  for (CsvReader row(text, material.source); row.next();) {
+    const bool has_values = std::ranges::any_of(row.cells(), [](std::string_view cell) { return !cell.empty(); });
+    if (!columns || (has_values && !row.has_numbers())) {
+      rows.end_table();
+      columns.emplace(row, index_columns());
+    } else {
+      rows.add(row, *columns);
+    }
+  }
+  rows.end_table();
 }
 
 std::string place(const Material& material, const YAML::Mark& mark) {
@@ -115,14 +125,19 @@ void read_formula(Material& material, const YAML::Node& item, int number) {
          fmt::format("coefficients = {}: {} numbers; formula {} takes {}", one_line(coefficients.Scalar()),
                      formula.coefficients.size(), number, fmt::join(counts, ", ")));
   }
-  for (const double end_um : ends_um) {
-    append_index(material, end_um, formula.at(end_um), std::nullopt, place(material, range.Mark()));
+  const double low_um = std::max(std::ranges::min(ends_um), kWavelengthUmRange.min);
+  const double high_um = std::min(std::ranges::max(ends_um), kWavelengthUmRange.max);
+  std::vector<double> known_um;
+  for (int i = 0; low_um <= high_um && i <= kRangeSteps; ++i) {
+    const double wavelength_um = std::lerp(low_um, high_um, static_cast<double>(i) / kRangeSteps);
+    if (kNRange.contains(formula.at(wavelength_um))) known_um.push_back(wavelength_um);
   }
-  for (int i = 1; i < kFormulaChecks; ++i) {
-    const double wavelength_um = std::lerp(ends_um[0], ends_um[1], static_cast<double>(i) / kFormulaChecks);
-    if (const double n = formula.at(wavelength_um); !kNRange.contains(n)) {
-      fail(material, coefficients, fmt::format("n = {} at {} um: must be in {}", n, wavelength_um, kNRange.text()));
-    }
+  if (known_um.empty()) {
+    fail(material, coefficients, fmt::format("n is in {} nowhere in the range of the formula", kNRange.text()));
+  }
+  for (const double end_um : {known_um.front(), known_um.back()}) {
+    material.n.wavelength_um.push_back(end_um);
+    material.n.value.push_back(formula.at(end_um));
   }
   material.n.formula = formula;
 }
@@ -144,37 +159,47 @@ void check_keys(const Material& material, const YAML::Node& item, const std::vec
   }
 }
 
-void read_item(Material& material, const YAML::Node& item) {
+void read_item(Material& material, IndexRows& rows, const YAML::Node& item) {
   if (!item.IsMap()) fail(material, item, "a DATA item has the keys type and data");
   const YAML::Node type = text_of(material, item, "type");
   const std::string& name = type.Scalar();
   const int formula = formula_of(name);
-  const std::optional<Columns> columns = name.starts_with("tabulated ") ? columns_of(name.substr(10)) : std::nullopt;
-  if (formula == 0 && !columns) {
+  const bool is_nk = name == "tabulated nk", has_n = is_nk || name == "tabulated n";
+  if (formula == 0 && !has_n && name != "tabulated k") {
     fail(material, type,
          fmt::format("type = {}: must be tabulated nk, tabulated n, tabulated k or formula 1 to {}", one_line(name),
                      kDispersionFormulas));
   }
-  const bool has_n = !material.n.wavelength_um.empty();
-  if (has_n && (formula != 0 || (columns->has_n && material.n.formula.number != 0))) {
+  const bool is_second = !material.n.wavelength_um.empty();
+  if (is_second && (formula != 0 || (has_n && material.n.formula.number != 0))) {
     fail(material, type, fmt::format("type = {}: n is given twice", one_line(name)));
   }
   if (formula != 0) {
     check_keys(material, item, {"type", "wavelength_range", "coefficients"});
     return read_formula(material, item, formula);
   }
-  check_keys(material, item, {"type", "data"});
-  const YAML::Node data = text_of(material, item, "data");
-  for (CsvReader row = rows_of(material, data); row.next();) append_row(material, *columns, row);
+  check_keys(material, item, {"type", "data", "wavelength_range"});  // records have a range beside tables too
+  const CsvColumns columns(index_columns(has_n, !has_n || is_nk));
+  for (CsvReader row = rows_of(material, text_of(material, item, "data")); row.next();) rows.add(row, columns);
+  rows.end_table();
+}
+
+/// What a YAML text without values of n is instead.
+std::string kind_without_data(const YAML::Node& root) {
+  if (root.IsSequence()) return "it is a catalogue, a list of records";
+  if (!root.IsMap()) return "it has no keys; a CSV must have another name than .yml";
+  if (root["ABOUT"] || root["NAMES"]) return "it describes a material; the records are the files beside it";
+  return "it has no list DATA";
 }
 
 /// Reads the DATA items; everything else in the record is ignored.
-void parse_yaml(Material& material, const std::string& text) {
+void parse_yaml(Material& material, IndexRows& rows, const std::string& text) {
   try {
     const YAML::Node record = YAML::Load(text);
     const YAML::Node data = record.IsMap() ? record["DATA"] : YAML::Node();
-    if (data.IsDefined() && !data.IsNull() && !data.IsSequence()) fail(material, data, "DATA: must be a list of items");
-    for (const YAML::Node& item : data) read_item(material, item);
+    if (!data.IsDefined() || data.IsNull()) fail(material, record, "no values of n: " + kind_without_data(record));
+    if (!data.IsSequence()) fail(material, data, "DATA: must be a list of items");
+    for (const YAML::Node& item : data) read_item(material, rows, item);
   } catch (const YAML::DeepRecursion& error) {
     throw InputError(place(material, error.mark) + "nested too deeply");
   } catch (const YAML::Exception& error) {
@@ -191,12 +216,16 @@ Material read_material_file(const std::string& path, const Spectrum& spectrum, c
   Material material;
   material.name = path.substr(path.find_last_of('/') + 1);
   material.source = path;
+  IndexRows rows(material);
   if (is_record) {
-    parse_yaml(material, text);
+    parse_yaml(material, rows, text);
   } else {
-    parse_csv(material, text);
+    parse_csv(material, rows, text);
   }
-  if (material.n.wavelength_um.empty()) throw InputError(path + ":1: no values of n");
+  if (material.n.wavelength_um.empty()) {
+    throw InputError(fmt::format("{}:1: no values of n{} at wavelengths in {} um", path,
+                                 material.k.wavelength_um.empty() ? "" : ", only of k,", kWavelengthUmRange.text()));
+  }
   return fit_to_spectrum(material, spectrum, prefix);
 }
 

@@ -26,6 +26,7 @@ struct ColumnRule {
 
   double value(double number) const { return is_wind ? sigma_of_wind(number) : number; }
   bool is_required() const { return column.index() == 1; }
+  CsvColumn in_file() const { return {name, range, is_required()}; }
   template <class AnyPoints>
   auto& of(AnyPoints& points) const {
     const Axis* axis = std::get_if<Axis>(&column);
@@ -49,23 +50,17 @@ std::vector<ColumnRule> column_rules(PointsKind kind) {
   return rules;
 }
 
-/// A column of a file: a rule, or none where the column is left out.
-using FileColumns = std::vector<const ColumnRule*>;
-
-std::vector<std::string> names_of(const std::vector<ColumnRule>& rules) {
-  std::vector<std::string> names;
-  for (const ColumnRule& rule : rules) names.emplace_back(rule.name);
-  return names;
+std::vector<CsvColumn> csv_columns(const std::vector<ColumnRule>& rules) {
+  std::vector<CsvColumn> columns;
+  for (const ColumnRule& rule : rules) columns.push_back(rule.in_file());
+  return columns;
 }
 
 /// Errors: InputError that begins with `where`.
 const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_view name, const std::string& where) {
-  for (const ColumnRule& rule : rules) {
-    if (rule.name == name) return rule;
-  }
-  const std::vector<std::string> names = names_of(rules);
-  throw InputError(fmt::format("{}: column \"{}\" is unknown; the nearest known is {}, allowed are {}", where,
-                               one_line(name), nearest_name(name, names), join(names)));
+  const auto found = std::ranges::find(rules, name, &ColumnRule::name);
+  if (found == rules.end()) throw InputError(fmt::format("{}: {}", where, unknown_column(name, csv_columns(rules))));
+  return *found;
 }
 
 /// Makes a column present.
@@ -90,38 +85,30 @@ void check_required(const Points& points, const std::vector<ColumnRule>& rules) 
   if (!missing.empty()) throw InputError(fmt::format("{}: {}", points.where(), fmt::join(missing, "; ")));
 }
 
-/// The file's columns in its order; makes those that are not left out present in `points`.
-FileColumns parse_header(const CsvReader& header, const std::vector<ColumnRule>& rules,
-                         const std::vector<std::string>& results, Points& points) {
-  FileColumns columns;
+/// Makes the columns of a file that are not left out present in `points`.
+void add_columns(const CsvReader& header, const CsvColumns& columns, const std::vector<ColumnRule>& rules,
+                 Points& points) {
   std::vector<std::string_view> own;
-  for (const std::string_view cell : header.cells()) {
-    if (std::ranges::find(results, cell) != results.end()) {
-      points.left_out.emplace_back(cell);
-      columns.push_back(nullptr);
-      continue;
+  for (std::size_t cell = 0; cell < columns.cells().size(); ++cell) {
+    const std::string_view name = header.cells()[cell];
+    if (const std::optional<std::size_t> column = columns.cells()[cell]) {
+      add_column(points, rules[*column]);
+      own.push_back(name);
+    } else {
+      points.left_out.emplace_back(name);
     }
-    const ColumnRule& rule = find_rule(rules, cell, points.where());
-    add_column(points, rule);
-    columns.push_back(&rule);
-    own.push_back(cell);
   }
-  check_required(points, rules);
   points.header = fmt::format("{}", fmt::join(own, ","));
-  return columns;
 }
 
-void parse_row(const CsvReader& row, const FileColumns& columns, Points& points) {
+void parse_row(const CsvReader& row, const CsvColumns& columns, const std::vector<ColumnRule>& rules, Points& points) {
+  columns.check_width(row);
   std::vector<std::string_view> own;
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (columns[i] == nullptr) continue;
-    columns[i]->of(points)->push_back(columns[i]->value(row.number(i, columns[i]->name, &columns[i]->range)));
-    own.push_back(row.cells()[i]);
-  }
-  if (row.cells().size() > columns.size()) {
-    row.fail(fmt::format("{}: one value too many after column {}; the header has {}",
-                         one_line(row.cells()[columns.size()]),
-                         columns.back() ? columns.back()->name : points.left_out.back(), columns.size()));
+  for (std::size_t cell = 0; cell < columns.cells().size(); ++cell) {
+    if (!columns.cells()[cell]) continue;
+    const ColumnRule& rule = rules[*columns.cells()[cell]];
+    rule.of(points)->push_back(rule.value(columns.number_at(row, cell)));
+    own.push_back(row.cells()[cell]);
   }
   points.rows.push_back(fmt::format("{}", fmt::join(own, ",")));
   points.row_lines.push_back(static_cast<std::uint32_t>(row.line_number()));
@@ -167,10 +154,10 @@ Points parse_points(const std::string& text, const std::string& path_name, Point
   Points points;
   points.name = input_name(path_name);
   CsvReader row(text, points.name, {.has_blank_lines = false});
-  if (!row.next()) row.fail("the file is empty; a line of column names is expected: " + join(names_of(rules)));
+  const CsvColumns columns = CsvColumns::first_of(row, csv_columns(rules), results);
   points.header_line = row.line_number();
-  const FileColumns columns = parse_header(row, rules, results, points);
-  while (row.next()) parse_row(row, columns, points);
+  add_columns(row, columns, rules, points);
+  while (row.next()) parse_row(row, columns, rules, points);
   return points;
 }
 

@@ -35,6 +35,7 @@ struct Material {
   SpectralTable n, k;
   /// Of a constant that comes from a table: n and k wherever they are known.
   std::shared_ptr<const Material> tabulated = {};
+  double least_k = 0.0;  ///< in its file: below 0 by noise, which counts as 0
   bool is_constant() const { return n.wavelength_um.empty(); }
   OpticalConstants at(double wavelength_um) const;
 };

@@ -204,18 +204,27 @@ void load_material(SceneValues& scene, const SceneDocument& document, const std:
   const std::string prefix = document.prefix(is_file ? "surface.material_file" : "surface.material");
   Material& material = scene.surface.material;
   const Spectrum all = all_wavelengths(scene);
+  const auto check_axis = [&](const Material& used) {
+    const Material& known_everywhere = used.tabulated ? *used.tabulated : used;
+    check_covers(known_everywhere, all, prefix);
+    for (const double um : scene.grid[Axis::kWavelength]) check_formula(known_everywhere, {um, um}, prefix);
+  };
   if (known && known->material) {
     material = *known->material;
     material.name = is_file ? scene.names.material_file : scene.names.material;
-    if (!material.is_constant()) material = fit_to_spectrum(material, all, prefix);
+    if (material.is_constant()) return;
+    material = fit_to_spectrum(material, scene.spectrum, prefix);
   } else if (is_file) {
-    material = read_file_of(scene, scene.names.material_file, scene_path, prefix, known,
-                            [&](const std::string& path) { return read_material_file(path, all, prefix); });
+    material = read_file_of(scene, scene.names.material_file, scene_path, prefix, known, [&](const std::string& path) {
+      Material read = read_material_file(path, scene.spectrum, prefix);
+      check_axis(read);
+      return read;
+    });
   } else {
-    material = find_material(scene.names.material, all, prefix);
+    material = find_material(scene.names.material, scene.spectrum, prefix);
     scene.names.material = material.name;
   }
-  if (!material.is_constant()) material = fit_to_spectrum(material, scene.spectrum, prefix);
+  check_axis(material);
 }
 
 void load_source(SceneValues& scene, const SceneDocument& document, const std::string& scene_path,
@@ -249,8 +258,9 @@ void load_profile(SceneValues& scene, const SceneDocument& document, const std::
   if (!profile && !known && file.type() == std::filesystem::file_type::not_found) {
     std::vector<std::string> names;
     for (const BuiltInSky& sky : built_in_skies()) names.emplace_back(sky.name);
-    throw InputError(fmt::format("{}no such file, and no built-in sky: {}; the nearest is {}", prefix, join(names),
-                                 nearest_name(scene.names.profile, names)));
+    const std::optional<std::string> near = near_name(scene.names.profile, names);
+    throw InputError(fmt::format("{}no such file, and no built-in sky: {}{}", prefix, join(names),
+                                 near ? "; the nearest is " + *near : ""));
   }
   if (!profile) {
     profile = read_file_of(scene, scene.names.profile, scene_path, prefix, known,

@@ -6,8 +6,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
+#include <dolp/errors.hpp>
+#include <iterator>
 #include <span>
+#include <utility>
 
 #include "base/hash.hpp"
 #include "base/text.hpp"
@@ -40,128 +42,59 @@ constexpr double kCloudBase_km = 1.0;
 constexpr double kLapse_K_km = 6.5;
 constexpr double kVapourHeight_km = 2.0;
 
-/// Columns of a file.
-struct ProfileColumns {
-  std::size_t count = 0;
-  std::size_t zenith = 0;
-  std::size_t value = 0;
-  std::optional<std::size_t> wavelength;
-  bool is_radiance = false;
-};
-
-const NumberRange& value_range(bool is_radiance) {
-  return is_radiance ? kNonNegativeRange : kBackgroundTemperatureRange;
-}
-
 const char* value_column(bool is_radiance) { return is_radiance ? "radiance" : "temperature_K"; }
 
-ProfileColumns columns_of(const CsvReader& header) {
-  ProfileColumns columns;
-  std::optional<std::size_t> zenith, temperature, radiance;
-  columns.count = header.cells().size();
-  for (std::size_t i = 0; i < columns.count; ++i) {
-    const std::string_view name = header.cells()[i];
-    std::optional<std::size_t>* place = name == "zenith_deg"      ? &zenith
-                                        : name == "temperature_K" ? &temperature
-                                        : name == "radiance"      ? &radiance
-                                        : name == "wavelength_um" ? &columns.wavelength
-                                                                  : nullptr;
-    if (!place)
-      header.fail(fmt::format("column \"{}\": unknown; must be zenith_deg, temperature_K or radiance, wavelength_um",
-                              one_line(name)));
-    if (*place) header.fail(fmt::format("column \"{}\" appears twice", name));
-    *place = i;
+CsvColumns read_header(CsvReader& reader) {
+  CsvColumns columns = CsvColumns::first_of(reader, {{"zenith_deg", kZenithDegRange, true},
+                                                     {"temperature_K", kBackgroundTemperatureRange},
+                                                     {"radiance", kNonNegativeRange, false, {}, "W m-2 sr-1 um-1"},
+                                                     {"wavelength_um", kWavelengthUmRange}});
+  const bool has_radiance = columns.has("radiance");
+  if (columns.has("temperature_K") == has_radiance) {
+    reader.fail(fmt::format("needs one of the columns temperature_K, a number in {}, and radiance, W m-2 sr-1 um-1{}",
+                            kBackgroundTemperatureRange.text(), has_radiance ? "; both are there" : ""));
   }
-  if (!zenith) header.fail("column \"zenith_deg\" is missing, a number in " + kZenithDegRange.text());
-  if (temperature.has_value() == radiance.has_value()) {
-    header.fail(fmt::format("needs one of the columns temperature_K, a number in {}, and radiance, W m-2 sr-1 um-1{}",
-                            kBackgroundTemperatureRange.text(), radiance ? "; both are there" : ""));
-  }
-  columns.zenith = *zenith;
-  columns.is_radiance = radiance.has_value();
-  columns.value = columns.is_radiance ? *radiance : *temperature;
   return columns;
 }
 
-/// Puts rows into a profile, one by one.
-class RowReader {
- public:
-  RowReader(SkyProfile& profile, const ProfileColumns& columns) : profile_(profile), columns_(columns) {}
-
-  void add(const CsvReader& row) {
-    if (row.cells().size() != columns_.count)
-      row.fail(fmt::format("{} cells; {} are expected", row.cells().size(), columns_.count));
-    if (profile_.values.size() == kMostProfileRows)
-      row.fail(fmt::format("too many rows; at most {}", kMostProfileRows));
-    const double zenith_deg = row.number(columns_.zenith, "zenith_deg", &kZenithDegRange);
-    const double value =
-        row.number(columns_.value, value_column(columns_.is_radiance), &value_range(columns_.is_radiance));
-    if (columns_.wavelength)
-      begin_wavelength(row, row.number(*columns_.wavelength, "wavelength_um", &kWavelengthUmRange));
-    if (is_first_wavelength()) {
-      add_zenith(row, zenith_deg);
-    } else {
-      check_zenith(row, zenith_deg);
-    }
-    ++of_wavelength_;
-    profile_.values.push_back(value);
-  }
-
-  void finish(const CsvReader& end) const {
-    if (profile_.values.empty()) end.fail("no rows; zenith_deg from 0 to 90 is expected");
-    check_last(end, "after");
-  }
-
- private:
-  bool is_first_wavelength() const { return profile_.wavelength_um.size() < 2; }
-
-  void begin_wavelength(const CsvReader& row, double wavelength_um) {
-    std::vector<double>& known = profile_.wavelength_um;
-    if (!known.empty() && wavelength_um == known.back()) return;
-    if (!known.empty()) {
-      if (wavelength_um < known.back())
-        row.fail(
-            fmt::format("wavelength_um = {}: must not be below {}, the one before; rows go by wavelength, then by "
-                        "zenith",
-                        wavelength_um, known.back()));
-      check_last(row, "before");
-    }
-    known.push_back(wavelength_um);
-    of_wavelength_ = 0;
-  }
-
-  void add_zenith(const CsvReader& row, double zenith_deg) {
-    std::vector<double>& known = profile_.zenith_deg;
-    if (known.empty() && zenith_deg != 0.0)
-      row.fail(fmt::format("zenith_deg = {}: must be 0 in the first row; the last has 90", zenith_deg));
-    if (!known.empty() && zenith_deg <= known.back())
-      row.fail(
-          fmt::format("zenith_deg = {}: must be greater than {}, the one before, up to 90", zenith_deg, known.back()));
-    if (known.size() == kMostZeniths) row.fail(fmt::format("too many zeniths; at most {}", kMostZeniths));
-    known.push_back(zenith_deg);
-  }
-
-  void check_zenith(const CsvReader& row, double zenith_deg) const {
-    const std::vector<double>& known = profile_.zenith_deg;
-    const double wanted = of_wavelength_ < known.size() ? known[of_wavelength_] : kNan;
-    if (zenith_deg == wanted) return;
-    row.fail(of_wavelength_ < known.size()
-                 ? fmt::format("zenith_deg = {}: must be {}, as at the first wavelength", zenith_deg, wanted)
-                 : fmt::format("zenith_deg = {}: a row too many; each wavelength has the same zeniths", zenith_deg));
-  }
-
-  void check_last(const CsvReader& row, const char* place) const {
-    const std::vector<double>& known = profile_.zenith_deg;
-    if (of_wavelength_ < known.size())
-      row.fail(fmt::format("a row with zenith_deg = {} is missing {} this one", known[of_wavelength_], place));
-    if (known.back() != 90.0) row.fail(fmt::format("zenith_deg ends at {}; must be 90 in the last row", known.back()));
-  }
-
-  static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  SkyProfile& profile_;
-  const ProfileColumns& columns_;
-  std::size_t of_wavelength_ = 0;  ///< rows of the last wavelength
+struct ProfileRow {
+  double wavelength_um;  ///< 0 in a file without this column
+  double zenith_deg;
+  double value;
+  std::size_t line;
 };
+
+/// The rows of a file, sorted by wavelength, then by zenith.
+std::vector<ProfileRow> read_rows(CsvReader& row, const CsvColumns& columns) {
+  std::vector<ProfileRow> rows;
+  while (row.next()) {
+    if (rows.size() == kMostProfileRows) row.fail(fmt::format("too many rows; at most {}", kMostProfileRows));
+    rows.push_back({columns.number(row, "wavelength_um").value_or(0.0), columns.number(row, "zenith_deg").value(),
+                    columns.number(row, value_column(columns.has("radiance"))).value(), row.line_number()});
+  }
+  if (rows.empty()) row.fail("no rows; zenith_deg from 0 to 90 is expected");
+  std::ranges::stable_sort(rows, [](const ProfileRow& a, const ProfileRow& b) {
+    return std::pair(a.wavelength_um, a.zenith_deg) < std::pair(b.wavelength_um, b.zenith_deg);
+  });
+  return rows;
+}
+
+/// Refuses rows of one wavelength whose zeniths do not ascend from 0 to 90, or differ from `expected_deg` if there are
+/// any.
+void check_zeniths(std::span<const ProfileRow> rows, const std::vector<double>& expected_deg, const std::string& name) {
+  const auto fail = [&](const ProfileRow& row, const std::string& what) {
+    throw InputError(fmt::format("{}:{}: zenith_deg = {}: {}", name, row.line, row.zenith_deg, what));
+  };
+  if (rows.front().zenith_deg != 0.0) fail(rows.front(), "must be 0 in one row, and 90 in another");
+  if (rows.back().zenith_deg != 90.0) fail(rows.back(), "must be 90 in one row");
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (rows[i].zenith_deg == rows[i - 1].zenith_deg) fail(rows[i], fmt::format("is in line {} too", rows[i - 1].line));
+  }
+  for (std::size_t i = 0; i < rows.size() && !expected_deg.empty(); ++i) {
+    if (rows[i].zenith_deg == expected_deg[i]) continue;
+    fail(rows[i], fmt::format("each wavelength must have the same zeniths, and the first has {}", expected_deg[i]));
+  }
+}
 
 /// Position of the interval of an ascending list that holds a value, and the value's share of the way through it.
 struct Between {
@@ -263,13 +196,23 @@ std::optional<SkyProfile> built_in_sky(std::string_view name) {
 
 SkyProfile parse_sky_profile(std::string_view text, const std::string& name) {
   CsvReader reader(text, name);
-  if (!reader.next()) reader.fail("no rows; columns zenith_deg and temperature_K or radiance are expected");
-  const ProfileColumns columns = columns_of(reader);
+  const CsvColumns columns = read_header(reader);
+  const std::vector<ProfileRow> rows = read_rows(reader, columns);
   SkyProfile profile;
-  profile.kind = columns.is_radiance ? SkyProfile::Kind::kRadiance : SkyProfile::Kind::kTemperature;
-  RowReader rows(profile, columns);
-  while (reader.next()) rows.add(reader);
-  rows.finish(reader);
+  profile.kind = columns.has("radiance") ? SkyProfile::Kind::kRadiance : SkyProfile::Kind::kTemperature;
+  for (auto first = rows.begin(); first != rows.end();) {
+    const auto end = std::upper_bound(first, rows.end(), first->wavelength_um,
+                                      [](double um, const ProfileRow& row) { return um < row.wavelength_um; });
+    check_zeniths({first, end}, profile.zenith_deg, name);
+    if (columns.has("wavelength_um")) profile.wavelength_um.push_back(first->wavelength_um);
+    if (profile.zenith_deg.empty())
+      std::transform(first, end, std::back_inserter(profile.zenith_deg),
+                     [](const ProfileRow& row) { return row.zenith_deg; });
+    first = end;
+  }
+  if (profile.zenith_deg.size() > kMostZeniths)
+    reader.fail(fmt::format("{} zeniths are too many; at most {}", profile.zenith_deg.size(), kMostZeniths));
+  for (const ProfileRow& row : rows) profile.values.push_back(row.value);
   return profile;
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 #include <dolp/errors.hpp>
+#include <optional>
+#include <utility>
 
 #include <dolp/number_range.hpp>
 #include "base/text.hpp"
@@ -17,21 +19,23 @@ namespace dolp {
 namespace {
 
 SpectralTable parse_irradiance(std::string_view text, const std::string& name) {
-  SpectralTable table;
-  bool may_be_header = true;
+  const std::vector<CsvColumn> known = {{"wavelength_um", kPositiveRange, true, "wl"},
+                                        {"irradiance", kNonNegativeRange, true, "irradiance_W_m2_um", "W m-2 um-1"}};
+  std::optional<CsvColumns> columns;
+  std::vector<SpectralRow> rows;
   for (CsvReader row(text, name); row.next();) {
-    const std::vector<std::string_view>& cells = row.cells();
-    if (cells.size() != 2) {
-      row.fail(fmt::format("{} columns; 2 are expected, wavelength in um and irradiance in W m-2 um-1", cells.size()));
-    }
-    const bool is_header = may_be_header && !parse_number(cells[0]) && !parse_number(cells[1]);
-    may_be_header = false;
+    const bool is_header = !columns && !row.has_numbers();
+    if (!columns) columns = is_header ? CsvColumns(row, known) : CsvColumns(known);
     if (is_header) continue;
-    const double wavelength_um = row.number(0, "wavelength_um");
-    const double irradiance = row.number(1, "irradiance");
-    append_row(table, wavelength_um, {"irradiance", irradiance, kNonNegativeRange}, row.where());
+    rows.push_back(
+        {columns->number(row, "wavelength_um").value(), columns->number(row, "irradiance").value(), row.line_number()});
   }
-  if (table.value.empty()) throw InputError(name + ":1: no rows; two columns of numbers are expected");
+  SpectralTable table;
+  append_rows(table, std::move(rows), {"irradiance", 0.0, kNonNegativeRange}, name);
+  if (table.value.empty()) {
+    throw InputError(
+        fmt::format("{}:1: no rows; wavelength_um in {} and irradiance are expected", name, kWavelengthUmRange.text()));
+  }
   return table;
 }
 
@@ -71,12 +75,28 @@ void append_row(SpectralTable& table, double wavelength_um, const NamedValue& va
     if (number.range.contains(number.value)) continue;
     throw InputError(fmt::format("{}{} = {}: must be in {}", where, number.name, number.value, number.range.text()));
   }
-  if (!table.wavelength_um.empty() && wavelength_um <= table.wavelength_um.back()) {
+  if (!table.wavelength_um.empty() && wavelength_um == table.wavelength_um.back()) {
+    throw InputError(fmt::format("{}wavelength_um = {}: has {} = {} and {}", where, wavelength_um, value.name,
+                                 table.value.back(), value.value));
+  }
+  if (!table.wavelength_um.empty() && wavelength_um < table.wavelength_um.back()) {
     throw InputError(fmt::format("{}wavelength_um = {}: must be greater than {}, the one before", where, wavelength_um,
                                  table.wavelength_um.back()));
   }
   table.wavelength_um.push_back(wavelength_um);
   table.value.push_back(value.value);
+}
+
+void append_rows(SpectralTable& table, std::vector<SpectralRow> rows, const NamedValue& named,
+                 const std::string& file) {
+  std::erase_if(rows, [](const SpectralRow& row) { return !kWavelengthUmRange.contains(row.wavelength_um); });
+  std::ranges::stable_sort(rows, {}, &SpectralRow::wavelength_um);
+  for (const SpectralRow& row : rows) {
+    const bool is_repeated =
+        !table.value.empty() && row.wavelength_um == table.wavelength_um.back() && row.value == table.value.back();
+    if (is_repeated) continue;
+    append_row(table, row.wavelength_um, {named.name, row.value, named.range}, fmt::format("{}:{}: ", file, row.line));
+  }
 }
 
 void check_covers(const SpectralTable& table, const Spectrum& spectrum, const std::string& prefix) {

@@ -1,7 +1,9 @@
 // Quantities tabulated over wavelength: the sun and the user's own irradiance files.
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
 #include <dolp/number_range.hpp>
 #include "scene/scene.hpp"
@@ -12,10 +14,11 @@ namespace dolp {
 /// Source: host/data/sun.csv (Gueymard 2003). Units: W m-2 um-1. Accuracy: interpolated log-log in wavelength.
 SpectralTable sun_irradiance();
 
-/// A user's file of two columns, wavelength in um and irradiance in W m-2 um-1, interpolated linearly.
+/// A user's CSV with the columns wavelength_um and irradiance (W m-2 um-1), interpolated linearly. Without a line of
+/// names these two columns stand in this order.
 ///
-/// Blank lines and lines that begin with # are skipped; one line of column names before the numbers is allowed.
-/// Domain: wavelengths strictly ascending, irradiance >= 0, at least one row.
+/// Blank lines and lines that begin with # are skipped. Rows are as append_rows takes them.
+/// Domain: irradiance >= 0, at least one row.
 /// Errors: InputError; `prefix` begins the message when the file cannot be opened.
 SpectralTable read_irradiance_file(const std::string& path, const std::string& prefix);
 
@@ -28,6 +31,18 @@ struct NamedValue {
 
 /// Appends a row and checks that both numbers are in range and the wavelength ascends; `where` begins the message.
 void append_row(SpectralTable& table, double wavelength_um, const NamedValue& value, const std::string& where);
+
+/// A row of a file: its line is for messages.
+struct SpectralRow {
+  double wavelength_um;
+  double value;
+  std::size_t line;
+};
+
+/// Appends the rows of a file in the order of their wavelengths. Leaves out rows outside of kWavelengthUmRange, and
+/// rows that repeat another. `named` has the name and the range of the values.
+/// Errors: InputError with file and line for two values at one wavelength, and as append_row.
+void append_rows(SpectralTable& table, std::vector<SpectralRow> rows, const NamedValue& named, const std::string& file);
 
 /// Refuses a table that has no values over the whole spectrum; `prefix` begins the message.
 void check_covers(const SpectralTable& table, const Spectrum& spectrum, const std::string& prefix);

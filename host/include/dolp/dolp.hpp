@@ -63,6 +63,7 @@ struct Report {
   bool is_good = true;           ///< no entry misses its tolerance; of a check: nothing is wrong
   std::filesystem::path output;  ///< the file that was written, where there is one
   std::vector<std::pair<std::string, std::string>> rows = {};  ///< the lines of `text` that have a label, and these
+  std::vector<std::string> remarks = {};  ///< on points that were probably meant otherwise, one line each
 };
 
 /// A validated scene: surface, radiation, geometry, grid and accuracy. Copies share what they hold.
@@ -97,6 +98,9 @@ class DOLP_EXPORT Scene {
   std::optional<std::string> word(std::string_view key) const;
   /// Likewise of axes and pairs, empty where the scene has none.
   std::vector<double> numbers(std::string_view key) const;
+  /// What the scene takes that was probably meant otherwise (Celsius, nanometres), and what it assumes because its
+  /// files lack it (k, rows across its spectrum): one line each, empty for most scenes.
+  std::vector<std::string> remarks() const;
   /// n and k at a wavelength. Errors: InputError where the material has none.
   std::pair<double, double> refractive_index(double wavelength_um) const;
 

@@ -37,11 +37,12 @@ struct DOLP_EXPORT MeasuredData {
   std::string zenith_column = "theta_deg";  ///< or theta_i_deg, which asks for the bistatic mode
   bool has_uncertainties = false;           ///< all measurements have one
   std::vector<Measurement> measurements = {};
+  std::vector<std::string> remarks = {};  ///< on units that were probably meant otherwise, one line each
 
   /// Reads a CSV. Columns: theta_deg or theta_i_deg; dolp, or q_over_i (signed), or emissivity_s and emissivity_p or
-  /// one of them; and any of uncertainty, wavelength_um. Values are fractions, not percent. Lines that begin with # are
-  /// comments.
-  /// Errors: InputError, one line that names file, line, column, value and what is allowed.
+  /// one of them; and any of uncertainty, wavelength_um. dolp is not negative. Values are fractions, not percent. Lines
+  /// that begin with # are comments. Errors: InputError, one line that names file, line, column, value and what is
+  /// allowed.
   static MeasuredData from_csv(const std::string& csv, const std::string& name = "data",
                                std::vector<Setting> settings = {});
   /// Reads "FILE" or "FILE:KEY=VALUE,KEY=VALUE"; FILE "-" is stdin. Errors: InputError.

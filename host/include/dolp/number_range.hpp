@@ -18,7 +18,11 @@ inline constexpr NumberRange kDiffuseExponentRange{-1.0, 0.0, NumberRange::Ends:
 inline constexpr NumberRange kEmissionTemperatureRange{0.0, 1e4, NumberRange::Ends::kOpenBelow};
 inline constexpr NumberRange kBackgroundTemperatureRange{0.0, 1e4};
 inline constexpr NumberRange kNonNegativeRange{0.0, std::numeric_limits<double>::infinity()};
+inline constexpr NumberRange kPositiveRange{0.0, std::numeric_limits<double>::infinity(),
+                                            NumberRange::Ends::kOpenBelow};
 inline constexpr NumberRange kWavelengthUmRange{0.1, 1e4};
+/// Wavelengths in um that are all above this number are likely in nm.
+inline constexpr double kLikelyNanometres = 1000.0;
 inline constexpr NumberRange kToleranceRange{1e-10, 1e-2};
 inline constexpr NumberRange kAxisCountRange{1.0, 1e6};
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include <dolp/number_range.hpp>
 #include <dolp/status.hpp>
 #include "api/evaluator_impl.hpp"
 #include "api/reports.hpp"
@@ -40,6 +41,13 @@ Points load_points(const std::filesystem::path& path, PointsKind kind, std::vect
   std::vector<std::string> results = {"status"};
   for (const QuantityDescription& quantity : kQuantities) results.emplace_back(quantity.name);
   return read_points(path.string(), kind, results);
+}
+
+/// Adds that wavelengths are likely in nm.
+void add_remarks(Report& report, const Points& points) {
+  const Points::Column& um = points[Axis::kWavelength];
+  if (um && !um->empty() && std::ranges::min(*um) > kLikelyNanometres)
+    report.remarks.push_back(points.where() + ": wavelength_um is in micrometres; were nanometres meant?");
 }
 
 void add_left_out(ReportBuilder& report, const Points& points) {
@@ -126,7 +134,9 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
     outcome.wall_s = run.wall_s();
     ReportBuilder report = run_report(own, outcome, gap, fmt::format("{} points", points.size()), path.string());
     add_left_out(report, points);
-    return public_report(report, outcome.summary.count(kToleranceNotMet) == 0, path);
+    Report result = public_report(report, outcome.summary.count(kToleranceNotMet) == 0, path);
+    add_remarks(result, points);
+    return result;
   });
 }
 

@@ -4,6 +4,7 @@
 
 #include "api/scene_impl.hpp"
 #include "base/text.hpp"
+#include "run/scene_remarks.hpp"
 #include "scene/embedded_data.hpp"
 #include "scene/material_data.hpp"
 #include "scene/scene_keys.hpp"
@@ -75,6 +76,8 @@ std::vector<double> Scene::numbers(std::string_view key) const {
   const std::optional<KeyValue> value = value_of(impl_->scene, key, {Type::kAxis, Type::kPair});
   return value ? value->numbers : std::vector<double>{};
 }
+
+std::vector<std::string> Scene::remarks() const { return remarks_on(impl_->scene); }
 
 std::pair<double, double> Scene::refractive_index(double wavelength_um) const {
   const Material& used = impl_->scene.surface.material;

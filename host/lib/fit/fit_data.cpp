@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <dolp/fit.hpp>
 #include <limits>
+#include <utility>
 
 #include <dolp/number_range.hpp>
 #include "base/text.hpp"
@@ -13,83 +15,82 @@
 namespace dolp {
 namespace {
 
+constexpr std::array kObservables = {Observable::kDolp, Observable::kQOverI, Observable::kEmissivityS,
+                                     Observable::kEmissivityP};
 constexpr NumberRange kFractionOfOneRange{-1.0, 1.0};
 constexpr NumberRange kUncertaintyRange{0.0, std::numeric_limits<double>::infinity(), NumberRange::Ends::kOpenBelow};
+// Zeniths of a quarter turn at most, and DOLP that no surface has over a range of zeniths, are likely in another unit.
+constexpr double kLikelyRadians = 1.6;
+constexpr double kLikelyPercent = 0.9;
 
-struct ColumnRule {
-  const char* name;
-  NumberRange range;
-  std::optional<Observable> observable = std::nullopt;
-};
-
-const std::array<ColumnRule, 8> kColumns = {{{"theta_deg", kZenithDegRange},
-                                             {"theta_i_deg", kZenithDegRange},
-                                             {"dolp", kFractionOfOneRange, Observable::kDolp},
-                                             {"q_over_i", kFractionOfOneRange, Observable::kQOverI},
-                                             {"emissivity_s", kFractionOfOneRange, Observable::kEmissivityS},
-                                             {"emissivity_p", kFractionOfOneRange, Observable::kEmissivityP},
-                                             {"uncertainty", kUncertaintyRange},
-                                             {"wavelength_um", kWavelengthUmRange}}};
-
-/// The columns of a file in its own order.
-std::vector<ColumnRule> columns_of(const CsvReader& header) {
-  std::vector<std::string> names;
-  for (const ColumnRule& rule : kColumns) names.emplace_back(rule.name);
-  std::vector<ColumnRule> columns;
-  for (const std::string_view cell : header.cells()) {
-    const auto rule = std::ranges::find(kColumns, cell, &ColumnRule::name);
-    if (rule == kColumns.end()) {
-      header.fail(fmt::format("column \"{}\" is unknown; the nearest known is {}, allowed are {}", one_line(cell),
-                              nearest_name(cell, names), join(names)));
-    }
-    if (std::ranges::find(columns, cell, &ColumnRule::name) != columns.end()) {
-      header.fail(fmt::format("column \"{}\" appears twice", rule->name));
-    }
-    columns.push_back(*rule);
-  }
+const std::vector<CsvColumn>& known_columns() {
+  static const std::vector<CsvColumn> columns = {{"theta_deg", kZenithDegRange},
+                                                 {"theta_i_deg", kZenithDegRange},
+                                                 {name_of(Observable::kDolp), kFractionOfOneRange},
+                                                 {name_of(Observable::kQOverI), kFractionOfOneRange},
+                                                 {name_of(Observable::kEmissivityS), kFractionOfOneRange},
+                                                 {name_of(Observable::kEmissivityP), kFractionOfOneRange},
+                                                 {"uncertainty", kUncertaintyRange},
+                                                 {"wavelength_um", kWavelengthUmRange}};
   return columns;
 }
 
-std::optional<std::size_t> position_of(const std::vector<ColumnRule>& columns, std::string_view name) {
-  const auto found = std::ranges::find(columns, name, &ColumnRule::name);
-  if (found == columns.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - columns.begin());
-}
-
 /// Refuses columns that contradict each other or carry no information.
-void check_columns(const CsvReader& header, const std::vector<ColumnRule>& columns) {
-  const auto has = [&](const char* name) { return position_of(columns, name).has_value(); };
-  if (has("theta_deg") == has("theta_i_deg")) {
-    header.fail(has("theta_deg") ? "columns \"theta_deg\" and \"theta_i_deg\" are the same zenith; give one of them"
-                                 : "column \"theta_deg\" is missing, a number in " + kZenithDegRange.text());
+void check_columns(const CsvReader& header, const CsvColumns& columns) {
+  if (columns.has("theta_deg") == columns.has("theta_i_deg")) {
+    header.fail(columns.has("theta_deg")
+                    ? "columns \"theta_deg\" and \"theta_i_deg\" are the same zenith; give one of them"
+                    : "column \"theta_deg\" is missing, a number in " + kZenithDegRange.text());
   }
-  const int kinds = int{has("dolp")} + int{has("q_over_i")} + int{has("emissivity_s") || has("emissivity_p")};
+  const int kinds = int{columns.has("dolp")} + int{columns.has("q_over_i")} +
+                    int{columns.has("emissivity_s") || columns.has("emissivity_p")};
   if (kinds != 1) {
     header.fail(fmt::format("{} measured quantities; a file has one of dolp, q_over_i, emissivity_s and emissivity_p",
                             kinds == 0 ? "no" : "several"));
   }
 }
 
-void add_row(MeasuredData& data, const CsvReader& row, const std::vector<ColumnRule>& columns) {
-  if (row.cells().size() > columns.size()) {
-    row.fail(fmt::format("{}: one value too many; the header has {}", one_line(row.cells()[columns.size()]),
-                         columns.size()));
-  }
+void add_row(MeasuredData& data, const CsvReader& row, const CsvColumns& columns) {
   Measurement observation;
-  const auto number = [&](const char* name) -> std::optional<double> {
-    const std::optional<std::size_t> cell = position_of(columns, name);
-    if (!cell) return std::nullopt;
-    return row.number(*cell, name, &columns[*cell].range);
-  };
-  observation.theta_deg = *number(data.zenith_column.c_str());
-  observation.wavelength_um = number("wavelength_um");
-  observation.uncertainty = number("uncertainty");
-  for (const ColumnRule& column : columns) {
-    if (!column.observable) continue;
-    observation.observable = *column.observable;
-    observation.value = *number(column.name);
+  observation.theta_deg = columns.number(row, data.zenith_column).value();
+  observation.wavelength_um = columns.number(row, "wavelength_um");
+  observation.uncertainty = columns.number(row, "uncertainty");
+  for (std::size_t cell = 0; cell < columns.cells().size(); ++cell) {
+    const std::string& name = known_columns()[columns.cells()[cell].value()].name;
+    const auto observable = std::ranges::find_if(kObservables, [&](Observable one) { return name == name_of(one); });
+    if (observable == kObservables.end()) continue;
+    if (*observable == Observable::kDolp && columns.number_at(row, cell) < 0.0) {
+      row.fail(
+          fmt::format("dolp = {}: must not be negative; a signed Q/I goes in a column q_over_i", row.cells()[cell]));
+    }
+    observation.observable = *observable;
+    observation.value = columns.number_at(row, cell);
     data.measurements.push_back(observation);
   }
+}
+
+/// Signs of a unit that was probably not meant.
+std::vector<std::string> remarks_on(const MeasuredData& data) {
+  double highest_deg = 0.0, highest_dolp = 0.0, least_um = std::numeric_limits<double>::infinity();
+  for (const Measurement& one : data.measurements) {
+    highest_deg = std::max(highest_deg, one.theta_deg);
+    const bool is_dolp = one.observable == Observable::kDolp || one.observable == Observable::kQOverI;
+    if (is_dolp) highest_dolp = std::max(highest_dolp, std::abs(one.value));
+    least_um = std::min(least_um, one.wavelength_um.value_or(0.0));
+  }
+  std::vector<std::string> remarks;
+  if (highest_deg > 0.0 && highest_deg < kLikelyRadians) {
+    remarks.push_back(
+        fmt::format("{}: {} is at most {} degrees; is it in radians?", data.name, data.zenith_column, highest_deg));
+  }
+  if (highest_dolp >= kLikelyPercent) {
+    remarks.push_back(fmt::format("{}: {} rises to {}; is it in percent? 1 is fully polarised", data.name,
+                                  name_of(data.measurements.front().observable), highest_dolp));
+  }
+  if (least_um > kLikelyNanometres) {
+    remarks.push_back(fmt::format("{}: wavelength_um is at least {}; is it in nanometres?", data.name, least_um));
+  }
+  return remarks;
 }
 
 /// The position at which the keys of "FILE:KEY=VALUE,..." begin: behind the colon before the first dotted key of a
@@ -124,7 +125,8 @@ std::vector<std::string> pieces_of(std::string_view text) {
 }  // namespace
 
 const char* name_of(Observable observable) {
-  return std::ranges::find(kColumns, std::optional(observable), &ColumnRule::observable)->name;
+  constexpr std::array<const char*, kObservables.size()> kNames = {"dolp", "q_over_i", "emissivity_s", "emissivity_p"};
+  return kNames[static_cast<std::size_t>(observable)];
 }
 
 MeasuredData MeasuredData::from_csv(const std::string& csv, const std::string& name, std::vector<Setting> settings) {
@@ -132,13 +134,13 @@ MeasuredData MeasuredData::from_csv(const std::string& csv, const std::string& n
   data.name = input_name(name);
   data.settings = std::move(settings);
   CsvReader row(csv, data.name);
-  if (!row.next()) row.fail("the file is empty; a line of column names is expected, as theta_deg,dolp,uncertainty");
-  const std::vector<ColumnRule> columns = columns_of(row);
+  const CsvColumns columns = CsvColumns::first_of(row, known_columns());
   check_columns(row, columns);
-  data.zenith_column = position_of(columns, "theta_deg") ? "theta_deg" : "theta_i_deg";
-  data.has_uncertainties = position_of(columns, "uncertainty").has_value();
+  data.zenith_column = columns.has("theta_deg") ? "theta_deg" : "theta_i_deg";
+  data.has_uncertainties = columns.has("uncertainty");
   while (row.next()) add_row(data, row, columns);
   if (data.measurements.empty()) row.fail("no points; at least one row is expected below the column names");
+  data.remarks = remarks_on(data);
   return data;
 }
 

@@ -2,6 +2,7 @@
 
 #include "cli/commands.hpp"
 #include "terminal/exit_status.hpp"
+#include "terminal/guarded.hpp"
 #include "terminal/progress_bar.hpp"
 
 namespace dolp::cli {
@@ -9,7 +10,10 @@ namespace dolp::cli {
 int run_fit(const Options& options) {
   const Scene scene = load_scene(options);
   std::vector<MeasuredData> data;
-  for (const std::string& argument : options.data) data.push_back(MeasuredData::read(argument));
+  for (const std::string& argument : options.data) {
+    data.push_back(MeasuredData::read(argument));
+    warn("dolp", data.back().remarks);
+  }
   FitOptions fit;
   for (const std::string& argument : options.vary) fit.vary.push_back(FitRange::from_text(argument));
   for (const std::string& argument : options.compare) fit.compare.push_back(Comparison::from_text(argument));

@@ -88,8 +88,9 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
   if (unknown.empty()) return fmt::format("{} (see dolp --help)", error.what());
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
-  return fmt::format("{}: unknown command or option; the nearest command is {} (see dolp --help)", unknown.front(),
-                     nearest_name(unknown.front(), commands));
+  const std::optional<std::string> near = near_name(unknown.front(), commands);
+  return fmt::format("{}: unknown command or option{} (see dolp --help)", unknown.front(),
+                     near ? "; the nearest command is " + *near : "");
 }
 
 int parse_and_run(int argc, char** argv) {

@@ -8,6 +8,7 @@
 
 #include "base/text.hpp"
 #include "terminal/exit_status.hpp"
+#include "terminal/guarded.hpp"
 
 namespace dolp::cli {
 
@@ -36,7 +37,9 @@ std::string allowed(const std::string& key) { return std::ranges::find(dolp::key
 
 Scene load_scene(const Options& options) {
   check_one_stdin(options);
-  return Scene::from_file(options.scene_path, all_settings(options));
+  const Scene scene = Scene::from_file(options.scene_path, all_settings(options));
+  warn("dolp", scene.remarks());
+  return scene;
 }
 
 Evaluator evaluator_of(const Options& options) { return Evaluator({options.evaluator, options.device}); }
@@ -51,6 +54,7 @@ void print(const Report& report, const Options& options) {
 }
 
 int finish(const Report& report, const Options& options) {
+  warn("dolp", report.remarks);
   print(report, options);
   if (!options.strict || report.is_good) return kExitDone;
   return fail("dolp", kExitAccuracy, "--strict: the tolerance is not met everywhere");

@@ -58,7 +58,7 @@ std::vector<Setting> all_settings(const Options& options);
 /// The allowed values of a scene key: "a number in [0, 10]".
 std::string allowed(const std::string& key);
 
-/// The scene with all_settings.
+/// The scene with all_settings, after a warning on stderr for each of its remarks.
 Scene load_scene(const Options& options);
 
 /// The evaluator that --evaluator and --device ask for.
@@ -67,7 +67,7 @@ Evaluator evaluator_of(const Options& options);
 /// Prints a report as --json and --quiet ask for: to stdout, or to stderr when the results themselves go to stdout.
 void print(const Report& report, const Options& options);
 
-/// Prints a report; returns the exit status that --strict asks for.
+/// Prints a report and its remarks; returns the exit status that --strict asks for.
 int finish(const Report& report, const Options& options);
 
 }  // namespace dolp::cli

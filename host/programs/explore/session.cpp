@@ -96,6 +96,7 @@ std::string curve_name(const Session& session) {
 
 Session::Session(SceneEdits edits)
     : edits_(std::move(edits)), curve_(scene()), map_(scene()), peak_(scene()), residuals_(scene()) {
+  tell_remarks_of_scene();
   follow();
 }
 
@@ -112,8 +113,20 @@ void Session::attempt(const Command& command) {
     if (!is_in_gesture_) done_.push_back(before);
     undone_.clear();
     is_in_gesture_ = true;
+    tell_remarks_of_scene();
   }
   follow();
+}
+
+void Session::tell_remarks(const std::vector<std::string>& remarks) {
+  if (remarks.empty()) return;
+  message_.text += fmt::format("{}{}", message_.text.empty() ? "" : "; ", fmt::join(remarks, "; "));
+}
+
+void Session::tell_remarks_of_scene() {
+  std::vector<std::string> remarks = scene().remarks();
+  if (remarks != remarks_) tell_remarks(remarks);
+  remarks_ = std::move(remarks);
 }
 
 void Session::hold(bool is_held) {
@@ -188,7 +201,10 @@ void Session::keep_sky(const std::filesystem::path& scene_file) {
 }
 
 void Session::load_measured(const std::string& path) {
-  attempt([&] { residuals_.load(read_measured(path)); });
+  attempt([&] {
+    residuals_.load(read_measured(path));
+    tell_remarks(residuals_.data()->remarks);
+  });
 }
 
 void Session::mark(const std::string& key, bool varies) {

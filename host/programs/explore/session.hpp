@@ -179,6 +179,9 @@ class Session {
   void attempt(const Command& command);
   void step(std::vector<SceneEdits>& from, std::vector<SceneEdits>& to, const char* nothing);
   bool keeps_all() const { return view_.keeps_all || described(view_.quantity).needs_rho; }
+  /// Adds remarks to the message. Remarks on the scene are told once, until it changes.
+  void tell_remarks(const std::vector<std::string>& remarks);
+  void tell_remarks_of_scene();
   void tell_asked(const std::string& chosen, const std::vector<Setting>& asked);
   void follow();
   void follow_overlay(const std::string& content, bool keep_all);
@@ -212,6 +215,7 @@ class Session {
   std::vector<Effect> effects_;
   std::pair<std::string, double> influences_of_;  ///< key of the curve, zenith
   Message message_;
+  std::vector<std::string> remarks_;  ///< of the scene, told already
   bool is_changed_ = true;
   // The order of coarse results in a drag.
   bool is_curve_next_ = true;

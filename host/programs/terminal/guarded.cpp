@@ -29,6 +29,10 @@ int fail(const std::string& program, int status, const std::string& message) {
   return status;
 }
 
+void warn(const std::string& program, const std::vector<std::string>& remarks) {
+  for (const std::string& remark : remarks) fail(program, kExitDone, "warning: " + remark);
+}
+
 int fail_out_of_memory(const char* program) noexcept {
   rusage used{};
   getrusage(RUSAGE_SELF, &used);

@@ -3,11 +3,15 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace dolp {
 
 /// One line on stderr that begins with the program's name; returns `status`.
 int fail(const std::string& program, int status, const std::string& message);
+
+/// One line on stderr for each remark: a warning, after which the program goes on.
+void warn(const std::string& program, const std::vector<std::string>& remarks);
 
 /// The line of a program that is out of memory, which needs none; returns kExitMemory.
 int fail_out_of_memory(const char* program) noexcept;

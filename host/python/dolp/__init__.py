@@ -36,6 +36,7 @@ process that was forked from one that has used a Vulkan device gets a DeviceErro
 (multiprocessing.set_start_method("spawn")), or take evaluator="cpu". Errors: InputError (a ValueError) with one line
 that says what is allowed, DeviceError (a RuntimeError), IoError (an OSError); a TypeError for arguments of another kind;
 MemoryError. A file that is to be read and is not there is a MissingFileError (an InputError and a FileNotFoundError).
+Input that was probably meant otherwise (percent, Celsius, nanometres), or a file without k, gives an InputWarning.
 Masked arrays are refused, because results have no mask: fill or compress them.
 """
 from __future__ import annotations
@@ -43,7 +44,7 @@ from __future__ import annotations
 from . import _native
 from ._arguments import MissingFileError
 from ._fit import Fit, fit
-from ._native import DeviceError, InputError, IoError
+from ._native import DeviceError, InputError, InputWarning, IoError
 from ._runs import Plan, devices, evaluate, lookup, mueller, plan, table, write_table
 from ._scene import Material, Scene, keys, material, materials
 

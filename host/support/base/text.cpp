@@ -94,6 +94,16 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   return *nearest;
 }
 
+std::optional<std::string> near_name(std::string_view name, const std::vector<std::string>& candidates) {
+  const auto distance = [name](const std::string& candidate) {
+    return std::min(edit_distance(name, candidate), edit_distance(name, candidate.substr(0, name.size() + 1)) + 1);
+  };
+  const std::string& nearest = *std::ranges::min_element(candidates, {}, distance);
+  const auto [shorter, longer] = std::minmax({name.size(), nearest.size()});
+  const bool is_near = distance(nearest) < shorter && 2 * distance(nearest) <= longer;
+  return is_near ? std::optional(nearest) : std::nullopt;
+}
+
 std::string one_line(std::string_view text) {
   std::string line;
   for (const char c : text) {

@@ -36,6 +36,10 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 /// The candidate with the least edit distance, the first of equals; `candidates` is not empty.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
 
+/// The candidate that a mistyped or shortened name most likely means; nullopt if all are far from it. `candidates` is
+/// not empty.
+std::optional<std::string> near_name(std::string_view name, const std::vector<std::string>& candidates);
+
 /// `text` on one line and short enough for a message.
 std::string one_line(std::string_view text);
 

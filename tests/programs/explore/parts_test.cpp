@@ -12,6 +12,7 @@
 #include "explore/parameters.hpp"
 #include "explore/session.hpp"
 #include "explore_support.hpp"
+#include "temporary_file.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -324,6 +325,19 @@ TEST(Measured, DataWithSettingsOfTheirOwn_AreRefused) {
   Residuals residuals(paint().scene());
   EXPECT_THROW(residuals.load(MeasuredData::from_csv("theta_deg,dolp\n60,0.1\n", "data", {{"surface.n", 2.0}})),
                InputError);
+}
+
+TEST(Measured, DataAndScenesProbablyMeantOtherwise_AreSaidOnceInTheMessage) {
+  const TemporaryFile radians("r.csv", "theta_deg,dolp\n0.5,0.01\n1.2,0.1\n");
+  Session session(paint({"emission.temperature_K=25"}));
+  EXPECT_NE(session.message().text.find("25 K is cold"), std::string::npos) << session.message().text;
+  session.load_measured(radians.path());
+  EXPECT_TRUE(session.message().text.ends_with("is it in radians?")) << session.message().text;
+  session.set("surface.sigma", 0.2);
+  EXPECT_EQ(session.message().text, "");
+  session.set("emission.temperature_K", 20.0);
+  EXPECT_TRUE(session.message().text.ends_with("20 K is cold; were degrees Celsius meant?")) << session.message().text;
+  EXPECT_FALSE(session.message().is_error);
 }
 
 TEST(Measured, Emissivities_AreThoseThatAFitCompares) {

@@ -1,0 +1,159 @@
+#include "run/scene_remarks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <dolp/number_range.hpp>
+#include "scene/scene_document.hpp"
+#include "spectrum/planck.hpp"
+#include "spectrum/sky_factors.hpp"
+
+namespace dolp {
+namespace {
+
+// Colder than this are few surfaces, and warmer than -213 degrees Celsius all.
+constexpr double kLikelyCelsius_K = 60.0;
+constexpr double kHotSky = 2.0;  // times the temperature of the surface
+// Neighbouring rows leave a gap from this ratio of their wavelengths, whatever the file's spacing, and never below the
+// other one. In between, from ten times the file's usual spacing on a logarithmic scale.
+constexpr double kGapRatio = 2.0;
+constexpr double kNoGapRatio = 1.5;
+constexpr double kUsualSpacings = 10.0;
+
+using Interval = std::pair<double, double>;
+
+/// The wavelengths that a scene uses: single ones, or a band.
+std::vector<Interval> used_um(const SceneValues& scene) {
+  const std::vector<double>& grid = scene.grid[Axis::kWavelength];
+  if (grid.empty()) return {{scene.spectrum.min_um, scene.spectrum.max_um}};
+  std::vector<Interval> used;
+  for (const double um : grid) used.emplace_back(um, um);
+  return used;
+}
+
+double least_gap_ratio(const std::vector<double>& wavelength_um) {
+  std::vector<double> spacings;
+  for (std::size_t i = 1; i < wavelength_um.size(); ++i)
+    spacings.push_back(std::log(wavelength_um[i] / wavelength_um[i - 1]));
+  const auto median = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
+  std::ranges::nth_element(spacings, median);
+  return std::clamp(std::exp(kUsualSpacings * *median), kNoGapRatio, kGapRatio);
+}
+
+/// The widest gap between rows that a straight line bridges inside of the spectrum.
+std::optional<Interval> bridged_gap(const SpectralTable& table, const std::vector<Interval>& used) {
+  const std::vector<double>& um = table.wavelength_um;
+  if (um.size() < 2 || table.formula.number != 0) return std::nullopt;
+  std::optional<Interval> widest;
+  double ratio = least_gap_ratio(um);
+  for (const auto& [low, high] : used) {
+    for (auto above = std::upper_bound(um.begin() + 1, um.end(), low); above != um.end() && above[-1] < high; ++above) {
+      if (above[0] < ratio * above[-1]) continue;
+      widest = {above[-1], above[0]};
+      ratio = above[0] / above[-1];
+    }
+  }
+  return widest;
+}
+
+class Remarks {
+ public:
+  explicit Remarks(const SceneValues& scene) : scene_(scene) {}
+
+  void add(const char* key, const std::string& what) { lines_.push_back(scene_.document->prefix(key) + what); }
+
+  void add_wavelengths() {
+    const bool has_grid = !scene_.grid[Axis::kWavelength].empty();
+    for (const auto& [low, high] : used_um(scene_)) {
+      if (low <= kLikelyNanometres) return;
+    }
+    add(has_grid                    ? "grid.wavelength_um"
+        : scene_.spectrum.is_band() ? "spectrum.band_um"
+                                    : "spectrum.wavelength_um",
+        "is in micrometres; were nanometres meant?");
+  }
+
+  void add_temperatures() {
+    const auto check = [&](const char* key, double lowest_K) {
+      if (lowest_K < kLikelyCelsius_K) add(key, fmt::format("{} K is cold; were degrees Celsius meant?", lowest_K));
+    };
+    if (scene_.emission) check("emission.temperature_K", scene_.emission->temperature_K);
+    if (scene_.path && scene_.path->temperature_K) check("path.temperature_K", *scene_.path->temperature_K);
+    if (!scene_.surroundings) return;
+    const SkyProfile* profile = scene_.surroundings->profile.get();
+    if (profile && profile->kind == SkyProfile::Kind::kTemperature)
+      check("surroundings.profile", std::ranges::min(profile->values));
+    if (!profile) check(surroundings_key(), scene_.surroundings->temperature_K);
+    add_hot_sky(profile);
+  }
+
+  void add_files() {
+    if (!scene_.names.material_file.empty()) {
+      const char* const key = "surface.material_file";
+      const Material& used = scene_.surface.material;
+      const Material& material = used.tabulated ? *used.tabulated : used;
+      if (material.k.wavelength_um.empty() && !material.n.wavelength_um.empty())
+        add(key, "the file has no k, so that k = 0");
+      if (material.least_k < 0.0)
+        add(key, fmt::format("k is down to {} in the file; below 0 it counts as 0", material.least_k));
+      const std::optional<Interval> gap = bridged_gap(material.n, used_um(scene_));
+      add_gap(key, gap);
+      if (const auto k_gap = bridged_gap(material.k, used_um(scene_)); k_gap != gap) add_gap(key, k_gap);
+    }
+    if (!scene_.names.source_file.empty()) add_gap("source.file", bridged_gap(scene_.source->table, used_um(scene_)));
+  }
+
+  void add_mode() {
+    if (scene_.geometry.mode == Mode::kBistatic && !scene_.source)
+      add("geometry.mode", "without [source] nothing depends on theta, the zenith of the source");
+  }
+
+  std::vector<std::string> lines() && { return std::move(lines_); }
+
+ private:
+  const char* surroundings_key() const {
+    return scene_.names.profile.empty() ? "surroundings.temperature_K" : "surroundings.profile";
+  }
+
+  void add_gap(const char* key, const std::optional<Interval>& gap) {
+    if (gap)
+      add(key, fmt::format("the file has no row between {} and {} um; a straight line bridges the gap", gap->first,
+                           gap->second));
+  }
+
+  void add_hot_sky(const SkyProfile* profile) {
+    const double surface_K = scene_.emission ? scene_.emission->temperature_K : 0.0;
+    if (surface_K < kLikelyCelsius_K) return;  // no surface, or its own temperature is the odd one
+    bool is_hot = !profile && scene_.surroundings->temperature_K > kHotSky * surface_K;
+    const std::vector<Interval> used = used_um(scene_);
+    for (const double um : {used.front().first, used.back().second}) {
+      for (const double zenith_deg : profile ? profile->ends_deg() : std::vector<double>{})
+        is_hot |= sky_radiance(*profile, um, zenith_deg) > planck_radiance(um, kHotSky * surface_K);
+    }
+    if (!is_hot) return;
+    const bool is_radiance = profile && profile->kind == SkyProfile::Kind::kRadiance;
+    add(surroundings_key(), fmt::format("is hotter than twice the surface, {} K; {}", surface_K,
+                                        is_radiance ? "radiance is in W m-2 sr-1 um-1, of which a microflick is 0.01"
+                                                    : "are both in kelvins?"));
+  }
+
+  const SceneValues& scene_;
+  std::vector<std::string> lines_;
+};
+
+}  // namespace
+
+std::vector<std::string> remarks_on(const SceneValues& scene) {
+  Remarks remarks(scene);
+  remarks.add_wavelengths();
+  remarks.add_temperatures();
+  remarks.add_files();
+  remarks.add_mode();
+  return std::move(remarks).lines();
+}
+
+}  // namespace dolp

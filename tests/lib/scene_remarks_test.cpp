@@ -1,0 +1,89 @@
+// Remarks on scenes: units that were probably not meant, and data that files lack.
+#include "run/scene_remarks.hpp"
+
+#include <gtest/gtest.h>
+
+#include "scene_support.hpp"
+#include "temporary_file.hpp"
+
+namespace dolp {
+namespace {
+
+std::vector<std::string> remarks_of(const std::vector<std::string>& settings) {
+  return remarks_on(parse(kMinimal, settings));
+}
+
+TEST(SceneRemarks, ProbablyMeantOtherwise_IsOneLineThatNamesKeyAndUnit) {
+  const TemporaryFile celsius("sky.csv", "zenith_deg,temperature_K\n0,5\n90,200\n");
+  const TemporaryFile hot("sky.csv", "zenith_deg,temperature_K\n0,200\n90,601\n");
+  const TemporaryFile microflick("sky.csv", "zenith_deg,radiance\n0,300\n90,900\n");
+  const std::string profile = "surroundings.profile=";
+  for (const auto& [settings, remark] : {
+           std::pair(std::vector<std::string>{"emission.temperature_K=59"},
+                     "59 K is cold; were degrees Celsius meant?"),
+           {{"surroundings.temperature_K=20"}, "20 K is cold; were degrees Celsius meant?"},
+           {{"path.transmittance=0.9", "path.temperature_K=20"}, "20 K is cold; were degrees Celsius meant?"},
+           {{profile + celsius.path()}, "5 K is cold; were degrees Celsius meant?"},
+           {{"surroundings.temperature_K=601"}, "is hotter than twice the surface, 300 K; are both in kelvins?"},
+           {{profile + hot.path()}, "is hotter than twice the surface, 300 K; are both in kelvins?"},
+           {{profile + microflick.path()},
+            "is hotter than twice the surface, 300 K; radiance is in W m-2 sr-1 um-1, of which a microflick is 0.01"},
+           {{"spectrum.wavelength_um=8000"}, "is in micrometres; were nanometres meant?"},
+           {{"spectrum.band_um=[3000, 5000]"}, "is in micrometres; were nanometres meant?"},
+           {{"grid.wavelength_um=[3000, 5000]"}, "is in micrometres; were nanometres meant?"},
+           {{"geometry.mode=bistatic"}, "without [source] nothing depends on theta, the zenith of the source"},
+       }) {
+    const std::vector<std::string> remarks = remarks_of(settings);
+    ASSERT_EQ(remarks.size(), 1U) << settings.back();
+    EXPECT_TRUE(remarks[0].starts_with("--set ") && remarks[0].ends_with(std::string(": ") + remark)) << remarks[0];
+  }
+}
+
+TEST(SceneRemarks, OrdinaryScenes_HaveNone) {
+  for (const std::vector<std::string>& settings : {std::vector<std::string>{},
+                                                   {"emission.temperature_K=60"},
+                                                   {"surroundings.temperature_K=600"},
+                                                   {"surroundings.profile=clear-sky"},
+                                                   {"grid.wavelength_um=[900, 5000]"},
+                                                   {"surface.material=iron"},
+                                                   {"geometry.mode=bistatic", "source.irradiance=1"},
+                                                   {"source.preset=sun"}}) {
+    EXPECT_TRUE(remarks_of(settings).empty()) << settings.size() << remarks_of(settings)[0];
+  }
+}
+
+TEST(SceneRemarks, FileThatLacksData_IsSaid) {
+  const std::string no_k = "the file has no k, so that k = 0";
+  const std::string noise = "k is down to -2e-07 in the file; below 0 it counts as 0";
+  const auto gap = [](const std::string& ends) {
+    return "the file has no row between " + ends + " um; a straight line bridges the gap";
+  };
+  const std::string dense = "wl,n,k\n3,1,1\n3.1,1,1\n3.2,1,1\n3.3,1,1\n3.4,1,1\n10.6,2,1\n11,2,1\n";
+  struct Case {
+    std::string text;
+    std::string spectrum;
+    std::vector<std::string> remarks;
+  };
+  for (const Case& row : {
+           Case{"wl,n,k\n8,1.5,0.1\n14,1.5,0.1\n", "wavelength_um=10", {}},  // as sparse as the file itself
+           {"wl,n\n8,1.5\n14,1.5\n", "wavelength_um=10", {no_k}},
+           {"wl,n,k\n8,1.5,-2e-7\n14,1.5,0.1\n", "wavelength_um=10", {noise}},
+           {dense, "wavelength_um=8", {gap("3.4 and 10.6")}},
+           {dense, "wavelength_um=10.6", {}},
+           {dense, "band_um=[3, 3.4]", {}},
+           {dense, "band_um=[3.3, 3.5]", {gap("3.4 and 10.6")}},
+           {"wl,n,k\n3.39,1.5,0\n10.6,1.5,0\n", "wavelength_um=8", {gap("3.39 and 10.6")}},
+           {"wl,n\n3,1\n12,2\nwl,k\n4,0\n12,0\n", "wavelength_um=8", {gap("3 and 12"), gap("4 and 12")}},
+       }) {
+    const TemporaryFile file("m.csv", row.text);
+    const std::string set = "--set surface.material_file=" + file.path() + ": ";
+    std::vector<std::string> expected = row.remarks;
+    for (std::string& remark : expected) remark.insert(0, set);
+    EXPECT_EQ(remarks_of({set.substr(6, set.size() - 8), "spectrum." + row.spectrum}), expected) << row.text;
+  }
+  const TemporaryFile source("e.csv", "3,1\n12,2\n");
+  EXPECT_TRUE(remarks_of({"source.file=" + source.path()}).at(0).ends_with(gap("3 and 12")));
+}
+
+}  // namespace
+}  // namespace dolp

@@ -58,13 +58,13 @@ std::vector<std::string> names_of(const std::vector<ColumnRule>& rules) {
   return names;
 }
 
-/// Errors: InputError that begins with `where`.
-const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_view name, const std::string& where) {
+/// Errors: InputError that begins with the place of the points.
+const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_view name, const Points& points) {
   for (const ColumnRule& rule : rules) {
     if (rule.name == name) return rule;
   }
   const std::vector<std::string> names = names_of(rules);
-  throw InputError(fmt::format("{}: column \"{}\" is unknown; the nearest known is {}, allowed are {}", where,
+  throw InputError(fmt::format("{}: column \"{}\" is unknown; the nearest known is {}, allowed are {}", points.where(),
                                one_line(name), nearest_name(name, names), join(names)));
 }
 
@@ -101,7 +101,7 @@ FileColumns parse_header(const CsvReader& header, const std::vector<ColumnRule>&
       columns.push_back(nullptr);
       continue;
     }
-    const ColumnRule& rule = find_rule(rules, cell, points.where());
+    const ColumnRule& rule = find_rule(rules, cell, points);
     add_column(points, rule);
     columns.push_back(&rule);
     own.push_back(cell);
@@ -142,7 +142,7 @@ Points points_of(std::span<const Column> columns, std::size_t count, PointsKind 
   points.name = "points";
   points.count = count;
   for (const Column& column : columns) {
-    const ColumnRule& rule = find_rule(rules, column.name, points.where());
+    const ColumnRule& rule = find_rule(rules, column.name, points);
     const std::span<const double> values = column.values;
     if (values.size() != 1 && values.size() != count) {
       throw InputError(

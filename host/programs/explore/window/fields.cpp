@@ -3,6 +3,7 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include <utility>
@@ -21,7 +22,9 @@ void NumberFields::draw(const std::string& key, double value, const Take& take) 
   const std::string before = typed_.contains(key) ? text(key) : own;
   std::string now = before;
   if (is_refused) ImGui::PushStyleColor(ImGuiCol_FrameBg, kRefusedColour);
+  ImGui::PushItemFlag(ImGuiItemFlags_NoTabStop, false);
   ImGui::InputText(("##" + key).c_str(), &now, ImGuiInputTextFlags_AutoSelectAll);
+  ImGui::PopItemFlag();
   if (is_refused) ImGui::PopStyleColor();
 
   if (now != before && !typed_.contains(key)) typed_[key] = {now, value};

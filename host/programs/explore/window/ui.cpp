@@ -3,6 +3,7 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include <algorithm>
@@ -400,6 +401,7 @@ void Ui::draw() {
   ImGui::SetNextWindowPos(viewport->WorkPos);
   ImGui::SetNextWindowSize(viewport->WorkSize);
   ImGui::Begin("dolp", nullptr, kFixed);
+  ImGui::PushItemFlag(ImGuiItemFlags_NoTabStop, true);  // Tab goes to fields
   const ImVec2 all = ImGui::GetContentRegionAvail();
   const float em = ImGui::GetFontSize();
   const float left = std::clamp(0.36F * all.x, 19.0F * em, 22.0F * em);
@@ -431,6 +433,7 @@ void Ui::draw() {
   ImGui::EndChild();
   if (!is_narrow_) draw_bottom();
   ImGui::EndChild();
+  ImGui::PopItemFlag();
   ImGui::End();
   draw_help();
   dialog_.draw();

@@ -42,8 +42,8 @@ std::optional<AxisEditor::Change> AxisEditor::draw(const std::string& label, con
   ImGui::SetNextWindowPos(mouse, ImGuiCond_Appearing,
                           {mouse.x > middle.x ? 1.0F : 0.0F, mouse.y > middle.y ? 1.0F : 0.0F});
   if (is_opening_) ImGui::SetNextWindowFocus();
-  constexpr ImGuiWindowFlags kFlags = ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse;
-  if (ImGui::Begin(shown(label).c_str(), &is_open, kFlags)) {
+  constexpr ImGuiWindowFlags kEditorFlags = ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse;
+  if (ImGui::Begin(shown(label).c_str(), &is_open, kEditorFlags)) {
     for (const auto& [end, value] : {std::pair{"from", now.from}, {"to", now.to}}) {
       ImGui::SetNextItemWidth(7.0F * ImGui::GetFontSize());
       if (is_opening_) ImGui::SetKeyboardFocusHere();

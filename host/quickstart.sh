@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From a fresh Debian 12 machine to a lookup table: quickstart.sh [SCENE] [OUT]
+# From a fresh machine to a lookup table: quickstart.sh [SCENE] [OUT]
 #
 # Installs the packages that are missing, builds the program, its Python package and its pages into build/release, from
 # which `cmake --install` works, writes the table of SCENE (default: the stainless-steel scene) to OUT (default: dolp.nc

@@ -2,7 +2,8 @@
 # Static analysis: cppcheck of host/, clang-tidy of all C++ sources: analyse.sh
 #
 # Configures build/analysis, where each source has a compile command of its own. Prints what is found; the exit status is
-# not 0 then. The checks of clang-tidy are in .clang-tidy. Needs the packages clang-tidy-16 and cppcheck.
+# not 0 then. The checks of clang-tidy are in .clang-tidy. Needs cppcheck and clang-tidy 16 or later: the package
+# clang-tidy-16 of Debian 12, clang-tidy of Debian 13.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -24,5 +25,6 @@ grep '^host/' <<<"$sources" | cppcheck --std=c++20 --language=c++ --enable=warni
   "${suppressed[@]/#/--suppress=}" --file-list=-
 
 # Its compiler does not know all options of GCC.
-xargs -P "$(nproc)" -n 1 clang-tidy-16 --extra-arg=-Wno-unused-command-line-argument -p "$build" --quiet \
+tidy=$(command -v clang-tidy-16 || echo clang-tidy)
+xargs -P "$(nproc)" -n 1 "$tidy" --extra-arg=-Wno-unused-command-line-argument -p "$build" --quiet \
   --warnings-as-errors='*' 2>/dev/null <<<"$sources"

@@ -1,9 +1,19 @@
 #!/usr/bin/env bash
-# clang-format of the C++ files that differ from a commit: format.sh [--fix] [COMMIT]
+# clang-format 14 of the C++ files that differ from a commit: format.sh [--fix] [COMMIT]
 #
 # COMMIT, origin/main when not given, else the last commit, is where the change began. With --fix the files are formatted;
-# otherwise those that are not are listed, and the exit status is 1 if there are any.
+# otherwise those that are not are listed, and the exit status is 1 if there are any, or where there is no clang-format 14:
+# other versions break lines elsewhere.
 set -euo pipefail
+
+version=14
+for program in clang-format-$version clang-format none; do
+  [[ $("$program" --version 2>/dev/null) != *"version $version."* ]] || break
+done
+if [[ $program == none ]]; then
+  echo "format.sh: nothing is checked; it takes clang-format $version, the package clang-format of Debian 12" >&2
+  exit 1
+fi
 
 mode=(--dry-run -Werror)
 if [[ ${1:-} == --fix ]]; then
@@ -14,4 +24,4 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 commit=${1:-$(git rev-parse -q --verify origin/main || git rev-parse HEAD)}
 base=$(git merge-base "$commit" HEAD)
 [[ $base != "$(git rev-parse HEAD)" || -n $(git status --porcelain) ]] || base=$(git rev-parse -q --verify HEAD~1 || echo "$base")
-git diff --name-only --diff-filter=d "$base" -- '*.cpp' '*.hpp' | xargs -r clang-format-14 "${mode[@]}"
+git diff --name-only --diff-filter=d "$base" -- '*.cpp' '*.hpp' | xargs -r "$program" "${mode[@]}"

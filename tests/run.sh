@@ -39,7 +39,8 @@ export DOLP_VALIDATION=${DOLP_VALIDATION:-1}
 # Mesa and the validation layers keep memory to the end, and are unloaded by the time a suppression would need their names.
 export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=0}
 
-cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE="$build_type" -DBUILD_TESTING=ON -DDOLP_BENCH=ON
+cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE="$build_type" -DBUILD_TESTING=ON -DDOLP_BENCH=ON \
+  -DDOLP_WERROR=ON
 if [[ $build_type == Tsan ]]; then
   cmake --build "$build" --target core_test compute_test explore_test lib_test
   threads='ParallelRanges|InterpolatingEvaluator|RandomGrids.*/Cpu|MuellerRun|MuellerPoints|PointEntries|EvaluateScene_'

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that are missing: install_packages.sh SET...
+# Installs the packages of Debian 12, Debian 13 or Ubuntu 24.04 that are missing: install_packages.sh SET...
 #
 #   build    the program and its lookup tables
 #   picture  host/plot_table.py and host/tools/paper_figure.py
@@ -25,7 +25,7 @@ need build pybind11-dev python3-dev python3-numpy python3-xarray python3-netcdf4
 need picture python3 python3-matplotlib python3-netcdf4 python3-numpy
 need bench libcubature-dev libgsl-dev python3-scipy  # methods to compare with
 need bench python3 python3-matplotlib python3-numpy
-need test libgtest-dev libclang-rt-14-dev clang-format-14  # framework, fuzzing, format
+need test libgtest-dev libclang-rt-dev clang-format  # framework, fuzzing, format
 need test vulkan-validationlayers                    # misuse of Vulkan
 need test libnetcdf-dev netcdf-bin octave octave-netcdf python3 python3-netcdf4 python3-numpy  # second readers of tables
 need test x11-utils xvfb xauth xdotool               # a display with mouse and keyboard
@@ -45,14 +45,18 @@ for set in "$@"; do
 done
 ((${#missing[@]} > 0)) || exit 0
 
+fail() {
+  echo "install_packages.sh: $1" >&2
+  exit 1
+}
+systems="Debian 12, Debian 13 and Ubuntu 24.04"
+command -v apt-get >/dev/null || fail "this is for $systems, and here is no apt-get; README.md, Start, says what else works"
 as_root=()
 if ((EUID != 0)); then
-  if ! command -v sudo >/dev/null; then
-    echo "install_packages.sh: missing packages, and neither root nor sudo to install them: ${missing[*]}" >&2
-    exit 1
-  fi
+  command -v sudo >/dev/null || fail "missing packages, and neither root nor sudo to install them: ${missing[*]}"
   as_root=(sudo)
 fi
 echo "installing: ${missing[*]}"
 "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q update
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q install -y --no-install-recommends "${missing[@]}"
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q install -y --no-install-recommends "${missing[@]}" ||
+  fail "apt-get cannot install them all; the packages have the names of $systems"

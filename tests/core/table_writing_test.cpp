@@ -129,6 +129,34 @@ TEST_F(TableFiles, WriteTable_DiskFull_LeavesNothingOrWhatWasThere) {
   expect_same(read_table(at("t.nc")), table);
 }
 
+TEST_F(TableFiles, WriteTable_LongerThanFilesMayBe_SaysSoBeforeAnyValue) {
+  const TableValues table = sample_table(20, 16, 16);
+  const FullDisk full(100000);
+  const std::string message = error_text<IoError>([&] { write_table(table, at("t.nc")); });
+  EXPECT_TRUE(message.ends_with(" bytes, and files may have 100000 here (ulimit -f)")) << message;
+}
+
+TEST_F(TableFiles, WriteTable_NoDescriptorsLeft_IsNoLackOfMemory) {
+  const TableValues table = sample_table(1, 1, 1);
+  const int first = ::dup(STDIN_FILENO);
+  ::close(first);
+  std::string all;
+  for (rlim_t left = 0; !fs::exists(at("t.nc")); ++left) {
+    ASSERT_LT(left, 10U);
+    const Limit limit(RLIMIT_NOFILE, static_cast<rlim_t>(first) + left);
+    try {
+      write_table(table, at("t.nc"));
+    } catch (const IoError& error) {
+      all += error.what() + std::string("\n");
+    }
+  }
+  for (const char* part : {"Too many open files", "HDF5: fopen failed"}) {
+    EXPECT_TRUE(all.find(std::string("/t.nc: cannot make the table's head in memory: ") + part) != std::string::npos)
+        << all;
+  }
+  expect_same(read_table(at("t.nc")), table);
+}
+
 TEST_F(TableFiles, WriteTable_NoMemoryForOneAllocation_LeavesNothingOrTheTable) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "a std::variant that finds no memory for its copy alarms the sanitizer of undefined behaviour";

@@ -142,8 +142,8 @@ void expect_differences(const json& report) {
                                         {"aluminium", "smith", -0.27, -0.48, -0.45}};
   for (const Difference& expected : list) {
     SCOPED_TRACE(expected.sample + ", " + expected.reading);
-    const json& found = one_of(report["cauchy_minus_gaussian"],
-                               {{"sample", expected.sample}, {"reading", expected.reading}, {"mode", "bistatic"}});
+    const json found = one_of(report["cauchy_minus_gaussian"],
+                              {{"sample", expected.sample}, {"reading", expected.reading}, {"mode", "bistatic"}});
     EXPECT_NEAR(found["below_60"]["points"], expected.below_60, kPointTolerance);
     EXPECT_NEAR(found["from_70_to_80"]["points"], expected.from_70_to_80, kPointTolerance);
     EXPECT_NEAR(found["at_cauchy_peak"], expected.at_peak, kPointTolerance);
@@ -253,9 +253,9 @@ TEST_F(PaperFigure, Figure4_Attenuation_IntegralHasNoKinkAsVCavityHas) {
                                     {"integral", "cauchy", 85.0, {}, 85.0, -1.04}};
   for (const Values& expected : list) {
     SCOPED_TRACE(expected.masking + ", " + expected.distribution);
-    const json& curve = one_of(report["curves"], {{"masking", expected.masking},
-                                                  {"distribution", expected.distribution},
-                                                  {"theta_i_deg", expected.theta_i_deg}});
+    const json curve = one_of(report["curves"], {{"masking", expected.masking},
+                                                 {"distribution", expected.distribution},
+                                                 {"theta_i_deg", expected.theta_i_deg}});
     ASSERT_EQ(curve["theta_r_deg"], json({0, 30, 60, 70, 75, 90}));
     constexpr std::size_t kPlaces[] = {1, 2, 4, 5};
     for (std::size_t i = 0; i < expected.g.size(); ++i)

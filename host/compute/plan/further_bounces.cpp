@@ -138,15 +138,16 @@ FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, c
   for (int k = 2; k <= kMostBouncesOfBeam; ++k) {
     const double gamma = (pi - at.psi_i + (k % 2 == 1 ? -at.psi_r : at.psi_r)) / (2.0 * k);
     if (gamma < least_gamma) return {beams.sum, 0.0, beams.bounces};
+    const std::size_t parity = k % 2 == 0 ? 0 : 1;
     const bool is_groove = gamma > 0.0 && gamma < 0.5 * pi;
     const double width = is_groove ? beam_width(at, gamma, k) : 0.0;
-    beyond[k % 2] = 0.0;
+    beyond[parity] = 0.0;
     if (width == 0.0) continue;
     const double density = 4.0 * std::exp(log_density(request.distribution, shape, 1.0 / std::tan(gamma)));
     const Eigen::Matrix4d more = density * std::cos(gamma) * width / (2.0 * k * h) * chain(at, facet, gamma, k);
     beams.sum += more;
     beams.bounces += k;
-    beyond[k % 2] = more(0, 0) * beyond_last(request, shape, k);
+    beyond[parity] = more(0, 0) * beyond_last(request, shape, k);
     if (std::max(beyond[0], beyond[1]) < kNegligibleBounces * accuracy * (first + beams.sum(0, 0)))
       return {beams.sum, 0.0, beams.bounces};
   }

@@ -1,6 +1,7 @@
 #include "scene/dispersion.hpp"
 
 #include <cmath>
+#include <limits>
 #include <span>
 
 namespace dolp {
@@ -59,7 +60,7 @@ double Dispersion::at(double wavelength_um) const {
       return std::sqrt(c[0] + c[1] / (l2 - c[2]) + c[3] * offset / (offset * offset + c[5]));
     }
     default:
-      return NAN;
+      return std::numeric_limits<double>::quiet_NaN();
   }
 }
 

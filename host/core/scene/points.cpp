@@ -56,10 +56,11 @@ std::vector<CsvColumn> csv_columns(const std::vector<ColumnRule>& rules) {
   return columns;
 }
 
-/// Errors: InputError that begins with `where`.
-const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_view name, const std::string& where) {
+/// Errors: InputError that begins with the place of the points.
+const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_view name, const Points& points) {
   const auto found = std::ranges::find(rules, name, &ColumnRule::name);
-  if (found == rules.end()) throw InputError(fmt::format("{}: {}", where, unknown_column(name, csv_columns(rules))));
+  if (found == rules.end())
+    throw InputError(fmt::format("{}: {}", points.where(), unknown_column(name, csv_columns(rules))));
   return *found;
 }
 
@@ -129,7 +130,7 @@ Points points_of(std::span<const Column> columns, std::size_t count, PointsKind 
   points.name = "points";
   points.count = count;
   for (const Column& column : columns) {
-    const ColumnRule& rule = find_rule(rules, column.name, points.where());
+    const ColumnRule& rule = find_rule(rules, column.name, points);
     const std::span<const double> values = column.values;
     if (values.size() != 1 && values.size() != count) {
       throw InputError(

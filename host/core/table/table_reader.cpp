@@ -1,8 +1,10 @@
 // Reads tables through HDF5 itself: the netCDF library follows dimension scales, on which damaged files hang it.
 #include "table/table_reader.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <hdf5.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -40,6 +42,16 @@ class Reader {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // messages are ours
     file_ = {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
     if (!file_ || H5Fget_filesize(file_.id(), &bytes_) < 0) fail("is not a NetCDF table of dolp, or cannot be read");
+  }
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+  /// HDF5 keeps half of a file that fails to be closed, as where a server is gone, and crashes at exit. So it gets
+  /// another one to close; dup2 closes its own whatever happens.
+  ~Reader() {
+    void* own = nullptr;
+    const int other = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+    if (other >= 0 && H5Fget_vfd_handle(file_.id(), H5P_DEFAULT, &own) >= 0) ::dup2(other, *static_cast<int*>(own));
+    if (other >= 0) ::close(other);
   }
 
   [[noreturn]] void fail(const std::string& what) const { throw InputError(path_.string() + ": " + what); }

@@ -3,10 +3,16 @@
 #include <fmt/format.h>
 #include <hdf5.h>
 #include <hdf5_hl.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdint>
+#include <cstring>
 #include <dolp/errors.hpp>
 #include <limits>
 #include <new>
@@ -17,30 +23,84 @@
 #include <dolp/status.hpp>
 #include "model/scene_entry.hpp"
 #include "table/hdf5_handle.hpp"
-#include "table/hdf5_memory.hpp"
 
 namespace dolp {
 namespace {
 
-/// Makes the objects of one file in memory; a call that fails throws std::bad_alloc.
+/// Room for what HDF5 adds to values and texts: shapes, names, units.
+constexpr std::uint64_t kMostOverhead = 1U << 20U;
+
+/// A file without a name whose written bytes alone take memory; the rest reads as zero.
+class MemoryFile {
+ public:
+  /// `table`: for messages. Errors: IoError.
+  explicit MemoryFile(std::string table) : table_(std::move(table)), descriptor_(::memfd_create("dolp", MFD_CLOEXEC)) {
+    if (descriptor_ < 0) fail(std::strerror(errno));
+  }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  ~MemoryFile() { ::close(descriptor_); }
+
+  [[noreturn]] void fail(const std::string& why) const {
+    throw IoError(table_ + ": cannot make the table's head in memory: " + why);
+  }
+  std::string path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
+  std::uint64_t size() const {
+    struct stat status {};
+    return ::fstat(descriptor_, &status) == 0 ? static_cast<std::uint64_t>(status.st_size) : 0;
+  }
+  std::vector<char> read(std::uint64_t first, std::uint64_t end) const {
+    std::vector<char> bytes(end - first);
+    for (std::size_t done = 0; done < bytes.size();) {
+      const ssize_t count = ::pread(descriptor_, &bytes[done], bytes.size() - done, static_cast<off_t>(first + done));
+      if (count <= 0) fail("it cannot be read back");
+      done += static_cast<std::size_t>(count);
+    }
+    return bytes;
+  }
+
+ private:
+  std::string table_;
+  int descriptor_;
+};
+
+/// What the last call of HDF5 failed for.
+struct Hdf5Failure {
+  std::string reason;      ///< in HDF5's words; empty where it has no memory for them
+  bool is_memory = false;  ///< lack of memory
+
+  static herr_t add(unsigned, const H5E_error2_t* error, void* failure) {
+    auto& own = *static_cast<Hdf5Failure*>(failure);
+    if (own.reason.empty() && error->desc) own.reason = error->desc;
+    own.is_memory |= error->maj_num == H5E_RESOURCE || error->min_num == H5E_NOSPACE || error->min_num == H5E_CANTALLOC;
+    return 0;
+  }
+};
+
+/// Makes the objects of one file in memory. A call that fails throws std::bad_alloc, or IoError with HDF5's reason.
 class Writer {
  public:
-  explicit Writer(Hdf5Memory& memory) {
+  explicit Writer(const MemoryFile& memory) : memory_(memory) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // messages are ours
-    const Hdf5Handle access = memory.access();
+    const Hdf5Handle access = take(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    check(H5Pset_fapl_stdio(access.id()));  // HDF5's usual driver asks for the file's own name, and this has none
     check(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18));
     const Hdf5Handle creation = take(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     // Without an order of creation the netCDF library opens a file for reading only.
     check(H5Pset_link_creation_order(creation.id(), kOrdered));
     check(H5Pset_attr_creation_order(creation.id(), kOrdered));
     check(H5Pset_obj_track_times(creation.id(), false));  // same scene, same bytes
-    file_ = take(H5Fcreate("table", H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
+    file_ = take(H5Fcreate(memory.path().c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
   }
 
   const Hdf5Handle& file() const { return file_; }
 
   void check(herr_t code) const {
-    if (code < 0) throw std::bad_alloc();  // a file in memory fails only for lack of memory
+    if (code >= 0) return;
+    Hdf5Failure failure;
+    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, Hdf5Failure::add, &failure);
+    if (failure.is_memory || failure.reason.empty()) throw std::bad_alloc();
+    memory_.fail("HDF5: " + failure.reason);
   }
 
   void put_text(const Hdf5Handle& object, const char* name, const std::string& text) const {
@@ -100,6 +160,7 @@ class Writer {
     if (value) check(H5Awrite(attribute.id(), memory_type, value));
   }
 
+  const MemoryFile& memory_;
   Hdf5Handle file_;
 };
 
@@ -189,9 +250,9 @@ Hdf5Handle define_over_axes(const Writer& writer, const TableHead& head, const A
 }
 
 /// Where the values of a variable are in the file.
-std::uint64_t offset_of(const Hdf5Handle& variable) {
+std::uint64_t offset_of(const Writer& writer, const Hdf5Handle& variable) {
   const haddr_t offset = H5Dget_offset(variable.id());
-  if (offset == HADDR_UNDEF) throw std::bad_alloc();
+  writer.check(offset == HADDR_UNDEF ? -1 : 0);
   return offset;
 }
 
@@ -203,7 +264,7 @@ std::uint64_t put_variable(const Writer& writer, const TableHead& head, const Ax
   writer.put_text(variable, "long_name", described.long_name);
   writer.put_text(variable, "units", units_of(quantity, head.stokes_units));
   if (*described.ancillary != '\0') writer.put_text(variable, "ancillary_variables", described.ancillary);
-  return offset_of(variable);
+  return offset_of(writer, variable);
 }
 
 std::uint64_t put_status(const Writer& writer, const TableHead& head, const AxisVariables& axes) {
@@ -211,7 +272,33 @@ std::uint64_t put_status(const Writer& writer, const TableHead& head, const Axis
   writer.put_text(status, "long_name", "status bits of the entry; 0 where nothing is wrong");
   writer.put_text(status, "units", "1");
   writer.put_status_bits(status);
-  return offset_of(status);
+  return offset_of(writer, status);
+}
+
+std::uint64_t bytes_of(const std::vector<Attribute>& attributes) {
+  std::uint64_t bytes = 0;
+  for (const Attribute& attribute : attributes) {
+    const auto* text = std::get_if<std::string>(&attribute.value);
+    bytes += attribute.name.size() + (text ? text->size() : sizeof(double));
+  }
+  return bytes;
+}
+
+/// No file of this layout is longer.
+std::uint64_t most_bytes(const TableLayout& layout) {
+  const TableHead& head = layout.head;
+  std::uint64_t numbers = head.wind_m_s.size() + head.size() * (layout.quantities.size() + 1);
+  for (const std::vector<double>& values : head.axes) numbers += values.size();
+  for (const TableCurve& described : kTableCurves) numbers += (head.*described.curve).used.size();
+  return numbers * sizeof(double) + bytes_of(head.attributes) + spectral_data_of(head).size() + kMostOverhead;
+}
+
+/// Refuses files that may not be so long: HDF5 does not survive one of its own that may not grow.
+void check_room(const AtomicFile& file, std::uint64_t bytes) {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_FSIZE, &limit) != 0 || bytes <= limit.rlim_cur) return;
+  throw IoError(fmt::format("{}: takes up to {} bytes, and files may have {} here (ulimit -f)", file.path().string(),
+                            bytes, limit.rlim_cur));
 }
 
 }  // namespace
@@ -219,12 +306,13 @@ std::uint64_t put_status(const Writer& writer, const TableHead& head, const Axis
 struct TableStore::Impl {
   TableLayout layout;
   AtomicFile& file;
-  Hdf5Memory memory;
+  MemoryFile memory;
   Writer writer{memory};
   /// Where the values of each of the quantities, and last of status (32 bits each) if it is there, begin in the file.
   std::vector<std::uint64_t> offsets;
 
-  Impl(TableLayout own, AtomicFile& of_table) : layout(std::move(own)), file(of_table) {
+  Impl(TableLayout own, AtomicFile& of_table)
+      : layout(std::move(own)), file(of_table), memory(of_table.path().string()) {
     const TableHead& head = layout.head;
     put_attributes(writer, head);
     const AxisVariables axes = put_axes(writer, head);
@@ -248,18 +336,17 @@ struct TableStore::Impl {
   /// Writes the bytes of the file that are not values: between and around them, where there is anything at all.
   void write_gaps() {
     writer.check(H5Fflush(writer.file().id(), H5F_SCOPE_GLOBAL));
-    if (!memory.is_whole()) throw std::bad_alloc();
     std::vector<std::pair<std::uint64_t, std::uint64_t>> values;
     for (std::size_t i = 0; i < offsets.size(); ++i) {
       const std::size_t of_value = i < layout.quantities.size() ? sizeof(double) : sizeof(std::uint32_t);
       values.emplace_back(offsets[i], offsets[i] + layout.head.size() * of_value);
     }
-    values.emplace_back(memory.size(), memory.size());
+    const std::uint64_t size = memory.size();
+    values.emplace_back(size, size);
     std::ranges::sort(values);
     std::uint64_t end = 0;
     for (const auto& [first, last] : values) {
-      std::vector<char> bytes(first - end);
-      memory.read(end, bytes.data(), bytes.size());
+      const std::vector<char> bytes = memory.read(end, first);
       file.write_at(end, bytes.data(), bytes.size());
       end = last;
     }
@@ -267,7 +354,10 @@ struct TableStore::Impl {
   }
 };
 
-TableStore::TableStore(const TableLayout& layout, AtomicFile& file) : impl_(std::make_unique<Impl>(layout, file)) {}
+TableStore::TableStore(const TableLayout& layout, AtomicFile& file) {
+  check_room(file, most_bytes(layout));
+  impl_ = std::make_unique<Impl>(layout, file);
+}
 
 TableStore::~TableStore() = default;
 
@@ -299,6 +389,7 @@ std::optional<ValueSums> TableStore::measured(const TableBox& box) const {
 
 void TableStore::finish(std::vector<Attribute> more, const ValueSums& sums) {
   more.push_back({kValuesHash, values_hash(impl_->layout.head, impl_->layout.quantities, sums)});
+  check_room(impl_->file, most_bytes(impl_->layout) + bytes_of(more));
   put_more(impl_->writer, more);
   impl_->write_gaps();
 }

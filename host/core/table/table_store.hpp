@@ -12,12 +12,13 @@
 namespace dolp {
 
 /// A NetCDF-4 table under way in a file: its values may come in any order. HDF5 protects names, shapes and attributes
-/// with checksums, the hash the values. All but the values is made in memory, since HDF5 does not survive a disk that
+/// with checksums, the hash the values. HDF5 makes all but the values in memory, since it does not survive a disk that
 /// fills up. A text too long for an attribute of the netCDF library is a variable of characters with the attribute's
 /// name.
 class TableStore {
  public:
-  /// `file` must outlive the object; nothing is written to it yet. Errors: std::bad_alloc.
+  /// `file` must outlive the object; nothing is written to it yet.
+  /// Errors: IoError, also where files may not be as long as the table; std::bad_alloc.
   TableStore(const TableLayout& layout, AtomicFile& file);
   TableStore(const TableStore&) = delete;
   TableStore& operator=(const TableStore&) = delete;

@@ -82,10 +82,10 @@ std::string missed_text(const RunOutcome& run, double tolerance) {
 void add_status(ReportBuilder& report, const RunOutcome& run, double tolerance) {
   const RunSummary& summary = run.summary;
   std::vector<ReportBuilder> parts;
+  using Bit = std::pair<std::uint32_t, const char*>;  // fmt 10 formats no enumerations
   for (const auto& [bit, meaning] :
-       {std::pair{kReflectanceOutsideZeroToOne, "reflectance outside [0, 1]"},
-        std::pair{kToleranceNotMet, "tolerance not met"}, std::pair{kOutsideModelDomain, "outside the model's domain"},
-        std::pair{kIntensityNotPositive, "intensity not positive"}}) {
+       {Bit{kReflectanceOutsideZeroToOne, "reflectance outside [0, 1]"}, Bit{kToleranceNotMet, "tolerance not met"},
+        Bit{kOutsideModelDomain, "outside the model's domain"}, Bit{kIntensityNotPositive, "intensity not positive"}}) {
     ReportBuilder& part = parts.emplace_back();
     part.value("bit", bit);
     const bool is_missed = bit == kToleranceNotMet && summary.count(bit) > 0;

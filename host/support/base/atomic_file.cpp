@@ -246,6 +246,8 @@ AtomicFile::AtomicFile(AtomicFile&&) noexcept = default;
 AtomicFile& AtomicFile::operator=(AtomicFile&&) noexcept = default;
 AtomicFile::~AtomicFile() = default;
 
+const fs::path& AtomicFile::path() const { return impl_->path; }
+
 void AtomicFile::write_at(std::uint64_t offset, const void* bytes, std::size_t size) {
   std::string_view content(static_cast<const char*>(bytes), size);
   while (!content.empty()) {

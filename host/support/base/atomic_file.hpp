@@ -34,6 +34,7 @@ class AtomicFile {
   AtomicFile& operator=(AtomicFile&&) noexcept;
   ~AtomicFile();
 
+  const std::filesystem::path& path() const;
   /// Puts bytes at an offset. Errors: IoError; Cancelled when interrupted().
   void write_at(std::uint64_t offset, const void* bytes, std::size_t size);
   void append(std::string_view bytes);

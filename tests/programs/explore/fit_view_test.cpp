@@ -21,7 +21,8 @@ TEST(NearestMinimum, IsThatByTheCoordinatesOfTheRanges) {
   fit.minima = {{{1.5, 2.37}, 4.0}, {{1.5, 0.22}, 5.0}, {{9.0, 0.22}, 80.0}};
   for (const auto& [n, k, nearest] :
        {NearestCase{1.5, 0.1, 1}, {1.5, 0.7, 1}, {1.5, 0.8, 0}, {1.4, 40.0, 0}, {8.0, 0.1, 2}}) {
-    const FitJob job{paint(), {}, {{"surface.n", 1.0, 40.0, n}, {"surface.k", 0.001, 100.0, k}}};
+    FitJob job{paint(), {}, {}};
+    job.vary = {{"surface.n", 1.0, 40.0, n}, {"surface.k", 0.001, 100.0, k}};
     EXPECT_EQ(nearest_minimum(fit, job), nearest) << n << ' ' << k;
   }
 }

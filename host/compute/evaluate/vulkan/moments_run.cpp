@@ -10,7 +10,6 @@ namespace dolp::vulkan {
 namespace {
 
 using TaskWords = std::array<std::uint32_t, 4>;
-using MaskingNode = std::array<double, 4>;
 using RulePoint = std::array<double, 2>;
 
 // Rows that a thread processes at a time.

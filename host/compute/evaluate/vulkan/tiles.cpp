@@ -27,7 +27,6 @@ TileSizes tile_sizes(const TileLimits& limits, const TileCosts& costs) {
 
 TileCosts tile_costs(const Packing& packing, const KernelData& data, std::uint32_t width) {
   using EntryWords = std::array<std::uint32_t, 4>;
-  using MaskingNode = std::array<double, 4>;
   return {.invocation_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
                               packing.node_bytes<kernel::IndexNode>() +
                               width * packing.output_bytes<kernel::MomentsNode>(sky_sums(data)),

@@ -1,6 +1,7 @@
 // Division of a request into tiles and blocks for the device. Pure: no Vulkan.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,6 +11,9 @@
 #include "plan/rows.hpp"
 
 namespace dolp::vulkan {
+
+/// A node of a masking table, in double.
+using MaskingNode = std::array<double, 4>;
 
 /// Limits set by the device and the options.
 struct TileLimits {

@@ -1,9 +1,11 @@
 #include "explore/window/axis_editor.hpp"
 
+#include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
 
 #include "base/text.hpp"
+#include "explore/window/input.hpp"
 #include "explore/window/style.hpp"
 
 namespace dolp::explore {
@@ -40,8 +42,8 @@ std::optional<AxisEditor::Change> AxisEditor::draw(const std::string& label, con
   ImGui::SetNextWindowPos(mouse, ImGuiCond_Appearing,
                           {mouse.x > middle.x ? 1.0F : 0.0F, mouse.y > middle.y ? 1.0F : 0.0F});
   if (is_opening_) ImGui::SetNextWindowFocus();
-  constexpr ImGuiWindowFlags kFlags = ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse;
-  if (ImGui::Begin(shown(label).c_str(), &is_open, kFlags)) {
+  constexpr ImGuiWindowFlags kEditorFlags = ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse;
+  if (ImGui::Begin(shown(label).c_str(), &is_open, kEditorFlags)) {
     for (const auto& [end, value] : {std::pair{"from", now.from}, {"to", now.to}}) {
       ImGui::SetNextItemWidth(7.0F * ImGui::GetFontSize());
       if (is_opening_) ImGui::SetKeyboardFocusHere();
@@ -58,8 +60,7 @@ std::optional<AxisEditor::Change> AxisEditor::draw(const std::string& label, con
     if (ImGui::Button("automatic")) change = Change{std::nullopt, now.is_log};
   }
   // Escape takes back what is typed first.
-  if (ImGui::IsWindowFocused() && !was_typed && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
-    is_open = false;
+  if (ImGui::IsWindowFocused() && !was_typed && is_pressed(GLFW_KEY_ESCAPE)) is_open = false;
   ImGui::End();
   if (!is_open) shown_.clear();
   if (change) fields_ = {};

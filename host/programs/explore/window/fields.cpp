@@ -1,11 +1,14 @@
 #include "explore/window/fields.hpp"
 
+#include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include <utility>
 
+#include "explore/window/input.hpp"
 #include "explore/window/style.hpp"
 
 namespace dolp::explore {
@@ -19,7 +22,9 @@ void NumberFields::draw(const std::string& key, double value, const Take& take) 
   const std::string before = typed_.contains(key) ? text(key) : own;
   std::string now = before;
   if (is_refused) ImGui::PushStyleColor(ImGuiCol_FrameBg, kRefusedColour);
+  ImGui::PushItemFlag(ImGuiItemFlags_NoTabStop, false);
   ImGui::InputText(("##" + key).c_str(), &now, ImGuiInputTextFlags_AutoSelectAll);
+  ImGui::PopItemFlag();
   if (is_refused) ImGui::PopStyleColor();
 
   if (now != before && !typed_.contains(key)) typed_[key] = {now, value};
@@ -29,7 +34,7 @@ void NumberFields::draw(const std::string& key, double value, const Take& take) 
   typed->second.text = now;
   const bool is_ended = was_active && !typed->second.is_active;
   const bool is_free = !ImGui::IsAnyItemActive() && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId);
-  const bool is_taken_back = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false) && (is_ended || is_free);
+  const bool is_taken_back = is_pressed(GLFW_KEY_ESCAPE) && (is_ended || is_free);
   if (is_taken_back || (is_ended && now == own)) {
     typed_.erase(typed);
   } else if (is_ended) {

@@ -6,8 +6,42 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace dolp::explore {
+namespace {
+
+#if IMGUI_VERSION_NUM < 18700
+// The backend keeps Ctrl, Shift and Alt as of its last event.
+void set_modifiers(int, int, int) {}
+
+void set_mouse(ImVec2 position, const std::array<bool, 5>& buttons) {
+  ImGuiIO& io = ImGui::GetIO();
+  io.MousePos = position;
+  std::ranges::copy(buttons, io.MouseDown);
+}
+#else
+// The backend takes Ctrl, Shift and Alt as they are by now, some events later.
+void set_modifiers(int key, int action, int modifiers) {
+  if (key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER) {  // on X11 the modifiers are those before the event
+    const int own = 1 << (key - GLFW_KEY_LEFT_SHIFT) % 4;
+    modifiers = action == GLFW_RELEASE ? modifiers & ~own : modifiers | own;
+  }
+  ImGuiIO& io = ImGui::GetIO();
+  io.AddKeyEvent(ImGuiMod_Ctrl, (modifiers & GLFW_MOD_CONTROL) != 0);
+  io.AddKeyEvent(ImGuiMod_Shift, (modifiers & GLFW_MOD_SHIFT) != 0);
+  io.AddKeyEvent(ImGuiMod_Alt, (modifiers & GLFW_MOD_ALT) != 0);
+}
+
+void set_mouse(ImVec2 position, const std::array<bool, 5>& buttons) {
+  ImGuiIO& io = ImGui::GetIO();
+  io.ConfigInputTrickleEventQueue = false;  // a frame has one event anyway
+  io.AddMousePosEvent(position.x, position.y);
+  for (int i = 0; i < 5; ++i) io.AddMouseButtonEvent(i, buttons[static_cast<std::size_t>(i)]);
+}
+#endif
+
+}  // namespace
 
 Input& Input::of(GLFWwindow* window) { return *static_cast<Input*>(glfwGetWindowUserPointer(window)); }
 
@@ -19,13 +53,19 @@ void Input::push(GLFWwindow* window, std::function<void()> apply, bool is_motion
   input.events_.push_back({std::move(apply), is_motion});
 }
 
-Input::Input(GLFWwindow* window, std::function<void(const std::string&)> on_drop) : on_drop_(std::move(on_drop)) {
+Input::Input(GLFWwindow* window, std::function<void(const std::string&)> on_drop)
+    : window_(window), on_drop_(std::move(on_drop)) {
   glfwSetWindowUserPointer(window, this);
+  ImGui::GetIO().UserData = this;
   double across = 0.0, down = 0.0;
   glfwGetCursorPos(window, &across, &down);
   mouse_ = {static_cast<float>(across), static_cast<float>(down)};
   glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int modifiers) {
-    push(w, [=] { ImGui_ImplGlfw_KeyCallback(w, key, scancode, action, modifiers); });
+    push(w, [=] {
+      ImGui_ImplGlfw_KeyCallback(w, key, scancode, action, modifiers);
+      set_modifiers(key, action, modifiers);
+      if (action == GLFW_PRESS) of(w).pressed_key_ = key;
+    });
   });
   glfwSetCharCallback(window,
                       [](GLFWwindow* w, unsigned letter) { push(w, [=] { ImGui_ImplGlfw_CharCallback(w, letter); }); });
@@ -42,8 +82,8 @@ Input::Input(GLFWwindow* window, std::function<void(const std::string&)> on_drop
   });
   glfwSetScrollCallback(
       window, [](GLFWwindow* w, double x, double y) { push(w, [=] { ImGui_ImplGlfw_ScrollCallback(w, x, y); }); });
-  glfwSetCursorEnterCallback(
-      window, [](GLFWwindow* w, int entered) { push(w, [=] { ImGui_ImplGlfw_CursorEnterCallback(w, entered); }); });
+  glfwSetCursorEnterCallback(window,
+                             [](GLFWwindow* w, int entered) { push(w, [=] { of(w).is_inside_ = entered != 0; }); });
   glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int focused) {
     push(w, [=] {
       ImGui_ImplGlfw_WindowFocusCallback(w, focused);
@@ -58,16 +98,19 @@ Input::Input(GLFWwindow* window, std::function<void(const std::string&)> on_drop
 }
 
 void Input::begin_frame() {
+  pressed_key_ = GLFW_KEY_UNKNOWN;
   if (has_more()) {
     events_.front().apply();
     events_.pop_front();
   }
   ImGui_ImplGlfw_NewFrame();
-  // ImGui's backend takes the mouse as it is by now, some events later. It tells whether the mouse is in the window.
-  ImGuiIO& io = ImGui::GetIO();
-  if (ImGui::IsMousePosValid(&io.MousePos)) io.MousePos = mouse_;
-  std::ranges::copy(buttons_, io.MouseDown);
+  // ImGui's backend takes the mouse as it is by now, some events later. A drag may lead out of the window.
+  constexpr float kNowhere = std::numeric_limits<float>::lowest();
+  const bool is_seen = is_inside_ || glfwGetWindowAttrib(window_, GLFW_FOCUSED) != 0;
+  set_mouse(is_seen ? mouse_ : ImVec2(kNowhere, kNowhere), buttons_);
   ImGui::NewFrame();
 }
+
+bool is_pressed(int key) { return static_cast<const Input*>(ImGui::GetIO().UserData)->pressed_key() == key; }
 
 }  // namespace dolp::explore

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "explore/window/input.hpp"
 #include "explore/window/style.hpp"
 
 namespace dolp::explore {
@@ -98,7 +99,7 @@ void PathDialog::draw() {
   is_accepted |= ImGui::Button("OK");
   ImGui::EndDisabled();
   ImGui::SameLine();
-  const bool is_cancelled = ImGui::Button("Cancel") || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false);
+  const bool is_cancelled = ImGui::Button("Cancel") || is_pressed(GLFW_KEY_ESCAPE);
   if (is_accepted && is_folder) {
     enter(fs::absolute(path()).lexically_normal());
     name_.clear();

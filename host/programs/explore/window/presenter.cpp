@@ -95,6 +95,7 @@ void Presenter::restart_imgui() {
   start_imgui();
 }
 
+#if IMGUI_VERSION_NUM < 19000
 void Presenter::load_fonts() {
   begin();
   ImGui_ImplVulkan_CreateFontsTexture(commands_);
@@ -104,6 +105,9 @@ void Presenter::load_fonts() {
   wait();
   ImGui_ImplVulkan_DestroyFontUploadObjects();
 }
+#else
+void Presenter::load_fonts() { ImGui_ImplVulkan_CreateFontsTexture(); }
+#endif
 
 void Presenter::wait() const {
   const VkFence fence = done_.get();

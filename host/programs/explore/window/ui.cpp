@@ -3,6 +3,7 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 
 #include "base/text.hpp"
 #include "explore/readout.hpp"
+#include "explore/window/input.hpp"
 #include "explore/window/style.hpp"
 
 namespace dolp::explore {
@@ -37,10 +39,9 @@ void go_on(float width) {
 }
 
 /// True for the key itself or that of the number pad.
-bool is_pressed(char key) {
-  const auto is_now = [](int code) { return ImGui::IsKeyPressed(code, false); };
-  return is_now(key) || (key == kLargerKey && is_now(GLFW_KEY_KP_ADD)) ||
-         (key == kSmallerKey && is_now(GLFW_KEY_KP_SUBTRACT)) || (key == '0' && is_now(GLFW_KEY_KP_0));
+bool is_shortcut_pressed(char key) {
+  return is_pressed(key) || (key == kLargerKey && is_pressed(GLFW_KEY_KP_ADD)) ||
+         (key == kSmallerKey && is_pressed(GLFW_KEY_KP_SUBTRACT)) || (key == '0' && is_pressed(GLFW_KEY_KP_0));
 }
 
 /// Returns why the text is refused; nothing where it is taken.
@@ -122,7 +123,7 @@ void Ui::run_shortcuts() {
     if (command.has_shift != io.KeyShift && command.key != kLargerKey) continue;  // many keyboards have + above =
     if (command.key == kUndoKey && io.WantTextInput) continue;                    // the field undoes its own text
     // GLFW's number of a letter's key is that of the letter.
-    if (command.key != 0 && is_pressed(command.key)) command.run();
+    if (command.key != 0 && is_shortcut_pressed(command.key)) command.run();
   }
 }
 
@@ -159,7 +160,7 @@ void Ui::draw_help() {
   ImGui::SetNextWindowSize({36.0F * ImGui::GetFontSize(), 0.0F}, ImGuiCond_Appearing);
   const ImVec2 centre = ImGui::GetMainViewport()->GetCenter();
   ImGui::SetNextWindowPos(centre, ImGuiCond_Appearing, {0.5F, 0.5F});
-  if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false) && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup)) {
+  if (is_pressed(GLFW_KEY_ESCAPE) && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup)) {
     shows_help_ = false;
   }
   if (ImGui::Begin("Shortcuts and hints", &shows_help_, ImGuiWindowFlags_NoCollapse)) {
@@ -400,6 +401,7 @@ void Ui::draw() {
   ImGui::SetNextWindowPos(viewport->WorkPos);
   ImGui::SetNextWindowSize(viewport->WorkSize);
   ImGui::Begin("dolp", nullptr, kFixed);
+  ImGui::PushItemFlag(ImGuiItemFlags_NoTabStop, true);  // Tab goes to fields
   const ImVec2 all = ImGui::GetContentRegionAvail();
   const float em = ImGui::GetFontSize();
   const float left = std::clamp(0.36F * all.x, 19.0F * em, 22.0F * em);
@@ -431,6 +433,7 @@ void Ui::draw() {
   ImGui::EndChild();
   if (!is_narrow_) draw_bottom();
   ImGui::EndChild();
+  ImGui::PopItemFlag();
   ImGui::End();
   draw_help();
   dialog_.draw();

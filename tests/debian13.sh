@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# Builds and tests the last commit on Debian 13: debian13.sh FOLDER [COMMAND...]
+#
+# Makes a Debian 13 system in FOLDER by debootstrap, or takes the one that is there, and puts the last commit into its
+# /src/dolp. There it runs COMMAND; without one the quickstart, and those tests that see the libraries, the driver and the
+# display of the system. Needs root: it changes its root folder and mounts /dev and /proc in FOLDER while it runs.
+set -euo pipefail
+
+parts='Table|Hdf5|HardCases|Devices|Window|Python|Install|Octave|Hardening|Faults|manual_test|cluster_test'
+
+fail() {
+  echo "debian13.sh: $1" >&2
+  exit 1
+}
+(($# > 0)) || fail "usage: debian13.sh FOLDER [COMMAND...]"
+((EUID == 0)) || fail "needs root"
+mkdir -p "$1"
+system=$(realpath "$1")
+shift
+project=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+
+if [[ ! -x $system/usr/bin/apt-get ]]; then
+  command -v debootstrap >/dev/null || fail "needs the package debootstrap"
+  debootstrap --variant=minbase --include=ca-certificates,git trixie "$system"
+fi
+git init -q "$system/src/dolp"
+git -C "$system/src/dolp" fetch -q --depth 1 "file://$project" HEAD
+git -C "$system/src/dolp" checkout -q --detach FETCH_HEAD
+
+(($# > 0)) || set -- bash -ec "time bash host/quickstart.sh; time bash tests/run.sh -R '$parts'"
+# The mounts are the new namespace's, and go with it.
+exec unshare --mount bash -ec '
+  system=$1
+  shift
+  mount --rbind /dev "$system/dev"
+  mount -t proc proc "$system/proc"
+  cd "$system/src/dolp"
+  exec chroot "$system" env -i -C /src/dolp HOME=/root LC_ALL=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin "$@"
+' bash "$system" "$@"

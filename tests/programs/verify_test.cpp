@@ -207,7 +207,7 @@ TEST_F(Verify, EstimateBeyondTheToleranceWithoutStatus2_IsFoundByTheTolerance) {
   put_value(at("t.nc"), Quantity::kDolp, at_entry, table[Quantity::kDolp][at_entry] + 2e-4);  // twice the tolerance
   const nlohmann::json json = verify_json(kAccuracy);
   ASSERT_EQ(json["failures"].size(), 1U) << json["failures"];
-  EXPECT_EQ(json["failures"][0]["complaint"], "misses the tolerance without status 2");
+  EXPECT_EQ(json["failures"][0]["complaint"], "misses the tolerance without the status that says so");
   TableValues honest = read_table(at("t.nc"));
   honest.status[at_entry] = 2;
   write_table(honest, at("t.nc"));

@@ -158,6 +158,7 @@ struct ShardSet {
   std::size_t count = 0;
   std::map<std::size_t, std::string> paths;  ///< by number
   SelfCheck check;
+  double model_change = 0.0;
   double wall_s = 0.0;
   std::string devices;
 };
@@ -206,6 +207,7 @@ void add_shard(ShardSet& set, const std::string& path) {
   const double most = static_cast<double>(kMostTableEntries);
   set.check.entries += static_cast<std::size_t>(std::min(number_of(head, "self_check_entries"), most));
   set.check.worst_ratio = std::max(set.check.worst_ratio, number_of(head, "self_check_worst_ratio"));
+  set.model_change = std::max(set.model_change, number_of(head, kModelChange));
   set.wall_s += number_of(head, "wall_time_s");
   const std::string device = text_of(head, "device");
   if (set.devices.find(device) == std::string::npos) set.devices += (set.devices.empty() ? "" : "; ") + device;
@@ -321,6 +323,7 @@ std::size_t merge_shards(const std::vector<std::string>& shards, const fs::path&
                                 {"precision", text_of(head, "precision")},
                                 {"effects", text_of(head, "effects")},
                                 {"rule", text_of(head, "rule")},
+                                {kModelChange, set.model_change},
                                 {"self_check_entries", static_cast<double>(set.check.entries)},
                                 {"self_check_worst_ratio", set.check.worst_ratio},
                                 {"wall_time_s", set.wall_s}};

@@ -36,13 +36,14 @@ process that was forked from one that has used a Vulkan device gets a DeviceErro
 (multiprocessing.set_start_method("spawn")), or take evaluator="cpu". Errors: InputError (a ValueError) with one line
 that says what is allowed, DeviceError (a RuntimeError), IoError (an OSError); a TypeError for arguments of another kind;
 MemoryError. A file that is to be read and is not there is a MissingFileError (an InputError and a FileNotFoundError).
-Masked arrays are refused, because results have no mask: fill or compress them.
+A ModelWarning comes once for each scene for which single scattering is not enough (status 32). Masked arrays are refused, because results have no mask: fill or compress them.
 """
 from __future__ import annotations
 
 from . import _native
 from ._arguments import MissingFileError
 from ._fit import Fit, fit
+from ._model_warning import ModelWarning
 from ._native import DeviceError, InputError, IoError
 from ._runs import Plan, devices, evaluate, lookup, mueller, plan, table, write_table
 from ._scene import Material, Scene, keys, material, materials
@@ -59,5 +60,5 @@ def citation() -> str:
 
 
 # All names show as those of this package, wherever they are defined.
-for _public in (*map(globals().get, __all__), MissingFileError):
+for _public in (*map(globals().get, __all__), MissingFileError, ModelWarning):
     _public.__module__ = __name__

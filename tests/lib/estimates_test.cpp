@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "fixed_precision.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
+#include "fixed_precision.hpp"
 #include "rough_metal.hpp"
 #include "run/scene_run.hpp"
 #include "scene/scene_reader.hpp"
@@ -85,12 +85,13 @@ const std::vector<Overrides> kBandScenes = {
     {"surface.material=gold (Ordal)", "spectrum.band_um=[3,5]", "surface.distribution=cauchy"},
     {"surface.material=sapphire o", "spectrum.band_um=[8,14]", "surface.masking=smith"},
     {"surface.material=iron", "spectrum.band_um=[8,12]", "surroundings.profile=clear-sky"},
-    {"surface.material=water 25C", "spectrum.band_um=[8,14]", "surroundings.profile=clear-sky", "surface.masking=smith"}};
+    {"surface.material=water 25C", "spectrum.band_um=[8,14]", "surroundings.profile=clear-sky",
+     "surface.masking=smith"}};
 
 SceneValues band_scene(Overrides overrides) {
-  overrides.insert(overrides.begin(), {"surface.n=none", "surface.k=none", "spectrum.wavelength_um=none",
-                                       "grid.theta_deg={from=0,to=85,count=12}", "grid.sigma=[0.1,0.02,0.25]",
-                                       "grid.q=[2,3]"});
+  overrides.insert(overrides.begin(),
+                   {"surface.n=none", "surface.k=none", "spectrum.wavelength_um=none",
+                    "grid.theta_deg={from=0,to=85,count=12}", "grid.sigma=[0.1,0.02,0.25]", "grid.q=[2,3]"});
   SceneValues scene = parse_scene(kScene, "s.toml", settings_from_text(overrides));
   scene.accuracy.tolerance = 1e-3;
   return scene;

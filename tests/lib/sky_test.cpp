@@ -217,7 +217,8 @@ TEST(Sky, Bracket_HoldsAllBouncesAndIsThatOfAUniformSkyOfOneTemperature) {
   SkyProfile level;
   level.zenith_deg = {0.0, 90.0};
   level.values = {250.0, 250.0};
-  for (const OpticalConstants& index : {OpticalConstants{1.5, 0.1}, OpticalConstants{1.2, 0.05}, OpticalConstants{27.0, 90.0}}) {
+  for (const OpticalConstants& index :
+       {OpticalConstants{1.5, 0.1}, OpticalConstants{1.2, 0.05}, OpticalConstants{27.0, 90.0}}) {
     for (const SkyProfile& sky : {quadratic_sky(30), *built_in_sky("clear-sky"), *built_in_sky("overcast"), level}) {
       SceneValues scene = scene_under(sky);
       scene.surface.material.constant = index;

@@ -7,6 +7,7 @@
 
 #include <dolp/status.hpp>
 #include "base/text.hpp"
+#include "report/run_report.hpp"
 
 namespace dolp {
 namespace {

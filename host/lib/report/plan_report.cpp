@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <dolp/status.hpp>
 #include "model/choices.hpp"
 #include "run/estimates.hpp"
 

@@ -8,6 +8,7 @@
 #include "evaluate/vulkan/dispatch_forecast.hpp"
 #include "plan/effects.hpp"
 #include "report/report.hpp"
+#include "run/estimates.hpp"
 #include "run/lookup_forecast.hpp"
 #include "run/prediction.hpp"
 #include "scene/scene.hpp"

@@ -23,6 +23,9 @@ from matplotlib.lines import Line2D  # noqa: E402
 from matplotlib.patches import Patch  # noqa: E402
 from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter  # noqa: E402
 
+sys.dont_write_bytecode = True  # leaves no folder beside the scripts
+import picture_file  # noqa: E402
+
 COLOURS = "viridis"
 MOST_CURVES = 6
 CONTOURS_PERCENT = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50)
@@ -236,7 +239,7 @@ def draw(table, path):
             axes.set_xlim(table.theta[0], table.theta[-1])
     figure.suptitle(table.title, fontsize=13)
     figure.supxlabel(textwrap.fill(table.caption(), int(14 * width)), fontsize=9, color="0.3")
-    figure.savefig(path)
+    picture_file.save(figure, path)
 
 
 def finite(text):

@@ -10,14 +10,16 @@ RESULT.json is what `dolp-bench STUDY --json RESULT.json` writes. Figures need p
 Exit status: 0 done, 2 usage or a file that is not such a result, 4 the figure could not be written.
 """
 import argparse
-import io
 import json
 import math
+import pathlib
 import sys
 import textwrap
 
 sys.dont_write_bytecode = True  # leaves no folder among the sources
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "host"))
 
+import picture_file  # noqa: E402
 import plot_effects  # noqa: E402
 import plot_fit_sets  # noqa: E402
 import plot_peers  # noqa: E402
@@ -238,12 +240,7 @@ def figure(result, path, save):
 
 
 def save(drawing, path):
-    """Few colours, so that the file stays small."""
-    from PIL import Image
-    buffer = io.BytesIO()
-    drawing.savefig(buffer, format="png", dpi=DOTS_PER_INCH)
-    picture = Image.open(buffer).convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
-    picture.save(path, format="PNG", optimize=True)
+    picture_file.save(drawing, path, COLOURS, dpi=DOTS_PER_INCH)
 
 
 def arguments():

@@ -18,6 +18,10 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
+sys.dont_write_bytecode = True  # leaves no folder among the sources
+sys.path.append(str(Path(__file__).resolve().parents[2] / "host"))
+import picture_file
+
 SURFACES = {
     "metal, N = 10 + 60i, gaussian, $\\sigma$ = 0.3": ["surface.n=10", "surface.k=60", "surface.distribution=gaussian"],
     "paint, N = 1.5, cauchy, $\\sigma$ = 0.3, q = 2": ["surface.n=1.5", "surface.k=0", "surface.distribution=cauchy"],
@@ -81,7 +85,7 @@ def draw(program, path):
         panel.grid(alpha=0.25, linewidth=0.6)
         panel.set_xlim(0.0, 89.0)
     axes[1, 0].legend(frameon=False, fontsize=9, loc="upper left")
-    figure.savefig(path, dpi=110)
+    picture_file.save(figure, path, dpi=110)
 
 
 def main():

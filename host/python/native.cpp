@@ -59,7 +59,13 @@ py::str text_of(const std::string& text) {
 
 std::string bytes_of(const py::handle& text) {
   PyObject* const encoded = PyUnicode_AsEncodedString(text.ptr(), "utf-8", kOtherBytes);
-  if (!encoded) throw py::error_already_set();
+  if (!encoded) {
+    const py::error_already_set error;
+    if (!error.matches(PyExc_UnicodeEncodeError)) throw error;
+    const auto escaped = py::reinterpret_steal<py::str>(PyObject_ASCII(text.ptr()));
+    throw dolp::InputError(escaped.cast<std::string>().substr(0, 60) +
+                           ": holds a surrogate without its other half, which is no character");
+  }
   return py::reinterpret_steal<py::bytes>(encoded);
 }
 
@@ -224,7 +230,7 @@ py::tuple parts_of(dolp::Results results) {
                   results.attributes);
 }
 
-/// (axes: [(name, values)], winds, curves: [(name, long_name, units, wavelengths, values)], parts).
+/// (axes: [(name, values)], winds, curves: [(name, long_name, units, used)], parts).
 py::tuple contents_of(const dolp::Table& table) {
   const dolp::TableValues& values = table.values();
   py::list axes, curves;
@@ -233,10 +239,8 @@ py::tuple contents_of(const dolp::Table& table) {
       axes.append(py::make_tuple(dolp::description_of(axis).name, array_of(values.axes[axis])));
   }
   for (const dolp::TableCurve& known : dolp::kTableCurves) {
-    const dolp::Curve& curve = values.*known.curve;
-    if (curve.values.empty()) continue;
-    curves.append(py::make_tuple(known.name, known.long_name, known.units, array_of(curve.wavelength_um),
-                                 array_of(curve.values)));
+    const std::vector<double>& used = (values.*known.curve).used;
+    if (!used.empty()) curves.append(py::make_tuple(known.name, known.long_name, known.units, array_of(used)));
   }
   return py::make_tuple(axes, array_of(values.wind_m_s), curves,
                         parts_of(values, values.quantities(), values.stokes_units, table.file_attributes()));
@@ -255,8 +259,9 @@ dolp::Table table_of(const Columns& columns, const py::array_t<std::uint32_t, py
   for (const dolp::Axis axis : dolp::kAllAxes) take(dolp::description_of(axis).name, table.axes[axis]);
   for (const dolp::Quantity quantity : dolp::kAllQuantities) take(dolp::description_of(quantity).name, table[quantity]);
   for (const dolp::TableCurve& known : dolp::kTableCurves) {
-    take(known.name, (table.*known.curve).values);
-    take(known.name + std::string("_wavelength"), (table.*known.curve).wavelength_um);
+    dolp::Curve& curve = table.*known.curve;
+    take(known.name + std::string("_wavelength"), curve.wavelength_um);  // of a file of dolp 0.2
+    take(known.name, curve.wavelength_um.empty() ? curve.used : curve.values);
   }
   table.status.assign(status.data(), status.data() + status.size());
   for (const auto& [attribute, value] : attributes) {
@@ -409,6 +414,11 @@ PYBIND11_MODULE(_native, module) {
     py::list all;
     for (const dolp::StatusBit& bit : dolp::kStatusBits) all.append(py::make_tuple(bit.mask, bit.meaning));
     return all;
+  });
+  module.def("quantities", [] {
+    std::vector<std::string> names;
+    for (const dolp::Quantity quantity : dolp::kAllQuantities) names.emplace_back(dolp::description_of(quantity).name);
+    return names;
   });
   module.attr("most_attribute_bytes") = dolp::kMostAttributeBytes;
   module.def("version", &dolp::version);

@@ -1,14 +1,16 @@
 """Pictures of figures 4-7 of the paper, from the curves of paper_curves.py, as small PNG files."""
-import io
+import pathlib
+import sys
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend has to be chosen first)
 import numpy as np  # noqa: E402
-from PIL import Image  # noqa: E402
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
 import paper_curves as model  # noqa: E402
+import picture_file  # noqa: E402
 
 # Colours of Okabe and Ito, which colour-blind readers tell apart.
 BLUE, VERMILION, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#777777"
@@ -119,7 +121,4 @@ def save(drawing, path):
     for axes in drawing.axes:
         axes.set_xlim(0, 90)
         axes.set_xticks(range(0, 91, 15))
-    buffer = io.BytesIO()
-    drawing.savefig(buffer, format="png", dpi=DOTS_PER_INCH)
-    picture = Image.open(buffer).convert("RGB").quantize(PALETTE, dither=Image.Dither.NONE)
-    picture.save(path, format="PNG", optimize=True)
+    picture_file.save(drawing, path, PALETTE, dpi=DOTS_PER_INCH)

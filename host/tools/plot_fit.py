@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws what `dolp fit --plot` reports: data, fit and bracket, residuals, contours of two parameters.
 
-Usage: plot_fit.py PICTURE < REPORT.json    `dolp fit --plot PICTURE` runs it; .png, .pdf or .svg
+Usage: plot_fit.py .png|.pdf|.svg < REPORT.json > PICTURE    `dolp fit --plot PICTURE` runs it
 Needs python3-matplotlib. Exit status: 0 done, 2 no report of a fit, 4 the picture could not be written.
 """
 import json
@@ -134,7 +134,7 @@ def title_of(report):
     return title or "fit"
 
 
-def draw(report, path):
+def draw(report, suffix):
     plt.rcParams.update({"font.size": 10.5, "axes.spines.top": False, "axes.spines.right": False})
     figure = plt.figure(figsize=(11.5, 5.0), dpi=150, layout="constrained")
     grid = figure.add_gridspec(2, 2, height_ratios=(3, 1), width_ratios=(3, 2))
@@ -147,7 +147,7 @@ def draw(report, path):
         axes.grid(alpha=0.25, linewidth=0.6)
     figure.suptitle(title_of(report), fontsize=13)
     figure.supxlabel(caption(report), fontsize=9, color="0.3")
-    figure.savefig(path)
+    figure.savefig(sys.stdout.buffer, format=suffix.lstrip("."))
 
 
 def main():
@@ -163,7 +163,7 @@ def main():
     try:
         draw(report, sys.argv[1])
     except OSError as error:
-        print(f"{sys.argv[1]}: {error}", file=sys.stderr)
+        print(f"the picture cannot be written: {error}", file=sys.stderr)
         return 4
     return 0
 

@@ -19,6 +19,10 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend has to be chosen first)
 import numpy as np  # noqa: E402
 
+sys.dont_write_bytecode = True  # leaves no folder among the sources
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
+import picture_file  # noqa: E402
+
 SCENE = pathlib.Path(__file__).resolve().parent.parent / "scenes" / "clear_sky.toml"
 # Colours of Okabe and Ito, which colour-blind readers tell apart.
 SKIES = {"uniform": "#777777", "clear": "#0072B2", "overcast": "#D55E00"}
@@ -92,7 +96,7 @@ def main():
     right.legend(frameon=False, fontsize=8)
     figure.suptitle(f"{options.band[0]:g}–{options.band[1]:g} µm; the uniform sky ({uniform_K:.0f} K) has the mean of the clear one",
                     fontsize=10)
-    figure.savefig(options.out, dpi=110)
+    picture_file.save(figure, options.out, dpi=110)
 
 
 if __name__ == "__main__":

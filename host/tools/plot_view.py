@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws the plots of the window: its curves, measured points and map.
 
-Usage: plot_view.py PICTURE < PLOTS.json    the window of `dolp explore` runs it; PICTURE ends with .svg, .pdf or .png
+Usage: plot_view.py .svg|.pdf|.png < PLOTS.json > PICTURE    the window of `dolp explore` runs it
 Needs python3-matplotlib. Exit status: 0 done, 2 no plots of the window, 4 the picture could not be written.
 """
 import json
@@ -94,7 +94,7 @@ def draw_map(figure, axes, plot):
     figure.colorbar(mesh, ax=axes, pad=0.02).set_label(plot["label"])
 
 
-def draw(plots, path):
+def draw(plots, suffix):
     # Text of an SVG stays text, and a title may have any character.
     plt.rcParams.update({"font.size": 10, "svg.fonttype": "none", "text.parse_math": False})
     plt.rcParams.update({"axes.spines.top": False, "axes.spines.right": False})
@@ -105,7 +105,7 @@ def draw(plots, path):
     if has_map:
         draw_map(figure, panels[0, 1], plots["map"])
     figure.suptitle(plots["title"])
-    figure.savefig(path)
+    figure.savefig(sys.stdout.buffer, format=suffix.lstrip(".") or "png")
 
 
 def main():
@@ -119,7 +119,7 @@ def main():
         print(f"no plots of the window: {error}", file=sys.stderr)
         return 2
     except (OSError, ValueError) as error:
-        print(f"{sys.argv[1]}: {error}", file=sys.stderr)
+        print(f"the picture cannot be written: {error}", file=sys.stderr)
         return 4
     return 0
 

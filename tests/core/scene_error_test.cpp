@@ -9,6 +9,8 @@
 
 #include "base/text.hpp"
 #include "error_text.hpp"
+#include "scene/scene_document.hpp"
+#include "scene/scene_keys.hpp"
 #include "scene_support.hpp"
 #include "temporary_file.hpp"
 
@@ -269,6 +271,20 @@ TEST(SceneOverride_None, RemovesAnEffect) {
   EXPECT_FALSE(parse(text, {"emission=none"}).emission);
   EXPECT_EQ(parse(text, {"emission=none", "emission.temperature_K=5"}).emission->temperature_K, 5.0);
   EXPECT_TRUE(contains(error_of(text, {"surface=none"}), "--set surface=none: must be a table"));
+}
+
+TEST(SceneOverride_ThatRemoves, IsReadFromItsText) {
+  std::vector<std::string> keys = scene_tables();
+  for (const Key& key : dolp::keys()) keys.push_back(key.key);
+  for (const std::string& key : keys) {
+    const std::string text = Setting{key, Value()}.text();
+    EXPECT_TRUE(is_removal(Setting::from_text(text))) << text;
+  }
+  for (const char* text :
+       {"surface.masking=none", "title=none", "surface.material=none", "surface.k=0", "surface=none"})
+    EXPECT_FALSE(is_removal(Setting::from_text(text))) << text;
+  EXPECT_EQ(parse(kMinimal + "[grid]\nsigma = [0.1, 0.2]\n", {"grid.sigma=none"}).grid[Axis::kSigma].size(), 1U);
+  EXPECT_EQ(parse(kMinimal, {"title=a", "title={}"}).title, parse(kMinimal).title);
 }
 
 TEST(SceneOverride_Values, NeedNoQuotesAndKeepTheirSpelling) {

@@ -162,6 +162,26 @@ TEST_F(FitProgram, Plot_IsAPng) {
   EXPECT_TRUE(content("fit.png").starts_with("\x89PNG"));
 }
 
+TEST_F(FitProgram, Pictures_OnAFullDisk_StayAsTheyWere) {
+  const std::string in_full_disk =
+      "mkdir -p target && mount -t tmpfs -o size=64k none target || exit 77; echo kept > target/p.png; "
+      "cat /dev/zero > target/filled 2> none; \"$@\"; status=$?; test \"$(cat target/p.png)\" = kept && "
+      "test \"$(ls -A target)\" = \"$(printf 'filled\\np.png')\" && exit $status; exit 99";
+  ASSERT_EQ(dolp({"table", "scene.toml", "-o", "t.nc", "--evaluator", "cpu"}).status, 0);
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{DOLP_PROGRAM, "fit", "scene.toml", "--evaluator", "cpu", "--data", "data.csv",
+                                 "--vary", "surface.sigma=0.02:1", "--plot", "target/p.png"},
+        {"/usr/bin/python3", DOLP_HOST_DIR "/plot_table.py", "t.nc", "target/p.png"}}) {
+    const Outcome outcome =
+        run({.arguments =
+                 joined({"unshare", "--user", "--map-root-user", "--mount", "sh", "-c", in_full_disk, "sh"}, command),
+             .folder = at("")});
+    if (outcome.status == 77) GTEST_SKIP() << "a user may not mount here";
+    EXPECT_EQ(outcome.status, 4) << outcome.err;
+    EXPECT_NE(outcome.err.find("No space left on device"), std::string::npos) << outcome.err;
+  }
+}
+
 TEST_F(FitProgram, Plot_WithoutContours_SaysWhy) {
   put("same.csv", "theta_deg,dolp,uncertainty\n0,0,0.01\n0,0,0.01\n0,0,0.01\n");
   put("flat.csv", "theta_deg,dolp,uncertainty\n20,0.005,0.9\n40,0.01,0.9\n60,0.03,0.9\n70,0.05,0.9\n");

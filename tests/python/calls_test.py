@@ -126,6 +126,19 @@ class Calls(PackageCase):
                 (dolp.InputError, "dolp: is a masked array",
                  lambda: dolp.fit(self.scene, {"theta_deg": [1, 2], "dolp": masked}, {"surface.n": (1, 2)})),
                 (dolp.InputError, "theta_deg: .* no numbers", lambda: dolp.evaluate(self.scene, theta_deg=[[1], [2, 3]])),
+                (dolp.InputError, "theta_deg: 1000.* no numbers of double", lambda: dolp.evaluate(self.scene, theta_deg=10**400)),
+                (dolp.InputError, "surface.n: a int of very many digits", lambda: self.scene.with_({"surface.n": 10**5000})),
+                (dolp.InputError, "starts = 1000.*: must be a whole", lambda: self.fit_points(starts=10**400)),
+                (dolp.InputError, "attribute rule: 1000.* no numbers",
+                 lambda: dolp.lookup(table.assign_attrs(rule=10**400), theta_deg=3)),
+                *((dolp.InputError, r"ud800.*surrogate without its other half", call) for call in (
+                    lambda: dolp.Scene(text="\ud800"), lambda: self.scene.with_({"title": "\ud800"}),
+                    lambda: self.scene.with_({"\ud800": 1}), lambda: self.scene["\ud800"], lambda: dolp.material("\ud800"),
+                    lambda: dolp.lookup(table.assign_attrs(rule="\ud800"), theta_deg=3),
+                    lambda: dolp.table(self.scene, evaluator="\ud800"), lambda: dolp.write_table(self.scene, "\ud800.nc"),
+                    lambda: self.fit_points(compare={"surface.masking": ["\ud800"]}),
+                    lambda: dolp.fit(self.scene, {"theta_deg": [1], "\ud800": [1]}, {"surface.n": (1, 2)}))),
+                (dolp.InputError, "path = .*: no path holds a zero byte", lambda: dolp.write_table(self.scene, "a\0.nc")),
                 (dolp.InputError, "theta_deg: .* no numbers", lambda: dolp.evaluate(self.scene, theta_deg="thirty"))):
             with self.assertRaisesRegex(kind, message) as caught:
                 call()

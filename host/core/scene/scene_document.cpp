@@ -142,6 +142,13 @@ SceneDocument::SceneDocument(const std::string& text, const std::string& path_na
   }
 }
 
+bool is_removal(const Setting& setting) {
+  const std::string value = setting.value.text();
+  const bool is_none = value == "none" || value == "\"none\"" || value == "'none'";
+  return std::holds_alternative<std::monostate>(setting.value.content()) || value == "{}" ||
+         (is_none && is_removed_by_none(setting.key));
+}
+
 void SceneDocument::apply(const Setting& setting) {
   const std::string& key = setting.key;
   const std::string value = setting.value.text();
@@ -151,8 +158,7 @@ void SceneDocument::apply(const Setting& setting) {
   if (path.size() > kMostDepth || line_of_deep_nesting(value) > 0) {
     throw InputError(fmt::format("{}: nested deeper than {}", origin, kMostDepth));
   }
-  const bool is_word_none = is_effect_table(key) && (value == "none" || value == "\"none\"" || value == "'none'");
-  if (is_word_none || std::holds_alternative<std::monostate>(setting.value.content())) {
+  if (is_removal(setting)) {
     erase(key);
     return;
   }

@@ -12,6 +12,9 @@
 
 namespace dolp {
 
+/// True for a setting that takes a key or a table away, of a program or as its text.
+bool is_removal(const Setting& setting);
+
 class SceneDocument {
  public:
   /// Errors: InputError for a TOML syntax error, with its line, for nesting deeper than 100 and for a text longer than

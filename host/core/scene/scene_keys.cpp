@@ -365,6 +365,12 @@ bool is_effect_table(std::string_view table) {
   return table == "emission" || table == "source" || table == "surroundings" || table == "path";
 }
 
+bool is_removed_by_none(std::string_view key) {
+  const SceneKey* known = find_scene_key(key);
+  if (!known) return is_effect_table(key);
+  return known->description.type != Key::Type::kWord && known->description.type != Key::Type::kText;
+}
+
 void add_effect(SceneValues& scene, std::string_view table) {
   if (table == "emission") scene.emission.emplace();
   if (table == "source") scene.source.emplace();

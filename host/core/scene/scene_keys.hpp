@@ -49,6 +49,9 @@ std::vector<std::string> scene_tables();
 /// True if a scene without that table has no such effect.
 bool is_effect_table(std::string_view table);
 
+/// True if the word none takes a key or a table away. Where it may be a value, `{}` does.
+bool is_removed_by_none(std::string_view key);
+
 /// Makes the table's effect present in the scene.
 void add_effect(SceneValues& scene, std::string_view table);
 

@@ -345,7 +345,7 @@ void check_radiation(const SceneValues& scene, const SceneDocument& document) {
 void apply(SceneDocument& document, const Setting& setting) {
   const std::vector<std::string> tables = scene_tables();
   const bool is_known = find_scene_key(setting.key) || std::ranges::find(tables, setting.key) != tables.end();
-  if (std::holds_alternative<std::monostate>(setting.value.content()) && !is_known) {
+  if (is_removal(setting) && !is_known) {
     throw InputError(
         fmt::format("{}: unknown key; the nearest known key is {}", one_line(setting.key), key_hint(setting.key)));
   }

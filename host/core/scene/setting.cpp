@@ -9,6 +9,7 @@
 
 #include "base/number_text.hpp"
 #include "base/text.hpp"
+#include "scene/scene_keys.hpp"
 
 namespace dolp {
 namespace {
@@ -55,7 +56,10 @@ Setting Setting::from_text(const std::string& argument, const std::string& optio
   return {key, TomlText{std::string(trim(std::string_view(argument).substr(equals + 1)))}, origin};
 }
 
-std::string Setting::text() const { return key + '=' + value.text(); }
+std::string Setting::text() const {
+  const bool is_removal = std::holds_alternative<std::monostate>(value.content());
+  return key + '=' + (is_removal && !is_removed_by_none(key) ? "{}" : value.text());
+}
 
 std::vector<Setting> settings_from_text(const std::vector<std::string>& arguments, const std::string& option) {
   std::vector<Setting> settings;

@@ -38,6 +38,12 @@ TableHead head_of(const TableHead& whole, const TableBox& box) {
     const auto first = whole.wind_m_s.begin() + static_cast<std::ptrdiff_t>(box.first[Axis::kSigma]);
     head.wind_m_s = {first, first + static_cast<std::ptrdiff_t>(box.count[Axis::kSigma])};
   }
+  for (const TableCurve& described : kTableCurves) {
+    std::vector<double>& used = (head.*described.curve).used;
+    if (used.empty()) continue;
+    const auto first = used.begin() + static_cast<std::ptrdiff_t>(box.first[Axis::kWavelength]);
+    used = {first, first + static_cast<std::ptrdiff_t>(box.count[Axis::kWavelength])};
+  }
   return head;
 }
 

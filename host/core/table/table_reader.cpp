@@ -98,10 +98,12 @@ class Reader {
 bool is_of_class(hid_t type, H5T_class_t wanted) { return H5Tget_class(type) == wanted; }
 
 /// The values of a list; none where it is not there. Errors: InputError for more than `most`.
-std::vector<double> read_list(const Reader& reader, const std::string& name, std::size_t most) {
+std::vector<double> read_list(const Reader& reader, const std::string& name, std::size_t most,
+                              bool may_be_scalar = false) {
   const Hdf5Handle variable = reader.find(name);
   if (!variable) return {};
-  const std::vector<hsize_t> shape = reader.shape_of(variable, name);
+  std::vector<hsize_t> shape = reader.shape_of(variable, name);
+  if (may_be_scalar && shape.empty()) shape = {1};
   if (shape.empty()) reader.fail(name + ": has one value and no dimension, " + kPartHint);
   if (shape.size() != 1) reader.fail(name + ": is not a list");
   if (shape[0] > most) {
@@ -193,16 +195,19 @@ std::vector<Attribute> read_attributes(const Reader& reader) {
   return attributes;
 }
 
+constexpr std::size_t kMostLongTextBytes = 8 * kMostTextBytes;  // numbers of a file take more when all have their name
+
 /// The texts that are variables because they are too long for attributes.
 void append_long_texts(const Reader& reader, std::vector<Attribute>& attributes) {
-  for (const char* name : {"title", "history", "scene", "scene_path", "scene_overrides", "surroundings_profile"}) {
+  for (const char* name :
+       {"title", "history", "scene", "scene_path", "scene_overrides", "surroundings_profile", kSpectralData}) {
     const Hdf5Handle variable = reader.find(name);
     if (!variable) continue;
     const Hdf5Handle type(H5Dget_type(variable.id()), H5Tclose);
     reader.check(type ? 0 : -1, name);
     const std::vector<hsize_t> shape = reader.shape_of(variable, name);
     const bool is_text = is_of_class(type.id(), H5T_STRING) && H5Tget_size(type.id()) == 1 && shape.size() == 1;
-    if (!is_text || shape[0] > kMostTextBytes) reader.fail(std::string(name) + ": is no text, or too long");
+    if (!is_text || shape[0] > kMostLongTextBytes) reader.fail(std::string(name) + ": is no text, or too long");
     reader.check_claim(name, shape[0]);
     std::string text(shape[0], '\0');
     reader.read(variable, name, type.id(), text.data());
@@ -264,9 +269,13 @@ struct TableReader::Impl {
   void read_curves() {
     for (const TableCurve& described : kTableCurves) {
       Curve& curve = head.*described.curve;
-      curve.values = read_list(reader, described.name, kMostTableEntries);
+      // Files of dolp 0.2 have the scene's curves over wavelengths of their own instead of an attribute.
       curve.wavelength_um = read_list(reader, described.name + std::string("_wavelength"), kMostTableEntries);
-      if (curve.values.size() != curve.wavelength_um.size())
+      const bool is_of_scene = !curve.wavelength_um.empty();
+      std::vector<double>& values = is_of_scene ? curve.values : curve.used;
+      values = read_list(reader, described.name, kMostTableEntries, true);
+      const std::size_t count = is_of_scene ? curve.wavelength_um.size() : head.counts()[Axis::kWavelength];
+      if (values.size() != count && (is_of_scene || !values.empty()))
         reader.fail(described.name + std::string(": is cut short"));
     }
   }
@@ -295,6 +304,7 @@ TableReader::TableReader(const fs::path& path) : impl_(std::make_unique<Impl>(pa
   impl_->read_curves();
   impl_->head.attributes = read_attributes(impl_->reader);
   append_long_texts(impl_->reader, impl_->head.attributes);
+  take_spectral_data(impl_->head, path.string());
 }
 
 TableReader::~TableReader() = default;

@@ -129,12 +129,14 @@ void put_more(const Writer& writer, const std::vector<Attribute>& attributes) {
   }
 }
 
-void put_attributes(const Writer& writer, const std::vector<Attribute>& attributes) {
+void put_attributes(const Writer& writer, const TableHead& head) {
   writer.put_text(writer.file(), kConventions, kConventionsOfFiles);
-  put_more(writer, attributes);
+  put_more(writer, head.attributes);
+  if (const std::string data = spectral_data_of(head); !data.empty()) put_more(writer, {{kSpectralData, data}});
 }
 
-void put_coordinate(const Writer& writer, const Hdf5Handle& variable, const AxisDescription& described,
+template <class Described>
+void put_coordinate(const Writer& writer, const Hdf5Handle& variable, const Described& described,
                     const std::vector<double>& values) {
   writer.put_text(variable, "long_name", described.long_name);
   writer.put_text(variable, "units", described.units);
@@ -159,6 +161,15 @@ AxisVariables put_axes(const Writer& writer, const TableHead& head) {
     writer.check(H5DSattach_scale(wind.id(), axes[Axis::kSigma].id(), 0));
     put_coordinate(writer, wind, kWind, head.wind_m_s);
   }
+  for (const TableCurve& described : kTableCurves) {
+    const std::vector<double>& used = (head.*described.curve).used;
+    if (used.empty()) continue;
+    const Hdf5Handle& wavelengths = axes[Axis::kWavelength];
+    const std::vector<hsize_t> shape(wavelengths ? 1 : 0, used.size());
+    const Hdf5Handle variable = writer.define(described.name, H5T_IEEE_F64LE, shape, nullptr);
+    if (wavelengths) writer.check(H5DSattach_scale(variable.id(), wavelengths.id(), 0));
+    put_coordinate(writer, variable, described, used);
+  }
   return axes;
 }
 
@@ -173,7 +184,7 @@ Hdf5Handle define_over_axes(const Writer& writer, const TableHead& head, const A
   for (const Hdf5Handle& axis : axes) {
     if (axis) writer.check(H5DSattach_scale(variable.id(), axis.id(), dimension++));
   }
-  if (!head.wind_m_s.empty()) writer.put_text(variable, "coordinates", kWind.name);
+  if (const std::string names = coordinates_of(head); !names.empty()) writer.put_text(variable, "coordinates", names);
   return variable;
 }
 
@@ -203,24 +214,6 @@ std::uint64_t put_status(const Writer& writer, const TableHead& head, const Axis
   return offset_of(status);
 }
 
-void put_curves(const Writer& writer, const TableHead& head) {
-  for (const TableCurve& described : kTableCurves) {
-    const Curve& curve = head.*described.curve;
-    if (curve.values.empty()) continue;
-    const std::string coordinate = described.name + std::string("_wavelength");
-    const Hdf5Handle wavelength = writer.define(coordinate.c_str(), H5T_IEEE_F64LE, {curve.values.size()}, nullptr);
-    writer.check(H5DSset_scale(wavelength.id(), coordinate.c_str()));
-    writer.put_text(wavelength, "long_name", "wavelength");
-    writer.put_text(wavelength, "units", "um");
-    writer.write(wavelength, H5T_NATIVE_DOUBLE, curve.wavelength_um.data());
-    const Hdf5Handle variable = writer.define(described.name, H5T_IEEE_F64LE, {curve.values.size()}, nullptr);
-    writer.check(H5DSattach_scale(variable.id(), wavelength.id(), 0));
-    writer.put_text(variable, "long_name", described.long_name);
-    writer.put_text(variable, "units", described.units);
-    writer.write(variable, H5T_NATIVE_DOUBLE, curve.values.data());
-  }
-}
-
 }  // namespace
 
 struct TableStore::Impl {
@@ -233,9 +226,8 @@ struct TableStore::Impl {
 
   Impl(TableLayout own, AtomicFile& of_table) : layout(std::move(own)), file(of_table) {
     const TableHead& head = layout.head;
-    put_attributes(writer, head.attributes);
+    put_attributes(writer, head);
     const AxisVariables axes = put_axes(writer, head);
-    put_curves(writer, head);
     for (const Quantity quantity : layout.quantities) offsets.push_back(put_variable(writer, head, axes, quantity));
     if (layout.has_status) offsets.push_back(put_status(writer, head, axes));
   }

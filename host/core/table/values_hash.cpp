@@ -57,8 +57,8 @@ std::string values_hash(const TableHead& head, const Quantities& quantities, con
   if (!head.wind_m_s.empty()) hash = hashed(hash, std::span(head.wind_m_s));
   for (const TableCurve& described : kTableCurves) {
     const Curve& curve = head.*described.curve;
-    if (curve.values.empty()) continue;
-    hash = hashed(hashed(hash, std::span(curve.wavelength_um)), std::span(curve.values));
+    for (const std::vector<double>* values : {&curve.wavelength_um, &curve.values, &curve.used})
+      if (!values->empty()) hash = hashed(hash, std::span(*values));
   }
   for (std::size_t i = 0; i < sums.size(); ++i) {
     hash = hashed(hash, std::string_view(i < quantities.size() ? description_of(quantities[i]).name : "status"));

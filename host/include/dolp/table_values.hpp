@@ -22,10 +22,11 @@ struct Attribute {
 /// Longer texts are variables of characters in files: the netCDF library stores attributes of less than 64 KiB.
 inline constexpr std::size_t kMostAttributeBytes = 64'000;
 
-/// A quantity over wavelength; one row is a constant.
+/// A quantity over wavelength, as the scene has it; one row is a constant.
 struct Curve {
   std::vector<double> wavelength_um;
   std::vector<double> values;
+  std::vector<double> used;  ///< at each value of the axis of wavelengths, one without that axis; empty over a band
   friend bool operator==(const Curve&, const Curve&) = default;
 };
 

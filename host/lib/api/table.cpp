@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -66,15 +67,33 @@ void check_values(const TableValues& table, const std::string& name) {
   for (const TableCurve& described : kTableCurves) {
     const Curve& curve = table.*described.curve;
     check_size(described.name, curve.values.size(), curve.wavelength_um.size());
+    if (!curve.used.empty()) check_size(described.name, curve.used.size(), table.counts()[Axis::kWavelength]);
   }
 }
 
-/// A table that was cut at one value of an axis, and lost it, would be looked up with the scene's value.
-void check_lost_axes(const TableHead& table, const SceneValues& scene, const std::string& name) {
+/// Refuses a table that lost an axis of its scene, which would be looked up with the scene's value, and one with values
+/// of an axis that were not computed: what another program put between entries has no error.
+void check_computed(const TableHead& table, const SceneValues& scene, const std::string& name) {
+  constexpr double kFloatRounding = 0x1p-23;  // of an axis that was stored in single precision
   for (const Axis axis : kAllAxes) {
-    if (!table.axes[axis].empty() || scene.grid[axis].empty()) continue;
-    throw InputError(fmt::format("{}: the axis {} is missing, which its scene has; one value of it is enough", name,
-                                 description_of(axis).name));
+    const char* const axis_name = description_of(axis).name;
+    std::vector<double> computed = scene.grid[axis];
+    if (computed.empty()) continue;
+    if (table.axes[axis].empty()) {
+      throw InputError(
+          fmt::format("{}: the axis {} is missing, which its scene has; one value of it is enough", name, axis_name));
+    }
+    std::ranges::sort(computed);
+    for (const double value : table.axes[axis]) {
+      const auto above = std::ranges::lower_bound(computed, value);
+      const auto is_value = [&](double known) { return std::abs(value - known) <= kFloatRounding * std::abs(known); };
+      if ((above != computed.end() && is_value(*above)) || (above != computed.begin() && is_value(*(above - 1))))
+        continue;
+      throw InputError(fmt::format(
+          "{}: {} = {}: is not among the values that were computed, {} to {}; look up in the "
+          "table as computed, which interpolates with an error",
+          name, axis_name, format_number(value), format_number(computed.front()), format_number(computed.back())));
+    }
   }
 }
 
@@ -83,7 +102,7 @@ void check_lost_axes(const TableHead& table, const SceneValues& scene, const std
 const TableLookup& Table::Impl::lookup() const {
   std::call_once(is_made, [&] {
     scene = table_scene(table, name);
-    check_lost_axes(table, *scene, name);
+    check_computed(table, *scene, name);
     between.emplace(table, scene->accuracy.tolerance, name);
   });
   return *between;
@@ -97,6 +116,7 @@ Table Table::of(TableValues values, const std::string& name) {
   std::erase_if(values.attributes, [](const Attribute& attribute) {
     return attribute.name == kConventions || attribute.name == kValuesHash;
   });
+  take_spectral_data(values, name);
   check_values(values, name);
   return Table(std::make_shared<const Impl>(std::move(values), name));
 }
@@ -107,6 +127,7 @@ std::vector<Attribute> Table::file_attributes() const {
   const TableValues& table = impl_->table;
   std::vector<Attribute> attributes = {{kConventions, kConventionsOfFiles}};
   attributes.insert(attributes.end(), table.attributes.begin(), table.attributes.end());
+  if (const std::string data = spectral_data_of(table); !data.empty()) attributes.push_back({kSpectralData, data});
   const Quantities quantities = table.quantities();
   const ValueSums sums = sums_of(table, quantities, {}, table.counts());
   attributes.push_back({kValuesHash, values_hash(table, quantities, sums)});

@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <ctime>
+#include <iterator>
 #include <span>
 
 #include "base/hash.hpp"
@@ -16,38 +17,29 @@
 namespace dolp {
 namespace {
 
-/// n, k and E0 as they are used: at the axis of wavelengths, else as the scene has them.
-void fill_curves(TableHead& head, const SceneValues& scene) {
+/// The material with all that is known of it, where the table has an axis of wavelengths.
+const Material& recorded_material(const Axes& axes, const SceneValues& scene) {
   const Material& material = scene.surface.material;
-  const bool has_index_axis = !head.axes[Axis::kN].empty() || !head.axes[Axis::kK].empty();
-  if (!head.axes[Axis::kWavelength].empty()) {
-    std::vector<double> wavelengths = scene.grid[Axis::kWavelength];
-    std::ranges::sort(wavelengths);
-    for (const double wavelength_um : wavelengths) {
-      const SceneValues at = at_wavelength(scene, wavelength_um);
-      const OpticalConstants& index = at.surface.material.constant;
-      const auto add = [&](Curve& curve, double value) {
-        curve.wavelength_um.push_back(wavelength_um);
-        curve.values.push_back(value);
-      };
-      if (!has_index_axis) add(head.index_n, index.n);
-      if (!has_index_axis) add(head.index_k, index.k);
-      if (at.source && at.source->kind == Source::Kind::kFlat) add(head.irradiance, at.source->irradiance);
-    }
-    return;
-  }
+  return material.tabulated && !axes[Axis::kWavelength].empty() ? *material.tabulated : material;
+}
+
+/// n, k and E0 as the scene has them.
+void fill_curves(TableHead& head, const SceneValues& scene) {
   const std::vector<double> one_um = {scene.spectrum.min_um};
   const auto curve_of = [&](const SpectralTable& tabulated, double constant) -> Curve {
-    if (tabulated.wavelength_um.empty()) return {one_um, {constant}};
-    return {tabulated.wavelength_um, tabulated.value};
+    if (tabulated.wavelength_um.empty()) return {one_um, {constant}, {}};
+    return {tabulated.wavelength_um, tabulated.value, {}};
   };
-  if (!has_index_axis) {
+  if (head.axes[Axis::kN].empty() && head.axes[Axis::kK].empty()) {
+    const Material& material = recorded_material(head.axes, scene);
     head.index_n = curve_of(material.n, material.constant.n);
     head.index_k = curve_of(material.k, material.constant.k);
   }
-  if (!scene.source) return;
-  if (scene.source->kind == Source::Kind::kFlat) head.irradiance = {one_um, {scene.source->irradiance}};
-  if (scene.source->kind == Source::Kind::kTabulated) head.irradiance = curve_of(scene.source->table, 0.0);
+  if (scene.source && scene.source->kind == Source::Kind::kFlat)
+    head.irradiance = {one_um, {scene.source->irradiance}, {}};
+  if (scene.source && scene.source->kind == Source::Kind::kTabulated)
+    head.irradiance = curve_of(scene.source->table, 0.0);
+  fill_used(head, scene);
 }
 
 /// The file of a scene's profile; empty for a built-in one, which its name describes, and without one.
@@ -67,6 +59,27 @@ std::string stokes_units(const SceneValues& scene) {
 }
 
 }  // namespace
+
+void fill_used(TableHead& head, const SceneValues& scene) {
+  std::vector<double> wavelengths = head.axes[Axis::kWavelength];
+  if (wavelengths.empty()) wavelengths = {scene.spectrum.min_um};
+  const auto fill = [&](Curve& curve, const auto& value_at) {
+    curve.used.clear();
+    if (curve.values.empty() || (scene.spectrum.is_band() && curve.values.size() > 1)) return;
+    std::ranges::transform(wavelengths, std::back_inserter(curve.used), value_at);
+  };
+  const Material& material = scene.surface.material;
+  const auto index_at = [&](double wavelength_um) {
+    return material.tabulated ? material.tabulated->at(wavelength_um) : material.constant;
+  };
+  fill(head.index_n, [&](double wavelength_um) { return index_at(wavelength_um).n; });
+  fill(head.index_k, [&](double wavelength_um) { return index_at(wavelength_um).k; });
+  if (!scene.source) return;
+  const bool is_tabulated = scene.source->kind == Source::Kind::kTabulated;
+  fill(head.irradiance, [&](double wavelength_um) {
+    return is_tabulated ? scene.source->table.at(wavelength_um) : scene.source->irradiance;
+  });
+}
 
 std::string history_text(const std::string& command_line) {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
@@ -139,7 +152,7 @@ TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const
                      {"scene_overrides", settings_text(scene.settings)},
                      {"scene_hash", scene_hash(scene)},
                      {"tolerance", scene.accuracy.tolerance}};
-  const Dispersion& formula = scene.surface.material.n.formula;
+  const Dispersion& formula = recorded_material(axes, scene).n.formula;
   if (formula.number != 0) head.attributes.push_back({"index_n_formula", formula_text(formula)});
   const std::string profile = profile_text(scene);
   if (!profile.empty()) head.attributes.push_back({"surroundings_profile", profile});

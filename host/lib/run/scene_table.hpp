@@ -25,6 +25,9 @@ Quantities quantities_of(const SceneValues& scene, const EffectPlan* plan = null
 /// `axes` may be a part of the scene's grid.
 TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const Axes& axes);
 
+/// Sets n, k and E0 as they are used at the table's wavelengths, of those that it has.
+void fill_used(TableHead& head, const SceneValues& scene);
+
 /// The attribute of a table for what its values follow from, but for the device: names and values, see difference().
 inline constexpr const char* kIdentity = "identity";
 std::string identity_of(const SceneValues& scene, const std::string& evaluator, bool keep_all);

@@ -169,8 +169,7 @@ void check_same_table(const ShardSet& set, const Shard& shard, const TableReader
   const TableHead& first = set.layout.head;
   if (const auto differs = difference(text_of(head, kIdentity), text_of(first, kIdentity)))
     throw InputError(fmt::format("{}: is a shard of another table: it has {}", path, *differs));
-  const bool has_same_curves = std::ranges::all_of(
-      kTableCurves, [&](const TableCurve& described) { return head.*described.curve == first.*described.curve; });
+  const bool has_same_curves = spectral_data_of(head) == spectral_data_of(first);
   if (shard.count != set.count || reader.quantities() != set.layout.quantities ||
       reader.has_status() != set.layout.has_status || head.stokes_units != first.stokes_units || !has_same_curves) {
     throw InputError(fmt::format("{}: is shard {}, of another table than {}: it has other variables or units", path,
@@ -196,6 +195,7 @@ void add_shard(ShardSet& set, const std::string& path) {
     set.scene = table_scene(head, path);
     set.layout = {head, reader.quantities(), reader.has_status()};
     set.layout.head.axes = set.scene.grid;
+    fill_used(set.layout.head, set.scene);
     set.count = shard->count;
   } else {
     check_same_table(set, *shard, reader, path);

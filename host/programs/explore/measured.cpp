@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/text.hpp"
+
 namespace dolp::explore {
 
 Plotted plotted(Observable observable) {
@@ -20,6 +22,11 @@ Plotted plotted(Observable observable) {
       return Plotted::kEmissivityP;
   }
   return Plotted::kDolp;
+}
+
+MeasuredData read_measured(const std::string& path) {
+  check_named_file(path, path + ": ");
+  return MeasuredData::read(path);
 }
 
 void Residuals::load(MeasuredData data) {

@@ -13,6 +13,9 @@ namespace dolp::explore {
 /// The shown quantity that was measured.
 Plotted plotted(Observable observable);
 
+/// The measured points of a regular file: the window never waits for a pipe. Errors: InputError.
+MeasuredData read_measured(const std::string& path);
+
 /// The model at the measured points.
 class Residuals {
  public:

@@ -18,9 +18,10 @@ std::vector<double> linear_ticks(double low, double high, std::size_t most) {
   for (const double factor : {1.0, 2.0, 5.0, 10.0, 20.0}) {
     const double step = factor * decade;
     const double first = std::ceil(low / step - kRounding);
-    const double last = std::floor(high / step + kRounding);
-    if (last - first + 1.0 > static_cast<double>(most)) continue;
-    for (double i = first; i <= last; i += 1.0) ticks.push_back(i * step + 0.0);
+    const double count = std::floor(high / step + kRounding) - first + 1.0;
+    if (!(count <= static_cast<double>(most))) continue;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+      ticks.push_back((first + static_cast<double>(i)) * step + 0.0);
     break;
   }
   return ticks;
@@ -42,8 +43,14 @@ std::vector<double> log_ticks(double low, double high, std::size_t a_decade) {
 
 }  // namespace
 
-bool Scale::is_valid() const {
-  return std::isfinite(from) && std::isfinite(to) && from < to && (!is_log || from > 0.0);
+std::string Scale::refusal() const {
+  constexpr double kLeastSpan = 1e-9;  // of its ends: positions within a narrower range would be rounding
+  if (!std::isfinite(to - from)) return "must be finite";
+  if (!(from < to)) return "must be from < to";
+  if (is_log && from <= 0.0) return "must be above 0 on a logarithmic axis";
+  if (to - from < kLeastSpan * std::max(std::abs(from), std::abs(to)))
+    return "must differ by more than 1e-9 of the ends";
+  return {};
 }
 
 double Scale::value(double position) const {

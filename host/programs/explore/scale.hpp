@@ -8,14 +8,14 @@
 
 namespace dolp::explore {
 
-/// A range of values at positions from 0 to 1. Domain: from < to, both finite; with is_log both positive.
+/// A range of values at positions from 0 to 1. Domain: that of refusal().
 struct Scale {
   double from = 0.0;
   double to = 1.0;
   bool is_log = false;
 
-  /// True for a range in the domain.
-  bool is_valid() const;
+  /// Why a range that was read or typed cannot be drawn; empty for one that can.
+  std::string refusal() const;
   /// The value at a position; outside of the range that of the nearer end.
   double value(double position) const;
   /// The position of a value, not clamped.

@@ -188,7 +188,7 @@ void Session::keep_sky(const std::filesystem::path& scene_file) {
 }
 
 void Session::load_measured(const std::string& path) {
-  attempt([&] { residuals_.load(MeasuredData::read(path)); });
+  attempt([&] { residuals_.load(read_measured(path)); });
 }
 
 void Session::mark(const std::string& key, bool varies) {

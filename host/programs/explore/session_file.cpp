@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <sstream>
+#include <type_traits>
 #include <utility>
 
 #include "base/atomic_file.hpp"
@@ -105,6 +107,9 @@ template <class T>
 T need(Node node, const std::string& place) {
   const std::optional<T> value = node ? node.value<T>() : std::nullopt;
   if (!value) throw InputError(place + (node ? " is of another kind" : " is missing"));
+  if constexpr (std::is_same_v<T, double>) {
+    if (!std::isfinite(*value)) throw InputError(fmt::format("{} = {}: must be a finite number", place, *value));
+  }
   return *value;
 }
 
@@ -128,7 +133,7 @@ SceneEdits state_in(Node node, const std::string& place, const std::filesystem::
 Scale range_in(Node node, const std::string& place) {
   const Scale range{need<double>(node["from"], place + ".from"), need<double>(node["to"], place + ".to"),
                     need<bool>(node["log"], place + ".log")};
-  if (!range.is_valid()) throw InputError(place + ": must be finite, from < to, above 0 where log is true");
+  if (const std::string refusal = range.refusal(); !refusal.empty()) throw InputError(place + ": " + refusal);
   return range;
 }
 
@@ -206,7 +211,7 @@ SavedSession session_in(const std::string& path, const toml::table& table) {
   saved.theta_deg = need<double>(file["view"]["cursor_deg"], place + "view.cursor_deg");
   if (file["measured"]) {
     const auto data = folder / need<std::string>(file["measured"], place + "measured");
-    saved.measured = MeasuredData::read(data.lexically_normal().string());
+    saved.measured = read_measured(data.lexically_normal().string());
   }
   saved.marked = texts_in(file["vary"]);
   return saved;

@@ -28,8 +28,20 @@ def check_mapping(name: str, values: Mapping[str, Any] | None) -> Mapping[str, A
 
 def native_path(name: str, path: Path) -> str:
     if isinstance(path, (str, bytes, os.PathLike)):
-        return os.fsdecode(path)
+        text = os.fsdecode(path)
+        if "\0" in text:
+            raise InputError(f"{name} = {short(text)}: no path holds a zero byte")
+        return encodable(name, text, "surrogateescape")
     raise TypeError(f"{name}: must be a path, not {type(path).__name__}")
+
+
+def encodable(name: str, text: str, errors: str = "strict") -> str:
+    """A text without half characters, which no encoding has."""
+    try:
+        text.encode("utf-8", errors)
+    except UnicodeEncodeError:
+        raise InputError(f"{name} = {short(text)}: holds a surrogate without its other half, which is no character") from None
+    return text
 
 
 def input_path(name: str, path: Path) -> str:
@@ -41,14 +53,14 @@ def input_path(name: str, path: Path) -> str:
 
 def check_key(key: str) -> str:
     if isinstance(key, str):
-        return key
+        return encodable("key", key)
     raise TypeError(f"{short(key)}: a key of a scene must be a str, not {type(key).__name__}")
 
 
 def word_list(key: str, words: Iterable[str]) -> list[str]:
     if isinstance(words, str) or not isinstance(words, Iterable):
         raise TypeError(f"{key}: must be a list of values, not {type(words).__name__}")
-    return [str(word) for word in words]
+    return [encodable(key, str(word)) for word in words]
 
 
 def whole_number(name: str, value: int) -> int:
@@ -57,12 +69,12 @@ def whole_number(name: str, value: int) -> int:
             return count
     except TypeError:
         raise TypeError(f"{name}: must be a whole number, not {type(value).__name__}") from None
-    raise InputError(f"{name} = {value}: must be a whole number from 0 to 2^63 - 1")
+    raise InputError(f"{name} = {short(value)}: must be a whole number from 0 to 2^63 - 1")
 
 
 def word(name: str, value: Any) -> str:
     if isinstance(value, str):
-        return value
+        return encodable(name, value)
     raise TypeError(f"{name}: must be a str, not {type(value).__name__}")
 
 
@@ -103,13 +115,16 @@ def floats(name: str, values: Any) -> np.ndarray:
         array = np.asarray(values)
         if array.dtype.kind in "biuf" or (array.dtype.kind == "O" and None not in array.ravel().tolist()):
             return array.astype(float)
-    except (TypeError, ValueError):
-        raise InputError(f"{name}: {short(values)} are no numbers") from None
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"{name}: {short(values)} are no numbers of double precision") from None
     raise InputError(f"{name}: {short(values)} are no numbers but {array.dtype}")
 
 
 def short(value: Any) -> str:
-    text = " ".join(repr(value).split())
+    try:
+        text = " ".join(repr(value).split())
+    except ValueError:  # Python writes no more than some thousand digits
+        return f"a {type(value).__name__} of very many digits"
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 

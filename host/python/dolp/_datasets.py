@@ -2,16 +2,21 @@
 from __future__ import annotations
 
 import functools
+import json
 import os
-from collections.abc import Hashable
+from collections.abc import Hashable, Iterable
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from . import _native
+from ._arguments import floats, short
 from ._native import InputError
 from ._points import COORDINATES, KEY_ATTRIBUTES, Frame
+
+# The attribute with the values of each key of the scene that is a dimension: one setting a line, KEY=[VALUE, ...].
+_COMPUTED = "computed_values"
 
 
 def dataset_at(parts: _native.Parts, frame: Frame) -> xr.Dataset:
@@ -19,7 +24,7 @@ def dataset_at(parts: _native.Parts, frame: Frame) -> xr.Dataset:
 
 
 def table_dataset(axes: list[tuple[str, np.ndarray]], winds: np.ndarray,
-                   curves: list[tuple[str, str, str, np.ndarray, np.ndarray]], parts: _native.Parts) -> xr.Dataset:
+                   curves: list[tuple[str, str, str, np.ndarray]], parts: _native.Parts) -> xr.Dataset:
     """A table as xarray has it of its file."""
     known = dict(COORDINATES.values())
     coordinates = {name: xr.Variable(name, values, known[name]) for name, values in axes}
@@ -27,21 +32,15 @@ def table_dataset(axes: list[tuple[str, np.ndarray]], winds: np.ndarray,
     variables = _variables(parts, tuple(name for name, _ in axes), shape, {"_FillValue": np.nan})
     if winds.size:
         coordinates["wind_m_s"] = xr.Variable("sigma", winds, known["wind_m_s"])
+    for name, long_name, units, used in curves:
+        along = ("wavelength",) if "wavelength" in coordinates else ()
+        coordinates[name] = xr.Variable(along, used if along else used[0], {"long_name": long_name, "units": units})
+    if others := [name for name in coordinates if name not in dict(axes)]:
         for variable in variables.values():
-            variable.encoding["coordinates"] = "wind_m_s"
-    for name, long_name, units, wavelengths, values in curves:
-        along = f"{name}_wavelength"
-        coordinates[along] = xr.Variable(along, wavelengths, {"long_name": "wavelength", "units": "um"})
-        variables[name] = xr.Variable(along, values, {"long_name": long_name, "units": units})
-    attributes = {}
+            variable.encoding["coordinates"] = " ".join(others)
+    table = xr.Dataset(variables, coordinates)
     for name, value in parts[2].items():
-        encoded = value.encode("utf-8", "surrogateescape") if isinstance(value, str) else b""
-        if len(encoded) > _native.most_attribute_bytes:
-            encoding = {"char_dim_name": f"{name}_length", "dtype": np.dtype("S1")}
-            variables[name] = xr.Variable((), np.array(encoded), encoding=encoding)
-        else:
-            attributes[name] = value if isinstance(value, str) else np.float64(value)
-    table = xr.Dataset(variables, coordinates, attributes)
+        _set_attribute(table, name, value)
     for variable in table.variables.values():
         variable.encoding.setdefault("dtype", variable.dtype)
     return table
@@ -54,9 +53,13 @@ def concatenated(tables: list[xr.Dataset], key: str, values: np.ndarray) -> xr.D
     first = tables[0]
     along = [name for name, variable in first.data_vars.items()
              if "theta" in variable.dims or not all(variable.equals(table[name]) for table in tables)]
-    joined = xr.concat(tables, xr.Variable(key, values, KEY_ATTRIBUTES.get(key)), data_vars=along, coords="minimal",
+    differing = [name for name, coordinate in first.coords.items()
+                 if not all(coordinate.variable.equals(table.coords[name].variable) for table in tables)]
+    joined = xr.concat(tables, xr.Variable(key, values, KEY_ATTRIBUTES.get(key)), data_vars=along, coords=differing,
                        compat="override", combine_attrs="drop_conflicts")
     joined.attrs.pop("scene_hash", None)
+    computed = _attributes_of(first).get(_COMPUTED)
+    _set_attribute(joined, _COMPUTED, "\n".join(filter(None, [computed, f"{key}={values.tolist()}"])))
     if "scene_overrides" in first.attrs:  # those of all but for this key, whose value native_table adds again
         before, _, after = f"\n{first.attrs['scene_overrides']}\n".rpartition(f"\n{key}=")
         rest = after.partition("\n")[2]
@@ -65,35 +68,72 @@ def concatenated(tables: list[xr.Dataset], key: str, values: np.ndarray) -> xr.D
 
 
 def native_table(table: xr.Dataset) -> _native.Table:
-    """The table that a Dataset holds; a coordinate of one value is an axis of one, one that is a key of the scene its value."""
-    keys = [str(name) for name in table.coords if name in KEY_ATTRIBUTES]
-    for key in keys:
-        if table[key].ndim > 0:
-            raise InputError(f"Dataset: has {table[key].size} values of {key}; take one, as with sel({{{key!r}: VALUE}})")
+    """The table that a Dataset holds; a coordinate of one value is an axis of one, one that is a key of the scene its value.
+
+    The dimensions of an axis are those of its coordinate, whatever their names and order.
+    """
+    attributes = _attributes_of(table)
+    overrides = [str(attributes.get("scene_overrides", "")), *_values_of_keys(table, str(attributes.pop(_COMPUTED, "")))]
+    if any(overrides):
+        attributes["scene_overrides"] = "\n".join(filter(None, overrides))
     axes = [name for name in ("wavelength", "n", "k", "theta", "sigma", "q") if name in table.coords]
-    columns, status = {}, np.empty(0, np.uint32)
-    for name, variable in table.variables.items():
-        if variable.dtype.kind not in "iuf" or variable.ndim > len(axes):
+    dims = [dim for axis in axes for dim in table[axis].dims]
+    if any(table[axis].ndim > 1 for axis in axes) or len(set(dims)) < len(dims):
+        raise InputError(f"Dataset: {', '.join(axes)} must each be along a dimension of its own, as in dolp.table")
+    columns = {str(name): floats(f"Dataset: {name}", variable.values).ravel() for name, variable in table.variables.items()
+               if variable.ndim < 2 and variable.dtype.kind in "iuf" and str(name).isascii()}
+    for name in [*_native.quantities(), "status"]:
+        if name not in table.variables:
             continue
-        if set(variable.dims) <= set(axes) and name not in axes:
-            variable = variable.transpose(*(axis for axis in axes if axis in variable.dims))
-        if name == "status":
-            if not np.all(np.isfinite(variable.values)):
-                raise InputError("Dataset: status has entries without a value; take the Dataset before it was masked")
-            status = np.ascontiguousarray(variable.values, dtype=np.uint32).ravel()
-        else:
-            columns[name] = np.asarray(variable.values, dtype=float).ravel()
-    attributes = {name: value if isinstance(value, str) else float(value) for name, value in table.attrs.items()
-                  if isinstance(value, (str, int, float, np.integer, np.floating))}
-    if keys:
-        added = [f"{key}={float(table[key])!r}" for key in keys]
-        attributes["scene_overrides"] = "\n".join(filter(None, [str(attributes.get("scene_overrides", "")), *added]))
-    for name, variable in table.data_vars.items():
-        if variable.ndim == 0 and variable.dtype.kind == "S":
-            attributes[name] = os.fsdecode(variable.values.item())
+        variable = table.variables[name]
+        if set(variable.dims) != set(dims):
+            raise InputError(f"Dataset: {name} is over {_text(variable.dims)}; must be over {_text(dims)}, as the axes are")
+        columns[name] = floats(f"Dataset: {name}", variable.transpose(*dims).values).ravel()
+    status = columns.pop("status", np.empty(0))
+    wrong = status[~((status >= 0) & (status < 2**32) & (status == np.floor(status)))]
+    if wrong.size:
+        raise InputError(f"Dataset: status has entries without a value from 0 to 2^32 - 1, as {wrong[0]}; take the Dataset "
+                         "before it was masked or interpolated")
     stokes = next((table[name] for name in ("stokes_i", "stokes_q", "stokes_u", "stokes_v") if name in table), None)
     units = "" if stokes is None else str(stokes.attrs.get("units", ""))
-    return _native.Table.of(columns, status, units, attributes, "Dataset")
+    return _native.Table.of(columns, status.astype(np.uint32), units, attributes, "Dataset")
+
+
+def _values_of_keys(table: xr.Dataset, computed: str) -> list[str]:
+    """The coordinates that are keys of the scene, as its overrides."""
+    known = {key: json.loads(values) for key, _, values in (line.partition("=") for line in computed.split("\n")) if key}
+    overrides = []
+    for key in [str(name) for name in table.coords if name in KEY_ATTRIBUTES]:
+        if table[key].ndim > 0:
+            raise InputError(f"Dataset: has {table[key].size} values of {key}; take one, as with sel({{{key!r}: VALUE}})")
+        value = float(table[key])
+        if value not in known.get(key, [value]):
+            raise InputError(f"Dataset: {key} = {value}: is not among the values that were computed, {short(known[key])}; "
+                             "compute it, as a value of its own in dolp.table")
+        overrides.append(f"{key}={value!r}")
+    return overrides
+
+
+def _set_attribute(table: xr.Dataset, name: str, value: str | float) -> None:
+    """An attribute, which is a variable of characters where it is long."""
+    encoded = value.encode("utf-8", "surrogateescape") if isinstance(value, str) else b""
+    if len(encoded) > _native.most_attribute_bytes:
+        encoding = {"char_dim_name": f"{name}_length", "dtype": np.dtype("S1")}
+        table[name] = xr.Variable((), np.array(encoded), encoding=encoding)
+    else:
+        table.attrs[name] = value if isinstance(value, str) else np.float64(value)
+
+
+def _attributes_of(table: xr.Dataset) -> dict[str, str | float]:
+    """The reverse of _set_attribute."""
+    attributes = {name: value if isinstance(value, str) else float(floats(f"Dataset: attribute {name}", value))
+                  for name, value in table.attrs.items() if isinstance(value, (str, int, float, np.integer, np.floating))}
+    return attributes | {name: os.fsdecode(variable.values.item()) for name, variable in table.data_vars.items()
+                         if variable.ndim == 0 and variable.dtype.kind == "S"}
+
+
+def _text(dims: Iterable[Hashable]) -> str:
+    return f"({', '.join(map(str, dims))})"
 
 
 def _variables(parts: _native.Parts, dims: tuple[Hashable, ...], shape: tuple[int, ...],

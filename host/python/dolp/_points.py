@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from . import _native
-from ._arguments import Array, check_names, floats, input_path
+from ._arguments import Array, check_names, encodable, floats, input_path
 from ._native import InputError
 
 # Of each column of points the name of its coordinate, which is that of table files, with its attributes.
@@ -109,4 +109,4 @@ def csv_of(data: Any) -> str:
         raise InputError(f"data: columns of different lengths: {sizes}")
     columns = np.broadcast_arrays(*columns)
     rows = zip(*(column.ravel().tolist() for column in columns))
-    return "\n".join([",".join(names), *(",".join(map(repr, row)) for row in rows)]) + "\n"
+    return encodable("data", "\n".join([",".join(names), *(",".join(map(repr, row)) for row in rows)]) + "\n")

@@ -101,8 +101,9 @@ def lookup(table: Path | xr.Dataset, **points: Array) -> xr.Dataset:
 
     `table`: a file, or a Dataset of `table` or of such a file, or a part of one: fewer values of an axis, or one of them,
     as `t.sel(k=0.1)`, fewer variables: dolp, the Stokes parameters, error_estimate, status and the attribute scene are
-    needed. values_hash is that of the whole table and not looked at in a Dataset; a file that holds a part is read by
-    `xarray.load_dataset`. `points`: as for `evaluate`; an axis of one value needs none. The file that was used last stays
+    needed. Dimensions may have any names and order, as after `t.swap_dims(sigma="wind_m_s")`; values of an axis that were
+    not computed, as after `t.interp(theta=33)`, are refused. values_hash is that of the whole table and not looked at in a
+    Dataset; a file that holds a part is read by `xarray.load_dataset`. `points`: as for `evaluate`; an axis of one value needs none. The file that was used last stays
     in memory; a Dataset is copied in each call.
 
     >>> t = dolp.table(scene, theta_deg=np.linspace(0, 80, 41), sigma=[0.1, 0.2])

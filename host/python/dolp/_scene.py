@@ -15,9 +15,10 @@ from ._native import InputError
 class Scene:
     """A surface, what it radiates and reflects, and how accurate results are to be: a scene file, or its text.
 
-    Parameters: a path or `text`, then overrides of any key of a scene; None or "none" removes a table or a key; a complex
-    surface.n gives n and k. `scene[key]` is the value of a key, None where the scene has no such thing. Scenes can be
-    copied, pickled and sent to other processes, which find the files that a scene names where this one did.
+    Parameters: a path or `text`, then overrides of any key of a scene; None, or "none" where a key takes no words, removes a
+    table or a key; a complex surface.n gives n and k. `scene[key]` is the value of a key, None where the scene has no such
+    thing. Scenes can be copied, pickled and sent to other processes, which find the files that a scene names where this
+    one did.
 
     >>> smooth = dolp.Scene(scene, {"surface.sigma": 0.01, "title": "a mirror", "surface.n": 1.5 + 0.1j})
     >>> smooth.title, smooth["surface.k"], smooth["surface.masking"], smooth["grid.q"], smooth["path.radiance"]

@@ -135,12 +135,16 @@ std::string read_text(const std::string& path, const std::string& prefix, std::s
   }
 }
 
-std::string read_named_file(const std::string& path, const std::string& prefix, std::size_t most_bytes) {
+void check_named_file(const std::string& path, const std::string& prefix) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   const bool may_be_read =
       is_regular_file(status) || is_directory(status) || !exists(status);  // for read_text's message
   if (path == "-" || !may_be_read) throw InputError(prefix + "is not a regular file");
+}
+
+std::string read_named_file(const std::string& path, const std::string& prefix, std::size_t most_bytes) {
+  check_named_file(path, prefix);
   return read_text(path, prefix, most_bytes);
 }
 

@@ -49,9 +49,11 @@ inline constexpr std::size_t kMostTextBytes = 16U << 20U;
 /// Errors: InputError, "`prefix`cannot be read: reason", and for more than `most_bytes` or a zero byte among them.
 std::string read_text(const std::string& path, const std::string& prefix, std::size_t most_bytes = kMostTextBytes);
 
-/// The same for a file that an input names: it must be a regular file, so that no call waits for a pipe or reads a
-/// device.
-/// Errors: likewise, and for anything else.
+/// Refuses a pipe, a device or stdin as a file that an input names or the window opens, so that no call waits for it.
+/// Errors: InputError that begins with `prefix`.
+void check_named_file(const std::string& path, const std::string& prefix);
+
+/// The bytes of a file that an input names. Errors: those of check_named_file and read_text.
 std::string read_named_file(const std::string& path, const std::string& prefix,
                             std::size_t most_bytes = kMostTextBytes);
 

@@ -436,6 +436,9 @@ TEST_F(Library, TableOfContentsThatDoNotFit_IsAnInputError) {
   }
   refuses([](dolp::TableValues& table) { table.status.pop_back(); });
   refuses([](dolp::TableValues& table) { table.index_n.values.push_back(1.0); });
+  refuses([](dolp::TableValues& table) { table.index_n.used.push_back(1.0); });
+  for (const char* const row : {"index_n,8", "index_n,8,x", "index_m,8,1.5", "index_n,8,1.5,2"})
+    refuses([&](dolp::TableValues& table) { table.attributes.push_back({"spectral_data", row}); });
   refuses([](dolp::TableValues& table) { table.attributes.push_back({"", "of no name"}); });
   refuses([](dolp::TableValues& table) { table.attributes.push_back({"a/b", "of a name with a /"}); });
   refuses([](dolp::TableValues& table) { table.attributes.push_back(table.attributes.front()); });

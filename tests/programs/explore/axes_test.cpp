@@ -1,6 +1,9 @@
 // Axes whose ends are typed, logarithmic ones, and the colours of the map.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "explore/session_file.hpp"
 #include "explore/window/style.hpp"
 #include "explore_support.hpp"
@@ -18,6 +21,26 @@ TEST(Scale, WithLog_BeginsAboveZero) {
 TEST(Scale, TicksOfAPartOfADecade_AreThoseOfALinearAxis) {
   EXPECT_EQ((Scale{8.0, 14.0, true}.ticks(5)), (std::vector<double>{8.0, 10.0, 12.0, 14.0}));
   EXPECT_EQ((Scale{1.0, 10.0, true}.ticks(5)), (std::vector<double>{1.0, 2.0, 5.0, 10.0}));
+}
+
+TEST(Scale, RangesThatCannotBeDrawn_AreRefused_AndHaveFewTicks) {
+  constexpr double kMost = std::numeric_limits<double>::max();
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& [range, part] : {std::pair{Scale{1.0, std::nextafter(1.0, 2.0)}, "differ by more"},
+                                    {Scale{1e15, std::nextafter(1e15, 2e15), true}, "differ by more"},
+                                    {Scale{-kMost, kMost}, "finite"},
+                                    {Scale{kNaN, 1.0}, "finite"},
+                                    {Scale{1.0, 1.0}, "from < to"},
+                                    {Scale{0.0, 1.0, true}, "above 0"},
+                                    {Scale{0.0, 1e-300}, ""},
+                                    {Scale{1e15, 1.00001e15}, ""}}) {
+    const std::string refusal = range.refusal();
+    EXPECT_EQ(refusal.empty(), *part == '\0') << refusal;
+    EXPECT_NE(refusal.find(part), std::string::npos) << refusal;
+    if (range.from > 0.0) {
+      EXPECT_LE(range.ticks(8).size(), 8U) << range.from;
+    }
+  }
 }
 
 TEST(Colours, DivergingOnes_AreBlueWhiteAndRed) {

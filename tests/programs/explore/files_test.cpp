@@ -1,5 +1,6 @@
 // Files of the window: sessions, what is kept from one start to the next.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cstdlib>
 #include <fstream>
@@ -170,9 +171,12 @@ TEST_F(ExploreFiles, BadFile_IsRefusedInOneLine_AndChangesNothing) {
 
 TEST_F(ExploreFiles, BadPlaceInASession_IsNamed) {
   put("points.csv", "theta_deg,dolp\n40,0.02\n");
+  ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
   Session session(paint());
   fill(session, at("points.csv"));
   save_session(session, at("all.toml"));
+  session.load_measured(at("pipe"));
+  EXPECT_NE(session.message().text.find("pipe: is not a regular file"), std::string::npos) << session.message().text;
   const std::string text = read_file(at("all.toml"));
   const struct {
     std::string from, to, part;
@@ -181,7 +185,11 @@ TEST_F(ExploreFiles, BadPlaceInASession_IsNamed) {
                   {"name = 'as opened'", "name = 3", "all.toml: pins[0].name is of another kind"},
                   {"'surface.n'", "'surface.n'", ""},
                   {"mueller_row = 1", "mueller_row = 4", "all.toml: view.mueller_row = 4: must be in [0, 3]"},
-                  {"from = 20.0", "from = 80.0", "all.toml: view.ranges.curve zenith: must be finite, from < to"},
+                  {"from = 20.0", "from = 80.0", "all.toml: view.ranges.curve zenith: must be from < to"},
+                  {"to = 70.0", "to = 20.000000000000004", "view.ranges.curve zenith: must differ by more than"},
+                  {"to = 70.0", "to = inf", "all.toml: view.ranges.curve zenith.to = inf: must be a finite number"},
+                  {"cursor_deg = 42.5", "cursor_deg = nan", "all.toml: view.cursor_deg = nan: must be a finite number"},
+                  {"'points.csv'", "'pipe'", "pipe: is not a regular file"},
                   {"'points.csv'", "'gone.csv'", "gone.csv"}};
   for (const auto& change : kChanges) {
     std::string changed = text;

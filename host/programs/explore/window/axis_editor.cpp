@@ -16,9 +16,9 @@ std::string AxisEditor::take(const std::string& end, const std::string& text, co
   const auto other = [&](const char* name, double value) { return parse_number(fields_.text(name)).value_or(value); };
   const Scale range{end == "from" ? *typed : other("from", now.from), end == "to" ? *typed : other("to", now.to),
                     now.is_log};
-  if (!(range.from < range.to)) return fmt::format("{} = {}: must be from < to", end, one_line(text));
-  if (range.is_log && range.from <= 0.0) return "from: must be above 0 on a logarithmic axis";
-  std::string refusal = check(range);
+  std::string refusal = range.refusal();
+  if (!refusal.empty()) return fmt::format("{} = {}: {}", end, one_line(text), refusal);
+  refusal = check(range);
   if (refusal.empty()) change = Change{range, range.is_log};
   return refusal;
 }

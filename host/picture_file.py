@@ -1,0 +1,38 @@
+"""Pictures of Matplotlib in files that appear whole or not at all."""
+import errno
+import io
+import os
+
+
+def save(figure, path, colours=None, **how):
+    """Draws a figure beside its file, then renames it. `colours`: most colours of a PNG, so that the file stays small.
+
+    Errors: OSError that names `path`, whose file is then as it was.
+    """
+    target = os.path.realpath(path)  # a link stays
+    suffix = os.path.splitext(target)[1]
+    target += "" if suffix else ".png"
+    is_there = os.path.exists(target)
+    if is_there and not (os.path.isfile(target) and os.access(target, os.W_OK)):
+        raise OSError(errno.EACCES, "is not a file that may be written to", path)
+    picture = io.BytesIO()
+    figure.savefig(picture, format=suffix.lstrip(".") or "png", **how)
+    if colours:
+        from PIL import Image
+        image = Image.open(picture).convert("RGB").quantize(colours, dither=Image.Dither.NONE)
+        picture = io.BytesIO()
+        image.save(picture, format="PNG", optimize=True)
+    beside = os.path.join(os.path.dirname(target), f".dolp-{os.getpid()}.tmp")
+    try:
+        with open(beside, "wb") as file:
+            file.write(picture.getbuffer())
+            file.flush()
+            os.fsync(file.fileno())
+        if is_there:
+            os.chmod(beside, os.stat(target).st_mode)
+        os.replace(beside, target)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, path) from None
+    finally:
+        if os.path.exists(beside):
+            os.unlink(beside)

@@ -118,10 +118,10 @@ ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, const 
   report.value("scattering_gap", gap ? std::optional(gap->dolp) : std::nullopt);
   add_status(report, summary);
   report.row_if(summary.count(kModelInaccurate) > 0, "model",
-                "I changes by up to {:.0f} % with the light that single scattering loses or the masking creates{}",
+                "up to {:.0f} % of I is light that single scattering loses or the masking creates; {}",
                 kPercent * summary.model_change,
-                scene.surface.masking == Masking::kVCavity ? ": surface.scattering = \"multiple\" follows it"
-                                                           : ": masking v-cavity with scattering multiple follows it");
+                scene.surface.masking == Masking::kVCavity ? "surface.scattering = multiple follows it"
+                                                           : "masking v-cavity with scattering multiple follows it");
   report.value("model_change", summary.model_change);
   add_energy(report, summary, run.plan.kept.moments);
   const EvaluationReport& evaluation = run.evaluation;

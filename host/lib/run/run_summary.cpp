@@ -38,8 +38,7 @@ void add_result(RunSummary& summary, double theta_deg, double sigma, const Point
     summary.status[bit] += (result.status & kStatusBits[bit].mask) != 0 ? 1 : 0;
   if ((result.status & kNoDolpPromised) == 0) raise(summary.worst_error, result[Quantity::kErrorEstimate]);
   if ((result.status & kOutsideModelDomain) == 0) raise(summary.worst_rho_error, result[Quantity::kRhoErrorEstimate]);
-  if ((result.status & (kOutsideModelDomain | kIntensityNotPositive)) == 0)
-    summary.model_change = std::max(summary.model_change, result.model_change);
+  if (promises_dolp(result.status)) summary.model_change = std::max(summary.model_change, result.model_change);
   if (std::isnan(result[Quantity::kAlbedo])) return;
   widen(summary.albedo, summary.albedos++ == 0, {result[Quantity::kAlbedo], result[Quantity::kAlbedo]});
   const EnergyRange here{1, {theta_deg, theta_deg}, {sigma, sigma}};

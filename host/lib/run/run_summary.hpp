@@ -35,7 +35,7 @@ struct RunSummary {
   std::size_t albedos = 0;
   std::pair<double, double> albedo;
   EnergyRange loses, gains;
-  double model_change = 0.0;  ///< largest of the entries in the model's domain with a positive I
+  double model_change = 0.0;  ///< largest PointResult::model_change of entries that promise their DOLP
   SelfCheck check;
   double radiometry_s = 0.0;
   Work work;

@@ -38,7 +38,9 @@ STATUS_MEANINGS = {
     2: "tolerance not met",
     4: "outside the domain",
     8: r"$I \leq 0$",
+    32: "single scattering is not enough",
 }
+RHO_TOLERANCE_NOT_MET = 16
 
 
 SYMBOLS = {"q": "q", "wavelength": "λ", "n": "n", "k": "k"}  # of the axes of which one value is drawn
@@ -110,7 +112,8 @@ class Slice:
         self.dolp = 100.0 * values("dolp", np.nan)
         if "stokes_i" in dataset.variables:  # at 90 degrees DOLP may be a limit that no line leads to
             self.dolp[np.isnan(values("stokes_i", np.nan))] = np.nan
-        self.status = values("status", 0) if "status" in dataset.variables else np.zeros(self.dolp.shape, int)
+        status = values("status", 0) if "status" in dataset.variables else np.zeros(self.dolp.shape, int)
+        self.status = status & ~RHO_TOLERANCE_NOT_MET  # which says nothing against DOLP
         has_bracket = "dolp_low" in dataset.variables and "dolp_high" in dataset.variables
         self.bracket = [100.0 * values(name, np.nan) for name in ("dolp_low", "dolp_high")] if has_bracket else None
         errors = values("error_estimate", np.nan) if "error_estimate" in dataset.variables else None

@@ -68,7 +68,7 @@ struct Compared {
            reference[Quantity::kRhoI];
   }
   double dolp_error() const { return std::abs(result[Quantity::kDolp] - reference[Quantity::kDolp]); }
-  bool is_missed() const { return (result.status & kToleranceNotMet) != 0; }
+  bool is_missed() const { return (result.status & kAnyToleranceNotMet) != 0; }
   bool promises_dolp() const { return dolp::promises_dolp(result.status); }
   std::string name() const {
     return std::string(name_of(point.distribution)) + " " + name_of(point.masking) + " theta " +

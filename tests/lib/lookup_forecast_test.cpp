@@ -44,7 +44,7 @@ double flagged_share(const SceneValues& scene) {
   for (int i = 0; i < kPoints; ++i) {
     const double theta_deg = within(scene.grid[Axis::kTheta]), sigma = within(scene.grid[Axis::kSigma]),
                  q = within(scene.grid[Axis::kQ]);
-    flagged += (lookup.at(theta_deg, sigma, q).status & kToleranceNotMet) != 0 ? 1 : 0;
+    flagged += (lookup.at(theta_deg, sigma, q).status & kAnyToleranceNotMet) != 0 ? 1 : 0;
   }
   return static_cast<double>(flagged) / kPoints;
 }

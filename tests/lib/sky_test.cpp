@@ -210,6 +210,37 @@ TEST(Sky, DenseGridsAndBands_OnTheDevice_AgreeWithTheReferenceWithinTheirBounds)
   }
 }
 
+/// DOLP between all bounces and the bracket of one, at each sky and zenith.
+TEST(Sky, Bracket_HoldsAllBouncesAndIsThatOfAUniformSkyOfOneTemperature) {
+  constexpr double kAccuracy = 1e-4;
+  CpuEvaluator cpu;
+  SkyProfile level;
+  level.zenith_deg = {0.0, 90.0};
+  level.values = {250.0, 250.0};
+  for (const OpticalConstants& index :
+       {OpticalConstants{1.5, 0.1}, OpticalConstants{1.2, 0.05}, OpticalConstants{27.0, 90.0}}) {
+    for (const SkyProfile& sky : {quadratic_sky(30), *built_in_sky("clear-sky"), *built_in_sky("overcast"), level}) {
+      SceneValues scene = scene_under(sky);
+      scene.surface.material.constant = index;
+      SceneValues all = scene;
+      all.surface.scattering = Scattering::kMultiple;
+      scene.emission->has_bracket = true;
+      SceneValues uniform = scene;
+      uniform.surroundings = Surroundings{.temperature_K = 250.0};
+      for (const double theta_deg : {20.0, 50.0, 75.0, 85.0}) {
+        const PointResult own = result_of(scene, theta_deg, cpu);
+        const double truth = result_of(all, theta_deg, cpu)[kDolp];
+        EXPECT_LE(own[kDolpLow], truth + kAccuracy) << theta_deg;
+        EXPECT_GE(own[kDolpHigh], truth - kAccuracy) << theta_deg;
+        if (sky.values != level.values) continue;
+        const PointResult of_uniform = result_of(uniform, theta_deg, cpu);
+        EXPECT_NEAR(own[kDolpLow], of_uniform[kDolpLow], 1e-12);
+        EXPECT_NEAR(own[kDolpHigh], of_uniform[kDolpHigh], 1e-12);
+      }
+    }
+  }
+}
+
 TEST(Sky, Band_IsTheIntegralOfItsWavelengths) {
   SceneValues scene = scene_under(*built_in_sky("clear-sky"));
   scene.surface.masking = Masking::kSmith;

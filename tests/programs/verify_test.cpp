@@ -120,11 +120,27 @@ TEST_F(Verify, GoodTable_Exit0AndEveryQuantityIsCompared) {
     EXPECT_EQ(quantity["compared"], 16) << quantity;
   }
   EXPECT_EQ(names, (std::set<std::string>{"dolp", "q_over_i", "rho_i", "rho_q", "stokes_i", "stokes_q", "stokes_u",
-                                          "stokes_v"}));
+                                          "stokes_v", "albedo", "emissivity_s", "emissivity_p"}));
   const Outcome text = dolp({"verify", "t.nc"});
   EXPECT_EQ(text.status, kDone);
   EXPECT_NE(text.out.find("verdict    passed: 16 of 16 entries"), std::string::npos) << text.out;
   EXPECT_EQ(dolp({"verify", "t.nc", "--quiet"}).out, "");
+}
+
+TEST_F(Verify, ValueOfAnyQuantityThatIsOff_IsFound) {
+  const Quantity quantities[] = {Quantity::kDolp,    Quantity::kQOverI,      Quantity::kRhoI,       Quantity::kRhoQ,
+                                 Quantity::kStokesI, Quantity::kStokesQ,     Quantity::kStokesU,    Quantity::kStokesV,
+                                 Quantity::kAlbedo,  Quantity::kEmissivityS, Quantity::kEmissivityP};
+  const TableValues table = make_table({"--set", "grid.theta_deg=[0.001, 40, 60, 80]"});
+  for (const Quantity quantity : quantities) {
+    const double right = table[quantity][0];
+    // The first entry is next to the normal, where the estimate of DOLP says nothing of I.
+    put_value(at("t.nc"), quantity, 0, right + 0.05 * std::max(1.0, std::abs(right)));
+    const nlohmann::json json = verify_json(kAccuracy);
+    EXPECT_EQ(json["failures"].size(), 1U) << description_of(quantity).name;
+    EXPECT_EQ(json["failures"][0]["quantity"], description_of(quantity).name);
+    put_value(at("t.nc"), quantity, 0, right);
+  }
 }
 
 TEST_F(Verify, Samples_AreThoseOfTheSeed) {
@@ -207,7 +223,7 @@ TEST_F(Verify, EstimateBeyondTheToleranceWithoutStatus2_IsFoundByTheTolerance) {
   put_value(at("t.nc"), Quantity::kDolp, at_entry, table[Quantity::kDolp][at_entry] + 2e-4);  // twice the tolerance
   const nlohmann::json json = verify_json(kAccuracy);
   ASSERT_EQ(json["failures"].size(), 1U) << json["failures"];
-  EXPECT_EQ(json["failures"][0]["complaint"], "misses the tolerance without status 2");
+  EXPECT_EQ(json["failures"][0]["complaint"], "misses the tolerance without the status that says so");
   TableValues honest = read_table(at("t.nc"));
   honest.status[at_entry] = 2;
   write_table(honest, at("t.nc"));

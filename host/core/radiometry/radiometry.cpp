@@ -56,7 +56,33 @@ std::uint32_t tolerance_status(const PointResult& result, double tolerance) {
   const bool is_outside = (result.status & kOutsideModelDomain) != 0;  // rho diverges; the DOLP is a limit, or NaN
   const bool dolp_missed = (is_outside || promises_dolp(result.status)) && result[kErrorEstimate] > tolerance;
   const bool rho_missed = !is_outside && result[kRhoErrorEstimate] > tolerance;
-  return dolp_missed || rho_missed ? std::uint32_t{kToleranceNotMet} : 0U;
+  return (dolp_missed ? std::uint32_t{kToleranceNotMet} : 0U) | (rho_missed ? std::uint32_t{kRhoToleranceNotMet} : 0U);
+}
+
+/// Estimated change of I by the light that single scattering loses at a second facet or that a masking creates: with it
+/// every facet's light counts once, rho_I / A instead of rho_I. With direct emission: what neither is emitted nor
+/// reflected.
+double change_by_model(const SceneModel& scene, const SpectralRule& rule, std::span<const Moments> moments,
+                       std::span<const Reflectance> reflectances, std::span<const Emissivity> emissivities,
+                       double cos_theta) {
+  const Surface& surface = scene.surface;
+  if (surface.scattering == Scattering::kMultiple || surface.specular == 0.0) return 0.0;
+  const EmissionModel model = emission_model(scene);
+  const double source = scene.geometry.mode == Mode::kHemispherical ? 1.0 : 0.0;
+  double change = 0.0;
+  for (std::size_t j = 0; j < moments.size(); ++j) {
+    const SpectralSample& sample = rule.samples[j];
+    const Moments& m = moments[j];
+    if (model == EmissionModel::kDirect) {
+      change += sample.emitted * (1.0 - reflectances[j].rho_i - emissivities[j].i);
+      continue;
+    }
+    const double mean_reflectance = m.albedo > 0.0 ? m.r_i / m.albedo : 1.0;
+    const double lost = surface.specular * mean_reflectance * (1.0 - m.albedo / cos_theta);
+    const double emission = model == EmissionModel::kFresnel ? sample.surroundings : sample.excess;
+    change += lost * (emission + source * sample.irradiance * cos_theta);
+  }
+  return std::abs(change) * (scene.path ? scene.path->transmittance : 1.0);
 }
 
 PointResult outside_domain() {
@@ -210,7 +236,12 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   const auto list = emissivities_of(model);
   const std::span<const Emissivity> emissivities(list.data(), list.size());
   Stokes sum = stokes_sum(kept_rule_, reflectances, emissivities, model, cos_theta, !bistatic);
-  add_sky(sum, scene_.surface, kept_rule_, sky_, moments, cos_theta);
+  Stokes sky;
+  add_sky(sky, scene_.surface, kept_rule_, sky_, moments, cos_theta);
+  sum.i += sky.i;
+  sum.q += sky.q;
+  sum.i_error += sky.i_error;
+  sum.q_error += sky.q_error;
   if (bistatic) add_beam(sum, scene_.surface, beam_specular_, kept_rule_, scattered, cos_theta_i, cos_theta);
   add_path(sum, scene_.path, kept_rule_.path_exitance);
   const double unit = bistatic ? 1.0 / pi : 1.0;  // an exitance, or the radiance that it is the integral of
@@ -227,11 +258,14 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   if (scene_.emission) add_emissivity(result, rule_, emissivities);
   if (scene_.emission && scene_.emission->has_bracket) {
     const auto direct = emissivities_of(EmissionModel::kDirect);
-    const Bracket between = bracket(scene_, kept_rule_, reflectances, {direct.data(), direct.size()}, cos_theta);
+    const Bracket between = bracket(scene_, kept_rule_, reflectances, {direct.data(), direct.size()}, sky, cos_theta);
     result[kDolpLow] = between.low;
     result[kDolpHigh] = between.high;
     result[kErrorEstimate] = std::max(result[kErrorEstimate], between.error);
   }
+  result.model_change =
+      change_by_model(scene_, kept_rule_, moments, reflectances, emissivities, cos_theta) / std::abs(sum.i);
+  if (result.model_change > kLargestModelChange) result.status |= kModelInaccurate;
   if (sum.i <= 0.0) result.status |= kIntensityNotPositive;
   if (std::isnan(result[kDolp])) result.status |= kOutsideModelDomain;
   return result;

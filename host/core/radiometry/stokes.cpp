@@ -65,6 +65,18 @@ void add_emitting_sample(Stokes& sum, const SpectralSample& sample, const Reflec
                  rounding * (emitted_terms + std::abs(incident * r.rho_q));
 }
 
+/// The middle of some values, and half of the distance between the largest and the smallest; 0 without values.
+struct Span {
+  double middle = 0.0;
+  double half = 0.0;
+};
+
+Span span_of(const std::vector<double>& values) {
+  if (values.empty()) return {};
+  const auto [least, most] = std::ranges::minmax(values);
+  return {0.5 * (least + most), 0.5 * (most - least)};
+}
+
 }  // namespace
 
 Stokes stokes_sum(const SpectralRule& rule, std::span<const Reflectance> reflectances,
@@ -148,24 +160,41 @@ void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance
 }
 
 Bracket bracket(const SceneModel& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,
-                std::span<const Emissivity> direct, double cos_theta) {
+                std::span<const Emissivity> direct, const Stokes& sky, double cos_theta) {
   Stokes single = stokes_sum(rule, reflectances, {}, EmissionModel::kMoments, cos_theta, true);
-  double q = 0.0;
-  double slack = 0.0;
-  double error = 0.0;
+  single.i += sky.i;
+  single.i_error += sky.i_error;
+  double q = sky.q;
+  double unknown = 0.0;    // largest change of Q if all of D is emitted
+  double unreached = 0.0;  // largest change of Q and I if all of D comes from an unknown part of the sky, beside
+  double reflected = 0.0;  // the change of I with the middle of the sky
+  double error = sky.q_error;
   for (std::size_t j = 0; j < reflectances.size(); ++j) {
     const SpectralSample& sample = rule.samples[j];
-    const double net = sample.irradiance * cos_theta + sample.excess;
-    q -= net * direct[j].q;
-    slack += std::abs(net) * std::max(reflectances[j].absorbed - direct[j].i, 0.0);
-    error += std::abs(net) * (reflectances[j].absorbed_error + direct[j].i_error + direct[j].q_error);
+    const Span beyond_mean = span_of(sample.sky);
+    const double net = sample.irradiance * cos_theta + sample.excess + beyond_mean.middle;
+    const double rest = std::max(reflectances[j].absorbed - direct[j].i, 0.0);
+    q -= net * direct[j].q + beyond_mean.middle * reflectances[j].rho_q;
+    unknown += std::abs(net) * rest;
+    unreached += beyond_mean.half * rest;
+    reflected += net * rest;
+    error += std::abs(net) * (reflectances[j].absorbed_error + direct[j].i_error + direct[j].q_error) +
+             std::abs(beyond_mean.middle) * reflectances[j].rho_q_error;
   }
   const double transmittance = scene.path ? scene.path->transmittance : 1.0;
   add_path(single, scene.path, rule.path_exitance);
   const double scale = transmittance / single.i;
   Bracket between;
-  between.low = scale * std::max(std::abs(q) - slack, 0.0);
-  between.high = scale * (std::abs(q) + slack);
+  between.low = scale * std::max(std::abs(q) - unknown, 0.0);
+  between.high = scale * (std::abs(q) + unknown);
+  if (unreached > 0.0) {
+    const double i = single.i + transmittance * reflected;
+    const double change = transmittance * unreached;
+    between.low = std::min(between.low, transmittance * std::max(std::abs(q) - unreached, 0.0) / (i + change));
+    const double least = i - change;
+    between.high = std::max(between.high, least > 0.0 ? transmittance * (std::abs(q) + unreached) / least
+                                                      : std::numeric_limits<double>::infinity());
+  }
   between.error = std::abs(scale) * error + between.high * relative_bound(single.i_error, std::abs(single.i));
   return between;
 }

@@ -29,7 +29,10 @@ struct Stokes {
 ///
 /// Equation: its eps_I is larger than the direct one by d <= D = 1 - rho_I - eps_I,direct, which changes eps_Q by d at
 /// most; I = X + N eps_I, Q = N eps_Q with N = pi B - X, X the exitances of source and surroundings. Both ends lie at
-/// d = D, where I is that of single scattering: (|sum N eps_Q,direct| -+ sum |N| D) / I.
+/// d = D, where I is that of single scattering: (|sum N eps_Q,direct| -+ sum |N| D) / I. Under a sky X is the middle of
+/// its radiance, to which single scattering adds what it reflects beyond that; the light D - d of further bounces comes
+/// from an unknown part of the sky, which is within M of the middle: the ends may then also lie at d = 0, where Q is
+/// within M D and I within M D of that with X.
 struct Bracket {
   double low = 0.0;
   double high = 0.0;
@@ -60,8 +63,9 @@ void add_beam(Stokes& sum, const Surface& surface, double k_s, const SpectralRul
 /// Applies a path: its transmittance multiplies the sums, its radiance is added.
 void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance);
 
+/// `sky`: what add_sky adds.
 Bracket bracket(const SceneModel& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,
-                std::span<const Emissivity> direct, double cos_theta);
+                std::span<const Emissivity> direct, const Stokes& sky, double cos_theta);
 
 /// Bound of the relative error of a value with this bound of its absolute one.
 double relative_bound(double error, double value);

@@ -340,8 +340,7 @@ void check_scattering(const SceneValues& scene, const SceneDocument& document) {
         document, "emission.bracket",
         {{can_be_direct, maskings},
          {emission.model != EmissionModel::kFresnel, "emission.model = \"moments\" or \"direct\""},
-         {scene.geometry.mode == Mode::kHemispherical, "geometry.mode = \"hemispherical\""},
-         {!scene.surroundings || !scene.surroundings->profile, "surroundings.temperature_K instead of a profile"}});
+         {scene.geometry.mode == Mode::kHemispherical, "geometry.mode = \"hemispherical\""}});
   }
   if (is_direct) check_needs(document, "emission.model", {{can_be_direct, maskings}});
 }

@@ -38,9 +38,15 @@ constexpr double kPieceRelativeError = 1e-12;
 constexpr double kNodesRelativeError = 1e-10;
 constexpr double kSmallestPart = 1e-4;
 constexpr int kMostNodes = 24;
-// The rough surface averages the smooth one's absorptances over angles; the probes below are three of them.
+// The rough surface averages the smooth one's absorptances over angles. The probes are three of them, and those at
+// which total reflection begins at a few wavelengths of the segment: there an absorptance has a root in the wavelength.
 constexpr double kProbeSafety = 10.0;
 constexpr std::array<double, 3> kProbeCosines = {1.0, 0.5, 0.1};
+constexpr std::array<double, 7> kCriticalPlaces = {0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};  // of a segment
+// A segment with such roots is cut into equal panels until its error is this share of the scene's tolerance.
+constexpr double kShareOfTolerance = 0.05;
+constexpr int kPanelNodes = 8;
+constexpr int kMostPanels = 64;
 
 /// A node of the fine rule with the spectral factors there, all multiplied by the node's weight.
 struct FineNode {
@@ -246,10 +252,21 @@ double probe_error(const SceneModel& scene, const std::vector<SpectralSample>& s
   return std::max(std::abs(exact.s - approximate.s), std::abs(exact.p - approximate.p)) / part;
 }
 
+/// The cosines at which the rule of a segment is probed.
+std::vector<double> probe_cosines(const Material& material, double from_um, double to_um) {
+  std::vector<double> cosines(kProbeCosines.begin(), kProbeCosines.end());
+  for (const double place : kCriticalPlaces) {
+    const OpticalConstants index = material.at(std::lerp(from_um, to_um, place));
+    const double square = index.n * index.n - index.k * index.k;
+    if (square > 0.0 && square < 1.0) cosines.push_back(std::sqrt(1.0 - square));
+  }
+  return cosines;
+}
+
 double nodes_error(const SceneModel& scene, const std::vector<SpectralSample>& samples,
-                   const std::vector<FineNode>& fine) {
+                   const std::vector<FineNode>& fine, const std::vector<double>& cosines) {
   double worst = 0.0;
-  for (const double cosine : kProbeCosines) {
+  for (const double cosine : cosines) {
     worst = std::max({worst, probe_error(scene, samples, fine, cosine, [](const auto& at) { return at.emitted; }),
                       probe_error(scene, samples, fine, cosine, [](const auto& at) { return at.surroundings; }),
                       probe_error(scene, samples, fine, cosine, [](const auto& at) { return at.irradiance; })});
@@ -271,19 +288,53 @@ void append_merged(std::vector<SpectralSample>& samples, const SpectralSample& s
   same->width += sample.width;
 }
 
+/// The samples of one segment, and their error.
+struct SegmentRule {
+  std::vector<SpectralSample> samples;
+  double error = 0.0;
+};
+
+SegmentRule smooth_segment(const SceneModel& scene, double from_um, double to_um, const std::vector<FineNode>& fine,
+                           const std::vector<double>& cosines) {
+  SegmentRule rule;
+  for (int count = 1; count <= kMostNodes; ++count) {
+    rule.samples = samples_at(scene, gauss_wavelengths(from_um, to_um, count), fine);
+    rule.error = scene.surface.material.is_constant() ? 0.0 : nodes_error(scene, rule.samples, fine, cosines);
+    if (rule.error <= kNodesRelativeError) break;
+  }
+  return rule;
+}
+
+/// `panels` equal parts, each with its own nodes. A half of a panel has twice the nodes of a panel to compare with.
+SegmentRule segment_of_panels(const SceneModel& scene, double from_um, double to_um, int panels,
+                              const std::vector<double>& cosines) {
+  SegmentRule rule;
+  std::vector<FineNode> all;
+  for (int i = 0; i < panels; ++i) {
+    const double start_um = std::lerp(from_um, to_um, static_cast<double>(i) / panels);
+    const double end_um = std::lerp(from_um, to_um, static_cast<double>(i + 1) / panels);
+    const double middle_um = 0.5 * (start_um + end_um);
+    std::vector<FineNode> fine = fine_nodes(scene, start_um, middle_um);
+    for (const FineNode& node : fine_nodes(scene, middle_um, end_um)) fine.push_back(node);
+    for (const SpectralSample& sample : samples_at(scene, gauss_wavelengths(start_um, end_um, kPanelNodes), fine))
+      rule.samples.push_back(sample);
+    all.insert(all.end(), fine.begin(), fine.end());
+  }
+  rule.error = nodes_error(scene, rule.samples, all, cosines);
+  return rule;
+}
+
 /// Adds one segment of the material to a rule.
 void append_segment(const SceneModel& scene, double from_um, double to_um, SpectralRule& rule) {
   const std::vector<FineNode> fine = fine_nodes(scene, from_um, to_um);
   for (const FineNode& node : fine) rule.path_exitance += node.path;
-  std::vector<SpectralSample> samples;
-  double error = 0.0;
-  for (int count = 1; count <= kMostNodes; ++count) {
-    samples = samples_at(scene, gauss_wavelengths(from_um, to_um, count), fine);
-    error = scene.surface.material.is_constant() ? 0.0 : nodes_error(scene, samples, fine);
-    if (error <= kNodesRelativeError) break;
-  }
-  if (error > 0.0) rule.relative_error = std::max(rule.relative_error, kProbeSafety * error);
-  for (const SpectralSample& sample : samples) append_merged(rule.samples, sample);
+  const std::vector<double> cosines = probe_cosines(scene.surface.material, from_um, to_um);
+  SegmentRule segment = smooth_segment(scene, from_um, to_um, fine, cosines);
+  const double wanted = std::max(kShareOfTolerance * scene.accuracy.tolerance / kProbeSafety, kNodesRelativeError);
+  for (int panels = 4; panels <= kMostPanels && segment.error > wanted; panels *= 2)
+    segment = segment_of_panels(scene, from_um, to_um, panels, cosines);
+  if (segment.error > 0.0) rule.relative_error = std::max(rule.relative_error, kProbeSafety * segment.error);
+  for (const SpectralSample& sample : segment.samples) append_merged(rule.samples, sample);
 }
 
 SpectralRule single_wavelength_rule(const SceneModel& scene, double wavelength_um) {

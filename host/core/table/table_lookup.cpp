@@ -378,7 +378,7 @@ PointResult TableLookup::at(const Point& point) const {
     const std::vector<double>& bounds = table_[kRhoErrorEstimate];
     rho_error = rows.sum_of_sizes([&](std::size_t position) { return std::abs(rho[position]) * bounds[position]; });
   }
-  result.status = cell_status(window) & kReflectanceOutsideZeroToOne;
+  result.status = cell_status(window) & (kReflectanceOutsideZeroToOne | kModelInaccurate);
   finish(result, change, error, rho_error);
   return result;
 }
@@ -408,9 +408,8 @@ void TableLookup::finish(PointResult& result, const PointResult& change, double 
 void TableLookup::add_status(PointResult& result) const {
   if (result[kStokesI] <= 0.0) result.status |= kIntensityNotPositive;
   const bool states_dolp = promises_dolp(result.status);
-  if ((states_dolp && !(result[kErrorEstimate] <= tolerance_)) || result[kRhoErrorEstimate] > tolerance_) {
-    result.status |= kToleranceNotMet;
-  }
+  if (states_dolp && !(result[kErrorEstimate] <= tolerance_)) result.status |= kToleranceNotMet;
+  if (result[kRhoErrorEstimate] > tolerance_) result.status |= kRhoToleranceNotMet;
 }
 
 Quantities TableLookup::quantities() const {

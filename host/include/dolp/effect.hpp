@@ -40,7 +40,7 @@ struct Effect {
   std::string needs = {};                ///< quantities that it requires; empty when it is not kept
   std::optional<Part> part = {};         ///< none for choices of the model
   std::optional<double> bound = {};      ///< of a dropped one: of the change of (Q/I, U/I) without it, worst point
-  std::optional<double> influence = {};  ///< of a kept one: estimate of that change, the largest of up to 12 points
+  std::optional<double> influence = {};  ///< of a kept one: estimate of that change, the largest of a few points
 };
 
 }  // namespace dolp

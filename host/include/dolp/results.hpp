@@ -14,6 +14,7 @@ namespace dolp {
 struct PointResult {
   QuantityArray<double> values;  ///< NaN where there is none
   std::uint32_t status = 0;      ///< bits of status.hpp
+  double model_change = 0.0;     ///< what kModelInaccurate is about, as a share of I; not among the values of files
 
   PointResult() { values.fill(std::numeric_limits<double>::quiet_NaN()); }
   double& operator[](Quantity quantity) { return values[quantity]; }

@@ -9,13 +9,21 @@ namespace dolp {
 enum Status : std::uint32_t {
   /// rho_s or rho_p outside [0, 1] by more than its error bound: Kirchhoff's law does not hold there.
   kReflectanceOutsideZeroToOne = 1,
-  /// The scene's tolerance is not met, for rho or for DOLP.
+  /// DOLP misses the scene's tolerance.
   kToleranceNotMet = 2,
   /// Outside the model's domain; undefined quantities are NaN.
   kOutsideModelDomain = 4,
   /// I <= 0: the sum of what is emitted and reflected is not a radiation that exists.
   kIntensityNotPositive = 8,
+  /// rho misses the scene's tolerance, which alone says nothing against DOLP.
+  kRhoToleranceNotMet = 16,
+  /// Light that single scattering loses, or that a masking creates, changes I by an estimated more than 5 %. Alone: the
+  /// numbers are right for the model, and the model is wrong for the surface.
+  kModelInaccurate = 32,
 };
+
+/// Largest change of I without kModelInaccurate.
+inline constexpr double kLargestModelChange = 0.05;
 
 /// A bit of Status with the word that files have for it.
 struct StatusBit {
@@ -24,12 +32,17 @@ struct StatusBit {
 };
 
 /// In the order in which files list them.
-inline constexpr std::array<StatusBit, 4> kStatusBits = {{
+inline constexpr std::array<StatusBit, 6> kStatusBits = {{
     {kReflectanceOutsideZeroToOne, "reflectance_outside_zero_to_one"},
     {kToleranceNotMet, "tolerance_not_met"},
     {kOutsideModelDomain, "outside_model_domain"},
     {kIntensityNotPositive, "intensity_not_positive"},
+    {kRhoToleranceNotMet, "rho_tolerance_not_met"},
+    {kModelInaccurate, "model_inaccurate"},
 }};
+
+/// DOLP or rho misses the tolerance.
+inline constexpr std::uint32_t kAnyToleranceNotMet = kToleranceNotMet | kRhoToleranceNotMet;
 
 /// With any of these bits the DOLP has no guaranteed accuracy.
 inline constexpr std::uint32_t kNoDolpPromised =

@@ -112,9 +112,9 @@ Report Evaluator::write_table(const Scene& scene, const std::filesystem::path& p
       return public_report(report, true, job.path);
     }
     const RunOutcome run = dolp::write_table(own, job, impl_->maker(own));
-    const std::optional<double> gap = scattering_gap(own, entries, run.plan);
+    const std::optional<ScatteringGap> gap = scattering_gap(own, entries, run.plan);
     return public_report(run_report(own, run, gap, grid_text(entries.axes()), job.path.string()),
-                         run.summary.count(kToleranceNotMet) == 0, job.path);
+                         run.summary.meets_tolerance(), job.path);
   });
 }
 
@@ -129,12 +129,12 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
     ResultCsv csv = csv_of(path, points, quantities_of(own));
     PassedResults rows([&](const SceneEntries&, const std::vector<PointResult>& results) { csv.append(results); });
     RunOutcome outcome = run.compute(rows);
-    const std::optional<double> gap = scattering_gap(own, run.entries(), outcome.plan);
+    const std::optional<ScatteringGap> gap = scattering_gap(own, run.entries(), outcome.plan);
     csv.commit();
     outcome.wall_s = run.wall_s();
     ReportBuilder report = run_report(own, outcome, gap, fmt::format("{} points", points.size()), path.string());
     add_left_out(report, points);
-    Report result = public_report(report, outcome.summary.count(kToleranceNotMet) == 0, path);
+    Report result = public_report(report, outcome.summary.meets_tolerance(), path);
     add_remarks(result, points);
     return result;
   });
@@ -190,6 +190,8 @@ Report write_lookup(const std::filesystem::path& table_path, const std::filesyst
   csv.commit();
 
   const std::size_t missed = count_status(results, kToleranceNotMet);
+  const std::size_t rho_missed = count_status(results, kRhoToleranceNotMet);
+  const std::size_t inaccurate = count_status(results, kModelInaccurate);
   const std::optional<double> worst = worst_of(results, Quantity::kErrorEstimate, kNoDolpPromised);
   ReportBuilder report;
   report.line("{}", key("table", table_path.string()));
@@ -197,16 +199,18 @@ Report write_lookup(const std::filesystem::path& table_path, const std::filesyst
   report.row("error", "{}, interpolation included; tolerance of the table {:g}",
              worst ? fmt::format("DOLP <= {:.2g} (absolute)", *worst) : "stated for no point",
              key("tolerance", scene.accuracy.tolerance));
-  report.row("status 2", "{} of {} points: tolerance not met{}", key("tolerance_missed", missed), results.size(),
-             missed == 0                                      ? ""
-             : worst.value_or(0.0) > scene.accuracy.tolerance ? ", of DOLP: the grid is too coarse there (dolp plan)"
-                                                              : ", of rho alone: DOLP is as good as its estimate");
+  report.row("status 2", "{} of {} points: DOLP misses the tolerance{}", key("tolerance_missed", missed),
+             results.size(), missed == 0 ? "" : ": the grid is too coarse there (dolp plan)");
+  report.row("status 16", "{} of {} points: rho misses the tolerance", key("rho_tolerance_missed", rho_missed),
+             results.size());
+  report.row_if(inaccurate > 0, "status 32", "{} of {} points: {}", key("model_inaccurate", inaccurate), results.size(),
+                kModelInaccurateText);
   add_left_out(report, points);
   report.row("written", "{}", key("output", path.string()));
   report.value("worst_error_estimate", worst);
   report.value("worst_rho_error_estimate", worst_of(results, Quantity::kRhoErrorEstimate, kNoDolpPromised));
   report.value("wall_s", seconds_since(start));
-  return public_report(report, missed == 0, path);
+  return public_report(report, missed + rho_missed == 0, path);
 }
 
 Report merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& path,

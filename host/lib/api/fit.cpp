@@ -348,7 +348,7 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     report.value("integrand_evaluations", evaluator->report().evaluations);
     if (!best.result) return Fit{public_report(report, false), false, scene};
     if (!options.output.empty()) report.row("written", "{}", key("output", options.output.string()));
-    Fit found{public_report(report, (best.result->status & kToleranceNotMet) == 0, options.output), true, fitted};
+    Fit found{public_report(report, (best.result->status & kAnyToleranceNotMet) == 0, options.output), true, fitted};
     add_numbers(found, *best.result);
     return found;
   });

@@ -52,7 +52,8 @@ ReportBuilder quality_report(const Quality& quality) {
   }
   const DeviceQuality& q = *quality.measured;
   report.line(
-      "   {:<6} true error of rho at most {:.1e} in {} ordinary cases; with tolerance {:g} {} of them get status 2, "
+      "   {:<6} true error of rho at most {:.1e} in {} ordinary cases; with tolerance {:g} {} of them get status 2 or "
+      "16, "
       "because "
       "the stated bound, larger than the error, misses it{}",
       quality.precision, key("worst_rho_error", q.worst_error), key("cases", q.cases), key("tolerance", q.tolerance),

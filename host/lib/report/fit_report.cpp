@@ -7,6 +7,7 @@
 
 #include <dolp/status.hpp>
 #include "base/text.hpp"
+#include "report/run_report.hpp"
 
 namespace dolp {
 namespace {
@@ -219,6 +220,7 @@ void add_fit(ReportBuilder& report, const fit::Model& model, const FitResult& re
   report.row_if(beyond != 0, "status", "{} at some point of the best fit: the model fails there",
                 key("status", result.status));
   report.row_if((result.status & kToleranceNotMet) != 0, "status", "2 at some point: the tolerance is not met");
+  report.row_if((result.status & kModelInaccurate) != 0, "status", "32 at some point: {}", kModelInaccurateText);
   report.value("evaluations", result.evaluations);
   add_points(report, model, result);
 }

@@ -131,7 +131,8 @@ PlanReport plan_of(const SceneValues& scene, const std::string& device, EffectPl
   const SceneEntries entries = grid_entries(scene);
   report.plan = std::move(plan);
   report.effects = effects_of(scene, entries, report.plan);
-  add_influences(report.effects, scene, entries);
+  report.looked = add_influences(report.effects, scene, entries);
+  report.model_change = estimated_model_change(scene, entries);
   add_forecast(report, entries, limits);
   report.work_shares = work_shares(report, entries, limits);
   report.lookup = lookup_forecast(scene, report.plan);

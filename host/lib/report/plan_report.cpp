@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <dolp/status.hpp>
 #include "model/choices.hpp"
 #include "run/estimates.hpp"
 
@@ -38,6 +39,12 @@ ReportBuilder effect_report(const Effect& row, double share) {
   return report;
 }
 
+void add_model_change(ReportBuilder& report, double change) {
+  report.line("  model: single scattering, or a masking that creates light, changes I by up to about {:.2g} %{}",
+              kPercent * change, change > kLargestModelChange ? ": status 32" : "");
+  report.value("model_change", change);
+}
+
 void add_effects(ReportBuilder& report, const PlanReport& plan) {
   report.value("effects", effects_json(plan.effects, plan.plan));
   report.line("  {:<14} {:<11} {:>11} {:>7}  {}", "effect", "plan", "influence", "work", "why [what it takes]");
@@ -48,8 +55,8 @@ void add_effects(ReportBuilder& report, const PlanReport& plan) {
   report.add("rows", rows);
   report.line(
       "  influence: change of (Q/I, U/I) without the effect, in points of DOLP (0.01): a bound of what is dropped, an "
-      "estimate from up to {} entries of what is kept",
-      kInfluenceEntries);
+      "estimate from {} of what is kept",
+      plan.looked.text());
   report.line(
       "  work: share of the evaluations, f among them, that would go with the effect; those that share theirs have "
       "none alone");
@@ -196,6 +203,7 @@ ReportBuilder plan_report(const PlanReport& plan) {
              key("entries", plan.run.entries), key("spectral_samples", plan.run.spectral_samples));
   report.line("");
   add_effects(report, plan);
+  add_model_change(report, plan.model_change);
   report.line("");
   report.row("dropped", "{}", dropped_text(plan.plan, scene.accuracy.tolerance));
   report.row("output", "{}", output_text(scene, plan.plan));

@@ -8,6 +8,7 @@
 #include "evaluate/vulkan/dispatch_forecast.hpp"
 #include "plan/effects.hpp"
 #include "report/report.hpp"
+#include "run/estimates.hpp"
 #include "run/lookup_forecast.hpp"
 #include "run/prediction.hpp"
 #include "scene/scene.hpp"
@@ -25,6 +26,8 @@ struct PlanReport {
   SceneValues scene;
   EffectPlan plan;
   std::vector<Effect> effects;
+  Looked looked;                    ///< by the influences
+  double model_change = 0.0;        ///< estimated_model_change
   std::vector<double> work_shares;  ///< of each effect: evaluations and f that would go with it, 0 to 1
   RunPrediction run;
   std::optional<RuleSize> rule;        ///< none without moments

@@ -16,6 +16,7 @@ namespace dolp {
 
 inline constexpr double kMebibyte = 1048576.0;
 inline constexpr double kPoints = 100.0;  ///< of DOLP in 1
+inline constexpr double kPercent = 100.0;
 
 /// A value and its key in JSON: a path, whose parts are separated by slashes.
 template <class T>

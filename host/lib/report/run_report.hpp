@@ -11,14 +11,18 @@
 #include "plan/effects.hpp"
 #include "report/plan_report.hpp"
 #include "report/report.hpp"
+#include "run/estimates.hpp"
 #include "run/scene_run.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {
 
+inline constexpr const char* kModelInaccurateText =
+    "single scattering, or a masking that creates light, changes I by an estimated more than 5 %";
+
 /// The report of a run. `shape`: that of the grid, or "200 points"; `path`: what was written; `gap`: of single
 /// scattering, none where it does not apply.
-ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, std::optional<double> gap,
+ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, const std::optional<ScatteringGap>& gap,
                          const std::string& shape, const std::string& path);
 
 /// The evaluator and device of a run, and the time that it took.

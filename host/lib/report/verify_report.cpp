@@ -78,7 +78,7 @@ Worst worst_of(const CaseOutcome& outcome) {
   return is_rho ? Worst{"rho", outcome.rho} : Worst{"dolp", outcome.dolp};
 }
 
-bool is_missed(const CaseOutcome& outcome) { return (outcome.status & kToleranceNotMet) != 0; }
+bool is_missed(const CaseOutcome& outcome) { return (outcome.status & kAnyToleranceNotMet) != 0; }
 
 ReportBuilder case_report(const StoredCase& stored, const CaseOutcome& outcome) {
   const std::string verdict = !outcome.complaint.empty() ? "WRONG: " + outcome.complaint

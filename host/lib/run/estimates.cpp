@@ -1,6 +1,9 @@
 #include "run/estimates.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
 #include <dolp/status.hpp>
@@ -13,25 +16,120 @@
 namespace dolp {
 namespace {
 
+using enum Quantity;
+
 constexpr double kTolerance = 1e-3;
-constexpr std::size_t kInfluenceMoments = 48;  // at most, but of two entries
+constexpr std::size_t kBandWavelengths = 8;
+constexpr std::size_t kDrawnPoints = 24;  // of a list
+
+/// Values of each axis of a grid that are looked at. What changes DOLP is largest at an end of sigma and of q.
+std::size_t most_values(Axis axis) {
+  if (axis == Axis::kTheta) return 8;
+  return axis == Axis::kWavelength ? 3 : 2;
+}
+
+/// Positions spread evenly over an axis, its ends included.
+std::vector<std::size_t> spread_positions(std::size_t size, std::size_t most) {
+  std::vector<std::size_t> positions;
+  const std::size_t count = std::min(size, most);
+  for (std::size_t i = 0; i < count; ++i) positions.push_back(count == 1 ? 0 : (i * (size - 1)) / (count - 1));
+  return positions;
+}
+
+SceneEntries spread_entries(const SceneEntries& entries) {
+  if (!entries.is_grid()) return drawn_entries(entries, kDrawnPoints);
+  std::vector<SceneEntry> drawn;
+  const PerAxis& counts = entries.counts();
+  AxisArray<std::vector<std::size_t>> values;
+  PerAxis of_axis{};
+  for (const Axis axis : kAllAxes) {
+    values[axis] = spread_positions(counts[axis], most_values(axis));
+    of_axis[axis] = values[axis].size();
+  }
+  for (std::size_t i = 0; i < size_of(of_axis); ++i) {
+    const PerAxis chosen = place_of(i, of_axis);
+    std::size_t position = 0;
+    for (const Axis axis : kAllAxes) position = position * counts[axis] + values[axis][chosen[axis]];
+    drawn.push_back(entries[position]);
+  }
+  return {std::move(drawn), entries.wavelength_um()};
+}
+
+/// A few entries of a scene, at a few wavelengths of its band.
+struct Sample {
+  SceneValues scene;
+  SceneEntries entries;           ///< those of one place are neighbours, one for each weight
+  std::vector<double> weight_um;  ///< of the wavelengths of a band; {1} without
+};
+
+Sample sample_of(const SceneValues& scene, const SceneEntries& entries) {
+  Sample sample{scene, spread_entries(entries), {1.0}};
+  sample.scene.accuracy = {.tolerance = kTolerance};
+  if (sample.scene.emission) sample.scene.emission->has_bracket = false;
+  if (!scene.spectrum.is_band() || spectral_rule(scene).samples.size() <= kBandWavelengths) return sample;
+  using Rule = boost::math::quadrature::gauss<double, kBandWavelengths>;
+  const double middle = 0.5 * (scene.spectrum.min_um + scene.spectrum.max_um);
+  const double half = 0.5 * (scene.spectrum.max_um - scene.spectrum.min_um);
+  std::vector<double> wavelength_um;
+  sample.weight_um.clear();
+  for (std::size_t i = 0; i < kBandWavelengths / 2; ++i) {
+    for (const double sign : {-1.0, 1.0}) {
+      wavelength_um.push_back(middle + sign * half * Rule::abscissa()[i]);
+      sample.weight_um.push_back(half * Rule::weights()[i]);
+    }
+  }
+  std::vector<SceneEntry> all;
+  for (SceneEntry entry : sample.entries.all()) {
+    for (entry.wavelength = 0; entry.wavelength < wavelength_um.size(); ++entry.wavelength) all.push_back(entry);
+  }
+  sample.scene.spectrum = {middle, middle};
+  sample.entries = {std::move(all), std::move(wavelength_um)};
+  return sample;
+}
+
+/// The sums over a band of the results at its wavelengths.
+PointResult sum_of(std::span<const PointResult> results, std::span<const double> weight_um) {
+  if (results.size() == 1) return results.front();
+  PointResult sum;
+  for (const Quantity stokes : {kStokesI, kStokesQ, kStokesU}) sum[stokes] = 0.0;
+  double changed = 0.0;
+  for (std::size_t j = 0; j < results.size(); ++j) {
+    for (const Quantity stokes : {kStokesI, kStokesQ, kStokesU}) sum[stokes] += weight_um[j] * results[j][stokes];
+    changed += weight_um[j] * results[j].model_change * std::abs(results[j][kStokesI]);
+    sum.status |= results[j].status;
+  }
+  sum.model_change = changed / std::abs(sum[kStokesI]);
+  sum[kDolp] = std::hypot(sum[kStokesQ], sum[kStokesU]) / sum[kStokesI];
+  return sum;
+}
+
+std::vector<PointResult> results_of(const Sample& sample, const std::optional<EffectPlan>& plan = {}) {
+  CpuEvaluator evaluator;
+  const std::vector<PointResult> all = evaluate_scene(sample.scene, sample.entries, evaluator, {}, plan);
+  std::vector<PointResult> sums;
+  const std::size_t count = sample.weight_um.size();
+  for (std::size_t i = 0; i < all.size(); i += count) {
+    sums.push_back(sum_of(std::span(all).subspan(i, count), sample.weight_um));
+  }
+  return sums;
+}
 
 double polarisation_change(const PointResult& a, const PointResult& b) {
-  using enum Quantity;
   return std::hypot(a[kStokesQ] / a[kStokesI] - b[kStokesQ] / b[kStokesI],
                     a[kStokesU] / a[kStokesI] - b[kStokesU] / b[kStokesI]);
 }
 
-std::optional<double> largest_change(const std::vector<PointResult>& a, const std::vector<PointResult>& b) {
+/// The largest of `change(a, b)` over the entries that promise their DOLP both ways; none without any.
+template <class Change>
+std::optional<double> largest_change(const std::vector<PointResult>& a, const std::vector<PointResult>& b,
+                                     const Change& change) {
   std::optional<double> largest;
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (!promises_dolp(a[i].status) || !promises_dolp(b[i].status)) continue;
-    largest = std::max(largest.value_or(0.0), polarisation_change(a[i], b[i]));
+    largest = std::max(largest.value_or(0.0), change(a[i], b[i]));
   }
   return largest;
 }
-
-constexpr std::size_t kGapMoments = 64;  // at most, but of one entry
 
 bool has_gap(const SceneValues& scene, const EffectPlan& plan) {
   return plan.kept.moments && scene.emission && scene.emission->model != EmissionModel::kFresnel &&
@@ -39,47 +137,50 @@ bool has_gap(const SceneValues& scene, const EffectPlan& plan) {
          scene.geometry.mode == Mode::kHemispherical;
 }
 
-std::vector<PointResult> results_with(SceneValues scene, EmissionModel model, const SceneEntries& entries) {
-  scene.emission->model = model;
-  scene.emission->has_bracket = false;
-  scene.accuracy = {.tolerance = kTolerance};
-  CpuEvaluator evaluator;
-  return evaluate_scene(scene, entries, evaluator, {});
+Looked looked_at(const Sample& sample) {
+  return {sample.entries.size() / sample.weight_um.size(), sample.weight_um.size()};
 }
 
 }  // namespace
 
-void add_influences(std::vector<Effect>& rows, const SceneValues& scene, const SceneEntries& entries) {
-  const std::size_t samples = spectral_rule(scene).samples.size();
-  const SceneEntries drawn =
-      drawn_entries(entries, std::clamp<std::size_t>(kInfluenceMoments / samples, 2, kInfluenceEntries));
-  SceneValues rough = scene;
-  rough.accuracy = {.tolerance = kTolerance};
-  if (rough.emission) rough.emission->has_bracket = false;
-  CpuEvaluator evaluator;
-  const auto results_of = [&](const KeptEffects& kept) {
-    return evaluate_scene(rough, drawn, evaluator, {}, plan_to_keep(rough, kept));
+std::string Looked::text() const {
+  if (wavelengths == 1) return fmt::format("{} entries", entries);
+  return fmt::format("{} entries and {} wavelengths of the band", entries, wavelengths);
+}
+
+Looked add_influences(std::vector<Effect>& rows, const SceneValues& scene, const SceneEntries& entries) {
+  const Sample sample = sample_of(scene, entries);
+  const auto results_with = [&](const KeptEffects& kept) {
+    return results_of(sample, plan_to_keep(sample.scene, kept));
   };
   std::vector<PointResult> whole;
   for (Effect& row : rows) {
     if (row.state != EffectState::kKept || !row.part || row.influence) continue;
-    if (whole.empty()) whole = results_of({});
-    row.influence = largest_change(whole, results_of(without({}, *row.part)));
+    if (whole.empty()) whole = results_with({});
+    row.influence = largest_change(whole, results_with(without({}, *row.part)), polarisation_change);
   }
+  return looked_at(sample);
 }
 
-std::optional<double> scattering_gap(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan) {
+std::optional<ScatteringGap> scattering_gap(const SceneValues& scene, const SceneEntries& entries,
+                                            const EffectPlan& plan) {
   if (!has_gap(scene, plan)) return {};
-  const std::size_t samples = spectral_rule(scene).samples.size();
-  const SceneEntries drawn = drawn_entries(entries, std::clamp<std::size_t>(kGapMoments / samples, 1, kGapEntries));
-  const std::vector<PointResult> kirchhoff = results_with(scene, EmissionModel::kMoments, drawn);
-  const std::vector<PointResult> direct = results_with(scene, EmissionModel::kDirect, drawn);
-  std::optional<double> gap;
-  for (std::size_t i = 0; i < drawn.size(); ++i) {
-    if (!promises_dolp(kirchhoff[i].status) || !promises_dolp(direct[i].status)) continue;
-    gap = std::max(gap.value_or(0.0), std::abs(kirchhoff[i][Quantity::kDolp] - direct[i][Quantity::kDolp]));
+  Sample sample = sample_of(scene, entries);
+  sample.scene.emission->model = EmissionModel::kMoments;
+  const std::vector<PointResult> kirchhoff = results_of(sample);
+  sample.scene.emission->model = EmissionModel::kDirect;
+  const std::vector<PointResult> direct = results_of(sample);
+  const std::optional<double> dolp = largest_change(
+      kirchhoff, direct, [](const PointResult& a, const PointResult& b) { return std::abs(a[kDolp] - b[kDolp]); });
+  return dolp ? std::optional(ScatteringGap{*dolp, looked_at(sample)}) : std::nullopt;
+}
+
+double estimated_model_change(const SceneValues& scene, const SceneEntries& entries) {
+  double largest = 0.0;
+  for (const PointResult& result : results_of(sample_of(scene, entries))) {
+    if (promises_dolp(result.status)) largest = std::max(largest, result.model_change);
   }
-  return gap;
+  return largest;
 }
 
 }  // namespace dolp

@@ -38,6 +38,7 @@ void add_result(RunSummary& summary, double theta_deg, double sigma, const Point
     summary.status[bit] += (result.status & kStatusBits[bit].mask) != 0 ? 1 : 0;
   if ((result.status & kNoDolpPromised) == 0) raise(summary.worst_error, result[Quantity::kErrorEstimate]);
   if ((result.status & kOutsideModelDomain) == 0) raise(summary.worst_rho_error, result[Quantity::kRhoErrorEstimate]);
+  if (promises_dolp(result.status)) summary.model_change = std::max(summary.model_change, result.model_change);
   if (std::isnan(result[Quantity::kAlbedo])) return;
   widen(summary.albedo, summary.albedos++ == 0, {result[Quantity::kAlbedo], result[Quantity::kAlbedo]});
   const EnergyRange here{1, {theta_deg, theta_deg}, {sigma, sigma}};
@@ -70,6 +71,7 @@ void RunSummary::add(const RunSummary& other) {
   albedos += other.albedos;
   add_range(loses, other.loses);
   add_range(gains, other.gains);
+  model_change = std::max(model_change, other.model_change);
   check.add(other.check);
   radiometry_s += other.radiometry_s;
   work += other.work;
@@ -84,10 +86,11 @@ std::string RunSummary::text() const {
     return fmt::format("{} {} {} {} {}", r.entries, r.theta_deg.first, r.theta_deg.second, r.sigma.first,
                        r.sigma.second);
   };
-  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", entries, fmt::join(status, " "),
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", entries, fmt::join(status, " "),
                      worst_error.value_or(-1.0), worst_rho_error.value_or(-1.0), albedos, albedo.first, albedo.second,
-                     range(loses), range(gains), check.entries, check.worst_ratio, radiometry_s, work.evaluations,
-                     work.kernel_s, work.sums_s, work.dispatches, work.interpolated, work.interpolation_nodes, "end");
+                     range(loses), range(gains), model_change, check.entries, check.worst_ratio, radiometry_s,
+                     work.evaluations, work.kernel_s, work.sums_s, work.dispatches, work.interpolated,
+                     work.interpolation_nodes, "end");
 }
 
 std::optional<RunSummary> RunSummary::from_text(const std::string& text) {
@@ -116,6 +119,7 @@ std::optional<RunSummary> RunSummary::from_text(const std::string& text) {
   summary.albedo.second = number();
   range(summary.loses);
   range(summary.gains);
+  summary.model_change = number();
   words >> summary.check.entries;
   summary.check.worst_ratio = number();
   summary.radiometry_s = number();

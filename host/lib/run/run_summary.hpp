@@ -35,6 +35,7 @@ struct RunSummary {
   std::size_t albedos = 0;
   std::pair<double, double> albedo;
   EnergyRange loses, gains;
+  double model_change = 0.0;  ///< largest PointResult::model_change of entries that promise their DOLP
   SelfCheck check;
   double radiometry_s = 0.0;
   Work work;
@@ -44,6 +45,8 @@ struct RunSummary {
   void add(const RunSummary& other);
 
   std::size_t count(std::uint32_t bit) const;
+  /// True if no entry says that DOLP or rho misses the tolerance.
+  bool meets_tolerance() const { return count(kToleranceNotMet) + count(kRhoToleranceNotMet) == 0; }
 
   /// Writes the summary in one line, and reads it back. A line of another kind gives nothing.
   std::string text() const;

@@ -178,7 +178,8 @@ std::vector<PointResult> computed_at(const RunContext& context, const Selection&
 }
 
 bool is_better(const PointResult& a, const PointResult& b) {
-  return (a.status & kToleranceNotMet) < (b.status & kToleranceNotMet) ||
+  const auto misses = [](const PointResult& result) { return (result.status & kAnyToleranceNotMet) != 0; };
+  return misses(a) < misses(b) ||
          std::max(a[Quantity::kErrorEstimate], a[Quantity::kRhoErrorEstimate]) <
              std::max(b[Quantity::kErrorEstimate], b[Quantity::kRhoErrorEstimate]);
 }
@@ -317,7 +318,7 @@ std::vector<PointResult> part_results(const RunContext& context, const SceneEntr
     if (of_entry.worst_ratio <= 1.0) continue;
     const std::size_t direction = positions[i] / part.of_direction();
     for (PointResult& result : std::span(results).subspan(direction * part.of_direction(), part.of_direction()))
-      result.status |= kToleranceNotMet;
+      result.status |= kAnyToleranceNotMet;
   }
   return results;
 }

@@ -95,6 +95,7 @@ std::vector<Attribute> attributes_of(const SceneValues& scene, const RunOutcome&
           {"precision", evaluation.precision},
           {"effects", effects_text(run.effects, run.plan)},
           {"rule", rule_text(scene.accuracy.tolerance, evaluation)},
+          {kModelChange, run.summary.model_change},
           {"self_check_entries", static_cast<double>(run.summary.check.entries)},
           {"self_check_worst_ratio", run.summary.check.worst_ratio},
           {"wall_time_s", run.wall_s}};

@@ -14,6 +14,9 @@
 
 namespace dolp {
 
+/// The attribute with the largest PointResult::model_change of a table.
+inline constexpr const char* kModelChange = "model_change";
+
 /// The quantities that results of a scene have: of points, where those that a run leaves out are NaN; of a table that a
 /// run by `plan` makes, without these.
 Quantities quantities_of(const SceneValues& scene, const EffectPlan* plan = nullptr);

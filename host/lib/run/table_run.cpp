@@ -166,6 +166,7 @@ class MergedRun {
     const double most = static_cast<double>(kMostTableEntries);
     check_.entries += static_cast<std::size_t>(std::min(number_of(head, "self_check_entries"), most));
     check_.worst_ratio = std::max(check_.worst_ratio, number_of(head, "self_check_worst_ratio"));
+    model_change_ = std::max(model_change_, number_of(head, kModelChange));
     wall_s_ += number_of(head, "wall_time_s");
     const std::string device = text_of(head, "device");
     if (devices_.find(device) == std::string::npos) devices_ += (devices_.empty() ? "" : "; ") + device;
@@ -180,6 +181,7 @@ class MergedRun {
             {"precision", text_of(first, "precision")},
             {"effects", text_of(first, "effects")},
             {"rule", text_of(first, "rule")},
+            {kModelChange, model_change_},
             {"self_check_entries", static_cast<double>(check_.entries)},
             {"self_check_worst_ratio", check_.worst_ratio},
             {"wall_time_s", wall_s_}};
@@ -187,6 +189,7 @@ class MergedRun {
 
  private:
   SelfCheck check_;
+  double model_change_ = 0.0;
   double wall_s_ = 0.0;
   std::string devices_;
 };

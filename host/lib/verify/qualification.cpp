@@ -73,7 +73,7 @@ std::string complaint_about(const char* quantity, const ErrorCheck& check, bool 
   if (std::isnan(check.estimate)) return fmt::format("{} has no estimate", quantity);
   if (!check.is_within_estimate()) return fmt::format("the estimate of {} is below its error", quantity);
   if (is_promised && check.is_above(tolerance)) {
-    return fmt::format("{} misses the tolerance without status 2", quantity);
+    return fmt::format("{} misses the tolerance without the status that says so", quantity);
   }
   return {};
 }
@@ -83,13 +83,14 @@ CaseOutcome outcome_of(const StoredCase& stored, const PointResult& result, doub
   CaseOutcome outcome;
   outcome.status = result.status;
   outcome.promises_dolp = promises_dolp(result.status);
-  const bool is_promised = (result.status & kToleranceNotMet) == 0;
+  const bool meets_dolp = (result.status & kToleranceNotMet) == 0;
+  const bool meets_rho = (result.status & kRhoToleranceNotMet) == 0;
   outcome.dolp = {std::abs(result[Quantity::kDolp] - expected.dolp), result[Quantity::kErrorEstimate],
                   expected.dolp_error};
   // At I = 0 neither side has a DOLP.
   const bool has_dolp = std::isfinite(expected.dolp) && std::isfinite(expected.dolp_error);
   if (!has_dolp) outcome.dolp = {0.0, kInfinity, 0.0};
-  outcome.complaint = complaint_about("dolp", outcome.dolp, is_promised && outcome.promises_dolp, tolerance);
+  outcome.complaint = complaint_about("dolp", outcome.dolp, meets_dolp && outcome.promises_dolp, tolerance);
   if (!expected.has_rho) {
     outcome.rho.estimate = kInfinity;
     return outcome;
@@ -99,7 +100,7 @@ CaseOutcome outcome_of(const StoredCase& stored, const PointResult& result, doub
   const bool has_rho = !std::isnan(result[Quantity::kRhoI]) && !std::isnan(result[Quantity::kRhoQ]);
   outcome.rho = {has_rho ? relative(distance, expected.rho_i) : distance, result[Quantity::kRhoErrorEstimate],
                  expected.rho_error};
-  const std::string complaint = complaint_about("rho", outcome.rho, is_promised, tolerance);
+  const std::string complaint = complaint_about("rho", outcome.rho, meets_rho, tolerance);
   if (!complaint.empty()) outcome.complaint = complaint;
   return outcome;
 }
@@ -162,7 +163,7 @@ DeviceQuality measure_quality(ModelEvaluator& evaluator, const Accuracy& accurac
   quality.tolerance = accuracy.tolerance;
   for (const CaseOutcome& outcome : qualify(cases, evaluator, accuracy, {})) {
     const StoredCase& stored = cases[outcome.position];
-    quality.missed += (outcome.status & kToleranceNotMet) != 0 ? 1 : 0;
+    quality.missed += (outcome.status & kAnyToleranceNotMet) != 0 ? 1 : 0;
     quality.is_sound = quality.is_sound && outcome.complaint.empty();
     // Written so that NaN is the worst, and stays it.
     if (std::isnan(quality.worst_error) || outcome.rho.error <= quality.worst_error) continue;

@@ -32,7 +32,7 @@ struct CaseOutcome {
   ErrorCheck dolp;             ///< |d DOLP|
   bool promises_dolp = false;  ///< whether the tolerance is promised for DOLP: status has none of the bits 1, 4, 8
   std::uint32_t status = 0;
-  std::string complaint;  ///< empty when the case is right: errors below estimates, tolerances met or status 2
+  std::string complaint;  ///< empty when the case is right: errors below estimates, tolerances met or status 2 or 16
   double worst_ratio() const;
 };
 

@@ -15,6 +15,7 @@
 #include "base/numbers.hpp"
 #include "reference/reference_evaluator.hpp"
 #include "run/scene_run.hpp"
+#include "spectrum/spectral_rule.hpp"
 
 namespace dolp {
 namespace {
@@ -23,13 +24,13 @@ namespace {
 constexpr double kReferenceTolerance = 1e-11;
 
 /// The relation of a quantity's bound to the two estimates.
-enum class Bound { kDolp, kReflectance, kPolarisedRadiation, kRadiation };
+enum class Bound { kDolp, kReflectance, kPolarisedRadiation, kRadiation, kEmissivity, kAlbedo };
 
 struct Compared {
   Quantity quantity;
   Bound bound;
 };
-constexpr std::array<Compared, 10> kCompared{{
+constexpr std::array<Compared, 13> kCompared{{
     {Quantity::kDolp, Bound::kDolp},
     {Quantity::kQOverI, Bound::kDolp},
     {Quantity::kDolpLow, Bound::kDolp},
@@ -40,11 +41,44 @@ constexpr std::array<Compared, 10> kCompared{{
     {Quantity::kStokesQ, Bound::kPolarisedRadiation},
     {Quantity::kStokesU, Bound::kPolarisedRadiation},
     {Quantity::kStokesV, Bound::kPolarisedRadiation},
+    {Quantity::kAlbedo, Bound::kAlbedo},
+    {Quantity::kEmissivityS, Bound::kEmissivity},
+    {Quantity::kEmissivityP, Bound::kEmissivity},
 }};
 
+/// Where files state no error of a quantity, the largest stated one times this is what it may err by, relative to what
+/// it is a sum of.
+constexpr double kUnstatedOverStated = 10.0;
+
+/// What bounds depend on besides the entry.
+struct BoundTerms {
+  double tolerance = 0.0;
+  double radiation = 0.0;  ///< sum of what the scene emits and reflects with rho = 1, in the units of Stokes I
+};
+
+BoundTerms bound_terms(const SceneValues& scene) {
+  BoundTerms terms{.tolerance = scene.accuracy.tolerance};
+  const SpectralRule rule = spectral_rule(scene);
+  for (const SpectralSample& sample : rule.samples)
+    terms.radiation += std::abs(sample.emitted) + std::abs(sample.surroundings) + std::abs(sample.irradiance);
+  terms.radiation += rule.path_exitance;
+  return terms;
+}
+
+/// The terms at each wavelength of a table; one element without an axis of wavelengths.
+std::vector<BoundTerms> bound_terms(const SceneValues& scene, const std::vector<double>& wavelength_um) {
+  if (wavelength_um.empty()) return {bound_terms(scene)};
+  std::vector<BoundTerms> terms;
+  for (const double at_um : wavelength_um) terms.push_back(bound_terms(at_wavelength(scene, at_um)));
+  return terms;
+}
+
 /// The bound in the quantity's own units, from the estimates of one side and the magnitudes of the reference.
-double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const PointResult& reference) {
+double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const PointResult& reference,
+                const BoundTerms& terms) {
   const double radiation = dolp_estimate * std::abs(reference[Quantity::kStokesI]);
+  const double unstated = kUnstatedOverStated * std::max({dolp_estimate, rho_estimate, terms.tolerance});
+  const double dolp = std::abs(reference[Quantity::kDolp]);
   switch (bound) {
     case Bound::kDolp:
       return dolp_estimate;
@@ -53,7 +87,12 @@ double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const Po
     case Bound::kPolarisedRadiation:
       return radiation;
     case Bound::kRadiation:
-      return reference[Quantity::kDolp] != 0.0 ? radiation / std::abs(reference[Quantity::kDolp]) : kInfinity;
+      // Toward DOLP = 0 its estimate says nothing of I.
+      return std::min(dolp > 0.0 ? radiation / dolp : kInfinity, unstated * terms.radiation);
+    case Bound::kEmissivity:
+      return unstated;
+    case Bound::kAlbedo:
+      return unstated * std::max(1.0, std::abs(reference[Quantity::kAlbedo]));
   }
   return kInfinity;
 }
@@ -66,7 +105,7 @@ std::string complaint_about(const CheckedValue& value, double allowed) {
   if (std::isnan(value.reference)) return "is a number in the table, but outside the model's domain";
   if (std::isnan(value.stated)) return "has no error estimate in the table";
   if (value.error() > value.stated + value.reference_error) return "errs by more than the table states";
-  if (value.error() > allowed + value.reference_error) return "misses the tolerance without status 2";
+  if (value.error() > allowed + value.reference_error) return "misses the tolerance without the status that says so";
   return {};
 }
 
@@ -77,11 +116,10 @@ double estimate_at(const std::vector<double>& estimates, std::size_t i) {
 }
 
 double allowed_error(Bound bound, std::uint32_t status, double tolerance, const PointResult& reference) {
-  const bool is_promised = (status & kToleranceNotMet) == 0;
-  if (is_promised && bound == Bound::kReflectance) return tolerance * std::abs(reference[Quantity::kRhoI]);
-  const bool is_dolp = bound == Bound::kDolp && promises_dolp(status);
-  if (is_promised && is_dolp) return tolerance;
-  return kInfinity;
+  const bool is_rho = bound == Bound::kReflectance && (status & kRhoToleranceNotMet) == 0;
+  if (is_rho) return tolerance * std::abs(reference[Quantity::kRhoI]);
+  const bool is_dolp = bound == Bound::kDolp && promises_dolp(status) && (status & kToleranceNotMet) == 0;
+  return is_dolp ? tolerance : kInfinity;
 }
 
 void add(QuantityCheck& check, const CheckedValue& value) {
@@ -91,7 +129,7 @@ void add(QuantityCheck& check, const CheckedValue& value) {
 }
 
 CheckedValue compare(const TableValues& table, const Compared& compared, std::size_t i, const SceneEntry& entry,
-                     const PointResult& reference, double tolerance) {
+                     const PointResult& reference, const BoundTerms& terms) {
   CheckedValue value;
   value.quantity = description_of(compared.quantity).name;
   value.theta_deg = entry.theta_deg;
@@ -105,13 +143,13 @@ CheckedValue compare(const TableValues& table, const Compared& compared, std::si
   value.reference = reference[compared.quantity];
   const double dolp_estimate = estimate_at(table[Quantity::kErrorEstimate], i);
   const double rho_estimate = estimate_at(table[Quantity::kRhoErrorEstimate], i);
-  value.stated = bound_of(compared.bound, dolp_estimate, rho_estimate, reference);
-  value.reference_error =
-      bound_of(compared.bound, reference[Quantity::kErrorEstimate], reference[Quantity::kRhoErrorEstimate], reference);
+  value.stated = bound_of(compared.bound, dolp_estimate, rho_estimate, reference, terms);
+  value.reference_error = bound_of(compared.bound, reference[Quantity::kErrorEstimate],
+                                   reference[Quantity::kRhoErrorEstimate], reference, {0.0, terms.radiation});
   // Where neither side has an estimate, as of an intensity that overflows, nothing is stated.
   if (std::isnan(value.stated) && !std::isfinite(value.reference_error)) value.stated = value.reference_error = kInfinity;
-  const std::uint32_t status = table.status.empty() ? kToleranceNotMet : table.status[i];
-  value.complaint = complaint_about(value, allowed_error(compared.bound, status, tolerance, reference));
+  const std::uint32_t status = table.status.empty() ? kAnyToleranceNotMet : table.status[i];
+  value.complaint = complaint_about(value, allowed_error(compared.bound, status, terms.tolerance, reference));
   return value;
 }
 
@@ -176,20 +214,21 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
   ReferenceEvaluator reference({.relative_tolerance = kReferenceTolerance});
   const std::vector<PointResult> results = evaluate_scene(scene, grid.chosen(sample.positions), reference, progress);
 
+  const std::vector<BoundTerms> terms = bound_terms(scene, table.axes[Axis::kWavelength]);
   TableCheck check;
   check.entries = table.size();
   check.checked = entries.size();
   check.tolerance = scene.accuracy.tolerance;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const std::uint32_t status = table.status.empty() ? 0 : table.status[i];
-    check.missed += (status & kToleranceNotMet) != 0 ? 1 : 0;
+    check.missed += (status & kAnyToleranceNotMet) != 0 ? 1 : 0;
   }
   for (const Compared& compared : kCompared) {
     if (!table.has(compared.quantity)) continue;
     QuantityCheck& of_quantity = check.quantities.emplace_back();
     of_quantity.name = description_of(compared.quantity).name;
     for (std::size_t i = 0; i < entries.size(); ++i) {
-      const CheckedValue value = compare(table, compared, i, entries[i], results[i], check.tolerance);
+      const CheckedValue value = compare(table, compared, i, entries[i], results[i], terms[entries[i].wavelength]);
       add(of_quantity, value);
       if (!value.complaint.empty()) check.failures.push_back(value);
     }

@@ -41,7 +41,7 @@ struct QuantityCheck {
 struct TableCheck {
   std::size_t entries = 0;
   std::size_t checked = 0;
-  std::size_t missed = 0;  ///< of the checked, those that say they miss the tolerance (status 2)
+  std::size_t missed = 0;  ///< of the checked, those that say they miss the tolerance (status 2 or 16)
   double tolerance = 0.0;
   std::vector<QuantityCheck> quantities;
   std::vector<CheckedValue> failures;

@@ -103,6 +103,8 @@ std::string status_text(std::uint32_t status) {
   add(kToleranceNotMet, "tolerance missed");
   add(kOutsideModelDomain, "outside the model's domain");
   add(kIntensityNotPositive, "I ≤ 0");
+  add(kRhoToleranceNotMet, "tolerance of ρ missed");
+  add(kModelInaccurate, "single scattering changes I by over 5 %");
   return text.empty() ? "good" : text;
 }
 

@@ -134,9 +134,6 @@ std::vector<Setting> asked_for(const Scene& scene, const std::vector<Setting>& c
       if (now && other.excludes(*now)) asked.push_back({other.key, TomlText{other.instead}});
     }
   }
-  // A bracket needs uniform surroundings.
-  const bool has_bracket = word_in(words, "emission.bracket") == "true" && !word_in(chosen, "emission.bracket");
-  if (word_in(chosen, "surroundings.profile") && has_bracket) asked.push_back({"emission.bracket", TomlText{"false"}});
   // A wind gives Gaussian slopes; another distribution begins with its sigma.
   if (word_in(chosen, "surface.distribution") == "cauchy" && scene.number("surface.wind_m_s"))
     asked.push_back({"surface.sigma", scene.number("surface.sigma").value()});

@@ -36,14 +36,16 @@ process that was forked from one that has used a Vulkan device gets a DeviceErro
 (multiprocessing.set_start_method("spawn")), or take evaluator="cpu". Errors: InputError (a ValueError) with one line
 that says what is allowed, DeviceError (a RuntimeError), IoError (an OSError); a TypeError for arguments of another kind;
 MemoryError. A file that is to be read and is not there is a MissingFileError (an InputError and a FileNotFoundError).
-Input that was probably meant otherwise (percent, Celsius, nanometres), or a file without k, gives an InputWarning.
-Masked arrays are refused, because results have no mask: fill or compress them.
+Input that was probably meant otherwise (percent, Celsius, nanometres), or a file without k, gives an InputWarning; a scene
+for which single scattering is not enough (status 32) gives one ModelWarning. Masked arrays are refused, because results
+have no mask: fill or compress them.
 """
 from __future__ import annotations
 
 from . import _native
 from ._arguments import MissingFileError
 from ._fit import Fit, fit
+from ._model_warning import ModelWarning
 from ._native import DeviceError, InputError, InputWarning, IoError
 from ._runs import Plan, devices, evaluate, lookup, mueller, plan, table, write_table
 from ._scene import Material, Scene, keys, material, materials
@@ -60,5 +62,5 @@ def citation() -> str:
 
 
 # All names show as those of this package, wherever they are defined.
-for _public in (*map(globals().get, __all__), MissingFileError):
+for _public in (*map(globals().get, __all__), MissingFileError, ModelWarning):
     _public.__module__ = __name__

@@ -13,6 +13,7 @@ import xarray as xr
 from . import _native
 from ._arguments import Array, Path, axis_values, check_names, device_name, flag, input_path, native_path, word
 from ._datasets import concatenated, dataset_at, native_table, table_dataset
+from ._model_warning import warn_of_model
 from ._native import InputError
 from ._points import columns_of
 from ._scene import Scene
@@ -36,7 +37,9 @@ def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all
     key = next((name for name in axes if "." in name), None)
     if key is None:
         with_axes = _with_axes(scene, axes)
-        return table_dataset(*native_evaluator(evaluator, device).table(with_axes, flag("keep_all", keep_all)))
+        whole = table_dataset(*native_evaluator(evaluator, device).table(with_axes, flag("keep_all", keep_all)))
+        warn_of_model(scene, whole)
+        return whole
     _check_varied("axes", [key], [column for column, *_ in _native.axes()])
     others = {name: values for name, values in axes.items() if name != key}
     values = np.array(axis_values(key, axes[key]))
@@ -87,7 +90,10 @@ def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_
     def run(own: _native.Scene, of_scene: dict[str, np.ndarray]) -> _native.Parts:
         return engine.evaluate(own, of_scene, flag("keep_all", keep_all))
 
-    return dataset_at(_over_keys(run, native, columns, varied) if varied and 0 not in frame.shape else run(native, columns), frame)
+    results = dataset_at(
+        _over_keys(run, native, columns, varied) if varied and 0 not in frame.shape else run(native, columns), frame)
+    warn_of_model(scene, results)
+    return results
 
 
 def lookup(table: Path | xr.Dataset, **points: Array) -> xr.Dataset:

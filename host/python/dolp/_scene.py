@@ -28,6 +28,8 @@ class Scene:
     dolp.InputError: surface.sigma = -1: -1 is out of range; must be a number in [0, 10]
     """
 
+    _has_model_warning = False  # whether dolp.ModelWarning was given
+
     def __init__(self, path: Path | Scene | None = None, overrides: Mapping[str, Any] | None = None, *,
                  text: str | None = None) -> None:
         if (path is None) == (text is None):

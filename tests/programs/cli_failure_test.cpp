@@ -130,9 +130,9 @@ TEST_F(CommandLine, InputThatWasProbablyMeantOtherwise_IsOneWarningAndGoesOn) {
        {std::pair("plan scene.toml --set emission.temperature_K=25", "--set emission.temperature_K=25: 25 K is cold"),
         {"table scene.toml -o t.csv --evaluator cpu --set surface.material_file=n.csv",
          "=n.csv: the file has no k, so that k = 0"},
-        {"plan scene.toml --quiet --set geometry.mode=bistatic",
-         "=bistatic: without [source] nothing depends on theta"},
-        {"eval scene.toml --points nm.csv -o o.csv --evaluator cpu", "nm.csv:1: wavelength_um is in micrometres"},
+        {"plan scene.toml --set geometry.mode=bistatic", "=bistatic: without [source] nothing depends on theta"},
+        {"eval scene.toml --points nm.csv -o o.csv --evaluator cpu --quiet",
+         "nm.csv:1: wavelength_um is in micrometres"},
         {"fit scene.toml --data radians.csv --vary surface.n=1.4:1.6 --starts 1 --evaluator cpu",
          "radians.csv: theta_deg is at most 1.2 degrees"}}) {
     const Outcome outcome = dolp(split_at(line, ' '));

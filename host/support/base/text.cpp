@@ -95,12 +95,13 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 }
 
 std::optional<std::string> near_name(std::string_view name, const std::vector<std::string>& candidates) {
-  const auto distance = [name](const std::string& candidate) {
-    return std::min(edit_distance(name, candidate), edit_distance(name, candidate.substr(0, name.size() + 1)) + 1);
+  const auto distance = [name](std::string_view candidate) {
+    const std::size_t cut = edit_distance(name.substr(0, candidate.size() + 1), candidate.substr(0, name.size() + 1));
+    return std::min(edit_distance(name, candidate), cut + 1);
   };
   const std::string& nearest = *std::ranges::min_element(candidates, {}, distance);
   const auto [shorter, longer] = std::minmax({name.size(), nearest.size()});
-  const bool is_near = distance(nearest) < shorter && 2 * distance(nearest) <= longer;
+  const bool is_near = distance(nearest) < shorter && 3 * distance(nearest) <= longer + 1;
   return is_near ? std::optional(nearest) : std::nullopt;
 }
 

@@ -56,7 +56,7 @@ struct BoundTerms {
   double radiation = 0.0;  ///< sum of what the scene emits and reflects with rho = 1, in the units of Stokes I
 };
 
-BoundTerms bound_terms(const SceneValues& scene) {
+BoundTerms bound_terms(const SceneModel& scene) {
   BoundTerms terms{.tolerance = scene.accuracy.tolerance};
   const SpectralRule rule = spectral_rule(scene);
   for (const SpectralSample& sample : rule.samples)

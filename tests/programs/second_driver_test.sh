@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Runs dolp on SwiftShader, a Vulkan driver of another kind than lavapipe: second_driver_test.sh DOLP SOURCE
 #
-# Debian's package chromium-common has the driver. The test downloads it and installs nothing. Exit status 77: this system has no
-# such package.
+# Debian's package chromium-common has the driver. The test downloads it and installs nothing. Exit status 77: this system
+# has no such package.
 set -euo pipefail
 dolp=$1
 source=$2
@@ -10,7 +10,9 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 
-apt-cache show chromium-common >/dev/null 2>&1 || exit 77
+has_package() { apt-cache show chromium-common >/dev/null 2>&1; }
+has_package || apt-get -qq update 2>/dev/null || true  # the lists of packages may be missing
+has_package || exit 77
 apt-get -qq download chromium-common 2>/dev/null
 dpkg-deb --fsys-tarfile chromium-common_*.deb | tar -x ./usr/lib/chromium/libvk_swiftshader.so
 cat > driver.json <<JSON

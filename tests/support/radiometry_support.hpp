@@ -124,7 +124,7 @@ inline Moments moments_of(const PrintedReflectance& specular, double cos_theta) 
   m.r_i = static_cast<double>(rho_i * cos_theta);
   m.r_q = static_cast<double>((specular.s - specular.p) / 2.0L * cos_theta);
   m.deficit = static_cast<double>((1.0L - rho_i) * cos_theta);
-  m.albedo = 0.9 * cos_theta;
+  m.albedo = cos_theta;
   return m;
 }
 

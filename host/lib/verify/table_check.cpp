@@ -109,7 +109,8 @@ CheckedValue compare(const TableValues& table, const Compared& compared, std::si
   value.reference_error =
       bound_of(compared.bound, reference[Quantity::kErrorEstimate], reference[Quantity::kRhoErrorEstimate], reference);
   // Where neither side has an estimate, as of an intensity that overflows, nothing is stated.
-  if (std::isnan(value.stated) && !std::isfinite(value.reference_error)) value.stated = value.reference_error = kInfinity;
+  if (std::isnan(value.stated) && !std::isfinite(value.reference_error))
+    value.stated = value.reference_error = kInfinity;
   const std::uint32_t status = table.status.empty() ? kToleranceNotMet : table.status[i];
   value.complaint = complaint_about(value, allowed_error(compared.bound, status, tolerance, reference));
   return value;

@@ -64,7 +64,9 @@ std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData&
       const kernel::MomentsNode node = kernel.moments(entry, sky);
       moments[entries[i]] = moments_from_kernel(node, data, entry, unit_roundoff, sky);
     };
-    const Progress of_all = [&](std::size_t done, std::size_t) { return !progress || progress(before + done, all.size()); };
+    const Progress of_all = [&](std::size_t done, std::size_t) {
+      return !progress || progress(before + done, all.size());
+    };
     parallel_for(entries.size(), one, of_all);
     before += entries.size();
   }

@@ -154,7 +154,12 @@ TEST_P(KernelProperties, OrderOfAxes_TilesAndBlocks_ChangeNoBit) {
 // More shapes than have masking tables at the same time.
 TEST(CpuEvaluator, ManyShapes_HaveTheBitsOfEachByItself) {
   constexpr std::size_t kShapes = 9000;
-  MomentsRequest request{.masking = Masking::kSmith, .tolerance = 1e-2, .theta_deg = {30.0, 70.0}, .indices = {{1.5, 0.0}}, .sigma = {0.3}, .q = {}};
+  MomentsRequest request{.masking = Masking::kSmith,
+                         .tolerance = 1e-2,
+                         .theta_deg = {30.0, 70.0},
+                         .indices = {{1.5, 0.0}},
+                         .sigma = {0.3},
+                         .q = {}};
   for (std::size_t i = 0; i < kShapes; ++i) request.q.push_back(2.0 + 1e-4 * static_cast<double>(i));
   const std::vector<Moments> all = CpuEvaluator().evaluate(request, {});
   for (const std::size_t shape : {std::size_t{0}, std::size_t{4095}, std::size_t{4096}, kShapes - 1}) {

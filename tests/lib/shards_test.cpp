@@ -9,8 +9,8 @@
 #include "error_text.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "run/table_run.hpp"
-#include "scene_run_support.hpp"
 #include "scene/scene_reader.hpp"
+#include "scene_run_support.hpp"
 #include "table/table_file.hpp"
 #include "temporary_file.hpp"
 

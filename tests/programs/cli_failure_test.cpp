@@ -102,8 +102,8 @@ TEST_F(CommandLine, Mistake_OneLineAndNothingWritten) {
 
 TEST_F(CommandLine, InputThatCannotBeLookedAt_IsRefusedWithTheReason) {
   fs::create_symlink("loop.nc", at("loop.nc"));
-  const std::vector<std::pair<std::string, std::string>> inputs = {
-      {"loop.nc", "Too many levels of symbolic links"}, {kLongName, "File name too long"}};
+  const std::vector<std::pair<std::string, std::string>> inputs = {{"loop.nc", "Too many levels of symbolic links"},
+                                                                   {kLongName, "File name too long"}};
   for (const auto& [input, reason] : inputs) {
     for (const std::string& line :
          {"table " + input + " -o o.nc", "eval scene.toml --points " + input + " -o o.csv",

@@ -50,9 +50,10 @@ TEST_F(Plan, MillionValuesOfAnAxis_FitIntoTwoGigabytes) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "AddressSanitizer takes terabytes of addresses";
 #endif
-  for (const std::string axis : {"grid.q={from=1.6,to=6,count=1000000}", "grid.sigma={from=0.05,to=0.8,count=1000000}"}) {
-    Command wanted = command({"plan", "scene.toml", "--set", "grid.theta_deg=[30]", "--set", "grid.sigma=[0.1]", "--set",
-                              "grid.q=[2]", "--set", axis});
+  for (const std::string axis :
+       {"grid.q={from=1.6,to=6,count=1000000}", "grid.sigma={from=0.05,to=0.8,count=1000000}"}) {
+    Command wanted = command({"plan", "scene.toml", "--set", "grid.theta_deg=[30]", "--set", "grid.sigma=[0.1]",
+                              "--set", "grid.q=[2]", "--set", axis});
     wanted.arguments.insert(wanted.arguments.begin(), {"bash", "-c", "ulimit -v 2000000; exec \"$@\"", "bash"});
     wanted.environment = kNoDriver;
     const Outcome outcome = run(wanted);

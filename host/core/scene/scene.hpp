@@ -125,12 +125,12 @@ struct SceneModel {
 struct SceneValues : SceneModel {
   std::string title;
   SceneNames names;
-  Axes grid;                     ///< in the user's order; sigma and q fall back to [surface]
-  std::vector<double> wind_m_s;  ///< that give the grid's values of sigma; empty where the scene has sigma itself
-  std::string path_name;                          ///< as given on the command line, for messages
-  std::string text;                               ///< the file, verbatim
-  std::vector<std::string> files;                 ///< that the scene names, as the process finds them
-  std::vector<Setting> settings;                  ///< that were applied to the text
+  Axes grid;                       ///< in the user's order; sigma and q fall back to [surface]
+  std::vector<double> wind_m_s;    ///< that give the grid's values of sigma; empty where the scene has sigma itself
+  std::string path_name;           ///< as given on the command line, for messages
+  std::string text;                ///< the file, verbatim
+  std::vector<std::string> files;  ///< that the scene names, as the process finds them
+  std::vector<Setting> settings;   ///< that were applied to the text
   std::shared_ptr<const SceneDocument> document;  ///< text and settings as TOML; none of a scene that was not read
 };
 

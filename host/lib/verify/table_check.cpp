@@ -147,7 +147,8 @@ CheckedValue compare(const TableValues& table, const Compared& compared, std::si
   value.reference_error = bound_of(compared.bound, reference[Quantity::kErrorEstimate],
                                    reference[Quantity::kRhoErrorEstimate], reference, {0.0, terms.radiation});
   // Where neither side has an estimate, as of an intensity that overflows, nothing is stated.
-  if (std::isnan(value.stated) && !std::isfinite(value.reference_error)) value.stated = value.reference_error = kInfinity;
+  if (std::isnan(value.stated) && !std::isfinite(value.reference_error))
+    value.stated = value.reference_error = kInfinity;
   const std::uint32_t status = table.status.empty() ? kAnyToleranceNotMet : table.status[i];
   value.complaint = complaint_about(value, allowed_error(compared.bound, status, terms.tolerance, reference));
   return value;

@@ -39,31 +39,36 @@ std::vector<std::size_t> wanted_entries(const MomentsRequest& request) {
   return entries;
 }
 
-/// Moments entry by entry, in blocks of shapes.
+/// Moments entry by entry, for blocks of shapes.
 std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData& data, CpuKernel& kernel,
                                 double unit_roundoff, const Progress& progress) {
-  std::vector<std::size_t> entries = wanted_entries(request);
-  std::ranges::stable_sort(entries, {}, [&](std::size_t i) { return data[i].shape; });
+  const std::vector<std::size_t> all = wanted_entries(request);
   std::vector<Moments> moments(request.size());
-  for (std::size_t first = 0, last = 0; first < entries.size(); first = last) {
+  std::size_t before = 0;
+  for (std::size_t first = 0; first < data.shapes.size(); first += kTablesAtOnce) {
+    std::vector<std::size_t> entries;
     std::vector<std::uint32_t> shapes;
-    for (; last < entries.size(); ++last) {
-      const std::uint32_t shape = data[entries[last]].shape;
-      if (!shapes.empty() && shapes.back() == shape) continue;
-      if (shapes.size() == kTablesAtOnce) break;
+    for (const std::size_t i : all) {
+      const std::uint32_t shape = data[i].shape;
+      if (shape < first || shape >= first + kTablesAtOnce) continue;
+      entries.push_back(i);
       shapes.push_back(shape);
     }
+    std::ranges::sort(shapes);
+    const auto twice = std::ranges::unique(shapes);
+    shapes.erase(twice.begin(), twice.end());
     kernel.build_masking_tables(std::move(shapes));
     const auto one = [&](std::size_t i) {
-      const MomentsEntry entry = data[entries[first + i]];
+      const MomentsEntry entry = data[entries[i]];
       std::vector<double> sky(sky_sums(data));
       const kernel::MomentsNode node = kernel.moments(entry, sky);
-      moments[entries[first + i]] = moments_from_kernel(node, data, entry, unit_roundoff, sky);
+      moments[entries[i]] = moments_from_kernel(node, data, entry, unit_roundoff, sky);
     };
     const Progress of_all = [&](std::size_t done, std::size_t) {
-      return !progress || progress(first + done, entries.size());
+      return !progress || progress(before + done, all.size());
     };
-    parallel_for(last - first, one, of_all);
+    parallel_for(entries.size(), one, of_all);
+    before += entries.size();
   }
   return moments;
 }

@@ -25,7 +25,8 @@ class VirtualDisplay {
     const std::string screen = size + "x24";
     process_ = ::fork();
     if (process_ == 0) {
-      ::execlp("Xvfb", "Xvfb", "-displayfd", end.c_str(), "-screen", "0", screen.c_str(), "-fbdir",
+      // Without repetition of keys, which a slow machine holds down for long.
+      ::execlp("Xvfb", "Xvfb", "-r", "-displayfd", end.c_str(), "-screen", "0", screen.c_str(), "-fbdir",
                folder_.path().c_str(), "-noreset", "-nolisten", "tcp", nullptr);
       ::_exit(127);
     }

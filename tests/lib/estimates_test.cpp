@@ -30,13 +30,13 @@ std::vector<PointResult> results_of(const Overrides& overrides) {
   return evaluate_scene(scene, grid_entries(scene), evaluator, {});
 }
 
-std::optional<double> gap_of(const SceneValues& scene) {
+std::optional<double> gap_of_scene(const SceneValues& scene) {
   const SceneEntries entries = grid_entries(scene);
   const std::optional<ScatteringGap> gap = scattering_gap(scene, entries, plan_effects(scene, entries, false));
   return gap ? std::optional(gap->dolp) : std::nullopt;
 }
 std::optional<double> gap_of(const Overrides& overrides) {
-  return gap_of(parse_scene(kScene, "s.toml", settings_from_text(overrides)));
+  return gap_of_scene(parse_scene(kScene, "s.toml", settings_from_text(overrides)));
 }
 
 TEST(ScatteringGap, FewEntries_IsTheLargestDifferenceOfDolp) {
@@ -116,7 +116,7 @@ TEST(ScatteringGap, Bands_IsWithinAFactorOfTwoOfTheDifferenceOfTwoTables) {
     SceneValues direct = kirchhoff;
     direct.emission->model = EmissionModel::kDirect;
     const double difference = largest_change(kirchhoff, direct);
-    const std::optional<double> gap = gap_of(kirchhoff);
+    const std::optional<double> gap = gap_of_scene(kirchhoff);
     ASSERT_TRUE(gap.has_value()) << overrides.front();
     EXPECT_GT(*gap, 0.5 * difference) << overrides.front();
     EXPECT_LT(*gap, 2.0 * difference) << overrides.front();

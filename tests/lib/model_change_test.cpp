@@ -19,7 +19,7 @@ using enum Quantity;
 using Overrides = std::vector<std::string>;
 
 // Aluminium at 10.6 um, rough.
-const std::string kScene = R"(
+const std::string kScene = R"toml(
 [surface]
 material = "aluminium (Ordal)"
 sigma = 0.2
@@ -30,7 +30,7 @@ temperature_K = 300.0
 wavelength_um = 10.6
 [grid]
 theta_deg = [60]
-)";
+)toml";
 
 SceneValues scene_with(const Overrides& overrides) {
   return parse_scene(kScene, "s.toml", settings_from_text(overrides));

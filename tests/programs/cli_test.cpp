@@ -269,7 +269,7 @@ TEST_F(CommandLine, Summary_MaskingWithADirectEmission_SaysWhatSingleScatteringL
     options.push_back("--json");
     EXPECT_GT(json::parse(with(options).out)["scattering_gap"], 0.01);
     EXPECT_TRUE(json::parse(with({"--json"}).out)["scattering_gap"].is_null());  // masking integral
-    EXPECT_EQ(with({}).out.find("scattering"), std::string::npos);
+    EXPECT_EQ(with({}).out.find("  scattering "), std::string::npos);
   }
 }
 
@@ -292,7 +292,7 @@ TEST_F(CommandLine, Json_StatusCounts_AreThoseOfTheEntries) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const json counts = json::parse(outcome.out)["status"];
   const TableValues table = read_table(at("t.nc"));
-  ASSERT_EQ(counts.size(), 4U);
+  ASSERT_EQ(counts.size(), 6U);
   std::size_t all = 0;
   for (const json& count : counts) {
     const auto bit = count["bit"].get<std::uint32_t>();

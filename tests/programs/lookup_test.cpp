@@ -103,7 +103,8 @@ TEST_F(Lookup, CoarseTable_SaysThatItMissesTheTolerance) {
   make_table({});
   put("points.csv", "theta_deg,sigma,q\n70,0.2,2.5\n");
   const Columns found = looked_up();
-  EXPECT_EQ(found.at("status")[0], 2.0);
+  // DOLP and rho miss the tolerance; the table's own entries have status 32.
+  EXPECT_EQ(found.at("status")[0], 2.0 + 16.0 + 32.0);
   EXPECT_GT(found.at("error_estimate")[0], 1e-3);
   EXPECT_EQ(lookup({"--strict"}).status, 1);
   const Columns exact = eval({});

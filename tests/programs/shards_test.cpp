@@ -352,7 +352,7 @@ TEST_F(Resume, PartialFileIsALink_IsRefused_AndWhatItPointsToStays) {
 }
 
 TEST_F(Resume, AfterANamedFileChanged_IsRefused) {
-  put("m.csv", "wavelength_um,n\n8,1.5\n12,1.5\n");
+  put("m.csv", "wavelength_um,n,k\n8,1.5,0\n12,1.5,0\n");
   const std::vector<std::string> words = {"table", "named.toml", "-o", "t.nc", "--resume", "--tolerance", "1e-2"};
   put("named.toml", R"([surface]
 material_file = "m.csv"
@@ -366,7 +366,7 @@ sigma = { from = 0.1, to = 0.8, count = 64 }
 q = { from = 1.8, to = 6, count = 64 }
 )");
   ASSERT_EQ(interrupted(SIGKILL, words).status, -SIGKILL);
-  put("m.csv", "wavelength_um,n\n8,3.5\n12,3.5\n");
+  put("m.csv", "wavelength_um,n,k\n8,3.5,0\n12,3.5,0\n");
   expect_refused(dolp(words), "t.nc.partial: is of another run: it has data fnv1a64:");
 }
 

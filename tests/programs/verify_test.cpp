@@ -265,7 +265,8 @@ TEST_F(Verify, ReducedVariables_AreComparedAsFarAsTheyAreThere) {
   }
   write_table(table, at("t.nc"));
   const nlohmann::json json = verify_json(kDone);
-  EXPECT_EQ(json["quantities"].size(), 4U);  // dolp, q_over_i, stokes_i, stokes_q
+  // dolp, q_over_i, stokes_i, stokes_q, albedo, emissivity_s, emissivity_p
+  EXPECT_EQ(json["quantities"].size(), 7U);
 }
 
 TEST_F(Verify, ChangedScene_IsRefused) {

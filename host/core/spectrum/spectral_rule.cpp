@@ -43,10 +43,11 @@ constexpr int kMostNodes = 24;
 constexpr double kProbeSafety = 10.0;
 constexpr std::array<double, 3> kProbeCosines = {1.0, 0.5, 0.1};
 constexpr std::array<double, 7> kCriticalPlaces = {0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};  // of a segment
-// A segment with such roots is cut into equal panels until its error is this share of the scene's tolerance.
+// A segment with such roots is cut into equal panels until its error is this share of the scene's tolerance, or the
+// most panels are reached: then entries say that they miss it.
 constexpr double kShareOfTolerance = 0.05;
 constexpr int kPanelNodes = 8;
-constexpr int kMostPanels = 64;
+constexpr int kMostPanels = 32;
 
 /// A node of the fine rule with the spectral factors there, all multiplied by the node's weight.
 struct FineNode {

@@ -473,7 +473,7 @@ TEST_F(Library, Facts_AreThere) {
   EXPECT_NE(dolp::citation().find("cff-version"), std::string::npos);
   EXPECT_TRUE(dolp::citation().ends_with("commit: \"" + dolp::commit() + "\"\n"));
   EXPECT_NE(dolp::plan(scene_).text.find("12"), std::string::npos);
-  EXPECT_EQ(dolp::kStatusBits.size(), 4U);
+  EXPECT_EQ(dolp::kStatusBits.size(), 6U);
 }
 
 }  // namespace

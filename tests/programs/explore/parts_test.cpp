@@ -94,10 +94,7 @@ const std::vector<EditCase> kEditCases = {
      "surface.sigma = 0.16462"},
     // One sky replaces another.
     {{}, {"surroundings.profile=clear-sky"}, {"surroundings.temperature_K=-", "surroundings.profile=clear-sky"}},
-    {{"emission.bracket=true"},
-     {"surroundings.profile=overcast"},
-     {"emission.bracket=false"},
-     "goes emission.bracket = false"},
+    {{"emission.bracket=true"}, {"surroundings.profile=overcast"}, {"emission.bracket=true"}},
     {{"surroundings.profile=overcast"}, {"surroundings.temperature_K=250"}, {"surroundings.profile=-"}},
 };
 

@@ -56,7 +56,7 @@ TEST(ModelChange, RoughMetalWithAnyMasking_HasBit32UnlessAllBouncesAreFollowed) 
 
 TEST(ModelChange, SmoothPaint_HasNoBit) {
   const PointResult result =
-      result_of({"surface.material=none", "surface.n=1.5", "surface.k=0.1", "surface.sigma=0.05"});
+      result_of({"surface.material={}", "surface.n=1.5", "surface.k=0.1", "surface.sigma=0.05"});
   EXPECT_EQ(result.status, 0U);
   EXPECT_LT(result.model_change, 0.01);
 }
@@ -68,7 +68,7 @@ TEST(ModelChange, EmissionAndSurroundings_IsTheLostLightTimesTheDifferenceOfThei
   for (Overrides overrides : cases) {
     const PointResult result = result_of(overrides);
     // Black: 1 - rho is 1.
-    overrides.insert(overrides.end(), {"surface.material=none", "surface.n=1", "surface.k=0"});
+    overrides.insert(overrides.end(), {"surface.material={}", "surface.n=1", "surface.k=0"});
     const double emitted = result_of(overrides)[kStokesI];
     ASSERT_GT(emitted, 0.0);
     // I = emitted + rho (surroundings - emitted)

@@ -134,6 +134,7 @@ int main(int argc, char** argv) {
   std::set_new_handler(dolp::cli::end_out_of_memory);
   dolp::cli::keep_freed_memory();
   const int status = dolp::guarded("dolp", [&] { return dolp::cli::parse_and_run(argc, argv); });
-  if (status == dolp::kExitMemory || dolp::vulkan::driver_is_busy()) ::_exit(status);  // libraries could not clean up
-  return status;
+  if (status != dolp::kExitMemory && !dolp::vulkan::driver_is_busy()) return status;
+  std::fflush(stdout);
+  ::_exit(status);  // libraries need memory, and the driver's threads, to clean up
 }

@@ -55,8 +55,7 @@ TEST(ModelChange, RoughMetalWithAnyMasking_HasBit32UnlessAllBouncesAreFollowed) 
 }
 
 TEST(ModelChange, SmoothPaint_HasNoBit) {
-  const PointResult result =
-      result_of({"surface.material={}", "surface.n=1.5", "surface.k=0.1", "surface.sigma=0.05"});
+  const PointResult result = result_of({"surface.material={}", "surface.n=1.5", "surface.k=0.1", "surface.sigma=0.05"});
   EXPECT_EQ(result.status, 0U);
   EXPECT_LT(result.model_change, 0.01);
 }

@@ -6,7 +6,8 @@
 # display of the system. Needs root: it changes its root folder and mounts /dev and /proc in FOLDER while it runs.
 set -euo pipefail
 
-parts='Table|Hdf5|HardCases|Devices|Window|Python|Install|Octave|Hardening|Faults|manual_test|cluster_test'
+# Without the tests that need namespaces of their own, which a changed root folder cannot have.
+parts='Table|Hdf5|HardCases|Devices|Window|Python|Install.Works|Octave|Hardening|failed_close|endless|SecondDriver|manual_test'
 
 fail() {
   echo "debian13.sh: $1" >&2

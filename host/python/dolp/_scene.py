@@ -135,7 +135,7 @@ def material(name: str) -> Material:
     """A built-in material by name.
 
     >>> gold = dolp.material("gold (Ordal)")
-    >>> gold.n(10.6).round(2), gold.k([8, 10.6]).shape
+    >>> float(gold.n(10.6).round(2)), gold.k([8, 10.6]).shape
     (13.52, (2,))
     """
     return Material(name)

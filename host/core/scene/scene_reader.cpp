@@ -336,11 +336,10 @@ void check_scattering(const SceneValues& scene, const SceneDocument& document) {
   const bool can_be_direct = keeps_projected_area(surface.masking);
   const char* const maskings = "surface.masking = \"smith\" or \"v-cavity\"";
   if (emission.has_bracket) {
-    check_needs(
-        document, "emission.bracket",
-        {{can_be_direct, maskings},
-         {emission.model != EmissionModel::kFresnel, "emission.model = \"moments\" or \"direct\""},
-         {scene.geometry.mode == Mode::kHemispherical, "geometry.mode = \"hemispherical\""}});
+    check_needs(document, "emission.bracket",
+                {{can_be_direct, maskings},
+                 {emission.model != EmissionModel::kFresnel, "emission.model = \"moments\" or \"direct\""},
+                 {scene.geometry.mode == Mode::kHemispherical, "geometry.mode = \"hemispherical\""}});
   }
   if (is_direct) check_needs(document, "emission.model", {{can_be_direct, maskings}});
 }

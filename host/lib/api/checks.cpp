@@ -85,7 +85,8 @@ Report verify_device(const DeviceCheckOptions& options) {
 
 Report device_report() {
   const ReportBuilder report = device_report(list_devices());
-  const bool is_any_usable = std::ranges::any_of(report.json()["devices"], [](const auto& d) { return d["usable"] == true; });
+  const bool is_any_usable =
+      std::ranges::any_of(report.json()["devices"], [](const auto& d) { return d["usable"] == true; });
   return public_report(report, is_any_usable);
 }
 

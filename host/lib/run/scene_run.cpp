@@ -179,9 +179,8 @@ std::vector<PointResult> computed_at(const RunContext& context, const Selection&
 
 bool is_better(const PointResult& a, const PointResult& b) {
   const auto misses = [](const PointResult& result) { return (result.status & kAnyToleranceNotMet) != 0; };
-  return misses(a) < misses(b) ||
-         std::max(a[Quantity::kErrorEstimate], a[Quantity::kRhoErrorEstimate]) <
-             std::max(b[Quantity::kErrorEstimate], b[Quantity::kRhoErrorEstimate]);
+  return misses(a) < misses(b) || std::max(a[Quantity::kErrorEstimate], a[Quantity::kRhoErrorEstimate]) <
+                                      std::max(b[Quantity::kErrorEstimate], b[Quantity::kRhoErrorEstimate]);
 }
 
 /// True where a level improves an entry over the last one: f has no rule that a tolerance would make finer.

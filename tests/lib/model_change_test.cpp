@@ -51,7 +51,10 @@ TEST(ModelChange, RoughMetalWithAnyMasking_HasBit32UnlessAllBouncesAreFollowed) 
   const PointResult all = result_of({"surface.masking=v-cavity", "surface.scattering=multiple"});
   EXPECT_EQ(all.status, 0U);
   EXPECT_EQ(all.model_change, 0.0);
-  EXPECT_NEAR(all[kDolp], 0.519, 5e-4);  // a table of the README
+  // The figures of README, Limits.
+  EXPECT_NEAR(result_of({"surface.masking=integral"})[kDolp], 0.154, 5e-4);
+  EXPECT_NEAR(result_of({"surface.masking=smith"})[kDolp], 0.108, 5e-4);
+  EXPECT_NEAR(all[kDolp], 0.519, 5e-4);
 }
 
 TEST(ModelChange, SmoothPaint_HasNoBit) {

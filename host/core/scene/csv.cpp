@@ -56,7 +56,7 @@ std::optional<std::size_t> position_of(const std::vector<CsvColumn>& columns, st
   return static_cast<std::size_t>(found - columns.begin());
 }
 
-/// Refuses a line with semicolons, tabs or blanks in the place of commas.
+/// Refuses a line with semicolons, tabs or blanks instead of commas.
 void check_separators(const CsvReader& row, const std::vector<CsvColumn>& columns) {
   struct Separator {
     char character;

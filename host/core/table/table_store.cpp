@@ -30,7 +30,7 @@ namespace {
 /// Room for what HDF5 adds to values and texts: shapes, names, units.
 constexpr std::uint64_t kMostOverhead = 1U << 20U;
 
-/// A file without a name whose written bytes alone take memory; the rest reads as zero.
+/// A file without a name. Only bytes that are written take memory; the rest reads as zero.
 class MemoryFile {
  public:
   /// `table`: for messages. Errors: IoError.

@@ -15,7 +15,7 @@ enum Status : std::uint32_t {
   kOutsideModelDomain = 4,
   /// I <= 0: the sum of what is emitted and reflected is not a radiation that exists.
   kIntensityNotPositive = 8,
-  /// rho misses the scene's tolerance, which alone says nothing against DOLP.
+  /// rho misses the scene's tolerance. DOLP may be right.
   kRhoToleranceNotMet = 16,
   /// Light that single scattering loses, or that a masking creates, changes I by an estimated more than 5 %. Alone: the
   /// numbers are right for the model, and the model is wrong for the surface.

@@ -38,7 +38,7 @@ std::vector<std::size_t> spread_positions(std::size_t size, std::size_t most) {
 
 SceneEntries spread_entries(const SceneEntries& entries) {
   if (!entries.is_grid()) return drawn_entries(entries, kDrawnPoints);
-  std::vector<SceneEntry> drawn;
+  std::vector<std::size_t> positions;
   const PerAxis& counts = entries.counts();
   AxisArray<std::vector<std::size_t>> values;
   PerAxis of_axis{};
@@ -50,15 +50,15 @@ SceneEntries spread_entries(const SceneEntries& entries) {
     const PerAxis chosen = place_of(i, of_axis);
     std::size_t position = 0;
     for (const Axis axis : kAllAxes) position = position * counts[axis] + values[axis][chosen[axis]];
-    drawn.push_back(entries[position]);
+    positions.push_back(position);
   }
-  return {std::move(drawn), entries.wavelength_um()};
+  return entries.chosen(positions);
 }
 
 /// A few entries of a scene, at a few wavelengths of its band.
 struct Sample {
   SceneValues scene;
-  SceneEntries entries;           ///< those of one place are neighbours, one for each weight
+  SceneEntries entries;           ///< an entry is there once for each weight, side by side
   std::vector<double> weight_um;  ///< of the wavelengths of a band; {1} without
 };
 

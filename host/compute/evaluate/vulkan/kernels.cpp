@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <dolp/errors.hpp>
 #include <future>
+#include <optional>
 #include <thread>
 
 #include "base/interrupt.hpp"
@@ -78,14 +80,17 @@ UniquePipeline compile(VkDevice device, VkPipelineLayout layout, std::uint32_t l
 }
 
 constexpr auto kInterruptInterval = std::chrono::milliseconds(20);
-constexpr double kDefaultCompilationLimitS =
-    120.0;  // SwiftShader needs 7 s of an idle processor for the largest kernel
+// SwiftShader needs 7 s of an idle processor for the largest kernel.
+constexpr double kDefaultCompilationLimitS = 120.0;
 constexpr const char* kCompilationLimit = "DOLP_COMPILATION_LIMIT_S";
 
-/// Seconds that a driver may take for a kernel.
+/// Seconds that a driver may take for a kernel. Errors: InputError for a wish that is no number above 0.
 double compilation_limit_s() {
   const char* const wish = std::getenv(kCompilationLimit);
-  return wish != nullptr ? parse_number(wish).value_or(kDefaultCompilationLimitS) : kDefaultCompilationLimitS;
+  if (wish == nullptr) return kDefaultCompilationLimitS;
+  const std::optional<double> limit_s = parse_number(wish);
+  if (limit_s && *limit_s > 0.0) return *limit_s;
+  throw InputError(fmt::format("{}={}: must be a number of seconds above 0", kCompilationLimit, one_line(wish)));
 }
 
 }  // namespace
@@ -205,6 +210,7 @@ VkPipeline Kernels::pipeline(const KernelVariant& variant) {
 }
 
 UniquePipeline Kernels::create(std::span<const std::uint32_t> spirv, const KernelVariant& variant) const {
+  const double limit_s = compilation_limit_s();
   // A driver may compile for ever, and cannot be told to stop: it does so on a thread that can be left behind.
   std::packaged_task<UniquePipeline()> compilation(
       [device = device_.get(), layout = layout_.get(), local_size = local_size(), spirv, variant] {
@@ -213,7 +219,6 @@ UniquePipeline Kernels::create(std::span<const std::uint32_t> spirv, const Kerne
   std::future<UniquePipeline> pipeline = compilation.get_future();
   std::thread(std::move(compilation)).detach();
   const auto start = std::chrono::steady_clock::now();
-  const double limit_s = compilation_limit_s();
   while (pipeline.wait_for(kInterruptInterval) != std::future_status::ready) {
     if (interrupted() || seconds_since(start) > limit_s) {
       throw DeviceTimeout(fmt::format(

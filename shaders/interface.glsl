@@ -26,7 +26,8 @@
 #define DOLP_SPEC_TOTAL_REFLECTION 3  // whether any index of the request has a critical_cos
 #define DOLP_SPEC_MULTIPLE 4          // whether rays are followed through all their bounces
 #define DOLP_SPEC_DIRECT 5            // whether the direct emission is wanted too
-#define DOLP_SPEC_SKY 6               // number of functions of a sky, see physics/sky.glsl
+#define DOLP_SPEC_COLUMN_COUNT 6      // number of columns, see physics/columns.glsl
+#define DOLP_SPEC_COLUMNS 7           // their kind, DOLP_COLUMNS_*
 
 #define DOLP_CAUCHY 0u
 #define DOLP_GAUSSIAN 1u
@@ -34,13 +35,17 @@
 #define DOLP_MASKING_V_CAVITY 1u
 #define DOLP_MASKING_INTEGRAL 2u
 #define DOLP_MASKING_SMITH 3u
+#define DOLP_COLUMNS_SKY 0u           // functions of a sky
+#define DOLP_COLUMNS_RESPONSE 1u      // responses of the light reflected,
+#define DOLP_COLUMNS_SKY_RESPONSE 2u  // of this light, weighted with a function of a sky,
+#define DOLP_COLUMNS_DIRECT 3u        // of the direct emission
 
 // ---- Push constants: four uints, used by all entry points -----------------------------------------------------------
 // count: tasks of this dispatch (moments.comp), slopes (slopes.comp), entries (mueller.comp) or shapes bound
 // (masking_table.comp); first: the first of them, as a position in the bound buffers. Output i of a dispatch belongs to
 // entry first + i, outputs i * DOLP_WIDTH and following to task first + i. largest_order: of the rule nodes.
 // sky: log2 of the cells of a function, from DOLP_SKY_CORNERS_SHIFT on the number of its corners, whose cosines follow
-// the cells, and from DOLP_SKY_START_SHIFT on where the cells begin among the rule nodes. Sums with a sky stand behind
+// the cells, and from DOLP_SKY_START_SHIFT on where the cells begin among the rule nodes. Columns stand behind
 // the other outputs of a dispatch, see moments.comp and slopes.comp.
 #define DOLP_PUSH_CONSTANTS uint first; uint count; uint largest_order; uint sky;
 #define DOLP_SKY_CORNERS_SHIFT 5
@@ -62,12 +67,14 @@
 #define DOLP_WIDTH 1             // entries of one invocation, see Row of physics/row.glsl
 #endif
 #define DOLP_ROW_WIDTH 4         // the larger of the two values of DOLP_WIDTH
-#ifndef DOLP_MOST_SKY
-#define DOLP_MOST_SKY 0          // most functions of a sky; 0: kernels without
+#ifndef DOLP_MOST_COLUMNS
+#define DOLP_MOST_COLUMNS 0      // 0: kernels without
 #endif
-#define DOLP_SKY_FUNCTIONS 8     // the other value of DOLP_MOST_SKY
+#define DOLP_COLUMNS 24          // the other value of DOLP_MOST_COLUMNS
+#define DOLP_SKY_FUNCTIONS 8     // the most of a sky
 #define DOLP_MOST_SKY_CORNERS 24 // that split the azimuths
-#define DOLP_SKY_PARTS 3         // numbers of a function in the output of moments.comp: r_i, r_q, the larger difference
+#define DOLP_COLUMN_PARTS 4      // numbers of a column in the output of moments.comp: i and q of the coarser rule, and
+                                 // of the finer one
 #define DOLP_MAX_PIECES 63       // pieces of the slope axis for one direction
 #define DOLP_MAX_ARCS 13        // arcs of the azimuth for one slope, but for those of total reflection
 // Of V-grooves, see physics/groove.glsl
@@ -97,6 +104,8 @@ struct RuleNode {
   real split_bounces;     // all bounces: at how many of them a beam that ends splits the azimuths,
   real dimmest;           // and the share of a ray's light below which it is followed no further
   real cluster_below_q;   // below this q an arc clusters its nodes where the limit b of `integral` meets pi/2
+  real response_scale;    // of responses: 1 / c0,
+  real response_norm;     // and 2 / asinh(1 / c0)
 };
 
 // One direction theta, with the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. Under total

@@ -8,6 +8,18 @@
 #include "physics/prelude.glsl"
 #include "interface.glsl"
 #include "physics/buffers.glsl"
+
+#if DOLP_MOST_COLUMNS > 0
+// Behind all MomentsNodes: DOLP_COLUMN_PARTS numbers for each column of each member.
+layout(std430, binding = DOLP_BINDING_MOMENTS) writeonly buffer ColumnsOut { real columns_out[]; };
+
+void store_column(uint place, real value) {
+  uint invocation = gl_GlobalInvocationID.x;
+  if (invocation >= push.count) return;
+  uint members = push.count * DOLP_WIDTH;
+  columns_out[members * DOLP_MOMENTS_NUMBERS + invocation * (DOLP_WIDTH * DOLP_COLUMN_PARTS * kColumnCount) + place] = value;
+}
+#endif
 #include "physics/all.glsl"
 
 layout(std430, binding = DOLP_BINDING_THETAS) readonly buffer Thetas { ThetaNode thetas[]; };
@@ -15,26 +27,6 @@ layout(std430, binding = DOLP_BINDING_INDICES) readonly buffer Indices { IndexNo
 layout(std430, binding = DOLP_BINDING_TASKS) readonly buffer Tasks { uvec4 tasks[]; };
 layout(std430, binding = DOLP_BINDING_RULE) readonly buffer Rule { RuleNode rule; };
 layout(std430, binding = DOLP_BINDING_MOMENTS) writeonly buffer MomentsOut { MomentsNode moments[]; };
-#if DOLP_MOST_SKY > 0
-// The same buffer: DOLP_SKY_PARTS numbers for each function of each member, behind all MomentsNodes.
-layout(std430, binding = DOLP_BINDING_MOMENTS) writeonly buffer SkyOut { real sky_moments[]; };
-
-void store_sky(uint member, SkySums fine, SkySums coarse) {
-  uint members = push.count * DOLP_WIDTH;
-  uint first = members * DOLP_MOMENTS_NUMBERS + member * DOLP_SKY_PARTS * kSkyCount;
-  for (int k = 0; k < DOLP_MOST_SKY; ++k) {
-    if (k < int(kSkyCount)) {
-      sky_moments[first + uint(DOLP_SKY_PARTS * k)] = fine.i[k];
-      sky_moments[first + uint(DOLP_SKY_PARTS * k + 1)] = fine.q[k];
-      sky_moments[first + uint(DOLP_SKY_PARTS * k + 2)] =
-          max(abs(fine.i[k] - coarse.i[k]), abs(fine.q[k] - coarse.q[k]));
-    }
-  }
-}
-#else
-void store_sky(uint member, SkySums fine, SkySums coarse) {}
-#endif
-
 void main() {
   uint i = gl_GlobalInvocationID.x;
   uvec4 own = tasks[push.first + min(i, push.count - 1u)];
@@ -55,9 +47,6 @@ void main() {
   }
   RowMoments result = piece_moments(rule, theta, row, indices[own.z], task);
   if (i < push.count) {
-    for (int g = 0; g < DOLP_WIDTH; ++g) {
-      moments[i * DOLP_WIDTH + g] = result.member[g];
-      store_sky(i * DOLP_WIDTH + uint(g), result.sky[g], result.coarse_sky[g]);
-    }
+    for (int g = 0; g < DOLP_WIDTH; ++g) moments[i * DOLP_WIDTH + g] = result.member[g];
   }
 }

@@ -6,6 +6,15 @@
 #include "physics/prelude.glsl"
 #include "interface.glsl"
 #include "physics/buffers.glsl"
+
+#if DOLP_MOST_COLUMNS > 0
+// Behind all AzimuthNodes: two numbers for each column of each slope.
+layout(std430, binding = DOLP_BINDING_AZIMUTHS) writeonly buffer ColumnsOut { real columns_out[]; };
+
+void store_column(uint place, real value) {
+  columns_out[push.count * DOLP_AZIMUTH_NUMBERS + gl_GlobalInvocationID.x * 2u * kColumnCount + place] = value;
+}
+#endif
 #include "physics/all.glsl"
 
 layout(std430, binding = DOLP_BINDING_THETAS) readonly buffer Thetas { ThetaNode thetas[]; };
@@ -13,23 +22,6 @@ layout(std430, binding = DOLP_BINDING_INDICES) readonly buffer Indices { IndexNo
 layout(std430, binding = DOLP_BINDING_SLOPES) readonly buffer Slopes { SlopeNode slopes[]; };
 layout(std430, binding = DOLP_BINDING_RULE) readonly buffer Rule { RuleNode rule; };
 layout(std430, binding = DOLP_BINDING_AZIMUTHS) writeonly buffer AzimuthsOut { AzimuthNode azimuths[]; };
-#if DOLP_MOST_SKY > 0
-// The same buffer: r_i and r_q with each function of each slope, behind all AzimuthNodes.
-layout(std430, binding = DOLP_BINDING_AZIMUTHS) writeonly buffer SkyOut { real sky_azimuths[]; };
-
-void store_sky(uint slope, SkySums sums) {
-  uint first = push.count * DOLP_AZIMUTH_NUMBERS + slope * 2u * kSkyCount;
-  for (int k = 0; k < DOLP_MOST_SKY; ++k) {
-    if (k < int(kSkyCount)) {
-      sky_azimuths[first + uint(2 * k)] = sums.i[k];
-      sky_azimuths[first + uint(2 * k + 1)] = sums.q[k];
-    }
-  }
-}
-#else
-void store_sky(uint slope, SkySums sums) {}
-#endif
-
 void main() {
   uint i = gl_GlobalInvocationID.x;
   SlopeNode own = slopes[push.first + min(i, push.count - 1u)];
@@ -39,6 +31,6 @@ void main() {
   SlopeResult result = azimuths_of(rule, theta, indices[int(own.index)], own);
   if (i < push.count) {
     azimuths[i] = result.node;
-    store_sky(i, result.sky);
+    store_azimuth_columns(result.columns);
   }
 }

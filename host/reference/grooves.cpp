@@ -264,8 +264,8 @@ Moments Surveyor::moments() {
   m.deficit_error = error_of(kAbsorbed) + unknown + kRounding * tail_weight;
   if (sky_) {
     const double sky_error = std::max(error_of(kSkyReflected), error_of(kSkyPolarised));
-    m.sky = {{integral.value[kSkyReflected], integral.value[kSkyPolarised],
-              std::max(sky_error, m.r_i_error) + 2.0 * unknown + tail_most + half_lost}};
+    m.columns = {{integral.value[kSkyReflected], integral.value[kSkyPolarised],
+                  std::max(sky_error, m.r_i_error) + 2.0 * unknown + tail_most + half_lost}};
   }
   return m;
 }
@@ -290,7 +290,7 @@ GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zeni
 Moments groove_moments(const Slopes& slopes, double theta_deg, const OpticalConstants& constants,
                        const Refinement& refinement, const SkyFunction* sky) {
   if (zenith_from_deg(theta_deg).cos == 0.0)
-    return {.direct_i = 0.0, .direct_q = 0.0, .sky = std::vector<SkyMoments>(sky ? 1 : 0)};
+    return {.direct_i = 0.0, .direct_q = 0.0, .columns = std::vector<ColumnMoments>(sky ? 1 : 0)};
   double evaluations = 0.0;
   for (Refinement attempted = refinement;; attempted.relative_tolerance *= kLessAmbitious) {
     const bool is_last = attempted.relative_tolerance >= kLeastAmbition;

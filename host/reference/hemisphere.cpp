@@ -352,7 +352,7 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   moments.evaluations = hemisphere.evaluations();
   if (sky) {
     const double sky_error = std::max(error_of(kSkyReflected), error_of(kSkyPolarised)) + amplitude_error;
-    moments.sky = {{integral.value[kSkyReflected], integral.value[kSkyPolarised], sky_error}};
+    moments.columns = {{integral.value[kSkyReflected], integral.value[kSkyPolarised], sky_error}};
   }
   return moments;
 }

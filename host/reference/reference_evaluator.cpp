@@ -81,7 +81,7 @@ void check(const ScatteringRequest& request) {
 Moments mirror_of(const MomentsRequest& request, const MomentsPoint& point) {
   Moments m = reference::mirror_moments(point.theta_deg, point.index);
   if (!request.sky) return m;
-  for (const double g : request.sky->at(point.theta_deg)) m.sky.push_back({g * m.r_i, g * m.r_q, m.r_i_error});
+  for (const double g : request.sky->at(point.theta_deg)) m.columns.push_back({g * m.r_i, g * m.r_q, m.r_i_error});
   return m;
 }
 
@@ -100,11 +100,11 @@ Moments moments_of(const MomentsRequest& request, const MomentsPoint& point, con
     const reference::SkyFunction sky{[&](double zenith_deg) { return request.sky->at(zenith_deg)[column]; },
                                      request.sky->nodes().ends_deg()};
     Moments with = integrate(&sky);
-    std::vector<SkyMoments> all = std::move(m.sky);
-    all.push_back(with.sky.empty() ? SkyMoments{} : with.sky.front());
+    std::vector<ColumnMoments> all = std::move(m.columns);
+    all.push_back(with.columns.empty() ? ColumnMoments{} : with.columns.front());
     with.evaluations += m.evaluations;
     m = std::move(with);
-    m.sky = std::move(all);
+    m.columns = std::move(all);
   }
   if (request.wants_direct) {
     const Moments direct =

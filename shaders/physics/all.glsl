@@ -7,7 +7,7 @@
 #include "physics/masking_table.glsl"
 #include "physics/facet.glsl"
 #include "physics/row.glsl"
-#include "physics/sky.glsl"
+#include "physics/columns.glsl"
 #include "physics/arcs.glsl"
 #include "physics/groove.glsl"
 #include "physics/task.glsl"

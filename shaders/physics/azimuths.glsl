@@ -9,25 +9,26 @@ struct Slope {
   int most_azimuths;
   bool is_coarse;
   SkyPlace sky;
+  real weight[DOLP_WIDTH];  // of its columns, for each member of the row
 };
 
 // A sum over azimuths, for each member of a row.
 struct AzimuthSums {
   real4 member[DOLP_WIDTH];
-  SkySums sky[DOLP_WIDTH];
+  Columns columns[DOLP_WIDTH];  // those given, and more
   real2 direct;       // direct emission of the facets, as (I, Q), before smith's masking
   real behind;        // MomentsNode::behind
   real evaluations;
 };
 
-AzimuthSums no_azimuths() {
+AzimuthSums no_azimuths(Columns columns[DOLP_WIDTH]) {
   AzimuthSums sums;
   sums.evaluations = real(0.0);
   sums.behind = real(0.0);
   sums.direct = real2(real(0.0), real(0.0));
   for (int g = 0; g < DOLP_WIDTH; ++g) {
     sums.member[g] = real4(real(0.0));
-    sums.sky[g] = no_sky();
+    sums.columns[g] = columns[g];
   }
   return sums;
 }
@@ -41,29 +42,41 @@ real sine_of_ray(ThetaNode theta, Row row, Facet f, real t, Azimuth at) {
   return sqrt(along * along + across * across);
 }
 
+// What a column's function is multiplied with, for each of the two moments.
+real2 column_factors(Slope slope, Facet f) {
+  if (kColumns == DOLP_COLUMNS_SKY) return real2(f.m00, f.m01);
+  real sky = (kColumns == DOLP_COLUMNS_SKY_RESPONSE) ? sky_function(slope.sky, 0, f.cos_r) : real(1.0);
+  return real2(sky, sky * f.rotation);
+}
+
 AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope, Arc arc, int zone,
-                     bool leaves, int order) {
-  AzimuthSums sums = no_azimuths();
+                     bool leaves, int order, Columns columns[DOLP_WIDTH]) {
+  AzimuthSums sums = no_azimuths(columns);
   int first_node = rule_offset(arc.section, order);
   for (int i = 0; i < order; ++i) {
     Azimuth at = azimuth(arc, place_on_arc(arc, rule_node(first_node + i)));
     if (kIsMultiple) {
       GrooveLight light = reflected_in_groove(rule, theta, index, slope.t, at.x, at.sin_phi);
       sums.member[0] += at.weight * light.moments;
-      sums.sky[0] =
-          add_reflected(sums.sky[0], sky_at(slope.sky, light.cos_before), at.weight * light.before.x, at.weight * light.before.y);
-      sums.sky[0] =
-          add_reflected(sums.sky[0], sky_at(slope.sky, light.cos_last), at.weight * light.last.x, at.weight * light.last.y);
+      real weight = slope.weight[0] * at.weight;
+      ColumnValues before = sky_at(slope.sky, light.cos_before);
+      sums.columns[0] = add_columns(sums.columns[0], before, weight * light.before.x, weight * light.before.y);
+      ColumnValues last = sky_at(slope.sky, light.cos_last);
+      sums.columns[0] = add_columns(sums.columns[0], last, weight * light.last.x, weight * light.last.y);
     } else {
       Facet f = facet(theta, index, slope.t, at.x, at.sin_phi);
       Masked of_ray = masking_of_ray(row, f.cos_r, sine_of_ray(theta, row, f, slope.t, at), slope.t, zone);
       real seen = leaves ? at.weight : real(0.0);
-      SkyValues sky = sky_at(slope.sky, f.cos_r);
+      ColumnValues values = column_values(rule, slope.sky, f.cos_beta, f.cos_r);
+      real2 per_projection = column_factors(slope, f);
       for (int g = 0; g < DOLP_WIDTH; ++g) {
         Projection part = project(theta, f, zone, slope.of_theta.value[g], of_ray.value[g]);
         sums.member[g] += seen * reflected(f, part);
-        real facets = seen * part.seen;
-        sums.sky[g] = add_reflected(sums.sky[g], sky, facets * f.m00, facets * f.m01);
+        real projection = seen * part.seen;
+        if (kColumns == DOLP_COLUMNS_DIRECT) projection = at.weight * seen_directly(theta, f);
+        projection *= slope.weight[g];
+        sums.columns[g] =
+            add_columns(sums.columns[g], values, projection * per_projection.x, projection * per_projection.y);
       }
       if (kHasDirect) sums.direct += at.weight * emitted(theta, f);
     }
@@ -81,8 +94,9 @@ real2 corner_line(ThetaNode theta, Slope slope, int corner) {
 
 // Integral over the azimuths from 0 to pi. Each zone is an arc, or two with the critical line of total reflection
 // between them, and the corners of a sky divide arcs further.
-AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope, SplitLines lines) {
-  AzimuthSums sums = no_azimuths();
+AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope, SplitLines lines,
+                         Columns columns[DOLP_WIDTH]) {
+  AzimuthSums sums = no_azimuths(columns);
   bool is_critical = kTotalReflection && index.critical_cos > real(0.0);
   real2 last = real2(real(1.0), real(0.0));
   int halves = is_critical ? 1 : 0;
@@ -118,10 +132,11 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
         real nodes = arc_nodes(rule, theta, row.shape[0], index, slope.has_split_line, slope.t, slope.digits, arc, zone);
         int order = order_between(nodes, slope.most_azimuths);
         if (slope.is_coarse) order = coarse_order(order);
-        AzimuthSums more = arc_sums(rule, theta, row, index, slope, arc, zone, zone < lines.leaving, order);
+        AzimuthSums more = arc_sums(rule, theta, row, index, slope, arc, zone, zone < lines.leaving, order,
+                                    sums.columns);
         for (int g = 0; g < DOLP_WIDTH; ++g) {
           sums.member[g] += more.member[g];
-          sums.sky[g] = add_scaled(sums.sky[g], real(1.0), more.sky[g]);
+          sums.columns[g] = more.columns[g];
         }
         sums.direct += more.direct;
         sums.evaluations += more.evaluations;
@@ -134,9 +149,10 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
 
 // Sums over all facets of a slope. Facets whose ray does not leave lose their projection toward theta, which is
 // negative for back-facing ones; from a groove every ray leaves.
-AzimuthSums slope_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope) {
+AzimuthSums slope_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope,
+                       Columns columns[DOLP_WIDTH]) {
   SplitLines lines = split_lines(rule, theta, index, slope.t, slope.has_split_line, slope.digits);
-  AzimuthSums sums = azimuth_sums(rule, theta, row, index, slope, lines);
+  AzimuthSums sums = azimuth_sums(rule, theta, row, index, slope, lines, columns);
   if (!kIsMultiple) {
     sums.behind = real(2.0) * theta.s * slope.t * lines.horizon.x * lines.horizon.y;
     real below = theta.c * real(4.0) * atan_unit(lines.horizon.x / (real(1.0) + lines.horizon.y));
@@ -148,7 +164,7 @@ AzimuthSums slope_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index,
 // The results of slopes.comp.
 struct SlopeResult {
   AzimuthNode node;
-  SkySums sky;
+  Columns columns;
 };
 
 // The same in the form that slopes.comp returns: its maskings do not depend on the shape.
@@ -161,10 +177,15 @@ SlopeResult azimuths_of(RuleNode rule, ThetaNode theta, IndexNode index, SlopeNo
   slope.most_azimuths = int(own.most_azimuths);
   slope.is_coarse = own.is_coarse > real(0.5);
   slope.sky = sky_place();
-  AzimuthSums sums = slope_sums(rule, theta, no_row(), index, slope);
+  Columns columns[DOLP_WIDTH];
+  for (int g = 0; g < DOLP_WIDTH; ++g) {
+    slope.weight[g] = real(1.0);
+    columns[g] = no_columns();
+  }
+  AzimuthSums sums = slope_sums(rule, theta, no_row(), index, slope, columns);
   real4 all = sums.member[0];
   SlopeResult result;
   result.node = AzimuthNode(all.x, all.y, all.z, all.w, sums.behind, sums.direct.x, sums.direct.y, sums.evaluations);
-  result.sky = sums.sky[0];
+  result.columns = sums.columns[0];
   return result;
 }

@@ -9,8 +9,13 @@ const bool kIsMultiple = false;
 layout(constant_id = DOLP_SPEC_MULTIPLE) const bool kIsMultiple = false;
 #endif
 layout(constant_id = DOLP_SPEC_DIRECT) const bool kHasDirect = false;
-#if DOLP_MOST_SKY > 0
-layout(constant_id = DOLP_SPEC_SKY) const uint kSkyCount = 0u;
+#if DOLP_MOST_COLUMNS > 0
+layout(constant_id = DOLP_SPEC_COLUMN_COUNT) const uint kColumnCount = 0u;
+layout(constant_id = DOLP_SPEC_COLUMNS) const uint kColumns = DOLP_COLUMNS_SKY;
+// With responses, a sky has one function.
+int sky_functions() { return kColumns == DOLP_COLUMNS_SKY ? int(kColumnCount) : 1; }
+#else
+const uint kColumns = DOLP_COLUMNS_SKY;
 #endif
 
 layout(push_constant) uniform PushConstants { DOLP_PUSH_CONSTANTS } push;

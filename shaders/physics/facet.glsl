@@ -13,6 +13,8 @@
 
 struct Facet {
   real e;         // projected area toward theta, over that of the facet's own base
+  real cos_beta;
+  real rotation;  // sin^2(beta) cos(2 eta)
   real cos_r;     // of the reflected ray
   real m00;
   real m01;
@@ -24,11 +26,14 @@ Facet facet(ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   real e = theta.c + theta.s * t * x;
   real along = theta.c * t * x - theta.s;
   real across = t * sin_phi;
-  Fresnel f = fresnel(index, sqrt(r2) * e);
+  real cos_beta = sqrt(r2) * e;
+  Fresnel f = fresnel(index, cos_beta);
   real half_split = real(0.5) * f.split_over_sin2 * r2;
   real split = half_split * (along * along + across * across);
   Facet result;
   result.e = e;
+  result.cos_beta = cos_beta;
+  result.rotation = r2 * (along * along - across * across);
   result.cos_r = clamp(real(2.0) * r2 * e - theta.c, real(0.0), real(1.0));
   result.m00 = f.r_s - split;
   result.m01 = half_split * (along * along - across * across);
@@ -48,9 +53,14 @@ real4 reflected(Facet f, Projection part) {
   return real4(part.seen * f.m00, part.seen * f.m01, part.seen, part.hidden + part.seen * f.absorbed);
 }
 
+// A facet's projection toward the viewer, with the masking of theta alone.
+real seen_directly(ThetaNode theta, Facet f) {
+  return (kMasking == DOLP_MASKING_V_CAVITY) ? min(f.e, real(2.0) * theta.c) : f.e;
+}
+
 // Emission of a facet straight to the viewer per unit of azimuth, as (I, Q): e G1 (1 - M00) and -e G1 M01 with the
 // masking of theta alone; smith's masking, the same for all facets, is multiplied later.
 real2 emitted(ThetaNode theta, Facet f) {
-  real seen = (kMasking == DOLP_MASKING_V_CAVITY) ? min(f.e, real(2.0) * theta.c) : f.e;
+  real seen = seen_directly(theta, f);
   return real2(seen * f.absorbed, -seen * f.m01);
 }

@@ -57,7 +57,7 @@ real2 place_on_piece(Piece piece, real v) {
 // Sums over the slopes of a piece by one rule, for each member of a row.
 struct PieceSums {
   real4 member[DOLP_WIDTH];
-  SkySums sky[DOLP_WIDTH];
+  Columns columns[DOLP_WIDTH];
   real behind[DOLP_WIDTH];  // MomentsNode::behind
   real2 direct[DOLP_WIDTH];
   real evaluations;
@@ -68,7 +68,7 @@ PieceSums no_slopes() {
   sums.evaluations = real(0.0);
   for (int g = 0; g < DOLP_WIDTH; ++g) {
     sums.member[g] = real4(real(0.0));
-    sums.sky[g] = no_sky();
+    sums.columns[g] = no_columns();
     sums.behind[g] = real(0.0);
     sums.direct[g] = real2(real(0.0), real(0.0));
   }
@@ -84,6 +84,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
   for (int g = 0; g < DOLP_WIDTH; ++g) mass[g] = real(0.0);
   int fewer = min(coarse_order(piece.order), largest_order());
   int order = is_coarse ? fewer : piece.order;
+  if (task.start >= shape.cut) order = 0;  // beyond the cut of the row
   real all = weight_of_shape(theta, shape);
   int first_node = rule_offset(kSectionGauss, order);
   for (int i = 0; i < order; ++i) {
@@ -109,10 +110,14 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
     slope.most_azimuths = task.most_azimuths;
     slope.is_coarse = is_coarse;
     slope.sky = sky;
-    AzimuthSums azimuths = slope_sums(rule, theta, row, index, slope);
+    for (int g = 0; g < DOLP_WIDTH; ++g) {
+      slope.weight[g] = weight[g];
+      if (kColumns == DOLP_COLUMNS_DIRECT) slope.weight[g] *= viewed(of_theta.value[g]);
+    }
+    AzimuthSums azimuths = slope_sums(rule, theta, row, index, slope, sums.columns);
     for (int g = 0; g < DOLP_WIDTH; ++g) {
       sums.member[g] += weight[g] * azimuths.member[g];
-      sums.sky[g] = add_scaled(sums.sky[g], weight[g], azimuths.sky[g]);
+      sums.columns[g] = azimuths.columns[g];
       sums.behind[g] += weight[g] * azimuths.behind;
       if (kHasDirect) sums.direct[g] += weight[g] * viewed(of_theta.value[g]) * azimuths.direct;
       mass[g] += kPi * weight[g];
@@ -123,7 +128,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
   for (int g = 0; g < DOLP_WIDTH; ++g) {
     real ratio = choose(mass[g] > real(0.0), piece.mass[g] / mass[g], real(1.0));
     sums.member[g] *= ratio;
-    sums.sky[g] = add_scaled(no_sky(), ratio, sums.sky[g]);
+    sums.columns[g] = scaled_columns(sums.columns[g], ratio);
     sums.behind[g] *= ratio;
     sums.direct[g] *= ratio;
   }
@@ -133,8 +138,6 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
 // The moments of the members of a row.
 struct RowMoments {
   MomentsNode member[DOLP_WIDTH];
-  SkySums sky[DOLP_WIDTH];
-  SkySums coarse_sky[DOLP_WIDTH];  // of the coarser rule
 };
 
 // Contribution of one piece to the moments of a row; the first piece also adds the slopes beyond the last one.
@@ -144,10 +147,11 @@ RowMoments piece_moments(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
   Masked of_theta = masking_of_direction(row, theta.c, theta.s);
   PieceSums coarse = no_slopes();
   PieceSums fine = no_slopes();
-  int passes = (task.start < cut) ? 2 : 0;  // no pass for a piece beyond the cut of the row
+  int passes = min(task.members + 1, 2);  // always 2, but no constant: the loop is not to be unrolled
   for (int pass = 0; pass < passes; ++pass) {
     coarse = fine;
     fine = piece_sums(rule, theta, row, index, task, piece, of_theta, pass == 0);
+    for (int g = 0; g < DOLP_WIDTH; ++g) store_columns(g, pass == 0, fine.columns[g]);
   }
   real reached = min(task.last, cut);
   RowMoments result;
@@ -157,8 +161,6 @@ RowMoments piece_moments(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
     real4 difference = abs(sums - coarse.member[g]);
     real2 direct = fine.direct[g];
     real direct_difference = max(abs(direct.x - coarse.direct[g].x), abs(direct.y - coarse.direct[g].y));
-    result.sky[g] = fine.sky[g];
-    result.coarse_sky[g] = coarse.sky[g];
     result.member[g] = MomentsNode(sums.x, sums.y, sums.z, sums.w + beyond, fine.behind[g], real(0.0), direct.x,
                                    direct.y, max(difference.x, difference.y), difference.z, difference.w, direct_difference,
                                    fine.evaluations + coarse.evaluations);

@@ -8,7 +8,8 @@
 #include <tuple>
 
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
-#include "model/index_basis.hpp"
+#include "model/response_basis.hpp"
+#include "plan/response_plan.hpp"
 #include "properties_support.hpp"
 
 namespace dolp {
@@ -55,7 +56,7 @@ MomentsRequest random_grid(Random& random, const Model& model, Scattering scatte
   if (sharing == Sharing::kSlopes) request.indices.push_back(random.index());
   if (sharing == Sharing::kIndices) {
     request.indices = many_indices(random);
-    request.basis = IndexBasis::of(request.indices, request.tolerance);
+    request.basis = ResponseBasis::of(request.indices, request.tolerance, response_passes(request.wants_direct, 0));
   }
   const bool is_dense = sharing == Sharing::kShapes;
   const double sigma = random.log_uniform(1e-3, 2.0);

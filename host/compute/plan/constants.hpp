@@ -44,8 +44,6 @@ inline constexpr double kDimmest = 1e-10;  // chosen: corners
 
 /// Share of the tolerance that the slopes beyond the cut may carry.
 inline constexpr double kCutShare = 0.01;  // chosen: 631, 629, 628
-/// Im N^2 above which absorption has smoothed the critical line of total reflection.
-inline constexpr double kSoftCriticalLine = 0.3;  // chosen: corners
 /// From a plain breakpoint to a horizon that is worth one, as a factor.
 inline constexpr double kLongWay = 300.0;  // chosen: corners
 /// Scale of the masking table, the width of the slope distribution if it can be. The end of the table, 5e8 scales away,
@@ -57,8 +55,10 @@ inline constexpr double kLargestTableScale = 0.5;         // chosen: corners
 inline constexpr double kSteepStep = 16.0;  // chosen: 1773, 1765, 1759
 /// Bounces whose critical line splits the slopes.
 inline constexpr int kCriticalBounces = 3;  // chosen
-/// Tolerance of the indices of a basis, over the request's: bounds grow by the weights.
-inline constexpr double kIndexNodeTolerance = 0.5;  // chosen
+/// Tolerance of a pass with responses, over the request's: bounds grow by the weights.
+inline constexpr double kResponseTolerance = 0.5;  // chosen
+/// Roundings of the abscissa of a response's polynomial.
+inline constexpr double kResponseRoundings = 4.0;  // chosen
 
 // ---- Skies (sky_table.cpp) -----------------------------------------------------------------------------------------
 // Numbers are the mean evaluations of an entry under the 19 rows of `dolp-bench effects`, integral; smith: `dolp table`

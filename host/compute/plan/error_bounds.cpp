@@ -145,9 +145,16 @@ double pair_factor(const KernelData& data, const kernel::IndexNode& index) {
   return index.critical_cos > 0.0 ? kCriticalFactor * smooth : smooth;
 }
 
-// Rounding of a function of the sky, in which that of 1 - cos(theta_r) shows next to the zenith alone.
-double sky_rounding(const KernelData& data, std::size_t function, double unit_roundoff) {
-  return kSkyRoundings * unit_roundoff + data.sky.steepness[function] * std::sqrt(kSkyCosineRoundings * unit_roundoff);
+// Errors of a function of the sky: of its table, of the corners that split nothing, and of rounding, in which that of
+// 1 - cos(theta_r) shows next to the zenith alone.
+double sky_error(const KernelData& data, std::size_t function, double unit_roundoff) {
+  return data.sky.error[function] + kUnsplitBends * data.sky.bends[function] + kSkyRoundings * unit_roundoff +
+         data.sky.steepness[function] * std::sqrt(kSkyCosineRoundings * unit_roundoff);
+}
+
+// Rounding of a Chebyshev polynomial: its abscissa's, times the largest slope, and that of the recurrence.
+double response_rounding(std::size_t degree, double unit_roundoff) {
+  return kResponseRoundings * unit_roundoff * static_cast<double>(1 + degree * degree);
 }
 
 }  // namespace
@@ -156,8 +163,18 @@ bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin
   return shape.m >= shape.table_scale || cos_theta >= shape.table_scale * sin_theta;
 }
 
+void take_complement(Moments& moments, double cosine) {
+  if (moments.deficit_error > moments.r_i_error) {
+    moments.deficit = cosine - moments.r_i;
+    moments.deficit_error = moments.r_i_error + kCosineRounding * cosine;
+  } else {
+    moments.r_i = cosine - moments.deficit;
+    moments.r_i_error = moments.deficit_error;
+  }
+}
+
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
-                            double unit_roundoff, std::span<const double> sky) {
+                            double unit_roundoff, std::span<const double> columns) {
   const kernel::ShapeNode& shape = data.shapes[entry.shape];
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
   const kernel::IndexNode& index = data.indices[entry.index];
@@ -206,22 +223,27 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
     moments.direct_i_error = pair * node.direct_difference + least_of_masked * theta.c + cut;
     moments.direct_q_error = moments.direct_i_error;
   }
-  for (std::size_t k = 0; k < data.sky.count; ++k) {
-    const auto part = sky.subspan(DOLP_SKY_PARTS * k, DOLP_SKY_PARTS);
-    const double of_value =
-        data.sky.error[k] + kUnsplitBends * data.sky.bends[k] + sky_rounding(data, k, unit_roundoff) + least_of_masked;
-    moments.sky.push_back({part[0], part[1], pair * part[2] + of_value * r_i_scale + reflected_cut + grooves});
+  for (std::size_t k = 0; k < data.column_count(); ++k) {
+    const auto part = columns.subspan(DOLP_COLUMN_PARTS * k, DOLP_COLUMN_PARTS);
+    const double of_sky = data.sky.count > 0 ? sky_error(data, data.response ? 0 : k, unit_roundoff) : 0.0;
+    if (data.response) {
+      const double size = std::max(std::abs(part[0]), std::abs(part[1]));
+      const double largest = data.response->of == Response::Of::kDirect ? theta.c : std::abs(node.albedo);
+      moments.columns.push_back(
+          {.i = part[0],
+           .q = part[1],
+           .error = rounding * size + (response_rounding(k, unit_roundoff) + of_sky) * largest + cut,
+           .i_apart = pair * part[2],
+           .q_apart = pair * part[3],
+           .relative_error = least + masking});
+    } else {
+      const double error = pair * part[2] + (of_sky + least_of_masked) * r_i_scale;
+      moments.columns.push_back({part[0], part[1], error + reflected_cut + grooves});
+    }
   }
-  // r_i + deficit = cos(theta): the more accurate of the two gives the other. A groove never absorbs less than 0.
-  const double cosine = theta.c;
-  const bool gives_deficit = !is_multiple || moments.r_i < cosine;
-  if (moments.deficit_error > moments.r_i_error && gives_deficit) {
-    moments.deficit = cosine - moments.r_i;
-    moments.deficit_error = moments.r_i_error + kCosineRounding * cosine;
-  } else {
-    moments.r_i = cosine - moments.deficit;
-    moments.r_i_error = moments.deficit_error;
-  }
+  // A groove never absorbs less than 0.
+  if (!is_multiple || moments.r_i < theta.c || moments.deficit_error <= moments.r_i_error)
+    take_complement(moments, theta.c);
   return moments;
 }
 

@@ -12,6 +12,7 @@
 #include "base/numbers.hpp"
 #include "model/angles.hpp"
 #include "model/gamma_ratio.hpp"
+#include "model/smooth_surface.hpp"
 #include "plan/breakpoints.hpp"
 #include "plan/constants.hpp"
 #include "plan/rule.hpp"
@@ -23,13 +24,6 @@ namespace {
 using std::numbers::pi;
 
 constexpr double kSmallestPole = 1e-6;  // of |N^2 + 1| and |N^2 - 1|
-
-// cos(beta) at which w vanishes, sqrt(1 - Re N^2), where that is a kink (k = 0) or nearly one; 0 elsewhere.
-double critical_cos(const OpticalConstants& index) {
-  const double squared = (1.0 - index.n) * (1.0 + index.n) + index.k * index.k;
-  const bool is_sharp = 2.0 * index.n * index.k < kSoftCriticalLine;
-  return is_sharp && squared > 0.0 && squared < 1.0 ? std::sqrt(squared) : 0.0;
-}
 
 /// Loop bounds of one piece, besides the orders of its rules.
 struct Loops {
@@ -171,7 +165,7 @@ kernel::IndexNode index_node(const OpticalConstants& index) {
           std::abs(pole.imag()),
           std::abs(branch.imag()),
           std::abs(branch.real()),
-          critical_cos(index)};
+          critical_cosine(index)};
 }
 
 // Every direction of a grid, for each of the lines of total reflection that its indices have, without and with the line
@@ -198,6 +192,18 @@ void add_shape(KernelData& data, const MomentsRequest& request, const SlopeShape
   data.shapes.push_back(shape_node(request, shape, digits));
   const bool is_split = needs_line(request.distribution, request.masking, shape, digits, request.tolerance);
   data.needs_line.push_back(is_split ? 1 : 0);
+}
+
+/// The rules take the polynomials and the hardest curve for those of a pole on the imaginary axis.
+void take_responses(KernelData& data, const Response& response) {
+  data.response = response;
+  data.rule.response_scale = 1.0 / response.c0;
+  data.rule.response_norm = 2.0 / std::asinh(1.0 / response.c0);
+  for (kernel::IndexNode& index : data.indices) {
+    if (std::hypot(index.pole_re, index.pole_im) <= response.bend) continue;
+    index.pole_re = 0.0;
+    index.pole_im = response.bend;
+  }
 }
 
 void add_grid(KernelData& data, const MomentsRequest& request) {
@@ -265,6 +271,7 @@ KernelData kernel_data(const MomentsRequest& request, const RuleModel& model) {
   const bool is_single = request.scattering == Scattering::kSingle;
   if (request.sky) data.sky = append_sky(*request.sky, request.tolerance, is_single, data.rule_nodes);
   for (const OpticalConstants& index : request.indices) data.indices.push_back(index_node(index));
+  if (request.response) take_responses(data, *request.response);
   if (data.is_grid) {
     add_grid(data, request);
   } else {

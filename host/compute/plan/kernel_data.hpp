@@ -1,8 +1,11 @@
 // All inputs of the kernel, computed by the host in double; the evaluators narrow it to the precision they run in.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -62,7 +65,9 @@ struct KernelData {
   std::vector<std::uint32_t> shape_of;       ///< of each point
   std::vector<std::array<double, 2>> rule_nodes;  ///< and behind them the cells of the sky
   SkyTable sky;
+  std::optional<Response> response;  ///< the columns; none: they are the functions of the sky
 
+  std::size_t column_count() const { return response ? response->count : sky.count; }
   bool needs_masking_table() const { return masking == Masking::kIntegral || masking == Masking::kSmith; }
   std::size_t size() const { return is_grid ? directions * indices.size() * shapes.size() : directions; }
   /// The node of a direction for an index and a shape.
@@ -85,9 +90,28 @@ struct RuleModel;
 KernelData kernel_data(const MomentsRequest& request);
 KernelData kernel_data(const MomentsRequest& request, const RuleModel& model);
 
-/// Numbers beside a MomentsNode, and beside an AzimuthNode, for the sky of the data.
-inline std::size_t sky_sums(const KernelData& data) { return std::size_t{DOLP_SKY_PARTS} * data.sky.count; }
-inline std::size_t sky_azimuths(const KernelData& data) { return std::size_t{2} * data.sky.count; }
+/// Numbers beside a MomentsNode, and beside an AzimuthNode, for the columns of the data.
+inline std::size_t column_sums(const KernelData& data) { return DOLP_COLUMN_PARTS * data.column_count(); }
+inline std::size_t column_azimuths(const KernelData& data) { return 2 * data.column_count(); }
+/// Adds the kernel's columns of a piece, DOLP_COLUMN_PARTS numbers each, to sums of the finer rule and of what it is
+/// apart from the coarser one; that of a sky is the larger of both, without its sign.
+template <class Real>
+void add_columns(const KernelData& data, std::span<const Real> piece, std::span<double> sums) {
+  for (std::size_t first = 0; first < piece.size(); first += DOLP_COLUMN_PARTS) {
+    const double i = static_cast<double>(piece[first + 2]);
+    const double q = static_cast<double>(piece[first + 3]);
+    const double i_apart = i - static_cast<double>(piece[first]);
+    const double q_apart = q - static_cast<double>(piece[first + 1]);
+    sums[first] += i;
+    sums[first + 1] += q;
+    sums[first + 2] += data.response ? i_apart : std::max(std::abs(i_apart), std::abs(q_apart));
+    sums[first + 3] += data.response ? q_apart : 0.0;
+  }
+}
+/// DOLP_COLUMNS_*.
+inline std::uint32_t column_kind(const KernelData& data) {
+  return data.response ? DOLP_COLUMNS_RESPONSE + static_cast<std::uint32_t>(data.response->of) : DOLP_COLUMNS_SKY;
+}
 
 /// The task word of interface.glsl for one piece of a row of `members` entries.
 std::uint32_t task_word(const Pieces& pieces, std::uint32_t piece, std::uint32_t members);
@@ -101,10 +125,13 @@ double slope_with_bounces(double bounces);
 /// Adds the kernel's result for a piece to the sum over other pieces.
 void add_piece(kernel::MomentsNode& sum, const kernel::MomentsNode& piece);
 
+/// r_i + deficit = cos(theta): the more accurate of the two gives the other.
+void take_complement(Moments& moments, double cosine);
+
 /// Converts the kernel's result for one entry into moments with error bounds; `unit_roundoff` is that of the kernel's
-/// precision. `sky`: DOLP_SKY_PARTS sums for each function of the data's sky.
+/// precision. `columns`: DOLP_COLUMN_PARTS sums for each column of the data.
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
-                            double unit_roundoff, std::span<const double> sky = {});
+                            double unit_roundoff, std::span<const double> columns = {});
 
 /// True if the masking table of a shape resolves the structure of G at a direction. Where the table is coarser than the
 /// slope distribution, it does not for directions whose cot(theta) lies within its first scale.

@@ -13,11 +13,11 @@ namespace dolp {
 
 /// One way to compute the moments of an entry.
 struct RefinementLevel {
-  Precision precision = Precision::kFloat;       ///< kFloat or kDouble
-  double tolerance = 1e-4;                       ///< of the rule: MomentsRequest::tolerance
-  bool may_interpolate = false;                  ///< between slope distributions
-  bool is_check = false;                         ///< by a rule of another kind
-  std::shared_ptr<const IndexBasis> basis = {};  ///< MomentsRequest::basis
+  Precision precision = Precision::kFloat;          ///< kFloat or kDouble
+  double tolerance = 1e-4;                          ///< of the rule: MomentsRequest::tolerance
+  bool may_interpolate = false;                     ///< between slope distributions
+  bool is_check = false;                            ///< by a rule of another kind
+  std::shared_ptr<const ResponseBasis> basis = {};  ///< MomentsRequest::basis
   /// In the order of their cost: float before double, wide tolerances before tight ones.
   friend bool operator<(const RefinementLevel& a, const RefinementLevel& b) {
     return std::tuple(a.precision, -a.tolerance, a.may_interpolate) <

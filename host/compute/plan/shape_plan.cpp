@@ -41,21 +41,21 @@ void store(const Values& values, double Moments::*quantity, std::span<Moments> m
 void interpolate_sky(const ShapePlan& plan, std::span<const Moments> nodes, std::size_t k, std::span<Moments> moments) {
   const Values sigma = plan.sigma.cardinal;
   const Values q = plan.q.cardinal.transpose();
-  for (Moments& of_entry : moments) of_entry.sky.resize(k + 1);
-  for (double SkyMoments::*component : {&SkyMoments::i, &SkyMoments::q}) {
+  for (Moments& of_entry : moments) of_entry.columns.resize(k + 1);
+  for (double ColumnMoments::*component : {&ColumnMoments::i, &ColumnMoments::q}) {
     Values at(static_cast<Eigen::Index>(plan.sigma.nodes.size()), static_cast<Eigen::Index>(plan.q.nodes.size()));
     Values bound(at.rows(), at.cols());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      at.data()[i] = nodes[i].sky[k].*component;
-      bound.data()[i] = nodes[i].sky[k].error;
+      at.data()[i] = nodes[i].columns[k].*component;
+      bound.data()[i] = nodes[i].columns[k].error;
     }
     bound.rowwise() += tails(plan.sigma, at);
     bound.colwise() += tails(plan.q, at.transpose()).transpose();
     const Values value = sigma * at * q;
     const Values error = sigma.cwiseAbs() * bound * q.cwiseAbs();
     for (std::size_t i = 0; i < moments.size(); ++i) {
-      moments[i].sky[k].*component = value.data()[i];
-      moments[i].sky[k].error = std::max(moments[i].sky[k].error, error.data()[i]);
+      moments[i].columns[k].*component = value.data()[i];
+      moments[i].columns[k].error = std::max(moments[i].columns[k].error, error.data()[i]);
     }
   }
 }
@@ -115,7 +115,7 @@ void interpolate(const ShapePlan& plan, std::span<const Moments> nodes, std::spa
     store(sigma * at * q, value, moments);
     store(sigma.cwiseAbs() * bound * q.cwiseAbs(), error, moments);
   }
-  for (std::size_t k = 0; k < nodes.front().sky.size(); ++k) interpolate_sky(plan, nodes, k, moments);
+  for (std::size_t k = 0; k < nodes.front().columns.size(); ++k) interpolate_sky(plan, nodes, k, moments);
   double evaluations = 0.0;
   for (const Moments& node : nodes) evaluations += node.evaluations;
   for (Moments& of_entry : moments) of_entry.evaluations = evaluations / static_cast<double>(moments.size());

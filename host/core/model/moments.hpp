@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "model/choices.hpp"
@@ -14,7 +15,7 @@
 
 namespace dolp {
 
-class IndexBasis;
+class ResponseBasis;
 class SkyBasis;
 
 /// The tightest tolerance of a rule in float; rounding dominates tighter ones.
@@ -26,6 +27,20 @@ struct MomentsPoint {
   SlopeShape shape;
   OpticalConstants index;
   friend bool operator==(const MomentsPoint&, const MomentsPoint&) = default;
+};
+
+/// The responses to the local angle of incidence that a request wants in place of the functions of its sky
+/// (response_basis.hpp).
+struct Response {
+  enum class Of : std::uint8_t {
+    kReflected,  ///< the light reflected
+    kSky,        ///< this light, weighted with the function of the sky, which has one
+    kDirect      ///< the direct emission
+  };
+  std::size_t count = 0;
+  double c0 = 1.0;
+  double bend = 1.0;  ///< ResponseBasis::bend, which the rules take up
+  Of of = Of::kReflected;
 };
 
 /// The entries whose moments are wanted: the grid theta x index x sigma x q, q fastest, or points, for which the four
@@ -41,8 +56,9 @@ struct MomentsRequest {
   Precision precision = Precision::kAuto;       ///< kAuto: float
   bool may_interpolate = true;                  ///< between slope distributions, to the same tolerance
   bool has_extra_splits = false;                ///< a rule of another kind, to check others with
-  std::shared_ptr<const IndexBasis> basis;      ///< of a grid, to combine the moments of its indices from; null: none
-  std::shared_ptr<const SkyBasis> sky;          ///< Moments::sky too, with its functions; null: none
+  std::shared_ptr<const ResponseBasis> basis;   ///< of a grid, to combine the moments of its indices from; null: none
+  std::shared_ptr<const SkyBasis> sky;          ///< Moments::columns are those with its functions; null: none
+  std::optional<Response> response;             ///< Moments::columns are the responses
   Layout layout = Layout::kGrid;
   std::vector<double> theta_deg;
   std::vector<OpticalConstants> indices;
@@ -60,11 +76,17 @@ struct MomentsRequest {
   void append(const MomentsPoint& point);
 };
 
-/// The moments with a function g of the zenith of the reflected ray, |g| <= 1: the integrals of r_i and r_q times g.
-struct SkyMoments {
+/// The moments with a function g of each facet, |g| <= 1. Of a sky it is a function of the zenith of the reflected ray,
+/// and multiplies r_i and r_q; of responses it is one of the local angle of incidence, in place of (R_s + R_p) / 2 and
+/// of (R_s - R_p) / (2 sin^2).
+struct ColumnMoments {
   double i = 0.0;
   double q = 0.0;
-  double error = 0.0;  ///< bound of the absolute error of either
+  double error = 0.0;  ///< bound of the absolute error of either; of a response, of what the next three do not tell
+  // Of a response: bounds of the error that sums over responses share, with its sign, and relative to the sum.
+  double i_apart = 0.0;
+  double q_apart = 0.0;
+  double relative_error = 0.0;
 };
 
 /// The moments of one entry, all multiplied by cos(theta), which keeps them finite at theta = 90 degrees.
@@ -84,8 +106,8 @@ struct Moments {
   double deficit_error = 0.0;
   double direct_i_error = 0.0;
   double direct_q_error = 0.0;
-  double evaluations = 0.0;          ///< integrand evaluations spent on this entry
-  std::vector<SkyMoments> sky = {};  ///< with each function of MomentsRequest::sky
+  double evaluations = 0.0;                 ///< integrand evaluations spent on this entry
+  std::vector<ColumnMoments> columns = {};  ///< with each function of the request's sky or responses
 };
 
 /// A moment and the bound of its error.

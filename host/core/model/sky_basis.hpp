@@ -52,6 +52,10 @@ class SkyBasis {
   /// The functions at a zenith.
   Eigen::RowVectorXd at(double zenith_deg) const { return nodes_.at(zenith_deg, values_); }
   SkyWeights weights_of(const Eigen::VectorXd& function) const;
+  /// A basis of one of the functions.
+  SkyBasis only(std::size_t function) const {
+    return {nodes_, {values_.col(static_cast<Eigen::Index>(function))}, 0.0};
+  }
 
  private:
   SkyNodes nodes_;

@@ -3,6 +3,7 @@
 #include "model/optical_constants.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <complex>
 #include <limits>
 
@@ -20,8 +21,18 @@ SmoothAbsorptance smooth_absorptance(const OpticalConstants& index, double cosin
   const double real =
       is_small ? square.real() - (1.0 - cosine) * (1.0 + cosine) : (n - 1.0) * (n + 1.0) - k * k + cosine * cosine;
   const Complex w = std::sqrt(Complex(real, square.imag()));
-  return {4.0 * cosine * w.real() / std::norm(cosine + w),
-          4.0 * cosine * (std::conj(square) * w).real() / std::norm(square * cosine + w)};
+  const double of_s = std::norm(cosine + w);
+  const double of_p = std::norm(square * cosine + w);
+  const double transmitted = 4.0 * cosine * w.real();
+  return {transmitted / of_s, 4.0 * cosine * (std::conj(square) * w).real() / of_p,
+          transmitted / of_s * (std::norm(square - 1.0) / of_p)};
+}
+
+double critical_cosine(const OpticalConstants& index) {
+  constexpr double kSoft = 0.3;  // chosen, of Im N^2: from there on the rules need no line
+  const double squared = (1.0 - index.n) * (1.0 + index.n) + index.k * index.k;
+  const bool is_sharp = 2.0 * index.n * index.k < kSoft;
+  return is_sharp && squared > 0.0 && squared < 1.0 ? std::sqrt(squared) : 0.0;
 }
 
 Moments mirror_moments(const OpticalConstants& index, double cosine) {

@@ -8,6 +8,7 @@ namespace dolp {
 struct SmoothAbsorptance {
   double s = 1.0;
   double p = 1.0;
+  double split = 0.0;  ///< (R_s - R_p) / sin^2(angle of incidence)
 };
 
 /// Absorptance of a smooth surface at an angle of incidence.
@@ -16,6 +17,10 @@ struct SmoothAbsorptance {
 /// Domain: cosine c in (0, 1], n > 0, k >= 0; total reflection (n < 1, k = 0) gives exactly 0.
 /// Accuracy: no cancellation, however good the reflector.
 SmoothAbsorptance smooth_absorptance(const OpticalConstants& index, double cosine);
+
+/// Cosine of the angle at which total reflection begins, sqrt(1 - Re N^2), where that is a kink (k = 0) or nearly one;
+/// 0 elsewhere.
+double critical_cosine(const OpticalConstants& index);
 
 /// Moments of the mirror, the limit sigma -> 0 of every surface: R_s and R_p at the direction itself, no masking.
 ///

@@ -103,10 +103,10 @@ void add_specular(Stokes& sum, double net, const Moments& moments) {
 
 void add_specular_sky(Stokes& sum, double specular, double rounding, const SkyWeights& weights,
                       const Moments& moments) {
-  assert(weights.of.size() == static_cast<Eigen::Index>(moments.sky.size()));
+  assert(weights.of.size() == static_cast<Eigen::Index>(moments.columns.size()));
   double error = weights.error * (std::abs(moments.r_i) + moments.r_i_error);
-  for (std::size_t k = 0; k < moments.sky.size(); ++k) {
-    const SkyMoments& with = moments.sky[k];
+  for (std::size_t k = 0; k < moments.columns.size(); ++k) {
+    const ColumnMoments& with = moments.columns[k];
     const double weight = weights.of[static_cast<Eigen::Index>(k)];
     sum.i += specular * weight * with.i;
     sum.q += specular * weight * with.q;

@@ -49,8 +49,8 @@ void add_sky(Moments& moments, const SkyBasis& sky, double zenith_deg, double sp
   const Eigen::RowVectorXd below = sky.at(std::min(zenith_deg + spread_deg, kHorizon_deg));
   for (Eigen::Index k = 0; k < at.size(); ++k) {
     const double change = std::max(std::abs(above[k] - at[k]), std::abs(below[k] - at[k]));
-    moments.sky.push_back({at[k] * moments.r_i, at[k] * moments.r_q,
-                           2.0 * std::max(moments.r_i_error, moments.r_q_error) + change * moments.r_i});
+    moments.columns.push_back({at[k] * moments.r_i, at[k] * moments.r_q,
+                               2.0 * std::max(moments.r_i_error, moments.r_q_error) + change * moments.r_i});
   }
 }
 

@@ -9,11 +9,11 @@
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/kernel/slope_samples.hpp"
-#include "plan/index_plan.hpp"
+#include "plan/response_plan.hpp"
 #include "plan/shape_plan.hpp"
 #include "run/drawn_entries.hpp"
-#include "run/index_bases.hpp"
 #include "run/part_requests.hpp"
+#include "run/response_bases.hpp"
 #include "run/scene_run.hpp"
 #include "table/table.hpp"
 
@@ -111,6 +111,16 @@ void count_work(RunPrediction& run, const SceneValues& scene, const SceneEntries
   run.beams_s = beams_scale * beams.spent_s;
 }
 
+/// The requests that a request of one shape parameter is computed by.
+std::vector<MomentsRequest> computed_requests(const MomentsRequest& request) {
+  const std::optional<ShapePlan> shapes = shape_plan(request);
+  const MomentsRequest& nodes = shapes ? shapes->nodes : request;
+  if (!nodes.basis) return {nodes};
+  ResponsePlan plan = response_plan(nodes);
+  if (plan.others) plan.passes.push_back(*std::move(plan.others));
+  return std::move(plan.passes);
+}
+
 }  // namespace
 
 RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
@@ -120,23 +130,21 @@ RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries,
   run.spectral_samples = spectral_rule(scene).samples.size();
   run.first = first_level(scene.accuracy, has_double);
   std::size_t largest = 0, columns_before = 0;
-  run.first.basis = IndexBases(scene, entries, plan).of(run.first);
+  run.first.basis = ResponseBases(scene, entries, plan).of(run.first);
   for (const SceneEntries& part : run_parts(entries, run.spectral_samples)) {
     const SpectralIndices indices = spectral_indices(scene, part);
     const PartRequests requests(scene, indices, plan, {part}, run.first);
     const std::size_t moments = requests.moments().size();
     const std::size_t beams = requests.beams().entries.size();
-    const bool has_basis = requests.moments().basis != nullptr;
-    if (has_basis) run.interpolated += moments;
-    for (const MomentsRequest& asked :
-         with_one_parameter(has_basis ? index_plan(requests.moments()).nodes : requests.moments())) {
+    for (const MomentsRequest& asked : with_one_parameter(requests.moments())) {
       if (asked.size() == 0) continue;
-      const std::optional<ShapePlan> shapes = shape_plan(asked);
-      const MomentsRequest& computed = shapes ? shapes->nodes : asked;
-      if (shapes && !has_basis) run.interpolated += asked.size();
-      run.counts_directions = entries.is_grid() && (shapes || has_slope_samples(computed));
-      run.moments += computed.size();
-      visit.moments(computed);
+      const bool is_interpolated = asked.basis || shape_plan(asked);
+      if (is_interpolated) run.interpolated += asked.size();
+      for (const MomentsRequest& computed : computed_requests(asked)) {
+        run.counts_directions = entries.is_grid() && (is_interpolated || has_slope_samples(computed));
+        run.moments += computed.size();
+        visit.moments(computed);
+      }
     }
     run.beams += beams;
     if (beams > 0) visit.beams(requests.beams());

@@ -14,8 +14,8 @@
 #include "model/angles.hpp"
 #include "plan/refinement.hpp"
 #include "run/closed_forms.hpp"
-#include "run/index_bases.hpp"
 #include "run/part_requests.hpp"
+#include "run/response_bases.hpp"
 #include "run/table_scene.hpp"
 
 namespace dolp {
@@ -47,7 +47,7 @@ struct RunContext {
   const EffectPlan& plan;
   const Spectra& spectra;
   ModelEvaluator* evaluator;
-  IndexBases& bases;
+  ResponseBases& bases;
   double& radiometry_s;
 
   std::size_t samples() const { return spectra.indices.front().size(); }  ///< of every entry
@@ -387,7 +387,7 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
   std::vector<std::size_t> checked;
   if (entries.is_grid() && plan.kept.moments)
     checked = checked_positions(whole, checked_count(whole * samples), scene_seed(scene));
-  IndexBases bases(scene, entries, plan);
+  ResponseBases bases(scene, entries, plan);
   RunSummary summary = sink.summary_of_done();
   const auto with_evaluation = [&] {
     RunSummary all = summary;

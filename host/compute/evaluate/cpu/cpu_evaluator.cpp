@@ -60,9 +60,9 @@ std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData&
     kernel.build_masking_tables(std::move(shapes));
     const auto one = [&](std::size_t i) {
       const MomentsEntry entry = data[entries[i]];
-      std::vector<double> sky(sky_sums(data));
-      const kernel::MomentsNode node = kernel.moments(entry, sky);
-      moments[entries[i]] = moments_from_kernel(node, data, entry, unit_roundoff, sky);
+      std::vector<double> columns(column_sums(data));
+      const kernel::MomentsNode node = kernel.moments(entry, columns);
+      moments[entries[i]] = moments_from_kernel(node, data, entry, unit_roundoff, columns);
     };
     const Progress of_all = [&](std::size_t done, std::size_t) {
       return !progress || progress(before + done, all.size());

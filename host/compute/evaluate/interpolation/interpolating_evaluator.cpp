@@ -9,7 +9,7 @@
 #include "base/parallel_ranges.hpp"
 #include "base/stopwatch.hpp"
 #include "model/angles.hpp"
-#include "plan/index_plan.hpp"
+#include "plan/response_plan.hpp"
 #include "plan/shape_plan.hpp"
 
 namespace dolp {
@@ -42,33 +42,32 @@ std::vector<char> interpolate_all(const ShapePlan& plan, std::span<const Moments
 
 }  // namespace
 
-std::vector<Moments> InterpolatingEvaluator::evaluate_basis(const MomentsRequest& request, const Progress& progress) {
-  const IndexPlan plan = index_plan(request);
-  const Progress of_nodes = [&](std::size_t done, std::size_t all) {
-    return !progress || progress(request.size() * done / all, request.size());
+std::vector<Moments> InterpolatingEvaluator::computed(const MomentsRequest& request, const Progress& progress) {
+  if (!request.basis) return evaluator_->evaluate(request, progress);
+  const ResponsePlan plan = response_plan(request);
+  const std::size_t wanted = plan.wanted_count();
+  nodes_ += wanted;
+  std::size_t before = 0;
+  const auto computed = [&](const MomentsRequest& part) {
+    const Progress of_part = [&](std::size_t done, std::size_t all) {
+      const std::size_t done_of_all = before + part.wanted_count() * done / std::max<std::size_t>(all, 1);
+      return !progress || progress(request.size() * done_of_all / wanted, request.size());
+    };
+    std::vector<Moments> moments = evaluator_->evaluate(part, of_part);
+    before += part.wanted_count();
+    return moments;
   };
-  const std::uint64_t interpolated = interpolated_;
-  const std::uint64_t nodes = nodes_;
-  const std::vector<Moments> computed = evaluate(plan.nodes, of_nodes);
-  if (nodes_ == nodes) nodes_ += plan.nodes.wanted_count();
-  interpolated_ = interpolated + request.wanted_count();
+  std::vector<std::vector<Moments>> passes;
+  for (const MomentsRequest& pass : plan.passes) passes.push_back(computed(pass));
+  std::vector<Moments> others;
+  if (plan.others) others = computed(*plan.others);
   const Clock::time_point start = Clock::now();
-  std::vector<Moments> moments(request.size());
-  const std::size_t shapes = request.sigma.size() * request.q.size();
-  const std::size_t of_theta = computed.size() / request.theta_deg.size();
-  parallel_ranges(moments.size() / shapes, 16, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const std::size_t theta = i / request.indices.size();
-      combine(plan, plan.sources[i % request.indices.size()], cos_sin_deg(request.theta_deg[theta]).cos,
-              std::span(computed).subspan(theta * of_theta, of_theta), std::span(moments).subspan(i * shapes, shapes));
-    }
-  });
+  std::vector<Moments> moments = combined(request, plan, passes, others);
   interpolation_s_ += seconds_since(start);
   return moments;
 }
 
 std::vector<Moments> InterpolatingEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
-  if (request.basis) return evaluate_basis(request, progress);
   const std::vector<MomentsRequest> parts = with_one_parameter(request);
   if (parts.size() == 1) return evaluate_part(request, progress);
   std::vector<std::vector<Moments>> of_parts;
@@ -95,17 +94,17 @@ std::vector<Moments> InterpolatingEvaluator::evaluate(const MomentsRequest& requ
 
 std::vector<Moments> InterpolatingEvaluator::evaluate_part(const MomentsRequest& request, const Progress& progress) {
   const std::optional<ShapePlan> plan = shape_plan(request);
-  if (!plan) return evaluator_->evaluate(request, progress);
+  if (plan || request.basis) interpolated_ += request.wanted_count();
+  if (!plan) return computed(request, progress);
   const Progress of_nodes = [&](std::size_t done, std::size_t all) {
     return !progress || progress(request.size() * done / all, request.size());
   };
-  const std::vector<Moments> nodes = evaluator_->evaluate(plan->nodes, of_nodes);
+  const std::vector<Moments> nodes = computed(plan->nodes, of_nodes);
   const Clock::time_point start = Clock::now();
   std::vector<Moments> moments(request.size());
   const std::vector<char> is_left = interpolate_all(*plan, nodes, request, moments);
   interpolation_s_ += seconds_since(start);
-  nodes_ += plan->nodes.wanted_count();
-  interpolated_ += request.wanted_count();
+  if (!request.basis) nodes_ += plan->nodes.wanted_count();
   if (std::ranges::find(is_left, 1) == is_left.end()) return moments;
   const std::size_t of_theta = request.size() / request.theta_deg.size();
   const std::size_t shapes = of_theta / request.indices.size();

@@ -9,7 +9,7 @@
 
 namespace dolp {
 
-/// Wraps another evaluator, which computes a basis of the indices (index_plan.hpp), the nodes of dense grids
+/// Wraps another evaluator, which computes responses for many indices (response_plan.hpp), the nodes of dense grids
 /// (shape_plan.hpp) and all requests that are not dense.
 class InterpolatingEvaluator final : public ModelEvaluator {
  public:
@@ -26,7 +26,8 @@ class InterpolatingEvaluator final : public ModelEvaluator {
   void clear_report() override;
 
  private:
-  std::vector<Moments> evaluate_basis(const MomentsRequest& request, const Progress& progress);
+  /// Without interpolation between slope distributions.
+  std::vector<Moments> computed(const MomentsRequest& request, const Progress& progress);
   /// Directions of one shape parameter.
   std::vector<Moments> evaluate_part(const MomentsRequest& request, const Progress& progress);
 

@@ -18,11 +18,11 @@ class CpuKernel {
   /// Makes the masking tables of some shapes, in ascending order, in place of earlier ones. When the data needs tables,
   /// `moments` takes entries of these shapes only.
   virtual void build_masking_tables(std::vector<std::uint32_t> shapes) = 0;
-  /// Adds DOLP_SKY_PARTS sums for each function of the data's sky to `sky`.
-  virtual kernel::MomentsNode moments(const MomentsEntry& entry, std::span<double> sky) = 0;
+  /// Adds DOLP_COLUMN_PARTS sums for each column of the data to `columns`.
+  virtual kernel::MomentsNode moments(const MomentsEntry& entry, std::span<double> columns) = 0;
 
-  /// The sums over the azimuths at a slope; `sky` gets r_i and r_q with each function of the data's sky.
-  virtual kernel::AzimuthNode azimuths(const kernel::SlopeNode& slope, std::span<double> sky) = 0;
+  /// The sums over the azimuths at a slope; `columns` gets the two sums of each column of the data.
+  virtual kernel::AzimuthNode azimuths(const kernel::SlopeNode& slope, std::span<double> columns) = 0;
 
   /// f cos(theta_i) cos(theta_r) for k_s = 1 over the beam's power of two, in 1/sr; of the data it needs the model and
   /// the rule nodes.

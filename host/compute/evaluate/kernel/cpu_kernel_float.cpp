@@ -1,4 +1,4 @@
-#define DOLP_MOST_SKY DOLP_SKY_FUNCTIONS
+#define DOLP_MOST_COLUMNS DOLP_COLUMNS
 #define DOLP_KERNEL_NAMESPACE kernel_float
 
 #include <glm/vec2.hpp>

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -43,7 +44,8 @@ struct KernelSource {
   bool kTotalReflection = false;
   bool kIsMultiple = false;
   bool kHasDirect = false;
-  uint kSkyCount = 0;
+  uint kColumnCount = 0;
+  uint kColumns = DOLP_COLUMNS_SKY;
   int log2_sky_cells = 0;
   int first_sky_cell = 0;
   int corners_of_sky = 0;
@@ -59,7 +61,8 @@ struct KernelSource {
     source.kTotalReflection = data.has_total_reflection;
     source.kIsMultiple = data.scattering == Scattering::kMultiple;
     source.kHasDirect = data.has_direct;
-    source.kSkyCount = data.sky.count;
+    source.kColumnCount = static_cast<uint>(data.column_count());
+    source.kColumns = column_kind(data);
     source.log2_sky_cells = static_cast<int>(data.sky.log2_cells);
     source.first_sky_cell = static_cast<int>(data.sky.start);
     source.corners_of_sky = static_cast<int>(data.sky.corners);
@@ -71,10 +74,18 @@ struct KernelSource {
   int largest_order() const { return order_of_nodes; }
   int sky_cells() const { return 1 << log2_sky_cells; }
   int pushed_corners() const { return corners_of_sky; }
+  int sky_functions() const { return kColumns == DOLP_COLUMNS_SKY ? static_cast<int>(kColumnCount) : 1; }
   int sky_start() const { return first_sky_cell; }
   real2 rule_node(int i) const { return rule_nodes[static_cast<std::size_t>(i)]; }
   real4 masking_node(uint i) const { return masking_table[i]; }
   void store_masking_node(uint i, real4 node) { masking_table[i] = node; }
+  void store_column(uint place, real value) { columns_out()[place] = value; }
+  /// The columns of the thread's last piece.
+  std::span<real> columns_out() const {
+    thread_local std::vector<real> columns;
+    columns.resize(DOLP_COLUMN_PARTS * std::size_t{kColumnCount});
+    return columns;
+  }
 };
 
 class SourceKernel final : public CpuKernel {
@@ -92,7 +103,7 @@ class SourceKernel final : public CpuKernel {
         nullptr);
   }
 
-  kernel::MomentsNode moments(const MomentsEntry& entry, std::span<double> sky) override {
+  kernel::MomentsNode moments(const MomentsEntry& entry, std::span<double> columns) override {
     const KernelSource::Row row{{shape_node(entry.shape)}, {table(entry.shape)}};
     const auto theta = convert_reals<real, KernelSource::ThetaNode, double>(data_.thetas[entry.theta]);
     const auto index = convert_reals<real, KernelSource::IndexNode, double>(data_.indices[entry.index]);
@@ -101,19 +112,19 @@ class SourceKernel final : public CpuKernel {
       const auto task = source_.with_slopes(source_.task_of(task_word(data_.pieces[entry.theta], piece, 1)), theta);
       const auto part = source_.piece_moments(rule_, theta, row, index, task);
       add_piece(moments, convert_reals<double, kernel::MomentsNode, real>(part.member[0]));
-      for (std::size_t k = 0; k < data_.sky.count; ++k) add_function(k, part, sky.subspan(DOLP_SKY_PARTS * k));
+      add_columns(data_, std::span<const real>(source_.columns_out()), columns);
     }
     return moments;
   }
 
-  kernel::AzimuthNode azimuths(const kernel::SlopeNode& slope, std::span<double> sky) override {
+  kernel::AzimuthNode azimuths(const kernel::SlopeNode& slope, std::span<double> columns) override {
     const auto theta =
         convert_reals<real, KernelSource::ThetaNode, double>(data_.thetas[static_cast<std::size_t>(slope.theta)]);
     const auto index =
         convert_reals<real, KernelSource::IndexNode, double>(data_.indices[static_cast<std::size_t>(slope.index)]);
     const auto own = convert_reals<real, KernelSource::SlopeNode, double>(slope);
     const auto result = source_.azimuths_of(rule_, theta, index, own);
-    for (std::size_t k = 0; k < data_.sky.count; ++k) copy_function(k, result, sky.subspan(2 * k));
+    for (std::size_t k = 0; k < data_.column_count(); ++k) copy_column(k, result, columns.subspan(2 * k));
     return convert_reals<double, kernel::AzimuthNode, real>(result.node);
   }
 
@@ -128,22 +139,13 @@ class SourceKernel final : public CpuKernel {
     return table_at(static_cast<std::size_t>(std::ranges::lower_bound(shapes_, shape) - shapes_.begin()));
   }
 
-#if DOLP_MOST_SKY > 0
-  static void add_function(std::size_t k, const KernelSource::RowMoments& part, std::span<double> sums) {
-    const real i = part.sky[0].i[k];
-    const real q = part.sky[0].q[k];
-    const real apart = max(abs(i - part.coarse_sky[0].i[k]), abs(q - part.coarse_sky[0].q[k]));
-    sums[0] += static_cast<double>(i);
-    sums[1] += static_cast<double>(q);
-    sums[2] += static_cast<double>(apart);
-  }
-  static void copy_function(std::size_t k, const KernelSource::SlopeResult& result, std::span<double> sums) {
-    sums[0] = static_cast<double>(result.sky.i[k]);
-    sums[1] = static_cast<double>(result.sky.q[k]);
+#if DOLP_MOST_COLUMNS > 0
+  static void copy_column(std::size_t k, const KernelSource::SlopeResult& result, std::span<double> sums) {
+    sums[0] = static_cast<double>(result.columns.i[k]);
+    sums[1] = static_cast<double>(result.columns.q[k]);
   }
 #else  // for plans, which compute no moments
-  static void add_function(std::size_t, const KernelSource::RowMoments&, std::span<double>) {}
-  static void copy_function(std::size_t, const KernelSource::SlopeResult&, std::span<double>) {}
+  static void copy_column(std::size_t, const KernelSource::SlopeResult&, std::span<double>) {}
 #endif
 
   KernelSource::ShapeNode shape_node(std::size_t shape) const {

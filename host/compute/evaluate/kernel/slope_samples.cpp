@@ -204,11 +204,12 @@ struct SlopeSampling::Impl {
     return std::bit_cast<kernel::AzimuthNode>(sums);
   }
 
-  // Adds the sums of both rules of a piece with the functions of the sky to `sums`, and the distance of the rules.
-  static void add_sky(const SampledPiece& piece, const Eigen::ArrayXd& own, double share,
-                      std::span<const double> azimuths, std::span<double> sums) {
-    const auto functions = static_cast<Eigen::Index>(sums.size() / DOLP_SKY_PARTS);
+  // Adds the sums of both rules of a piece of the columns to `sums`, and the distance of the rules.
+  void add_columns(const SampledPiece& piece, const Eigen::ArrayXd& own, double share, std::span<const double> azimuths,
+                   std::span<double> sums) {
+    const auto functions = static_cast<Eigen::Index>(sums.size() / DOLP_COLUMN_PARTS);
     if (functions == 0) return;
+    const bool has_sky = !data.response;
     const Eigen::Map<const Eigen::MatrixXd> all(azimuths.data(), 2 * functions, own.size());
     const auto sum_of_rule = [&](std::uint32_t first, std::uint32_t count) -> Eigen::VectorXd {
       const double mass = own.segment(first, count).sum();
@@ -216,21 +217,22 @@ struct SlopeSampling::Impl {
              (mass > 0.0 ? share / (KernelSource::kPi * mass) : 0.0);
     };
     const Eigen::VectorXd fine = sum_of_rule(piece.first, piece.fine);
-    const Eigen::VectorXd apart = (fine - sum_of_rule(piece.first + piece.fine, piece.coarse)).cwiseAbs();
+    const Eigen::VectorXd apart = fine - sum_of_rule(piece.first + piece.fine, piece.coarse);
     for (Eigen::Index k = 0; k < functions; ++k) {
-      const auto part = sums.subspan(static_cast<std::size_t>(k) * DOLP_SKY_PARTS, DOLP_SKY_PARTS);
+      const auto part = sums.subspan(static_cast<std::size_t>(k) * DOLP_COLUMN_PARTS, DOLP_COLUMN_PARTS);
       part[0] += fine[2 * k];
       part[1] += fine[2 * k + 1];
-      part[2] += std::max(apart[2 * k], apart[2 * k + 1]);
+      part[2] += has_sky ? std::max(std::abs(apart[2 * k]), std::abs(apart[2 * k + 1])) : apart[2 * k];
+      part[3] += has_sky ? 0.0 : apart[2 * k + 1];
     }
   }
 
-  // The moments of one shape without the slopes beyond the cut; `own` is scratch space for the weights, `sky` gets the
-  // sums with the functions of the sky.
+  // The moments of one shape without the slopes beyond the cut; `own` is scratch space for the weights, `columns` gets
+  // those of the data.
   kernel::MomentsNode moments_of(const SlopeSamples& samples, const KernelSource::ShapeNode& shape,
                                  const SlopeWeights& weights, std::span<const kernel::AzimuthNode> azimuths,
-                                 std::span<const double> sky_azimuths, Eigen::ArrayXd& own, std::span<double> sky) {
-    std::ranges::fill(sky, 0.0);
+                                 std::span<const double> of_columns, Eigen::ArrayXd& own, std::span<double> columns) {
+    std::ranges::fill(columns, 0.0);
     const double factor = source.exponent_factor(shape);
     const auto has_facets = [&](const SampledPiece& piece) {
       return factor * source.common_exponent(piece.start / shape.m) < kNoFacets;
@@ -247,7 +249,7 @@ struct SlopeSampling::Impl {
       from = to;
       const auto fine = sum_of(piece->first, piece->fine, own, share, azimuths);
       const auto coarse = sum_of(piece->first + piece->fine, piece->coarse, own, share, azimuths);
-      add_sky(*piece, own, share, sky_azimuths, sky);
+      add_columns(*piece, own, share, of_columns, columns);
       const auto apart = [](double a, double b) { return std::abs(a - b); };
       const bool is_steep = piece->end > slope_with_bounces(DOLP_MOST_BOUNCES);
       add_piece(moments,
@@ -303,22 +305,23 @@ void SlopeSampling::append(const SlopeSamples& samples, std::vector<kernel::Slop
 void SlopeSampling::integrate(const SlopeSamples& samples, const SampledAzimuths& sampled, std::size_t first,
                               double unit_roundoff, std::span<Moments> moments) const {
   const auto azimuths = std::span(sampled.nodes).subspan(first, samples.slopes.size());
-  const auto sky_azimuths = std::span(sampled.sky).subspan(first * sampled.of_sky, azimuths.size() * sampled.of_sky);
+  const auto of_columns =
+      std::span(sampled.columns).subspan(first * sampled.per_slope, azimuths.size() * sampled.per_slope);
   const KernelData& data = impl_->data;
   const auto& [direction, theta, index, shapes] = samples.entries;
   double evaluations = 0.0;
   for (const kernel::AzimuthNode& azimuth : azimuths) evaluations += azimuth.evaluations;
   SlopeWeights weights;
   Eigen::ArrayXd own(static_cast<Eigen::Index>(samples.slopes.size()));
-  std::vector<double> sky(sky_sums(data));
+  std::vector<double> columns(column_sums(data));
   for (const std::uint32_t shape : shapes) {
     const auto node = std::bit_cast<KernelSource::ShapeNode>(data.shapes[shape]);
     if (node.m != weights.m) weights = impl_->weights_of(samples, node);
-    kernel::MomentsNode sums = impl_->moments_of(samples, node, weights, azimuths, sky_azimuths, own, sky);
+    kernel::MomentsNode sums = impl_->moments_of(samples, node, weights, azimuths, of_columns, own, columns);
     sums.deficit += data.thetas[theta].c * impl_->source.slope_tail(node, samples.cut);
     sums.evaluations = evaluations / static_cast<double>(shapes.size());
     moments[data.entry_of(direction, index, shape)] =
-        moments_from_kernel(sums, data, {theta, shape, index}, unit_roundoff, sky);
+        moments_from_kernel(sums, data, {theta, shape, index}, unit_roundoff, columns);
   }
 }
 
@@ -328,7 +331,8 @@ void SlopeSampling::compute(SampledEntries entries, CpuKernel& kernel, double un
   std::vector<kernel::SlopeNode> slopes;
   append(samples, slopes);
   SampledAzimuths azimuths(slopes.size(), impl_->data);
-  for (std::size_t i = 0; i < slopes.size(); ++i) azimuths.nodes[i] = kernel.azimuths(slopes[i], azimuths.sky_of(i));
+  for (std::size_t i = 0; i < slopes.size(); ++i)
+    azimuths.nodes[i] = kernel.azimuths(slopes[i], azimuths.columns_of(i));
   integrate(samples, azimuths, 0, unit_roundoff, moments);
 }
 

@@ -54,12 +54,12 @@ struct SlopeSamples {
 /// The kernel's results for slopes.
 struct SampledAzimuths {
   SampledAzimuths(std::size_t slopes, const KernelData& data)
-      : nodes(slopes), of_sky(sky_azimuths(data)), sky(slopes * of_sky) {}
-  std::span<double> sky_of(std::size_t slope) { return std::span(sky).subspan(slope * of_sky, of_sky); }
+      : nodes(slopes), per_slope(column_azimuths(data)), columns(slopes * per_slope) {}
+  std::span<double> columns_of(std::size_t slope) { return std::span(columns).subspan(slope * per_slope, per_slope); }
 
   std::vector<kernel::AzimuthNode> nodes;
-  std::size_t of_sky;
-  std::vector<double> sky;  ///< r_i and r_q with each function of the sky, slope by slope
+  std::size_t per_slope;
+  std::vector<double> columns;  ///< the two sums of each column, slope by slope
 };
 
 /// Plans slope samples of a request and integrates them. `data` must outlive it; any thread may call it.

@@ -40,7 +40,7 @@ DispatchForecast slope_forecast(const MomentsRequest& request, const vulkan::Pac
     forecast.slopes += batch.slopes.size();
   }
   forecast.device_bytes = slopes * (packing.node_bytes<kernel::SlopeNode>() +
-                                    packing.output_bytes<kernel::AzimuthNode>(sky_azimuths(data)) +
+                                    packing.output_bytes<kernel::AzimuthNode>(column_azimuths(data)) +
                                     packing.node_bytes<kernel::ThetaNode>() + packing.node_bytes<kernel::IndexNode>()) +
                           node_bytes(packing, data);
   return forecast;

@@ -26,14 +26,14 @@ std::span<const std::uint32_t> module_of(const KernelVariant& variant, bool floa
     return float64 ? spirv::masking_table_double : spirv::masking_table_float;
   }
   if (variant.entry == EntryPoint::kMueller) return float64 ? spirv::mueller_double : spirv::mueller_float;
-  if (variant.entry == EntryPoint::kSlopes && variant.sky > 0) {
-    return float64 ? spirv::slopes_sky_double : spirv::slopes_sky_float;
+  if (variant.entry == EntryPoint::kSlopes && variant.columns > 0) {
+    return float64 ? spirv::slopes_columns_double : spirv::slopes_columns_float;
   }
   if (variant.entry == EntryPoint::kSlopes) return float64 ? spirv::slopes_double : spirv::slopes_float;
-  if (variant.sky > 0 && variant.width == kRowWidth) {
-    return float64 ? spirv::moments_sky_rows_double : spirv::moments_sky_rows_float;
+  if (variant.columns > 0 && variant.width == kRowWidth) {
+    return float64 ? spirv::moments_columns_rows_double : spirv::moments_columns_rows_float;
   }
-  if (variant.sky > 0) return float64 ? spirv::moments_sky_double : spirv::moments_sky_float;
+  if (variant.columns > 0) return float64 ? spirv::moments_columns_double : spirv::moments_columns_float;
   if (variant.width == kRowWidth) return float64 ? spirv::moments_rows_double : spirv::moments_rows_float;
   return float64 ? spirv::moments_double : spirv::moments_float;
 }
@@ -48,21 +48,23 @@ UniquePipeline compile(VkDevice device, VkPipelineLayout layout, std::uint32_t l
   const UniqueShaderModule shader(device, created_module);
 
   // The enumerators are the values of interface.glsl.
-  const std::array<std::uint32_t, 7> values{local_size,
+  const std::array<std::uint32_t, 8> values{local_size,
                                             static_cast<std::uint32_t>(variant.distribution),
                                             static_cast<std::uint32_t>(variant.masking),
                                             variant.has_total_reflection ? 1U : 0U,
                                             variant.is_multiple ? 1U : 0U,
                                             variant.has_direct ? 1U : 0U,
-                                            variant.sky};
+                                            variant.columns,
+                                            variant.column_kind};
   constexpr std::uint32_t kSize = sizeof(std::uint32_t);
-  const std::array<VkSpecializationMapEntry, 7> entries{{{DOLP_SPEC_LOCAL_SIZE, 0, kSize},
+  const std::array<VkSpecializationMapEntry, 8> entries{{{DOLP_SPEC_LOCAL_SIZE, 0, kSize},
                                                          {DOLP_SPEC_DISTRIBUTION, kSize, kSize},
                                                          {DOLP_SPEC_MASKING, 2 * kSize, kSize},
                                                          {DOLP_SPEC_TOTAL_REFLECTION, 3 * kSize, kSize},
                                                          {DOLP_SPEC_MULTIPLE, 4 * kSize, kSize},
                                                          {DOLP_SPEC_DIRECT, 5 * kSize, kSize},
-                                                         {DOLP_SPEC_SKY, 6 * kSize, kSize}}};
+                                                         {DOLP_SPEC_COLUMN_COUNT, 6 * kSize, kSize},
+                                                         {DOLP_SPEC_COLUMNS, 7 * kSize, kSize}}};
   const VkSpecializationInfo constants{.mapEntryCount = static_cast<std::uint32_t>(entries.size()),
                                        .pMapEntries = entries.data(),
                                        .dataSize = sizeof values,
@@ -101,7 +103,8 @@ KernelVariant moments_variant(const KernelData& data, std::uint32_t width) {
           .masking = data.masking,
           .has_total_reflection = data.has_total_reflection,
           .has_direct = data.has_direct,
-          .sky = data.sky.count,
+          .columns = static_cast<std::uint32_t>(data.column_count()),
+          .column_kind = column_kind(data),
           .width = width};
 }
 
@@ -112,7 +115,8 @@ KernelVariant slopes_variant(const KernelData& data) {
           .has_total_reflection = data.has_total_reflection,
           .is_multiple = data.scattering == Scattering::kMultiple,
           .has_direct = data.has_direct,
-          .sky = data.sky.count};
+          .columns = static_cast<std::uint32_t>(data.column_count()),
+          .column_kind = column_kind(data)};
 }
 
 KernelVariant masking_table_variant(const KernelData& data) {

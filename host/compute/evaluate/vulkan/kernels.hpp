@@ -31,7 +31,8 @@ struct KernelVariant {
   bool has_total_reflection = false;
   bool is_multiple = false;
   bool has_direct = false;
-  std::uint32_t sky = 0;    ///< functions of a sky
+  std::uint32_t columns = 0;
+  std::uint32_t column_kind = DOLP_COLUMNS_SKY;
   std::uint32_t width = 1;  ///< of moments: 1 or kRowWidth of plan/rows.hpp
   auto operator<=>(const KernelVariant&) const = default;
 };

@@ -58,7 +58,7 @@ void MomentsRun::create_buffers() {
                           MemoryUse::kDeviceOnly, packing.masking_texels());
   moments_buffer_.emplace(
       device,
-      std::size_t{sizes_.invocations} * rows_.width * packing.output_bytes<kernel::MomentsNode>(sky_sums(data_)),
+      std::size_t{sizes_.invocations} * rows_.width * packing.output_bytes<kernel::MomentsNode>(column_sums(data_)),
       MemoryUse::kReadback);
 
   Kernels::Bindings bindings;
@@ -86,7 +86,7 @@ void MomentsRun::create_pipelines() {
 
 std::optional<std::vector<Moments>> MomentsRun::compute(const Progress& progress) {
   std::vector<kernel::MomentsNode> results(rows_.rows.size() * rows_.width);
-  sky_results_.assign(results.size() * sky_sums(data_), 0.0);
+  column_results_.assign(results.size() * column_sums(data_), 0.0);
   const std::size_t wanted = request_.wanted_count();
   for (const Block& block : blocks_of(rows_, sizes_.shapes)) {
     const std::vector<RowPiece> pieces = pieces_of(rows_, data_, block.first_row, block.row_count);
@@ -159,8 +159,8 @@ void MomentsRun::run_tile(const Block& block, std::span<const RowPiece> pieces,
 void MomentsRun::add_pieces(std::span<const RowPiece> pieces, std::span<kernel::MomentsNode> results) {
   const Packing& packing = context_.packing;
   const std::size_t members = pieces.size() * rows_.width;
-  const std::size_t of_sky = sky_sums(data_);
-  scratch_.resize(members * packing.output_bytes<kernel::MomentsNode>(of_sky));
+  const std::size_t per_entry = column_sums(data_);
+  scratch_.resize(members * packing.output_bytes<kernel::MomentsNode>(per_entry));
   moments_buffer_->read(scratch_);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     cost_.evaluations += packing.read<kernel::MomentsNode>(scratch_, i * rows_.width).evaluations;
@@ -169,7 +169,7 @@ void MomentsRun::add_pieces(std::span<const RowPiece> pieces, std::span<kernel::
   const auto [least, most] = std::ranges::minmax(pieces, {}, &RowPiece::row);
   const std::uint32_t first_row = least.row;
   parallel_ranges(most.row - least.row + std::size_t{1}, kRowsAtOnce, [&](std::size_t first, std::size_t last) {
-    std::vector<double> sky(of_sky);
+    std::vector<double> columns(per_entry);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const std::size_t row = pieces[i].row - first_row;
       if (row < first || row >= last) continue;
@@ -179,11 +179,12 @@ void MomentsRun::add_pieces(std::span<const RowPiece> pieces, std::span<kernel::
         node.evaluations /= of_piece.used;
         const std::size_t place = pieces[i].row * std::size_t{rows_.width} + g;
         add_piece(results[place], node);
-        packing.read_numbers(
-            scratch_,
-            members * packing.node_bytes<kernel::MomentsNode>() + (i * rows_.width + g) * of_sky * packing.real_bytes(),
-            sky);
-        for (std::size_t k = 0; k < of_sky; ++k) sky_results_[place * of_sky + k] += sky[k];
+        packing.read_numbers(scratch_,
+                             members * packing.node_bytes<kernel::MomentsNode>() +
+                                 (i * rows_.width + g) * per_entry * packing.real_bytes(),
+                             columns);
+        add_columns(data_, std::span<const double>(columns),
+                    std::span(column_results_).subspan(place * per_entry, per_entry));
       }
     }
   });
@@ -191,7 +192,7 @@ void MomentsRun::add_pieces(std::span<const RowPiece> pieces, std::span<kernel::
 
 std::vector<Moments> MomentsRun::moments_of(std::span<const kernel::MomentsNode> results) const {
   std::vector<Moments> moments(request_.size());
-  const std::size_t of_sky = sky_sums(data_);
+  const std::size_t per_entry = column_sums(data_);
   parallel_ranges(rows_.rows.size(), kRowsAtOnce, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const Row& row = rows_.rows[i];
@@ -201,7 +202,7 @@ std::vector<Moments> MomentsRun::moments_of(std::span<const kernel::MomentsNode>
         const std::uint32_t shape = rows_.shape_of[chunk.first + g];
         moments[data_.entry_of(row.direction, row.index, shape)] = moments_from_kernel(
             results[i * rows_.width + g], data_, {theta, shape, row.index}, context_.packing.unit_roundoff(),
-            std::span(sky_results_).subspan((i * rows_.width + g) * of_sky, of_sky));
+            std::span(column_results_).subspan((i * rows_.width + g) * per_entry, per_entry));
       }
     }
   });

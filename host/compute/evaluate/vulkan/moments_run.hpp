@@ -67,7 +67,7 @@ class MomentsRun {
   TileSizes sizes_;
   Renumbering thetas_, indices_;
   std::vector<std::byte> scratch_;
-  std::vector<double> sky_results_;  ///< DOLP_SKY_PARTS sums for each function of the sky, of each member
+  std::vector<double> column_results_;  ///< DOLP_COLUMN_PARTS sums for each column of each member
   RunCost cost_;
   std::optional<InputBuffer> theta_buffer_, shape_buffer_, index_buffer_, task_buffer_, rule_buffer_, rule_node_buffer_;
   std::optional<Buffer> masking_buffer_, moments_buffer_;

@@ -93,7 +93,7 @@ void SlopeRun::create_buffers() {
   rule_buffer_.emplace(device, packing.node_bytes<kernel::RuleNode>(), staged);
   rule_node_buffer_.emplace(device, data_.rule_nodes.size() * packing.node_bytes<std::array<double, 2>>(), staged,
                             packing.rule_texels());
-  azimuth_buffer_.emplace(device, tile_size_ * packing.output_bytes<kernel::AzimuthNode>(sky_azimuths(data_)),
+  azimuth_buffer_.emplace(device, tile_size_ * packing.output_bytes<kernel::AzimuthNode>(column_azimuths(data_)),
                           MemoryUse::kReadback);
   Kernels::Bindings bindings;
   bindings.buffers[DOLP_BINDING_THETAS] = theta_buffer_->get();
@@ -172,13 +172,13 @@ void SlopeRun::run_tile(const SlopeBatch& batch, std::span<const std::uint32_t> 
   stream.barrier(Barrier::kKernelToHost);
   cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
   ++cost_.dispatches;
-  const std::size_t of_sky = sky_azimuths(data_);
-  scratch_.resize(slopes.size() * packing.output_bytes<kernel::AzimuthNode>(of_sky));
+  const std::size_t per_entry = column_azimuths(data_);
+  scratch_.resize(slopes.size() * packing.output_bytes<kernel::AzimuthNode>(per_entry));
   azimuth_buffer_->read(scratch_);
   const std::size_t behind = slopes.size() * packing.node_bytes<kernel::AzimuthNode>();
   for (std::size_t i = 0; i < slopes.size(); ++i) {
     azimuths.nodes[slopes[i]] = packing.read<kernel::AzimuthNode>(scratch_, i);
-    packing.read_numbers(scratch_, behind + i * of_sky * packing.real_bytes(), azimuths.sky_of(slopes[i]));
+    packing.read_numbers(scratch_, behind + i * per_entry * packing.real_bytes(), azimuths.columns_of(slopes[i]));
   }
 }
 

@@ -29,7 +29,7 @@ TileCosts tile_costs(const Packing& packing, const KernelData& data, std::uint32
   using EntryWords = std::array<std::uint32_t, 4>;
   return {.invocation_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
                               packing.node_bytes<kernel::IndexNode>() +
-                              width * packing.output_bytes<kernel::MomentsNode>(sky_sums(data)),
+                              width * packing.output_bytes<kernel::MomentsNode>(column_sums(data)),
           .shape_bytes =
               packing.node_bytes<kernel::ShapeNode>() + packing.masking_nodes() * packing.node_bytes<MaskingNode>(),
           .shape_texels = packing.texels_of_table()};
@@ -44,7 +44,7 @@ std::uint32_t slope_tile_size(const TileLimits& limits, const Packing& packing, 
   const TileCosts costs{.invocation_bytes = packing.node_bytes<kernel::SlopeNode>() +
                                             packing.node_bytes<kernel::ThetaNode>() +
                                             packing.node_bytes<kernel::IndexNode>() +
-                                            packing.output_bytes<kernel::AzimuthNode>(sky_azimuths(data)),
+                                            packing.output_bytes<kernel::AzimuthNode>(column_azimuths(data)),
                         .shape_bytes = 1};
   const std::uint32_t slopes = tile_sizes(limits, costs).invocations;
   return std::max(slopes - slopes % kLockstep, kLockstep);

@@ -17,7 +17,7 @@ struct Refinement {
   int subdivisions = 1;              ///< equal parts of each first panel
 };
 
-/// A function of the zenith of the reflected ray, with which SkyMoments are wanted.
+/// A function of the zenith of the reflected ray, with which ColumnMoments are wanted.
 struct SkyFunction {
   std::function<double(double zenith_deg)> value;
   std::vector<double> corners_deg;

@@ -1,11 +1,11 @@
-// The indices of a run from which the moments of the others are combined.
+// The responses from which the moments of the indices of a run are combined.
 #pragma once
 
 #include <map>
 #include <memory>
 #include <vector>
 
-#include "model/index_basis.hpp"
+#include "model/response_basis.hpp"
 #include "model/scene_entry.hpp"
 #include "plan/effects.hpp"
 #include "plan/refinement.hpp"
@@ -14,17 +14,18 @@
 namespace dolp {
 
 /// The bases of a run, one for each tolerance. They follow from the whole grid, of which the entries may be a part.
-class IndexBases {
+class ResponseBases {
  public:
-  IndexBases(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan);
+  ResponseBases(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan);
 
   /// The basis of a level that may interpolate; null where it saves nothing: for points, few entries of each index, few
   /// indices and many bounces.
-  std::shared_ptr<const IndexBasis> of(const RefinementLevel& level);
+  std::shared_ptr<const ResponseBasis> of(const RefinementLevel& level);
 
  private:
   std::vector<OpticalConstants> indices_;  ///< of the run; none where they are not combined
-  std::map<double, std::shared_ptr<const IndexBasis>> of_tolerance_;
+  std::size_t passes_;
+  std::map<double, std::shared_ptr<const ResponseBasis>> of_tolerance_;
 };
 
 }  // namespace dolp

@@ -1,7 +1,9 @@
-#include "run/index_bases.hpp"
+#include "run/response_bases.hpp"
 
 #include <algorithm>
 
+#include "model/sky_basis.hpp"
+#include "plan/response_plan.hpp"
 #include "run/part_requests.hpp"
 
 namespace dolp {
@@ -29,17 +31,18 @@ std::vector<OpticalConstants> indices_of(const SceneValues& scene, const SceneEn
 
 }  // namespace
 
-IndexBases::IndexBases(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan) {
+ResponseBases::ResponseBases(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan)
+    : passes_(response_passes(plan.needs_direct, plan.sky ? plan.sky->size() : 0)) {
   const bool has_bounces = plan.kept.further_bounces && scene.surface.scattering == Scattering::kMultiple;
   const PerAxis& counts = entries.whole();
   const bool pays = counts[Axis::kTheta] * counts[Axis::kSigma] * counts[Axis::kQ] >= kLeastEntries;
   if (entries.is_grid() && pays && plan.kept.moments && !has_bounces) indices_ = indices_of(scene, entries);
 }
 
-std::shared_ptr<const IndexBasis> IndexBases::of(const RefinementLevel& level) {
+std::shared_ptr<const ResponseBasis> ResponseBases::of(const RefinementLevel& level) {
   if (!level.may_interpolate || indices_.empty()) return nullptr;
   const auto [place, is_new] = of_tolerance_.try_emplace(level.tolerance);
-  if (is_new) place->second = IndexBasis::of(indices_, level.tolerance);
+  if (is_new) place->second = ResponseBasis::of(indices_, level.tolerance, passes_);
   return place->second;
 }
 

@@ -1,0 +1,263 @@
+#include "plan/response_plan.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "base/parallel_ranges.hpp"
+#include "model/angles.hpp"
+#include "model/sky_basis.hpp"
+#include "plan/constants.hpp"
+
+namespace dolp {
+namespace {
+
+using Combined = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Wanted entries of a grid that has some of the request's indices: for each of these, flags of the request's indices
+/// that need it.
+std::vector<char> wanted_of(const MomentsRequest& request, const std::vector<std::vector<std::size_t>>& needed_by) {
+  const std::size_t shapes = request.sigma.size() * request.q.size();
+  std::vector<char> wanted;
+  for (std::size_t theta = 0; !request.wanted.empty() && theta < request.theta_deg.size(); ++theta) {
+    for (const std::vector<std::size_t>& indices : needed_by) {
+      for (std::size_t shape = 0; shape < shapes; ++shape) {
+        const bool is_wanted = std::ranges::any_of(indices, [&](std::size_t index) {
+          return request.is_wanted((theta * request.indices.size() + index) * shapes + shape);
+        });
+        wanted.push_back(is_wanted ? 1 : 0);
+      }
+    }
+  }
+  return wanted;
+}
+
+/// The responses of one pass at one direction: responses x shapes.
+struct Responses {
+  /// Zeros where nothing is wanted.
+  Responses(std::span<const Moments> moments, std::size_t responses) : all(kParts, Eigen::MatrixXd()) {
+    const auto shapes = static_cast<Eigen::Index>(moments.size());
+    for (Eigen::MatrixXd& part : all) part = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(responses), shapes);
+    for (Eigen::Index shape = 0; shape < shapes; ++shape) {
+      const std::vector<ColumnMoments>& columns = moments[static_cast<std::size_t>(shape)].columns;
+      for (Eigen::Index j = 0; j < static_cast<Eigen::Index>(columns.size()); ++j) {
+        const ColumnMoments& column = columns[static_cast<std::size_t>(j)];
+        all[kI](j, shape) = column.i;
+        all[kQ](j, shape) = column.q;
+        all[kIApart](j, shape) = column.i_apart;
+        all[kQApart](j, shape) = column.q_apart;
+        all[kError](j, shape) = column.error;
+      }
+      relative_error.push_back(columns.empty() ? 0.0 : columns.front().relative_error);
+    }
+  }
+  enum Part : std::uint8_t { kI, kQ, kIApart, kQApart, kError, kParts };
+  std::vector<Eigen::MatrixXd> all;
+  std::vector<double> relative_error;  ///< of each shape
+};
+
+/// Sums over responses with one set of weights for each reached index: indices x shapes, and bounds of their errors but
+/// for what the weights leave out.
+struct Sums {
+  Sums(const Responses& responses, Responses::Part of, Responses::Part apart, const Combined& weights)
+      : value(weights * responses.all[of]),
+        error((weights * responses.all[apart]).cwiseAbs() + weights.cwiseAbs() * responses.all[Responses::kError]) {
+    for (Eigen::Index shape = 0; shape < error.cols(); ++shape)
+      error.col(shape) += responses.relative_error[static_cast<std::size_t>(shape)] * value.col(shape).cwiseAbs();
+  }
+  Combined value;
+  Combined error;
+};
+
+/// Combines all reached indices, direction by direction.
+class Combination {
+ public:
+  Combination(const MomentsRequest& request, const ResponsePlan& plan) : request_(request), plan_(plan) {
+    const ResponseWeights& reference = request.basis->of_reference();
+    for (std::size_t i = 0; i < plan.sources.size(); ++i) {
+      if (plan.sources[i].weights) reached_.push_back(i);
+    }
+    const auto rows = static_cast<Eigen::Index>(reached_.size());
+    absorbed_ = split_ = Combined(rows, static_cast<Eigen::Index>(request.basis->count()));
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const ResponseWeights& own = *plan.sources[reached_[static_cast<std::size_t>(i)]].weights;
+      absorbed_.row(i) = own.absorbed.transpose();
+      split_.row(i) = own.split.transpose();
+    }
+    absorbed_apart_ = absorbed_.rowwise() - reference.absorbed.transpose();
+    split_apart_ = split_.rowwise() - reference.split.transpose();
+    reflected_ = -absorbed_;
+    if (rows > 0) reflected_.col(0).array() += 1.0;
+  }
+
+  /// `passes`: the moments of all shapes at one direction. `moments`: of all indices and shapes there.
+  void operator()(double cosine, std::span<const std::span<const Moments>> passes, std::span<Moments> moments) const {
+    add_reflected(cosine, passes.front(), moments);
+    std::size_t pass = 1;
+    if (request_.wants_direct) add_direct(passes[pass++], moments);
+    for (std::size_t k = 0; pass < passes.size(); ++pass, ++k) add_sky(passes[pass], k, moments);
+  }
+
+ private:
+  template <class Function>
+  void for_all(std::size_t shapes, std::span<Moments> moments, const Function& set) const {
+    for (std::size_t i = 0; i < reached_.size(); ++i) {
+      for (std::size_t shape = 0; shape < shapes; ++shape) {
+        set(moments[reached_[i] * shapes + shape], *plan_.sources[reached_[i]].weights, static_cast<Eigen::Index>(i),
+            static_cast<Eigen::Index>(shape));
+      }
+    }
+  }
+
+  void add_reflected(double cosine, std::span<const Moments> reference, std::span<Moments> moments) const {
+    const Responses all(reference, request_.basis->count());
+    const Sums i(all, Responses::kI, Responses::kIApart, reflected_);
+    const Sums q(all, Responses::kQ, Responses::kQApart, split_);
+    // The same from the reference: better where the curves are alike, or little is absorbed.
+    const Sums more_absorbed(all, Responses::kI, Responses::kIApart, absorbed_apart_);
+    const Sums more_split(all, Responses::kQ, Responses::kQApart, split_apart_);
+    const ResponseWeights& of_reference = request_.basis->of_reference();
+    const double evaluations_share =
+        static_cast<double>(plan_.passes.size()) / static_cast<double>(request_.indices.size());
+    for_all(reference.size(), moments, [&](Moments& sum, const ResponseWeights& own, auto index, auto shape) {
+      const Moments& from = reference[static_cast<std::size_t>(shape)];
+      sum.albedo = from.albedo;
+      sum.albedo_error = from.albedo_error;
+      const double albedo = from.albedo + from.albedo_error;
+      sum.r_i = i.value(index, shape);
+      sum.r_q = q.value(index, shape);
+      sum.r_i_error = i.error(index, shape) + own.absorbed_error * albedo;
+      sum.r_q_error = q.error(index, shape) + i.error(index, shape) + own.split_error * albedo;
+      const double apart_error =
+          more_absorbed.error(index, shape) + (own.absorbed_error + of_reference.absorbed_error) * albedo;
+      if (from.r_i_error + apart_error < sum.r_i_error) {
+        sum.r_i = from.r_i - more_absorbed.value(index, shape);
+        sum.r_q = from.r_q + more_split.value(index, shape);
+        sum.r_i_error = from.r_i_error + apart_error;
+        sum.r_q_error = from.r_q_error + more_split.error(index, shape) + more_absorbed.error(index, shape) +
+                        (own.split_error + of_reference.split_error) * albedo;
+      }
+      sum.deficit = from.deficit + more_absorbed.value(index, shape);
+      sum.deficit_error = from.deficit_error + apart_error;
+      sum.evaluations = evaluations_share * from.evaluations;
+      take_complement(sum, cosine);
+    });
+  }
+
+  void add_direct(std::span<const Moments> pass, std::span<Moments> moments) const {
+    const Responses all(pass, request_.basis->count());
+    const Sums i(all, Responses::kI, Responses::kIApart, absorbed_);
+    const Sums q(all, Responses::kQ, Responses::kQApart, split_);
+    for_all(pass.size(), moments, [&](Moments& sum, const ResponseWeights& own, auto index, auto shape) {
+      const double projection = all.all[Responses::kI](0, shape) + all.all[Responses::kError](0, shape);
+      sum.direct_i = i.value(index, shape);
+      sum.direct_q = -q.value(index, shape);
+      sum.direct_i_error = i.error(index, shape) + own.absorbed_error * projection;
+      sum.direct_q_error = q.error(index, shape) + i.error(index, shape) + own.split_error * projection;
+    });
+  }
+
+  void add_sky(std::span<const Moments> pass, std::size_t function, std::span<Moments> moments) const {
+    const Responses all(pass, request_.basis->count());
+    const Sums i(all, Responses::kI, Responses::kIApart, reflected_);
+    const Sums q(all, Responses::kQ, Responses::kQApart, split_);
+    for_all(pass.size(), moments, [&](Moments& sum, const ResponseWeights& own, auto index, auto shape) {
+      const Moments& from = pass[static_cast<std::size_t>(shape)];
+      // The function of the sky changes its sign: what is relative is so to the light without it.
+      const double relative = all.relative_error[static_cast<std::size_t>(shape)] * std::abs(sum.r_i);
+      sum.columns.resize(function + 1);
+      sum.columns[function] = {i.value(index, shape), q.value(index, shape),
+                               std::max(i.error(index, shape), q.error(index, shape)) + relative +
+                                   std::max(own.absorbed_error, own.split_error) * (from.albedo + from.albedo_error)};
+    });
+  }
+
+  const MomentsRequest& request_;
+  const ResponsePlan& plan_;
+  std::vector<std::size_t> reached_;  ///< of the request's indices
+  Combined absorbed_, split_, absorbed_apart_, split_apart_, reflected_;
+};
+
+}  // namespace
+
+std::size_t ResponsePlan::wanted_count() const {
+  std::size_t count = others ? others->wanted_count() : 0;
+  for (const MomentsRequest& pass : passes) count += pass.wanted_count();
+  return count;
+}
+
+std::size_t response_passes(bool wants_direct, std::size_t sky_functions) {
+  return 1 + (wants_direct ? 1 : 0) + sky_functions;
+}
+
+ResponsePlan response_plan(const MomentsRequest& request) {
+  const ResponseBasis& basis = *request.basis;
+  ResponsePlan plan;
+  MomentsRequest others = request;
+  others.basis = nullptr;
+  others.indices.clear();
+  std::vector<std::size_t> reached;
+  std::vector<std::vector<std::size_t>> beyond;
+  for (std::size_t i = 0; i < request.indices.size(); ++i) {
+    ResponsePlan::Source& source = plan.sources.emplace_back();
+    source.weights = basis.weights_of(request.indices[i]);
+    if (source.weights) {
+      reached.push_back(i);
+      continue;
+    }
+    source.other = others.indices.size();
+    others.indices.push_back(request.indices[i]);
+    beyond.push_back({i});
+  }
+  others.wanted = wanted_of(request, beyond);
+  if (!others.indices.empty()) plan.others = std::move(others);
+  if (reached.empty()) return plan;
+  MomentsRequest pass = request;
+  pass.basis = nullptr;
+  pass.sky = nullptr;
+  pass.wants_direct = false;
+  pass.tolerance = request.finer_tolerance(kResponseTolerance);
+  pass.indices = {basis.reference()};
+  pass.wanted = wanted_of(request, {reached});
+  pass.response = {.count = basis.count(), .c0 = basis.c0(), .bend = basis.bend(), .of = Response::Of::kReflected};
+  plan.passes.push_back(pass);
+  if (request.wants_direct) {
+    MomentsRequest& direct = plan.passes.emplace_back(pass);
+    direct.wants_direct = true;
+    direct.response->of = Response::Of::kDirect;
+  }
+  for (std::size_t k = 0; request.sky && k < request.sky->size(); ++k) {
+    MomentsRequest& with_sky = plan.passes.emplace_back(pass);
+    with_sky.sky = std::make_shared<const SkyBasis>(request.sky->only(k));
+    with_sky.response->of = Response::Of::kSky;
+  }
+  return plan;
+}
+
+std::vector<Moments> combined(const MomentsRequest& request, const ResponsePlan& plan,
+                              std::span<const std::vector<Moments>> passes, std::span<const Moments> others) {
+  const Combination combine(request, plan);
+  const std::size_t shapes = request.sigma.size() * request.q.size();
+  const std::size_t of_theta = request.indices.size() * shapes;
+  const std::size_t of_others = others.size() / request.theta_deg.size();
+  std::vector<Moments> moments(request.size());
+  parallel_ranges(request.theta_deg.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t theta = first; theta < last; ++theta) {
+      const std::span<Moments> own = std::span(moments).subspan(theta * of_theta, of_theta);
+      std::vector<std::span<const Moments>> of_passes;
+      for (const std::vector<Moments>& pass : passes)
+        of_passes.push_back(std::span(pass).subspan(theta * shapes, shapes));
+      if (!of_passes.empty()) combine(cos_sin_deg(request.theta_deg[theta]).cos, of_passes, own);
+      for (std::size_t i = 0; i < plan.sources.size(); ++i) {
+        if (plan.sources[i].weights) continue;
+        const auto from = others.subspan(theta * of_others + plan.sources[i].other * shapes, shapes);
+        std::ranges::copy(from, own.begin() + static_cast<std::ptrdiff_t>(i * shapes));
+      }
+    }
+  });
+  return moments;
+}
+
+}  // namespace dolp

@@ -1,0 +1,39 @@
+// Selects what to compute of a grid of many indices, and combines their moments from it (model/response_basis.hpp).
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "model/moments.hpp"
+#include "model/response_basis.hpp"
+
+namespace dolp {
+
+/// Plan for a grid with a basis. Each entry's part of it follows from the basis and the entry alone.
+struct ResponsePlan {
+  /// Source of the moments of one index of the request.
+  struct Source {
+    std::optional<ResponseWeights> weights;  ///< of the responses; none: the index is computed by itself,
+    std::size_t other = 0;                   ///< as this one of `others`
+  };
+  /// The request's grid at the reference index, with responses: of the light reflected, then, as far as they are
+  /// wanted, of the direct emission and of the light reflected with each function of the sky.
+  std::vector<MomentsRequest> passes;
+  std::optional<MomentsRequest> others;  ///< the indices that are not reached
+  std::vector<Source> sources;
+
+  std::size_t wanted_count() const;  ///< of all requests
+};
+
+/// Passes for what a request wants.
+std::size_t response_passes(bool wants_direct, std::size_t sky_functions);
+
+/// The plan of a request that has a basis.
+ResponsePlan response_plan(const MomentsRequest& request);
+
+/// The moments of a request from those of the plan's passes and of its others.
+std::vector<Moments> combined(const MomentsRequest& request, const ResponsePlan& plan,
+                              std::span<const std::vector<Moments>> passes, std::span<const Moments> others);
+
+}  // namespace dolp

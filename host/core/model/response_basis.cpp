@@ -1,0 +1,131 @@
+#include "model/response_basis.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <limits>
+
+#include "model/chebyshev.hpp"
+#include "model/smooth_surface.hpp"
+
+namespace dolp {
+namespace {
+
+// Cosines at which the polynomials bend: metals need the smallest, at the pole of R_p, dielectrics the largest.
+constexpr std::array<double, 5> kScales = {1.0, 0.3, 0.1, 0.03, 0.01};
+constexpr Eigen::Index kCoefficients = 65;  // of a curve, known; odd, so that every second one tells of the others
+constexpr Eigen::Index kLastCoefficients = 4;
+constexpr double kReach = 0.25;  // largest error of a combined curve, of the tolerance
+// Time of a pass without responses, and what each response adds.
+constexpr double kTimeOfResponse = 0.03;
+constexpr double kLeastGain = 1.5;  // indices for each pass
+// Numbers of responses: of each a driver compiles kernels.
+constexpr std::array<std::size_t, 3> kCounts = {8, 16, kMostResponses};
+constexpr std::size_t kMostCandidates = 256;  // of the run's indices, for which the basis is chosen
+
+/// All known coefficients of the curves of an index; columns: absorbed, split.
+using CurveCoefficients = Eigen::Matrix<double, kCoefficients, 2>;
+
+CurveCoefficients coefficients_of(const OpticalConstants& index, double c0) {
+  static const std::vector<double> points = lobatto_points(kCoefficients);
+  static const Eigen::MatrixXd transform = chebyshev_coefficients(kCoefficients);
+  CurveCoefficients values;
+  for (Eigen::Index i = 0; i < kCoefficients; ++i) {
+    const double u = 0.5 * (1.0 + points[static_cast<std::size_t>(i)]);
+    const SmoothAbsorptance curve = smooth_absorptance(index, std::min(c0 * std::sinh(u * std::asinh(1.0 / c0)), 1.0));
+    values.row(i) << 0.5 * (curve.s + curve.p), 0.5 * curve.split;
+  }
+  return transform * values;
+}
+
+/// Bounds of the curves' distance from their first `count` polynomials: the coefficients left out, and as many more as
+/// are known, each as large as the last ones.
+Eigen::RowVector2d errors_of(const CurveCoefficients& all, Eigen::Index count) {
+  return all.bottomRows(kCoefficients - count).cwiseAbs().colwise().sum() +
+         kCoefficients * all.bottomRows<kLastCoefficients>().cwiseAbs().colwise().maxCoeff();
+}
+
+/// Reference level of the relative errors of a curve.
+double level_of(const OpticalConstants& index) {
+  const SmoothAbsorptance absorbed = smooth_absorptance(index, 1.0);
+  return std::min(absorbed.s, 1.0 - absorbed.s);
+}
+
+/// The fewest polynomials for an index; more than kMostResponses where it is not reached.
+std::size_t needed(const OpticalConstants& index, double c0, double tolerance) {
+  const CurveCoefficients all = coefficients_of(index, c0);
+  const double most = kReach * tolerance * level_of(index);
+  std::size_t count = 2;
+  while (count <= kMostResponses && !(errors_of(all, static_cast<Eigen::Index>(count)).maxCoeff() <= most)) ++count;
+  return count;
+}
+
+std::vector<OpticalConstants> candidates_of(const std::vector<OpticalConstants>& indices) {
+  std::vector<OpticalConstants> candidates;
+  const std::size_t count = std::min(indices.size(), kMostCandidates);
+  for (std::size_t i = 0; i < count; ++i) {
+    const OpticalConstants& index = indices[(2 * i + 1) * indices.size() / (2 * count)];
+    if (std::ranges::find(candidates, index) == candidates.end()) candidates.push_back(index);
+  }
+  return candidates;
+}
+
+/// Distance of the nearest singularity of the curves from the cosines of angles.
+double distance_of_bend(const OpticalConstants& index) {
+  const std::complex<double> n(index.n, index.k);
+  const std::complex<double> pole = 1.0 / std::sqrt(n * n + 1.0);
+  const std::complex<double> branch = std::sqrt(1.0 - n * n);
+  const double nearest = std::clamp(std::abs(branch.real()), 0.0, 1.0);
+  return std::min(std::abs(pole), std::hypot(std::abs(branch.real()) - nearest, branch.imag()));
+}
+
+}  // namespace
+
+std::shared_ptr<const ResponseBasis> ResponseBasis::of(const std::vector<OpticalConstants>& indices, double tolerance,
+                                                       std::size_t passes) {
+  const std::vector<OpticalConstants> candidates = candidates_of(indices);
+  const double of_candidate = static_cast<double>(indices.size()) / static_cast<double>(candidates.size());
+  std::shared_ptr<ResponseBasis> basis(new ResponseBasis);
+  basis->tolerance_ = tolerance;
+  double least = static_cast<double>(indices.size()) / kLeastGain;
+  std::vector<std::size_t> of_least;
+  for (const double c0 : kScales) {
+    std::vector<std::size_t> counts;
+    for (const OpticalConstants& index : candidates) counts.push_back(needed(index, c0, tolerance));
+    for (const std::size_t count : kCounts) {
+      const auto left = static_cast<double>(std::ranges::count_if(counts, [&](auto own) { return own > count; }));
+      const double time =
+          static_cast<double>(passes) * (1.0 + kTimeOfResponse * static_cast<double>(count)) + left * of_candidate;
+      if (time >= least) continue;
+      least = time;
+      basis->count_ = count;
+      basis->c0_ = c0;
+      of_least = counts;
+    }
+  }
+  if (of_least.empty()) return nullptr;
+  double lowest = std::numeric_limits<double>::infinity();
+  basis->bend_ = basis->c0_;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (of_least[i] > basis->count_) continue;
+    basis->bend_ = std::min(basis->bend_, distance_of_bend(candidates[i]));
+    // Errors of the rules that take up a kink would be those of the responses too, which have none.
+    if (critical_cosine(candidates[i]) > 0.0 || level_of(candidates[i]) >= lowest) continue;
+    lowest = level_of(candidates[i]);
+    basis->reference_ = candidates[i];
+  }
+  if (std::isinf(lowest)) return nullptr;
+  basis->of_reference_ = *basis->weights_of(basis->reference_);
+  return basis;
+}
+
+std::optional<ResponseWeights> ResponseBasis::weights_of(const OpticalConstants& index) const {
+  const CurveCoefficients all = coefficients_of(index, c0_);
+  const auto count = static_cast<Eigen::Index>(count_);
+  const Eigen::RowVector2d errors = errors_of(all, count);
+  if (!(errors.maxCoeff() <= kReach * tolerance_ * level_of(index))) return std::nullopt;
+  return ResponseWeights{all.col(0).head(count), all.col(1).head(count), errors[0], errors[1]};
+}
+
+}  // namespace dolp

@@ -1,0 +1,140 @@
+// Columns: more sums of the same facets, as many as the host asks for. They are of one kind, which kColumns names:
+//
+//   sky        the moments with functions g of the zenith of the reflected ray, |g| <= 1: what a sky that changes with
+//              the zenith adds to its mean (README.md beside this file, section 11);
+//   responses  the moments with the Chebyshev polynomials of the local angle of incidence in place of the reflectances:
+//              those of every material follow from them (section 13). The light reflected may be weighted with the first
+//              function of a sky, and the light emitted straight to the viewer takes its place for direct emission.
+//
+// A function g is a table over u = sqrt(1 - cos(theta_r)) = sqrt(2) sin(theta_r / 2), in which corners at the zenith are
+// corners too: straight lines in cells of one width, (value at the start, change over the cell), behind the nodes of the
+// rules. host/compute/plan/sky_table.cpp fills it.
+
+// The tables among the rule nodes: read once, because devices read push constants again in each turn of a loop.
+struct SkyPlace {
+  int cells;  // of a function
+  int start;  // of the first cell
+  int corners;
+};
+
+#if DOLP_MOST_COLUMNS > 0
+struct ColumnValues {
+  real f[DOLP_MOST_COLUMNS];
+};
+
+// Sums with each function f, of the moments from (R_s + R_p) / 2 and from (R_s - R_p) / 2.
+struct Columns {
+  real i[DOLP_MOST_COLUMNS];
+  real q[DOLP_MOST_COLUMNS];
+};
+
+Columns no_columns() {
+  Columns sums;
+  for (int k = 0; k < DOLP_MOST_COLUMNS; ++k) {
+    sums.i[k] = real(0.0);
+    sums.q[k] = real(0.0);
+  }
+  return sums;
+}
+
+real sky_function(SkyPlace table, int k, real cos_r) {
+  int cells = table.cells;
+  real place = sqrt(max(real(1.0) - cos_r, real(0.0))) * real(cells);
+  int cell = min(int(place), cells - 1);
+  real2 node = rule_node(table.start + k * cells + cell);
+  return node.x + (place - real(cell)) * node.y;
+}
+
+ColumnValues sky_at(SkyPlace table, real cos_r) {
+  ColumnValues values;
+  for (int k = 0; k < DOLP_MOST_COLUMNS; ++k) {
+    values.f[k] = real(0.0);
+    if (k < int(kColumnCount)) values.f[k] = sky_function(table, k, cos_r);
+  }
+  return values;
+}
+
+// T_k(2 asinh(c / c0) / asinh(1 / c0) - 1), c = cos(beta).
+ColumnValues chebyshev_at(RuleNode rule, real cos_beta) {
+  real x = asinh_real(cos_beta * rule.response_scale) * rule.response_norm - real(1.0);
+  ColumnValues values;
+  values.f[0] = real(1.0);
+  values.f[1] = x;
+  for (int k = 2; k < DOLP_MOST_COLUMNS; ++k) {
+    values.f[k] = real(0.0);
+    if (k < int(kColumnCount)) values.f[k] = real(2.0) * x * values.f[k - 1] - values.f[k - 2];
+  }
+  return values;
+}
+
+// Of a facet that reflects.
+ColumnValues column_values(RuleNode rule, SkyPlace table, real cos_beta, real cos_r) {
+  if (kColumns == DOLP_COLUMNS_SKY) return sky_at(table, cos_r);
+  return chebyshev_at(rule, cos_beta);
+}
+
+Columns add_columns(Columns sums, ColumnValues values, real i, real q) {
+  for (int k = 0; k < DOLP_MOST_COLUMNS; ++k) {
+    if (k < int(kColumnCount)) {
+      sums.i[k] += i * values.f[k];
+      sums.q[k] += q * values.f[k];
+    }
+  }
+  return sums;
+}
+
+Columns scaled_columns(Columns sums, real factor) {
+  for (int k = 0; k < DOLP_MOST_COLUMNS; ++k) {
+    if (k < int(kColumnCount)) {
+      sums.i[k] *= factor;
+      sums.q[k] *= factor;
+    }
+  }
+  return sums;
+}
+
+// Of a slope.
+void store_azimuth_columns(Columns sums) {
+  for (int k = 0; k < DOLP_MOST_COLUMNS; ++k) {
+    if (k < int(kColumnCount)) {
+      store_column(uint(2 * k), sums.i[k]);
+      store_column(uint(2 * k + 1), sums.q[k]);
+    }
+  }
+}
+
+// Of a member of a row, by one of the two rules of a piece.
+void store_columns(int member, bool is_coarse, Columns sums) {
+  uint first = uint(member) * kColumnCount * DOLP_COLUMN_PARTS + (is_coarse ? 0u : 2u);
+  for (int k = 0; k < DOLP_MOST_COLUMNS; ++k) {
+    if (k < int(kColumnCount)) {
+      store_column(first + uint(DOLP_COLUMN_PARTS * k), sums.i[k]);
+      store_column(first + uint(DOLP_COLUMN_PARTS * k + 1), sums.q[k]);
+    }
+  }
+}
+
+SkyPlace sky_place() { return SkyPlace(sky_cells(), sky_start(), pushed_corners()); }
+
+// cos(theta_r) of a corner, which splits the azimuths; they ascend in the zenith.
+real cos_of_corner(SkyPlace table, int i) { return rule_node(table.start + sky_functions() * table.cells + i).x; }
+#else
+struct ColumnValues {
+  real none;
+};
+
+struct Columns {
+  real none;
+};
+
+Columns no_columns() { return Columns(real(0.0)); }
+SkyPlace sky_place() { return SkyPlace(1, 0, 0); }
+real sky_function(SkyPlace, int, real) { return real(0.0); }
+ColumnValues sky_at(SkyPlace, real) { return ColumnValues(real(0.0)); }
+ColumnValues column_values(RuleNode, SkyPlace, real, real) { return ColumnValues(real(0.0)); }
+real cos_of_corner(SkyPlace, int) { return real(0.0); }
+Columns add_columns(Columns sums, ColumnValues, real, real) { return sums; }
+Columns scaled_columns(Columns sums, real) { return sums; }
+void store_columns(int, bool, Columns) {}
+void store_azimuth_columns(Columns) {}
+#endif

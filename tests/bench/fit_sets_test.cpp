@@ -13,7 +13,7 @@ using namespace dolp::bench;
 TEST(FitSets, BentValley_IntervalsHoldATruthThatTheDataDoNotExclude) {
   CpuEvaluator evaluator;
   for (const std::size_t number : {1005U, 1029U}) {
-    const SetOutcome outcome = fit_outcome(number, evaluator);
+    const SetOutcome outcome = fit_outcome(fit_set(number), number, evaluator);
     EXPECT_TRUE(outcome.is_consistent()) << number;
     EXPECT_TRUE(outcome.is_global()) << number;
   }

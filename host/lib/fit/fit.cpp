@@ -155,13 +155,14 @@ void set_error(FitParameter& fitted, const FitRange& range, double deviation, bo
 
 FitInterval interval_of(const FitRange& parameter, const std::vector<Stretch>& stretches) {
   FitInterval interval;
+  interval.is_empty = stretches.empty();
   for (const Stretch& one : stretches) {
     std::optional<double> low, high;
     if (one.low > kAtRange) low = parameter.at(one.low);
     if (one.high < 1.0 - kAtRange) high = parameter.at(one.high);
     interval.pieces.emplace_back(low, high);
   }
-  if (stretches.empty()) return interval;
+  if (interval.is_empty) return interval;
   interval.low = interval.pieces.front().first;
   interval.high = interval.pieces.back().second;
   return interval;
@@ -196,7 +197,10 @@ class Fit {
     total_ = total;
   }
 
-  std::size_t freedom() const { return model_.observation_count() - model_.parameters().size(); }
+  /// With a model error the parameters only choose the bracket: each point is a condition of its own.
+  std::size_t freedom() const {
+    return model_.observation_count() - (model_.has_model_error() ? 0 : model_.parameters().size());
+  }
 
   /// True where the growth of the objective has a scale to be measured with.
   bool has_scale() const { return model_.has_uncertainties() || freedom() > 0; }
@@ -218,10 +222,15 @@ class Fit {
     return std::max(mean, fine_.tolerance() * fine_.tolerance());
   }
 
+  std::optional<double> p_value() const {
+    if (!model_.has_uncertainties() || options_.loss != Loss::kSquares || freedom() == 0) return std::nullopt;
+    return boost::math::gamma_q(0.5 * static_cast<double>(freedom()), 0.5 * minima_.front().objective);
+  }
+
   std::array<double, 2> rises() const {
     if (model_.has_uncertainties()) {
-      const boost::math::chi_squared one(1.0);
-      return {boost::math::quantile(one, kLevel68), boost::math::quantile(one, kLevel95)};
+      const boost::math::chi_squared squares(model_.has_model_error() ? static_cast<double>(freedom()) : 1.0);
+      return {boost::math::quantile(squares, kLevel68), boost::math::quantile(squares, kLevel95)};
     }
     const boost::math::students_t t(static_cast<double>(freedom()));
     const double at_68 = boost::math::quantile(t, 0.5 * (1.0 + kLevel68));
@@ -229,13 +238,17 @@ class Fit {
     return {at_68 * at_68, at_95 * at_95};
   }
 
-  /// The intervals: around the best minimum, and around others that the data do not exclude. True where a profile led
-  /// to a lower minimum, which then is the best.
-  bool find_intervals(bool may_restart) {
+  /// Inside a bracket no derivative tells parameters apart: it has no covariance.
+  Covariance find_covariance(const Minimum& best) const {
+    if (!model_.has_model_error()) return covariance_of(best, options_.loss, result_.scale);
+    const Eigen::Index count = best.where.at.size();
+    return {Eigen::MatrixXd::Constant(count, count, kNaN), {}, static_cast<std::size_t>(count)};
+  }
+
+  void find_values(const Minimum& best) {
     result_ = {};
-    result_.scale = find_scale(minima_.front());
-    const Minimum best = minima_.front();
-    covariance_ = covariance_of(best, options_.loss, result_.scale);
+    result_.scale = find_scale(best);
+    covariance_ = find_covariance(best);
     for (std::size_t j = 0; j < model_.parameters().size(); ++j) {
       const FitRange& parameter = model_.parameters()[j];
       const auto index = static_cast<Eigen::Index>(j);
@@ -244,24 +257,49 @@ class Fit {
       fitted.value = parameter.at(best.where.at[index]);
       fitted.is_at_bound = is_at_bound(best.where.at[index]);
       set_error(fitted, parameter, std::sqrt(covariance_.of_coordinates(index, index)), has_scale());
+      if (model_.has_model_error()) fitted.why_no_error = "a model error gives intervals only";
     }
     result_.seen = {best};
+  }
+
+  /// The values and the intervals of all parameters. True where a profile led to a lower minimum, which then is the
+  /// best.
+  bool find_intervals(bool may_restart) {
+    find_values(minima_.front());
     if (!has_scale()) return false;
     if (options_.phase) options_.phase("sides of the intervals");
-    ProfileOptions options{rises(), result_.scale, options_.loss, {}};
+    std::optional<Profiles> profiles = find_profiles(result_.scale, may_restart);
+    if (!profiles) return true;
+    for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
+      result_.parameters[j].interval_68 = interval_of(model_.parameters()[j], profiles->stretches[j][0]);
+      result_.parameters[j].interval_95 = interval_of(model_.parameters()[j], profiles->stretches[j][1]);
+    }
+    std::ranges::move(profiles->seen, std::back_inserter(result_.seen));
+    if (p_value().value_or(1.0) >= kDoubtfulBelow) return false;
+    profiles = find_profiles(minima_.front().objective / static_cast<double>(freedom()), may_restart);
+    if (!profiles) return true;
+    for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
+      result_.parameters[j].scaled_68 = interval_of(model_.parameters()[j], profiles->stretches[j][0]);
+      result_.parameters[j].scaled_95 = interval_of(model_.parameters()[j], profiles->stretches[j][1]);
+    }
+    return false;
+  }
+
+  /// The profiles around the best minimum, and around others that the data do not exclude; none where one of them led
+  /// to a lower minimum, which then is the best.
+  std::optional<Profiles> find_profiles(double scale, bool may_restart) {
+    const double from = model_.has_model_error() ? 0.0 : minima_.front().objective;
+    ProfileOptions options{rises(), from, scale, options_.loss, {}};
     options.count = [this](std::size_t done, std::size_t total) { count(done, total); };
     std::vector<Minimum> near;
     for (const Minimum& one : minima_) {
-      if (one.objective < best.objective + rises()[1] * result_.scale) near.push_back(one);
+      if (one.objective < from + options.rises[1] * scale) near.push_back(one);
     }
+    if (near.empty())
+      return Profiles{.stretches = std::vector<std::array<std::vector<Stretch>, 2>>(result_.parameters.size())};
     Profiles profiles = profiles_of(profile_, near, options);
-    if (may_restart && profiles.lower && take(*profiles.lower)) return true;
-    for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
-      result_.parameters[j].interval_68 = interval_of(model_.parameters()[j], profiles.stretches[j][0]);
-      result_.parameters[j].interval_95 = interval_of(model_.parameters()[j], profiles.stretches[j][1]);
-    }
-    std::ranges::move(profiles.seen, std::back_inserter(result_.seen));
-    return false;
+    if (may_restart && profiles.lower && take(*profiles.lower)) return std::nullopt;
+    return profiles;
   }
 
   /// Descends from a point; true where that gives the new best minimum.
@@ -285,13 +323,8 @@ class Fit {
     result_.correlation = correlation_of(covariance_.of_coordinates);
     result_.chi_square = best.objective;
     result_.degrees_of_freedom = freedom();
-    const double freedoms = static_cast<double>(freedom());
-    if (freedom() > 0) {
-      result_.reduced_chi_square = best.objective / freedoms;
-      if (model_.has_uncertainties() && options_.loss == Loss::kSquares) {
-        result_.p_value = boost::math::gamma_q(0.5 * freedoms, 0.5 * best.objective);
-      }
-    }
+    result_.p_value = p_value();
+    if (freedom() > 0) result_.reduced_chi_square = best.objective / static_cast<double>(freedom());
     for (std::size_t i = 1; i < minima_.size(); ++i) {
       result_.minima.push_back({fine_.values(minima_[i].where.at), minima_[i].objective});
     }
@@ -344,6 +377,10 @@ class Fit {
 };
 
 }  // namespace
+
+std::string fit_quality(const std::optional<double>& p_value) {
+  return !p_value ? "" : *p_value < kBadBelow ? "bad" : *p_value < kDoubtfulBelow ? "doubtful" : "good";
+}
 
 std::optional<FitResult> fit(const Model& model, ModelEvaluator& evaluator, const FitOptions& options) {
   return Fit(model, evaluator, options).run();

@@ -24,9 +24,9 @@ struct OtherMinimum {
 /// The result of a fit. Lists over observations are in the order of the data.
 struct FitResult {
   std::vector<FitParameter> parameters;
-  Eigen::MatrixXd correlation;  ///< NaN of a parameter at its bound, or that the data do not determine
-  double chi_square = 0.0;      ///< sum of the squares of `residuals`, or of their loss
-  std::size_t degrees_of_freedom = 0;
+  Eigen::MatrixXd correlation;               ///< NaN of a parameter at its bound, or that the data do not determine
+  double chi_square = 0.0;                   ///< sum of the squares of `residuals`, or of their loss
+  std::size_t degrees_of_freedom = 0;        ///< points less parameters; with a model error the points
   std::optional<double> reduced_chi_square;  ///< none without degrees of freedom
   std::optional<double> p_value;             ///< with uncertainties and without a robust loss
   double scale = 1.0;  ///< change of chi_square that is one standard deviation: 1, or the residuals' mean square
@@ -43,6 +43,9 @@ struct FitResult {
   double aic = 0.0;                       ///< Akaike's information criterion, up to a constant of the data
   double bic = 0.0;                       ///< Bayes' information criterion, likewise
 };
+
+/// "good", "doubtful" or "bad"; empty without a p-value.
+std::string fit_quality(const std::optional<double>& p_value);
 
 /// Fits the model to its data: minima by descents from many starts, then intervals of the best one. Its values have a
 /// hundredth of the least uncertainty as their tolerance; the search takes a wider one.

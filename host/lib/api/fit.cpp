@@ -287,8 +287,9 @@ Best best_of(std::vector<ComparedModel>& models, const SceneValues& scene, const
       continue;
     }
     if (evaluator == nullptr) evaluator = begin(model->scene());
-    one.result = fit::fit(*model, *evaluator, options);
-    if (one.result && (!best.result || one.result->aic < best.result->aic)) {
+    const double least_aic = best.result ? best.result->aic : std::numeric_limits<double>::infinity();
+    one.result = fit::fit(*model, *evaluator, options, least_aic);
+    if (one.result && one.result->aic < least_aic) {
       best = {std::move(model), one.result, settings, own};
     }
   }

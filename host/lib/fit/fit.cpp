@@ -179,16 +179,18 @@ class Fit {
         fine_(model, fine_tolerance(model), Differences::kCentral, evaluator, poll_),
         profile_(model, fine_tolerance(model), Differences::kForward, evaluator, poll_) {}
 
-  std::optional<FitResult> run() {
+  std::optional<FitResult> run(double most_aic) {
     SearchOptions search{options_.starts, options_.seed, options_.loss, model_.has_uncertainties(), guess_scale()};
     search.count = [this](std::size_t done, std::size_t total) { count(done, total); };
     if (options_.phase) options_.phase("descents of the search");
     minima_ = find_minima(coarse_, fine_, search);
     if (minima_.empty()) return std::nullopt;
-    for (int i = 0; find_intervals(i < kMostRestarts); ++i) {
+    for (int i = 0;; ++i) {
+      const bool may_restart = i < kMostRestarts;
+      if (find_intervals(may_restart)) continue;
+      describe();
+      if (result_.aic > most_aic || !find_scaled(may_restart)) return std::move(result_);
     }
-    describe();
-    return std::move(result_);
   }
 
  private:
@@ -222,11 +224,6 @@ class Fit {
     return std::max(mean, fine_.tolerance() * fine_.tolerance());
   }
 
-  std::optional<double> p_value() const {
-    if (!model_.has_uncertainties() || options_.loss != Loss::kSquares || freedom() == 0) return std::nullopt;
-    return boost::math::gamma_q(0.5 * static_cast<double>(freedom()), 0.5 * minima_.front().objective);
-  }
-
   std::array<double, 2> rises() const {
     if (model_.has_uncertainties()) {
       const boost::math::chi_squared squares(model_.has_model_error() ? static_cast<double>(freedom()) : 1.0);
@@ -257,7 +254,8 @@ class Fit {
       fitted.value = parameter.at(best.where.at[index]);
       fitted.is_at_bound = is_at_bound(best.where.at[index]);
       set_error(fitted, parameter, std::sqrt(covariance_.of_coordinates(index, index)), has_scale());
-      if (model_.has_model_error()) fitted.why_no_error = "a model error gives intervals only";
+      if (model_.has_model_error())
+        fitted.why_no_error = "with a model error the value is one of many that fit as well";
     }
     result_.seen = {best};
   }
@@ -268,15 +266,20 @@ class Fit {
     find_values(minima_.front());
     if (!has_scale()) return false;
     if (options_.phase) options_.phase("sides of the intervals");
-    std::optional<Profiles> profiles = find_profiles(result_.scale, may_restart);
+    const std::optional<Profiles> profiles = find_profiles(result_.scale, may_restart);
     if (!profiles) return true;
     for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
       result_.parameters[j].interval_68 = interval_of(model_.parameters()[j], profiles->stretches[j][0]);
       result_.parameters[j].interval_95 = interval_of(model_.parameters()[j], profiles->stretches[j][1]);
     }
-    std::ranges::move(profiles->seen, std::back_inserter(result_.seen));
-    if (p_value().value_or(1.0) >= kDoubtfulBelow) return false;
-    profiles = find_profiles(minima_.front().objective / static_cast<double>(freedom()), may_restart);
+    std::ranges::copy(profiles->seen, std::back_inserter(result_.seen));
+    return false;
+  }
+
+  /// The scaled intervals of a doubtful or bad fit. True as find_intervals.
+  bool find_scaled(bool may_restart) {
+    if (result_.p_value.value_or(1.0) >= kDoubtfulBelow) return false;
+    const std::optional<Profiles> profiles = find_profiles(result_.reduced_chi_square.value(), may_restart);
     if (!profiles) return true;
     for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
       result_.parameters[j].scaled_68 = interval_of(model_.parameters()[j], profiles->stretches[j][0]);
@@ -323,8 +326,13 @@ class Fit {
     result_.correlation = correlation_of(covariance_.of_coordinates);
     result_.chi_square = best.objective;
     result_.degrees_of_freedom = freedom();
-    result_.p_value = p_value();
-    if (freedom() > 0) result_.reduced_chi_square = best.objective / static_cast<double>(freedom());
+    const auto freedoms = static_cast<double>(freedom());
+    if (freedom() > 0) {
+      result_.reduced_chi_square = best.objective / freedoms;
+      if (model_.has_uncertainties() && options_.loss == Loss::kSquares) {
+        result_.p_value = boost::math::gamma_q(0.5 * freedoms, 0.5 * best.objective);
+      }
+    }
     for (std::size_t i = 1; i < minima_.size(); ++i) {
       result_.minima.push_back({fine_.values(minima_[i].where.at), minima_[i].objective});
     }
@@ -382,8 +390,9 @@ std::string fit_quality(const std::optional<double>& p_value) {
   return !p_value ? "" : *p_value < kBadBelow ? "bad" : *p_value < kDoubtfulBelow ? "doubtful" : "good";
 }
 
-std::optional<FitResult> fit(const Model& model, ModelEvaluator& evaluator, const FitOptions& options) {
-  return Fit(model, evaluator, options).run();
+std::optional<FitResult> fit(const Model& model, ModelEvaluator& evaluator, const FitOptions& options,
+                             double most_aic) {
+  return Fit(model, evaluator, options).run(most_aic);
 }
 
 }  // namespace dolp::fit

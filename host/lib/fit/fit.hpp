@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <dolp/fit.hpp>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,6 +51,8 @@ std::string fit_quality(const std::optional<double>& p_value);
 /// Fits the model to its data: minima by descents from many starts, then intervals of the best one. Its values have a
 /// hundredth of the least uncertainty as their tolerance; the search takes a wider one.
 /// None when no descent converged. Errors: those of the evaluator; Cancelled.
-std::optional<FitResult> fit(const Model& model, ModelEvaluator& evaluator, const FitOptions& options);
+/// Scaled intervals are there where `aic` is at most `most_aic`: a model that lies behind others needs none.
+std::optional<FitResult> fit(const Model& model, ModelEvaluator& evaluator, const FitOptions& options,
+                             double most_aic = std::numeric_limits<double>::infinity());
 
 }  // namespace dolp::fit

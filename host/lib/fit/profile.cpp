@@ -254,6 +254,7 @@ class Profiler {
     std::vector<std::size_t> look_of;
     for (std::size_t j = 0; j < result_.stretches.size(); ++j) {
       for (std::size_t rise = 0; rise < options_.rises.size(); ++rise) {
+        if (result_.stretches[j][rise].empty()) continue;  // the minimum lies above
         for (const int direction : {-1, 1}) {
           const End end{j, rise, direction};
           const double at = end_of(end);

@@ -48,7 +48,6 @@ Json parameter_json(const FitParameter& one) {
                {"interval_95", json_of(one.interval_95)},
                {"at_bound", one.is_at_bound}};
   if (!one.standard_error) json["why_no_error"] = one.why_no_error;
-  if (one.scaled_68) json.update({{"scaled_68", json_of(*one.scaled_68)}, {"scaled_95", json_of(*one.scaled_95)}});
   for (const auto& [name, interval] : {std::pair("pieces_68", &one.interval_68), {"pieces_95", &one.interval_95}}) {
     if (interval->pieces.size() < 2) continue;
     for (const auto& [low, high] : interval->pieces) json[name].push_back(Json::array({json_of(low), json_of(high)}));
@@ -84,7 +83,10 @@ void add_missing_errors(ReportBuilder& report, const FitResult& result) {
 /// A line for each parameter, and one for each end of its range that lies before the data exclude a value.
 void add_parameters(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   Json list = Json::array();
-  for (const FitParameter& one : result.parameters) list.push_back(parameter_json(one));
+  for (const FitParameter& one : result.parameters) {
+    Json& json = list.emplace_back(parameter_json(one));
+    if (one.scaled_68) json.update({{"scaled_68", json_of(*one.scaled_68)}, {"scaled_95", json_of(*one.scaled_95)}});
+  }
   report.value("parameters", list);
   std::size_t width = 9;
   for (const FitParameter& one : result.parameters) width = std::max(width, one.key.size());

@@ -41,6 +41,7 @@ class ExploreFiles : public testing::Test {
 void fill(Session& session, const std::string& measured) {
   session.load_measured(measured);
   session.mark("surface.n", true);
+  EXPECT_EQ(session.set_fit_range("surface.k", "0.01", "2"), "");
   session.pin();
   session.rename_pin(0, "as opened");
   session.set({{"surface.sigma", 0.3}, {"surface.masking", "smith"}, {"surroundings", Value()}});
@@ -88,7 +89,10 @@ TEST_F(ExploreFiles, Session_SavedAndOpened_IsTheSame) {
   EXPECT_EQ(b.snapshots()[0].name, a.snapshots()[0].name);
   EXPECT_EQ(b.snapshots()[0].edits.scene().toml(), a.snapshots()[0].edits.scene().toml());
   EXPECT_EQ(b.residuals().residuals(), a.residuals().residuals());
-  EXPECT_EQ(b.marked(), (std::vector<std::string>{"surface.n"}));
+  ASSERT_EQ(b.marked().size(), 2U);
+  EXPECT_FALSE(b.marked().at("surface.n"));
+  EXPECT_EQ(b.marked().at("surface.k")->low, 0.01);
+  EXPECT_EQ(b.marked().at("surface.k")->high, 2.0);
   EXPECT_EQ(b.view().quantity, Plotted::kRhoS);
   EXPECT_TRUE(b.view().is_log && !b.view().has_overlay);
   EXPECT_EQ(b.view().theta_max_deg, 80.0);

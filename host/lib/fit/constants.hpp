@@ -21,9 +21,9 @@ inline constexpr double kCoarseToleranceWithoutUncertainties = 1e-4;  // no diff
 inline constexpr double kGuessedShare = 1e-2;  // no difference
 /// A fit that found a lower minimum on a profile begins again, so often at most.
 inline constexpr int kMostRestarts = 4;  // no difference
-/// P-values: below them the uncertainties and the model do not explain the data.
-inline constexpr double kDoubtfulBelow = 0.05;  // no difference
-inline constexpr double kBadBelow = 0.001;      // no difference
+/// P-values of the words for a fit: the usual levels.
+inline constexpr double kDoubtfulBelow = 0.05;
+inline constexpr double kBadBelow = 0.001;
 
 // ---- Words of a fit (fit.cpp): they change reports alone ------------------------------------------------------------
 

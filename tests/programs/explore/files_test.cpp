@@ -7,6 +7,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "error_text.hpp"
 #include "explore/plot_data.hpp"
 #include "explore/preferences.hpp"
 #include "explore/session_file.hpp"
@@ -110,6 +111,17 @@ TEST_F(ExploreFiles, Session_SavedAndOpened_IsTheSame) {
   EXPECT_EQ(text.find(at("")), std::string::npos) << text;
   save_session(opened.session, at("again.toml"));
   EXPECT_EQ(read_file(at("again.toml")), text);
+}
+
+TEST_F(ExploreFiles, Session_WithARangeOfAFitThatIsNone_IsRefusedByName) {
+  Session saved(paint());
+  saved.set_fit_range("surface.k", "0.01", "2");
+  save_session(saved, at("all.toml"));
+  std::string text = read_file(at("all.toml"));
+  text.replace(text.find("surface.k=0.01:2"), 16, "surface.k=2:0.01");
+  put("wrong.toml", text);
+  EXPECT_EQ(error_text([&] { open_file(saved, at("wrong.toml")); }),
+            at("wrong.toml") + ": vary surface.k=2:0.01: LOW must be below HIGH");
 }
 
 TEST_F(ExploreFiles, Session_OfWhichAPinWasRemoved_KeepsTheColoursOfTheOthers) {

@@ -48,8 +48,9 @@ SpectralRule spectral_rule(const SceneModel& scene);
 
 /// Error of a sum over the panels of a rule. `term(j, m)`: the part of sample j, with the moments of sample m.
 ///
-/// Every other value of a panel is predicted from the rest; the error is the sum of what the predictions miss. Beside a
-/// root it is 2.3 times the error and more, in the median 6 times (bench: none; Bands_*).
+/// Every other value of a panel is predicted from the rest; the error is the sum of what the predictions miss. For a
+/// square root that begins at any place among the nodes, this is 2.3 times the error and more, in the median 6 times
+/// (tests Bands_*).
 double panel_error(const SpectralRule& rule, const std::function<double(std::size_t, std::size_t)>& term);
 
 /// The rule with the factors of dropped effects set to 0.

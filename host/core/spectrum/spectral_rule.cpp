@@ -40,7 +40,6 @@ constexpr double kPieceRelativeError = 1e-12;
 constexpr double kNodesRelativeError = 1e-10;
 constexpr double kSmallestPart = 1e-4;
 constexpr int kMostNodes = 24;
-constexpr int kFinerParts = 4;
 // The rough surface averages the smooth one's absorptances over angles. The probes are some of them, and those at
 // which total reflection begins at a few wavelengths of the segment: there an absorptance has a root in the wavelength.
 // Where n passes 1, it begins near grazing.
@@ -319,19 +318,16 @@ struct SegmentRule {
 
 SegmentRule smooth_segment(const SceneModel& scene, double from_um, double to_um, const std::vector<FineNode>& fine,
                            const std::vector<double>& cosines) {
+  if (scene.surface.material.is_constant()) return {samples_at(scene, gauss_wavelengths(from_um, to_um, 1), fine), 0.0};
   SegmentRule rule;
-  const bool is_constant = scene.surface.material.is_constant();
   // The nodes to compare with are none of the rule's own, whatever their number.
-  std::vector<FineNode> finer;
-  for (int part = 0; part < kFinerParts; ++part) {
-    const double start_um = std::lerp(from_um, to_um, static_cast<double>(part) / kFinerParts);
-    const double end_um = std::lerp(from_um, to_um, static_cast<double>(part + 1) / kFinerParts);
-    for (const FineNode& node : fine_nodes(scene, start_um, end_um)) finer.push_back(node);
-  }
+  const double middle_um = 0.5 * (from_um + to_um);
+  std::vector<FineNode> finer = fine_nodes(scene, from_um, middle_um);
+  for (const FineNode& node : fine_nodes(scene, middle_um, to_um)) finer.push_back(node);
   const std::vector<ProbeSums> exact = exact_sums(scene.surface.material, finer, cosines);
   for (int count = 1; count <= kMostNodes; ++count) {
     rule.samples = samples_at(scene, gauss_wavelengths(from_um, to_um, count), fine);
-    rule.error = is_constant ? 0.0 : nodes_error(rule.samples, exact, cosines, kSmallestPart);
+    rule.error = nodes_error(rule.samples, exact, cosines, kSmallestPart);
     if (rule.error <= kNodesRelativeError) break;
   }
   return rule;

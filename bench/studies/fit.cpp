@@ -25,6 +25,7 @@ using nlohmann::ordered_json;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kQuickSets = 10;
+constexpr std::size_t kBracketSets = 60;
 constexpr int kRepeats = 3;
 constexpr const char* kPython = "/usr/bin/python3";
 
@@ -33,11 +34,10 @@ ordered_json interval_json(const FitInterval& interval) {
   return {end(interval.low), end(interval.high)};
 }
 
-ordered_json set_row(std::size_t number, const SetOutcome& outcome) {
-  const FitSet set = fit_set(number);
-  ordered_json row = {{"part", "set"}, {"case", set.keys()}, {"setting", number}};
+ordered_json set_row(const char* part, const FitSet& set, std::size_t number, const SetOutcome& outcome) {
+  ordered_json row = {{"part", part}, {"case", set.keys()}, {"setting", number}};
   for (const Setting& setting : set.scene.settings) row["model"].push_back(setting.text());
-  row["noise"] = set.noise;
+  row["noise"] = set.has_noise ? set.uncertainty : 0.0;
   row["truth"] = std::vector<double>(set.truth.begin(), set.truth.end());
   for (const FitParameter& one : outcome.result.parameters) {
     row["values"].push_back(one.value);
@@ -58,11 +58,12 @@ ordered_json set_row(std::size_t number, const SetOutcome& outcome) {
   return row;
 }
 
-/// Shares of all intervals that hold the truth, and of the sets whose global minimum was found.
-ordered_json coverage_json(const ordered_json& rows) {
+/// Shares of all intervals of a part that hold the truth, and of the sets whose global minimum was found.
+ordered_json coverage_json(const ordered_json& rows, const char* part) {
   std::size_t intervals = 0, held_68 = 0, held_95 = 0, global = 0, evaluations = 0;
   std::vector<double> times_s;
   for (const ordered_json& row : rows) {
+    if (row["part"] != part) continue;
     intervals += row["truth"].size();
     held_68 += row["held_68"].get<std::size_t>();
     held_95 += row["held_95"].get<std::size_t>();
@@ -71,12 +72,12 @@ ordered_json coverage_json(const ordered_json& rows) {
     times_s.push_back(row["time_s"].get<double>());
   }
   const auto share = [&](std::size_t held) { return static_cast<double>(held) / static_cast<double>(intervals); };
-  return {{"sets", rows.size()},
+  return {{"sets", times_s.size()},
           {"intervals", intervals},
           {"share_68", share(held_68)},
           {"share_95", share(held_95)},
           {"global_minima", global},
-          {"evaluations", static_cast<double>(evaluations) / static_cast<double>(rows.size())},
+          {"evaluations", static_cast<double>(evaluations) / static_cast<double>(times_s.size())},
           {"median_time_s", median(times_s)}};
 }
 
@@ -87,7 +88,7 @@ ordered_json scipy_json(const FitSet& set, const MeasuredData& data, const fit::
   ordered_json question = {{"package", std::filesystem::path(own_program()).replace_filename("python").string()},
                            {"scene", scene_toml(set.scene, {})},
                            {"tolerance", result.tolerance},
-                           {"uncertainty", set.noise}};
+                           {"uncertainty", set.uncertainty}};
   for (const FitRange& one : set.parameters) {
     question["columns"].push_back(one.key.substr(one.key.find('.') + 1));
     question["low"].push_back(one.low);
@@ -131,18 +132,39 @@ ordered_json time_json(ModelEvaluator& evaluator) {
           {"scipy", scipy_json(set, data, result)}};
 }
 
+/// What single scattering leaves of the range of n at 95 %, in the median.
+double median_share_of_n(const ordered_json& rows) {
+  const FitRange range = bracket_set(0).parameters.front();
+  std::vector<double> shares;
+  for (const ordered_json& row : rows) {
+    if (row["part"] != "bracket") continue;
+    const ordered_json& ends = row["interval_95"][0];
+    const auto end = [&](std::size_t i, double open) { return ends[i].is_null() ? open : ends[i].get<double>(); };
+    shares.push_back((end(1, range.high) - end(0, range.low)) / (range.high - range.low));
+  }
+  return median(shares);
+}
+
 void measure_sets(StudyRun& run) {
   InterpolatingEvaluator evaluator(std::make_unique<VulkanEvaluator>(VulkanOptions{.device = run.options().device}));
   run.describe("fit", "largest bound of the model's error, in uncertainties",
                "seconds a fit with its intervals; the device and its kernels are there");
   const std::size_t sets = run.options().quick ? std::min(kQuickSets, run.options().entries) : run.options().entries;
-  run.expect(sets);
+  const std::size_t bracket_sets = std::min(kBracketSets, sets);
+  run.expect(sets + bracket_sets);
   run.json()["time"] = time_json(evaluator);
   const std::size_t first = run.options().first_set;
   for (std::size_t number = first; number < first + sets; ++number) {
-    run.finish(set_row(number, fit_outcome(number, evaluator)));
+    const FitSet set = fit_set(number);
+    run.finish(set_row("set", set, number, fit_outcome(set, number, evaluator)));
   }
-  run.json()["coverage"] = coverage_json(run.rows());
+  for (std::size_t number = first; number < first + bracket_sets; ++number) {
+    const FitSet set = bracket_set(number);
+    run.finish(set_row("bracket", set, number, fit_outcome(set, number, evaluator)));
+  }
+  run.json()["coverage"] = coverage_json(run.rows(), "set");
+  run.json()["bracket"] = coverage_json(run.rows(), "bracket");
+  run.json()["bracket"]["share_of_n"] = median_share_of_n(run.rows());
 }
 
 std::string table_text(const ordered_json& result) {
@@ -154,6 +176,13 @@ std::string table_text(const ordered_json& result) {
       100.0 * coverage["share_68"].get<double>(), 100.0 * coverage["share_95"].get<double>(),
       coverage["global_minima"].get<std::size_t>(), coverage["evaluations"].get<double>(),
       time_text(coverage["median_time_s"].get<double>()));
+  const ordered_json& bracket = result["bracket"];
+  text += fmt::format(
+      "{} sets of all bounces, fitted with --model-error bracket\n  68 % intervals hold the truth {:.1f} %, 95 % "
+      "{:.1f} %\n"
+      "  95 % leaves {:.0f} % of the range of n (median)\n",
+      bracket["sets"].get<std::size_t>(), 100.0 * bracket["share_68"].get<double>(),
+      100.0 * bracket["share_95"].get<double>(), 100.0 * bracket["share_of_n"].get<double>());
   const ordered_json& time = result["time"];
   text += fmt::format("a fit of {} parameters to {} points: {}, {} evaluations\n",
                       time["parameters"].get<std::size_t>(), time["points"].get<std::size_t>(),
@@ -169,6 +198,7 @@ std::string table_text(const ordered_json& result) {
 /// Names the sets whose global minimum was missed.
 void warn(ordered_json& result) {
   for (const ordered_json& row : result["results"]) {
+    if (row["part"] != "set") continue;
     if (!row["is_consistent"].get<bool>()) {
       result["warnings"].push_back(fmt::format("set {}: an interval leaves out a truth whose chi^2 lies inside",
                                                row["setting"].get<std::size_t>()));

@@ -95,7 +95,21 @@ FitSet fit_set(std::size_t number) {
   }
   set.observable = random.below(2) == 0 ? Observable::kQOverI : Observable::kDolp;
   set.points = kPoints;
-  set.noise = random.log_uniform(5e-4, 1e-2);
+  set.uncertainty = random.log_uniform(5e-4, 1e-2);
+  return set;
+}
+
+FitSet bracket_set(std::size_t number) {
+  Random random(number);
+  FitSet set;
+  set.scene = parse_scene(kSceneText, "synthetic", {{"surface.masking", TomlText{"v-cavity"}}, {"surface.k", 0.05}});
+  set.of_truth = {{"surface.scattering", TomlText{"multiple"}}};
+  set.truth = Eigen::Vector2d(random.uniform(1.3, 2.5), random.uniform(0.1, 0.4));
+  set.parameters = {{"surface.n", 1.1, 3.0, {}}, {"surface.sigma", 0.02, 1.0, {}}};
+  set.points = 15;
+  set.uncertainty = 5e-4;
+  set.has_noise = number % 2 == 1;
+  set.model_error = ModelError::kBracket;
   return set;
 }
 
@@ -105,7 +119,7 @@ FitSet timed_set() {
   set.truth = Eigen::Vector3d(1.6, 0.5, 0.2);
   set.parameters = {kN.parameter, kK.parameter, kSigma.parameter};
   set.points = 40;
-  set.noise = 2e-3;
+  set.uncertainty = 2e-3;
   return set;
 }
 
@@ -118,15 +132,15 @@ MeasuredData synthetic_data(const FitSet& set, std::size_t number, ModelEvaluato
     const double share = static_cast<double>(i) / (static_cast<double>(set.points) - 1.0);
     data.measurements.push_back({.observable = set.observable,
                                  .theta_deg = kFirstDeg + share * (kLastDeg - kFirstDeg),
-                                 .uncertainty = set.noise});
+                                 .uncertainty = set.uncertainty});
   }
-  const fit::Model model(set.scene, {data}, set.parameters);
+  const fit::Model model(with_settings(set.scene, set.of_truth), {data}, set.parameters);
   const Eigen::MatrixX2d exact = model.predict({set.truth}, kExactTolerance, evaluator, {}).front().components;
   Random random(number + 1'000'000);
   for (std::size_t i = 0; i < set.points; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     const double value = set.observable == Observable::kDolp ? exact.row(row).norm() : exact(row, 0);
-    data.measurements[i].value = value + set.noise * random.normal();
+    data.measurements[i].value = value + (set.has_noise ? set.uncertainty * random.normal() : 0.0);
   }
   return data;
 }
@@ -141,10 +155,9 @@ bool SetOutcome::is_consistent() const {
   return (growth > kRise68 || held_68 == all) && (growth > kRise95 || held_95 == all);
 }
 
-SetOutcome fit_outcome(std::size_t number, ModelEvaluator& evaluator) {
-  const FitSet set = fit_set(number);
+SetOutcome fit_outcome(const FitSet& set, std::size_t number, ModelEvaluator& evaluator) {
   const MeasuredData data = synthetic_data(set, number, evaluator);
-  const fit::Model model(set.scene, {data}, set.parameters);
+  const fit::Model model(set.scene, {data}, set.parameters, set.model_error);
   SetOutcome outcome;
   const auto start = std::chrono::steady_clock::now();
   std::optional<fit::FitResult> result = fit::fit(model, evaluator, {});

@@ -23,7 +23,7 @@ SYMBOLS = {"surface.n": "n", "surface.k": "k", "surface.sigma": "σ", "surface.w
            "surface.diffuse": r"$k_d$", "emission.temperature_K": "T (K)", "surroundings.temperature_K": r"$T_{surr}$ (K)",
            "spectrum.wavelength_um": "λ (µm)", "geometry.view_zenith_deg": r"$\theta_v$ (degree)",
            "geometry.relative_azimuth_deg": "Δφ (degree)", "surface.diffuse_exponent": "c",
-           "path.temperature_K": r"$T_{path}$ (K)", "path.transmittance": "τ", "source.scale": "scale of $E_0$", "model_error": "model error e"}
+           "path.temperature_K": r"$T_{path}$ (K)", "path.transmittance": "τ", "source.scale": "scale of $E_0$"}
 PERCENT = 100.0
 REGIONS = ("68 %", "95 %")  # of all pairs, at the levels of the report
 
@@ -122,7 +122,18 @@ def caption(report):
         for one in report["parameters"])
     reduced = report["reduced_chi_square"]
     quality = f"reduced $\\chi^2$ = {reduced:.4g}" if reduced is not None else "no degrees of freedom"
-    return f"{values}   {quality}"
+    word = f", {report['fit_quality']}" if report.get("fit_quality") else ""
+    return f"{values}   {quality}{word}{alike(report)}"
+
+
+def alike(report):
+    """A line on models that the data cannot tell apart, with the ranges over all that may be true."""
+    if not report.get("alike"):
+        return ""
+    ends = lambda interval: " to ".join("open" if end is None else f"{end:.4g}" for end in interval or ())
+    ranges = "   ".join(f"{symbol_of(one['key'])} {ends(one['interval_95']) or 'none'}" for one in report["ranges"])
+    return (f"\n{len(report['alike'])} models cannot be told apart; 95 % ranges over {report['ranges'][0]['models']} models "
+            f"of ΔAIC up to 4:   {ranges}")
 
 
 def title_of(report):

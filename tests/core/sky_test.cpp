@@ -1,6 +1,8 @@
 // Profiles of a sky: files, built-in skies, and the basis of functions that stands for them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <dolp/errors.hpp>
 #include <numbers>
@@ -161,6 +163,32 @@ TEST(SceneReader, ProfileKnownAtOtherWavelengths_IsRefused) {
     const std::string message = error_of(kMinimal + "[surroundings]\nprofile = \"" + file.path() + "\"\n");
     EXPECT_TRUE(message.ends_with("known at 3 to 5 um, and the spectrum is 10.6 um")) << message;
   }
+}
+
+TEST(SkyNodes, ErrorOfWideTemperatureRanges_HoldsBetweenTheNodes) {
+  for (const auto& [cold_K, warm_K, wavelength_um] :
+       {std::array{10.0, 2930.0, 22.0}, {3.0, 300.0, 10.0}, {50.0, 100.0, 1.0}, {10.0, 2930.0, 3.0}}) {
+    const SkyNodes nodes({0.0, 60.0, 90.0});
+    const auto radiance = [&](double zenith_deg) {
+      return planck_radiance(wavelength_um, std::lerp(cold_K, warm_K, zenith_deg / 90.0));
+    };
+    Eigen::VectorXd values(static_cast<Eigen::Index>(nodes.zenith_deg().size()));
+    std::ranges::transform(nodes.zenith_deg(), values.begin(), radiance);
+    for (double zenith_deg = 0.05; zenith_deg < 90.0; zenith_deg += 0.1)
+      EXPECT_LE(std::abs(nodes.at(zenith_deg, values)[0] - radiance(zenith_deg)),
+                nodes.error(values) + 1e-14 * values.maxCoeff())
+          << cold_K << " K, " << wavelength_um << " um, " << zenith_deg;
+  }
+}
+
+TEST(SkyProfile, WideTemperatureRange_IsDividedWhereItDoubles) {
+  SkyProfile profile;
+  profile.zenith_deg = {0.0, 90.0};
+  profile.values = {30.0, 300.0};
+  const std::vector<double> expected = {0.0, 2.5, 15.0, 40.0, 60.0, 85.0, 90.0};
+  const std::vector<double> ends_deg = profile.ends_deg();
+  ASSERT_EQ(ends_deg.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(ends_deg[i], expected[i], 1e-12);
 }
 
 }  // namespace

@@ -35,6 +35,8 @@ wavelength_um = 10
 )";
 
 constexpr double kNoise = 0.002;
+constexpr double kQuantile68 = 22.436339987;  // of chi^2 with 20 degrees of freedom
+constexpr double kQuantile95 = 31.410432844;
 
 FitRange number(const std::string& key, double low, double high) { return {key, low, high, {}}; }
 
@@ -107,43 +109,114 @@ TEST(Foretell, ParametersLeaveTheBounds_OthersAreSolvedAgain) {
   EXPECT_GT(checked, 100);
 }
 
-// Data of the direct emission, the other end of the bracket: the model's error is 1 there.
-TEST_F(FitTest, ModelErrorOfTheBracket_IsACommonUncertainty) {
-  const MeasuredData data = measured(kNoise, {"emission.model=direct"});
-  const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.sigma", 0.05, 0.5)};
-  const SceneValues scene = parse_scene(kScene, "scene");
-  const auto contains = [](const FitInterval& one, double value) {
-    return (!one.low || *one.low <= value) && (!one.high || value <= *one.high);
-  };
-  EXPECT_FALSE(contains(fitted(data, parameters).parameters[0].interval_95, 1.6));
-  const Model model(scene, {data}, parameters, ModelError::kBracket);
-  const std::optional<FitResult> result = fit::fit(model, evaluator_, {});
-  ASSERT_TRUE(result);
-  ASSERT_EQ(result->parameters.size(), 3U);
-  EXPECT_EQ(result->parameters[2].key, kModelErrorKey);
-  EXPECT_EQ(result->degrees_of_freedom, 18U);
-  EXPECT_EQ(model.settings(Eigen::Vector3d(1.6, 0.2, 1.0)).size(), 2U);
-  for (const auto& [j, truth] : {std::pair(0U, 1.6), {1U, 0.2}, {2U, 1.0}}) {
-    EXPECT_TRUE(contains(result->parameters[j].interval_95, truth)) << j;
-  }
+bool contains(const FitInterval& one, double value) {
+  return !one.is_empty && (!one.low || *one.low <= value) && (!one.high || value <= *one.high);
+}
 
-  // The same as generalised least squares with the covariance 1 + b b^T, in uncertainties.
-  const auto at_end = [&](double model_error) {
-    const Eigen::Vector3d values(result->parameters[0].value, result->parameters[1].value, model_error);
-    return Eigen::VectorXd(model.predict({values}, 1e-8, evaluator_, {}).front().components.col(0).head(20));
-  };
-  Eigen::VectorXd residuals = at_end(0.0);
-  const Eigen::VectorXd apart = (at_end(1.0) - residuals) / kNoise;
-  for (Eigen::Index i = 0; i < residuals.size(); ++i) {
-    residuals[i] = (residuals[i] - data.measurements[static_cast<std::size_t>(i)].value) / kNoise;
+// Data between both ends, nearer to the other one at some points: the residual counts from the nearer end, for Q/I and
+// for DOLP, and is 0 inside.
+TEST_F(FitTest, ModelErrorOfTheBracket_ResidualIsTheDistanceFromTheInterval) {
+  const SceneValues scene = parse_scene(kScene, "scene");
+  const std::vector<FitRange> n = {number("surface.n", 1.1, 4.0)};
+  const Eigen::VectorXd truth = Eigen::VectorXd::Constant(1, 1.6);
+  MeasuredData data = measured(0.0);
+  const MeasuredData direct = measured(0.0, {"emission.model=direct"});
+  constexpr double kOutside = 3.0;  // uncertainties
+  for (const Observable observable : {Observable::kQOverI, Observable::kDolp}) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < data.measurements.size(); ++i) {
+      const double one = measured(0.0).measurements[i].value, other = direct.measurements[i].value;
+      const double beyond = i % 3 == 0 || std::max(one, other) > -kOutside * kNoise ? 0.0 : kOutside * kNoise;
+      double value = i % 3 == 1 ? std::max(one, other) + beyond : std::min(one, other) - beyond;
+      if (beyond == 0.0) value = std::lerp(one, other, 0.4);
+      sum += beyond * beyond;
+      data.measurements[i].observable = observable;
+      data.measurements[i].value = observable == Observable::kDolp ? -value : value;
+    }
+    const Model model(scene, {data}, n, ModelError::kBracket);
+    Residuals residuals(model, 1e-8, Differences::kCentral, evaluator_, {});
+    const Eigen::VectorXd at = Eigen::VectorXd::Constant(1, n[0].coordinate(truth[0]));
+    const double expected = sum / (kNoise * kNoise);
+    EXPECT_GT(expected, 50.0);
+    EXPECT_NEAR(objective(residuals.at({at}).front().residuals, Loss::kSquares), expected, 1e-3 * expected);
   }
-  const Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(20, 20) + apart * apart.transpose();
-  EXPECT_NEAR(result->chi_square, residuals.dot(covariance.inverse() * residuals), 1e-3);
+}
+
+// An end of n lies where chi^2 itself, least over sigma, is the quantile of 20 degrees of freedom.
+TEST_F(FitTest, ModelErrorOfTheBracket_IntervalsEndAtTheQuantileOfChiSquared) {
+  const SceneValues scene = parse_scene(kScene, "scene");
+  const FitRange sigma = number("surface.sigma", 0.05, 0.5);
+  const MeasuredData data = measured(kNoise, {"emission.model=direct"});
+  const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), sigma};
+  EXPECT_FALSE(contains(fitted(data, parameters).parameters[0].interval_95, 1.6));
+  const FitResult result = fit::fit(Model(scene, {data}, parameters, ModelError::kBracket), evaluator_, {}).value();
+  ASSERT_EQ(result.parameters.size(), 2U);
+  EXPECT_EQ(result.degrees_of_freedom, 20U);
+  EXPECT_EQ(result.parameters[0].why_no_error, "with a model error the value is one of many that fit as well");
+  EXPECT_TRUE(contains(result.parameters[0].interval_95, 1.6));
+  EXPECT_TRUE(contains(result.parameters[1].interval_95, 0.2));
+  int ends = 0;
+  for (const auto& [interval, quantile] :
+       {std::pair(result.parameters[0].interval_68, kQuantile68), {result.parameters[0].interval_95, kQuantile95}}) {
+    for (const std::optional<double>& end : {interval.low, interval.high}) {
+      if (!end) continue;
+      const SceneValues held = parse_scene(kScene, "scene", settings_from_text({"surface.n=" + std::to_string(*end)}));
+      const FitResult least = fit::fit(Model(held, {data}, {sigma}, ModelError::kBracket), evaluator_, {}).value();
+      EXPECT_NEAR(least.chi_square, quantile, 0.015 * quantile) << *end;
+      ++ends;
+    }
+  }
+  EXPECT_GE(ends, 2);
 
   EXPECT_THROW(Model(scene, {measured(kNoise, {}, false)}, parameters, ModelError::kBracket), InputError);
   EXPECT_THROW(Model(parse_scene(kScene, "scene", settings_from_text({"surface.masking=integral"})), {data}, parameters,
                      ModelError::kBracket),
                InputError);
+}
+
+// Data far from both ends: no value is left, but some with larger uncertainties.
+TEST_F(FitTest, ModelErrorOfTheBracket_ThatExplainsNothing_LeavesEmptyIntervals) {
+  MeasuredData data = measured(0.0);
+  for (std::size_t i = 0; i < 20; i += 2) data.measurements[i].value += 20.0 * kNoise;
+  const Model model(parse_scene(kScene, "scene"), {data}, {number("surface.n", 1.1, 4.0)}, ModelError::kBracket);
+  const FitParameter n = fit::fit(model, evaluator_, {}).value().parameters.front();
+  EXPECT_TRUE(n.interval_68.is_empty && n.interval_95.is_empty);
+  ASSERT_TRUE(n.scaled_68 && n.scaled_95);
+  EXPECT_TRUE(contains(*n.scaled_68, n.value) && contains(*n.scaled_95, n.value));
+}
+
+TEST(FitQuality, IsAWordForTheP_Value) {
+  for (const auto& [p, word] : {std::pair<std::optional<double>, const char*>(1.0, "good"),
+                                {0.05, "good"},
+                                {0.049, "doubtful"},
+                                {0.001, "doubtful"},
+                                {0.00099, "bad"},
+                                {0.0, "bad"},
+                                {std::nullopt, ""}}) {
+    EXPECT_EQ(fit_quality(p), word) << p.value_or(-1.0);
+  }
+}
+
+// The scaled intervals are the plain ones of data whose uncertainties are sqrt(reduced chi^2) times as large.
+TEST_F(FitTest, DoubtfulFit_ScaledIntervalsAreThoseOfLargerUncertainties) {
+  const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0)};
+  MeasuredData data = measured(kNoise, {"surface.sigma=0.26"});
+  const FitResult result = fitted(data, parameters);
+  ASSERT_NE(fit_quality(result.p_value), "good") << *result.p_value;
+  for (Measurement& one : data.measurements) *one.uncertainty *= std::sqrt(*result.reduced_chi_square);
+  const FitResult wider = fitted(data, parameters);
+  EXPECT_EQ(fit_quality(wider.p_value), "good");
+  constexpr double kRoot = 0.02;  // of a half-width: both ends are met to 0.5 % of the root of the growth
+  for (std::size_t j = 0; j < 2; ++j) {
+    const FitParameter &one = result.parameters[j], &other = wider.parameters[j];
+    ASSERT_TRUE(one.scaled_68 && one.scaled_95 && !other.scaled_68 && !other.scaled_95);
+    for (const auto& [scaled, plain] :
+         {std::pair(*one.scaled_68, other.interval_68), {*one.scaled_95, other.interval_95}}) {
+      EXPECT_NEAR(*scaled.low, *plain.low, kRoot * (one.value - *plain.low));
+      EXPECT_NEAR(*scaled.high, *plain.high, kRoot * (*plain.high - one.value));
+    }
+    EXPECT_LT(*one.scaled_68->low, *one.interval_68.low);
+  }
 }
 
 TEST_F(FitTest, ExactData_GiveTheTruth) {

@@ -96,9 +96,12 @@ TEST(Sky, QuadraticProfile_GivesTheValuesOfTheModel) {
   }
 }
 
-/// Temperatures that jump about, that rise toward the horizon as those of skies do, or a built-in sky.
+/// Temperatures that jump about, that rise toward the horizon as those of skies do, that differ much between two rows,
+/// or a built-in sky.
 SkyProfile random_sky(Draws& random) {
   if (random.chance(0.1)) return *built_in_sky(random.chance(0.5) ? "clear-sky" : "overcast");
+  if (random.chance(0.1))
+    return profile_of({0.0, kRightAngle_deg}, {random.log_uniform(5.0, 100.0), random.log_uniform(200.0, 3000.0)});
   const bool jumps = random.chance(0.4);
   const int rows = static_cast<int>(random.uniform(2.0, jumps ? 12.0 : 30.0));
   const double zenith_K = random.uniform(180.0, 250.0);
@@ -208,6 +211,23 @@ TEST(Sky, DenseGridsAndBands_OnTheDevice_AgreeWithTheReferenceWithinTheirBounds)
       EXPECT_LE(own[i][kErrorEstimate], scene.accuracy.tolerance) << c.name << ", entry " << i;
     }
   }
+}
+
+TEST(Sky, WideRangeOfTemperaturesBetweenTwoRows_IsWithinItsEstimate) {
+  SceneValues scene = scene_under(profile_of({0.0, 90.0}, {9.965350842396443, 2930.8005503025483}));
+  scene.surface.masking = Masking::kIntegral;
+  scene.surface.sigma = 0.9520621267635193;
+  scene.surface.q = 3.2732912254396718;
+  scene.emission.reset();
+  scene.spectrum = {22.151580356605653, 22.151580356605653};
+  scene.accuracy.tolerance = 1e-5;
+  constexpr double kRight = 0.105355093;  // to 9 decimals
+  CpuEvaluator cpu;
+  ReferenceEvaluator reference;
+  const PointResult result = result_of(scene, 81.94349105196471, cpu);
+  EXPECT_NEAR(result[kDolp], kRight, result[kErrorEstimate]);
+  EXPECT_LE(result[kErrorEstimate], 1e-4);
+  EXPECT_NEAR(result_of(scene, 81.94349105196471, reference)[kDolp], kRight, 1e-8);
 }
 
 /// DOLP between all bounces and the bracket of one, at each sky and zenith.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <regex>
 #include <set>
 
 #include "cli_support.hpp"
@@ -91,6 +92,66 @@ TEST_F(FitProgram, Compare_RanksTheTrueModelFirst) {
   ASSERT_EQ(models.size(), 3U);
   EXPECT_EQ(models[0]["overrides"][0], "surface.masking=integral");
   EXPECT_LT(models[0]["aic"].get<double>(), models[1]["aic"].get<double>());
+}
+
+TEST_F(FitProgram, CompareOfModelsAlike_SaysSoAndGivesTheRangesOverAll) {
+  const std::vector<std::string> options = {
+      "--data", "uncertain.csv",   "--vary",    "surface.sigma=0.02:1",
+      "--vary", "surface.n=1.1:3", "--compare", "surface.masking=integral,none,v-cavity"};
+  const auto fitted_with = [&](const std::string& uncertainty) {
+    put("uncertain.csv", std::regex_replace(content("data.csv"), std::regex(",0\\.001\n"), "," + uncertainty + "\n"));
+    const Outcome outcome = fit(joined(options, {"--json", "--plot", "fit.svg"}));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(outcome.out);
+  };
+  const json apart = fitted_with("0.00002");
+  EXPECT_TRUE(apart["alike"].empty()) << apart["alike"];
+  EXPECT_EQ(apart["ranges"][0]["models"], 1);
+  const json alike = fitted_with("0.02");
+  ASSERT_EQ(alike["alike"].size(), 3U) << alike["models"];
+  EXPECT_EQ(alike["alike"][0], alike["models"][0]["overrides"]);
+  for (std::size_t j = 0; j < 2; ++j) {
+    EXPECT_EQ(alike["ranges"][j]["models"], 3);
+    for (const char* interval : {"interval_68", "interval_95"}) {
+      json hull = alike["models"][0]["parameters"][j][interval];
+      for (const json& model : alike["models"]) {
+        EXPECT_LT(model["delta_aic"].get<double>(), 1.3);
+        const json& one = model["parameters"][j][interval];
+        hull[0] = hull[0].is_null() || one[0].is_null() ? json()
+                                                        : json(std::min(hull[0].get<double>(), one[0].get<double>()));
+        hull[1] = hull[1].is_null() || one[1].is_null() ? json()
+                                                        : json(std::max(hull[1].get<double>(), one[1].get<double>()));
+      }
+      EXPECT_EQ(alike["ranges"][j][interval], hull) << interval;
+    }
+  }
+  EXPECT_NE(fit(options).out.find("alike      the data cannot tell the first 3 models apart"), std::string::npos);
+}
+
+TEST_F(FitProgram, Quality_IsOneOfThreeWords) {
+  const std::vector<std::string> options = {"--data", "data.csv", "--vary", "surface.sigma=0.02:1"};
+  for (const auto& [n, word] : {std::pair("1.5", "good"), {"1.8", "doubtful"}, {"2", "bad"}}) {
+    const std::vector<std::string> set = {"--set", std::string("surface.n=") + n};
+    const json report = json::parse(fit(joined(joined(options, set), {"--json"})).out);
+    EXPECT_EQ(report["fit_quality"], word) << report["p_value"];
+    EXPECT_EQ(report["parameters"][0].contains("scaled_68"), std::string(word) != "good");
+    const std::string text = fit(joined(options, set)).out;
+    EXPECT_NE(text.find(std::string(": ") + word), std::string::npos) << text;
+    EXPECT_EQ(text.find("scaled     surface.sigma: uncertainties ") != std::string::npos, std::string(word) != "good");
+  }
+}
+
+TEST_F(FitProgram, ModelOfSingleScatteringThatFails_IsSaidUnlessItsBracketIsUsed) {
+  const std::vector<std::string> keys = {"surface.masking=smith", "surface.q=3", "surface.k=8"};
+  measure("metal.csv", "theta_deg", {"dolp"}, keys);
+  std::vector<std::string> options = {"--data", "metal.csv", "--vary", "surface.sigma=0.1:0.4"};
+  for (const std::string& one : keys) options.insert(options.end(), {"--set", one});
+  EXPECT_NE(fit(options).out.find("status     32 at some point: single scattering"), std::string::npos);
+  const std::string bracket = fit(joined(options, {"--model-error", "bracket"})).out;
+  EXPECT_EQ(bracket.find("status     32"), std::string::npos) << bracket;
+  EXPECT_NE(bracket.find("surface.masking \"v-cavity\" with surface.scattering \"multiple\" follows all bounces"),
+            std::string::npos)
+      << bracket;
 }
 
 TEST_F(FitProgram, ZenithOfTheSource_IsFittedInBistaticScenes) {

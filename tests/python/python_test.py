@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import warnings
 
 import matplotlib
 import numpy as np
@@ -361,14 +362,38 @@ theta_deg = {from = 0, to = 80, count = 5}
         self.assertEqual(len(ranked.values["models"]), 2)
         self.assertTrue((self.folder / "picture.png").exists())
         wider = dolp.fit(scene, columns, vary, model_error="bracket")
-        self.assertEqual(list(wider.params), [*found.params, "model_error"])
-        self.assertGreater(wider.stderr["surface.n"], found.stderr["surface.n"])
-        line = wider.plot().lines[-1]
-        points = wider.values["points"]
+        self.assertEqual((list(wider.params), wider.stderr["surface.n"]), (list(found.params), None))
+        (low, high), (narrow_low, narrow_high) = (one.conf_interval()["surface.n"] for one in (wider, found))
+        self.assertTrue((low or 1.1) < narrow_low < 1.62 < narrow_high < (high or 3))
+        line = found.plot().lines[-1]
+        points = found.values["points"]
         np.testing.assert_allclose(np.interp([p["theta_deg"] for p in points], line.get_xdata(), line.get_ydata()),
                                    [100 * p["model"] for p in points], atol=2e-2)
         two = dolp.fit(scene, [(columns, {"emission.temperature_K": 300.0}), columns], vary)
         self.assertLess(two.values["parameters"][0]["standard_error"], found.values["parameters"][0]["standard_error"])
+
+    def test_a_fit_has_a_word_for_its_quality_and_warns_of_the_model(self):
+        theta = np.arange(20, 81, 10.0)
+        metal = dolp.Scene(self.scene, {"surface.masking": "smith", "surface.n": 2.0, "surface.k": 8.0, "surface.q": 3.0})
+        with warnings.catch_warnings(record=True):
+            truth = dolp.evaluate(metal, theta_deg=theta, sigma=0.2)
+        data = {"theta_deg": theta, "dolp": truth.dolp.values, "uncertainty": 1e-3}
+        vary = {"surface.sigma": (0.05, 0.5)}
+        for scene, options, warned in ((metal.with_({"surface.n": 2.0}), {}, 1),
+                                       (metal.with_({"surface.n": 2.0}), {"model_error": "bracket"}, 0),
+                                       (metal.with_({"surface.masking": "v-cavity", "surface.scattering": "multiple"}), {}, 0)):
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                found = dolp.fit(scene, data, vary, evaluator="cpu", starts=4, **options)
+            self.assertEqual([one.category for one in caught], [dolp.ModelWarning] * warned)
+            if warned:
+                self.assertEqual((found.fit_quality, caught[0].filename), ("good", __file__))
+                self.assertEqual(found.conf_interval(scaled=True), found.conf_interval())
+        with warnings.catch_warnings(record=True):
+            wrong = dolp.fit(metal.with_({"surface.k": 3.0}), data, vary, evaluator="cpu", starts=4)
+        self.assertEqual(wrong.fit_quality, "doubtful")
+        self.assertEqual(list(wrong.conf_interval(0.68, scaled=True)["surface.sigma"]), wrong.values["parameters"][0]["scaled_68"])
+        self.assertNotEqual(wrong.conf_interval(0.68, scaled=True), wrong.conf_interval(0.68))
 
     def test_a_fit_keeps_the_order_of_its_numbers_and_refuses_what_does_not_fit(self):
         theta = np.arange(10, 81, 10.0)
@@ -412,10 +437,14 @@ theta_deg = {from = 0, to = 80, count = 5}
         import plot_fit
         import plot_table
         del sys.path[:2]
-        self.assertLessEqual(set(plot_fit.SYMBOLS), {*dolp.keys(), "model_error"})
+        self.assertLessEqual(set(plot_fit.SYMBOLS), {*dolp.keys()})
         for wavelengths, spectrum, title in ((None, [3, 5], "Plate, 3–5 µm"), (None, [9, 9], "Plate, 9 µm"), (8, [9, 9], "Plate")):
             report = {"title": "Plate, 8-14 um", "points": [{"wavelength_um": wavelengths}], "spectrum_um": spectrum}
             self.assertEqual(plot_fit.title_of(report), title)
+        self.assertEqual(plot_fit.alike({"alike": [["a=1"], ["a=2"]],
+                                         "ranges": [{"key": "surface.n", "models": 3, "interval_95": [1.36, None]}]}),
+                         "\n2 models cannot be told apart; 95 % ranges over 3 models of ΔAIC up to 4:   n 1.36 to open")
+        self.assertEqual(plot_fit.alike({"alike": []}), "")
         sea = {"title": "Sea, wind 8 m/s, 8-14 um", "surface.distribution": "gaussian", "surface.masking": "smith"}
         theta = {"from": 0, "to": 85, "count": 10}
         winds = {"from": 1, "to": 14, "count": 6}

@@ -20,6 +20,11 @@ constexpr Eigen::Index kPoints = 17;
 constexpr double kBetweenNodes = 1.5;
 constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
+// The coefficients of a part fall at least geometrically where it has enough points; then what follows them is less
+// than this times the last few. Where they do not fall, the error is of their size.
+constexpr Eigen::Index kLastCoefficients = 4;
+constexpr double kBeyondLast = 2.0;
+
 // In the last part the cosine c is c_0 y^4, which makes its powers smooth at the horizon.
 constexpr double kHorizonPower = 4.0;
 
@@ -49,6 +54,14 @@ Eigen::RowVectorXd SkyNodes::at(double zenith_deg, const Eigen::MatrixXd& values
     sum.noalias() += weight * values.row(first + i);
   }
   return sum / total;
+}
+
+double SkyNodes::error(const Eigen::VectorXd& values) const {
+  static const Eigen::MatrixXd kLast = chebyshev_coefficients(kPoints).bottomRows(kLastCoefficients);
+  double error = 0.0;
+  for (Eigen::Index first = 0; first < values.size(); first += kPoints)
+    error = std::max(error, kBeyondLast * (kLast * values.segment(first, kPoints)).cwiseAbs().sum());
+  return error;
 }
 
 Eigen::VectorXd SkyNodes::mean_weights(double power) const {

@@ -23,6 +23,9 @@ class SkyNodes {
   /// The values of functions at a zenith. Shape: `values` are nodes x functions.
   Eigen::RowVectorXd at(double zenith_deg, const Eigen::MatrixXd& values) const;
 
+  /// Estimate of the largest distance between the polynomials through a function's values and the function.
+  double error(const Eigen::VectorXd& values) const;
+
   /// Weights of the values in the mean of a function, the integral over the zenith with (power + 2) cos^(power + 1)
   /// sin: what a reflectance proportional to cos^power sees of it. Domain: power > -1.
   Eigen::VectorXd mean_weights(double power) const;

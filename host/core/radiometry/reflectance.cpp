@@ -58,19 +58,25 @@ MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Refle
     emitted += sample.emitted;
     incident += sample.irradiance * cos_theta + sample.surroundings;
   }
+  const auto weight_of = [&](std::size_t j) { return mean_weight(rule.samples[j], emitted, incident, cos_theta); };
   MeanReflectance mean;
   double total = 0.0;
   double rho_i_error = 0.0;
   double rho_q_error = 0.0;
   for (std::size_t j = 0; j < reflectances.size(); ++j) {
     const Reflectance& r = reflectances[j];
-    const double weight = mean_weight(rule.samples[j], emitted, incident, cos_theta);
+    const double weight = weight_of(j);
     total += weight;
     mean.rho_i += weight * r.rho_i;
     mean.rho_q += weight * r.rho_q;
     rho_i_error += std::abs(weight) * (r.rho_i_error + rule.relative_error * std::abs(r.rho_i));
     rho_q_error += std::abs(weight) * (r.rho_q_error + rule.relative_error * std::abs(r.rho_q));
   }
+  const auto error_of = [&](double Reflectance::*rho) {
+    return panel_error(rule, [&](std::size_t j, std::size_t m) { return weight_of(j) * (reflectances[m].*rho); });
+  };
+  rho_i_error += error_of(&Reflectance::rho_i);
+  rho_q_error += error_of(&Reflectance::rho_q);
   mean.rho_i /= total;
   mean.rho_q /= total;
   mean.error = std::max(rho_i_error, rho_q_error) / total;

@@ -91,6 +91,17 @@ Stokes stokes_sum(const SpectralRule& rule, std::span<const Reflectance> reflect
       add_emitting_sample(sum, rule.samples[j], reflectances[j], emissivities[j], direct, rounding);
     }
   }
+  const auto error_of = [&](double Reflectance::*rho, double Emissivity::*emissivity) {
+    return panel_error(rule, [&](std::size_t j, std::size_t m) {
+      const SpectralSample& sample = rule.samples[j];
+      const double direct = with_source ? sample.irradiance * cos_theta : 0.0;
+      const double reflected = reflectances[m].*rho;
+      if (model == EmissionModel::kMoments) return (direct + sample.excess) * reflected;
+      return sample.emitted * (emissivities[m].*emissivity) + (direct + sample.surroundings) * reflected;
+    });
+  };
+  sum.i_error += error_of(&Reflectance::rho_i, &Emissivity::i);
+  sum.q_error += error_of(&Reflectance::rho_q, &Emissivity::q);
   return sum;
 }
 
@@ -124,8 +135,19 @@ void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std:
     if (surface.specular > 0.0)
       add_specular_sky(sum, surface.specular / cos_theta, rounding, factors[j].weights, moments[j]);
     sum.i += diffuse * factors[j].diffuse;
-    sum.i_error += rounding * std::abs(diffuse * factors[j].diffuse);
+    sum.i_error += std::abs(diffuse) * (factors[j].weights.error + rounding * std::abs(factors[j].diffuse));
   }
+  if (factors.empty() || surface.specular == 0.0) return;
+  const auto error_of = [&](double SkyMoments::*part) {
+    return panel_error(rule, [&](std::size_t j, std::size_t m) {
+      double term = 0.0;
+      for (std::size_t k = 0; k < moments[m].sky.size(); ++k)
+        term += factors[j].weights.of[static_cast<Eigen::Index>(k)] * (moments[m].sky[k].*part);
+      return surface.specular / cos_theta * term;
+    });
+  };
+  sum.i_error += error_of(&SkyMoments::i);
+  sum.q_error += error_of(&SkyMoments::q);
 }
 
 void add_beam(Stokes& sum, const Surface& surface, double k_s, const SpectralRule& rule,
@@ -148,6 +170,14 @@ void add_beam(Stokes& sum, const Surface& surface, double k_s, const SpectralRul
     sum.q_error += error;
     sum.u_error += error;
   }
+  const auto error_of = [&](double Scattered::*part) {
+    return panel_error(rule, [&](std::size_t j, std::size_t m) {
+      return pi * k_s * rule.samples[j].irradiance / cos_theta_r * (scattered[m].*part);
+    });
+  };
+  sum.i_error += error_of(&Scattered::i);
+  sum.q_error += error_of(&Scattered::q);
+  sum.u_error += error_of(&Scattered::u);
 }
 
 void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance) {
@@ -180,6 +210,11 @@ Bracket bracket(const SceneModel& scene, const SpectralRule& rule, std::span<con
     reflected += net * rest;
     error += std::abs(net) * (reflectances[j].absorbed_error + direct[j].i_error + direct[j].q_error) +
              std::abs(beyond_mean.middle) * reflectances[j].rho_q_error;
+  }
+  for (const double Emissivity::*part : {&Emissivity::i, &Emissivity::q}) {
+    error += panel_error(rule, [&](std::size_t j, std::size_t m) {
+      return (rule.samples[j].irradiance * cos_theta + rule.samples[j].excess) * (direct[m].*part);
+    });
   }
   const double transmittance = scene.path ? scene.path->transmittance : 1.0;
   add_path(single, scene.path, rule.path_exitance);

@@ -28,6 +28,11 @@ constexpr std::array<double, 2> kDivisions_deg = {60.0, 85.0};
 constexpr std::array<double, 11> kLayerDivisions_deg = {0.0,  30.0, 60.0,  75.0,  82.0, 86.0,
                                                         88.0, 89.0, 89.75, 89.94, 90.0};
 
+// Planck's function is smooth between temperatures of this ratio. What is colder than a share of the warmest radiates
+// too little to matter.
+constexpr double kDivisionRatio = 2.0;
+constexpr double kColdestShare = 1.0 / 256.0;
+
 // Air at sea level of the US Standard Atmosphere, 1976: 15 degrees C, and 5.9 g m-3 of water vapour, 7.85 hPa.
 constexpr double kAir_K = 288.15;
 constexpr double kVapour_hPa = 7.85;
@@ -129,9 +134,30 @@ SkyProfile::Emission SkyProfile::at(double at_um, double at_deg) const {
   return {.share = 1.0, .first_K = value};
 }
 
+std::vector<double> SkyProfile::temperature_divisions_deg(std::size_t interval) const {
+  double cold = 1.0;
+  double warm = 0.0;
+  bool rises = true;
+  for (std::size_t i = interval; i + 1 < values.size(); i += zenith_deg.size()) {
+    const auto [least, most] = std::minmax(values[i], values[i + 1]);
+    if (least * warm > cold * most || most == 0.0) continue;
+    cold = least;
+    warm = most;
+    rises = values[i + 1] > values[i];
+  }
+  std::vector<double> divisions;
+  for (double at_K = warm / kDivisionRatio; at_K > std::max(cold, kColdestShare * warm); at_K /= kDivisionRatio) {
+    const double share = (at_K - cold) / (warm - cold);
+    divisions.push_back(std::lerp(zenith_deg[interval], zenith_deg[interval + 1], rises ? share : 1.0 - share));
+  }
+  return divisions;
+}
+
 std::vector<double> SkyProfile::ends_deg() const {
   if (kind == Kind::kLayers) return {kLayerDivisions_deg.begin(), kLayerDivisions_deg.end()};
   std::vector<double> ends = zenith_deg;
+  for (std::size_t i = 0; kind == Kind::kTemperature && i + 1 < zenith_deg.size(); ++i)
+    std::ranges::copy(temperature_divisions_deg(i), std::back_inserter(ends));
   ends.insert(ends.end(), kDivisions_deg.begin(), kDivisions_deg.end());
   std::ranges::sort(ends);
   const auto twice = std::ranges::unique(ends);

@@ -34,6 +34,8 @@ struct SkyProfile {
   };
   Emission at(double wavelength_um, double zenith_deg) const;
 
+  /// Zeniths that divide an interval of rows in which the temperature changes much.
+  std::vector<double> temperature_divisions_deg(std::size_t interval) const;
   /// Zeniths between which the profile is smooth, from 0 to 90.
   std::vector<double> ends_deg() const;
   /// Wavelengths between which it is smooth.

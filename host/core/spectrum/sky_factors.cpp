@@ -60,6 +60,7 @@ std::vector<SkyFactor> sky_factors(const SpectralRule& rule, const SkyBasis* bas
   for (const SpectralSample& sample : rule.samples) {
     const Eigen::VectorXd sky = vector_of(sample.sky);
     factors.push_back({basis->weights_of(sky), surface.diffuse > 0.0 ? diffuse.dot(sky) : 0.0});
+    factors.back().weights.error += basis->nodes().error(sky);
   }
   return factors;
 }

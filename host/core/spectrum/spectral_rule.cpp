@@ -8,9 +8,11 @@
 #include <boost/math/special_functions/legendre.hpp>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <numbers>
 #include <optional>
 
+#include "model/direction.hpp"
 #include "model/smooth_surface.hpp"
 #include "spectrum/planck.hpp"
 #include "spectrum/sky_factors.hpp"
@@ -38,16 +40,20 @@ constexpr double kPieceRelativeError = 1e-12;
 constexpr double kNodesRelativeError = 1e-10;
 constexpr double kSmallestPart = 1e-4;
 constexpr int kMostNodes = 24;
-// The rough surface averages the smooth one's absorptances over angles. The probes are three of them, and those at
+// The rough surface averages the smooth one's absorptances over angles. The probes are some of them, and those at
 // which total reflection begins at a few wavelengths of the segment: there an absorptance has a root in the wavelength.
+// Where n passes 1, it begins near grazing.
 constexpr double kProbeSafety = 10.0;
-constexpr std::array<double, 3> kProbeCosines = {1.0, 0.5, 0.1};
+constexpr std::array<double, 7> kProbeCosines = {1.0, 0.5, 0.25, 0.15, 0.1, 0.07, 0.04};
 constexpr std::array<double, 7> kCriticalPlaces = {0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};  // of a segment
-// A segment with such roots is cut into equal panels until its error is this share of the scene's tolerance, or the
-// most panels are reached: then entries say that they miss it.
-constexpr double kShareOfTolerance = 0.05;
-constexpr int kPanelNodes = 8;
-constexpr int kMostPanels = 32;
+// A segment that more nodes do not bring to this share of the scene's tolerance is cut into equal panels, each with its
+// own nodes, until the probes of these meet theirs, of the whole, or the most panels of a band are reached. Mirrors
+// have closed forms, and rough surfaces smooth roots. Entries state what they see of the panels' errors (panel_error).
+constexpr double kShareOfTolerance = 0.005;
+constexpr double kPanelShareOfTolerance = 0.03;
+constexpr int kLeastPanels = 4;
+constexpr double kMostPanels = 32.0;
+constexpr double kMostMirrorPanels = 512.0;
 
 /// A node of the fine rule with the spectral factors there, all multiplied by the node's weight.
 struct FineNode {
@@ -189,6 +195,7 @@ std::vector<double> gauss_wavelengths(double from_um, double to_um, int count) {
     wavelengths_um.push_back(0.5 * (from_um + to_um) + offset_um);
     if (zero > 0.0) wavelengths_um.push_back(0.5 * (from_um + to_um) - offset_um);
   }
+  std::ranges::sort(wavelengths_um);
   return wavelengths_um;
 }
 
@@ -229,30 +236,6 @@ std::vector<SpectralSample> samples_at(const SceneModel& scene, const std::vecto
   return samples;
 }
 
-/// Relative error of the smooth surface's absorptances at one cosine, integrated with one of the factors.
-template <typename Factor>
-double probe_error(const SceneModel& scene, const std::vector<SpectralSample>& samples,
-                   const std::vector<FineNode>& fine, double cosine, Factor factor) {
-  double whole = 0.0;
-  SmoothAbsorptance exact{0.0, 0.0};
-  SmoothAbsorptance approximate{0.0, 0.0};
-  for (const FineNode& node : fine) {
-    const SmoothAbsorptance at = smooth_absorptance(scene.surface.material.at(node.wavelength_um), cosine);
-    whole += factor(node);
-    exact.s += factor(node) * at.s;
-    exact.p += factor(node) * at.p;
-  }
-  for (const SpectralSample& sample : samples) {
-    const SmoothAbsorptance at = smooth_absorptance(sample.index, cosine);
-    approximate.s += factor(sample) * at.s;
-    approximate.p += factor(sample) * at.p;
-  }
-  if (whole == 0.0) return 0.0;
-  const double absorbed = 0.5 * (exact.s + exact.p);
-  const double part = std::max(std::min(absorbed, whole - absorbed), kSmallestPart * whole);
-  return std::max(std::abs(exact.s - approximate.s), std::abs(exact.p - approximate.p)) / part;
-}
-
 /// The cosines at which the rule of a segment is probed.
 std::vector<double> probe_cosines(const Material& material, double from_um, double to_um) {
   std::vector<double> cosines(kProbeCosines.begin(), kProbeCosines.end());
@@ -264,13 +247,51 @@ std::vector<double> probe_cosines(const Material& material, double from_um, doub
   return cosines;
 }
 
-double nodes_error(const SceneModel& scene, const std::vector<SpectralSample>& samples,
-                   const std::vector<FineNode>& fine, const std::vector<double>& cosines) {
+/// One of the spectral factors, and its integrals with the smooth surface's absorptances.
+struct ProbeSum {
+  double whole = 0.0;
+  double s = 0.0;
+  double p = 0.0;
+};
+using ProbeSums = std::array<ProbeSum, 3>;
+
+template <typename Node>
+void add_probe(ProbeSums& sums, const Node& node, const OpticalConstants& index, double cosine) {
+  const SmoothAbsorptance at = smooth_absorptance(index, cosine);
+  const std::array<double, 3> factors = {node.emitted, node.surroundings, node.irradiance};
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    sums[i].whole += factors[i];
+    sums[i].s += factors[i] * at.s;
+    sums[i].p += factors[i] * at.p;
+  }
+}
+
+/// The integrals at each cosine by the fine rule.
+std::vector<ProbeSums> exact_sums(const Material& material, const std::vector<FineNode>& fine,
+                                  const std::vector<double>& cosines) {
+  std::vector<ProbeSums> sums(cosines.size());
+  for (const FineNode& node : fine) {
+    const OpticalConstants index = material.at(node.wavelength_um);
+    for (std::size_t i = 0; i < cosines.size(); ++i) add_probe(sums[i], node, index, cosines[i]);
+  }
+  return sums;
+}
+
+/// The largest error of the samples' absorptances, relative to the smaller of the reflectance and the absorptance, but
+/// at least to `least` of the whole.
+double nodes_error(const std::vector<SpectralSample>& samples, const std::vector<ProbeSums>& exact,
+                   const std::vector<double>& cosines, double least) {
   double worst = 0.0;
-  for (const double cosine : cosines) {
-    worst = std::max({worst, probe_error(scene, samples, fine, cosine, [](const auto& at) { return at.emitted; }),
-                      probe_error(scene, samples, fine, cosine, [](const auto& at) { return at.surroundings; }),
-                      probe_error(scene, samples, fine, cosine, [](const auto& at) { return at.irradiance; })});
+  for (std::size_t i = 0; i < cosines.size(); ++i) {
+    ProbeSums sums;
+    for (const SpectralSample& sample : samples) add_probe(sums, sample, sample.index, cosines[i]);
+    for (std::size_t j = 0; j < sums.size(); ++j) {
+      const ProbeSum& right = exact[i][j];
+      if (right.whole == 0.0) continue;
+      const double absorbed = 0.5 * (right.s + right.p);
+      const double part = std::max(std::min(absorbed, right.whole - absorbed), least * right.whole);
+      worst = std::max({worst, std::abs(right.s - sums[j].s) / part, std::abs(right.p - sums[j].p) / part});
+    }
   }
   return worst;
 }
@@ -297,10 +318,16 @@ struct SegmentRule {
 
 SegmentRule smooth_segment(const SceneModel& scene, double from_um, double to_um, const std::vector<FineNode>& fine,
                            const std::vector<double>& cosines) {
+  if (scene.surface.material.is_constant()) return {samples_at(scene, gauss_wavelengths(from_um, to_um, 1), fine), 0.0};
   SegmentRule rule;
+  // The nodes to compare with are none of the rule's own, whatever their number.
+  const double middle_um = 0.5 * (from_um + to_um);
+  std::vector<FineNode> finer = fine_nodes(scene, from_um, middle_um);
+  for (const FineNode& node : fine_nodes(scene, middle_um, to_um)) finer.push_back(node);
+  const std::vector<ProbeSums> exact = exact_sums(scene.surface.material, finer, cosines);
   for (int count = 1; count <= kMostNodes; ++count) {
     rule.samples = samples_at(scene, gauss_wavelengths(from_um, to_um, count), fine);
-    rule.error = scene.surface.material.is_constant() ? 0.0 : nodes_error(scene, rule.samples, fine, cosines);
+    rule.error = nodes_error(rule.samples, exact, cosines, kSmallestPart);
     if (rule.error <= kNodesRelativeError) break;
   }
   return rule;
@@ -321,21 +348,30 @@ SegmentRule segment_of_panels(const SceneModel& scene, double from_um, double to
       rule.samples.push_back(sample);
     all.insert(all.end(), fine.begin(), fine.end());
   }
-  rule.error = nodes_error(scene, rule.samples, all, cosines);
+  rule.error = nodes_error(rule.samples, exact_sums(scene.surface.material, all, cosines), cosines, 1.0);
   return rule;
 }
 
-/// Adds one segment of the material to a rule.
-void append_segment(const SceneModel& scene, double from_um, double to_um, SpectralRule& rule) {
+/// Adds one segment of the material to a rule, or its panels to `panels`.
+void append_segment(const SceneModel& scene, double from_um, double to_um, SpectralRule& rule,
+                    std::vector<SpectralSample>& panels) {
   const std::vector<FineNode> fine = fine_nodes(scene, from_um, to_um);
   for (const FineNode& node : fine) rule.path_exitance += node.path;
   const std::vector<double> cosines = probe_cosines(scene.surface.material, from_um, to_um);
   SegmentRule segment = smooth_segment(scene, from_um, to_um, fine, cosines);
-  const double wanted = std::max(kShareOfTolerance * scene.accuracy.tolerance / kProbeSafety, kNodesRelativeError);
-  for (int panels = 4; panels <= kMostPanels && segment.error > wanted; panels *= 2)
-    segment = segment_of_panels(scene, from_um, to_um, panels, cosines);
-  if (segment.error > 0.0) rule.relative_error = std::max(rule.relative_error, kProbeSafety * segment.error);
-  for (const SpectralSample& sample : segment.samples) append_merged(rule.samples, sample);
+  const double tolerance = scene.accuracy.tolerance;
+  if (segment.error <= std::max(kShareOfTolerance * tolerance, kNodesRelativeError)) {
+    if (segment.error > 0.0) rule.relative_error = std::max(rule.relative_error, kProbeSafety * segment.error);
+    for (const SpectralSample& sample : segment.samples) append_merged(rule.samples, sample);
+    return;
+  }
+  const double share = (to_um - from_um) / (scene.spectrum.max_um - scene.spectrum.min_um);
+  const double most = share * (is_mirror({.sigma = scene.surface.sigma}) ? kMostMirrorPanels : kMostPanels);
+  for (int count = kLeastPanels;; count *= 2) {
+    segment = segment_of_panels(scene, from_um, to_um, count, cosines);
+    if (segment.error <= kPanelShareOfTolerance * tolerance || 2 * count > most) break;
+  }
+  panels.insert(panels.end(), segment.samples.begin(), segment.samples.end());
 }
 
 SpectralRule single_wavelength_rule(const SceneModel& scene, double wavelength_um) {
@@ -344,7 +380,7 @@ SpectralRule single_wavelength_rule(const SceneModel& scene, double wavelength_u
   sample.wavelength_um = wavelength_um;
   sample.index = scene.surface.material.at(wavelength_um);
   add(sample, node, 1.0);
-  return {{sample}, node.path, 0.0};
+  return {.samples = {sample}, .path_exitance = node.path};
 }
 
 }  // namespace
@@ -362,8 +398,31 @@ SpectralRule spectral_rule(const SceneModel& scene) {
   const Material& material = scene.surface.material;
   const std::vector<double> ends = segment_ends(scene.spectrum.min_um, scene.spectrum.max_um,
                                                 {&material.n.wavelength_um, &material.k.wavelength_um});
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) append_segment(scene, ends[i], ends[i + 1], rule);
+  std::vector<SpectralSample> panels;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) append_segment(scene, ends[i], ends[i + 1], rule, panels);
+  rule.panels = panels.size() / kPanelNodes;
+  rule.samples.insert(rule.samples.end(), panels.begin(), panels.end());
   return rule;
+}
+
+double panel_error(const SpectralRule& rule, const std::function<double(std::size_t, std::size_t)>& term) {
+  double error = 0.0;
+  for (std::size_t panel = rule.samples.size() - rule.panels * kPanelNodes; panel < rule.samples.size();
+       panel += kPanelNodes) {
+    for (std::size_t j = 1; j < kPanelNodes; j += 2) {
+      double left = term(panel + j, panel + j);
+      for (std::size_t m = 0; m < kPanelNodes; m += 2) {
+        double weight = 1.0;
+        for (std::size_t l = 0; l < kPanelNodes; l += 2) {
+          const auto at = [&](std::size_t i) { return rule.samples[panel + i].wavelength_um; };
+          if (l != m) weight *= (at(j) - at(l)) / (at(m) - at(l));
+        }
+        left -= weight * term(panel + j, panel + m);
+      }
+      error += std::abs(left);
+    }
+  }
+  return error;
 }
 
 SpectralRule kept_rule(SpectralRule rule, const KeptEffects& kept) {

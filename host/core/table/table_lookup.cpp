@@ -26,6 +26,9 @@ constexpr std::size_t kLevels = 3;       // changes that are compared
 constexpr double kInside = 10.0;
 constexpr double kAtEnds = 20.0;
 constexpr double kSlowestFall = 0.9;  // of the changes
+// What falls faster is small by chance. Of 39,705 bistatic lookups without this, with half, this and double 129, -, 1
+// and 1 erred by more than stated; the median of what is stated: 4.49, -, 4.59, 5.00e-4.
+constexpr double kFastestFall = 0.1;
 
 using enum Quantity;
 
@@ -295,6 +298,8 @@ struct TableLookup::Lines {
     }
     if (largest[0] < 0.0) return kInfinity;
     if (largest[0] == 0.0) return 0.0;
+    // All lines of a coarse axis may pass through 0 together.
+    largest[0] = std::max(largest[0], kFastestFall * largest[1]);
     // Compares two steps together, because one of them may be small by chance.
     const double fall = largest[2] > 0.0 ? std::sqrt(largest[0] / largest[2]) : largest[0] / largest[1];
     return factor * largest[0] / (1.0 - std::min(fall, kSlowestFall));

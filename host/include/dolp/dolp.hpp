@@ -195,6 +195,7 @@ struct Fit {
   double chi_square = 0.0;
   std::size_t degrees_of_freedom = 0;
   std::optional<double> p_value = {};          ///< with uncertainties and the loss "squares"
+  std::string fit_quality = {};                ///< "good", "doubtful" (p < 0.05), "bad" (p < 0.001); empty without p
   std::vector<FitMinimum> minima = {};         ///< all that were found, the best first
   std::vector<std::string> degeneracies = {};  ///< combinations that the data do not determine, in words
 };

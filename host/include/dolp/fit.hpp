@@ -87,12 +87,10 @@ DOLP_EXPORT const std::vector<std::string>& loss_names();
 /// A systematic error of the model that a fit allows for.
 enum class ModelError {
   kNone,
-  kBracket,  ///< one more number is fitted, `kModelErrorKey`: where the truth lies between the model, at 0, and the
-             ///< other end of its bracket (emission.bracket), at 1. Measured as 0 with a standard deviation of 1, it
-             ///< makes the bracket an uncertainty that all points share
+  kBracket,  ///< the truth may lie anywhere between both ends of the model's bracket (emission.bracket), at each point
+             ///< elsewhere: a residual counts from the nearer end, and an interval holds the values at which chi^2
+             ///< itself is below its quantile for as many degrees of freedom as there are points
 };
-
-inline constexpr const char* kModelErrorKey = "model_error";
 
 /// "none", "bracket", in the order of ModelError.
 DOLP_EXPORT const std::vector<std::string>& model_error_names();
@@ -119,6 +117,7 @@ struct FitInterval {
   std::optional<double> low, high;
   /// The ranges of which it consists, ascending: several where the data rule out values between minima.
   std::vector<std::pair<std::optional<double>, std::optional<double>>> pieces = {};
+  bool is_empty = false;  ///< the data rule out all values, the model's bracket included
 };
 
 /// A fitted number.
@@ -127,6 +126,8 @@ struct FitParameter {
   double value = 0.0;
   std::optional<double> standard_error;  ///< from the covariance, with parameters at their bounds held there
   FitInterval interval_68, interval_95;  ///< 68.27 % and 95 %; both ends none without a scale of the residuals
+  /// Where the fit is doubtful or bad: the intervals if all uncertainties are sqrt(reduced chi^2) times as large.
+  std::optional<FitInterval> scaled_68 = {}, scaled_95 = {};
   bool is_at_bound = false;
   std::string why_no_error = {};  ///< why standard_error is none, in words
 };

@@ -37,7 +37,7 @@ using Json = ReportBuilder::Json;
 void check_loss(Loss loss, ModelError error, const std::vector<MeasuredData>& data) {
   if (loss != Loss::kSquares && error != ModelError::kNone) {
     throw InputError(
-        fmt::format("loss {}: cannot be combined with a model error, whose own deviation it would discount",
+        fmt::format("loss {}: cannot be combined with a model error, whose intervals are those of the loss squares",
                     loss_names()[static_cast<std::size_t>(loss)]));
   }
   for (const MeasuredData& one : data) {
@@ -191,11 +191,11 @@ Json brackets(const Scene& fitted, const std::vector<MeasuredData>& sets, ModelE
 /// The fitted model at the measurements of a data set. Errors: InputError where the set does not fit the ranges.
 std::vector<double> model_values(const Best& best, const MeasuredData& data, const FitOptions& options,
                                  ModelEvaluator& evaluator) {
-  const fit::Model model(best.scene, {data}, options.vary, options.model_error);
+  const fit::Model model(best.scene, {data}, options.vary);
   const fit::Residuals residuals(model, best.result->tolerance, fit::Differences::kForward, evaluator, {});
   const Eigen::VectorXd values =
       residuals.observed(model.predict({best.values()}, best.result->tolerance, evaluator, {}).front().components);
-  return {values.begin(), values.begin() + static_cast<std::ptrdiff_t>(data.measurements.size())};
+  return {values.begin(), values.end()};
 }
 
 /// The model over zenith, one curve for each data set, quantity and wavelength.
@@ -229,7 +229,7 @@ Json curves(const Best& best, const FitOptions& options, ModelEvaluator& evaluat
 }
 
 /// How far the model itself may be off: the largest distance of the fit from an end of its bracket.
-void add_model_gap(ReportBuilder& report, const Scene& fitted, const std::vector<MeasuredData>& sets, ModelError error,
+void add_model_gap(ReportBuilder& report, const Scene& fitted, const std::vector<MeasuredData>& sets,
                    ModelEvaluator& evaluator) {
   std::optional<double> gap, share;
   for (const MeasuredData& data : sets) {
@@ -245,9 +245,8 @@ void add_model_gap(ReportBuilder& report, const Scene& fitted, const std::vector
     }
   }
   report.row_if(gap.has_value(), "bracket",
-                "of all bounces: its far end lies up to {:.2g} points of DOLP or Q/I{} from the fit{}",
-                kPoints * gap.value_or(0.0), share ? fmt::format(", {:.2g} uncertainties,", *share) : "",
-                error == ModelError::kNone ? "" : "; the intervals contain that");
+                "of all bounces: its far end lies up to {:.2g} points of DOLP or Q/I{} from the fit",
+                kPoints * gap.value_or(0.0), share ? fmt::format(", {:.2g} uncertainties,", *share) : "");
   report.value("model_gap", gap);
   report.value("model_gap_in_uncertainties", share);
 }
@@ -257,6 +256,7 @@ void add_numbers(Fit& found, const fit::FitResult& result) {
   found.chi_square = result.chi_square;
   found.degrees_of_freedom = result.degrees_of_freedom;
   found.p_value = result.p_value;
+  found.fit_quality = fit::fit_quality(result.p_value);
   std::vector<double> best;
   for (const FitParameter& one : result.parameters) best.push_back(one.value);
   found.minima.push_back({std::move(best), result.chi_square});
@@ -287,8 +287,9 @@ Best best_of(std::vector<ComparedModel>& models, const SceneValues& scene, const
       continue;
     }
     if (evaluator == nullptr) evaluator = begin(model->scene());
-    one.result = fit::fit(*model, *evaluator, options);
-    if (one.result && (!best.result || one.result->aic < best.result->aic)) {
+    const double least_aic = best.result ? best.result->aic : std::numeric_limits<double>::infinity();
+    one.result = fit::fit(*model, *evaluator, options, least_aic);
+    if (one.result && one.result->aic < least_aic) {
       best = {std::move(model), one.result, settings, own};
     }
   }
@@ -322,7 +323,7 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     ReportBuilder report;
     report.line("{}", key("title", scene.impl().scene.title));
     if (best.result) {
-      report.row("data", "{} measured values of {} file{}", key("observations", best.model->measurement_count()),
+      report.row("data", "{} measured values of {} file{}", key("observations", best.model->observation_count()),
                  data.size(), data.size() == 1 ? "" : "s");
       if (models.size() > 1) add_comparison(report, models);
       add_fit(report, *best.model, *best.result);
@@ -333,7 +334,7 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     report.row("starts", "{} descents, seed {}", key("starts", options.starts), key("seed", options.seed));
     report.value("loss", loss_names()[static_cast<std::size_t>(options.loss)]);
     const Scene fitted = best.result ? scene.with(best.settings()) : scene;
-    if (best.result) add_model_gap(report, fitted, data, options.model_error, *evaluator);
+    if (best.result) add_model_gap(report, fitted, data, *evaluator);
     if (best.result && !options.output.empty()) write_fitted(options.output, fitted);
     if (best.result && !options.plot.empty()) {
       add_contours(report, *best.model, *best.result, fit::contours_of(*best.model, *evaluator, *best.result, options));

@@ -21,8 +21,9 @@ inline constexpr double kCoarseToleranceWithoutUncertainties = 1e-4;  // no diff
 inline constexpr double kGuessedShare = 1e-2;  // no difference
 /// A fit that found a lower minimum on a profile begins again, so often at most.
 inline constexpr int kMostRestarts = 4;  // no difference
-/// Standard deviations of the model error; a fit beyond them has another model (model.cpp).
-inline constexpr double kMostModelError = 5.0;  // no difference
+/// P-values of the words for a fit: the usual levels.
+inline constexpr double kDoubtfulBelow = 0.05;
+inline constexpr double kBadBelow = 0.001;
 
 // ---- Words of a fit (fit.cpp): they change reports alone ------------------------------------------------------------
 

@@ -155,13 +155,14 @@ void set_error(FitParameter& fitted, const FitRange& range, double deviation, bo
 
 FitInterval interval_of(const FitRange& parameter, const std::vector<Stretch>& stretches) {
   FitInterval interval;
+  interval.is_empty = stretches.empty();
   for (const Stretch& one : stretches) {
     std::optional<double> low, high;
     if (one.low > kAtRange) low = parameter.at(one.low);
     if (one.high < 1.0 - kAtRange) high = parameter.at(one.high);
     interval.pieces.emplace_back(low, high);
   }
-  if (stretches.empty()) return interval;
+  if (interval.is_empty) return interval;
   interval.low = interval.pieces.front().first;
   interval.high = interval.pieces.back().second;
   return interval;
@@ -178,16 +179,18 @@ class Fit {
         fine_(model, fine_tolerance(model), Differences::kCentral, evaluator, poll_),
         profile_(model, fine_tolerance(model), Differences::kForward, evaluator, poll_) {}
 
-  std::optional<FitResult> run() {
+  std::optional<FitResult> run(double most_aic) {
     SearchOptions search{options_.starts, options_.seed, options_.loss, model_.has_uncertainties(), guess_scale()};
     search.count = [this](std::size_t done, std::size_t total) { count(done, total); };
     if (options_.phase) options_.phase("descents of the search");
     minima_ = find_minima(coarse_, fine_, search);
     if (minima_.empty()) return std::nullopt;
-    for (int i = 0; find_intervals(i < kMostRestarts); ++i) {
+    for (int i = 0;; ++i) {
+      const bool may_restart = i < kMostRestarts;
+      if (find_intervals(may_restart)) continue;
+      describe();
+      if (result_.aic > most_aic || !find_scaled(may_restart)) return std::move(result_);
     }
-    describe();
-    return std::move(result_);
   }
 
  private:
@@ -196,7 +199,10 @@ class Fit {
     total_ = total;
   }
 
-  std::size_t freedom() const { return model_.observation_count() - model_.parameters().size(); }
+  /// With a model error the parameters only choose the bracket: each point is a condition of its own.
+  std::size_t freedom() const {
+    return model_.observation_count() - (model_.has_model_error() ? 0 : model_.parameters().size());
+  }
 
   /// True where the growth of the objective has a scale to be measured with.
   bool has_scale() const { return model_.has_uncertainties() || freedom() > 0; }
@@ -220,8 +226,8 @@ class Fit {
 
   std::array<double, 2> rises() const {
     if (model_.has_uncertainties()) {
-      const boost::math::chi_squared one(1.0);
-      return {boost::math::quantile(one, kLevel68), boost::math::quantile(one, kLevel95)};
+      const boost::math::chi_squared squares(model_.has_model_error() ? static_cast<double>(freedom()) : 1.0);
+      return {boost::math::quantile(squares, kLevel68), boost::math::quantile(squares, kLevel95)};
     }
     const boost::math::students_t t(static_cast<double>(freedom()));
     const double at_68 = boost::math::quantile(t, 0.5 * (1.0 + kLevel68));
@@ -229,13 +235,17 @@ class Fit {
     return {at_68 * at_68, at_95 * at_95};
   }
 
-  /// The intervals: around the best minimum, and around others that the data do not exclude. True where a profile led
-  /// to a lower minimum, which then is the best.
-  bool find_intervals(bool may_restart) {
+  /// Inside a bracket no derivative tells parameters apart: it has no covariance.
+  Covariance find_covariance(const Minimum& best) const {
+    if (!model_.has_model_error()) return covariance_of(best, options_.loss, result_.scale);
+    const Eigen::Index count = best.where.at.size();
+    return {Eigen::MatrixXd::Constant(count, count, kNaN), {}, static_cast<std::size_t>(count)};
+  }
+
+  void find_values(const Minimum& best) {
     result_ = {};
-    result_.scale = find_scale(minima_.front());
-    const Minimum best = minima_.front();
-    covariance_ = covariance_of(best, options_.loss, result_.scale);
+    result_.scale = find_scale(best);
+    covariance_ = find_covariance(best);
     for (std::size_t j = 0; j < model_.parameters().size(); ++j) {
       const FitRange& parameter = model_.parameters()[j];
       const auto index = static_cast<Eigen::Index>(j);
@@ -244,24 +254,55 @@ class Fit {
       fitted.value = parameter.at(best.where.at[index]);
       fitted.is_at_bound = is_at_bound(best.where.at[index]);
       set_error(fitted, parameter, std::sqrt(covariance_.of_coordinates(index, index)), has_scale());
+      if (model_.has_model_error())
+        fitted.why_no_error = "with a model error the value is one of many that fit as well";
     }
     result_.seen = {best};
+  }
+
+  /// The values and the intervals of all parameters. True where a profile led to a lower minimum, which then is the
+  /// best.
+  bool find_intervals(bool may_restart) {
+    find_values(minima_.front());
     if (!has_scale()) return false;
     if (options_.phase) options_.phase("sides of the intervals");
-    ProfileOptions options{rises(), result_.scale, options_.loss, {}};
+    const std::optional<Profiles> profiles = find_profiles(result_.scale, may_restart);
+    if (!profiles) return true;
+    for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
+      result_.parameters[j].interval_68 = interval_of(model_.parameters()[j], profiles->stretches[j][0]);
+      result_.parameters[j].interval_95 = interval_of(model_.parameters()[j], profiles->stretches[j][1]);
+    }
+    std::ranges::copy(profiles->seen, std::back_inserter(result_.seen));
+    return false;
+  }
+
+  /// The scaled intervals of a doubtful or bad fit. True as find_intervals.
+  bool find_scaled(bool may_restart) {
+    if (result_.p_value.value_or(1.0) >= kDoubtfulBelow) return false;
+    const std::optional<Profiles> profiles = find_profiles(result_.reduced_chi_square.value(), may_restart);
+    if (!profiles) return true;
+    for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
+      result_.parameters[j].scaled_68 = interval_of(model_.parameters()[j], profiles->stretches[j][0]);
+      result_.parameters[j].scaled_95 = interval_of(model_.parameters()[j], profiles->stretches[j][1]);
+    }
+    return false;
+  }
+
+  /// The profiles around the best minimum, and around others that the data do not exclude; none where one of them led
+  /// to a lower minimum, which then is the best.
+  std::optional<Profiles> find_profiles(double scale, bool may_restart) {
+    const double from = model_.has_model_error() ? 0.0 : minima_.front().objective;
+    ProfileOptions options{rises(), from, scale, options_.loss, {}};
     options.count = [this](std::size_t done, std::size_t total) { count(done, total); };
     std::vector<Minimum> near;
     for (const Minimum& one : minima_) {
-      if (one.objective < best.objective + rises()[1] * result_.scale) near.push_back(one);
+      if (one.objective < from + options.rises[1] * scale) near.push_back(one);
     }
+    if (near.empty())
+      return Profiles{.stretches = std::vector<std::array<std::vector<Stretch>, 2>>(result_.parameters.size())};
     Profiles profiles = profiles_of(profile_, near, options);
-    if (may_restart && profiles.lower && take(*profiles.lower)) return true;
-    for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
-      result_.parameters[j].interval_68 = interval_of(model_.parameters()[j], profiles.stretches[j][0]);
-      result_.parameters[j].interval_95 = interval_of(model_.parameters()[j], profiles.stretches[j][1]);
-    }
-    std::ranges::move(profiles.seen, std::back_inserter(result_.seen));
-    return false;
+    if (may_restart && profiles.lower && take(*profiles.lower)) return std::nullopt;
+    return profiles;
   }
 
   /// Descends from a point; true where that gives the new best minimum.
@@ -285,7 +326,7 @@ class Fit {
     result_.correlation = correlation_of(covariance_.of_coordinates);
     result_.chi_square = best.objective;
     result_.degrees_of_freedom = freedom();
-    const double freedoms = static_cast<double>(freedom());
+    const auto freedoms = static_cast<double>(freedom());
     if (freedom() > 0) {
       result_.reduced_chi_square = best.objective / freedoms;
       if (model_.has_uncertainties() && options_.loss == Loss::kSquares) {
@@ -345,8 +386,13 @@ class Fit {
 
 }  // namespace
 
-std::optional<FitResult> fit(const Model& model, ModelEvaluator& evaluator, const FitOptions& options) {
-  return Fit(model, evaluator, options).run();
+std::string fit_quality(const std::optional<double>& p_value) {
+  return !p_value ? "" : *p_value < kBadBelow ? "bad" : *p_value < kDoubtfulBelow ? "doubtful" : "good";
+}
+
+std::optional<FitResult> fit(const Model& model, ModelEvaluator& evaluator, const FitOptions& options,
+                             double most_aic) {
+  return Fit(model, evaluator, options).run(most_aic);
 }
 
 }  // namespace dolp::fit

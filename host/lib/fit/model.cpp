@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <dolp/errors.hpp>
 #include <map>
 #include <string_view>
 #include <utility>
 
 #include "base/text.hpp"
-#include "fit/constants.hpp"
 #include "fit/fit_range.hpp"
 #include "model/moments.hpp"
 #include "run/scene_run.hpp"
@@ -70,6 +68,14 @@ EmissionModel other_end_of(const SceneValues& scene) {
   return scene.emission->model == EmissionModel::kDirect ? EmissionModel::kMoments : EmissionModel::kDirect;
 }
 
+/// The value nearest to a measured one between both ends of a bracket. Equation: DOLP is |Q/I|, least where Q/I is 0.
+double nearest_between(const Eigen::RowVector2d& one, const Eigen::RowVector2d& other, const Measurement& measured) {
+  if (std::isnan(one[0] + other[0])) return one[0] + other[0];
+  const auto [low, high] = std::minmax(one[0], other[0]);
+  if (measured.observable != Observable::kDolp) return std::clamp(measured.value, low, high);
+  return std::clamp(measured.value, std::max({low, -high, 0.0}), std::max(-low, high));
+}
+
 double error_of(Observable observable, const PointResult& point) {
   const bool is_dolp = observable == Observable::kDolp || observable == Observable::kQOverI;
   return is_dolp ? point[Quantity::kErrorEstimate] : 2.0 * point[Quantity::kRhoErrorEstimate] * point[Quantity::kRhoI];
@@ -79,7 +85,7 @@ double error_of(Observable observable, const PointResult& point) {
 
 Model::Model(const SceneValues& scene, std::vector<MeasuredData> data, std::vector<FitRange> parameters,
              ModelError error)
-    : data_(std::move(data)), parameters_(std::move(parameters)), varied_(parameters_.size()), error_(error) {
+    : data_(std::move(data)), parameters_(std::move(parameters)), error_(error) {
   for (const MeasuredData& one : data_) count_ += one.measurements.size();
   check();
   for (const Eigen::VectorXd& ends :
@@ -91,7 +97,6 @@ Model::Model(const SceneValues& scene, std::vector<MeasuredData> data, std::vect
     add_groups(scene, one, first_row);
     first_row += static_cast<Eigen::Index>(one.measurements.size());
   }
-  if (has_model_error()) parameters_.push_back({kModelErrorKey, -kMostModelError, kMostModelError, 0.0});
 }
 
 void Model::check() const {
@@ -128,7 +133,7 @@ void Model::check() const {
 
 std::vector<Setting> Model::settings(const Eigen::VectorXd& values) const {
   std::vector<Setting> settings;
-  for (std::size_t j = 0; j < varied_; ++j) {
+  for (std::size_t j = 0; j < parameters_.size(); ++j) {
     const FitRange& range = parameters_[j];
     const double value = values[static_cast<Eigen::Index>(j)];
     settings.push_back({range.key, value, fmt::format("{} = {}, which varies", range.key, format_number(value))});
@@ -183,7 +188,7 @@ void Model::add_groups(const SceneValues& scene, const MeasuredData& data, Eigen
 
 SceneValues Model::with(const SceneValues& scene, const Eigen::VectorXd& values) const {
   SceneValues own = scene;
-  for (std::size_t j = 0; j < varied_; ++j) {
+  for (std::size_t j = 0; j < parameters_.size(); ++j) {
     KeyValue value;
     value.number = values[static_cast<Eigen::Index>(j)];
     find_scene_key(parameters_[j].key)->set(own, value);
@@ -196,10 +201,6 @@ std::vector<Prediction> Model::predict(const std::vector<Eigen::VectorXd>& value
   const auto rows = static_cast<Eigen::Index>(observation_count());
   std::vector<Prediction> predictions(values.size(), {Eigen::MatrixX2d::Zero(rows, 2), Eigen::VectorXd::Zero(rows)});
   for (const Group& group : groups_) predict_group(group, values, tolerance, evaluator, progress, predictions);
-  for (std::size_t set = 0; has_model_error() && set < values.size(); ++set) {
-    predictions[set].components.row(rows - 1) << values[set][values[set].size() - 1], 0.0;
-    predictions[set].error[rows - 1] = 0.0;
-  }
   return predictions;
 }
 
@@ -210,7 +211,7 @@ void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>
   std::map<std::vector<double>, std::vector<std::size_t>> calls;
   for (std::size_t set = 0; set < values.size(); ++set) {
     std::vector<double> common;
-    for (std::size_t j = 0; j < varied_; ++j) {
+    for (std::size_t j = 0; j < parameters_.size(); ++j) {
       if (!is_point_key(parameters_[j].key)) common.push_back(values[set][static_cast<Eigen::Index>(j)]);
     }
     calls[common].push_back(set);
@@ -229,27 +230,26 @@ void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>
       }
     }
     scene.accuracy.tolerance = tolerance;
-    const auto add = [&](const std::vector<PointResult>& results, const auto& share_of) {
-      for (std::size_t i = 0; i < results.size(); ++i) {
-        const std::size_t member = i % group.measurements.size();
-        const std::size_t set = sets[i / group.measurements.size()];
-        const double share = share_of(set);
-        const Observable observable = group.measurements[member]->observable;
-        Prediction& prediction = predictions[set];
-        prediction.components.row(group.rows[member]) += share * components_of(observable, results[i]);
-        prediction.error[group.rows[member]] += std::abs(share) * error_of(observable, results[i]);
-        prediction.status |= results[i].status;
-      }
-    };
-    const auto model_error = [&](std::size_t set) { return values[set][values[set].size() - 1]; };
     const std::vector<PointResult> results = evaluate_scene(scene, entries, evaluator, progress);
-    if (!group.other_end) {
-      add(results, [](std::size_t) { return 1.0; });
-      continue;
+    std::vector<PointResult> others;
+    if (group.other_end) {
+      scene.emission->model = *group.other_end;
+      others = evaluate_scene(scene, entries, evaluator, progress);
     }
-    add(results, [&](std::size_t set) { return 1.0 - model_error(set); });
-    scene.emission->model = *group.other_end;
-    add(evaluate_scene(scene, entries, evaluator, progress), model_error);
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      const std::size_t member = i % group.measurements.size();
+      const Measurement& measured = *group.measurements[member];
+      Prediction& prediction = predictions[sets[i / group.measurements.size()]];
+      auto components = prediction.components.row(group.rows[member]);
+      double& error = prediction.error[group.rows[member]];
+      components = components_of(measured.observable, results[i]);
+      error = error_of(measured.observable, results[i]);
+      prediction.status |= results[i].status;
+      if (!group.other_end) continue;
+      components << nearest_between(components, components_of(measured.observable, others[i]), measured), 0.0;
+      error = std::max(error, error_of(measured.observable, others[i]));
+      prediction.status |= others[i].status;
+    }
   }
 }
 

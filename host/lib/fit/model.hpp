@@ -16,7 +16,8 @@ namespace dolp::fit {
 
 /// The model's predictions of all observations, in their order.
 struct Prediction {
-  /// The observable in the first column; of DOLP the signed Q/I and U/I, whose length it is.
+  /// The observable in the first column; of DOLP the signed Q/I and U/I, whose length it is. With the model error of
+  /// the bracket the value between both ends that is nearest to the measured one, and 0.
   Eigen::MatrixX2d components;
   Eigen::VectorXd error;     ///< bound of the numerical error of the observable
   std::uint32_t status = 0;  ///< bits of any point
@@ -38,10 +39,7 @@ class Model {
   const std::vector<FitRange>& parameters() const { return parameters_; }
   /// The scene of the first data set at the start of the parameters.
   const SceneValues& scene() const { return groups_.front().scene; }
-  /// The measurements, and the 0 +- 1 that stands for the model error's own number.
-  std::size_t observation_count() const { return measurement_count() + (has_model_error() ? 1 : 0); }
-  std::size_t measurement_count() const { return count_; }
-  /// True if the last parameter is the model error.
+  std::size_t observation_count() const { return count_; }
   bool has_model_error() const { return error_ != ModelError::kNone; }
   bool has_uncertainties() const { return data_.front().has_uncertainties; }
 
@@ -73,7 +71,6 @@ class Model {
 
   std::vector<MeasuredData> data_;
   std::vector<FitRange> parameters_;
-  std::size_t varied_;  ///< parameters that are keys of the scene
   ModelError error_;
   std::vector<Group> groups_;
   std::size_t count_ = 0;

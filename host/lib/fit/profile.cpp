@@ -13,7 +13,7 @@ namespace {
 /// A point of the profile.
 struct Point {
   double distance = 0.0;  ///< from the start, in coordinates of the parameter
-  double root = 0.0;      ///< of how much the objective has grown
+  double root = 0.0;      ///< of how far the objective lies above where rises count from
   Minimum found;
 };
 
@@ -83,7 +83,7 @@ class Side {
 
   double at(const Point& point) const { return point.found.where.at[static_cast<Eigen::Index>(parameter_)]; }
   double root_of(const Minimum& found) const {
-    const double growth = (found.objective - least_) / options_->scale;
+    const double growth = (found.objective - options_->from) / options_->scale;
     return std::isfinite(growth) ? std::sqrt(std::max(0.0, growth)) : 1e6;
   }
   double wanted() const { return std::sqrt(options_->rises[rise_]); }
@@ -189,7 +189,7 @@ class Profiler {
     descent_.loss = options.loss;
     descent_.scale = options.scale;
     descent_.least_gain = kProfileGain;
-    descent_.secant_below = least_ + kTrustedShare * options.rises[0] * options.scale;
+    descent_.secant_below = options.from + kTrustedShare * options.rises[0] * options.scale;
     result_.stretches.resize(residuals.model().parameters().size());
     for (const Minimum& minimum : minima) {
       for (std::size_t j = 0; j < result_.stretches.size(); ++j) {
@@ -254,6 +254,7 @@ class Profiler {
     std::vector<std::size_t> look_of;
     for (std::size_t j = 0; j < result_.stretches.size(); ++j) {
       for (std::size_t rise = 0; rise < options_.rises.size(); ++rise) {
+        if (result_.stretches[j][rise].empty()) continue;  // the minimum lies above
         for (const int direction : {-1, 1}) {
           const End end{j, rise, direction};
           const double at = end_of(end);
@@ -274,7 +275,8 @@ class Profiler {
         if (look_of[i] == k && (best == nullptr || found[i].objective < best->objective)) best = &found[i];
       }
       const auto& [end, at] = ends[k];
-      if (best == nullptr || !(best->objective < least_ + kClearlyLower * options_.rises[end.rise] * options_.scale))
+      if (best == nullptr ||
+          !(best->objective < options_.from + kClearlyLower * options_.rises[end.rise] * options_.scale))
         continue;
       const double start = best->where.at[static_cast<Eigen::Index>(end.parameter)];
       const auto most = [&](int direction) {

@@ -18,20 +18,22 @@ struct Stretch {
 };
 
 struct ProfileOptions {
-  std::array<double, 2> rises{};  ///< of the objective above the least, ascending
+  std::array<double, 2> rises{};  ///< of the objective, ascending
+  double from = 0.0;              ///< the objective that rises count from: the least, or 0
   double scale = 1.0;             ///< as SearchOptions::scale
   Loss loss = Loss::kSquares;
   std::function<void(std::size_t done, std::size_t total)> count;  ///< sides
 };
 
 struct Profiles {
-  /// Of each parameter and rise: where the objective, least over all others, has grown by less. Apart, ascending.
+  /// Of each parameter and rise: where the objective, least over all others, lies below. Apart, ascending.
   std::vector<std::array<std::vector<Stretch>, 2>> stretches;
-  std::vector<Minimum> seen;     ///< points on the way
-  std::optional<Minimum> lower;  ///< a point below the best minimum: there is another one, and the rest is not complete
+  std::vector<Minimum> seen = {};  ///< points on the way
+  std::optional<Minimum> lower =
+      {};  ///< a point below the best minimum: there is another one, and the rest is not complete
 };
 
-/// The profiles of all parameters around minima, the best first, that lie less than the second rise above it.
+/// The profiles of all parameters around minima, the best first, that lie below the second rise.
 ///
 /// Each side follows the valley from a minimum: at each coordinate of the parameter the others descend from where
 /// derivatives of the nearest point lead, until the root of the growth is met to 0.5 %. A bent valley has several

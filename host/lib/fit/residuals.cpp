@@ -36,10 +36,6 @@ Residuals::Residuals(const Model& model, double tolerance, Differences differenc
       is_length_.push_back(observation.observable == Observable::kDolp);
     }
   }
-  if (!model.has_model_error()) return;
-  measured_[row] = 0.0;
-  weights_[row] = 1.0;
-  is_length_.push_back(false);
 }
 
 Eigen::VectorXd Residuals::values(const Eigen::VectorXd& point) const {
@@ -134,10 +130,9 @@ void Residuals::differentiate(Linearisation& point, const std::vector<std::vecto
 // size F that varies over a length L. Their sum is least where the function changes by (3 e F^2)^(1/3). A change of a
 // fifth of an uncertainty is enough where the values' error is far below it.
 double Residuals::next_step(double step, const Linearisation& point, const Prediction& beside) const {
-  const auto measured = static_cast<Eigen::Index>(model_.measurement_count());
-  const double change = (beside.components - point.components).topRows(measured).cwiseAbs().maxCoeff();
+  const double change = (beside.components - point.components).cwiseAbs().maxCoeff();
   if (!std::isfinite(change) || change <= 0.0) return step;
-  const double largest = point.components.topRows(measured).cwiseAbs().maxCoeff();
+  const double largest = point.components.cwiseAbs().maxCoeff();
   const double error = std::clamp(beside.error.maxCoeff(), kLeastErrorShare * tolerance_, tolerance_);
   const double balanced = std::cbrt(3.0 * error * largest * largest);
   const double seen = std::max(kSeenShare / weights_.maxCoeff(), kErrorsOfAChange * error);

@@ -17,20 +17,27 @@ using fit::FitResult;
 using Json = ReportBuilder::Json;
 
 constexpr double kStrongCorrelation = 0.9;
-constexpr double kUnlikely = 0.001;  // p-value, on either side
+constexpr double kTooGood = 0.999;  // p-value
+// Of Akaike's criterion above the least: models below the first cannot be told apart, those below the second may be
+// true.
+constexpr double kAlike = 1.3;
+constexpr double kPossible = 4.0;
 
 Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
 Json json_of(const Eigen::VectorXd& values) { return std::vector<double>(values.begin(), values.end()); }
 
-Json json_of(const FitInterval& interval) { return Json::array({json_of(interval.low), json_of(interval.high)}); }
+Json json_of(const FitInterval& interval) {
+  return interval.is_empty ? Json(nullptr) : Json::array({json_of(interval.low), json_of(interval.high)});
+}
 
 std::string text_of(const std::optional<double>& value, const char* none) {
   return value ? fmt::format("{:.6g}", *value) : none;
 }
 
 std::string text_of(const FitInterval& interval) {
-  return fmt::format("{} .. {}", text_of(interval.low, "open"), text_of(interval.high, "open"));
+  return interval.is_empty ? "none"
+                           : fmt::format("{} .. {}", text_of(interval.low, "open"), text_of(interval.high, "open"));
 }
 
 Json parameter_json(const FitParameter& one) {
@@ -76,7 +83,10 @@ void add_missing_errors(ReportBuilder& report, const FitResult& result) {
 /// A line for each parameter, and one for each end of its range that lies before the data exclude a value.
 void add_parameters(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   Json list = Json::array();
-  for (const FitParameter& one : result.parameters) list.push_back(parameter_json(one));
+  for (const FitParameter& one : result.parameters) {
+    Json& json = list.emplace_back(parameter_json(one));
+    if (one.scaled_68) json.update({{"scaled_68", json_of(*one.scaled_68)}, {"scaled_95", json_of(*one.scaled_95)}});
+  }
   report.value("parameters", list);
   std::size_t width = 9;
   for (const FitParameter& one : result.parameters) width = std::max(width, one.key.size());
@@ -87,13 +97,18 @@ void add_parameters(ReportBuilder& report, const fit::Model& model, const FitRes
                 text_of(one.interval_95), one.is_at_bound ? "  at its bound" : "");
   }
   add_missing_errors(report, result);
-  for (const FitParameter& one : result.parameters) add_pieces(report, one);
+  for (const FitParameter& one : result.parameters) {
+    add_pieces(report, one);
+    if (!one.scaled_68) continue;
+    report.row("scaled", "{}: uncertainties {:.3g} times as large give 68 % {}, 95 % {}", one.key,
+               std::sqrt(result.reduced_chi_square.value()), text_of(*one.scaled_68), text_of(*one.scaled_95));
+  }
   const bool has_intervals = model.has_uncertainties() || result.degrees_of_freedom > 0;
   for (std::size_t j = 0; has_intervals && j < result.parameters.size(); ++j) {
     const FitParameter& one = result.parameters[j];
     const FitRange& range = model.parameters()[j];
     const auto is_open = [](const auto& low, const auto& high) { return !low || !high; };
-    if (!is_open(one.interval_95.low, one.interval_95.high)) continue;
+    if (one.interval_95.is_empty || !is_open(one.interval_95.low, one.interval_95.high)) continue;
     const bool is_both = !one.interval_95.low && !one.interval_95.high;
     report.row("open", "{}: the 95 % interval is not bounded {} within {:g}:{:g}", one.key,
                is_both                ? "on either side"
@@ -122,10 +137,12 @@ void add_correlations(ReportBuilder& report, const FitResult& result) {
 
 /// Adds the misfit of the model, and its measure.
 void add_misfit(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
+  const std::string quality = fit::fit_quality(result.p_value);
   report.row("minimum", "chi_square {:.6g}, {} degrees of freedom{}{}", key("chi_square", result.chi_square),
              key("degrees_of_freedom", result.degrees_of_freedom),
              result.reduced_chi_square ? fmt::format(", reduced {:.4g}", *result.reduced_chi_square) : "",
-             result.p_value ? fmt::format(", p-value {:.3g}", *result.p_value) : "");
+             result.p_value ? fmt::format(", p-value {:.3g}: {}", *result.p_value, quality) : "");
+  report.value("fit_quality", quality.empty() ? Json(nullptr) : Json(quality));
   report.value("reduced_chi_square", result.reduced_chi_square);
   report.value("p_value", result.p_value);
   report.value("aic", result.aic);
@@ -134,12 +151,32 @@ void add_misfit(ReportBuilder& report, const fit::Model& model, const FitResult&
   report.row_if(!model.has_uncertainties() && result.degrees_of_freedom > 0, "scale",
                 "the data have no uncertainties: the residuals give one of {:.3g}, for intervals and errors",
                 key("residual_standard_deviation", std::sqrt(result.scale)));
-  const double p = result.p_value.value_or(0.5);
-  report.row_if(p < kUnlikely, "misfit",
+  report.row_if(quality == "doubtful", "misfit",
+                "the residuals exceed the uncertainties: model or uncertainties are probably wrong");
+  report.row_if(quality == "bad", "misfit",
                 "the model does not fit: the residuals exceed the uncertainties, and the intervals mean little");
-  report.row_if(p > 1.0 - kUnlikely, "misfit", "the residuals are far below the uncertainties, which look too large");
+  report.row_if(result.p_value > kTooGood && !model.has_model_error(), "misfit",
+                "the residuals are far below the uncertainties, which look too large");
   report.row_if(!model.has_uncertainties() && result.degrees_of_freedom == 0, "scale",
                 "as many parameters as points: no interval can be given");
+}
+
+/// Names what intervals with a model error leave open, and the model that leaves less.
+void add_model_error(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
+  if (!model.has_model_error()) return;
+  std::vector<std::string> left, hardly;
+  for (std::size_t j = 0; j < result.parameters.size(); ++j) {
+    const FitRange& range = model.parameters()[j];
+    const auto& [low, high, pieces, is_empty] = result.parameters[j].interval_95;
+    const double width = is_empty ? 0.0 : high.value_or(range.high) - low.value_or(range.low);
+    left.push_back(fmt::format("{:.0f} % of the range of {}", kPercent * width / (range.high - range.low), range.key));
+    if (width > 0.5 * (range.high - range.low)) hardly.push_back(range.key);
+  }
+  report.row("bracket",
+             "at 95 % single scattering leaves {}{}; surface.masking \"v-cavity\" with surface.scattering "
+             "\"multiple\" follows all bounces and determines more",
+             fmt::format("{}", fmt::join(left, ", ")),
+             hardly.empty() ? "" : fmt::format(": it hardly determines {}", fmt::join(hardly, " and ")));
 }
 
 void add_minima(ReportBuilder& report, const FitResult& result) {
@@ -159,8 +196,7 @@ void add_minima(ReportBuilder& report, const FitResult& result) {
 }
 
 void add_points(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
-  report.value("residuals",
-               json_of(result.residuals.head(static_cast<Eigen::Index>(model.measurement_count())).eval()));
+  report.value("residuals", json_of(result.residuals));
   Json points = Json::array();
   Eigen::Index row = 0;
   for (const MeasuredData& data : model.data()) {
@@ -203,6 +239,44 @@ std::string why_no_contours(const FitResult& result, const std::optional<fit::Co
                      fmt::join(reasons, "; "));
 }
 
+/// The least interval that contains the interval of each model; an end is none where one of theirs is.
+FitInterval hull(const std::vector<const FitResult*>& results, std::size_t j, FitInterval FitParameter::*interval) {
+  std::optional<FitInterval> hull;
+  for (const FitResult* const result : results) {
+    const FitInterval& one = result->parameters[j].*interval;
+    if (one.is_empty) continue;
+    if (!hull) hull = one;
+    hull->low = hull->low && one.low ? std::optional(std::min(*hull->low, *one.low)) : std::nullopt;
+    hull->high = hull->high && one.high ? std::optional(std::max(*hull->high, *one.high)) : std::nullopt;
+  }
+  return hull.value_or(FitInterval{.is_empty = true});
+}
+
+/// What models have in common that the data cannot tell apart, and the ranges of parameters over all that may be true.
+void add_alike(ReportBuilder& report, const std::vector<ComparedModel>& models, double least_aic) {
+  std::vector<const FitResult*> possible;
+  Json alike = Json::array(), ranges = Json::array();
+  for (const ComparedModel& model : models) {
+    if (!model.result || model.result->aic > least_aic + kPossible) continue;
+    possible.push_back(&*model.result);
+    if (model.result->aic <= least_aic + kAlike) alike.push_back(settings_of(model));
+  }
+  if (alike.size() < 2) alike.clear();
+  report.row_if(!alike.empty(), "alike", "the data cannot tell the first {} models apart: delta AIC is at most {}",
+                alike.size(), kAlike);
+  for (std::size_t j = 0; !possible.empty() && j < possible.front()->parameters.size(); ++j) {
+    const std::string& name = possible.front()->parameters[j].key;
+    const FitInterval at_68 = hull(possible, j, &FitParameter::interval_68);
+    const FitInterval at_95 = hull(possible, j, &FitParameter::interval_95);
+    report.row_if(possible.size() > 1, "range", "{}: over the {} models of delta AIC up to {}, 68 % {}, 95 % {}", name,
+                  possible.size(), kPossible, text_of(at_68), text_of(at_95));
+    ranges.push_back(
+        {{"key", name}, {"models", possible.size()}, {"interval_68", json_of(at_68)}, {"interval_95", json_of(at_95)}});
+  }
+  report.value("alike", alike);
+  report.value("ranges", ranges);
+}
+
 std::string model_text(const ComparedModel& model) { return fmt::format("{}", fmt::join(settings_of(model), " ")); }
 
 }  // namespace
@@ -210,6 +284,7 @@ std::string model_text(const ComparedModel& model) { return fmt::format("{}", fm
 void add_fit(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   add_misfit(report, model, result);
   add_parameters(report, model, result);
+  add_model_error(report, model, result);
   add_correlations(report, result);
   for (const std::string& words : result.degeneracies) report.row("degenerate", "{}", words);
   report.value("degeneracies", result.degeneracies);
@@ -220,7 +295,8 @@ void add_fit(ReportBuilder& report, const fit::Model& model, const FitResult& re
   report.row_if(beyond != 0, "status", "{} at some point of the best fit: the model fails there",
                 key("status", result.status));
   report.row_if((result.status & kToleranceNotMet) != 0, "status", "2 at some point: the tolerance is not met");
-  report.row_if((result.status & kModelInaccurate) != 0, "status", "32 at some point: {}", kModelInaccurateText);
+  report.row_if((result.status & kModelInaccurate) != 0 && !model.has_model_error(), "status", "32 at some point: {}",
+                kModelInaccurateText);
   report.value("evaluations", result.evaluations);
   add_points(report, model, result);
 }
@@ -263,6 +339,7 @@ void add_comparison(ReportBuilder& report, const std::vector<ComparedModel>& mod
       report.line("  {:<{}}  {:>10.5g}  {:>9.2f}  {:>9.2f}", model_text(model), width, result.chi_square,
                   result.aic - least_aic, result.bic - least_bic);
       one.update({{"chi_square", result.chi_square}, {"aic", result.aic}, {"bic", result.bic}});
+      one["delta_aic"] = result.aic - least_aic;
       for (const FitParameter& parameter : result.parameters) {
         one["parameters"].push_back(parameter_json(parameter));
       }
@@ -274,6 +351,7 @@ void add_comparison(ReportBuilder& report, const std::vector<ComparedModel>& mod
     list.push_back(one);
   }
   report.value("models", list);
+  add_alike(report, models, least_aic);
 }
 
 }  // namespace dolp

@@ -16,6 +16,7 @@
 #include "reference/reference_evaluator.hpp"
 #include "run/scene_run.hpp"
 #include "spectrum/spectral_rule.hpp"
+#include "verify/band_reference.hpp"
 
 namespace dolp {
 namespace {
@@ -213,7 +214,10 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
   const SceneEntries grid = SceneEntries::of_grid(table.axes, scene.surface.material.constant);
   for (const std::size_t position : sample.positions) entries.push_back(grid[position]);
   ReferenceEvaluator reference({.relative_tolerance = kReferenceTolerance});
-  const std::vector<PointResult> results = evaluate_scene(scene, grid.chosen(sample.positions), reference, progress);
+  const SceneEntries chosen = grid.chosen(sample.positions);
+  const std::vector<PointResult> results = scene.spectrum.is_band()
+                                               ? integrate_band(scene, chosen, reference, progress)
+                                               : evaluate_scene(scene, chosen, reference, progress);
 
   const std::vector<BoundTerms> terms = bound_terms(scene, table.axes[Axis::kWavelength]);
   TableCheck check;

@@ -58,7 +58,7 @@ struct TableSample {
 };
 
 /// Compares dolp, rho_i, rho_q and the Stokes parameters of the sample, as far as the table has them, with
-/// ReferenceEvaluator through the radiometry of the table's scene.
+/// ReferenceEvaluator through the radiometry of the table's scene, over a band with integrate_band.
 ///
 /// A value is wrong if its error exceeds the stated bound plus the reference's own, if one of the two is no number and
 /// the other is, or if rho or DOLP misses the tolerance where status does not say so. The bounds: rho_error_estimate

@@ -146,8 +146,8 @@ void add_fit(CLI::App& command, Options& options) {
   command
       .add_option(
           "--model-error", options.model_error,
-          "systematic error of the model; bracket: one more number e is fitted, 0 the model itself, 1 the other "
-          "end of its bracket (direct emission), and e counts as measured, 0 +- 1")
+          "systematic error of the model; bracket: at each point the truth may lie anywhere between both ends of "
+          "its bracket of all bounces")
       ->check(CLI::IsMember(model_error_names()))
       ->capture_default_str();
   add_evaluator(command, options);

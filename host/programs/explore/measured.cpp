@@ -115,7 +115,7 @@ std::size_t nearest_minimum(const Fit& fit, const FitJob& job) {
 std::string fit_text(const Fit& fit, std::size_t chosen) {
   std::string text =
       fmt::format("χ² {:.4g}, {} degrees of freedom", fit.minima[chosen].chi_square, fit.degrees_of_freedom);
-  if (fit.p_value && chosen == 0) text += fmt::format(", p {:.2g}", *fit.p_value);
+  if (fit.p_value && chosen == 0) text += fmt::format(", p {:.2g} ({})", *fit.p_value, fit.fit_quality);
   if (fit.minima.size() > 1) text += fmt::format("; of {} minima the nearest to the start", fit.minima.size());
   if (chosen > 0) text += fmt::format(", the lowest has χ² {:.4g}", fit.minima.front().chi_square);
   return text;

@@ -7,7 +7,6 @@
 
 #include "base/atomic_file.hpp"
 #include "base/text.hpp"
-#include "explore/parameters.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -209,23 +208,42 @@ void Session::load_measured(const std::string& path) {
 
 void Session::mark(const std::string& key, bool varies) {
   if (varies) {
-    marked_.insert(key);
+    marked_.try_emplace(key);
   } else {
     marked_.erase(key);
   }
 }
 
-std::optional<FitJob> Session::fit_job() const {
-  if (!residuals_.data()) return std::nullopt;
+std::string Session::set_fit_range(const std::string& key, const std::string& low, const std::string& high) {
+  try {
+    marked_[key] = FitRange::from_text(fmt::format("{}={}:{}", key, low, high));
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+FitRange Session::fit_range(const Parameter& parameter, double value) const {
   // A search along the logarithm of k finds small ones too.
   constexpr double kLeastK = 1e-3;
+  const std::string& key = parameter.key->key;
+  const auto marked = marked_.find(key);
+  if (marked != marked_.end() && marked->second) {
+    FitRange own = *marked->second;
+    own.start = std::clamp(value, own.low, own.high);
+    return own;
+  }
+  const Scale slider = range_in(scene(), parameter);
+  const double low = key == "surface.k" ? kLeastK : std::min(slider.from, value);
+  return {key, low, std::max(slider.to, value), std::max(low, value)};
+}
+
+std::optional<FitJob> Session::fit_job() const {
+  if (!residuals_.data()) return std::nullopt;
   FitJob job{edits_, *residuals_.data(), {}};
   for (const Parameter& parameter : parameters()) {
     const std::optional<double> value = parameter.value(scene());
-    if (!value || !varies(parameter.key->key)) continue;
-    const Scale range = range_in(scene(), parameter);
-    const double low = parameter.key->key == "surface.k" ? kLeastK : std::min(range.from, *value);
-    job.vary.push_back({parameter.key->key, low, std::max(range.to, *value), std::max(low, *value)});
+    if (value && varies(parameter.key->key)) job.vary.push_back(fit_range(parameter, *value));
   }
   return job.vary.empty() ? std::nullopt : std::optional(std::move(job));
 }
@@ -262,7 +280,7 @@ const FitParameter* Session::fitted(const std::string& key) const {
 void Session::restore(const SavedSession& saved) {
   go_to(saved.edits);
   snapshots_ = saved.snapshots;
-  marked_ = {saved.marked.begin(), saved.marked.end()};
+  marked_ = saved.marked;
   residuals_.clear();
   if (saved.measured) attempt([&] { residuals_.load(*saved.measured); });
   pins_.clear();

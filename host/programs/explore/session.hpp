@@ -4,7 +4,6 @@
 #include <deque>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "explore/heat_map.hpp"
 #include "explore/measured.hpp"
 #include "explore/panels.hpp"
+#include "explore/parameters.hpp"
 #include "explore/peak.hpp"
 #include "explore/scene_edits.hpp"
 #include "explore/sky_pair.hpp"
@@ -57,6 +57,9 @@ struct Message {
   bool is_error = false;
 };
 
+/// Keys that vary in fits, with the ranges that were typed for them.
+using FitMarks = std::map<std::string, std::optional<FitRange>>;
+
 /// The content of a session file.
 struct SavedSession {
   struct SavedPin {
@@ -71,7 +74,7 @@ struct SavedSession {
   View view = {};
   double theta_deg = 60.0;
   std::optional<MeasuredData> measured = {};
-  std::vector<std::string> marked = {};  ///< keys that vary in a fit
+  FitMarks marked = {};
 };
 
 /// State and commands; a Worker computes what it wants. Knows nothing of drawing.
@@ -116,6 +119,9 @@ class Session {
   void clear_measured() { residuals_.clear(); }
   /// Lets a number vary in fits, or not.
   void mark(const std::string& key, bool varies);
+  /// Lets a number vary in fits over a range of its own, in place of its slider's. Returns why it is refused, or
+  /// nothing.
+  std::string set_fit_range(const std::string& key, const std::string& low, const std::string& high);
   /// Shows a fit, and moves the parameters to the minimum nearest to where the job started. Returns its position.
   std::size_t take_fit(Fit fit, const FitJob& job);
   /// Moves the parameters to a minimum of the last fit; all else becomes as it was fitted.
@@ -143,14 +149,17 @@ class Session {
   const Sky& sky() const { return sky_; }
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
-  std::vector<std::string> marked() const { return {marked_.begin(), marked_.end()}; }
+  const FitMarks& marked() const { return marked_; }
   /// Skies whose files go with the session; true where the scene names one of them.
   SkyFiles& skies() { return skies_; }
   const SkyFiles& skies() const { return skies_; }
   bool has_own_sky() const { return skies_.hold(sky_file(scene())); }
   bool varies(const std::string& key) const { return marked_.contains(key); }
-  /// The fit of the marked parameters, over the ranges of their sliders that the scene takes, to the measured points;
-  /// none without points, or without a marked parameter that the scene has.
+  /// The range of a parameter in fits: its own, or that of its slider as far as the scene takes it. The value is the
+  /// start.
+  FitRange fit_range(const Parameter& parameter, double value) const;
+  /// The fit of the marked parameters, over their ranges, to the measured points; none without points, or without a
+  /// marked parameter that the scene has.
   std::optional<FitJob> fit_job() const;
   /// The last fit, and its minimum on display: none once the scene has changed.
   const std::optional<Fit>& last_fit() const { return fit_; }
@@ -207,7 +216,7 @@ class Session {
   Sky sky_;
   Peak peak_;
   Residuals residuals_;
-  std::set<std::string> marked_;
+  FitMarks marked_;
   std::optional<Fit> fit_;
   std::optional<SceneEdits> fit_edits_;  ///< the scene that was fitted
   std::optional<SceneEdits> fitted_;     ///< with the minimum that was visited

@@ -40,6 +40,28 @@ toml::array texts_of(const std::vector<Setting>& settings) {
   return texts;
 }
 
+/// "KEY", or "KEY=LOW:HIGH" with a range that was typed.
+std::vector<std::string> texts_of(const FitMarks& marks) {
+  std::vector<std::string> texts;
+  for (const auto& [key, own] : marks)
+    texts.push_back(own ? fmt::format("{}={}:{}", key, format_number(own->low), format_number(own->high)) : key);
+  return texts;
+}
+
+FitMarks marks_in(const std::vector<std::string>& texts, const std::string& place) {
+  FitMarks marks;
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('=');
+    std::optional<FitRange>& own = marks[text.substr(0, equals)];
+    try {
+      if (equals != std::string::npos) own = FitRange::from_text(text);
+    } catch (const InputError& error) {
+      throw InputError(place + error.what());
+    }
+  }
+  return marks;
+}
+
 /// Writes states of scenes for the file of a session.
 class StateWriter {
  public:
@@ -213,7 +235,7 @@ SavedSession session_in(const std::string& path, const toml::table& table) {
     const auto data = folder / need<std::string>(file["measured"], place + "measured");
     saved.measured = read_measured(data.lexically_normal().string());
   }
-  saved.marked = texts_in(file["vary"]);
+  saved.marked = marks_in(texts_in(file["vary"]), place);
   return saved;
 }
 
@@ -225,7 +247,7 @@ void save_session(const Session& session, const std::string& path) {
   toml::table file{{kVersionKey, kVersion},
                    {"scene", states.table(session.edits(), "")},
                    {"view", view_table(session)},
-                   {"vary", array_of(session.marked())}};
+                   {"vary", array_of(texts_of(session.marked()))}};
   if (const auto& data = session.residuals().data())
     file.insert("measured", std::filesystem::proximate(data->name, folder).string());
   toml::array pins, snapshots;

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from ._arguments import Path, check_key, check_mapping, check_names, floats, native_path, native_values, whole_number, word, word_list
+from ._model_warning import warn_of_model
 from ._native import InputError
 from ._points import csv_of
 from ._runs import evaluate, native_evaluator, native_scene
@@ -24,14 +25,16 @@ class Fit:
     `params` and `stderr` are dictionaries of values and standard errors (None at a bound, beyond the range, or where the
     data give none: `why_no_error` of its entry in values["parameters"]; with a parameter at its bound the other errors
     hold with it kept there). `fit[key]` is one value, `covariance` is in their order, NaN where there is none. `scene`
-    has the values that were found, and what was best of `compare`. `values` is what `dolp fit --json` prints, as a
-    dictionary: parameters, correlation, chi_square, reduced_chi_square, p_value, aic, bic, minima, residuals, models.
+    has the values that were found, and what was best of `compare`. `fit_quality` is "good", "doubtful" (p < 0.05), "bad"
+    (p < 0.001), or None without a p-value. `values` is what `dolp fit --json` prints, as a dictionary: parameters,
+    correlation, chi_square, reduced_chi_square, p_value, aic, bic, minima, residuals, models, alike, ranges.
     """
 
     def __init__(self, text: str, values: dict[str, Any], scene: Scene, overrides: dict[str, Mapping[str, Any]]) -> None:
         self.text, self.values, self.scene, self._overrides = text, values, scene, overrides
         self.params: dict[str, float] = {one["key"]: one["value"] for one in values["parameters"]}
         self.stderr: dict[str, float | None] = {one["key"]: one["standard_error"] for one in values["parameters"]}
+        self.fit_quality: str | None = values["fit_quality"]
 
     def __getitem__(self, key: str) -> float:
         """The value of a parameter."""
@@ -44,11 +47,15 @@ class Fit:
         errors = np.array(list(self.stderr.values()), dtype=float)
         return np.array(self.values["correlation"], dtype=float) * np.outer(errors, errors)
 
-    def conf_interval(self, level: float = 0.95) -> dict[str, tuple[float | None, float | None]]:
-        """Intervals of the profile likelihood at a level of 0.68 or 0.95; an end that the data do not bound is None."""
+    def conf_interval(self, level: float = 0.95, *, scaled: bool = False) -> dict[str, tuple[float | None, float | None] | None]:
+        """Intervals of the profile likelihood at a level of 0.68 or 0.95; an end that the data do not bound is None, and
+        so is an interval that has no value. `scaled`: where the fit is doubtful or bad, with uncertainties that are
+        sqrt(reduced chi^2) times as large.
+        """
         if level not in (0.68, 0.95):
             raise InputError(f"level = {level}: must be 0.68 or 0.95")
-        return {one["key"]: tuple(one[f"interval_{100 * level:.0f}"]) for one in self.values["parameters"]}
+        name = f"{'scaled' if scaled and self.fit_quality in ('doubtful', 'bad') else 'interval'}_{100 * level:.0f}"
+        return {one["key"]: one[name] and tuple(one[name]) for one in self.values["parameters"]}
 
     def plot(self, axes: Any = None) -> Any:
         """Draws data, model and its bracket in percent over zenith with Matplotlib, and returns the axes."""
@@ -76,20 +83,17 @@ class Fit:
         return axes
 
     def _model(self, name: str, quantity: str, points: dict[str, Any]) -> tuple[xr.DataArray, tuple[Any, Any] | None]:
-        """The fitted model of a data set, with a model error a mixture of both ends of its bracket; and that bracket."""
+        """The fitted model of a data set, and its bracket."""
         scene = self.scene.with_(self._overrides[name])
         try:
             own = evaluate(scene.with_({"emission.bracket": True}), evaluator="cpu", **points)
         except InputError:  # a scene without a bracket
             return evaluate(scene, evaluator="cpu", **points)[quantity], None
-        other = evaluate(scene.with_({"emission.model": "moments" if scene["emission.model"] == "direct" else "direct"}),
-                         evaluator="cpu", **points)
-        share = self.params.get("model_error", 0.0)
-        signed = "q_over_i" if quantity == "dolp" else quantity
-        mixed = (1 - share) * own[signed] + share * other[signed]
         if quantity == "dolp":
-            return abs(mixed) if share else own.dolp, (own.dolp_low, own.dolp_high)
-        return mixed, (np.minimum(own[signed], other[signed]), np.maximum(own[signed], other[signed]))
+            return own.dolp, (own.dolp_low, own.dolp_high)
+        other = evaluate(scene.with_({"emission.model": "moments" if scene["emission.model"] == "direct" else "direct"}),
+                         evaluator="cpu", **points)[quantity]
+        return own[quantity], (np.minimum(own[quantity], other), np.maximum(own[quantity], other))
 
     def __repr__(self) -> str:
         return self.text
@@ -104,10 +108,9 @@ def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, compa
     q_over_i (signed) or emissivity_s, emissivity_p; uncertainty (one standard deviation), wavelength_um. A list has
     several sets, each alone or as a pair (data, overrides). `vary`: (low, high) or (low, high, start) of each key.
     `compare`: values of keys, all combinations of which are fitted and ranked. `loss`: squares, or huber, soft-l1,
-    cauchy or tukey for data with outliers. `model_error`: none, or bracket, which takes the bracket of single scattering
-    as an uncertainty that all points share; then `model_error` is one more number of the fit, 0 the model itself, 1 the
-    other end of the bracket (direct emission), measured as 0 ± 1. `plot`: a .png, .pdf or .svg of data, model, residuals
-    and contours, as the command draws it.
+    cauchy or tukey for data with outliers. `model_error`: none, or bracket: at each point the truth may lie anywhere
+    between both ends of the bracket of single scattering. Without it a fit whose status has bit 32 warns with
+    dolp.ModelWarning. `plot`: a .png, .pdf or .svg of data, model, residuals and contours, as the command draws it.
 
     >>> truth = dolp.evaluate(scene, theta_deg=np.arange(5, 85, 5), n=1.6)
     >>> data = {"theta_deg": truth.theta, "dolp": truth.dolp, "uncertainty": np.full(16, 0.001)}
@@ -127,5 +130,8 @@ def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, compa
         "" if plot is None else native_path("plot", plot))
     fitted = Scene.__new__(Scene)
     fitted._native = found
+    report = json.loads(values)
+    if model_error == "none":
+        warn_of_model(scene, report["status"])
     names = ["data"] if len(sets) == 1 else [f"data{i + 1}" for i in range(len(sets))]
-    return Fit(text, json.loads(values), fitted, {name: own or {} for name, (_, own) in zip(names, sets)})
+    return Fit(text, report, fitted, {name: own or {} for name, (_, own) in zip(names, sets)})

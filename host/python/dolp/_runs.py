@@ -38,7 +38,7 @@ def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all
     if key is None:
         with_axes = _with_axes(scene, axes)
         whole = table_dataset(*native_evaluator(evaluator, device).table(with_axes, flag("keep_all", keep_all)))
-        warn_of_model(scene, whole)
+        warn_of_model(scene, whole.get("status", 0), whole.attrs.get("model_change"))
         return whole
     _check_varied("axes", [key], [column for column, *_ in _native.axes()])
     others = {name: values for name, values in axes.items() if name != key}
@@ -92,7 +92,7 @@ def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_
 
     results = dataset_at(
         _over_keys(run, native, columns, varied) if varied and 0 not in frame.shape else run(native, columns), frame)
-    warn_of_model(scene, results)
+    warn_of_model(scene, results.get("status", 0), results.attrs.get("model_change"))
     return results
 
 

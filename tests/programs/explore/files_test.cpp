@@ -7,6 +7,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "error_text.hpp"
 #include "explore/plot_data.hpp"
 #include "explore/preferences.hpp"
 #include "explore/session_file.hpp"
@@ -41,6 +42,7 @@ class ExploreFiles : public testing::Test {
 void fill(Session& session, const std::string& measured) {
   session.load_measured(measured);
   session.mark("surface.n", true);
+  EXPECT_EQ(session.set_fit_range("surface.k", "0.01", "2"), "");
   session.pin();
   session.rename_pin(0, "as opened");
   session.set({{"surface.sigma", 0.3}, {"surface.masking", "smith"}, {"surroundings", Value()}});
@@ -88,7 +90,10 @@ TEST_F(ExploreFiles, Session_SavedAndOpened_IsTheSame) {
   EXPECT_EQ(b.snapshots()[0].name, a.snapshots()[0].name);
   EXPECT_EQ(b.snapshots()[0].edits.scene().toml(), a.snapshots()[0].edits.scene().toml());
   EXPECT_EQ(b.residuals().residuals(), a.residuals().residuals());
-  EXPECT_EQ(b.marked(), (std::vector<std::string>{"surface.n"}));
+  ASSERT_EQ(b.marked().size(), 2U);
+  EXPECT_FALSE(b.marked().at("surface.n"));
+  EXPECT_EQ(b.marked().at("surface.k")->low, 0.01);
+  EXPECT_EQ(b.marked().at("surface.k")->high, 2.0);
   EXPECT_EQ(b.view().quantity, Plotted::kRhoS);
   EXPECT_TRUE(b.view().is_log && !b.view().has_overlay);
   EXPECT_EQ(b.view().theta_max_deg, 80.0);
@@ -106,6 +111,17 @@ TEST_F(ExploreFiles, Session_SavedAndOpened_IsTheSame) {
   EXPECT_EQ(text.find(at("")), std::string::npos) << text;
   save_session(opened.session, at("again.toml"));
   EXPECT_EQ(read_file(at("again.toml")), text);
+}
+
+TEST_F(ExploreFiles, Session_WithARangeOfAFitThatIsNone_IsRefusedByName) {
+  Session saved(paint());
+  saved.set_fit_range("surface.k", "0.01", "2");
+  save_session(saved, at("all.toml"));
+  std::string text = read_file(at("all.toml"));
+  text.replace(text.find("surface.k=0.01:2"), 16, "surface.k=2:0.01");
+  put("wrong.toml", text);
+  EXPECT_EQ(error_text([&] { open_file(saved, at("wrong.toml")); }),
+            at("wrong.toml") + ": vary surface.k=2:0.01: LOW must be below HIGH");
 }
 
 TEST_F(ExploreFiles, Session_OfWhichAPinWasRemoved_KeepsTheColoursOfTheOthers) {

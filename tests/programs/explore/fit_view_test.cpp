@@ -79,6 +79,19 @@ TEST(ExploreSession, Fit_OfQ_WithSmithMasking_RunsOverWhatItTakes) {
   }
 }
 
+TEST(ExploreSession, Fit_OverARangeThatWasTyped_BeginsInIt) {
+  Session session(paint());
+  const TemporaryFile file(".csv", "theta_deg,dolp\n60,0.05\n70,0.06\n");
+  session.load_measured(file.path());
+  session.set("surface.n", 1.5);
+  EXPECT_EQ(session.set_fit_range("surface.n", "1.6", "3"), "");
+  EXPECT_EQ(session.set_fit_range("surface.n", "3", "2"), "vary surface.n=3:2: LOW must be below HIGH");
+  const FitRange range = session.fit_job().value().vary.front();
+  EXPECT_EQ(std::tuple(range.low, range.high, range.start), std::tuple(1.6, 3.0, std::optional(1.6)));
+  session.mark("surface.n", false);
+  EXPECT_FALSE(session.fit_job());
+}
+
 TEST(FitText, Interval_HasItsEnds) {
   EXPECT_EQ(interval_text({.low = 1.25}), "1.25 to open");
   EXPECT_EQ(interval_text({.low = 0.1, .high = 3.0, .pieces = {{0.1, 0.2}, {2.0, 3.0}}}), "0.1 to 3");
@@ -123,6 +136,18 @@ TEST_F(FitWindow, MarkedSlider_IsMovedAndShowsTheInterval) {
   EXPECT_NEAR(number("surface.sigma"), 0.3, 2e-3);
   ASSERT_NE(app_->session().fitted("surface.sigma"), nullptr);
   EXPECT_LT(*app_->session().fitted("surface.sigma")->interval_68.low, 0.3);
+}
+
+TEST_F(FitWindow, RangeTypedBelowASlider_IsThatOfTheFit) {
+  measure("surface.n=1.7");
+  click_control("vary surface.n");
+  for (const auto& [field, text] : {std::pair("field fit surface.n 0", "1.2"), {"field fit surface.n 1", "1.6"}}) {
+    click_control(field);
+    xdotool({"type", text});
+    keys("Return");
+  }
+  fit();
+  EXPECT_EQ(number("surface.n"), 1.6);  // the end nearest to the truth
 }
 
 TEST_F(FitWindow, NearestMinimum_IsChosen_AndAClickVisitsTheLowest) {

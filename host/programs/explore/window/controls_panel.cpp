@@ -156,11 +156,16 @@ void ControlsPanel::remember_area(const std::string& key) {
 
 void ControlsPanel::draw_field(Session& session, const std::string& id, double value,
                                const std::function<Setting(const std::string& text)>& change) {
-  const std::string before = fields_.reason(id);
-  fields_.draw(id, value, [&](const std::string& text) {
+  draw_taken_field(session, id, value, [&](const std::string& text) {
     session.set({change(text)});
     return session.message().is_error ? session.message().text : "";
   });
+}
+
+void ControlsPanel::draw_taken_field(Session& session, const std::string& id, double value,
+                                     const NumberFields::Take& take) {
+  const std::string before = fields_.reason(id);
+  fields_.draw(id, value, take);
   // The message about a text goes when the text is taken back.
   if (!before.empty() && fields_.reason(id).empty() && session.message().text == before) session.tell("");
   remember_area("field " + id);
@@ -176,21 +181,27 @@ void ControlsPanel::draw_spectrum(Session& session) {
   const std::vector<double> ends = session.scene().numbers(kKey);
   if (ends.empty()) return;
   row_label("λ1, λ2 [µm]");
-  // Both ends are taken together, so that one that was refused goes with the other.
-  const std::array<std::string, 2> ids = {std::string(kKey) + " 0", std::string(kKey) + " 1"};
+  draw_ends(session, kKey, {ends[0], ends[1]}, [&](const std::string& low, const std::string& high) {
+    session.set({{kKey, TomlText{fmt::format("[{}, {}]", low, high)}}});
+    return session.message().is_error ? session.message().text : "";
+  });
+}
+
+void ControlsPanel::draw_ends(Session& session, const std::string& id, const std::array<double, 2>& ends,
+                              const std::function<std::string(const std::string&, const std::string&)>& take) {
+  const std::array<std::string, 2> ids = {id + " 0", id + " 1"};
   const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
   const float width = 0.5F * (ImGui::GetContentRegionAvail().x - gap);
   for (std::size_t i = 0; i < 2; ++i) {
     if (i > 0) ImGui::SameLine(0.0F, gap);
     ImGui::SetNextItemWidth(width);
-    draw_field(session, ids[i], ends[i], [&](const std::string& text) {
+    draw_taken_field(session, ids[i], ends[i], [&](const std::string& text) {
       const std::string typed = fields_.text(ids[1 - i]);
       const std::string other = typed.empty() ? format_number(ends[1 - i]) : typed;
-      return Setting{kKey,
-                     TomlText{i == 0 ? fmt::format("[{}, {}]", text, other) : fmt::format("[{}, {}]", other, text)}};
+      return i == 0 ? take(text, other) : take(other, text);
     });
   }
-  for (const std::string& id : ids) show_reason(id);
+  for (const std::string& one : ids) show_reason(one);
 }
 
 void ControlsPanel::show_reason(const std::string& id) const {
@@ -234,8 +245,17 @@ void ControlsPanel::draw_fit_box(Session& session, const Parameter& parameter) {
   bool varies = session.varies(key);
   if (ImGui::Checkbox("##vary", &varies)) session.mark(key, varies);
   remember_area("vary " + key);
-  tooltip("varies in a fit to the measured points, over the range of its slider; k from 0.001 on, along its logarithm");
+  tooltip("varies in a fit to the measured points, over the range below its slider");
   ImGui::SameLine();
+}
+
+void ControlsPanel::draw_fit_range(Session& session, const Parameter& parameter, double value) {
+  const std::string& key = parameter.key->key;
+  if (!session.residuals().data() || !session.varies(key)) return;
+  const FitRange range = session.fit_range(parameter, value);
+  row_label("  fit from, to");
+  draw_ends(session, "fit " + key, {range.low, range.high},
+            [&](const std::string& low, const std::string& high) { return session.set_fit_range(key, low, high); });
 }
 
 void ControlsPanel::draw_parameter(Session& session, const Parameter& parameter, double value) {
@@ -258,6 +278,7 @@ void ControlsPanel::draw_parameter(Session& session, const Parameter& parameter,
   ImGui::SetNextItemWidth(-1.0F);
   draw_field(session, key.key, value, [&](const std::string& text) { return Setting{key.key, value_of(text)}; });
   show_reason(key.key);
+  draw_fit_range(session, parameter, value);
   ImGui::PopID();
 }
 

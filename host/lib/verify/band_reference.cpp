@@ -1,0 +1,236 @@
+#include "verify/band_reference.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <cmath>
+#include <optional>
+
+#include "base/numbers.hpp"
+#include "model/angles.hpp"
+#include "run/scene_run.hpp"
+#include "spectrum/spectral_rule.hpp"
+
+namespace dolp {
+namespace {
+
+using enum Quantity;
+using Kronrod = boost::math::quadrature::gauss_kronrod<double, 15>;
+using Gauss = boost::math::quadrature::gauss<double, 7>;
+
+constexpr std::size_t kFirstIntervals = 4;
+constexpr std::size_t kMostIntervals = 32;  // of a point: 480 wavelengths
+constexpr double kQuadratureShare = 0.01;   // where a quadrature ends
+
+// Results of a wavelength that are integrated as they are, and those that have the weight of the mean reflectance.
+constexpr std::array kIntegrated = {kStokesI, kStokesQ, kStokesU, kStokesV};
+constexpr std::array kMeans = {kRhoI, kRhoQ, kEmissivityS, kEmissivityP};
+
+/// Integrals: of the radiation, the weight, the means times it, and the errors of DOLP and rho at each wavelength.
+constexpr std::size_t kWeight = kIntegrated.size();
+constexpr std::size_t kDolpError = kWeight + 1 + kMeans.size();
+constexpr std::size_t kRhoError = kDolpError + 1;
+using Integrals = Eigen::Array<double, kRhoError + 1, 1>;
+
+struct BandPiece {
+  double from_um;
+  double to_um;
+  Integrals value = Integrals::Zero();
+  Integrals error = Integrals::Zero();
+};
+
+/// The quadrature of one point.
+struct PointIntegral {
+  SceneEntry entry;
+  std::vector<BandPiece> intervals;
+  std::size_t first_new = 0;  ///< of the intervals without a value
+  PointResult last;           ///< at some wavelength
+};
+
+std::vector<double> band_breaks_um(const SceneValues& scene) {
+  std::vector<double> breaks = {scene.spectrum.min_um, scene.spectrum.max_um};
+  const auto add = [&](const std::vector<double>& rows_um) {
+    for (const double at_um : rows_um)
+      if (at_um > scene.spectrum.min_um && at_um < scene.spectrum.max_um) breaks.push_back(at_um);
+  };
+  add(scene.surface.material.n.wavelength_um);
+  add(scene.surface.material.k.wavelength_um);
+  if (scene.source) add(scene.source->table.wavelength_um);
+  if (scene.surroundings && scene.surroundings->profile) add(scene.surroundings->profile->breaks_um());
+  std::ranges::sort(breaks);
+  return breaks;
+}
+
+double mean_weight_at(const SceneValues& scene, double wavelength_um, double cosine) {
+  const SpectralRule rule = spectral_rule(at_wavelength(scene, wavelength_um));
+  const SpectralSample& sample = rule.samples.front();
+  if (sample.emitted != 0.0) return sample.emitted;
+  const double incident = sample.irradiance * cosine + sample.surroundings;
+  return incident != 0.0 ? incident : 1.0;
+}
+
+Integrals integrand(const PointResult& at, double weight) {
+  Integrals value = Integrals::Zero();
+  Eigen::Index i = 0;
+  for (const Quantity quantity : kIntegrated) value[i++] = at[quantity];
+  value[i++] = weight;
+  for (const Quantity quantity : kMeans) value[i++] = std::isnan(at[quantity]) ? 0.0 : weight * at[quantity];
+  // Beside a wavelength at which nothing is emitted the estimate has no bound, and the error is less than the
+  // radiation.
+  const double error = std::abs(at[kStokesI]) * at[kErrorEstimate];
+  value[i++] = std::isfinite(error) ? error : std::abs(at[kStokesI]);
+  value[i] = std::abs(weight * at[kRhoI]) * at[kRhoErrorEstimate];
+  return value;
+}
+
+/// The wavelengths of an interval, ascending, as shares of its half width from its middle, with both weights.
+struct KronrodNode {
+  double place;
+  double kronrod;
+  double gauss;
+};
+std::vector<KronrodNode> kronrod_nodes() {
+  std::vector<KronrodNode> all;
+  for (std::size_t i = 0; i < Kronrod::abscissa().size(); ++i) {
+    const double gauss = i % 2 == 0 ? Gauss::weights()[i / 2] : 0.0;
+    all.push_back({Kronrod::abscissa()[i], Kronrod::weights()[i], gauss});
+    if (i > 0) all.push_back({-Kronrod::abscissa()[i], Kronrod::weights()[i], gauss});
+  }
+  return all;
+}
+
+Integrals total_of(const std::vector<BandPiece>& intervals, Integrals BandPiece::*part) {
+  Integrals sum = Integrals::Zero();
+  for (const BandPiece& interval : intervals) sum += interval.*part;
+  return sum;
+}
+
+/// The error that a quadrature makes of DOLP and of the means.
+double quadrature_error(const Integrals& value, const Integrals& error) {
+  const double of_means = error.segment(kWeight + 1, 2).sum() / std::abs(value[kWeight + 1]);
+  return std::max(error.head(kWeight).sum() / std::abs(value[0]), of_means + error[kWeight] / value[kWeight]);
+}
+
+/// Splits the worst interval, at a row in it if there is one.
+void split_worst(PointIntegral& point, const std::vector<double>& breaks) {
+  const Integrals value = total_of(point.intervals, &BandPiece::value);
+  const auto worst = std::ranges::max_element(
+      point.intervals, {}, [&](const BandPiece& interval) { return quadrature_error(value, interval.error); });
+  const BandPiece old = *worst;
+  point.intervals.erase(worst);
+  const auto first = std::ranges::upper_bound(breaks, old.from_um);
+  const auto last = std::ranges::lower_bound(breaks, old.to_um);
+  const double at_um = first < last ? *(first + (last - first) / 2) : 0.5 * (old.from_um + old.to_um);
+  point.first_new = point.intervals.size();
+  point.intervals.push_back({old.from_um, at_um});
+  point.intervals.push_back({at_um, old.to_um});
+}
+
+/// Integrates the new intervals of some points together.
+void integrate_new(const SceneValues& scene, std::vector<PointIntegral*>& points, ModelEvaluator& evaluator,
+                   const Progress& progress) {
+  static const std::vector<KronrodNode> kNodes = kronrod_nodes();
+  std::vector<SceneEntry> entries;
+  std::vector<double> wavelengths_um;
+  for (PointIntegral* point : points) {
+    for (std::size_t i = point->first_new; i < point->intervals.size(); ++i) {
+      const BandPiece& interval = point->intervals[i];
+      for (const KronrodNode& node : kNodes) {
+        entries.push_back(point->entry);
+        entries.back().wavelength = static_cast<std::uint32_t>(wavelengths_um.size());
+        wavelengths_um.push_back(std::midpoint(interval.from_um, interval.to_um) +
+                                 0.5 * node.place * (interval.to_um - interval.from_um));
+      }
+    }
+  }
+  SceneValues at_one = scene;
+  at_one.spectrum = {wavelengths_um.front(), wavelengths_um.front()};
+  const std::vector<PointResult> results = evaluate_scene(at_one, {entries, wavelengths_um}, evaluator, progress);
+  std::size_t next = 0;
+  for (PointIntegral* point : points) {
+    const double zenith_deg =
+        scene.geometry.mode == Mode::kBistatic ? scene.geometry.view_zenith_deg : point->entry.theta_deg;
+    for (std::size_t i = point->first_new; i < point->intervals.size(); ++i) {
+      BandPiece& interval = point->intervals[i];
+      const double half_um = 0.5 * (interval.to_um - interval.from_um);
+      Integrals gauss = Integrals::Zero();
+      for (const KronrodNode& node : kNodes) {
+        const Integrals value =
+            integrand(results[next], mean_weight_at(scene, wavelengths_um[next], cos_sin_deg(zenith_deg).cos));
+        interval.value += half_um * node.kronrod * value;
+        gauss += half_um * node.gauss * value;
+        point->last = results[next++];
+      }
+      interval.error = (interval.value - gauss).abs();
+    }
+    point->first_new = point->intervals.size();
+  }
+}
+
+PointResult band_result(const PointIntegral& point) {
+  const Integrals value = total_of(point.intervals, &BandPiece::value);
+  const Integrals error = total_of(point.intervals, &BandPiece::error);
+  PointResult result = point.last;
+  Eigen::Index i = 0;
+  for (const Quantity quantity : kIntegrated) result[quantity] = value[i++];
+  ++i;
+  for (const Quantity quantity : kMeans) {
+    if (!std::isnan(result[quantity])) result[quantity] = value[i] / value[kWeight];
+    ++i;
+  }
+  const double intensity = std::abs(value[0]);
+  result[kDolp] = std::hypot(value[1], value[2]) / value[0];
+  result[kQOverI] = value[1] / value[0];
+  result[kErrorEstimate] =
+      (value[kDolpError] + std::hypot(error[1], error[2]) + std::abs(result[kDolp]) * error[0]) / intensity;
+  result[kRhoErrorEstimate] = (value[kRhoError] + error.segment(kWeight + 1, 2).sum()) / std::abs(value[kWeight + 1]) +
+                              error[kWeight] / value[kWeight];
+  return result;
+}
+
+}  // namespace
+
+std::vector<PointResult> integrate_band(const SceneValues& scene, const SceneEntries& points, ModelEvaluator& evaluator,
+                                        const Progress& progress) {
+  const std::vector<double> breaks = band_breaks_um(scene);
+  std::vector<PointIntegral> integrals;
+  for (const SceneEntry& entry : points.all()) {
+    PointIntegral& point = integrals.emplace_back(PointIntegral{entry, {}, 0, {}});
+    const std::size_t count = std::min(kFirstIntervals, breaks.size() - 1);
+    for (std::size_t i = 0; i < count; ++i)
+      point.intervals.push_back(
+          {breaks[i * (breaks.size() - 1) / count], breaks[(i + 1) * (breaks.size() - 1) / count]});
+  }
+  std::vector<PointIntegral*> unfinished;
+  for (PointIntegral& point : integrals) unfinished.push_back(&point);
+  const Progress of_points = [&](std::size_t, std::size_t) {
+    return !progress || progress(points.size() - unfinished.size(), points.size());
+  };
+  while (!unfinished.empty()) {
+    integrate_new(scene, unfinished, evaluator, of_points);
+    std::erase_if(unfinished, [&](PointIntegral* point) {
+      const double error = quadrature_error(total_of(point->intervals, &BandPiece::value),
+                                            total_of(point->intervals, &BandPiece::error));
+      const bool is_finished =
+          !(error > kQuadratureShare * scene.accuracy.tolerance) || point->intervals.size() >= kMostIntervals;
+      if (!is_finished) split_worst(*point, breaks);
+      return is_finished;
+    });
+  }
+  std::vector<PointResult> results;
+  for (const PointIntegral& point : integrals) results.push_back(band_result(point));
+  std::vector<std::size_t> of_rule;
+  for (std::size_t i = 0; i < results.size(); ++i)
+    if (std::isnan(results[i][kDolp]) || !std::isnan(results[i][kDolpLow])) of_rule.push_back(i);
+  if (of_rule.empty()) return results;
+  const std::vector<PointResult> others = evaluate_scene(scene, points.chosen(of_rule), evaluator, progress);
+  for (std::size_t i = 0; i < of_rule.size(); ++i) {
+    PointResult& result = results[of_rule[i]];
+    if (std::isnan(result[kDolp])) result = others[i];
+    result[kDolpLow] = others[i][kDolpLow];
+    result[kDolpHigh] = others[i][kDolpHigh];
+  }
+  return results;
+}
+
+}  // namespace dolp

@@ -14,7 +14,7 @@
 namespace dolp {
 namespace {
 
-using Combined = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Wanted entries of a grid that has some of the request's indices: for each of these, flags of the request's indices
 /// that need it.
@@ -37,9 +37,9 @@ std::vector<char> wanted_of(const MomentsRequest& request, const std::vector<std
 /// The responses of one pass at one direction: responses x shapes.
 struct Responses {
   /// Zeros where nothing is wanted.
-  Responses(std::span<const Moments> moments, std::size_t responses) : all(kParts, Eigen::MatrixXd()) {
+  Responses(std::span<const Moments> moments, std::size_t responses) : all(kParts) {
     const auto shapes = static_cast<Eigen::Index>(moments.size());
-    for (Eigen::MatrixXd& part : all) part = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(responses), shapes);
+    for (RowMajor& part : all) part = RowMajor::Zero(static_cast<Eigen::Index>(responses), shapes);
     for (Eigen::Index shape = 0; shape < shapes; ++shape) {
       const std::vector<ColumnMoments>& columns = moments[static_cast<std::size_t>(shape)].columns;
       for (Eigen::Index j = 0; j < static_cast<Eigen::Index>(columns.size()); ++j) {
@@ -54,21 +54,32 @@ struct Responses {
     }
   }
   enum Part : std::uint8_t { kI, kQ, kIApart, kQApart, kError, kParts };
-  std::vector<Eigen::MatrixXd> all;
+  std::vector<RowMajor> all;
   std::vector<double> relative_error;  ///< of each shape
 };
+
+/// The product, summed in one order: the library's own order, and the last bits with it, follow from the sizes, which a
+/// part of a grid would change.
+RowMajor product(const RowMajor& weights, const RowMajor& part) {
+  RowMajor sums = RowMajor::Zero(weights.rows(), part.cols());
+  for (Eigen::Index i = 0; i < weights.rows(); ++i) {
+    for (Eigen::Index j = 0; j < weights.cols(); ++j) sums.row(i) += weights(i, j) * part.row(j);
+  }
+  return sums;
+}
 
 /// Sums over responses with one set of weights for each reached index: indices x shapes, and bounds of their errors but
 /// for what the weights leave out.
 struct Sums {
-  Sums(const Responses& responses, Responses::Part of, Responses::Part apart, const Combined& weights)
-      : value(weights * responses.all[of]),
-        error((weights * responses.all[apart]).cwiseAbs() + weights.cwiseAbs() * responses.all[Responses::kError]) {
+  Sums(const Responses& responses, Responses::Part of, Responses::Part apart, const RowMajor& weights)
+      : value(product(weights, responses.all[of])),
+        error(product(weights, responses.all[apart]).cwiseAbs() +
+              product(weights.cwiseAbs(), responses.all[Responses::kError])) {
     for (Eigen::Index shape = 0; shape < error.cols(); ++shape)
       error.col(shape) += responses.relative_error[static_cast<std::size_t>(shape)] * value.col(shape).cwiseAbs();
   }
-  Combined value;
-  Combined error;
+  RowMajor value;
+  RowMajor error;
 };
 
 /// Combines all reached indices, direction by direction.
@@ -80,7 +91,7 @@ class Combination {
       if (plan.sources[i].weights) reached_.push_back(i);
     }
     const auto rows = static_cast<Eigen::Index>(reached_.size());
-    absorbed_ = split_ = Combined(rows, static_cast<Eigen::Index>(request.basis->count()));
+    absorbed_ = split_ = RowMajor(rows, static_cast<Eigen::Index>(request.basis->count()));
     for (Eigen::Index i = 0; i < rows; ++i) {
       const ResponseWeights& own = *plan.sources[reached_[static_cast<std::size_t>(i)]].weights;
       absorbed_.row(i) = own.absorbed.transpose();
@@ -177,7 +188,7 @@ class Combination {
   const MomentsRequest& request_;
   const ResponsePlan& plan_;
   std::vector<std::size_t> reached_;  ///< of the request's indices
-  Combined absorbed_, split_, absorbed_apart_, split_apart_, reflected_;
+  RowMajor absorbed_, split_, absorbed_apart_, split_apart_, reflected_;
 };
 
 }  // namespace

@@ -27,7 +27,7 @@ struct ShapePlan {
 /// computed by itself, as where only some entries of a direction and index are wanted.
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request);
 
-/// Flags of the grid's directions that the plans of its parts interpolate, or its basis of indices combines.
+/// Flags of the grid's directions that the plans of its parts interpolate, or that are combined from responses.
 std::vector<char> interpolated_directions(const MomentsRequest& request);
 
 /// The moments of one direction and index at the request's sigma x q, from those at its nodes. Bounds are those of the

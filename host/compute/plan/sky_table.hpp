@@ -1,4 +1,4 @@
-// The functions of a sky as the kernels read them (shaders/physics/sky.glsl).
+// The functions of a sky as the kernels read them (shaders/physics/columns.glsl).
 #pragma once
 
 #include <array>

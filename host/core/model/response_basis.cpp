@@ -15,7 +15,7 @@ namespace {
 // Cosines at which the polynomials bend: metals need the smallest, at the pole of R_p, dielectrics the largest.
 constexpr std::array<double, 5> kScales = {1.0, 0.3, 0.1, 0.03, 0.01};
 constexpr Eigen::Index kCoefficients = 65;  // of a curve, known; odd, so that every second one tells of the others
-constexpr Eigen::Index kLastCoefficients = 4;
+constexpr Eigen::Index kLastOfCurve = 4;
 constexpr double kReach = 0.25;  // largest error of a combined curve, of the tolerance
 // Time of a pass without responses, and what each response adds.
 constexpr double kTimeOfResponse = 0.03;
@@ -43,7 +43,7 @@ CurveCoefficients coefficients_of(const OpticalConstants& index, double c0) {
 /// are known, each as large as the last ones.
 Eigen::RowVector2d errors_of(const CurveCoefficients& all, Eigen::Index count) {
   return all.bottomRows(kCoefficients - count).cwiseAbs().colwise().sum() +
-         kCoefficients * all.bottomRows<kLastCoefficients>().cwiseAbs().colwise().maxCoeff();
+         kCoefficients * all.bottomRows<kLastOfCurve>().cwiseAbs().colwise().maxCoeff();
 }
 
 /// Reference level of the relative errors of a curve.

@@ -138,16 +138,16 @@ void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std:
     sum.i_error += std::abs(diffuse) * (factors[j].weights.error + rounding * std::abs(factors[j].diffuse));
   }
   if (factors.empty() || surface.specular == 0.0) return;
-  const auto error_of = [&](double SkyMoments::*part) {
+  const auto error_of = [&](double ColumnMoments::*part) {
     return panel_error(rule, [&](std::size_t j, std::size_t m) {
       double term = 0.0;
-      for (std::size_t k = 0; k < moments[m].sky.size(); ++k)
-        term += factors[j].weights.of[static_cast<Eigen::Index>(k)] * (moments[m].sky[k].*part);
+      for (std::size_t k = 0; k < moments[m].columns.size(); ++k)
+        term += factors[j].weights.of[static_cast<Eigen::Index>(k)] * (moments[m].columns[k].*part);
       return surface.specular / cos_theta * term;
     });
   };
-  sum.i_error += error_of(&SkyMoments::i);
-  sum.q_error += error_of(&SkyMoments::q);
+  sum.i_error += error_of(&ColumnMoments::i);
+  sum.q_error += error_of(&ColumnMoments::q);
 }
 
 void add_beam(Stokes& sum, const Surface& surface, double k_s, const SpectralRule& rule,

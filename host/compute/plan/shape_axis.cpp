@@ -2,6 +2,7 @@
 #include "model/choices.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -43,21 +44,10 @@ std::vector<MomentsRequest> with_one_parameter(const MomentsRequest& request) {
   if (request.layout == MomentsRequest::Layout::kList) return {request};
   const auto grazing = static_cast<std::size_t>(std::ranges::count_if(request.theta_deg, is_grazing));
   if (keeps_projected_area(request.masking) || grazing == 0 || grazing == request.theta_deg.size()) return {request};
-  std::vector<MomentsRequest> parts;
-  const std::size_t of_theta = request.size() / request.theta_deg.size();
-  for (const bool of_grazing : {false, true}) {
-    MomentsRequest& part = parts.emplace_back(request);
-    part.theta_deg.clear();
-    part.wanted.clear();
-    for (std::size_t i = 0; i < request.theta_deg.size(); ++i) {
-      if (is_grazing(request.theta_deg[i]) != of_grazing) continue;
-      part.theta_deg.push_back(request.theta_deg[i]);
-      if (request.wanted.empty()) continue;
-      const auto first = request.wanted.begin() + static_cast<std::ptrdiff_t>(i * of_theta);
-      part.wanted.insert(part.wanted.end(), first, first + static_cast<std::ptrdiff_t>(of_theta));
-    }
-  }
-  return parts;
+  std::array<std::vector<std::size_t>, 2> directions;
+  for (std::size_t i = 0; i < request.theta_deg.size(); ++i)
+    directions[is_grazing(request.theta_deg[i]) ? 1 : 0].push_back(i);
+  return {request.of_directions(directions[0]), request.of_directions(directions[1])};
 }
 
 ShapeAxis shape_axis(const ShapeParameter& parameter, const std::vector<double>& values, double digits) {

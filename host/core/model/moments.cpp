@@ -28,6 +28,20 @@ MomentsPoint MomentsRequest::operator[](std::size_t entry) const {
           indices[of_index % indices.size()]};
 }
 
+MomentsRequest MomentsRequest::of_directions(std::span<const std::size_t> directions) const {
+  MomentsRequest part = *this;
+  part.theta_deg.clear();
+  part.wanted.clear();
+  const std::size_t of_theta = size() / theta_deg.size();
+  for (const std::size_t i : directions) {
+    part.theta_deg.push_back(theta_deg[i]);
+    if (wanted.empty()) continue;
+    const auto first = wanted.begin() + static_cast<std::ptrdiff_t>(i * of_theta);
+    part.wanted.insert(part.wanted.end(), first, first + static_cast<std::ptrdiff_t>(of_theta));
+  }
+  return part;
+}
+
 void MomentsRequest::append(const MomentsPoint& point) {
   layout = Layout::kList;
   theta_deg.push_back(point.theta_deg);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "model/choices.hpp"
@@ -72,6 +73,8 @@ struct MomentsRequest {
   /// A share of the tolerance, as far as the rules of the precision go.
   double finer_tolerance(double share) const;
   MomentsPoint operator[](std::size_t entry) const;
+  /// The same of some directions of a grid, by their positions.
+  MomentsRequest of_directions(std::span<const std::size_t> directions) const;
   /// Adds a point, which makes it a request for points.
   void append(const MomentsPoint& point);
 };

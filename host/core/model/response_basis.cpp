@@ -18,8 +18,8 @@ constexpr Eigen::Index kCoefficients = 65;  // of a curve, known; odd, so that e
 constexpr Eigen::Index kLastOfCurve = 4;
 constexpr double kReach = 0.25;  // largest error of a combined curve, of the tolerance
 // Time of a pass without responses, and what each response adds.
-constexpr double kTimeOfResponse = 0.03;
-constexpr double kLeastGain = 1.5;  // indices for each pass
+constexpr double kTimeOfResponse = 0.08;
+constexpr double kLeastGain = 1.25;  // what the passes must spare, as a factor
 // Numbers of responses: of each a driver compiles kernels.
 constexpr std::array<std::size_t, 3> kCounts = {8, 16, kMostResponses};
 constexpr std::size_t kMostCandidates = 256;  // of the run's indices, for which the basis is chosen

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
+#include <numeric>
 #include <optional>
 #include <span>
 
@@ -16,6 +18,8 @@ namespace dolp {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kColumnsAtOnce = 1U << 20U;  // of a pass, for the memory that they take
 
 bool is_finite(const Moments& m) {
   return std::isfinite(m.r_i + m.r_q + m.albedo + m.deficit) &&
@@ -44,23 +48,42 @@ std::vector<char> interpolate_all(const ShapePlan& plan, std::span<const Moments
 
 std::vector<Moments> InterpolatingEvaluator::computed(const MomentsRequest& request, const Progress& progress) {
   if (!request.basis) return evaluator_->evaluate(request, progress);
+  std::vector<std::size_t> directions(request.theta_deg.size());
+  std::iota(directions.begin(), directions.end(), std::size_t{0});
+  const std::size_t columns = request.basis->count() * request.sigma.size() * request.q.size();
+  const std::size_t at_once = std::max<std::size_t>(1, kColumnsAtOnce / columns);
+  std::vector<Moments> moments;
+  moments.reserve(request.size());
+  for (std::size_t first = 0; first < directions.size(); first += at_once) {
+    const std::size_t count = std::min(at_once, directions.size() - first);
+    const MomentsRequest part = request.of_directions(std::span(directions).subspan(first, count));
+    const Progress of_part = [&](std::size_t done, std::size_t all) {
+      return !progress || progress(moments.size() + part.size() * done / std::max<std::size_t>(all, 1), request.size());
+    };
+    std::ranges::move(combined_from_responses(part, of_part), std::back_inserter(moments));
+  }
+  return moments;
+}
+
+std::vector<Moments> InterpolatingEvaluator::combined_from_responses(const MomentsRequest& request,
+                                                                     const Progress& progress) {
   const ResponsePlan plan = response_plan(request);
   const std::size_t wanted = plan.wanted_count();
   nodes_ += wanted;
   std::size_t before = 0;
-  const auto computed = [&](const MomentsRequest& part) {
-    const Progress of_part = [&](std::size_t done, std::size_t all) {
-      const std::size_t done_of_all = before + part.wanted_count() * done / std::max<std::size_t>(all, 1);
-      return !progress || progress(request.size() * done_of_all / wanted, request.size());
+  const auto evaluated = [&](const MomentsRequest& one) {
+    const std::size_t of_one = one.wanted_count();
+    const Progress of_all = [&](std::size_t done, std::size_t all) {
+      return progress(before + of_one * done / std::max<std::size_t>(all, 1), wanted);
     };
-    std::vector<Moments> moments = evaluator_->evaluate(part, of_part);
-    before += part.wanted_count();
+    std::vector<Moments> moments = evaluator_->evaluate(one, of_all);
+    before += of_one;
     return moments;
   };
   std::vector<std::vector<Moments>> passes;
-  for (const MomentsRequest& pass : plan.passes) passes.push_back(computed(pass));
+  for (const MomentsRequest& pass : plan.passes) passes.push_back(evaluated(pass));
   std::vector<Moments> others;
-  if (plan.others) others = computed(*plan.others);
+  if (plan.others) others = evaluated(*plan.others);
   const Clock::time_point start = Clock::now();
   std::vector<Moments> moments = combined(request, plan, passes, others);
   interpolation_s_ += seconds_since(start);

@@ -28,6 +28,7 @@ class InterpolatingEvaluator final : public ModelEvaluator {
  private:
   /// Without interpolation between slope distributions.
   std::vector<Moments> computed(const MomentsRequest& request, const Progress& progress);
+  std::vector<Moments> combined_from_responses(const MomentsRequest& request, const Progress& progress);
   /// Directions of one shape parameter.
   std::vector<Moments> evaluate_part(const MomentsRequest& request, const Progress& progress);
 

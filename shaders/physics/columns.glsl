@@ -3,8 +3,8 @@
 //   sky        the moments with functions g of the zenith of the reflected ray, |g| <= 1: what a sky that changes with
 //              the zenith adds to its mean (README.md beside this file, section 11);
 //   responses  the moments with the Chebyshev polynomials of the local angle of incidence in place of the reflectances:
-//              those of every index follow from them (section 8). The light reflected may be weighted with the first
-//              function of a sky, and the light emitted straight to the viewer takes its place for direct emission.
+//              those of every index follow from them (section 8). They are of the reflected light, of this light times
+//              the first function of a sky, or of the direct emission.
 //
 // A function g is a table over u = sqrt(1 - cos(theta_r)) = sqrt(2) sin(theta_r / 2), in which corners at the zenith are
 // corners too: straight lines in cells of one width, (value at the start, change over the cell), behind the nodes of the

@@ -147,7 +147,7 @@ RowMoments piece_moments(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
   Masked of_theta = masking_of_direction(row, theta.c, theta.s);
   PieceSums coarse = no_slopes();
   PieceSums fine = no_slopes();
-  int passes = min(task.members + 1, 2);  // always 2, but no constant: the loop is not to be unrolled
+  int passes = min(task.members + 1, 2);  // 2, computed so that drivers do not unroll the loop
   for (int pass = 0; pass < passes; ++pass) {
     coarse = fine;
     fine = piece_sums(rule, theta, row, index, task, piece, of_theta, pass == 0);

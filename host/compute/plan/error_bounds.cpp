@@ -227,15 +227,13 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
     const auto part = columns.subspan(DOLP_COLUMN_PARTS * k, DOLP_COLUMN_PARTS);
     const double of_sky = data.sky.count > 0 ? sky_error(data, data.response ? 0 : k, unit_roundoff) : 0.0;
     if (data.response) {
-      const double size = std::max(std::abs(part[0]), std::abs(part[1]));
       const double largest = data.response->of == Response::Of::kDirect ? theta.c : std::abs(node.albedo);
-      moments.columns.push_back(
-          {.i = part[0],
-           .q = part[1],
-           .error = rounding * size + (response_rounding(k, unit_roundoff) + of_sky) * largest + cut,
-           .i_apart = pair * part[2],
-           .q_apart = pair * part[3],
-           .relative_error = least + masking});
+      moments.columns.push_back({.i = part[0],
+                                 .q = part[1],
+                                 .error = (rounding + response_rounding(k, unit_roundoff) + of_sky) * largest + cut,
+                                 .i_apart = pair * part[2],
+                                 .q_apart = pair * part[3],
+                                 .relative_error = least + masking});
     } else {
       const double error = pair * part[2] + (of_sky + least_of_masked) * r_i_scale;
       moments.columns.push_back({part[0], part[1], error + reflected_cut + grooves});

@@ -12,6 +12,7 @@
 #include "base/numbers.hpp"
 #include "model/angles.hpp"
 #include "model/gamma_ratio.hpp"
+#include "model/response_basis.hpp"
 #include "model/smooth_surface.hpp"
 #include "plan/breakpoints.hpp"
 #include "plan/constants.hpp"
@@ -194,7 +195,9 @@ void add_shape(KernelData& data, const MomentsRequest& request, const SlopeShape
   data.needs_line.push_back(is_split ? 1 : 0);
 }
 
-/// The rules take the polynomials and the hardest curve for those of a pole on the imaginary axis.
+static_assert(kMostResponses == DOLP_COLUMNS);
+
+/// Plans the rules as if polynomials and curves had a pole at the distance `bend` on the imaginary axis.
 void take_responses(KernelData& data, const Response& response) {
   data.response = response;
   data.rule.response_scale = 1.0 / response.c0;

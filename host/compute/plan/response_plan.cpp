@@ -58,12 +58,14 @@ struct Responses {
   std::vector<double> relative_error;  ///< of each shape
 };
 
-/// The product, summed in one order: the library's own order, and the last bits with it, follow from the sizes, which a
-/// part of a grid would change.
+/// The product, summed in one order: Eigen's follows from the sizes, so that parts of a grid would differ in the last
+/// bits.
 RowMajor product(const RowMajor& weights, const RowMajor& part) {
   RowMajor sums = RowMajor::Zero(weights.rows(), part.cols());
   for (Eigen::Index i = 0; i < weights.rows(); ++i) {
-    for (Eigen::Index j = 0; j < weights.cols(); ++j) sums.row(i) += weights(i, j) * part.row(j);
+    for (Eigen::Index j = 0; j < weights.cols(); ++j) {
+      if (weights(i, j) != 0.0) sums.row(i) += weights(i, j) * part.row(j);  // a bound may be infinite
+    }
   }
   return sums;
 }
@@ -77,6 +79,18 @@ struct Sums {
               product(weights.cwiseAbs(), responses.all[Responses::kError])) {
     for (Eigen::Index shape = 0; shape < error.cols(); ++shape)
       error.col(shape) += responses.relative_error[static_cast<std::size_t>(shape)] * value.col(shape).cwiseAbs();
+  }
+  /// The same of weights that are a difference of curves, which changes its sign: what is relative is so to its largest
+  /// value.
+  static Sums of_difference(const Responses& responses, Responses::Part of, Responses::Part apart,
+                            const RowMajor& weights) {
+    Sums sums(responses, of, apart, weights);
+    const Eigen::VectorXd largest = weights.cwiseAbs().rowwise().sum();
+    for (Eigen::Index shape = 0; shape < sums.error.cols(); ++shape) {
+      sums.error.col(shape) +=
+          responses.relative_error[static_cast<std::size_t>(shape)] * responses.all[Responses::kI](0, shape) * largest;
+    }
+    return sums;
   }
   RowMajor value;
   RowMajor error;
@@ -127,11 +141,10 @@ class Combination {
     const Sums i(all, Responses::kI, Responses::kIApart, reflected_);
     const Sums q(all, Responses::kQ, Responses::kQApart, split_);
     // The same from the reference: better where the curves are alike, or little is absorbed.
-    const Sums more_absorbed(all, Responses::kI, Responses::kIApart, absorbed_apart_);
-    const Sums more_split(all, Responses::kQ, Responses::kQApart, split_apart_);
+    const Sums more_absorbed = Sums::of_difference(all, Responses::kI, Responses::kIApart, absorbed_apart_);
+    const Sums more_split = Sums::of_difference(all, Responses::kQ, Responses::kQApart, split_apart_);
     const ResponseWeights& of_reference = request_.basis->of_reference();
-    const double evaluations_share =
-        static_cast<double>(plan_.passes.size()) / static_cast<double>(request_.indices.size());
+    const double evaluations_share = static_cast<double>(plan_.passes.size()) / static_cast<double>(reached_.size());
     for_all(reference.size(), moments, [&](Moments& sum, const ResponseWeights& own, auto index, auto shape) {
       const Moments& from = reference[static_cast<std::size_t>(shape)];
       sum.albedo = from.albedo;

@@ -10,7 +10,8 @@
 
 namespace dolp {
 
-/// Plan for a grid with a basis. Each entry's part of it follows from the basis and the entry alone.
+/// Plan for a grid with a basis. The result of an entry does not depend on the other entries of the
+/// request.
 struct ResponsePlan {
   /// Source of the moments of one index of the request.
   struct Source {

@@ -85,7 +85,7 @@ struct MomentsRequest {
 struct ColumnMoments {
   double i = 0.0;
   double q = 0.0;
-  double error = 0.0;  ///< bound of the absolute error of either; of a response, of what the next three do not tell
+  double error = 0.0;  ///< bound of the absolute error of either; of a response, what the next three do not cover
   // Of a response: bounds of the error that sums over responses share, with its sign, and relative to the sum.
   double i_apart = 0.0;
   double q_apart = 0.0;

@@ -14,7 +14,7 @@ namespace {
 
 // Cosines at which the polynomials bend: metals need the smallest, at the pole of R_p, dielectrics the largest.
 constexpr std::array<double, 5> kScales = {1.0, 0.3, 0.1, 0.03, 0.01};
-constexpr Eigen::Index kCoefficients = 65;  // of a curve, known; odd, so that every second one tells of the others
+constexpr Eigen::Index kCoefficients = 65;  // of a curve, known
 constexpr Eigen::Index kLastOfCurve = 4;
 constexpr double kReach = 0.25;  // largest error of a combined curve, of the tolerance
 // Time of a pass without responses, and what each response adds.
@@ -39,8 +39,8 @@ CurveCoefficients coefficients_of(const OpticalConstants& index, double c0) {
   return transform * values;
 }
 
-/// Bounds of the curves' distance from their first `count` polynomials: the coefficients left out, and as many more as
-/// are known, each as large as the last ones.
+/// Bounds of the curves' distance from their first `count` polynomials: the known coefficients left out, and as many
+/// unknown ones, each as large as the largest of the last four.
 Eigen::RowVector2d errors_of(const CurveCoefficients& all, Eigen::Index count) {
   return all.bottomRows(kCoefficients - count).cwiseAbs().colwise().sum() +
          kCoefficients * all.bottomRows<kLastOfCurve>().cwiseAbs().colwise().maxCoeff();
@@ -110,7 +110,7 @@ std::shared_ptr<const ResponseBasis> ResponseBasis::of(const std::vector<Optical
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (of_least[i] > basis->count_) continue;
     basis->bend_ = std::min(basis->bend_, distance_of_bend(candidates[i]));
-    // Errors of the rules that take up a kink would be those of the responses too, which have none.
+    // Not one of total reflection: its kink would add to the errors of responses, which have none.
     if (critical_cosine(candidates[i]) > 0.0 || level_of(candidates[i]) >= lowest) continue;
     lowest = level_of(candidates[i]);
     basis->reference_ = candidates[i];

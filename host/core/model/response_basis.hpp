@@ -27,13 +27,13 @@ struct ResponseWeights {
 class ResponseBasis {
  public:
   /// Errors of the combined curves stay below the tolerance, relative to the reflectance or to the absorptance at
-  /// normal incidence, whichever is less. `passes`: of the kernel that have responses. Null where these cost more than
-  /// the indices by themselves.
+  /// normal incidence, whichever is less. `passes`: kernel passes with responses. Null where they cost more than
+  /// integrating each index.
   static std::shared_ptr<const ResponseBasis> of(const std::vector<OpticalConstants>& indices, double tolerance,
                                                  std::size_t passes);
 
-  /// The index that is computed with the responses, from which others may be combined with less noise: the one that
-  /// reflects or absorbs least.
+  /// The index integrated along with the responses: sums relative to it have less noise. It is the one with the
+  /// smallest reflectance or absorptance.
   const OpticalConstants& reference() const { return reference_; }
   std::size_t count() const { return count_; }
   double c0() const { return c0_; }

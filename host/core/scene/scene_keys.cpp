@@ -266,7 +266,7 @@ std::vector<SceneKey> geometry_keys() {
         {},
         {"auto", "off"},
         "auto",
-        "between slope distributions of a dense grid and from some of many indices to all, within the tolerance; off: "
+        "between slope distributions of a dense grid and over many indices by responses, within the tolerance; off: "
         "every entry is integrated by itself"},
        [](SceneValues& s, const KeyValue& v) { s.accuracy.may_interpolate = v.word == 0; },
        [](const SceneValues& s) -> std::optional<KeyValue> {

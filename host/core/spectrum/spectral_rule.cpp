@@ -47,8 +47,9 @@ constexpr double kProbeSafety = 10.0;
 constexpr std::array<double, 7> kProbeCosines = {1.0, 0.5, 0.25, 0.15, 0.1, 0.07, 0.04};
 constexpr std::array<double, 7> kCriticalPlaces = {0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};  // of a segment
 // A segment that more nodes do not bring to this share of the scene's tolerance is cut into equal panels, each with its
-// own nodes, until the probes of these meet theirs, of the whole, or the most panels of a band are reached. Mirrors
-// have closed forms, and rough surfaces smooth roots. Entries state what they see of the panels' errors (panel_error).
+// own nodes, until the error that the probes show is below kPanelShareOfTolerance of the band, or a band has about
+// kMostPanels. Mirrors have closed forms, and rough surfaces smooth roots. Entries state what they see of the panels'
+// errors (panel_error).
 constexpr double kShareOfTolerance = 0.005;
 constexpr double kPanelShareOfTolerance = 0.03;
 constexpr int kLeastPanels = 4;

@@ -87,8 +87,8 @@ DOLP_EXPORT const std::vector<std::string>& loss_names();
 /// A systematic error of the model that a fit allows for.
 enum class ModelError {
   kNone,
-  kBracket,  ///< the truth may lie anywhere between both ends of the model's bracket (emission.bracket), at each point
-             ///< elsewhere: a residual counts from the nearer end, and an interval holds the values at which chi^2
+  kBracket,  ///< the truth may lie anywhere in the model's bracket (emission.bracket), independently at each point: a
+             ///< residual counts from the nearer end, and an interval holds the values at which chi^2
              ///< itself is below its quantile for as many degrees of freedom as there are points
 };
 

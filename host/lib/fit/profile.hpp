@@ -29,8 +29,8 @@ struct Profiles {
   /// Of each parameter and rise: where the objective, least over all others, lies below. Apart, ascending.
   std::vector<std::array<std::vector<Stretch>, 2>> stretches;
   std::vector<Minimum> seen = {};  ///< points on the way
-  std::optional<Minimum> lower =
-      {};  ///< a point below the best minimum: there is another one, and the rest is not complete
+  /// A point below the best minimum: there is another one, and the rest is not complete.
+  std::optional<Minimum> lower = {};
 };
 
 /// The profiles of all parameters around minima, the best first, that lie below the second rise.

@@ -164,11 +164,16 @@ void add_misfit(ReportBuilder& report, const fit::Model& model, const FitResult&
 /// Names what intervals with a model error leave open, and the model that leaves less.
 void add_model_error(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   if (!model.has_model_error()) return;
+  const auto is_empty_95 = [](const auto& parameter) { return parameter.interval_95.is_empty; };
+  if (std::ranges::any_of(result.parameters, is_empty_95)) {
+    report.row("bracket", "the data exclude every value, with the light that single scattering loses too");
+    return;
+  }
   std::vector<std::string> left, hardly;
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {
     const FitRange& range = model.parameters()[j];
-    const auto& [low, high, pieces, is_empty] = result.parameters[j].interval_95;
-    const double width = is_empty ? 0.0 : high.value_or(range.high) - low.value_or(range.low);
+    const FitInterval& interval = result.parameters[j].interval_95;
+    const double width = interval.high.value_or(range.high) - interval.low.value_or(range.low);
     left.push_back(fmt::format("{:.0f} % of the range of {}", kPercent * width / (range.high - range.low), range.key));
     if (width > 0.5 * (range.high - range.low)) hardly.push_back(range.key);
   }

@@ -47,7 +47,7 @@ std::vector<char> interpolate_all(const ShapePlan& plan, std::span<const Moments
 }  // namespace
 
 std::vector<Moments> InterpolatingEvaluator::computed(const MomentsRequest& request, const Progress& progress) {
-  if (!request.basis) return evaluator_->evaluate(request, progress);
+  if (!request.basis || request.size() == 0) return evaluator_->evaluate(request, progress);
   std::vector<std::size_t> directions(request.theta_deg.size());
   std::iota(directions.begin(), directions.end(), std::size_t{0});
   const std::size_t columns = request.basis->count() * request.sigma.size() * request.q.size();
@@ -68,7 +68,7 @@ std::vector<Moments> InterpolatingEvaluator::computed(const MomentsRequest& requ
 std::vector<Moments> InterpolatingEvaluator::combined_from_responses(const MomentsRequest& request,
                                                                      const Progress& progress) {
   const ResponsePlan plan = response_plan(request);
-  const std::size_t wanted = plan.wanted_count();
+  const std::size_t wanted = std::max<std::size_t>(plan.wanted_count(), 1);
   nodes_ += wanted;
   std::size_t before = 0;
   const auto evaluated = [&](const MomentsRequest& one) {

@@ -70,8 +70,8 @@
 #ifndef DOLP_MOST_COLUMNS
 #define DOLP_MOST_COLUMNS 0      // 0: kernels without
 #endif
-#define DOLP_COLUMNS 24          // the other value of DOLP_MOST_COLUMNS
-#define DOLP_SKY_FUNCTIONS 8     // the most of a sky
+#define DOLP_COLUMNS 24          // the most of all kinds
+#define DOLP_SKY_FUNCTIONS 8     // the most of a sky: DOLP_MOST_COLUMNS of kernels for skies
 #define DOLP_MOST_SKY_CORNERS 24 // that split the azimuths
 #define DOLP_COLUMN_PARTS 4      // numbers of a column in the output of moments.comp: i and q of the coarser rule, and
                                  // of the finer one
@@ -105,7 +105,7 @@ struct RuleNode {
   real dimmest;           // and the share of a ray's light below which it is followed no further
   real cluster_below_q;   // below this q an arc clusters its nodes where the limit b of `integral` meets pi/2
   real response_scale;    // of responses: 1 / c0,
-  real response_norm;     // and 2 / asinh(1 / c0)
+  real response_norm;     // and 2 / asinh(1 / c0), both from the host
 };
 
 // One direction theta, with the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. Under total

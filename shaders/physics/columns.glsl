@@ -2,8 +2,8 @@
 //
 //   sky        the moments with functions g of the zenith of the reflected ray, |g| <= 1: what a sky that changes with
 //              the zenith adds to its mean (README.md beside this file, section 11);
-//   responses  the moments with the Chebyshev polynomials of the local angle of incidence in place of the reflectances:
-//              those of every index follow from them (section 8). They are of the reflected light, of this light times
+//   responses  the moments with the Chebyshev polynomials of the local angle of incidence instead of the reflectances:
+//              the moments of every index are sums of them (section 8). They are of the reflected light, of this light times
 //              the first function of a sky, or of the direct emission.
 //
 // A function g is a table over u = sqrt(1 - cos(theta_r)) = sqrt(2) sin(theta_r / 2), in which corners at the zenith are

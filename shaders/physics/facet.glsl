@@ -53,7 +53,7 @@ real4 reflected(Facet f, Projection part) {
   return real4(part.seen * f.m00, part.seen * f.m01, part.seen, part.hidden + part.seen * f.absorbed);
 }
 
-// A facet's projection toward the viewer, with the masking of theta alone.
+// A facet's projection toward the viewer, masked for theta only.
 real seen_directly(ThetaNode theta, Facet f) {
   return (kMasking == DOLP_MASKING_V_CAVITY) ? min(f.e, real(2.0) * theta.c) : f.e;
 }

@@ -145,14 +145,14 @@ double pair_factor(const KernelData& data, const kernel::IndexNode& index) {
   return index.critical_cos > 0.0 ? kCriticalFactor * smooth : smooth;
 }
 
-// Errors of a function of the sky: of its table, of the corners that split nothing, and of rounding, in which that of
-// 1 - cos(theta_r) shows next to the zenith alone.
+// Errors of a function of the sky: its table, the corners that split nothing, and rounding. The rounding of
+// 1 - cos(theta_r) shows only next to the zenith.
 double sky_error(const KernelData& data, std::size_t function, double unit_roundoff) {
   return data.sky.error[function] + kUnsplitBends * data.sky.bends[function] + kSkyRoundings * unit_roundoff +
          data.sky.steepness[function] * std::sqrt(kSkyCosineRoundings * unit_roundoff);
 }
 
-// Rounding of a Chebyshev polynomial: its abscissa's, times the largest slope, and that of the recurrence.
+// Rounding of a Chebyshev polynomial: of its abscissa, times the largest slope, and of the recurrence.
 double response_rounding(std::size_t degree, double unit_roundoff) {
   return kResponseRoundings * unit_roundoff * static_cast<double>(1 + degree * degree);
 }

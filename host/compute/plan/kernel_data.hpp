@@ -93,8 +93,8 @@ KernelData kernel_data(const MomentsRequest& request, const RuleModel& model);
 /// Numbers beside a MomentsNode, and beside an AzimuthNode, for the columns of the data.
 inline std::size_t column_sums(const KernelData& data) { return DOLP_COLUMN_PARTS * data.column_count(); }
 inline std::size_t column_azimuths(const KernelData& data) { return 2 * data.column_count(); }
-/// Adds the kernel's columns of a piece, DOLP_COLUMN_PARTS numbers each, to sums of the finer rule and of what it is
-/// apart from the coarser one; that of a sky is the larger of both, without its sign.
+/// Adds the kernel's columns of a piece, DOLP_COLUMN_PARTS numbers each, to `sums`: i and q of the finer rule, and
+/// their differences from the coarser one. A sky has the larger difference without its sign.
 template <class Real>
 void add_columns(const KernelData& data, std::span<const Real> piece, std::span<double> sums) {
   for (std::size_t first = 0; first < piece.size(); first += DOLP_COLUMN_PARTS) {

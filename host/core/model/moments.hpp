@@ -30,7 +30,7 @@ struct MomentsPoint {
   friend bool operator==(const MomentsPoint&, const MomentsPoint&) = default;
 };
 
-/// The responses to the local angle of incidence that a request wants in place of the functions of its sky
+/// The responses to the local angle of incidence that a request wants instead of the functions of its sky
 /// (response_basis.hpp).
 struct Response {
   enum class Of : std::uint8_t {

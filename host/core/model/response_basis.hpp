@@ -1,7 +1,7 @@
-// The moments of many indices from those of one and its responses to the local angle of incidence.
+// The moments of many indices from one index and its responses to the local angle of incidence.
 //
 // The moments of single scattering are linear in the Fresnel reflectances along the cosine c of the local angle of
-// incidence. A response is a moment with a Chebyshev polynomial of u = asinh(c / c0) / asinh(1 / c0) in place of the
+// incidence. A response is a moment with a Chebyshev polynomial of u = asinh(c / c0) / asinh(1 / c0) instead of the
 // reflectances: the coefficients of an index's curves times the responses are its moments, at every direction, slope
 // distribution and masking, and the coefficients left out bound the error.
 #pragma once
@@ -40,8 +40,8 @@ class ResponseBasis {
   /// Distance of the nearest singularity of the polynomials and the curves from the cosines of angles.
   double bend() const { return bend_; }
   const ResponseWeights& of_reference() const { return of_reference_; }
-  /// None for an index whose curves need more responses, as total reflection does. Follows from the basis and the index
-  /// alone.
+  /// None for an index whose curves need more responses, as total reflection does. Depends on nothing but the basis
+  /// and the index.
   std::optional<ResponseWeights> weights_of(const OpticalConstants& index) const;
 
  private:

@@ -228,7 +228,7 @@ struct SlopeSampling::Impl {
   }
 
   // The moments of one shape without the slopes beyond the cut; `own` is scratch space for the weights, `columns` gets
-  // those of the data.
+  // the columns of the data.
   kernel::MomentsNode moments_of(const SlopeSamples& samples, const KernelSource::ShapeNode& shape,
                                  const SlopeWeights& weights, std::span<const kernel::AzimuthNode> azimuths,
                                  std::span<const double> of_columns, Eigen::ArrayXd& own, std::span<double> columns) {

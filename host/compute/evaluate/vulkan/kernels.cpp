@@ -26,15 +26,21 @@ std::span<const std::uint32_t> module_of(const KernelVariant& variant, bool floa
     return float64 ? spirv::masking_table_double : spirv::masking_table_float;
   }
   if (variant.entry == EntryPoint::kMueller) return float64 ? spirv::mueller_double : spirv::mueller_float;
-  if (variant.entry == EntryPoint::kSlopes && variant.columns > 0) {
-    return float64 ? spirv::slopes_columns_double : spirv::slopes_columns_float;
+  const bool has_rows = variant.width == kRowWidth;
+  if (variant.columns > 0 && variant.column_kind == DOLP_COLUMNS_SKY) {
+    if (variant.entry == EntryPoint::kSlopes) return float64 ? spirv::slopes_sky_double : spirv::slopes_sky_float;
+    if (has_rows) return float64 ? spirv::moments_sky_rows_double : spirv::moments_sky_rows_float;
+    return float64 ? spirv::moments_sky_double : spirv::moments_sky_float;
+  }
+  if (variant.columns > 0) {
+    if (variant.entry == EntryPoint::kSlopes) {
+      return float64 ? spirv::slopes_responses_double : spirv::slopes_responses_float;
+    }
+    if (has_rows) return float64 ? spirv::moments_responses_rows_double : spirv::moments_responses_rows_float;
+    return float64 ? spirv::moments_responses_double : spirv::moments_responses_float;
   }
   if (variant.entry == EntryPoint::kSlopes) return float64 ? spirv::slopes_double : spirv::slopes_float;
-  if (variant.columns > 0 && variant.width == kRowWidth) {
-    return float64 ? spirv::moments_columns_rows_double : spirv::moments_columns_rows_float;
-  }
-  if (variant.columns > 0) return float64 ? spirv::moments_columns_double : spirv::moments_columns_float;
-  if (variant.width == kRowWidth) return float64 ? spirv::moments_rows_double : spirv::moments_rows_float;
+  if (has_rows) return float64 ? spirv::moments_rows_double : spirv::moments_rows_float;
   return float64 ? spirv::moments_double : spirv::moments_float;
 }
 

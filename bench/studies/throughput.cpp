@@ -10,7 +10,6 @@
 #include <thread>
 
 #include "device/devices.hpp"
-#include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "methods/arithmetic_peak.hpp"
 #include "methods/method.hpp"
@@ -114,7 +113,7 @@ ordered_json grid_row(Masking masking, const GridRun& run) {
   const std::size_t entries = run.size.entries();
   const double time_s = median(run.timed->times_s());
   const double kernel_s = median(run.timed->kernel_times_s());
-  const double evaluations = run.timed->evaluations() / static_cast<double>(entries);
+  const double evaluations = run.timed->work().evaluations / static_cast<double>(entries);
   const std::string setting =
       fmt::format("{}, {:g}{}", run.size.text(), run.tolerance, run.may_interpolate ? "" : ", off");
   ordered_json row = row_start("grids", name_of(masking), setting);
@@ -122,8 +121,8 @@ ordered_json grid_row(Masking masking, const GridRun& run) {
   row["tolerance"] = run.tolerance;
   row["entries"] = entries;
   row["interpolation"] = run.may_interpolate ? "auto" : "off";
-  row["interpolated"] = run.timed->interpolated();
-  row["interpolation_nodes"] = run.timed->interpolation_nodes();
+  row["interpolated"] = run.timed->work().interpolated;
+  row["interpolation_nodes"] = run.timed->work().interpolation_nodes;
   row["time_s"] = time_s;
   row["kernel_time_s"] = kernel_s;
   row["run_s"] = rounded_time(time_s * static_cast<double>(entries));
@@ -205,7 +204,7 @@ void Study::measure_all() {
 }
 
 void Study::run_grids(Masking masking) {
-  InterpolatingEvaluator evaluator(std::make_unique<VulkanEvaluator>(VulkanOptions{.device = run_.options().device}));
+  VulkanEvaluator evaluator(VulkanOptions{.device = run_.options().device});
   std::vector<GridRun> runs;
   for (const GridSize& size : grids_) runs.push_back({size});
   for (const double tolerance : kTolerances) {

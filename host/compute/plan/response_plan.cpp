@@ -99,15 +99,16 @@ struct Sums {
 /// Combines all reached indices, direction by direction.
 class Combination {
  public:
-  Combination(const MomentsRequest& request, const ResponsePlan& plan) : request_(request), plan_(plan) {
+  Combination(const MomentsRequest& request, const ResponsePlan& plan)
+      : request_(request), sources_(*plan.sources), passes_(plan.passes.size()) {
     const ResponseWeights& reference = request.basis->of_reference();
-    for (std::size_t i = 0; i < plan.sources.size(); ++i) {
-      if (plan.sources[i].weights) reached_.push_back(i);
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+      if (sources_[i].weights) reached_.push_back(i);
     }
     const auto rows = static_cast<Eigen::Index>(reached_.size());
     absorbed_ = split_ = RowMajor(rows, static_cast<Eigen::Index>(request.basis->count()));
     for (Eigen::Index i = 0; i < rows; ++i) {
-      const ResponseWeights& own = *plan.sources[reached_[static_cast<std::size_t>(i)]].weights;
+      const ResponseWeights& own = *sources_[reached_[static_cast<std::size_t>(i)]].weights;
       absorbed_.row(i) = own.absorbed.transpose();
       split_.row(i) = own.split.transpose();
     }
@@ -130,7 +131,7 @@ class Combination {
   void for_all(std::size_t shapes, std::span<Moments> moments, const Function& set) const {
     for (std::size_t i = 0; i < reached_.size(); ++i) {
       for (std::size_t shape = 0; shape < shapes; ++shape) {
-        set(moments[reached_[i] * shapes + shape], *plan_.sources[reached_[i]].weights, static_cast<Eigen::Index>(i),
+        set(moments[reached_[i] * shapes + shape], *sources_[reached_[i]].weights, static_cast<Eigen::Index>(i),
             static_cast<Eigen::Index>(shape));
       }
     }
@@ -144,7 +145,7 @@ class Combination {
     const Sums more_absorbed = Sums::of_difference(all, Responses::kI, Responses::kIApart, absorbed_apart_);
     const Sums more_split = Sums::of_difference(all, Responses::kQ, Responses::kQApart, split_apart_);
     const ResponseWeights& of_reference = request_.basis->of_reference();
-    const double evaluations_share = static_cast<double>(plan_.passes.size()) / static_cast<double>(reached_.size());
+    const double evaluations_share = static_cast<double>(passes_) / static_cast<double>(reached_.size());
     for_all(reference.size(), moments, [&](Moments& sum, const ResponseWeights& own, auto index, auto shape) {
       const Moments& from = reference[static_cast<std::size_t>(shape)];
       sum.albedo = from.albedo;
@@ -199,17 +200,19 @@ class Combination {
   }
 
   const MomentsRequest& request_;
-  const ResponsePlan& plan_;
+  const std::vector<ResponsePlan::Source>& sources_;
+  std::size_t passes_;
   std::vector<std::size_t> reached_;  ///< of the request's indices
   RowMajor absorbed_, split_, absorbed_apart_, split_apart_, reflected_;
 };
 
 }  // namespace
 
-std::size_t ResponsePlan::wanted_count() const {
-  std::size_t count = others ? others->wanted_count() : 0;
-  for (const MomentsRequest& pass : passes) count += pass.wanted_count();
-  return count;
+ResponsePlan ResponsePlan::of_directions(std::span<const std::size_t> directions) const {
+  ResponsePlan part{.sources = sources};
+  for (const MomentsRequest& pass : passes) part.passes.push_back(pass.of_directions(directions));
+  if (others) part.others = others->of_directions(directions);
+  return part;
 }
 
 std::size_t response_passes(bool wants_direct, std::size_t sky_functions) {
@@ -222,11 +225,14 @@ ResponsePlan response_plan(const MomentsRequest& request) {
   MomentsRequest others = request;
   others.basis = nullptr;
   others.indices.clear();
+  std::vector<ResponsePlan::Source> sources(request.indices.size());
+  parallel_ranges(sources.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) sources[i].weights = basis.weights_of(request.indices[i]);
+  });
   std::vector<std::size_t> reached;
   std::vector<std::vector<std::size_t>> beyond;
   for (std::size_t i = 0; i < request.indices.size(); ++i) {
-    ResponsePlan::Source& source = plan.sources.emplace_back();
-    source.weights = basis.weights_of(request.indices[i]);
+    ResponsePlan::Source& source = sources[i];
     if (source.weights) {
       reached.push_back(i);
       continue;
@@ -235,6 +241,7 @@ ResponsePlan response_plan(const MomentsRequest& request) {
     others.indices.push_back(request.indices[i]);
     beyond.push_back({i});
   }
+  plan.sources = std::make_shared<const std::vector<ResponsePlan::Source>>(std::move(sources));
   others.wanted = wanted_of(request, beyond);
   if (!others.indices.empty()) plan.others = std::move(others);
   if (reached.empty()) return plan;
@@ -274,9 +281,10 @@ std::vector<Moments> combined(const MomentsRequest& request, const ResponsePlan&
       for (const std::vector<Moments>& pass : passes)
         of_passes.push_back(std::span(pass).subspan(theta * shapes, shapes));
       if (!of_passes.empty()) combine(cos_sin_deg(request.theta_deg[theta]).cos, of_passes, own);
-      for (std::size_t i = 0; i < plan.sources.size(); ++i) {
-        if (plan.sources[i].weights) continue;
-        const auto from = others.subspan(theta * of_others + plan.sources[i].other * shapes, shapes);
+      for (std::size_t i = 0; i < plan.sources->size(); ++i) {
+        const ResponsePlan::Source& source = (*plan.sources)[i];
+        if (source.weights) continue;
+        const auto from = others.subspan(theta * of_others + source.other * shapes, shapes);
         std::ranges::copy(from, own.begin() + static_cast<std::ptrdiff_t>(i * shapes));
       }
     }

@@ -1,6 +1,7 @@
 // Selects what to compute of a grid of many indices, and combines their moments from it (model/response_basis.hpp).
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -22,9 +23,10 @@ struct ResponsePlan {
   /// wanted, of the direct emission and of the light reflected with each function of the sky.
   std::vector<MomentsRequest> passes;
   std::optional<MomentsRequest> others;  ///< the indices that are not reached
-  std::vector<Source> sources;
+  std::shared_ptr<const std::vector<Source>> sources;  ///< one for each index of the request
 
-  std::size_t wanted_count() const;  ///< of all requests
+  /// The plan of some directions of the request.
+  ResponsePlan of_directions(std::span<const std::size_t> directions) const;
 };
 
 /// Passes for what a request wants.

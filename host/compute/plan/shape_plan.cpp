@@ -92,17 +92,6 @@ std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
   return plan;
 }
 
-std::vector<char> interpolated_directions(const MomentsRequest& request) {
-  std::vector<char> is_interpolated(request.theta_deg.size(), request.basis ? 1 : 0);
-  for (const MomentsRequest& part : with_one_parameter(request)) {
-    if (!shape_plan(part)) continue;
-    for (std::size_t i = 0; i < is_interpolated.size(); ++i) {
-      if (std::ranges::find(part.theta_deg, request.theta_deg[i]) != part.theta_deg.end()) is_interpolated[i] = 1;
-    }
-  }
-  return is_interpolated;
-}
-
 void interpolate(const ShapePlan& plan, std::span<const Moments> nodes, std::span<Moments> moments) {
   const Values sigma = plan.sigma.cardinal;
   const Values q = plan.q.cardinal.transpose();

@@ -28,7 +28,9 @@ std::vector<const MomentsRequest*> MomentsStep::kernel_requests() const {
 MomentsPlan::MomentsPlan(const MomentsRequest& request) : size_(request.size()) {
   if (size_ == 0) return;
   if (request.layout == MomentsRequest::Layout::kList) {
-    steps_.push_back({.request = request});
+    MomentsStep& step = steps_.emplace_back();
+    step.request = request;
+    if (request.basis) step.responses = response_plan(request);
     return;
   }
   directions_ = request.theta_deg.size();

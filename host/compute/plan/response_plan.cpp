@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <tuple>
 #include <utility>
 
 #include "base/parallel_ranges.hpp"
@@ -219,25 +221,91 @@ std::size_t response_passes(bool wants_direct, std::size_t sky_functions) {
   return 1 + (wants_direct ? 1 : 0) + sky_functions;
 }
 
-ResponsePlan response_plan(const MomentsRequest& request) {
+namespace {
+
+/// The sources of some indices. Depends on nothing but the basis and the indices.
+std::vector<ResponsePlan::Source> sources_of(const ResponseBasis& basis, std::span<const OpticalConstants> indices) {
+  std::vector<ResponsePlan::Source> sources(indices.size());
+  parallel_ranges(sources.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) sources[i].weights = basis.weights_of(indices[i]);
+  });
+  return sources;
+}
+
+/// Adds the passes with the entries of `reference`, at the reference index.
+void add_passes(ResponsePlan& plan, const MomentsRequest& request, MomentsRequest reference) {
   const ResponseBasis& basis = *request.basis;
+  reference.basis = nullptr;
+  reference.sky = nullptr;
+  reference.wants_direct = false;
+  reference.tolerance = request.finer_tolerance(kResponseTolerance);
+  reference.response = {.count = basis.count(), .c0 = basis.c0(), .bend = basis.bend(), .of = Response::Of::kReflected};
+  plan.passes.push_back(reference);
+  if (request.wants_direct) {
+    MomentsRequest& direct = plan.passes.emplace_back(reference);
+    direct.wants_direct = true;
+    direct.response->of = Response::Of::kDirect;
+  }
+  for (std::size_t k = 0; request.sky && k < request.sky->size(); ++k) {
+    MomentsRequest& with_sky = plan.passes.emplace_back(reference);
+    with_sky.sky = std::make_shared<const SkyBasis>(request.sky->only(k));
+    with_sky.response->of = Response::Of::kSky;
+  }
+}
+
+/// The request without entries.
+MomentsRequest without_entries(const MomentsRequest& request) {
+  MomentsRequest empty = request;
+  empty.basis = nullptr;
+  for (std::vector<double>* const axis : {&empty.theta_deg, &empty.sigma, &empty.q}) axis->clear();
+  empty.indices.clear();
+  empty.wanted.clear();
+  return empty;
+}
+
+ResponsePlan plan_of_points(const MomentsRequest& request) {
   ResponsePlan plan;
+  MomentsRequest reference = without_entries(request), others = reference;
+  std::map<std::tuple<double, double, double>, std::uint32_t> passes;
+  std::map<std::pair<double, double>, std::uint32_t> numbers;
+  std::vector<OpticalConstants> indices;
+  for (std::size_t i = 0; i < request.size(); ++i) {
+    MomentsPoint point = request[i];
+    const auto [source, is_new_index] =
+        numbers.try_emplace({point.index.n, point.index.k}, static_cast<std::uint32_t>(indices.size()));
+    if (is_new_index) indices.push_back(point.index);
+    const auto [pass, is_new] = passes.try_emplace({point.theta_deg, point.shape.sigma, point.shape.q},
+                                                   static_cast<std::uint32_t>(reference.size()));
+    point.index = request.basis->reference();
+    if (is_new) reference.append(point);
+    plan.points.push_back({.pass = pass->second, .source = source->second});
+  }
+  std::vector<ResponsePlan::Source> sources = sources_of(*request.basis, indices);
+  for (std::size_t i = 0; i < request.size(); ++i) {
+    if (sources[plan.points[i].source].weights) continue;
+    plan.points[i].other = static_cast<std::uint32_t>(others.size());
+    others.append(request[i]);
+  }
+  plan.sources = std::make_shared<const std::vector<ResponsePlan::Source>>(std::move(sources));
+  if (others.size() > 0) plan.others = std::move(others);
+  add_passes(plan, request, std::move(reference));
+  return plan;
+}
+
+ResponsePlan plan_of_grid(const MomentsRequest& request) {
+  ResponsePlan plan;
+  std::vector<ResponsePlan::Source> sources = sources_of(*request.basis, request.indices);
   MomentsRequest others = request;
   others.basis = nullptr;
   others.indices.clear();
-  std::vector<ResponsePlan::Source> sources(request.indices.size());
-  parallel_ranges(sources.size(), 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) sources[i].weights = basis.weights_of(request.indices[i]);
-  });
   std::vector<std::size_t> reached;
   std::vector<std::vector<std::size_t>> beyond;
   for (std::size_t i = 0; i < request.indices.size(); ++i) {
-    ResponsePlan::Source& source = sources[i];
-    if (source.weights) {
+    if (sources[i].weights) {
       reached.push_back(i);
       continue;
     }
-    source.other = others.indices.size();
+    sources[i].other = others.indices.size();
     others.indices.push_back(request.indices[i]);
     beyond.push_back({i});
   }
@@ -245,30 +313,43 @@ ResponsePlan response_plan(const MomentsRequest& request) {
   others.wanted = wanted_of(request, beyond);
   if (!others.indices.empty()) plan.others = std::move(others);
   if (reached.empty()) return plan;
-  MomentsRequest pass = request;
-  pass.basis = nullptr;
-  pass.sky = nullptr;
-  pass.wants_direct = false;
-  pass.tolerance = request.finer_tolerance(kResponseTolerance);
-  pass.indices = {basis.reference()};
-  pass.wanted = wanted_of(request, {reached});
-  pass.response = {.count = basis.count(), .c0 = basis.c0(), .bend = basis.bend(), .of = Response::Of::kReflected};
-  plan.passes.push_back(pass);
-  if (request.wants_direct) {
-    MomentsRequest& direct = plan.passes.emplace_back(pass);
-    direct.wants_direct = true;
-    direct.response->of = Response::Of::kDirect;
-  }
-  for (std::size_t k = 0; request.sky && k < request.sky->size(); ++k) {
-    MomentsRequest& with_sky = plan.passes.emplace_back(pass);
-    with_sky.sky = std::make_shared<const SkyBasis>(request.sky->only(k));
-    with_sky.response->of = Response::Of::kSky;
-  }
+  MomentsRequest reference = request;
+  reference.indices = {request.basis->reference()};
+  reference.wanted = wanted_of(request, {reached});
+  add_passes(plan, request, std::move(reference));
   return plan;
+}
+
+std::vector<Moments> combined_points(const MomentsRequest& request, const ResponsePlan& plan,
+                                     std::span<const std::vector<Moments>> passes, std::span<const Moments> others) {
+  const Combination combine(request, plan);
+  std::vector<std::vector<std::size_t>> points_of(plan.passes.front().size());
+  for (std::size_t i = 0; i < plan.points.size(); ++i) points_of[plan.points[i].pass].push_back(i);
+  std::vector<Moments> moments(request.size());
+  parallel_ranges(points_of.size(), 1, [&](std::size_t first, std::size_t last) {
+    std::vector<Moments> of_sources(plan.sources->size());
+    for (std::size_t pass = first; pass < last; ++pass) {
+      std::vector<std::span<const Moments>> of_passes;
+      for (const std::vector<Moments>& one : passes) of_passes.push_back(std::span(one).subspan(pass, 1));
+      combine(cos_sin_deg(plan.passes.front().theta_deg[pass]).cos, of_passes, of_sources);
+      for (const std::size_t i : points_of[pass]) {
+        const ResponsePlan::PointSource& point = plan.points[i];
+        moments[i] = (*plan.sources)[point.source].weights ? of_sources[point.source] : others[point.other];
+      }
+    }
+  });
+  return moments;
+}
+
+}  // namespace
+
+ResponsePlan response_plan(const MomentsRequest& request) {
+  return request.layout == MomentsRequest::Layout::kList ? plan_of_points(request) : plan_of_grid(request);
 }
 
 std::vector<Moments> combined(const MomentsRequest& request, const ResponsePlan& plan,
                               std::span<const std::vector<Moments>> passes, std::span<const Moments> others) {
+  if (request.layout == MomentsRequest::Layout::kList) return combined_points(request, plan, passes, others);
   const Combination combine(request, plan);
   const std::size_t shapes = request.sigma.size() * request.q.size();
   const std::size_t of_theta = request.indices.size() * shapes;

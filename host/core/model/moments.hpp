@@ -57,7 +57,7 @@ struct MomentsRequest {
   Precision precision = Precision::kAuto;       ///< kAuto: float
   bool may_interpolate = true;                  ///< between slope distributions, to the same tolerance
   bool has_extra_splits = false;                ///< a rule of another kind, to check others with
-  std::shared_ptr<const ResponseBasis> basis;   ///< of a grid, to combine the moments of its indices from; null: none
+  std::shared_ptr<const ResponseBasis> basis;   ///< to combine the moments of the indices from; null: none
   std::shared_ptr<const SkyBasis> sky;          ///< Moments::columns are those with its functions; null: none
   std::optional<Response> response;             ///< Moments::columns are the responses
   Layout layout = Layout::kGrid;

@@ -94,7 +94,7 @@ class MemberResults {
   /// Neighbours in a grid mostly have one direction, and all of them one way to treat it.
   const Direction& seen(const SceneEntry& entry) {
     const Surface& surface = context_.scene.surface;
-    const double theta_deg = seen_deg(context_.scene, entry.theta_deg);
+    const double theta_deg = moment_zenith_deg(context_.scene, entry.theta_deg);
     const Treatment treatment = treatment_of(surface.distribution, surface.masking, theta_deg, entry.shape);
     if (!has_direction_ || theta_deg != direction_.theta_deg || treatment != direction_.treatment) {
       direction_ = direction_of(surface.distribution, surface.masking, theta_deg, entry.shape);

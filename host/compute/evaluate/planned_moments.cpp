@@ -19,14 +19,12 @@ bool is_finite(const Moments& m) {
          std::isfinite(m.r_i_error + m.r_q_error + m.albedo_error + m.deficit_error);
 }
 
-std::size_t shapes_of(const MomentsRequest& request) { return request.sigma.size() * request.q.size(); }
-
 /// Fills in the moments of each direction and index whose nodes are finite. Returns 1 for each other wanted pair of
 /// direction and index, else 0.
 std::vector<char> interpolate_all(const ShapePlan& plan, std::span<const Moments> nodes, const MomentsRequest& request,
                                   std::span<Moments> moments) {
   const std::size_t of_nodes = plan.nodes_of_a_direction();
-  const std::size_t shapes = shapes_of(request);
+  const std::size_t shapes = request.shapes();
   std::vector<char> is_left(request.size() / shapes, 0);
   parallel_ranges(is_left.size(), 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
@@ -53,10 +51,15 @@ class PlannedMoments {
     if (steps.size() == 1) return moments_of(steps.front());
     std::vector<Moments> moments(plan_.size());
     for (const MomentsStep& step : steps) {
-      const std::vector<Moments> own = moments_of(step);
-      const std::size_t of_theta = own.size() / step.directions.size();
-      for (std::size_t i = 0; i < own.size(); ++i)
-        moments[step.directions[i / of_theta] * of_theta + i % of_theta] = own[i];
+      std::vector<Moments> own = moments_of(step);
+      const std::size_t shapes = step.request.shapes();
+      const std::size_t directions = plan_.directions();
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        const std::size_t of_theta = i / shapes;
+        const std::size_t index = of_theta / step.directions.size();
+        const std::size_t direction = step.directions[of_theta % step.directions.size()];
+        moments[(index * directions + direction) * shapes + i % shapes] = std::move(own[i]);
+      }
     }
     return moments;
   }
@@ -101,7 +104,7 @@ class PlannedMoments {
     MomentsRequest direct = request;
     direct.basis = nullptr;
     direct.wanted.assign(request.size(), 0);
-    const std::size_t shapes = shapes_of(request);
+    const std::size_t shapes = request.shapes();
     for (std::size_t i = 0; i < request.size(); ++i) direct.wanted[i] = is_left[i / shapes];
     work_.interpolated -= direct.wanted_count();
     const Progress is_wanted = [&](std::size_t, std::size_t) { return !progress_ || progress_(1, 1); };

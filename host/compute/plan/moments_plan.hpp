@@ -34,7 +34,8 @@ class MomentsPlan {
  public:
   explicit MomentsPlan(const MomentsRequest& request);
 
-  std::size_t size() const { return size_; }  ///< entries of the request
+  std::size_t size() const { return size_; }              ///< entries of the request
+  std::size_t directions() const { return directions_; }  ///< of a grid
   std::span<const MomentsStep> steps() const { return steps_; }
   /// Wanted entries that are interpolated or combined instead of computed.
   std::size_t saved_entries() const;

@@ -21,16 +21,12 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 /// Wanted entries of a grid that has some of the request's indices: for each of these, flags of the request's indices
 /// that need it.
 std::vector<char> wanted_of(const MomentsRequest& request, const std::vector<std::vector<std::size_t>>& needed_by) {
-  const std::size_t shapes = request.sigma.size() * request.q.size();
+  const std::size_t of_index = request.theta_deg.size() * request.shapes();
   std::vector<char> wanted;
-  for (std::size_t theta = 0; !request.wanted.empty() && theta < request.theta_deg.size(); ++theta) {
-    for (const std::vector<std::size_t>& indices : needed_by) {
-      for (std::size_t shape = 0; shape < shapes; ++shape) {
-        const bool is_wanted = std::ranges::any_of(indices, [&](std::size_t index) {
-          return request.is_wanted((theta * request.indices.size() + index) * shapes + shape);
-        });
-        wanted.push_back(is_wanted ? 1 : 0);
-      }
+  for (const std::vector<std::size_t>& indices : needed_by) {
+    for (std::size_t i = 0; !request.wanted.empty() && i < of_index; ++i) {
+      const auto wants = [&](std::size_t index) { return request.is_wanted(index * of_index + i); };
+      wanted.push_back(std::ranges::any_of(indices, wants) ? 1 : 0);
     }
   }
   return wanted;
@@ -351,22 +347,21 @@ std::vector<Moments> combined(const MomentsRequest& request, const ResponsePlan&
                               std::span<const std::vector<Moments>> passes, std::span<const Moments> others) {
   if (request.layout == MomentsRequest::Layout::kList) return combined_points(request, plan, passes, others);
   const Combination combine(request, plan);
-  const std::size_t shapes = request.sigma.size() * request.q.size();
-  const std::size_t of_theta = request.indices.size() * shapes;
-  const std::size_t of_others = others.size() / request.theta_deg.size();
+  const std::size_t shapes = request.shapes();
+  const std::size_t directions = request.theta_deg.size();
   std::vector<Moments> moments(request.size());
-  parallel_ranges(request.theta_deg.size(), 1, [&](std::size_t first, std::size_t last) {
+  parallel_ranges(directions, 1, [&](std::size_t first, std::size_t last) {
+    std::vector<Moments> own(request.indices.size() * shapes);
     for (std::size_t theta = first; theta < last; ++theta) {
-      const std::span<Moments> own = std::span(moments).subspan(theta * of_theta, of_theta);
       std::vector<std::span<const Moments>> of_passes;
       for (const std::vector<Moments>& pass : passes)
         of_passes.push_back(std::span(pass).subspan(theta * shapes, shapes));
       if (!of_passes.empty()) combine(cos_sin_deg(request.theta_deg[theta]).cos, of_passes, own);
       for (std::size_t i = 0; i < plan.sources->size(); ++i) {
         const ResponsePlan::Source& source = (*plan.sources)[i];
-        if (source.weights) continue;
-        const auto from = others.subspan(theta * of_others + source.other * shapes, shapes);
-        std::ranges::copy(from, own.begin() + static_cast<std::ptrdiff_t>(i * shapes));
+        const auto from = source.weights ? std::span<const Moments>(own).subspan(i * shapes, shapes)
+                                         : others.subspan((source.other * directions + theta) * shapes, shapes);
+        std::ranges::copy(from, moments.begin() + static_cast<std::ptrdiff_t>((i * directions + theta) * shapes));
       }
     }
   });

@@ -63,7 +63,7 @@ void interpolate_sky(const ShapePlan& plan, std::span<const Moments> nodes, std:
 /// True if for each direction and index all entries are wanted, or none.
 bool wants_whole_directions(const MomentsRequest& request) {
   if (request.layout != MomentsRequest::Layout::kGrid) return false;
-  const std::size_t shapes = request.sigma.size() * request.q.size();
+  const std::size_t shapes = request.shapes();
   for (std::size_t i = 0; i < request.wanted.size(); ++i) {
     if (request.wanted[i] != request.wanted[i - i % shapes]) return false;
   }
@@ -78,12 +78,12 @@ std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
   ShapePlan plan;
   plan.sigma = shape_axis(sigma_parameter(request.distribution), request.sigma, digits);
   plan.q = shape_axis(q_parameter(request), request.q, digits);
-  if (request.sigma.size() * request.q.size() < kLeastShapeGain * plan.nodes_of_a_direction()) return std::nullopt;
+  if (request.shapes() < kLeastShapeGain * plan.nodes_of_a_direction()) return std::nullopt;
   plan.nodes = request;
   plan.nodes.tolerance = request.finer_tolerance(kShapeNodeTolerance);
   plan.nodes.sigma = plan.sigma.nodes;
   plan.nodes.q = plan.q.nodes;
-  const std::size_t shapes = request.sigma.size() * request.q.size();
+  const std::size_t shapes = request.shapes();
   if (!request.wanted.empty()) {
     plan.nodes.wanted.clear();
     for (std::size_t first = 0; first < request.size(); first += shapes)

@@ -170,11 +170,10 @@ PartRequests::Place PartRequests::moments_of(std::size_t member) const {
   if (!places_.empty()) return places_[member];
   const SceneEntries& grid = selection_.part;
   const PerAxis place = grid.place(selection_.position(member));
-  const std::size_t shapes = moments_.sigma.size() * moments_.q.size();
+  const std::size_t of_index = moments_.theta_deg.size() * moments_.shapes();
   const std::size_t shape = sigma_at_[place[Axis::kSigma]] * moments_.q.size() + q_at_[place[Axis::kQ]];
-  const std::size_t theta = theta_at_[place[Axis::kTheta]];
-  return {(theta * moments_.indices.size() + set_at_[set_of(grid, place)]) * shapes + shape,
-          grid.has_own_index() ? std::size_t{0} : shapes};
+  const std::size_t of_theta = theta_at_[place[Axis::kTheta]] * moments_.shapes();
+  return {set_at_[set_of(grid, place)] * of_index + of_theta + shape, grid.has_own_index() ? std::size_t{0} : of_index};
 }
 
 std::size_t PartRequests::direction_of(std::size_t member) const {

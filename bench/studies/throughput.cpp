@@ -312,7 +312,6 @@ void Study::run_materials(Masking masking) {
     row["evaluations_per_s"] = std::round(all[i]->work().evaluations / kernels_s(i));
     row["stated_error"] = stated_error(all[i]->results());
     row["raw_times_s"] = all[i]->times_s();
-    row["raw_kernel_times_s"] = all[i]->kernel_times_s();
     run_.finish(row);
   }
 }

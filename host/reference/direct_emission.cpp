@@ -35,13 +35,15 @@ using Emitted = Values<kCount>;
 // The facets of one surface, seen from one direction.
 class Facets {
  public:
-  Facets(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants)
+  Facets(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
+         const Curve* response)
       : axis_(slopes),
         masking_(masking),
         theta_rad_(theta_deg * pi / 180.0),
         view_(zenith_from_deg(theta_deg)),
         constants_(constants),
         special_(constants),
+        response_(response),
         smith_(masking == Masking::kSmith ? 1.0 / (1.0 + smith_lambda(slopes, view_)) : 1.0) {}
 
   Moments emission(const Refinement& refinement);
@@ -51,6 +53,9 @@ class Facets {
   double facing(const SlopePoint& point, double side) const {
     return view_.cos + side * point.t * view_.sin * point.sin_chi;
   }
+  FresnelCoefficients facet(double cos_beta) const;
+  // What errors are relative to.
+  double scale(const Emitted& value) const { return response_ ? view_.cos : value[kIntensity]; }
   Emitted of_facet(const SlopePoint& point, double side) const;
   Emitted of_pair(const SlopePoint& point);
   std::uint64_t regime(const SlopePoint& point) const;
@@ -63,9 +68,17 @@ class Facets {
   Zenith view_;
   OpticalConstants constants_;
   SpecialAngles special_;
+  const Curve* response_;
   double smith_;
   double evaluations_ = 0.0;
 };
+
+FresnelCoefficients Facets::facet(double cos_beta) const {
+  if (!response_) return fresnel(constants_, cos_beta);
+  const double sin2_beta = (1.0 - cos_beta) * (1.0 + cos_beta);
+  const double f = (*response_)(cos_beta);
+  return {0.0, 0.0, f * (1.0 + sin2_beta), f * (1.0 - sin2_beta)};
+}
 
 Emitted Facets::of_facet(const SlopePoint& point, double side) const {
   const double e = facing(point, side);
@@ -74,7 +87,7 @@ Emitted Facets::of_facet(const SlopePoint& point, double side) const {
   const Vector<double> normal{side * point.t * cos_alpha, 0.0, cos_alpha};
   const Vector<double> k = scaled(-1.0, toward_view(point, view_));
   const Bounce<double> b = bounce(k, normal, {0.0, 1.0, 0.0});
-  const FresnelCoefficients r = fresnel(constants_, e * cos_alpha);
+  const FresnelCoefficients r = facet(e * cos_alpha);
   UnitLight light = unit_light(point, k);
   const double from_s = reflect(b, r, light.from_s);
   const double from_p = reflect(b, r, light.from_p);
@@ -116,8 +129,8 @@ Emitted Facets::tail(double t, const Refinement& refinement) {
   for (const double chi : scan.chi_breaks(t)) breaks.add(chi);
   const Integral<kCount> row = integrate<kCount>([&](double chi) { return of_pair(slope_point(t, chi)); }, breaks,
                                                  {.relative = refinement.relative_tolerance},
-                                                 [](const Emitted& value) {
-                                                   return Emitted{value[kIntensity], value[kIntensity]};
+                                                 [this](const Emitted& value) {
+                                                   return Emitted{scale(value), scale(value)};
                                                  });
   const double factor = share * 2.0 * std::numbers::inv_pi;
   return {factor * row.value[kIntensity], factor * row.value[kPolarised]};
@@ -128,8 +141,8 @@ Moments Facets::emission(const Refinement& refinement) {
   const double steepest = end();
   const SlopeTask<kCount> task{.integrand = [this](const SlopePoint& point) { return of_pair(point); },
                                .scales =
-                                   [](const Emitted& value) {
-                                     return Emitted{value[kIntensity], value[kIntensity]};
+                                   [this](const Emitted& value) {
+                                     return Emitted{scale(value), scale(value)};
                                    },
                                .steepest = steepest,
                                .bends_end = steepest,
@@ -139,7 +152,7 @@ Moments Facets::emission(const Refinement& refinement) {
   const Integral<2 * kCount> integral = integrate_slopes_of<kCount>(task, axis_, scan, refinement, {});
   const Emitted beyond = tail(steepest, refinement);
   const double rounding = (kRounding + 0.5 * refinement.relative_tolerance) * std::abs(beyond[kIntensity]) +
-                          kRounding * integral.value[kIntensity] + kNoShare * view_.cos;
+                          kRounding * (response_ ? view_.cos : integral.value[kIntensity]) + kNoShare * view_.cos;
   Moments m;
   m.direct_i = integral.value[kIntensity] + beyond[kIntensity];
   m.direct_q = integral.value[kPolarised] + beyond[kPolarised];
@@ -152,9 +165,9 @@ Moments Facets::emission(const Refinement& refinement) {
 }  // namespace
 
 Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
-                        const Refinement& refinement) {
+                        const Refinement& refinement, const Curve* response) {
   if (zenith_from_deg(theta_deg).cos == 0.0) return {.direct_i = 0.0, .direct_q = 0.0};
-  return Facets(slopes, masking, theta_deg, constants).emission(refinement);
+  return Facets(slopes, masking, theta_deg, constants, response).emission(refinement);
 }
 
 }  // namespace dolp::reference

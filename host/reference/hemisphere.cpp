@@ -52,9 +52,9 @@ double masking_tolerance_for(const Refinement& refinement) {
 enum Component : std::size_t { kAlbedo, kReflected, kPolarised, kAbsorbed, kMomentCount };
 using MomentValues = Values<kMomentCount>;
 
-MomentValues moment_scales(const MomentValues& value) {
+MomentValues moment_scales(const MomentValues& value, bool is_response) {
   const double floor = kNegligible * value[kAlbedo] + std::numeric_limits<double>::min();
-  const double reflected = std::max(floor, value[kReflected]);
+  const double reflected = std::max(floor, value[is_response ? kAlbedo : kReflected]);
   const double absorbed = std::max(kSmallAbsorbed * value[kAlbedo] + floor, value[kAbsorbed]);
   return {std::max(floor, value[kAlbedo]), reflected, reflected, absorbed};
 }
@@ -66,10 +66,11 @@ constexpr std::size_t kSkyPolarised = kMomentCount + 1;
 constexpr std::size_t kZenithCount = kMomentCount + 2;
 using BothValues = Values<2 * kZenithCount>;
 
-BothValues both_scales(const BothValues& value) {
+BothValues both_scales(const BothValues& value, bool is_response) {
   BothValues scales;
   scales.fill(kInfinity);
-  const MomentValues moments = moment_scales({value[kAlbedo], value[kReflected], value[kPolarised], value[kAbsorbed]});
+  const MomentValues moments =
+      moment_scales({value[kAlbedo], value[kReflected], value[kPolarised], value[kAbsorbed]}, is_response);
   std::copy(moments.begin(), moments.end(), scales.begin());
   scales[kSkyReflected] = scales[kSkyPolarised] = moments[kReflected];
   return scales;
@@ -81,9 +82,9 @@ struct MuellerRow {
   double m00;
   double m01;
 };
-MuellerRow mueller_row(const FresnelCoefficients& r, double cos_eta, double sin_eta) {
-  const double from_s = std::norm(r.r_s * cos_eta) + std::norm(r.r_p * sin_eta);
-  const double from_p = std::norm(r.r_s * -sin_eta) + std::norm(r.r_p * cos_eta);
+MuellerRow mueller_row(double reflected_s, double reflected_p, double cos_eta, double sin_eta) {
+  const double from_s = reflected_s * cos_eta * cos_eta + reflected_p * sin_eta * sin_eta;
+  const double from_p = reflected_s * sin_eta * sin_eta + reflected_p * cos_eta * cos_eta;
   return {0.5 * (from_s + from_p), 0.5 * (from_s - from_p)};
 }
 
@@ -91,14 +92,15 @@ MuellerRow mueller_row(const FresnelCoefficients& r, double cos_eta, double sin_
 class Hemisphere {
  public:
   Hemisphere(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
-             const Refinement& refinement, const SkyFunction* sky)
+             const Refinement& refinement, const SkyFunction* sky, const Curve* response)
       : slopes_(slopes),
         masking_(masking),
         theta_rad_(theta_deg * pi / 180.0),
         fixed_(zenith_from_deg(theta_deg)),
         constants_(constants),
         refinement_(refinement),
-        sky_(sky) {}
+        sky_(sky),
+        response_(response) {}
 
   Integral<2 * kZenithCount> integrate_zenith();
   double evaluations() const { return evaluations_; }
@@ -126,6 +128,7 @@ class Hemisphere {
   OpticalConstants constants_;
   Refinement refinement_;
   const SkyFunction* sky_;
+  const Curve* response_;
   double evaluations_ = 0.0;
 };
 
@@ -139,15 +142,19 @@ MomentValues Hemisphere::integrand(const Row& row, double delta) const {
   const double tan2_alpha = row.t * row.t + (1.0 + row.t * row.t) * row.sin_sin * s2 / row.cos2_mean;
   const double bare = 0.25 * slopes_.facet_density(tan2_alpha) * row.attenuation(tan2_alpha, cos2_beta);
 
-  const FresnelCoefficients r = fresnel(constants_, std::sqrt(cos2_beta));
+  const double cos_beta = std::sqrt(cos2_beta);
+  const FresnelCoefficients r = fresnel(constants_, cos_beta);
+  const double response = response_ ? (*response_)(cos_beta) : 0.0;
+  const double reflected_s = response_ ? response * (1.0 + sin2_beta) : std::norm(r.r_s);
+  const double reflected_p = response_ ? response * (1.0 - sin2_beta) : std::norm(r.r_p);
   // h is (omega_i + omega_r) / (2 cos beta); its parts across and along the plane of omega_i and z, over sin beta. The
   // retro direction, beta = 0, has no eta and no polarisation: r_p = -r_s.
   const double sin_2beta = 2.0 * std::sqrt(cos2_beta * sin2_beta);
-  MuellerRow m{0.5 * (std::norm(r.r_s) + std::norm(r.r_p)), 0.0};
+  MuellerRow m{0.5 * (reflected_s + reflected_p), 0.0};
   if (sin_2beta > 0.0) {
     const double sin_eta = row.running.sin * std::sin(delta) / sin_2beta;
     const double cos_eta = (row.running.cos * fixed_.sin + row.running.sin * fixed_.cos * std::cos(delta)) / sin_2beta;
-    m = mueller_row(r, cos_eta, sin_eta);
+    m = mueller_row(reflected_s, reflected_p, cos_eta, sin_eta);
   }
   return {bare, bare * m.m00, bare * m.m01, bare * 0.5 * (r.absorbed_s + r.absorbed_p)};
 }
@@ -203,7 +210,8 @@ Integral<kMomentCount> Hemisphere::integrate_azimuth(const Row& row) {
   const Goal goal{.relative = std::max(kInnerFloor, kInnerShare * refinement_.relative_tolerance),
                   .max_panels = 200,
                   .subdivisions = refinement_.subdivisions};
-  return integrate<kMomentCount>(in_v, azimuth_breaks(row, width), goal, moment_scales);
+  return integrate<kMomentCount>(in_v, azimuth_breaks(row, width), goal,
+                                 [this](const MomentValues& value) { return moment_scales(value, response_); });
 }
 
 // Break points in u of tan((theta_r - theta)/2) = width sinh(u): the specular direction, and where the break points of
@@ -267,8 +275,9 @@ BothValues Hemisphere::row_values(double u) {
 Integral<2 * kZenithCount> Hemisphere::integrate_zenith() {
   const Goal goal{.relative = refinement_.relative_tolerance, .subdivisions = refinement_.subdivisions};
   const Breaks breaks = zenith_breaks();
+  const auto scales = [this](const BothValues& value) { return both_scales(value, response_); };
   if (fixed_.cos > 0.0) {
-    return integrate<2 * kZenithCount>([this](double u) { return row_values(u); }, breaks, goal, both_scales);
+    return integrate<2 * kZenithCount>([this](double u) { return row_values(u); }, breaks, goal, scales);
   }
   // At theta = 90 degrees u runs up to 0, where the integrand is |u|^(2q - 4) for q < 2: integrated in log |u|, with
   // what lies beyond the gap added as that power.
@@ -283,7 +292,7 @@ Integral<2 * kZenithCount> Hemisphere::integrate_zenith() {
     if (u < 0.0) log_breaks.add(std::log(-u));
   }
   for (const double x : {-40.0, -20.0, -10.0, -5.0, -2.0}) log_breaks.add(x);
-  Integral<2 * kZenithCount> result = integrate<2 * kZenithCount>(in_log, log_breaks, goal, both_scales);
+  Integral<2 * kZenithCount> result = integrate<2 * kZenithCount>(in_log, log_breaks, goal, scales);
   const double power = slopes_.is_gaussian() ? 1.0 : std::min(1.0, 2.0 * slopes_.q() - 3.0);
   const BothValues at_gap = row_values(-kHorizonGap);
   for (std::size_t k = 0; k < result.value.size(); ++k) result.value[k] += kHorizonGap * at_gap[k] / power;
@@ -320,22 +329,24 @@ Zenith zenith_from_deg(double theta_deg) {
 }
 
 Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
-                           const Refinement& refinement, const SkyFunction* sky) {
+                           const Refinement& refinement, const SkyFunction* sky, const Curve* response) {
   const bool is_unshadowed = masking == Masking::kNone || masking == Masking::kIntegral;
   if (theta_deg == 90.0 && is_unshadowed && !slopes.is_gaussian() && slopes.q() <= 1.5) {
     return divergent_moments(constants);
   }
-  Hemisphere hemisphere(slopes, masking, theta_deg, constants, refinement, sky);
+  Hemisphere hemisphere(slopes, masking, theta_deg, constants, refinement, sky, response);
   const Integral<2 * kZenithCount> integral = hemisphere.integrate_zenith();
   // G_1 is at least 1/2.
   const double masking_error = 2.0 * masking_tolerance_for(refinement);
   const double cos_theta = zenith_from_deg(theta_deg).cos;
   const auto error_of = [&](std::size_t k) {
-    const double magnitude = k == kAlbedo || k == kAbsorbed ? integral.value[k] : integral.value[kReflected];
+    const std::size_t of_reflected = response ? kAlbedo : kReflected;
+    const double magnitude = integral.value[k == kAlbedo || k == kAbsorbed ? k : of_reflected];
     return integral.error[k] + integral.value[kZenithCount + k] +
            (masking_error + kRounding + kElevationRounding) * magnitude;
   };
-  const double amplitude_error = amplitude_rounding(integral.value[kReflected], integral.value[kAlbedo]);
+  const double amplitude_error =
+      response ? 0.0 : amplitude_rounding(integral.value[kReflected], integral.value[kAlbedo]);
   Moments moments;
   moments.albedo = integral.value[kAlbedo];
   moments.r_i = integral.value[kReflected];
@@ -350,7 +361,9 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   moments.deficit = is_split ? (cos_theta - moments.albedo) + integral.value[kAbsorbed] : cos_theta - moments.r_i;
   moments.deficit_error = is_split ? split_error : direct_error;
   moments.evaluations = hemisphere.evaluations();
-  if (sky) {
+  if (response) {
+    moments.columns = {{moments.r_i, moments.r_q, std::max(moments.r_i_error, moments.r_q_error)}};
+  } else if (sky) {
     const double sky_error = std::max(error_of(kSkyReflected), error_of(kSkyPolarised)) + amplitude_error;
     moments.columns = {{integral.value[kSkyReflected], integral.value[kSkyPolarised], sky_error}};
   }

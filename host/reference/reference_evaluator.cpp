@@ -85,6 +85,29 @@ Moments mirror_of(const MomentsRequest& request, const MomentsPoint& point) {
   return m;
 }
 
+/// The responses of the reflected light, or of the direct emission.
+std::vector<ColumnMoments> responses_of(const MomentsRequest& request, const MomentsPoint& point,
+                                        const reference::Slopes& slopes, const reference::Refinement& refinement) {
+  const Response& response = *request.response;
+  const OpticalConstants bend{1.0 / response.c0, 0.0};  // its Brewster angle is where the polynomials bend
+  std::vector<ColumnMoments> columns;
+  for (std::size_t degree = 0; degree < response.count; ++degree) {
+    const reference::Curve curve = [&](double cos_beta) {
+      const double x = 2.0 * std::asinh(cos_beta / response.c0) / std::asinh(1.0 / response.c0) - 1.0;
+      return std::cos(static_cast<double>(degree) * std::acos(std::clamp(x, -1.0, 1.0)));
+    };
+    if (response.of == Response::Of::kDirect) {
+      const Moments m = reference::direct_emission(slopes, request.masking, point.theta_deg, bend, refinement, &curve);
+      columns.push_back({m.direct_i, -m.direct_q, std::max(m.direct_i_error, m.direct_q_error)});
+    } else {
+      const Moments m =
+          reference::hemisphere_moments(slopes, request.masking, point.theta_deg, bend, refinement, nullptr, &curve);
+      columns.push_back(m.columns.front());
+    }
+  }
+  return columns;
+}
+
 Moments moments_of(const MomentsRequest& request, const MomentsPoint& point, const reference::Refinement& refinement) {
   if (point.shape.sigma == 0.0) return mirror_of(request, point);
   const reference::Slopes slopes(request.distribution, point.shape.sigma, point.shape.q);
@@ -115,6 +138,7 @@ Moments moments_of(const MomentsRequest& request, const MomentsPoint& point, con
     m.direct_q_error = direct.direct_q_error;
     m.evaluations += direct.evaluations;
   }
+  if (request.response) m.columns = responses_of(request, point, slopes, refinement);
   return m;
 }
 

@@ -7,13 +7,14 @@
 
 namespace dolp::reference {
 
-/// The direct emission of a rough surface (sigma > 0): direct_i, direct_q and their errors, the rest 0.
+/// The direct emission of a rough surface (sigma > 0): direct_i, direct_q and their errors, the rest 0. With a
+/// response, as of hemisphere_moments, instead of 1 - (R_s + R_p) / 2 and (R_p - R_s) / (2 sin^2).
 ///
 /// Equation: cos(theta) eps = int P t dt dphi e G_1 (1 - |r|^2) in the view's frame, e = cos(theta) + sin(theta) t
 ///   cos(phi), over all facets with e > 0, G_1 the masking of the view alone.
 /// Domain: masking smith or v-cavity; theta in [0, 90] degrees; at 90 both are 0, the limit.
-/// Accuracy: that of `refinement`, relative to direct_i.
+/// Accuracy: that of `refinement`, relative to direct_i; of a response to cos(theta).
 Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
-                        const Refinement& refinement);
+                        const Refinement& refinement, const Curve* response = nullptr);
 
 }  // namespace dolp::reference

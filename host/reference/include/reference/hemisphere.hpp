@@ -23,16 +23,21 @@ struct SkyFunction {
   std::vector<double> corners_deg;
 };
 
+/// A response: what takes the place of (R_s + R_p) / 2 and of (R_s - R_p) / (2 sin^2), of either sign and at most 1.
+using Curve = std::function<double(double cos_beta)>;
+
 /// Zenith angle in degrees, exact at 0 and 90.
 Zenith zenith_from_deg(double theta_deg);
 
-/// The moments of a rough surface (sigma > 0) with k_s = 1, and with a function of the sky.
-/// Equation: r = cos(theta) int f cos(theta_r) sin(theta_r) dtheta_r dDelta_phi, eqs. (7), (15), (16), over
+/// The moments of a rough surface (sigma > 0) with k_s = 1, and with a function of the sky. With a response, whose
+/// bends are the special angles of `constants`, one column has it, and r_i and r_q are undefined. Equation: r =
+/// cos(theta) int f cos(theta_r) sin(theta_r) dtheta_r dDelta_phi, eqs. (7), (15), (16), over
 ///   theta_r (outer) and delta = pi - Delta_phi (inner).
 /// Domain: theta in [0, 90] degrees. At 90 all four are the limits: 0 for v-cavity and smith, finite for the others but
 ///   infinite for the cauchy distribution with q <= 3/2, whose vertical facets are too many.
 Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
-                           const Refinement& refinement, const SkyFunction* sky = nullptr);
+                           const Refinement& refinement, const SkyFunction* sky = nullptr,
+                           const Curve* response = nullptr);
 
 /// The moments of the mirror, the case sigma = 0, its direct emission included.
 Moments mirror_moments(double theta_deg, const OpticalConstants& constants);

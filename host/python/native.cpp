@@ -259,13 +259,14 @@ py::tuple contents_of(const dolp::Table& table) {
                         parts_of(values, values.quantities(), values.stokes_units, table.file_attributes()));
 }
 
-/// (beta, its long_name and units, variables: [(name, long_name, has_beta, values)]) of a response table.
+/// (beta, its long_name and units, variables: [(name, long_name, ancillary, has_beta, values)]) of a response table.
 py::tuple responses_of(const dolp::TableValues& table) {
   py::list variables;
   for (const dolp::ResponseVariable variable : dolp::kAllResponseVariables) {
     const dolp::ResponseDescription& known = dolp::description_of(variable);
     if (table.responses[variable].empty()) continue;
-    variables.append(py::make_tuple(known.name, known.long_name, known.has_beta, array_of(table.responses[variable])));
+    variables.append(py::make_tuple(known.name, known.long_name, known.has_beta ? dolp::kResponseQualifier : "",
+                                    known.has_beta, array_of(table.responses[variable])));
   }
   return py::make_tuple(array_of(table.beta_deg), dolp::kBeta.long_name, dolp::kBeta.units, variables);
 }

@@ -1,6 +1,7 @@
 #include "reference/reference_evaluator.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -54,6 +55,9 @@ void check_scattering(Scattering scattering, Masking masking) {
 }
 
 void check(const MomentsRequest& request) {
+  const bool has_sky_responses = request.response && request.response->of == Response::Of::kSky;
+  if (request.response && (has_sky_responses || request.response->count != reference::kCurves))
+    throw InputError("reference: responses must be 24, and without a sky");
   check_scattering(request.scattering, request.masking);
   const bool has_view_masking = request.masking == Masking::kVCavity || request.masking == Masking::kSmith;
   if (request.wants_direct && !has_view_masking) {
@@ -88,22 +92,20 @@ Moments mirror_of(const MomentsRequest& request, const MomentsPoint& point) {
 /// The responses of the reflected light, or of the direct emission.
 std::vector<ColumnMoments> responses_of(const MomentsRequest& request, const MomentsPoint& point,
                                         const reference::Slopes& slopes, const reference::Refinement& refinement) {
-  const Response& response = *request.response;
-  const OpticalConstants bend{1.0 / response.c0, 0.0};  // its Brewster angle is where the polynomials bend
+  const double c0 = request.response->c0;
+  const reference::Curves curves = [c0](double cos_beta) {
+    const double angle = std::acos(std::clamp(2.0 * std::asinh(cos_beta / c0) / std::asinh(1.0 / c0) - 1.0, -1.0, 1.0));
+    std::array<double, reference::kCurves> polynomials{};
+    for (std::size_t m = 0; m < polynomials.size(); ++m) polynomials[m] = std::cos(static_cast<double>(m) * angle);
+    return polynomials;
+  };
+  if (request.response->of != Response::Of::kDirect)
+    return reference::hemisphere_responses(slopes, request.masking, point.theta_deg, curves, c0, refinement);
   std::vector<ColumnMoments> columns;
-  for (std::size_t degree = 0; degree < response.count; ++degree) {
-    const reference::Curve curve = [&](double cos_beta) {
-      const double x = 2.0 * std::asinh(cos_beta / response.c0) / std::asinh(1.0 / response.c0) - 1.0;
-      return std::cos(static_cast<double>(degree) * std::acos(std::clamp(x, -1.0, 1.0)));
-    };
-    if (response.of == Response::Of::kDirect) {
-      const Moments m = reference::direct_emission(slopes, request.masking, point.theta_deg, bend, refinement, &curve);
-      columns.push_back({m.direct_i, -m.direct_q, std::max(m.direct_i_error, m.direct_q_error)});
-    } else {
-      const Moments m =
-          reference::hemisphere_moments(slopes, request.masking, point.theta_deg, bend, refinement, nullptr, &curve);
-      columns.push_back(m.columns.front());
-    }
+  for (std::size_t m = 0; m < reference::kCurves; ++m) {
+    const Moments direct = reference::direct_response(
+        slopes, request.masking, point.theta_deg, [&](double cos_beta) { return curves(cos_beta)[m]; }, c0, refinement);
+    columns.push_back({direct.direct_i, direct.direct_q, std::max(direct.direct_i_error, direct.direct_q_error)});
   }
   return columns;
 }

@@ -259,17 +259,24 @@ std::uint64_t offset_of(const Writer& writer, const Hdf5Handle& variable) {
   return offset;
 }
 
-std::uint64_t put_variable(const Writer& writer, const TableHead& head, const AxisVariables& axes, Quantity quantity) {
-  const QuantityDescription& described = description_of(quantity);
+/// `qualifiers`: names of the variables that qualify it, or "".
+std::uint64_t put_variable(const Writer& writer, const TableHead& head, const AxisVariables& axes, const char* name,
+                           const char* long_name, const std::string& units, const char* qualifiers,
+                           const Hdf5Handle* beta = nullptr) {
   constexpr double kFill = std::numeric_limits<double>::quiet_NaN();
-  const Hdf5Handle variable = define_over_axes(writer, head, axes, described.name, H5T_IEEE_F64LE, &kFill);
+  const Hdf5Handle variable = define_over_axes(writer, head, axes, name, H5T_IEEE_F64LE, &kFill, beta);
   writer.put_number(variable, "_FillValue", kFill);
-  writer.put_text(variable, "long_name", described.long_name);
-  writer.put_text(variable, "units", units_of(quantity, head.stokes_units));
-  const char* const qualifiers =
-      head.beta_deg.empty() ? described.ancillary : description_of(ResponseVariable::kResponseError).name;
+  writer.put_text(variable, "long_name", long_name);
+  writer.put_text(variable, "units", units);
   if (*qualifiers != '\0') writer.put_text(variable, "ancillary_variables", qualifiers);
   return offset_of(writer, variable);
+}
+
+std::uint64_t put_quantity(const Writer& writer, const TableHead& head, const AxisVariables& axes, Quantity quantity) {
+  const QuantityDescription& described = description_of(quantity);
+  const bool is_response = !head.beta_deg.empty();
+  return put_variable(writer, head, axes, described.name, described.long_name, units_of(quantity, head.stokes_units),
+                      is_response ? kResponseQualifier : described.ancillary);
 }
 
 Hdf5Handle put_beta(const Writer& writer, const TableHead& head) {
@@ -283,13 +290,8 @@ Hdf5Handle put_beta(const Writer& writer, const TableHead& head) {
 std::uint64_t put_response(const Writer& writer, const TableHead& head, const AxisVariables& axes,
                            const Hdf5Handle& beta, ResponseVariable variable) {
   const ResponseDescription& described = description_of(variable);
-  const Hdf5Handle defined = define_over_axes(writer, head, axes, described.name, H5T_IEEE_F64LE, nullptr,
-                                              described.has_beta ? &beta : nullptr);
-  writer.put_text(defined, "long_name", described.long_name);
-  writer.put_text(defined, "units", "1");
-  if (described.has_beta)
-    writer.put_text(defined, "ancillary_variables", description_of(ResponseVariable::kResponseError).name);
-  return offset_of(writer, defined);
+  return put_variable(writer, head, axes, described.name, described.long_name, "1",
+                      described.has_beta ? kResponseQualifier : "", described.has_beta ? &beta : nullptr);
 }
 
 std::uint64_t put_status(const Writer& writer, const TableHead& head, const AxisVariables& axes) {
@@ -345,7 +347,7 @@ struct TableStore::Impl {
     put_attributes(writer, head);
     const AxisVariables axes = put_axes(writer, head);
     const Hdf5Handle beta = put_beta(writer, head);
-    for (const Quantity quantity : layout.quantities) offsets.push_back(put_variable(writer, head, axes, quantity));
+    for (const Quantity quantity : layout.quantities) offsets.push_back(put_quantity(writer, head, axes, quantity));
     for (const ResponseVariable variable : layout.responses)
       offsets.push_back(put_response(writer, head, axes, beta, variable));
     if (layout.has_status) offsets.push_back(put_status(writer, head, axes));

@@ -32,13 +32,15 @@ struct ResponseDescription {
   bool has_beta;  ///< else it has one value of each entry
 };
 
+inline constexpr const char* kResponseQualifier = "response_error";
+
 inline constexpr std::array<ResponseDescription, kResponseVariableCount> kResponseVariables = {{
     {"response_i", "weights of rho_i = sum over beta of response_i (r_s + r_p) / 2, for k_s = 1", true},
     {"response_q", "weights of rho_q = sum over beta of response_q (r_s - r_p) / 2, for k_s = 1", true},
     {"emission_i", "weights of the direct emissivity (eps_s + eps_p) / 2 = sum of emission_i (1 - (r_s + r_p) / 2)",
      true},
     {"emission_q", "weights of the direct emissivity (eps_s - eps_p) / 2 = -sum of emission_q (r_s - r_p) / 2", true},
-    {"response_error", "bound of the errors of these sums for curves whose coefficients fall as 2^-m, see comment",
+    {kResponseQualifier, "bound of the errors of these sums for curves whose coefficients fall as 2^-m, see comment",
      false},
 }};
 

@@ -30,7 +30,7 @@ constexpr std::size_t kBetaAngles = kMostResponses;
 constexpr double kResponseC0 = 0.01;                // cosine at which the polynomials bend
 constexpr OpticalConstants kUnusedIndex{1.5, 0.0};  // moments of it come along unused; its rules bend nowhere
 constexpr double kFinerBy = 0.01;                   // chosen: of a rule to the next
-constexpr int kMostLevels = 3;
+constexpr int kMostLevels = 5;
 constexpr std::size_t kColumnsAtOnce = std::size_t{1} << 20U;  // for the memory that they take
 
 /// The abscissa of the polynomials, in [-1, 1].

@@ -31,10 +31,11 @@ def response(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **axe
     table = table_dataset(*contents)
     dims, shape = table.albedo.dims, table.albedo.shape
     table.coords["beta"] = xr.Variable("beta", beta, {"long_name": long_name, "units": units}, {"dtype": beta.dtype})
-    for name, meaning, has_beta, values in variables:
-        known = {"long_name": meaning, "units": "1"}
+    for name, meaning, ancillary, has_beta, values in variables:
+        known = {"long_name": meaning, "units": "1"} | ({"ancillary_variables": ancillary} if ancillary else {})
         table[name] = xr.Variable((*dims, "beta") if has_beta else dims, values.reshape(*shape, -1) if has_beta
                                   else values.reshape(shape), known, dict(table.albedo.encoding))
+    table.albedo.attrs["ancillary_variables"] = "response_error"
     return table
 
 

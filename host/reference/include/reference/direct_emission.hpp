@@ -1,20 +1,26 @@
 // Emission of the facets straight to the viewer.
 #pragma once
 
+#include <functional>
+
 #include "model/moments.hpp"
 #include "reference/hemisphere.hpp"
 #include "reference/slopes.hpp"
 
 namespace dolp::reference {
 
-/// The direct emission of a rough surface (sigma > 0): direct_i, direct_q and their errors, the rest 0. With a
-/// response, as of hemisphere_moments, instead of 1 - (R_s + R_p) / 2 and (R_p - R_s) / (2 sin^2).
+/// The direct emission of a rough surface (sigma > 0): direct_i, direct_q and their errors, the rest 0.
 ///
 /// Equation: cos(theta) eps = int P t dt dphi e G_1 (1 - |r|^2) in the view's frame, e = cos(theta) + sin(theta) t
 ///   cos(phi), over all facets with e > 0, G_1 the masking of the view alone.
 /// Domain: masking smith or v-cavity; theta in [0, 90] degrees; at 90 both are 0, the limit.
-/// Accuracy: that of `refinement`, relative to direct_i; of a response to cos(theta).
+/// Accuracy: that of `refinement`, relative to direct_i.
 Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
-                        const Refinement& refinement, const Curve* response = nullptr);
+                        const Refinement& refinement);
+
+/// The same with a curve in place of 1 - (R_s + R_p) / 2 and of (R_p - R_s) / (2 sin^2), to an accuracy relative to
+/// cos(theta). `bend`: cosine at which the curve bends.
+Moments direct_response(const Slopes& slopes, Masking masking, double theta_deg,
+                        const std::function<double(double cos_beta)>& curve, double bend, const Refinement& refinement);
 
 }  // namespace dolp::reference

@@ -1,6 +1,7 @@
 // The hemispherical moments of one direction, integrated over the other direction.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <vector>
@@ -23,21 +24,26 @@ struct SkyFunction {
   std::vector<double> corners_deg;
 };
 
-/// A response: what takes the place of (R_s + R_p) / 2 and of (R_s - R_p) / (2 sin^2), of either sign and at most 1.
-using Curve = std::function<double(double cos_beta)>;
+/// Functions of cos(beta) that take the place of (R_s + R_p) / 2 and of (R_s - R_p) / (2 sin^2), of either sign and at
+/// most 1.
+inline constexpr std::size_t kCurves = 24;
+using Curves = std::function<std::array<double, kCurves>(double cos_beta)>;
 
 /// Zenith angle in degrees, exact at 0 and 90.
 Zenith zenith_from_deg(double theta_deg);
 
-/// The moments of a rough surface (sigma > 0) with k_s = 1, and with a function of the sky. With a response, whose
-/// bends are the special angles of `constants`, one column has it, and r_i and r_q are undefined. Equation: r =
-/// cos(theta) int f cos(theta_r) sin(theta_r) dtheta_r dDelta_phi, eqs. (7), (15), (16), over
+/// The moments of a rough surface (sigma > 0) with k_s = 1, and with a function of the sky.
+/// Equation: r = cos(theta) int f cos(theta_r) sin(theta_r) dtheta_r dDelta_phi, eqs. (7), (15), (16), over
 ///   theta_r (outer) and delta = pi - Delta_phi (inner).
 /// Domain: theta in [0, 90] degrees. At 90 all four are the limits: 0 for v-cavity and smith, finite for the others but
 ///   infinite for the cauchy distribution with q <= 3/2, whose vertical facets are too many.
 Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
-                           const Refinement& refinement, const SkyFunction* sky = nullptr,
-                           const Curve* response = nullptr);
+                           const Refinement& refinement, const SkyFunction* sky = nullptr);
+
+/// The moments with each curve in place of the reflectances, r_i and r_q, relative to the albedo. `bend`: cosine at
+/// which the curves bend.
+std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking masking, double theta_deg,
+                                                const Curves& curves, double bend, const Refinement& refinement);
 
 /// The moments of the mirror, the case sigma = 0, its direct emission included.
 Moments mirror_moments(double theta_deg, const OpticalConstants& constants);

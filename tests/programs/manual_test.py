@@ -131,7 +131,7 @@ class Manual(unittest.TestCase):
             shader = f"#version 450\n{glsl}\nvoid main() {{ float c[24]; vec2 r = rho(1.0, 0.0, c, c, c); }}\n"
             run(["glslangValidator", "--stdin", "-S", "comp"], input=shader)
             (pathlib.Path(folder) / "rho.cpp").write_text(RHO_IN_CPP.format(glsl=glsl), encoding="utf-8")
-            run(["c++", "-o", "rho", "rho.cpp"])
+            run(["c++", "-fsingle-precision-constant", "-o", "rho", "rho.cpp"])
             from_glsl = run(["./rho"], input=done[1]).stdout.split()
             with open(pathlib.Path(folder) / "table.csv", encoding="utf-8") as file:
                 rows = list(csv.DictReader(line for line in file if not line.startswith("#")))

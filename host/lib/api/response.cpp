@@ -11,6 +11,7 @@
 #include "report/run_report.hpp"
 #include "run/response_run.hpp"
 #include "scene/scene_reader.hpp"
+#include "table/table_output.hpp"
 
 namespace dolp {
 namespace {
@@ -44,8 +45,9 @@ SceneValues surface_of(const SceneValues& scene) {
 
 std::vector<Setting> surface_settings() {
   std::vector<Setting> settings;
-  for (const char* unused : {"emission", "source", "surroundings", "path", "surface.specular", "surface.diffuse",
-                             "surface.diffuse_exponent", "grid.wavelength_um", "grid.n", "grid.k"})
+  for (const char* unused :
+       {"emission", "source", "surroundings", "path", "surface.material", "surface.material_file", "surface.specular",
+        "surface.diffuse", "spectrum.band_um", "surface.diffuse_exponent", "grid.wavelength_um", "grid.n", "grid.k"})
     settings.push_back({unused, {}});
   settings.push_back({"surface.n", 1.5});
   settings.push_back({"surface.k", 0.0});
@@ -68,8 +70,8 @@ Table Evaluator::response(const Scene& scene, const RunOptions& of_call) {
       for (const ResponseVariable variable : layout.responses)
         append(table.responses[variable], part.responses[variable]);
     };
-    const ResponseOutcome run = run_responses(own, layout, *impl_->begin(own), options.progress, take);
-    std::ranges::move(attributes_of(own, run, options.history), std::back_inserter(table.attributes));
+    const ResponseOutcome run = run_responses(own, layout, options, *impl_->begin(own), take);
+    table.attributes.insert(table.attributes.end(), run.attributes.begin(), run.attributes.end());
     return Table(std::make_shared<const Table::Impl>(std::move(table), "response table"));
   });
 }
@@ -79,8 +81,12 @@ Report Evaluator::write_response(const Scene& scene, const std::filesystem::path
     const SceneValues own = surface_of(scene.impl().scene);
     check_output_is_no_input(path, files_of(scene.impl().scene));
     const TableLayout layout = response_layout(own);
-    check_response_path(path);
-    const ResponseOutcome run = write_responses(own, layout, path, options, *impl_->begin(own));
+    if (path.extension() != ".nc") throw InputError(path.string() + ": the name of a response table must end in .nc");
+    TableOutput output({.path = path, .layout = layout});
+    const ResponseOutcome run =
+        run_responses(own, layout, options, *impl_->begin(own),
+                      [&](TableValues part, const PerAxis& first) { output.write(std::move(part), first, ""); });
+    output.finish(run.attributes);
     return public_report(response_report(own, layout.head, run, path.string()), run.missed == 0, path);
   });
 }

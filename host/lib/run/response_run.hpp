@@ -3,7 +3,6 @@
 #pragma once
 
 #include <dolp/options.hpp>
-#include <filesystem>
 #include <functional>
 #include <span>
 #include <vector>
@@ -27,10 +26,9 @@ struct EntryResponses {
 /// rho has no value. Entries are computed again, with finer rules, where response_error exceeds the tolerance times
 /// the albedo.
 ///
-/// Equation: with the moments C_m that have Chebyshev polynomials T_m(x), x = 2 asinh(cos(beta) / c0) / asinh(1 / c0) -
-/// 1,
-///   instead of reflectances, w_j = (2 / K) (C_0 / 2 + sum over 0 < m < K of C_m T_m(x_j)) / cos(theta), x_j the zeros
-///   of T_K, K = 24, c0 = 0.01.
+/// Equation: w_j = (2 / K) (C_0 / 2 + sum over 0 < m < K of C_m T_m(x_j)) / cos(theta), C_m the moments with Chebyshev
+///   polynomials T_m(x), x = 2 asinh(cos(beta) / c0) / asinh(1 / c0) - 1, instead of reflectances, x_j the zeros of
+///   T_K, K = 24, c0 = 0.01.
 /// Accuracy: tests Responses_*.
 EntryResponses responses_of(MomentsRequest request, const Accuracy& accuracy, ModelEvaluator& evaluator,
                             const Progress& progress);
@@ -49,22 +47,12 @@ struct ResponseOutcome {
   std::size_t missed = 0;    ///< entries whose response_error exceeds the tolerance times the albedo
   double worst_error = 0.0;  ///< largest response_error over the albedo
   double wall_s = 0.0;
+  std::vector<Attribute> attributes = {};  ///< of the table, known after the run
 };
 
-using TakePart = std::function<void(TableValues part, const PerAxis& first)>;
 /// Computes a response table part by part, some directions at a time.
-ResponseOutcome run_responses(const SceneValues& scene, const TableLayout& layout, ModelEvaluator& evaluator,
-                              const Progress& progress, const TakePart& take);
-
-/// The attributes that are known after a run.
-std::vector<Attribute> attributes_of(const SceneValues& scene, const ResponseOutcome& run,
-                                     const std::string& command_line);
-
-/// Refuses a path that is no .nc file that can be written. Errors: InputError, IoError.
-void check_response_path(const std::filesystem::path& path);
-
-/// Writes the response table of a scene; the file is complete or absent. Errors: IoError, Cancelled.
-ResponseOutcome write_responses(const SceneValues& scene, const TableLayout& layout, const std::filesystem::path& path,
-                                const RunOptions& options, ModelEvaluator& evaluator);
+using TakePart = std::function<void(TableValues part, const PerAxis& first)>;
+ResponseOutcome run_responses(const SceneValues& scene, const TableLayout& layout, const RunOptions& options,
+                              ModelEvaluator& evaluator, const TakePart& take);
 
 }  // namespace dolp

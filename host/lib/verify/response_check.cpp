@@ -1,5 +1,7 @@
 #include "verify/response_check.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <dolp/errors.hpp>
 #include <span>
@@ -10,7 +12,7 @@
 namespace dolp {
 namespace {
 
-/// The sample's entries.
+/// A request for the sample's entries.
 MomentsRequest request_of(const TableSample& sample, const Surface& surface) {
   MomentsRequest request = response_request(surface);
   const OpticalConstants index = request.indices.front();
@@ -21,27 +23,6 @@ MomentsRequest request_of(const TableSample& sample, const Surface& surface) {
     request.append({entry.theta_deg, entry.shape, index});
   }
   return request;
-}
-
-/// `distance(i)`: between the table and the reference at an entry of the sample.
-template <class Distance>
-void add_check(TableCheck& check, const char* name, const MomentsRequest& request, const std::vector<double>& stated,
-               const std::vector<double>& reference_error, const Distance& distance) {
-  QuantityCheck& of_quantity = check.quantities.emplace_back();
-  of_quantity.name = name;
-  for (std::size_t i = 0; i < request.size(); ++i) {
-    if (std::isnan(stated[i]) && std::isnan(reference_error[i])) continue;  // there is no reflectance
-    CheckedValue value{.quantity = name,
-                       .theta_deg = request.theta_deg[i],
-                       .sigma = request.sigma[i],
-                       .q = request.q[i],
-                       .stored = distance(i),
-                       .stated = stated[i],
-                       .reference_error = reference_error[i]};
-    if (!(value.stored <= stated[i] + reference_error[i])) value.complaint = "is too far from the reference";
-    if (of_quantity.compared++ == 0 || value.ratio() > of_quantity.worst.ratio()) of_quantity.worst = value;
-    if (!value.complaint.empty()) check.failures.push_back(value);
-  }
 }
 
 }  // namespace
@@ -59,22 +40,28 @@ TableCheck check_responses(const TableSample& sample, const SceneValues& scene, 
   check.entries = table.size();
   check.checked = request.size();
   check.tolerance = scene.accuracy.tolerance;
-  const std::vector<double>& albedo = table[Quantity::kAlbedo];
-  for (std::size_t i = 0; i < albedo.size(); ++i) check.missed += stated[i] > check.tolerance * albedo[i] ? 1 : 0;
-  if (!albedo.empty()) {
-    add_check(check, "albedo", request, stated, reference_error,
-              [&](std::size_t i) { return std::abs(albedo[i] - right.albedo[i]); });
-  }
+  for (std::size_t i = 0; i < stated.size(); ++i) check.missed += stated[i] > check.tolerance * right.albedo[i] ? 1 : 0;
   for (const ResponseVariable variable : kAllResponseVariables) {
     const ResponseDescription& described = description_of(variable);
-    const std::vector<double>& own = table.responses[variable];
-    if (!described.has_beta || own.empty()) continue;
-    const std::size_t width = table.width_of(variable);
+    if (!described.has_beta || table.responses[variable].empty()) continue;
+    if (table.responses[variable].size() != right.responses[variable].size())
+      throw InputError(fmt::format("{}: {} is not at the local angles of this program", name, described.name));
     const bool is_of_q = variable == ResponseVariable::kResponseQ || variable == ResponseVariable::kEmissionQ;
-    add_check(check, described.name, request, stated, reference_error, [&](std::size_t i) {
-      return response_distance(std::span(own).subspan(i * width, width),
-                               std::span(right.responses[variable]).subspan(i * width, width), is_of_q);
-    });
+    QuantityCheck& of_variable = check.quantities.emplace_back();
+    of_variable.name = described.name;
+    for (std::size_t i = 0; i < request.size(); ++i) {
+      if (std::isnan(stated[i]) && std::isnan(reference_error[i])) continue;  // there is no reflectance
+      const auto own = [&](const std::vector<double>& weights) {
+        return std::span(weights).subspan(i * table.beta_deg.size(), table.beta_deg.size());
+      };
+      CheckedValue value{described.name, request.theta_deg[i], request.sigma[i], request.q[i]};
+      value.stored = response_distance(own(table.responses[variable]), own(right.responses[variable]), is_of_q);
+      value.stated = stated[i];
+      value.reference_error = reference_error[i];
+      if (!(value.stored <= stated[i] + reference_error[i])) value.complaint = "is too far from the reference";
+      if (of_variable.compared++ == 0 || value.ratio() > of_variable.worst.ratio()) of_variable.worst = value;
+      if (!value.complaint.empty()) check.failures.push_back(value);
+    }
   }
   return check;
 }

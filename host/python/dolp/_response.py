@@ -49,7 +49,7 @@ def moments(response: xr.Dataset, *, n: Array | None = None, k: Array = 0.0, r_s
     angles. Values r_s and r_p at beta do not show this distance: it comes on top.
 
     >>> r = dolp.response(scene, theta_deg=60)
-    >>> m = dolp.moments(r, n=[1.3, 1.5, 10], k=[0.1, 0.05, 60])
+    >>> m = dolp.moments(r, n=[1.3, 1.5, 4], k=0.05)
     >>> m.rho_i.dims, bool(abs(m.rho_i[..., 1] - dolp.table(scene, theta_deg=60).rho_i).max() < 1e-4)
     (('theta', 'sigma', 'q', 'n'), True)
     """

@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <memory>
 #include <numbers>
 #include <span>
 
-#include "base/numbers.hpp"
+#include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "properties_support.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/reference_evaluator.hpp"
@@ -88,6 +90,29 @@ TEST_P(ResponsesOf, SomeEntries_AreThoseOfTheReference) {
 
 INSTANTIATE_TEST_SUITE_P(Models, ResponsesOf, testing::ValuesIn(kModels),
                          [](const auto& test) { return name_of(test.param); });
+
+// At 90 degrees a direction of the grid may have nothing to compute.
+TEST(Responses, OfADevice_AreThoseOfTheCpu) {
+  std::vector<Point> points;
+  for (const double theta_deg : {0.0, 60.0, 90.0}) {
+    for (const double sigma : {0.1, 0.5}) points.push_back({theta_deg, {sigma, 2.5}, {}});
+  }
+  VulkanOptions options;
+  options.validation = ValidationMode::kOn;
+  InterpolatingEvaluator device(std::make_unique<VulkanEvaluator>(options));
+  CpuEvaluator cpu;
+  for (const Model& model : kModels) {
+    Surface surface;
+    surface.distribution = model.distribution;
+    surface.masking = model.masking;
+    MomentsRequest grid = response_request(surface);
+    grid.theta_deg = {0.0, 60.0, 90.0};
+    grid.sigma = {0.1, 0.5};
+    grid.q = {2.5};
+    expect_within_bounds(responses_of(grid, {.tolerance = 1e-4}, device, {}), responses(model, points, 1e-9, cpu),
+                         points);
+  }
+}
 
 TEST(Responses, OfAMirror_GiveFresnelsReflectances) {
   constexpr double kInterpolation = 1e-8;  // distance of these curves from polynomials of degree 23

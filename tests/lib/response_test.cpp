@@ -64,7 +64,7 @@ class ResponsesOf : public testing::TestWithParam<Model> {};
 TEST_P(ResponsesOf, RandomEntries_StayWithinTheirBounds) {
   const Model model = GetParam();
   constexpr std::uint64_t kSeed = 44;
-  const std::vector<Point> points = Random(kSeed).points(model, draws_wanted(60));
+  const std::vector<Point> points = Random(kSeed).points(model, draws_wanted(40));
   CpuEvaluator evaluator;
   const EntryResponses fine = responses(model, points, 1e-9, evaluator, true);
   for (const double tolerance : {1e-2, 1e-4, 1e-6}) {

@@ -73,7 +73,10 @@ struct Weights {
   double error = 0.0;
 };
 
-Weights weights_of(const std::vector<ColumnMoments>& columns) {
+/// `whole_error`: bound of the sum with 1 instead of a polynomial, from distances of the rules without their signs,
+/// which in those of the columns may cancel by chance. What spoils it spoils the sums with all polynomials, as they are
+/// at most 1.
+Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error) {
   Weights own{Eigen::ArrayXd::Zero(kBetaAngles), Eigen::ArrayXd::Zero(kBetaAngles)};
   for (std::size_t m = 0; m < columns.size(); ++m) {
     const ColumnMoments& sum = columns[m];
@@ -81,36 +84,34 @@ Weights weights_of(const std::vector<ColumnMoments>& columns) {
         (m == 0 ? 1.0 : 2.0) / kBetaAngles * nodes().polynomials.row(static_cast<Eigen::Index>(m));
     own.i += sum.i * share;
     own.q += sum.q * share / nodes().sin2;
-    // The two rules of q may agree by chance, so that the bound of i is added to its own.
+    // The rules of q may agree by chance too, so that the bound of i is added to its own.
     const double of_i = std::abs(sum.i_apart) + sum.relative_error * std::abs(sum.i) + sum.error;
     const double of_q = std::abs(sum.q_apart) + sum.relative_error * std::abs(sum.q) + sum.error;
-    own.error += std::ldexp(of_i + of_q, -static_cast<int>(m));
+    own.error += std::ldexp(std::max(of_i, whole_error) + of_q, -static_cast<int>(m));
   }
   return own;
 }
 
-/// The columns of a mirror: the polynomials at the direction itself.
-std::vector<ColumnMoments> mirror_columns(const MomentsRequest& request, const Direction& direction,
-                                          const SlopeShape& shape) {
+/// Moments of a mirror, whose columns are the polynomials at the direction itself.
+Moments mirror_of(const MomentsRequest& request, const Direction& direction, const SlopeShape& shape) {
   Surface surface;
   surface.distribution = request.distribution;
-  const double error = closed_form(surface, direction, shape, kUnusedIndex, nullptr).albedo_error;
+  Moments mirror = closed_form(surface, direction, shape, kUnusedIndex, nullptr);
   const double sine = cos_sin_deg(direction.theta_deg).sin;
-  std::vector<ColumnMoments> columns;
   for (const double polynomial : chebyshev_at(abscissa(direction.cos_theta))) {
     const double i = polynomial * direction.cos_theta;
-    columns.push_back({.i = i, .q = sine * sine * i, .error = error});
+    mirror.columns.push_back({.i = i, .q = sine * sine * i, .error = mirror.albedo_error});
   }
-  return columns;
+  return mirror;
 }
 
 bool has_emission(Masking masking) { return keeps_projected_area(masking); }
 
 /// Stores an entry where its bound is below the one that is there.
-void take_better(const std::vector<ColumnMoments>& reflected, const std::vector<ColumnMoments>* direct, double cosine,
-                 std::size_t entry, EntryResponses& to) {
-  const Weights weights = weights_of(reflected);
-  const Weights emitted = direct ? weights_of(*direct) : Weights{};
+void take_better(const Moments& reflected, const Moments* direct, double cosine, std::size_t entry,
+                 EntryResponses& to) {
+  const Weights weights = weights_of(reflected.columns, reflected.albedo_error);
+  const Weights emitted = direct ? weights_of(direct->columns, direct->direct_i_error) : Weights{};
   const double error = std::max(weights.error, emitted.error) / cosine;
   double& known = to.responses[ResponseVariable::kResponseError][entry];
   if (!(error < known)) return;
@@ -149,8 +150,8 @@ std::vector<char> set_closed_forms(const MomentsRequest& request, EntryResponses
     double& error = to.responses[ResponseVariable::kResponseError][i];
     if (wanted[i] != 0 || direction.treatment == Treatment::kMirror) error = std::numeric_limits<double>::infinity();
     if (direction.treatment != Treatment::kMirror) continue;
-    const std::vector<ColumnMoments> columns = mirror_columns(request, direction, point.shape);
-    take_better(columns, has_emission(request.masking) ? &columns : nullptr, direction.cos_theta, i, to);
+    const Moments mirror = mirror_of(request, direction, point.shape);
+    take_better(mirror, has_emission(request.masking) ? &mirror : nullptr, direction.cos_theta, i, to);
   }
   return wanted;
 }
@@ -237,7 +238,7 @@ EntryResponses responses_of(MomentsRequest request, const Accuracy& accuracy, Mo
     for (std::size_t i = 0; i < reflected.size(); ++i) {
       if (!request.is_wanted(i)) continue;
       const double cosine = cos_sin_deg(request[i].theta_deg).cos;
-      take_better(reflected[i].columns, wants_direct ? &direct[i].columns : nullptr, cosine, i, all);
+      take_better(reflected[i], wants_direct ? &direct[i] : nullptr, cosine, i, all);
       request.wanted[i] = misses(all, i, accuracy.tolerance) ? 1 : 0;
     }
     if (accuracy.precision != Precision::kFloat && evaluator.has_double()) request.precision = Precision::kDouble;

@@ -214,7 +214,9 @@ std::vector<Result> VulkanEvaluator::compute(const Request& request, const Progr
 }
 
 std::vector<Moments> VulkanEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
-  return compute<Moments>(request, progress);
+  std::vector<Moments> moments = compute<Moments>(request, progress);
+  moments.resize(request.size());  // it is empty where nothing is wanted
+  return moments;
 }
 
 void VulkanEvaluator::prepare(const ScatteringRequest& request) {

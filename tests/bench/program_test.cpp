@@ -142,7 +142,7 @@ TEST_F(BenchProgram, BadUsage_OneLineThatSaysWhatIsAllowed) {
       {"effects --case smell", 2, "--case smell: there is none of this name; choose among specular, "},
       {"effects --method gauss", 2, "--method"},
       {"effects --json no/such/folder/r.json", 4, "there is no folder no/such/folder"},
-      {"throughput --case smell", 2, "--case smell: there is none of this name; choose among grids, arithmetic, "},
+      {"throughput --case smell", 2, "--case smell: there is none of this name; choose among grids, materials, arithmetic, "},
       {"throughput --entries 0", 2, "--entries"},
       {"throughput --json no/such/folder/r.json", 4, "there is no folder no/such/folder"},
       {"peers --case easy", 2, "--case easy: there is none of this name; choose among none, v-cavity, "},

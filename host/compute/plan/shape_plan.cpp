@@ -37,8 +37,9 @@ void store(const Values& values, double Moments::*quantity, std::span<Moments> m
   for (std::size_t i = 0; i < moments.size(); ++i) moments[i].*quantity = values.data()[i];
 }
 
-/// The moments with function `k` of a sky, as those without.
-void interpolate_sky(const ShapePlan& plan, std::span<const Moments> nodes, std::size_t k, std::span<Moments> moments) {
+/// Column `k` of the moments, as these. Bounds lose their signs.
+void interpolate_column(const ShapePlan& plan, std::span<const Moments> nodes, std::size_t k,
+                        std::span<Moments> moments) {
   const Values sigma = plan.sigma.cardinal;
   const Values q = plan.q.cardinal.transpose();
   for (Moments& of_entry : moments) of_entry.columns.resize(k + 1);
@@ -46,8 +47,10 @@ void interpolate_sky(const ShapePlan& plan, std::span<const Moments> nodes, std:
     Values at(static_cast<Eigen::Index>(plan.sigma.nodes.size()), static_cast<Eigen::Index>(plan.q.nodes.size()));
     Values bound(at.rows(), at.cols());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      at.data()[i] = nodes[i].columns[k].*component;
-      bound.data()[i] = nodes[i].columns[k].error;
+      const ColumnMoments& column = nodes[i].columns[k];
+      at.data()[i] = column.*component;
+      bound.data()[i] = column.error + std::max(std::abs(column.i_apart), std::abs(column.q_apart)) +
+                        column.relative_error * std::abs(column.*component);
     }
     bound.rowwise() += tails(plan.sigma, at);
     bound.colwise() += tails(plan.q, at.transpose()).transpose();
@@ -104,7 +107,7 @@ void interpolate(const ShapePlan& plan, std::span<const Moments> nodes, std::spa
     store(sigma * at * q, value, moments);
     store(sigma.cwiseAbs() * bound * q.cwiseAbs(), error, moments);
   }
-  for (std::size_t k = 0; k < nodes.front().columns.size(); ++k) interpolate_sky(plan, nodes, k, moments);
+  for (std::size_t k = 0; k < nodes.front().columns.size(); ++k) interpolate_column(plan, nodes, k, moments);
   double evaluations = 0.0;
   for (const Moments& node : nodes) evaluations += node.evaluations;
   for (Moments& of_entry : moments) of_entry.evaluations = evaluations / static_cast<double>(moments.size());

@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "base/stopwatch.hpp"
+#include "evaluate/planned_moments.hpp"
 #include "model/angles.hpp"
 #include "model/direction.hpp"
 #include "model/response_basis.hpp"
@@ -175,13 +176,12 @@ TableLayout response_layout(const SceneValues& scene) {
   layout.head.attributes.push_back({"c0", kResponseC0});
   layout.head.attributes.push_back(
       {"comment",
-       "rho_i = sum over beta of response_i r, rho_q = sum of response_q d, with r = (r_s + r_p) / 2 and d = (r_s - "
-       "r_p) "
-       "/ 2 of facets at the angles beta, k_s = 1, no diffuse part. Let a_m and b_m, m < 24, be the coefficients of "
-       "Chebyshev polynomials of 2 asinh(cos(beta) / c0) / asinh(1 / c0) - 1 in r and d / sin(beta)^2. Errors are at "
-       "most "
-       "response_error times the largest of 2^m |a_m| and 2^m |b_m|, which is about 1 for bare materials; what the "
-       "polynomials leave out of the curves comes on top."});
+       "rho_i = sum over beta of response_i r, rho_q = sum over beta of response_q d, where r = (r_s + r_p) / 2 and "
+       "d = (r_s - r_p) / 2 of a facet at the angle beta, k_s = 1, without a diffuse part. Let a_m and b_m, m < 24, be "
+       "the coefficients of r and of d / sin(beta)^2 in Chebyshev polynomials of "
+       "2 asinh(cos(beta) / c0) / asinh(1 / c0) - 1. The error of rho_i and rho_q is at most response_error times the "
+       "largest 2^m |a_m| or 2^m |b_m|, which is about 1 for bare materials, plus what the polynomials leave out of r "
+       "and d."});
   layout.quantities = {Quantity::kAlbedo};
   layout.has_status = false;
   layout.responses = {ResponseVariable::kResponseI, ResponseVariable::kResponseQ};
@@ -195,7 +195,6 @@ MomentsRequest response_request(const Surface& surface) {
   MomentsRequest request;
   request.distribution = surface.distribution;
   request.masking = surface.masking;
-  request.may_interpolate = false;
   request.response = {.count = kBetaAngles, .c0 = kResponseC0, .bend = kResponseC0};
   request.indices = {kUnusedIndex};
   return request;
@@ -218,7 +217,9 @@ EntryResponses responses_of(MomentsRequest request, const Accuracy& accuracy, Mo
   for (double& theta : request.theta_deg) theta = zenith_before_limit_deg(request.masking, theta);
   const bool wants_direct = has_emission(request.masking);
   request.precision = first_level(accuracy, evaluator.has_double()).precision;
+  request.may_interpolate = accuracy.may_interpolate && !evaluator.computes_each_entry();
   request.tolerance = accuracy.tolerance;
+  Work of_host;
   double share = kFirstShare;
   for (int level = 0; level < kMostLevels && request.wanted_count() > 0; ++level, share *= kFinerBy) {
     const auto evaluated = [&](Response::Of of) {
@@ -227,11 +228,12 @@ EntryResponses responses_of(MomentsRequest request, const Accuracy& accuracy, Mo
       pass.wants_direct = of == Response::Of::kDirect;
       pass.response->of = of;
       const std::size_t size = request.size();
-      return evaluator.evaluate(pass, [&, size](std::size_t done, std::size_t total) {
+      const Progress of_pass = [&, size](std::size_t done, std::size_t total) {
         const std::size_t own = size * done / std::max<std::size_t>(total, 1);
         const std::size_t half = pass.wants_direct ? (size + own) / 2 : wants_direct ? own / 2 : own;
         return !progress || progress(level == 0 ? half : size, size);
-      });
+      };
+      return planned_moments(MomentsPlan(pass), evaluator, of_pass, of_host);
     };
     const std::vector<Moments> reflected = evaluated(Response::Of::kReflected);
     const std::vector<Moments> direct = wants_direct ? evaluated(Response::Of::kDirect) : std::vector<Moments>();
@@ -242,6 +244,7 @@ EntryResponses responses_of(MomentsRequest request, const Accuracy& accuracy, Mo
       request.wanted[i] = misses(all, i, accuracy.tolerance) ? 1 : 0;
     }
     if (accuracy.precision != Precision::kFloat && evaluator.has_double()) request.precision = Precision::kDouble;
+    request.may_interpolate = false;
   }
   return all;
 }

@@ -137,7 +137,9 @@ std::vector<MaterialAxes> material_axes() {
                         spaced(from_um, 14.0, kManyWavelengths)};
   };
   return {{"one index"},
-          {fmt::format("{} n x {} k", kManyIndices, kManyIndices), {}, spaced(1.2, 4.0, kManyIndices),
+          {fmt::format("{} n x {} k", kManyIndices, kManyIndices),
+           {},
+           spaced(1.2, 4.0, kManyIndices),
            spaced(0.05, 3.0, kManyIndices)},
           spectrum_of("water 25C", 8.0),
           spectrum_of("SiO2 amorphous quartz", 7.6)};

@@ -107,8 +107,7 @@ TEST(SceneParts, CombinedIndices_KeepTheirBitsInParts) {
     scene.grid = axes_of({80.0}, spaced(0.1, 0.4, 5), spaced(2.0, 5.0, 5), {}, spaced(1.3, 3.0, 10), {0.1, 0.3, 0.9});
     const auto evaluator = evaluator_on(true);
     CollectedResults results(grid_entries(scene));
-    const Work work =
-        run_scene(scene, grid_entries(scene), keep_everything(scene), evaluator.get(), results, {}).work;
+    const Work work = run_scene(scene, grid_entries(scene), keep_everything(scene), evaluator.get(), results, {}).work;
     EXPECT_LT(2 * work.interpolation_nodes, work.interpolated);
     expect_same_bits(scene, true);
   }

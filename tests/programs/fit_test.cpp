@@ -329,8 +329,8 @@ TEST_F(FitProgram, Spectrum_SharesItsPasses_AndIsDrawnOverWavelength) {
   }
   put("points.csv", points);
   const std::vector<std::string> water = {"--set", "surface.material=water", "--set", "surface.sigma=0.2"};
-  const Columns exact = eval(
-      joined(water, {"--tolerance", "1e-6", "--evaluator", "cpu", "--set", "accuracy.interpolation=off"}));
+  const Columns exact =
+      eval(joined(water, {"--tolerance", "1e-6", "--evaluator", "cpu", "--set", "accuracy.interpolation=off"}));
   std::string data = "theta_deg,wavelength_um,q_over_i,uncertainty\n";
   for (std::size_t i = 0; i < exact.at("dolp").size(); ++i) {
     data += fmt::format("{},{},{:.12g},0.001\n", exact.at("theta_deg")[i], exact.at("wavelength_um")[i],
@@ -338,8 +338,8 @@ TEST_F(FitProgram, Spectrum_SharesItsPasses_AndIsDrawnOverWavelength) {
   }
   put("data.csv", data);
   const Outcome outcome =
-      fit({"--set", "surface.material=water", "--data", "data.csv", "--vary",
-            "surface.sigma=0.02:1", "--vary", "emission.temperature_K=280:320", "--plot", "fit.png", "--json"});
+      fit({"--set", "surface.material=water", "--data", "data.csv", "--vary", "surface.sigma=0.02:1", "--vary",
+           "emission.temperature_K=280:320", "--plot", "fit.png", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   const json report = json::parse(outcome.out);

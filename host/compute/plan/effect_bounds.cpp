@@ -174,7 +174,8 @@ EffectBounds::EffectBounds(const SceneModel& scene, const EntriesExtent& extent)
   std::vector<OpticalConstants> indices = rule.indices();
   indices.insert(indices.end(), extent.indices.begin(), extent.indices.end());
   const Surface& surface = scene_.surface;
-  const double moment_zenith_deg = is_bistatic_ ? scene_.geometry.view_zenith_deg : *std::ranges::max_element(extent.theta_deg);
+  const double moment_zenith_deg =
+      is_bistatic_ ? scene_.geometry.view_zenith_deg : *std::ranges::max_element(extent.theta_deg);
   const CosSin a = cos_sin_deg(zenith_before_limit_deg(surface.masking, moment_zenith_deg));
   const double cosine = std::max(a.cos, kSmallestCosine);
   most_specular_ = surface.specular * most_albedo(surface, a, extent.roughest);

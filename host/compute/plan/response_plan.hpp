@@ -1,4 +1,5 @@
-// Selects what to compute of a request with many indices, and combines their moments from it (model/response_basis.hpp).
+// Selects what to compute of a request with many indices, and combines their moments from it
+// (model/response_basis.hpp).
 #pragma once
 
 #include <cstdint>
@@ -30,7 +31,7 @@ struct ResponsePlan {
   /// The request's directions and slope distributions at the reference index, with responses: of the light reflected,
   /// then, as far as they are wanted, of the direct emission and of the light reflected with each function of the sky.
   std::vector<MomentsRequest> passes;
-  std::optional<MomentsRequest> others;  ///< the indices, or points, that are not reached
+  std::optional<MomentsRequest> others;                ///< the indices, or points, that are not reached
   std::shared_ptr<const std::vector<Source>> sources;  ///< one for each index of a grid, each different index of points
   std::vector<PointSource> points;                     ///< of a request for points
 

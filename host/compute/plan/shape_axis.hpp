@@ -24,7 +24,8 @@ struct ShapeParameter {
 ShapeParameter sigma_parameter(Distribution distribution);
 /// All of the request's directions are grazing, or none is.
 ShapeParameter q_parameter(const MomentsRequest& request);
-/// Positions of the directions of a grid, in groups that have one parameter each: all of them, or the grazing ones apart.
+/// Positions of the directions of a grid, in groups that have one parameter each: all of them, or the grazing ones
+/// apart.
 std::vector<std::vector<std::size_t>> split_grazing_directions(const MomentsRequest& request);
 
 /// Values of a parameter, and the nodes from which they are interpolated.

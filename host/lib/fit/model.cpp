@@ -169,7 +169,8 @@ void Model::add_groups(const SceneValues& scene, const MeasuredData& data, Eigen
       group.scene = scene_of(scene, data, {own}, starts_of(parameters_));
     }
     const std::shared_ptr<const Material>& tabulated = group.scene.surface.material.tabulated;
-    for (const double at_um : group.wavelength_um) group.indices.push_back(tabulated ? tabulated->at(at_um) : OpticalConstants{});
+    for (const double at_um : group.wavelength_um)
+      group.indices.push_back(tabulated ? tabulated->at(at_um) : OpticalConstants{});
   }
   const Surface& surface = group.scene.surface;
   const bool is_tabulated = group.scene.source && group.scene.source->kind == Source::Kind::kTabulated;

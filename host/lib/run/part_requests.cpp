@@ -20,7 +20,8 @@ SlopeShape normalised(const SceneValues& scene, const SlopeShape& shape) {
 }
 
 Treatment treatment(const SceneValues& scene, const SceneEntry& entry) {
-  return treatment_of(scene.surface.distribution, scene.surface.masking, moment_zenith_deg(scene, entry.theta_deg), entry.shape);
+  return treatment_of(scene.surface.distribution, scene.surface.masking, moment_zenith_deg(scene, entry.theta_deg),
+                      entry.shape);
 }
 
 /// Values that are used go to `axis`, in their order.
@@ -195,8 +196,9 @@ void PartRequests::ask_points(const Selection& selection) {
     const SlopeShape shape = normalised(scene_, entry.shape);
     // Without an index of its own it has the indices of a wavelength; no k is negative.
     const OpticalConstants key = entry.index.value_or(OpticalConstants{static_cast<double>(entry.wavelength), -1.0});
-    const auto [place, is_new] = known.try_emplace({zenith_deg, shape.sigma, shape.q, key.n, key.k},
-                                                   Place{moments_.size(), entry.index ? std::size_t{0} : std::size_t{1}});
+    const auto [place, is_new] =
+        known.try_emplace({zenith_deg, shape.sigma, shape.q, key.n, key.k},
+                          Place{moments_.size(), entry.index ? std::size_t{0} : std::size_t{1}});
     places_.push_back(place->second);
     if (!is_new) continue;
     if (entry.index) moments_.append({zenith_deg, shape, *entry.index});

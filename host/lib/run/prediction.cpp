@@ -54,9 +54,7 @@ struct Count {
 class CountingEvaluator final : public ModelEvaluator {
  public:
   CountingEvaluator(bool has_double, std::size_t first_moments_requests)
-      : has_double_(has_double),
-        moments_{.first_requests = first_moments_requests},
-        beams_{.first_requests = 1} {}
+      : has_double_(has_double), moments_{.first_requests = first_moments_requests}, beams_{.first_requests = 1} {}
 
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
     const EvaluationReport before = cpu_.report();
@@ -91,7 +89,9 @@ double scale_of(std::size_t all, const Count& counted) {
 /// The requests of the first level for a part of a run, and their plan.
 struct FirstLevel {
   FirstLevel(const SceneValues& scene, const SceneEntries& part, const EffectPlan& plan, const RefinementLevel& level)
-      : indices(spectral_indices(scene, part)), requests(scene, indices, plan, {part}, level), moments(requests.moments()) {}
+      : indices(spectral_indices(scene, part)),
+        requests(scene, indices, plan, {part}, level),
+        moments(requests.moments()) {}
   std::size_t kernel_requests() const {
     std::size_t count = 0;
     for (const MomentsStep& step : moments.steps()) count += step.kernel_requests().size();

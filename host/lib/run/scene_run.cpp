@@ -11,8 +11,8 @@
 #include <dolp/status.hpp>
 #include "base/parallel_ranges.hpp"
 #include "base/stopwatch.hpp"
-#include "model/angles.hpp"
 #include "evaluate/planned_moments.hpp"
+#include "model/angles.hpp"
 #include "plan/moments_plan.hpp"
 #include "plan/refinement.hpp"
 #include "run/closed_forms.hpp"

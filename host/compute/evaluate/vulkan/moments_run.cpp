@@ -37,9 +37,9 @@ void MomentsRun::create_buffers() {
   task_buffer_.emplace(device, invocations * sizeof(TaskWords), context_.staged_uploads);
   masking_buffer_.emplace(device, shapes * packing_.masking_nodes() * packing_.node_bytes<MaskingNode>(),
                           MemoryUse::kDeviceOnly, packing_.masking_texels());
-  moments_buffer_.emplace(
-      device, invocations * rows_.width * packing_.output_bytes<kernel::MomentsNode>(column_sums(data_)),
-      MemoryUse::kReadback);
+  moments_buffer_.emplace(device,
+                          invocations * rows_.width * packing_.output_bytes<kernel::MomentsNode>(column_sums(data_)),
+                          MemoryUse::kReadback);
 
   Kernels::Bindings bindings;
   create_rule(data_, bindings);
@@ -144,9 +144,9 @@ void MomentsRun::add_pieces(std::span<const RowPiece> pieces, std::span<kernel::
         const std::size_t place = pieces[i].row * std::size_t{rows_.width} + g;
         add_piece(results[place], node);
         packing_.read_numbers(scratch_,
-                             members * packing_.node_bytes<kernel::MomentsNode>() +
-                                 (i * rows_.width + g) * per_entry * packing_.real_bytes(),
-                             columns);
+                              members * packing_.node_bytes<kernel::MomentsNode>() +
+                                  (i * rows_.width + g) * per_entry * packing_.real_bytes(),
+                              columns);
         add_columns(data_, std::span<const double>(columns),
                     std::span(column_results_).subspan(place * per_entry, per_entry));
       }

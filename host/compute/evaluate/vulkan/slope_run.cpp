@@ -23,8 +23,7 @@ void SlopeRun::create_buffers() {
   theta_buffer_.emplace(input_buffer<kernel::ThetaNode>(std::min(slopes, data_.thetas.size())));
   index_buffer_.emplace(input_buffer<kernel::IndexNode>(std::min(slopes, data_.indices.size())));
   slope_buffer_.emplace(input_buffer<kernel::SlopeNode>(slopes));
-  azimuth_buffer_.emplace(context_.device,
-                          slopes * packing_.output_bytes<kernel::AzimuthNode>(column_azimuths(data_)),
+  azimuth_buffer_.emplace(context_.device, slopes * packing_.output_bytes<kernel::AzimuthNode>(column_azimuths(data_)),
                           MemoryUse::kReadback);
   Kernels::Bindings bindings;
   create_rule(data_, bindings);

@@ -13,7 +13,7 @@ namespace {
 
 using EntryWords = std::array<std::uint32_t, 4>;
 
-constexpr std::uint64_t kHeapFraction = 8;  // of the device's memory for tiles, and for masking tables
+constexpr std::uint64_t kHeapFraction = 8;    // of the device's memory for tiles, and for masking tables
 constexpr std::size_t kSampledAtOnce = 1024;  // bounds the memory of a batch: some hundred slopes each
 
 std::uint32_t at_least_one(std::uint64_t count) {

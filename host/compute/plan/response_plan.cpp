@@ -162,6 +162,10 @@ class Combination {
         sum.r_q_error = from.r_q_error + more_split.error(index, shape) + more_absorbed.error(index, shape) +
                         (own.split_error + of_reference.split_error) * albedo;
       }
+      // Distances of the two rules may cancel in a sum; those of the reference keep no sign.
+      const double whole_error = from.r_i_error * std::max(sum.r_i / from.r_i, 0.0);
+      sum.r_i_error = std::max(sum.r_i_error, whole_error);
+      sum.r_q_error = std::max(sum.r_q_error, whole_error);
       sum.deficit = from.deficit + more_absorbed.value(index, shape);
       sum.deficit_error = from.deficit_error + apart_error;
       sum.evaluations = evaluations_share * from.evaluations;
@@ -177,8 +181,11 @@ class Combination {
       const double projection = all.all[Responses::kI](0, shape) + all.all[Responses::kError](0, shape);
       sum.direct_i = i.value(index, shape);
       sum.direct_q = -q.value(index, shape);
-      sum.direct_i_error = i.error(index, shape) + own.absorbed_error * projection;
-      sum.direct_q_error = q.error(index, shape) + i.error(index, shape) + own.split_error * projection;
+      const Moments& from = pass[static_cast<std::size_t>(shape)];
+      const double whole_error = from.direct_i_error * std::max(sum.direct_i / from.direct_i, 0.0);
+      sum.direct_i_error = std::max(i.error(index, shape) + own.absorbed_error * projection, whole_error);
+      sum.direct_q_error =
+          std::max(q.error(index, shape) + i.error(index, shape) + own.split_error * projection, whole_error);
     });
   }
 

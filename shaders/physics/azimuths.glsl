@@ -119,7 +119,7 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
       if (corner < slope.sky.corners) stop = clamp_half_angle(corner_line(theta, slope, corner), start, to);
       // Devices that run invocations in lockstep compute both sides of an `if`; they skip a loop of one turn where no
       // invocation needs it. It counts as an iteration, see worst_iterations of host/compute/plan/kernel_data.hpp.
-      for (bool is_due = is_before(start, stop); is_due; is_due = false) {
+      for (bool run_once = is_before(start, stop); run_once; run_once = false) {
         bool is_first = !is_before(from, start);
         Arc arc = masked_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits,
                              make_arc(start, stop), zone, is_first);

@@ -112,14 +112,14 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
     slope.sky = sky;
     for (int g = 0; g < DOLP_WIDTH; ++g) {
       slope.weight[g] = weight[g];
-      if (kColumns == DOLP_COLUMNS_DIRECT) slope.weight[g] *= viewed(of_theta.value[g]);
+      if (kColumns == DOLP_COLUMNS_DIRECT) slope.weight[g] *= smith_g1(of_theta.value[g]);
     }
     AzimuthSums azimuths = slope_sums(rule, theta, row, index, slope, sums.columns);
     for (int g = 0; g < DOLP_WIDTH; ++g) {
       sums.member[g] += weight[g] * azimuths.member[g];
       sums.columns[g] = azimuths.columns[g];
       sums.behind[g] += weight[g] * azimuths.behind;
-      if (kHasDirect) sums.direct[g] += weight[g] * viewed(of_theta.value[g]) * azimuths.direct;
+      if (kHasDirect) sums.direct[g] += weight[g] * smith_g1(of_theta.value[g]) * azimuths.direct;
       mass[g] += kPi * weight[g];
     }
     sums.evaluations += azimuths.evaluations;

@@ -71,7 +71,7 @@ Masked masking_of_ray(Row row, real cos_r, real sin_r, real t, int zone) {
 }
 
 // The part of a facet's direct emission that smith's masking leaves, by its value for theta.
-real viewed(real of_theta) { return (kMasking == DOLP_MASKING_SMITH) ? real(1.0) / (real(1.0) + of_theta) : real(1.0); }
+real smith_g1(real of_theta) { return (kMasking == DOLP_MASKING_SMITH) ? real(1.0) / (real(1.0) + of_theta) : real(1.0); }
 
 // A facet's projection, by the masking of theta and of the reflected ray. `zone` numbers the arcs from phi = 0;
 // in the first, theta_r < theta, so that `integral` uses theta.

@@ -56,7 +56,8 @@ void expect_same_bits(const SceneValues& scene, bool device) {
   const SceneEntries grid = grid_entries(scene);
   const std::vector<PointResult> whole = in_parts(scene, {grid}, device);
   ASSERT_EQ(whole.size(), grid.size());
-  for (const std::size_t most : {std::max(grid.size() / 3 + 1, grid.of_direction()), grid.of_direction()}) {
+  for (const std::size_t most :
+       {std::max(grid.size() / 3 + 1, grid.entries_per_direction()), grid.entries_per_direction()}) {
     const std::vector<PointResult> parts = in_parts(scene, grid.parts(most), device);
     ASSERT_EQ(parts.size(), whole.size());
     for (std::size_t i = 0; i < whole.size(); ++i)

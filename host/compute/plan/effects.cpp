@@ -43,7 +43,7 @@ double worst_bound(const std::vector<EffectBounds>& bounds, Part part, const Kep
 bool has_profile(const SceneValues& scene) { return scene.surroundings && scene.surroundings->profile; }
 
 /// True if the scene has a part, in the order of Part.
-constexpr std::array<bool (*)(const SceneValues&), 8> kIsAskedFor = {
+constexpr std::array<bool (*)(const SceneValues&), 8> kHasPart = {
     [](const SceneValues& scene) { return scene.surface.scattering == Scattering::kMultiple; },
     [](const SceneValues& scene) { return scene.surface.specular > 0.0; },
     [](const SceneValues& scene) { return scene.source.has_value(); },
@@ -53,7 +53,7 @@ constexpr std::array<bool (*)(const SceneValues&), 8> kIsAskedFor = {
     [](const SceneValues& scene) { return scene.surface.diffuse > 0.0; },
     [](const SceneValues& scene) { return has_profile(scene); }};
 
-bool is_asked_for(const SceneValues& scene, Part part) { return kIsAskedFor[static_cast<std::size_t>(part)](scene); }
+bool scene_has_part(const SceneValues& scene, Part part) { return kHasPart[static_cast<std::size_t>(part)](scene); }
 
 bool is_bistatic(const SceneValues& scene) { return scene.geometry.mode == Mode::kBistatic; }
 
@@ -76,7 +76,7 @@ void drop_effects(EffectPlan& plan, const SceneValues& scene, const std::vector<
     if (bound > allowed - plan.bound) continue;
     plan.kept = without(plan.kept, part);
     plan.bound += bound;
-    if (is_asked_for(scene, part)) plan.dropped.push_back({part, bound});
+    if (scene_has_part(scene, part)) plan.dropped.push_back({part, bound});
   }
 }
 
@@ -229,7 +229,7 @@ Effect profile_row(const SceneValues& scene, const EffectPlan& plan) {
 Effect path_row(const SceneValues& scene, const EffectPlan& plan) {
   if (!scene.path) return absent("path", "no [path]");
   Effect row{"path", EffectState::kKept, "its radiance adds to I", "closed form"};
-  if (!is_asked_for(scene, Part::kPathRadiance)) {
+  if (!scene_has_part(scene, Part::kPathRadiance)) {
     row.reason = "its transmittance alone, which DOLP does not see";
     row.influence = 0.0;
     return row;

@@ -65,7 +65,7 @@ class SceneEntries {
   const std::vector<double>& q() const { return axes_[Axis::kQ]; }
   PerAxis place(std::size_t entry) const { return place_of(entry, counts_); }
   /// Entries that differ in sigma and q alone.
-  std::size_t of_direction() const { return sigma().size() * q().size(); }
+  std::size_t entries_per_direction() const { return sigma().size() * q().size(); }
   const OpticalConstants& index() const { return index_; }
   bool has_own_index() const { return !axes_[Axis::kN].empty() || !axes_[Axis::kK].empty(); }
   /// The index of an entry, of a grid with an axis of n or k.

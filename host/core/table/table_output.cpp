@@ -85,7 +85,7 @@ struct TableOutput::Impl {
     const bool was_empty = file && file->size() == 0;
     try {
       if (file) store.emplace(job.layout, *file);
-      if (is_resumable()) go_on();
+      if (is_resumable()) open_progress();
     } catch (...) {
       if (was_empty) file->discard();
       throw;
@@ -94,15 +94,15 @@ struct TableOutput::Impl {
 
   bool is_resumable() const { return !job.identity.empty() && job.parts.size() > 1 && job.path != "-"; }
 
-  void go_on() {
+  void open_progress() {
     if (fs::exists(fs::symlink_status(progress_path(job.path)))) progress.emplace(job.path, progress_path(job.path));
-    const std::uint64_t kept = job.is_resumed && progress ? take_over() : 0;
+    const std::uint64_t kept = job.is_resumed && progress ? reuse_finished_parts() : 0;
     if (progress) progress->resize(kept);
     if (parts_done == 0) file->resize(0);
   }
 
   /// Takes over the parts that are there. Returns the length of what the progress file says of them.
-  std::uint64_t take_over() {
+  std::uint64_t reuse_finished_parts() {
     std::string text(progress->size(), '\0');
     progress->read_at(0, text.data(), text.size());
     const std::optional<std::string_view> identity = first_text(text, kHashStart);

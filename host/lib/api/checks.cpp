@@ -72,7 +72,7 @@ Report verify_device(const DeviceCheckOptions& options) {
   if (!kToleranceRange.contains(options.tolerance)) {
     throw InputError(fmt::format("tolerance {:g}: must be a number in {}", options.tolerance, kToleranceRange.text()));
   }
-  begin(options.progress, 1);
+  report_start(options.progress, 1);
   HardCaseReport report;
   report.tolerance = options.tolerance;
   report.cases = hard_cases();

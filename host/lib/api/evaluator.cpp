@@ -74,11 +74,11 @@ void Evaluator::table_parts(const Scene& scene, const std::function<void(const T
     const SceneValues& own = scene.impl().scene;
     Run run(own, grid_entries(own), options, impl_->maker(own));
     const TableLayout layout = table_layout(own, run.plan(), run.entries().axes());
-    const std::function<void(const Table&)> watched = impl_->watched(take);
-    PassedResults parts([&](const SceneEntries& part, const std::vector<PointResult>& results) {
+    const std::function<void(const Table&)> guarded = impl_->guard_reentry(take);
+    CallbackSink parts([&](const SceneEntries& part, const std::vector<PointResult>& results) {
       TableValues table = table_part(layout, part, results);
       table.stokes_units = layout.head.stokes_units;
-      watched(Table(std::make_shared<const Table::Impl>(std::move(table), "part")));
+      guarded(Table(std::make_shared<const Table::Impl>(std::move(table), "part")));
     });
     run.compute(parts);
   });
@@ -103,7 +103,7 @@ std::vector<MuellerMatrix> Evaluator::mueller(const Scene& scene, const std::vec
   return impl().exclusively(of_call, [&](const RunOptions& options) {
     const SceneValues& own = scene.impl().scene;
     const auto geometries = mueller_points(own, points_of_columns(points, PointsKind::kGeometries));
-    begin(options.progress, geometries.size());
+    report_start(options.progress, geometries.size());
     return evaluate_mueller(own, geometries, *impl_->begin(own), options.progress);
   });
 }

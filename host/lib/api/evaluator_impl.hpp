@@ -52,8 +52,8 @@ struct Evaluator::Impl {
       throw InputError("an Evaluator cannot be called from its own callback; another Evaluator can");
     if (options.evaluator == "vulkan") check_no_fork();
     const std::lock_guard lock(mutex);
-    of_call.progress = watched(of_call.progress);
-    if constexpr (requires { of_call.phase; }) of_call.phase = watched(of_call.phase);
+    of_call.progress = guard_reentry(of_call.progress);
+    if constexpr (requires { of_call.phase; }) of_call.phase = guard_reentry(of_call.phase);
     try {
       return body(of_call);
     } catch (const DeviceError&) {
@@ -64,7 +64,7 @@ struct Evaluator::Impl {
 
   /// A callback, from which this object must not be called: that would wait without end.
   template <class Result, class... Arguments>
-  std::function<Result(Arguments...)> watched(const std::function<Result(Arguments...)>& callback) {
+  std::function<Result(Arguments...)> guard_reentry(const std::function<Result(Arguments...)>& callback) {
     if (!callback) return callback;
     return [this, callback](Arguments... arguments) {
       in_callback = std::this_thread::get_id();

@@ -127,7 +127,7 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
     check_writable(path);
     Run run(own, std::move(entries), options, impl_->maker(own));
     ResultCsv csv = csv_of(path, points, quantities_of(own));
-    PassedResults rows([&](const SceneEntries&, const std::vector<PointResult>& results) { csv.append(results); });
+    CallbackSink rows([&](const SceneEntries&, const std::vector<PointResult>& results) { csv.append(results); });
     RunOutcome outcome = run.compute(rows);
     const std::optional<ScatteringGap> gap = scattering_gap(own, run.entries(), outcome.plan);
     csv.commit();
@@ -148,7 +148,7 @@ Report Evaluator::write_mueller(const Scene& scene, const std::filesystem::path&
     const Points points = load_points(points_path, PointsKind::kGeometries, files_of(own), path);
     const std::vector<MuellerPoint> geometries = mueller_points(own, points);
     check_writable(path);
-    begin(options.progress, points.size());
+    report_start(options.progress, points.size());
     ModelEvaluator* const evaluator = impl_->begin(own);
     const std::vector<MuellerMatrix> results = evaluate_mueller(own, geometries, *evaluator, options.progress);
     write_text_atomically(path, mueller_csv(points, results));
@@ -183,7 +183,7 @@ Report write_lookup(const std::filesystem::path& table_path, const std::filesyst
   const SceneValues scene = table_scene(table, table_path.string());
   const TableLookup lookup(table, scene, table_path.string());
   check_writable(path);
-  begin(progress, points.size());
+  report_start(progress, points.size());
   const std::vector<PointResult> results = lookup_points(lookup, scene, points, progress);
   ResultCsv csv = csv_of(path, points, lookup.quantities());
   csv.append(results);

@@ -312,7 +312,7 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     check_loss(options.loss, options.model_error, data);
     check_starts(options.starts);
     check_plot(options.plot);
-    begin(options.progress, 1);
+    report_start(options.progress, 1);
     std::vector<ComparedModel> models;
     ModelEvaluator* evaluator = nullptr;
     const Best best = best_of(models, scene.impl().scene, data, options, [&](const SceneValues& first) {

@@ -137,7 +137,7 @@ std::vector<Attribute> Table::file_attributes() const {
 Results Table::lookup(const std::vector<Column>& points, const Progress& progress) const {
   const TableLookup& between = impl_->lookup();
   const Points at = points_of_columns(points, PointsKind::kDirections);
-  begin(progress, at.size());
+  report_start(progress, at.size());
   return results_of(lookup_points(between, *impl_->scene, at, progress), between.quantities(), impl_->table);
 }
 

@@ -174,7 +174,7 @@ class Map {
   }
 
   /// Asks for the nodes to which a neighbour foretells a much lower growth, once for each neighbour and growth.
-  void doubt() {
+  void retry_suspicious_nodes() {
     if (result_.parameters.size() == 2) return;
     for (const auto& [place, one] : nodes_) {
       double least = kSuspiciousShare * std::min(growth(one), 1e6);
@@ -219,7 +219,7 @@ class Map {
     for (const Minimum& one : result_.seen) seed(one);
     for (;;) {
       ask();
-      if (wanted_.empty()) doubt();
+      if (wanted_.empty()) retry_suspicious_nodes();
       if (wanted_.empty()) return true;
       if (!can_pay(wanted_.size())) {
         wanted_.clear();

@@ -202,7 +202,7 @@ class Profiler {
 
   Profiles run() {
     go(0);
-    for (int round = 0; round < kMostLooks && !result_.lower && look_beyond(); ++round) {
+    for (int round = 0; round < kMostLooks && !result_.lower && search_other_branches(); ++round) {
     }
     for (const Side& side : sides_) {
       for (const Point& point : side.points()) {
@@ -248,7 +248,7 @@ class Profiler {
   }
 
   /// Looks for other branches of the valley beyond ends that are new; true where there are some.
-  bool look_beyond() {
+  bool search_other_branches() {
     std::vector<std::pair<End, double>> ends;
     std::vector<Neighbour> looks;
     std::vector<std::size_t> look_of;

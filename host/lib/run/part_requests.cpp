@@ -25,8 +25,8 @@ Treatment treatment(const SceneValues& scene, const SceneEntry& entry) {
 }
 
 /// Values that are used go to `axis`, in their order.
-std::vector<std::uint32_t> numbered(const std::vector<double>& values, const std::vector<char>& is_used,
-                                    std::vector<double>& axis) {
+std::vector<std::uint32_t> compact_used_values(const std::vector<double>& values, const std::vector<char>& is_used,
+                                               std::vector<double>& axis) {
   std::vector<std::uint32_t> positions(values.size(), 0);
   for (std::size_t i = 0; i < values.size(); ++i) {
     positions[i] = static_cast<std::uint32_t>(axis.size());
@@ -82,7 +82,7 @@ PartRequests::PartRequests(const SceneValues& scene, const SpectralIndices& samp
   if (plan.needs_beams) ask_beams(selection);
 }
 
-std::size_t PartRequests::set_of(const SceneEntries& grid, const PerAxis& place) const {
+std::size_t PartRequests::index_set(const SceneEntries& grid, const PerAxis& place) const {
   if (!grid.has_own_index()) return place[Axis::kWavelength];
   return place[Axis::kN] * grid.counts()[Axis::kK] + place[Axis::kK];
 }
@@ -97,7 +97,7 @@ void PartRequests::ask_grid(const Selection& selection) {
   for (const std::size_t i : selection.chosen) {
     if (!wants_moments(scene_, grid[i], plan_)) continue;
     const PerAxis place = grid.place(i);
-    theta[place[Axis::kTheta]] = set[set_of(grid, place)] = 1;
+    theta[place[Axis::kTheta]] = set[index_set(grid, place)] = 1;
   }
   for (std::size_t i = 0; i < sigma.size(); ++i) {
     for (std::size_t j = 0; j < q.size(); ++j) {
@@ -111,18 +111,18 @@ void PartRequests::ask_grid(const Selection& selection) {
   if (std::ranges::find(theta, 1) == theta.end()) return;
   moments_.layout = MomentsRequest::Layout::kGrid;
   ask_indices(grid, set);
-  sigma_at_ = numbered(grid.sigma(), sigma, moments_.sigma);
+  sigma_at_ = compact_used_values(grid.sigma(), sigma, moments_.sigma);
   if (scene_.surface.distribution == Distribution::kGaussian) {
     moments_.q = {SlopeShape{}.q};
     q_at_.assign(q.size(), 0);
   } else {
-    q_at_ = numbered(grid.q(), q, moments_.q);
+    q_at_ = compact_used_values(grid.q(), q, moments_.q);
   }
   if (scene_.geometry.mode == Mode::kBistatic) {
     moments_.theta_deg = {scene_.geometry.view_zenith_deg};
     theta_at_.assign(theta.size(), 0);
   } else {
-    theta_at_ = numbered(grid.theta_deg(), theta, moments_.theta_deg);
+    theta_at_ = compact_used_values(grid.theta_deg(), theta, moments_.theta_deg);
   }
   for (double& theta_deg : moments_.theta_deg) {
     theta_deg = zenith_before_limit_deg(scene_.surface.masking, theta_deg);
@@ -132,7 +132,7 @@ void PartRequests::ask_grid(const Selection& selection) {
 
 /// Equal sets share their indices.
 void PartRequests::ask_indices(const SceneEntries& grid, const std::vector<char>& is_used) {
-  set_at_.assign(is_used.size(), 0);
+  index_set_offset_.assign(is_used.size(), 0);
   std::vector<OpticalConstants> last;
   std::uint32_t first = 0;
   for (std::size_t set = 0; set < is_used.size(); ++set) {
@@ -151,7 +151,7 @@ void PartRequests::ask_indices(const SceneEntries& grid, const std::vector<char>
       moments_.indices.insert(moments_.indices.end(), own.begin(), own.end());
       last = std::move(own);
     }
-    set_at_[set] = first;
+    index_set_offset_[set] = first;
   }
 }
 
@@ -174,7 +174,8 @@ PartRequests::Place PartRequests::moments_of(std::size_t member) const {
   const std::size_t of_index = moments_.theta_deg.size() * moments_.shapes();
   const std::size_t shape = sigma_at_[place[Axis::kSigma]] * moments_.q.size() + q_at_[place[Axis::kQ]];
   const std::size_t of_theta = theta_at_[place[Axis::kTheta]] * moments_.shapes();
-  return {set_at_[set_of(grid, place)] * of_index + of_theta + shape, grid.has_own_index() ? std::size_t{0} : of_index};
+  return {index_set_offset_[index_set(grid, place)] * of_index + of_theta + shape,
+          grid.has_own_index() ? std::size_t{0} : of_index};
 }
 
 std::size_t PartRequests::direction_of(std::size_t member) const {

@@ -70,7 +70,7 @@ class PartRequests {
   void ask_grid(const Selection& selection);
   void ask_indices(const SceneEntries& grid, const std::vector<char>& is_used);
   void mask(const Selection& selection);
-  std::size_t set_of(const SceneEntries& grid, const PerAxis& place) const;
+  std::size_t index_set(const SceneEntries& grid, const PerAxis& place) const;
   void ask_points(const Selection& selection);
   void ask_beams(const Selection& selection);
 
@@ -82,7 +82,7 @@ class PartRequests {
   ScatteringRequest beams_;
   // For a grid: the position in the request of each value of the part's axes, and of the first index of each set: the
   // indices of a wavelength, or the one of n and k.
-  std::vector<std::uint32_t> theta_at_, sigma_at_, q_at_, set_at_;
+  std::vector<std::uint32_t> theta_at_, sigma_at_, q_at_, index_set_offset_;
   std::vector<Place> places_;  ///< of points
   std::vector<std::size_t> first_beam_;
 };

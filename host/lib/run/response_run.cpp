@@ -257,7 +257,7 @@ ResponseOutcome run_responses(const SceneValues& scene, const TableLayout& layou
   const std::size_t of_theta = axes[Axis::kSigma].size() * axes[Axis::kQ].size();
   const std::size_t at_once = std::max<std::size_t>(1, kColumnsAtOnce / (kBetaAngles * of_theta));
   const Progress& progress = options.progress;
-  begin(progress, layout.head.size());
+  report_start(progress, layout.head.size());
   for (std::size_t first = 0; first < axes[Axis::kTheta].size(); first += at_once) {
     TableBox box{{}, layout.head.counts()};
     box.first[Axis::kTheta] = first;

@@ -28,7 +28,7 @@ constexpr std::size_t kMomentsAtOnce = 1U << 20U;
 constexpr std::size_t kPointsAtOnce = 1U << 17U;
 // Chosen: 1.71, 1.81, 1.99 with smith (see plan/constants.hpp). A direction is refined as a whole where more than one
 // entry in so many misses the tolerance.
-constexpr std::size_t kManyMisses = 8;
+constexpr std::size_t kWholeDirectionMissRatio = 8;
 constexpr std::size_t kEntriesAtOnce = 4096;  // of a thread: their radiometry takes longer than to start one
 
 /// The scene's radiometry at each wavelength of a part.
@@ -55,8 +55,8 @@ struct RunContext {
   std::size_t samples() const { return spectra.indices.front().size(); }  ///< of every entry
 };
 
-/// The evaluator's answers to the requests of a part.
-struct Answer {
+/// What the evaluator computed for the requests of a part.
+struct EvaluatorResults {
   std::vector<Moments> moments;
   std::vector<ScatteringMatrix> beams;
 };
@@ -68,11 +68,11 @@ Scattered scattered(const ScatteringMatrix& f) { return {f.m[0], f.m[4], f.m[8],
 class MemberResults {
  public:
   MemberResults(const RunContext& context, const Selection& selection, const PartRequests& requests,
-                const Answer& answer)
+                const EvaluatorResults& evaluated)
       : context_(context),
         selection_(selection),
         requests_(requests),
-        answer_(answer),
+        evaluated_(evaluated),
         moments_(context.samples()),
         indices_(context.samples()),
         beams_(context.samples()) {}
@@ -103,7 +103,7 @@ class MemberResults {
     return direction_;
   }
 
-  /// The answer, or closed forms, or zeros where the plan needs none.
+  /// Moments from the evaluator, or closed forms, or zeros where the plan needs none.
   std::span<const Moments> moments_of(std::size_t member, const SceneEntry& entry, const Direction& direction,
                                       std::span<const OpticalConstants> indices) {
     if (!context_.plan.kept.moments) return moments_;  // never written to
@@ -115,9 +115,9 @@ class MemberResults {
     }
     const PartRequests::Place place = requests_.moments_of(member);
     if (place.stride == 1 || moments_.size() == 1) {
-      return std::span(answer_.moments).subspan(place.first, moments_.size());
+      return std::span(evaluated_.moments).subspan(place.first, moments_.size());
     }
-    for (std::size_t j = 0; j < moments_.size(); ++j) moments_[j] = answer_.moments[place.first + j * place.stride];
+    for (std::size_t j = 0; j < moments_.size(); ++j) moments_[j] = evaluated_.moments[place.first + j * place.stride];
     return moments_;
   }
 
@@ -128,13 +128,13 @@ class MemberResults {
       return;
     }
     const std::size_t first = requests_.beams_of(member);
-    for (std::size_t j = 0; j < beams_.size(); ++j) beams_[j] = scattered(answer_.beams[first + j]);
+    for (std::size_t j = 0; j < beams_.size(); ++j) beams_[j] = scattered(evaluated_.beams[first + j]);
   }
 
   const RunContext& context_;
   const Selection& selection_;
   const PartRequests& requests_;
-  const Answer& answer_;
+  const EvaluatorResults& evaluated_;
   std::vector<Moments> moments_;
   std::vector<OpticalConstants> indices_;
   std::vector<Scattered> beams_;
@@ -148,28 +148,28 @@ Progress part_of(const Progress& progress, std::size_t before, std::size_t total
 }
 
 /// Moments and beams of one level, in the same precision.
-Answer asked(const RunContext& context, const PartRequests& requests, const MomentsPlan& plan,
-             const Progress& progress) {
+EvaluatorResults run_requests(const RunContext& context, const PartRequests& requests, const MomentsPlan& plan,
+                              const Progress& progress) {
   const std::size_t moments = requests.moments().wanted_count();
   const std::size_t beams = requests.beams().entries.size();
   const std::size_t total = moments + beams;
   if (total == 0) return {};
-  Answer answer;
+  EvaluatorResults evaluated;
   if (beams > 0 && moments > 0) context.evaluator->prepare(requests.beams());
   if (moments > 0) {
-    answer.moments = planned_moments(plan, *context.evaluator, part_of(progress, 0, total), context.summary.work);
+    evaluated.moments = planned_moments(plan, *context.evaluator, part_of(progress, 0, total), context.summary.work);
   }
-  if (beams > 0) answer.beams = context.evaluator->scatter(requests.beams(), part_of(progress, moments, total));
-  return answer;
+  if (beams > 0) evaluated.beams = context.evaluator->scatter(requests.beams(), part_of(progress, moments, total));
+  return evaluated;
 }
 
 std::vector<PointResult> results_of(const RunContext& context, const Selection& selection, const PartRequests& requests,
                                     const MomentsPlan& plan, const Progress& progress) {
-  const Answer answer = asked(context, requests, plan, progress);
+  const EvaluatorResults evaluated = run_requests(context, requests, plan, progress);
   const auto start = std::chrono::steady_clock::now();
   std::vector<PointResult> results(selection.size());
   parallel_ranges(results.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
-    MemberResults result_of(context, selection, requests, answer);
+    MemberResults result_of(context, selection, requests, evaluated);
     for (std::size_t i = first; i < last; ++i) results[i] = result_of(i);
   });
   context.summary.radiometry_s += seconds_since(start);
@@ -189,33 +189,34 @@ bool is_better(const PointResult& a, const PointResult& b) {
 }
 
 /// True where a level improves an entry over the last one: f has no rule that a tolerance would make finer.
-bool finds_more(const RunContext& context, const RefinementLevel& level, const RefinementLevel& last,
-                const SceneEntry& entry) {
+bool would_improve(const RunContext& context, const RefinementLevel& level, const RefinementLevel& last,
+                   const SceneEntry& entry) {
   return wants_moments(context.scene, entry, context.plan) ||
          (wants_beam(context.scene, entry, context.plan) && level.precision != last.precision);
 }
 
-/// Entries waiting for the same level are computed together.
-using Waiting = std::map<RefinementLevel, std::vector<std::size_t>>;
+/// Entries that wait for their next level: those of one level are computed together.
+using EntriesByLevel = std::map<RefinementLevel, std::vector<std::size_t>>;
 
 /// The next level of one direction whose `members` were computed at `last`: of all of it, between nodes again, where
 /// many miss the tolerance; else of each of these by itself. The choice for an entry depends on its direction alone.
-void plan_next(const RunContext& context, const SceneEntries& part, const RefinementLevel& last,
-               std::span<const std::size_t> members, std::span<const PointResult> results, Waiting& waiting) {
+void queue_refinement(const RunContext& context, const SceneEntries& part, const RefinementLevel& last,
+                      std::span<const std::size_t> members, std::span<const PointResult> results,
+                      EntriesByLevel& by_level) {
   std::vector<std::pair<RefinementLevel, std::size_t>> missed;
   for (std::size_t j = 0; j < members.size(); ++j) {
     const auto next = next_level(last, results[j], context.scene.accuracy, context.evaluator->has_double());
-    if (next && finds_more(context, *next, last, part[members[j]])) missed.emplace_back(*next, members[j]);
+    if (next && would_improve(context, *next, last, part[members[j]])) missed.emplace_back(*next, members[j]);
   }
-  if (last.may_interpolate && missed.size() * kManyMisses > members.size()) {
+  if (last.may_interpolate && missed.size() * kWholeDirectionMissRatio > members.size()) {
     const auto middle = missed.begin() + static_cast<std::ptrdiff_t>(missed.size() / 2);
     std::nth_element(missed.begin(), middle, missed.end());
     RefinementLevel next = middle->first;
     next.may_interpolate = true;
-    std::vector<std::size_t>& all = waiting[next];
+    std::vector<std::size_t>& all = by_level[next];
     all.insert(all.end(), members.begin(), members.end());
   } else {
-    for (const auto& [next, member] : missed) waiting[next].push_back(member);
+    for (const auto& [next, member] : missed) by_level[next].push_back(member);
   }
 }
 
@@ -223,7 +224,7 @@ void plan_next(const RunContext& context, const SceneEntries& part, const Refine
 struct FirstResults {
   RefinementLevel level;
   std::vector<PointResult> results;
-  std::vector<char> is_interpolated;  ///< of each run of part.of_direction() entries
+  std::vector<char> is_interpolated;  ///< of each run of part.entries_per_direction() entries
 };
 
 FirstResults first_results(const RunContext& context, const SceneEntries& part, const Progress& progress) {
@@ -235,7 +236,7 @@ FirstResults first_results(const RunContext& context, const SceneEntries& part, 
   const MomentsPlan plan(requests.moments());
   first.results = results_of(context, {part}, requests, plan, progress);
   const std::vector<char> saves = plan.saving_directions();
-  for (std::size_t i = 0; !saves.empty() && i < part.size(); i += part.of_direction())
+  for (std::size_t i = 0; !saves.empty() && i < part.size(); i += part.entries_per_direction())
     first.is_interpolated.push_back(saves[requests.direction_of(i)]);
   return first;
 }
@@ -244,17 +245,17 @@ FirstResults first_results(const RunContext& context, const SceneEntries& part, 
 /// cancel.
 void refine(const RunContext& context, const SceneEntries& part, FirstResults& first, const Progress& progress) {
   const Progress is_wanted = [&](std::size_t, std::size_t) { return progress(1, 1); };
-  const std::size_t of_direction = part.is_grid() ? part.of_direction() : 1;
+  const std::size_t entries_per_direction = part.is_grid() ? part.entries_per_direction() : 1;
   std::vector<PointResult>& results = first.results;
-  Waiting waiting;
+  EntriesByLevel by_level;
   // Members of one direction follow each other.
   const auto plan = [&](RefinementLevel last, std::span<const std::size_t> members, std::span<const PointResult> found,
                         std::span<const char> is_interpolated) {
     for (std::size_t i = 0, end = 0; i < members.size(); i = end) {
-      const std::size_t direction = members[i] / of_direction;
-      while (end < members.size() && members[end] / of_direction == direction) ++end;
+      const std::size_t direction = members[i] / entries_per_direction;
+      while (end < members.size() && members[end] / entries_per_direction == direction) ++end;
       if (!is_interpolated.empty()) last.may_interpolate = is_interpolated[direction] != 0;
-      plan_next(context, part, last, members.subspan(i, end - i), found.subspan(i, end - i), waiting);
+      queue_refinement(context, part, last, members.subspan(i, end - i), found.subspan(i, end - i), by_level);
     }
   };
   std::vector<std::size_t> all(results.size());
@@ -262,10 +263,10 @@ void refine(const RunContext& context, const SceneEntries& part, FirstResults& f
   RefinementLevel last = first.level;
   last.may_interpolate = false;
   plan(last, all, results, first.is_interpolated);
-  while (!waiting.empty()) {
-    RefinementLevel level = waiting.begin()->first;
-    const std::vector<std::size_t> members = std::move(waiting.begin()->second);
-    waiting.erase(waiting.begin());
+  while (!by_level.empty()) {
+    RefinementLevel level = by_level.begin()->first;
+    const std::vector<std::size_t> members = std::move(by_level.begin()->second);
+    by_level.erase(by_level.begin());
     if (level.may_interpolate) level.basis = context.bases.of(level);
     const std::vector<PointResult> better = computed_at(context, {part, members}, level, is_wanted);
     for (std::size_t j = 0; j < members.size(); ++j) {
@@ -276,8 +277,8 @@ void refine(const RunContext& context, const SceneEntries& part, FirstResults& f
 }
 
 /// Computes some entries of a grid again, after its first level, by a rule of another kind.
-std::vector<PointResult> computed_again(const RunContext& context, const SceneEntries& part,
-                                        const RefinementLevel& first, std::span<const std::size_t> positions) {
+std::vector<PointResult> recompute_for_check(const RunContext& context, const SceneEntries& part,
+                                             const RefinementLevel& first, std::span<const std::size_t> positions) {
   if (positions.empty()) return {};
   const Progress none = [](std::size_t, std::size_t) { return true; };
   return computed_at(context, {part, positions}, check_level(first), none);
@@ -313,15 +314,16 @@ std::vector<PointResult> part_results(const RunContext& context, const SceneEntr
   FirstResults first = first_results(context, part, progress);
   std::vector<PointResult>& results = first.results;
   const std::vector<std::size_t> positions = positions_in(context, part, checked);
-  const std::vector<PointResult> again = computed_again(context, part, first.level, positions);
+  const std::vector<PointResult> again = recompute_for_check(context, part, first.level, positions);
   refine(context, part, first, progress);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     SelfCheck of_entry;
     of_entry.add(results[positions[i]], again[i]);
     check.add(of_entry);
     if (of_entry.worst_ratio <= 1.0) continue;
-    const std::size_t direction = positions[i] / part.of_direction();
-    for (PointResult& result : std::span(results).subspan(direction * part.of_direction(), part.of_direction()))
+    const std::size_t direction = positions[i] / part.entries_per_direction();
+    for (PointResult& result :
+         std::span(results).subspan(direction * part.entries_per_direction(), part.entries_per_direction()))
       result.status |= kAnyToleranceNotMet;
   }
   return results;
@@ -350,7 +352,7 @@ std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spe
   return entries.parts(std::max<std::size_t>(1, moments / spectral_samples));
 }
 
-void begin(const Progress& progress, std::size_t total) {
+void report_start(const Progress& progress, std::size_t total) {
   if (progress && !progress(0, total)) throw Cancelled();
 }
 
@@ -361,7 +363,7 @@ Run::Run(const SceneValues& scene, SceneEntries entries, const RunOptions& optio
       entries_.is_grid() ? SceneEntries::of_grid(entries_.whole_axes(), entries_.index()) : entries_;
   outcome_.plan = plan_effects(scene, whole, options.keep_all);
   outcome_.effects = effects_of(scene, whole, outcome_.plan);
-  begin(progress_, entries_.size());
+  report_start(progress_, entries_.size());
   if (wants_evaluator(scene, entries_, outcome_.plan)) evaluator_ = make_evaluator();
   if (evaluator_) {
     outcome_.evaluation = evaluator_->report();

@@ -59,10 +59,10 @@ class CollectedResults final : public Sink {
 };
 
 /// Calls a function with the results of each part.
-class PassedResults final : public Sink {
+class CallbackSink final : public Sink {
  public:
   using Take = std::function<void(const SceneEntries& part, const std::vector<PointResult>& results)>;
-  explicit PassedResults(Take take) : take_(std::move(take)) {}
+  explicit CallbackSink(Take take) : take_(std::move(take)) {}
   void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary&) override {
     take_(part, results);
   }
@@ -122,7 +122,7 @@ class Run {
 std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spectral_samples);
 
 /// Calls `progress`, if there is one, with nothing done yet: all inputs are read. Errors: Cancelled.
-void begin(const Progress& progress, std::size_t total);
+void report_start(const Progress& progress, std::size_t total);
 
 /// The same as Run::compute for an existing plan and evaluator; the evaluator may be null where the plan leaves nothing
 /// for it.

@@ -46,8 +46,8 @@ struct SampleRequest {
 // An end of a piece of the slope axis.
 struct End {
   double slope = 0.0;
-  std::uint32_t of_direction = 0;  // breakpoint at or before it
-  bool is_own = false;             // it is that breakpoint
+  std::uint32_t direction_piece = 0;  // breakpoint at or before it
+  bool is_own = false;                // it is that breakpoint
 };
 
 // Factors of the weights of the sampled slopes, shared by all shapes of one width.
@@ -114,14 +114,14 @@ struct SlopeSampling::Impl {
       const double slope = narrowest * std::pow(widest / narrowest, (i + 0.5) / (steps + 1.0));
       if (slope >= last) break;
       const auto after = std::ranges::find_if(ends, [&](const End& end) { return end.slope > slope; });
-      ends.insert(after, {slope, (after - 1)->of_direction, false});
+      ends.insert(after, {slope, (after - 1)->direction_piece, false});
     }
     return ends;
   }
 
   KernelSource::Task task_of(std::uint32_t theta, std::span<const End> ends, std::size_t piece) {
     const auto has_root = [&](const End& end, unsigned bit) {
-      return end.is_own && (data.pieces[theta].roots[end.of_direction] & bit) != 0;
+      return end.is_own && (data.pieces[theta].roots[end.direction_piece] & bit) != 0;
     };
     KernelSource::Task task{};
     const std::size_t last = ends.size() - 1;
@@ -282,7 +282,7 @@ SlopeSamples SlopeSampling::plan(SampledEntries entries) const {
     const int coarse = std::min(impl_->source.coarse_order(piece.order), impl_->data.rule_order);
     samples.pieces.push_back(
         {ends[i].slope, std::min(ends[i + 1].slope, samples.cut), static_cast<std::uint32_t>(samples.slopes.size()),
-         static_cast<std::uint32_t>(piece.order), static_cast<std::uint32_t>(coarse), ends[i].of_direction});
+         static_cast<std::uint32_t>(piece.order), static_cast<std::uint32_t>(coarse), ends[i].direction_piece});
     impl_->add_rule(samples, theta, corners, piece, requests, piece.order);
     impl_->add_rule(samples, theta, corners, piece, requests, coarse);
   }
@@ -297,7 +297,7 @@ void SlopeSampling::append(const SlopeSamples& samples, std::vector<kernel::Slop
       const SampledSlope& slope = samples.slopes[piece.first + i];
       nodes.push_back({slope.t, slope.digits, static_cast<double>(samples.entries.theta),
                        static_cast<double>(samples.entries.index),
-                       static_cast<double>(pieces.most_nodes[piece.of_direction]), i < piece.fine ? 0.0 : 1.0});
+                       static_cast<double>(pieces.most_nodes[piece.direction_piece]), i < piece.fine ? 0.0 : 1.0});
     }
   }
 }

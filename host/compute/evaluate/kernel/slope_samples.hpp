@@ -40,7 +40,7 @@ struct SampledPiece {
   std::uint32_t first = 0;
   std::uint32_t fine = 0;
   std::uint32_t coarse = 0;
-  std::uint32_t of_direction = 0;  ///< the piece of KernelData::pieces that it is in
+  std::uint32_t direction_piece = 0;  ///< the piece of KernelData::pieces that it is in
 };
 
 /// Slopes at which a direction and an index are sampled for all their shapes. They follow from the entries alone.

@@ -66,7 +66,7 @@ std::vector<std::uint32_t> in_lockstep(const SlopeBatch& batch, const KernelData
     const SlopeSamples& samples = batch.samples[i];
     const Pieces& pieces = data.pieces[samples.entries.theta];
     for (const SampledPiece& piece : samples.pieces) {
-      std::vector<std::uint32_t>& alike = by_bound[pieces.lockstep[piece.of_direction]];
+      std::vector<std::uint32_t>& alike = by_bound[pieces.lockstep[piece.direction_piece]];
       for (std::uint32_t k = piece.first; k < piece.first + piece.fine + piece.coarse; ++k) {
         alike.push_back(static_cast<std::uint32_t>(batch.first[i] + k));
       }

@@ -46,9 +46,9 @@ CLI::App* add_throughput(CLI::App& app, StudyOptions& options) {
   CLI::App* study = app.add_subcommand("throughput", "entries a second, share of the device's peak, scaling");
   add_common(*study, options);
   study
-      ->add_option(
-          "--case", options.cases,
-          "only this part (repeatable): grids, arithmetic, cores, vector-width; kernels: what the last two run")
+      ->add_option("--case", options.cases,
+                   "only this part (repeatable): grids, materials, arithmetic, cores, vector-width; kernels: what the "
+                   "last two run")
       ->allow_extra_args(false);
   options.entries = std::size_t{256} * 64 * 64;
   add_entries(*study, options, "entries of the largest grid; more for a GPU");

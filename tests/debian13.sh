@@ -7,7 +7,7 @@
 set -euo pipefail
 
 # Without the tests that need namespaces of their own, which a changed root folder cannot have.
-parts='Table|Hdf5|HardCases|Devices|Window|Python|Install.Works|Octave|Hardening|file_limit|failed_close|endless|SecondDriver|manual_test'
+parts='Table|Hdf5|HardCases|Devices|Window|Explore|Python|Install.Works|Octave|Hardening|file_limit|failed_close|endless|SecondDriver|manual_test'
 
 fail() {
   echo "debian13.sh: $1" >&2

@@ -4,7 +4,7 @@
 #include <dolp/errors.hpp>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
-#include "evaluate/interpolation/interpolating_evaluator.hpp"
+#include "evaluate/planned_moments.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "methods/method.hpp"
 
@@ -13,18 +13,20 @@ namespace {
 
 class EvaluatorSolver final : public Solver {
  public:
-  EvaluatorSolver(std::unique_ptr<ModelEvaluator> evaluator, Precision precision)
-      : precision_(precision), evaluator_(std::move(evaluator)) {}
+  EvaluatorSolver(std::unique_ptr<ModelEvaluator> evaluator, Precision precision, bool may_interpolate = false)
+      : precision_(precision), may_interpolate_(may_interpolate), evaluator_(std::move(evaluator)) {}
 
   Solution solve(const MomentsRequest& request, double setting) override {
     MomentsRequest wanted = request;
     wanted.tolerance = setting;
     wanted.precision = precision_;
+    wanted.may_interpolate = may_interpolate_;
     const EvaluationReport before = evaluator_->report();
-    const std::vector<Moments> moments = evaluator_->evaluate(wanted, nullptr);
+    Work of_host;
+    const std::vector<Moments> moments = planned_moments(MomentsPlan(wanted), *evaluator_, nullptr, of_host);
     const EvaluationReport after = evaluator_->report();
     Solution solution;
-    solution.kernel_s = after.kernel_s + after.sums_s - (before.kernel_s + before.sums_s);
+    solution.kernel_s = after.kernel_s + after.sums_s + of_host.sums_s - (before.kernel_s + before.sums_s);
     solution.evaluations = after.evaluations - before.evaluations;
     for (const Moments& entry : moments) {
       solution.answers.push_back({entry.r_i, entry.r_q, std::max(entry.r_i_error, entry.r_q_error) / entry.r_i});
@@ -39,6 +41,7 @@ class EvaluatorSolver final : public Solver {
 
  private:
   Precision precision_;
+  bool may_interpolate_;
   std::unique_ptr<ModelEvaluator> evaluator_;
 };
 
@@ -60,8 +63,7 @@ std::unique_ptr<Solver> make_vulkan(const SolverOptions& options, Precision prec
 }
 
 std::unique_ptr<Solver> make_vulkan_table(const SolverOptions& options) {
-  return std::make_unique<EvaluatorSolver>(
-      std::make_unique<InterpolatingEvaluator>(vulkan_evaluator(options, Precision::kFloat)), Precision::kFloat);
+  return std::make_unique<EvaluatorSolver>(vulkan_evaluator(options, Precision::kFloat), Precision::kFloat, true);
 }
 
 std::unique_ptr<Solver> make_cpu(Precision precision) {

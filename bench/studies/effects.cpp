@@ -8,7 +8,6 @@
 #include <optional>
 
 #include <dolp/status.hpp>
-#include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "model/choices.hpp"
 #include "plan/effects.hpp"
@@ -107,7 +106,7 @@ class Study {
   StudyRun& run_;
   std::size_t repeats_;
   std::vector<EffectGroup> groups_;
-  InterpolatingEvaluator evaluator_;
+  VulkanEvaluator evaluator_;
 };
 
 void check_names(const std::vector<std::string>& names, const std::vector<EffectGroup>& groups) {
@@ -132,7 +131,7 @@ Study::Study(StudyRun& run)
     : run_(run),
       repeats_(run.options().quick ? kQuickRepeats : kFullRepeats),
       groups_(checked_groups(run.options())),
-      evaluator_(std::make_unique<VulkanEvaluator>(VulkanOptions{.device = run.options().device})) {
+      evaluator_(VulkanOptions{.device = run.options().device}) {
   for (const EffectGroup& group : groups_) {
     if (is_wanted(group.effect)) run_.expect(group.settings.size());
   }

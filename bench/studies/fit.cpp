@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/stopwatch.hpp"
-#include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "scene/scene_writer.hpp"
 #include "studies/child.hpp"
@@ -146,7 +145,7 @@ double median_share_of_n(const ordered_json& rows) {
 }
 
 void measure_sets(StudyRun& run) {
-  InterpolatingEvaluator evaluator(std::make_unique<VulkanEvaluator>(VulkanOptions{.device = run.options().device}));
+  VulkanEvaluator evaluator(VulkanOptions{.device = run.options().device});
   run.describe("fit", "largest bound of the model's error, in uncertainties",
                "seconds a fit with its intervals; the device and its kernels are there");
   const std::size_t sets = run.options().quick ? std::min(kQuickSets, run.options().entries) : run.options().entries;

@@ -10,12 +10,12 @@
 #include <thread>
 
 #include "device/devices.hpp"
-#include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "methods/arithmetic_peak.hpp"
 #include "methods/method.hpp"
 #include "methods/operations.hpp"
 #include "model/choices.hpp"
+#include "scene/material_data.hpp"
 #include "studies/cases.hpp"
 #include "studies/driver_variables.hpp"
 #include "studies/grids.hpp"
@@ -60,7 +60,7 @@ const TimingPolicy kQuickTiming{.min_repeats = 3, .max_repeats = 5, .enough_s = 
 struct Part {
   std::string name;
 };
-const std::vector<Part> kParts = {{"grids"}, {"arithmetic"}, {"cores"}, {"vector-width"}, {"kernels"}};
+const std::vector<Part> kParts = {{"grids"}, {"materials"}, {"arithmetic"}, {"cores"}, {"vector-width"}, {"kernels"}};
 
 /// Grids of at most so many entries; one of about as many where the smallest has more.
 std::vector<GridSize> grids_up_to(std::size_t entries) {
@@ -110,11 +110,46 @@ struct GridRun {
   }
 };
 
+constexpr std::array<GridSize, 2> kMaterialGrids = {{{64, 16, 16}, {8, 8, 8}}};  // of a full and of a quick study
+constexpr std::size_t kManyIndices = 12;                                         // values of n, and of k
+constexpr std::size_t kManyWavelengths = 300;
+
+std::vector<double> spaced(double first, double last, std::size_t count) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < count; ++i)
+    values.push_back(std::lerp(first, last, static_cast<double>(i) / static_cast<double>(count - 1)));
+  return values;
+}
+
+/// Axes of materials, and what they are called.
+struct MaterialAxes {
+  std::string name;
+  std::string material = {};  ///< a built-in one; empty: the scene's
+  std::vector<double> n = {}, k = {}, wavelength_um = {};
+};
+
+std::vector<MaterialAxes> material_axes() {
+  const auto spectrum_of = [](const std::string& material, double from_um) {
+    return MaterialAxes{fmt::format("{}, {} wavelengths {:g}-14 um", material, kManyWavelengths, from_um),
+                        material,
+                        {},
+                        {},
+                        spaced(from_um, 14.0, kManyWavelengths)};
+  };
+  return {{"one index"},
+          {fmt::format("{} n x {} k", kManyIndices, kManyIndices),
+           {},
+           spaced(1.2, 4.0, kManyIndices),
+           spaced(0.05, 3.0, kManyIndices)},
+          spectrum_of("water 25C", 8.0),
+          spectrum_of("SiO2 amorphous quartz", 7.6)};
+}
+
 ordered_json grid_row(Masking masking, const GridRun& run) {
   const std::size_t entries = run.size.entries();
   const double time_s = median(run.timed->times_s());
   const double kernel_s = median(run.timed->kernel_times_s());
-  const double evaluations = run.timed->evaluations() / static_cast<double>(entries);
+  const double evaluations = run.timed->work().evaluations / static_cast<double>(entries);
   const std::string setting =
       fmt::format("{}, {:g}{}", run.size.text(), run.tolerance, run.may_interpolate ? "" : ", off");
   ordered_json row = row_start("grids", name_of(masking), setting);
@@ -122,8 +157,8 @@ ordered_json grid_row(Masking masking, const GridRun& run) {
   row["tolerance"] = run.tolerance;
   row["entries"] = entries;
   row["interpolation"] = run.may_interpolate ? "auto" : "off";
-  row["interpolated"] = run.timed->interpolated();
-  row["interpolation_nodes"] = run.timed->interpolation_nodes();
+  row["interpolated"] = run.timed->work().interpolated;
+  row["interpolation_nodes"] = run.timed->work().interpolation_nodes;
   row["time_s"] = time_s;
   row["kernel_time_s"] = kernel_s;
   row["run_s"] = rounded_time(time_s * static_cast<double>(entries));
@@ -158,6 +193,7 @@ class Study {
 
   void describe();
   void run_grids(Masking masking);
+  void run_materials(Masking masking);
   void run_arithmetic();
   void run_kernels();
   void run_with(const char* part, const DriverVariable& variable);
@@ -176,6 +212,7 @@ Study::Study(StudyRun& run)
       grids_(grids_up_to(quick() ? std::min(run.options().entries, kQuickEntries) : run.options().entries)) {
   if (run.options().cases.empty()) parts_.pop_back();  // what the others run
   if (runs("grids")) run_.expect(kMaskings.size() * (grids_.size() + 2 * kTolerances.size() - 1));
+  if (runs("materials")) run_.expect(kMaskingsByRows.size() * material_axes().size());
   if (runs("arithmetic")) run_.expect(kMaskingsByRows.size() * arithmetic_tolerances().size());
   if (runs("kernels")) run_.expect(kernel_maskings().size());
 }
@@ -194,6 +231,9 @@ void Study::measure_all() {
   if (runs("grids")) {
     for (const Masking masking : kMaskings) run_grids(masking);
   }
+  if (runs("materials")) {
+    for (const Masking masking : kMaskingsByRows) run_materials(masking);
+  }
   if (runs("arithmetic")) run_arithmetic();
   if (runs("kernels")) run_kernels();
   const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
@@ -205,7 +245,7 @@ void Study::measure_all() {
 }
 
 void Study::run_grids(Masking masking) {
-  InterpolatingEvaluator evaluator(std::make_unique<VulkanEvaluator>(VulkanOptions{.device = run_.options().device}));
+  VulkanEvaluator evaluator(VulkanOptions{.device = run_.options().device});
   std::vector<GridRun> runs;
   for (const GridSize& size : grids_) runs.push_back({size});
   for (const double tolerance : kTolerances) {
@@ -233,6 +273,47 @@ void Study::run_grids(Masking masking) {
       const double half_s = median(half->timed->times_s()) * static_cast<double>(half->size.entries());
       row["doubled_ratio"] = row["run_s"].get<double>() / half_s;
     }
+    run_.finish(row);
+  }
+}
+
+void Study::run_materials(Masking masking) {
+  VulkanEvaluator evaluator(VulkanOptions{.device = run_.options().device});
+  const GridSize size = kMaterialGrids[quick() ? 1 : 0];
+  std::vector<std::unique_ptr<TimedScene>> all;
+  for (const MaterialAxes& axes : material_axes()) {
+    SceneValues scene = steel_scene(masking, size);
+    if (!axes.material.empty()) {
+      const std::vector<Material>& known = built_in_materials();
+      const auto found = std::ranges::find(known, axes.material, &Material::name);
+      if (found == known.end()) throw InputError("no material " + axes.material);
+      scene.surface.material.tabulated = std::make_shared<const Material>(*found);
+    }
+    scene.grid[Axis::kN] = axes.n;
+    scene.grid[Axis::kK] = axes.k;
+    scene.grid[Axis::kWavelength] = axes.wavelength_um;
+    all.push_back(std::make_unique<TimedScene>(std::move(scene), false, evaluator));
+  }
+  for (std::size_t i = 0; i < kQuickRepeats; ++i) {
+    for (const std::unique_ptr<TimedScene>& one : all) one->repeat();
+  }
+  // Without the sums over responses, which the host makes for each entry.
+  const auto kernels_s = [&](std::size_t i) { return all[i]->work().kernel_s; };
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto entries = static_cast<double>(all[i]->entries().size());
+    const double time_s = median(all[i]->times_s());
+    ordered_json row = row_start("materials", name_of(masking), material_axes()[i].name);
+    row["grid"] = {size.thetas, size.sigmas, size.qs};
+    row["entries"] = all[i]->entries().size();
+    row["time_s"] = time_s;
+    row["kernel_time_s"] = kernels_s(i) / entries;
+    row["run_s"] = rounded_time(time_s * entries);
+    row["kernel_run_s"] = rounded_time(kernels_s(i));
+    row["kernels_over_one"] = kernels_s(i) / kernels_s(0);
+    row["entries_per_s"] = std::round(1.0 / time_s);
+    row["evaluations_per_s"] = std::round(all[i]->work().evaluations / kernels_s(i));
+    row["stated_error"] = stated_error(all[i]->results());
+    row["raw_times_s"] = all[i]->times_s();
     run_.finish(row);
   }
 }
@@ -331,6 +412,8 @@ std::string table_line(const ordered_json& row) {
                         time_text(row["kernel_time_s"].get<double>()), row["entries_per_s"].get<double>(),
                         row["evaluations_per_s"].get<double>(), time_text(row["run_s"].get<double>()));
   }
+  if (row.contains("kernels_over_one"))
+    line += fmt::format(", kernels {:.2f} of one index", row["kernels_over_one"].get<double>());
   if (row.contains("doubled_ratio")) line += fmt::format(", {:.2f} of half", row["doubled_ratio"].get<double>());
   if (row.contains("share_of_peak")) {
     line += fmt::format(" {:>7.3g} flops, {:.1f} GFLOP/s, {:.0f} % of the peak, lanes {:.0f} % busy",

@@ -18,28 +18,22 @@ constexpr double kLongTime = 0.5;  // a first call that takes that long says eno
 
 TimedScene::TimedScene(SceneValues scene, bool keep_all, ModelEvaluator& evaluator)
     : scene_(std::move(scene)), entries_(grid_entries(scene_)), keep_all_(keep_all), evaluator_(evaluator) {
-  const EvaluationReport before = evaluator_.report();
   const Clock::time_point start = Clock::now();
-  results_ = run();
+  work_ = run();
   first_s_ = seconds_since(start);
-  const EvaluationReport after = evaluator_.report();
-  evaluations_ = after.evaluations - before.evaluations;
-  interpolated_ = after.interpolated - before.interpolated;
-  interpolation_nodes_ = after.interpolation_nodes - before.interpolation_nodes;
 }
 
 void TimedScene::repeat() {
   if (calls_ == 0) calls_ = calls_of_a_raw_time();
-  const auto in_kernels_s = [this] {
-    const EvaluationReport report = evaluator_.report();
-    return report.kernel_s + report.sums_s;
-  };
-  const double kernel_s = in_kernels_s();
+  double kernel_s = 0.0;
   const Clock::time_point start = Clock::now();
-  for (std::size_t i = 0; i < calls_; ++i) run();
+  for (std::size_t i = 0; i < calls_; ++i) {
+    work_ = run();
+    kernel_s += work_.kernel_s + work_.sums_s;
+  }
   const auto calls = static_cast<double>(calls_);
   raw_s_.push_back(seconds_since(start) / calls);
-  raw_kernel_s_.push_back((in_kernels_s() - kernel_s) / calls);
+  raw_kernel_s_.push_back(kernel_s / calls);
 }
 
 std::vector<double> TimedScene::times_s() const { return per_entry(raw_s_, entries_.size()); }
@@ -53,9 +47,13 @@ std::size_t TimedScene::calls_of_a_raw_time() {
   return static_cast<std::size_t>(std::ceil(std::max(1.0, kRawTime / seconds_since(start))));
 }
 
-std::vector<PointResult> TimedScene::run() {
+Work TimedScene::run() {
+  evaluator_.clear_report();
   plan_ = plan_effects(scene_, entries_, keep_all_);
-  return evaluate_scene(scene_, entries_, evaluator_, nullptr, plan_);
+  CollectedResults results(entries_);
+  const Work work = run_scene(scene_, entries_, plan_, &evaluator_, results, nullptr).work;
+  results_ = results.take();
+  return work;
 }
 
 }  // namespace dolp::bench

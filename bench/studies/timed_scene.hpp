@@ -21,16 +21,13 @@ class TimedScene {
   const SceneEntries& entries() const { return entries_; }
   const EffectPlan& plan() const { return plan_; }
   const std::vector<PointResult>& results() const { return results_; }
-  double evaluations() const { return evaluations_; }  ///< of one call
-  /// Moments of one call that were interpolated, and those computed for that.
-  std::uint64_t interpolated() const { return interpolated_; }
-  std::uint64_t interpolation_nodes() const { return interpolation_nodes_; }
+  const Work& work() const { return work_; }  ///< of the last call
   /// Raw times in seconds an entry, of calls and of their kernels.
   std::vector<double> times_s() const;
   std::vector<double> kernel_times_s() const;
 
  private:
-  std::vector<PointResult> run();
+  Work run();
   std::size_t calls_of_a_raw_time();
 
   SceneValues scene_;
@@ -39,10 +36,8 @@ class TimedScene {
   ModelEvaluator& evaluator_;
   EffectPlan plan_;
   std::vector<PointResult> results_;
-  std::uint64_t interpolated_ = 0;
-  std::uint64_t interpolation_nodes_ = 0;
+  Work work_;
   double first_s_ = 0.0;
-  double evaluations_ = 0.0;
   std::size_t calls_ = 0;
   std::vector<double> raw_s_, raw_kernel_s_;
 };

@@ -259,6 +259,18 @@ py::tuple contents_of(const dolp::Table& table) {
                         parts_of(values, values.quantities(), values.stokes_units, table.file_attributes()));
 }
 
+/// (beta, its long_name and units, variables: [(name, long_name, ancillary, has_beta, values)]) of a response table.
+py::tuple responses_of(const dolp::TableValues& table) {
+  py::list variables;
+  for (const dolp::ResponseVariable variable : dolp::kAllResponseVariables) {
+    const dolp::ResponseDescription& known = dolp::description_of(variable);
+    if (table.responses[variable].empty()) continue;
+    variables.append(py::make_tuple(known.name, known.long_name, known.has_beta ? dolp::kResponseQualifier : "",
+                                    known.has_beta, array_of(table.responses[variable])));
+  }
+  return py::make_tuple(array_of(table.beta_deg), dolp::kBeta.long_name, dolp::kBeta.units, variables);
+}
+
 std::vector<double> vector_of(const Array& values) { return {values.data(), values.data() + values.size()}; }
 
 /// A table of the axes, curves, columns and attributes that are there, by name.
@@ -348,6 +360,13 @@ PYBIND11_MODULE(_native, module) {
              return contents_of(interruptible([&](const dolp::Progress& progress) {
                return evaluator.table(scene, {keep_all, progress, "dolp.table"});
              }));
+           })
+      .def("response",
+           [](dolp::Evaluator& evaluator, const dolp::Scene& scene) {
+             const dolp::Table table = interruptible([&](const dolp::Progress& progress) {
+               return evaluator.response(scene, {.progress = progress, .history = "dolp.response"});
+             });
+             return py::make_tuple(contents_of(table), responses_of(table.values()));
            })
       .def("write_table",
            [](dolp::Evaluator& evaluator, const dolp::Scene& scene, const std::filesystem::path& path, bool keep_all,

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "reference/adaptive.hpp"
 #include "reference/attenuation.hpp"
@@ -32,16 +33,21 @@ constexpr int kHalvings = 60;
 enum Component : std::size_t { kIntensity, kPolarised, kCount };
 using Emitted = Values<kCount>;
 
-// The facets of one surface, seen from one direction.
+/// What facets absorb, by the cosine of the local angle; only the absorptances count.
+using Absorption = std::function<FresnelCoefficients(double cos_beta)>;
+
+// The facets of one surface, seen from one direction. `is_response`: errors are relative to cos(theta).
 class Facets {
  public:
-  Facets(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants)
+  Facets(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
+         Absorption absorption, bool is_response)
       : axis_(slopes),
         masking_(masking),
         theta_rad_(theta_deg * pi / 180.0),
         view_(zenith_from_deg(theta_deg)),
-        constants_(constants),
         special_(constants),
+        absorption_(std::move(absorption)),
+        is_response_(is_response),
         smith_(masking == Masking::kSmith ? 1.0 / (1.0 + smith_lambda(slopes, view_)) : 1.0) {}
 
   Moments emission(const Refinement& refinement);
@@ -51,6 +57,7 @@ class Facets {
   double facing(const SlopePoint& point, double side) const {
     return view_.cos + side * point.t * view_.sin * point.sin_chi;
   }
+  double scale(const Emitted& value) const { return is_response_ ? view_.cos : value[kIntensity]; }
   Emitted of_facet(const SlopePoint& point, double side) const;
   Emitted of_pair(const SlopePoint& point);
   std::uint64_t regime(const SlopePoint& point) const;
@@ -61,8 +68,9 @@ class Facets {
   Masking masking_;
   double theta_rad_;
   Zenith view_;
-  OpticalConstants constants_;
   SpecialAngles special_;
+  Absorption absorption_;
+  bool is_response_;
   double smith_;
   double evaluations_ = 0.0;
 };
@@ -74,7 +82,7 @@ Emitted Facets::of_facet(const SlopePoint& point, double side) const {
   const Vector<double> normal{side * point.t * cos_alpha, 0.0, cos_alpha};
   const Vector<double> k = scaled(-1.0, toward_view(point, view_));
   const Bounce<double> b = bounce(k, normal, {0.0, 1.0, 0.0});
-  const FresnelCoefficients r = fresnel(constants_, e * cos_alpha);
+  const FresnelCoefficients r = absorption_(e * cos_alpha);
   UnitLight light = unit_light(point, k);
   const double from_s = reflect(b, r, light.from_s);
   const double from_p = reflect(b, r, light.from_p);
@@ -116,8 +124,8 @@ Emitted Facets::tail(double t, const Refinement& refinement) {
   for (const double chi : scan.chi_breaks(t)) breaks.add(chi);
   const Integral<kCount> row = integrate<kCount>([&](double chi) { return of_pair(slope_point(t, chi)); }, breaks,
                                                  {.relative = refinement.relative_tolerance},
-                                                 [](const Emitted& value) {
-                                                   return Emitted{value[kIntensity], value[kIntensity]};
+                                                 [this](const Emitted& value) {
+                                                   return Emitted{scale(value), scale(value)};
                                                  });
   const double factor = share * 2.0 * std::numbers::inv_pi;
   return {factor * row.value[kIntensity], factor * row.value[kPolarised]};
@@ -128,8 +136,8 @@ Moments Facets::emission(const Refinement& refinement) {
   const double steepest = end();
   const SlopeTask<kCount> task{.integrand = [this](const SlopePoint& point) { return of_pair(point); },
                                .scales =
-                                   [](const Emitted& value) {
-                                     return Emitted{value[kIntensity], value[kIntensity]};
+                                   [this](const Emitted& value) {
+                                     return Emitted{scale(value), scale(value)};
                                    },
                                .steepest = steepest,
                                .bends_end = steepest,
@@ -139,7 +147,7 @@ Moments Facets::emission(const Refinement& refinement) {
   const Integral<2 * kCount> integral = integrate_slopes_of<kCount>(task, axis_, scan, refinement, {});
   const Emitted beyond = tail(steepest, refinement);
   const double rounding = (kRounding + 0.5 * refinement.relative_tolerance) * std::abs(beyond[kIntensity]) +
-                          kRounding * integral.value[kIntensity] + kNoShare * view_.cos;
+                          kRounding * (is_response_ ? view_.cos : integral.value[kIntensity]) + kNoShare * view_.cos;
   Moments m;
   m.direct_i = integral.value[kIntensity] + beyond[kIntensity];
   m.direct_q = integral.value[kPolarised] + beyond[kPolarised];
@@ -154,7 +162,20 @@ Moments Facets::emission(const Refinement& refinement) {
 Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
                         const Refinement& refinement) {
   if (zenith_from_deg(theta_deg).cos == 0.0) return {.direct_i = 0.0, .direct_q = 0.0};
-  return Facets(slopes, masking, theta_deg, constants).emission(refinement);
+  const auto absorption = [&](double cos_beta) { return fresnel(constants, cos_beta); };
+  return Facets(slopes, masking, theta_deg, constants, absorption, false).emission(refinement);
+}
+
+Moments direct_response(const Slopes& slopes, Masking masking, double theta_deg,
+                        const std::function<double(double cos_beta)>& curve, double bend,
+                        const Refinement& refinement) {
+  const OpticalConstants bent{1.0 / bend, 0.0};  // its Brewster angle is where the curve bends
+  const auto absorption = [&](double cos_beta) -> FresnelCoefficients {
+    const double sin2_beta = (1.0 - cos_beta) * (1.0 + cos_beta);
+    const double f = curve(cos_beta);
+    return {0.0, 0.0, f * (1.0 + sin2_beta), f * (1.0 - sin2_beta)};
+  };
+  return Facets(slopes, masking, theta_deg, bent, absorption, true).emission(refinement);
 }
 
 }  // namespace dolp::reference

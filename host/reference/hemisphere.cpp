@@ -48,30 +48,41 @@ double masking_tolerance_for(const Refinement& refinement) {
   return std::max(1e-14, 1e-3 * kInnerShare * refinement.relative_tolerance);
 }
 
-// Components of the integrals.
+// Components of the integrals; after them K responses of the reflected part, and K of the polarised one.
 enum Component : std::size_t { kAlbedo, kReflected, kPolarised, kAbsorbed, kMomentCount };
-using MomentValues = Values<kMomentCount>;
+template <std::size_t K>
+using MomentValues = Values<kMomentCount + 2 * K>;
 
-MomentValues moment_scales(const MomentValues& value) {
+template <std::size_t N>
+Values<N> moment_scales(const Values<N>& value) {
   const double floor = kNegligible * value[kAlbedo] + std::numeric_limits<double>::min();
   const double reflected = std::max(floor, value[kReflected]);
   const double absorbed = std::max(kSmallAbsorbed * value[kAlbedo] + floor, value[kAbsorbed]);
-  return {std::max(floor, value[kAlbedo]), reflected, reflected, absorbed};
+  Values<N> scales{std::max(floor, value[kAlbedo]), reflected, reflected, absorbed};
+  std::fill(scales.begin() + kMomentCount, scales.end(), scales[kAlbedo]);
+  return scales;
 }
 
 // The moments, and with a function of the sky, followed by the errors of their azimuth integrals, which are only
 // carried along.
-constexpr std::size_t kSkyReflected = kMomentCount;
-constexpr std::size_t kSkyPolarised = kMomentCount + 1;
-constexpr std::size_t kZenithCount = kMomentCount + 2;
-using BothValues = Values<2 * kZenithCount>;
+template <std::size_t K>
+inline constexpr std::size_t kSkyReflected = kMomentCount + 2 * K;
+template <std::size_t K>
+inline constexpr std::size_t kSkyPolarised = kSkyReflected<K> + 1;
+template <std::size_t K>
+inline constexpr std::size_t kZenithCount = kSkyReflected<K> + 2;
+template <std::size_t K>
+using BothValues = Values<2 * kZenithCount<K>>;
 
-BothValues both_scales(const BothValues& value) {
-  BothValues scales;
+template <std::size_t K>
+BothValues<K> both_scales(const BothValues<K>& value) {
+  BothValues<K> scales;
   scales.fill(kInfinity);
-  const MomentValues moments = moment_scales({value[kAlbedo], value[kReflected], value[kPolarised], value[kAbsorbed]});
+  MomentValues<K> moments;
+  std::copy_n(value.begin(), moments.size(), moments.begin());
+  moments = moment_scales(moments);
   std::copy(moments.begin(), moments.end(), scales.begin());
-  scales[kSkyReflected] = scales[kSkyPolarised] = moments[kReflected];
+  scales[kSkyReflected<K>] = scales[kSkyPolarised<K>] = moments[kReflected];
   return scales;
 }
 
@@ -88,19 +99,21 @@ MuellerRow mueller_row(const FresnelCoefficients& r, double cos_eta, double sin_
 }
 
 // The moments of one direction: holds the data of all nested integrands.
+template <std::size_t K>
 class Hemisphere {
  public:
   Hemisphere(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
-             const Refinement& refinement, const SkyFunction* sky)
+             const Refinement& refinement, const SkyFunction* sky, const Curves* curves = nullptr)
       : slopes_(slopes),
         masking_(masking),
         theta_rad_(theta_deg * pi / 180.0),
         fixed_(zenith_from_deg(theta_deg)),
         constants_(constants),
         refinement_(refinement),
-        sky_(sky) {}
+        sky_(sky),
+        curves_(curves) {}
 
-  Integral<2 * kZenithCount> integrate_zenith();
+  Integral<2 * kZenithCount<K>> integrate_zenith();
   double evaluations() const { return evaluations_; }
 
  private:
@@ -114,9 +127,9 @@ class Hemisphere {
   };
   Breaks zenith_breaks() const;
   Breaks azimuth_breaks(const Row& row, double width) const;
-  Integral<kMomentCount> integrate_azimuth(const Row& row);
-  BothValues row_values(double u);
-  MomentValues integrand(const Row& row, double delta) const;
+  Integral<kMomentCount + 2 * K> integrate_azimuth(const Row& row);
+  BothValues<K> row_values(double u);
+  MomentValues<K> integrand(const Row& row, double delta) const;
   std::vector<double> special_beta_rad() const;
 
   const Slopes& slopes_;
@@ -126,11 +139,13 @@ class Hemisphere {
   OpticalConstants constants_;
   Refinement refinement_;
   const SkyFunction* sky_;
+  const Curves* curves_;
   double evaluations_ = 0.0;
 };
 
 // D G M / 4, the reduced form of cos(theta) f cos(theta_r), and the same with R = 1 and with 1 - R.
-MomentValues Hemisphere::integrand(const Row& row, double delta) const {
+template <std::size_t K>
+MomentValues<K> Hemisphere<K>::integrand(const Row& row, double delta) const {
   const double sin_half = std::sin(0.5 * delta);
   const double cos_half = std::cos(0.5 * delta);
   const double s2 = sin_half * sin_half;
@@ -139,21 +154,33 @@ MomentValues Hemisphere::integrand(const Row& row, double delta) const {
   const double tan2_alpha = row.t * row.t + (1.0 + row.t * row.t) * row.sin_sin * s2 / row.cos2_mean;
   const double bare = 0.25 * slopes_.facet_density(tan2_alpha) * row.attenuation(tan2_alpha, cos2_beta);
 
-  const FresnelCoefficients r = fresnel(constants_, std::sqrt(cos2_beta));
+  const double cos_beta = std::sqrt(cos2_beta);
+  const FresnelCoefficients r = fresnel(constants_, cos_beta);
   // h is (omega_i + omega_r) / (2 cos beta); its parts across and along the plane of omega_i and z, over sin beta. The
   // retro direction, beta = 0, has no eta and no polarisation: r_p = -r_s.
   const double sin_2beta = 2.0 * std::sqrt(cos2_beta * sin2_beta);
   MuellerRow m{0.5 * (std::norm(r.r_s) + std::norm(r.r_p)), 0.0};
+  double cos_2eta = 1.0;
   if (sin_2beta > 0.0) {
     const double sin_eta = row.running.sin * std::sin(delta) / sin_2beta;
     const double cos_eta = (row.running.cos * fixed_.sin + row.running.sin * fixed_.cos * std::cos(delta)) / sin_2beta;
     m = mueller_row(r, cos_eta, sin_eta);
+    cos_2eta = cos_eta * cos_eta - sin_eta * sin_eta;
   }
-  return {bare, bare * m.m00, bare * m.m01, bare * 0.5 * (r.absorbed_s + r.absorbed_p)};
+  MomentValues<K> values{bare, bare * m.m00, bare * m.m01, bare * 0.5 * (r.absorbed_s + r.absorbed_p)};
+  if constexpr (K > 0) {
+    const std::array<double, kCurves> curves = (*curves_)(cos_beta);
+    for (std::size_t k = 0; k < K; ++k) {
+      values[kMomentCount + k] = bare * curves[k];
+      values[kMomentCount + K + k] = bare * curves[k] * sin2_beta * cos_2eta;
+    }
+  }
+  return values;
 }
 
 // Angles beta where the Fresnel coefficients bend: total reflection, and the (pseudo-)Brewster angle.
-std::vector<double> Hemisphere::special_beta_rad() const {
+template <std::size_t K>
+std::vector<double> Hemisphere<K>::special_beta_rad() const {
   std::vector<double> angles{std::atan(std::hypot(constants_.n, constants_.k))};
   if (constants_.n < 1.0) angles.push_back(std::asin(constants_.n));
   return angles;
@@ -162,7 +189,8 @@ std::vector<double> Hemisphere::special_beta_rad() const {
 // Break points in s2, at the special angles of beta and where the masking bends:
 //   v-cavity: (cos theta + cos theta_r) min(cos theta, cos theta_r) = cos^2 beta
 //   integral: alpha = 2 max(theta, theta_r) - pi/2, above which b = pi/2
-Breaks Hemisphere::azimuth_breaks(const Row& row, double width) const {
+template <std::size_t K>
+Breaks Hemisphere<K>::azimuth_breaks(const Row& row, double width) const {
   Breaks breaks(0.0, std::asinh(1.0 / width));
   const auto add_s2 = [&](double s2) {
     if (s2 > 0.0 && s2 < 1.0) breaks.add(std::asinh(std::tan(0.5 * std::asin(std::sqrt(s2))) / width));
@@ -187,7 +215,8 @@ Breaks Hemisphere::azimuth_breaks(const Row& row, double width) const {
 }
 
 // In v of tan(delta/4) = width sinh(v), width being where D has fallen off: 4 tan^2(delta/4) is about s2.
-Integral<kMomentCount> Hemisphere::integrate_azimuth(const Row& row) {
+template <std::size_t K>
+Integral<kMomentCount + 2 * K> Hemisphere<K>::integrate_azimuth(const Row& row) {
   const double t2 = row.t * row.t;
   const double scale2 =
       slopes_.width() * slopes_.width() + (slopes_.is_gaussian() ? 0.0 : t2 / std::max(1.0, slopes_.q()));
@@ -195,7 +224,7 @@ Integral<kMomentCount> Hemisphere::integrate_azimuth(const Row& row) {
   const double width = std::min(10.0, std::sqrt(width2));
   const auto in_v = [&](double v) {
     const double x = width * std::sinh(v);
-    MomentValues values = integrand(row, 4.0 * std::atan(x));
+    MomentValues<K> values = integrand(row, 4.0 * std::atan(x));
     for (double& value : values) value *= 4.0 * width * std::cosh(v) / (1.0 + x * x);
     evaluations_ += 1.0;
     return values;
@@ -203,12 +232,14 @@ Integral<kMomentCount> Hemisphere::integrate_azimuth(const Row& row) {
   const Goal goal{.relative = std::max(kInnerFloor, kInnerShare * refinement_.relative_tolerance),
                   .max_panels = 200,
                   .subdivisions = refinement_.subdivisions};
-  return integrate<kMomentCount>(in_v, azimuth_breaks(row, width), goal, moment_scales);
+  constexpr std::size_t kCount = kMomentCount + 2 * K;
+  return integrate<kCount>(in_v, azimuth_breaks(row, width), goal, moment_scales<kCount>);
 }
 
 // Break points in u of tan((theta_r - theta)/2) = width sinh(u): the specular direction, and where the break points of
 // the azimuth enter or leave at Delta_phi = 180 or 0 degrees.
-Breaks Hemisphere::zenith_breaks() const {
+template <std::size_t K>
+Breaks Hemisphere<K>::zenith_breaks() const {
   const double width = slopes_.width();
   Breaks breaks(std::asinh(-std::tan(0.5 * theta_rad_) / width),
                 std::asinh(std::tan(0.5 * fixed_.elevation_rad) / width));
@@ -240,7 +271,8 @@ Breaks Hemisphere::zenith_breaks() const {
 }
 
 // The integrand in u: the azimuth integrals of one running zenith angle with their errors.
-BothValues Hemisphere::row_values(double u) {
+template <std::size_t K>
+BothValues<K> Hemisphere<K>::row_values(double u) {
   const double t = slopes_.width() * std::sinh(u);
   const double half_rad = std::atan(t);
   const double elevation_rad = fixed_.elevation_rad - 2.0 * half_rad;
@@ -248,32 +280,34 @@ BothValues Hemisphere::row_values(double u) {
   const double cos_mean = std::sin(fixed_.elevation_rad - half_rad);
   const Row row{t, cos_mean * cos_mean, fixed_.sin * running.sin, running,
                 Attenuation(slopes_, masking_, fixed_, running, masking_tolerance_for(refinement_))};
-  const Integral<kMomentCount> inner = integrate_azimuth(row);
+  const auto inner = integrate_azimuth(row);
   // Twice: delta runs over half of the azimuth.
   const double jacobian = 2.0 * running.sin * 2.0 * slopes_.width() * std::cosh(u) / (1.0 + t * t);
-  BothValues both;
-  for (std::size_t k = 0; k < kMomentCount; ++k) {
+  BothValues<K> both;
+  for (std::size_t k = 0; k < inner.value.size(); ++k) {
     both[k] = jacobian * inner.value[k];
-    both[kZenithCount + k] = jacobian * inner.error[k];
+    both[kZenithCount<K> + k] = jacobian * inner.error[k];
   }
   const double g = sky_ ? sky_->value(90.0 - elevation_rad * 180.0 / pi) : 0.0;
-  both[kSkyReflected] = g * both[kReflected];
-  both[kSkyPolarised] = g * both[kPolarised];
-  both[kZenithCount + kSkyReflected] = std::abs(g) * both[kZenithCount + kReflected];
-  both[kZenithCount + kSkyPolarised] = std::abs(g) * both[kZenithCount + kPolarised];
+  both[kSkyReflected<K>] = g * both[kReflected];
+  both[kSkyPolarised<K>] = g * both[kPolarised];
+  both[kZenithCount<K> + kSkyReflected<K>] = std::abs(g) * both[kZenithCount<K> + kReflected];
+  both[kZenithCount<K> + kSkyPolarised<K>] = std::abs(g) * both[kZenithCount<K> + kPolarised];
   return both;
 }
 
-Integral<2 * kZenithCount> Hemisphere::integrate_zenith() {
+template <std::size_t K>
+Integral<2 * kZenithCount<K>> Hemisphere<K>::integrate_zenith() {
+  constexpr std::size_t kCount = 2 * kZenithCount<K>;
   const Goal goal{.relative = refinement_.relative_tolerance, .subdivisions = refinement_.subdivisions};
   const Breaks breaks = zenith_breaks();
   if (fixed_.cos > 0.0) {
-    return integrate<2 * kZenithCount>([this](double u) { return row_values(u); }, breaks, goal, both_scales);
+    return integrate<kCount>([this](double u) { return row_values(u); }, breaks, goal, both_scales<K>);
   }
   // At theta = 90 degrees u runs up to 0, where the integrand is |u|^(2q - 4) for q < 2: integrated in log |u|, with
   // what lies beyond the gap added as that power.
   const auto in_log = [this](double x) {
-    BothValues values = row_values(-std::exp(x));
+    BothValues<K> values = row_values(-std::exp(x));
     for (double& value : values) value *= std::exp(x);
     return values;
   };
@@ -283,9 +317,9 @@ Integral<2 * kZenithCount> Hemisphere::integrate_zenith() {
     if (u < 0.0) log_breaks.add(std::log(-u));
   }
   for (const double x : {-40.0, -20.0, -10.0, -5.0, -2.0}) log_breaks.add(x);
-  Integral<2 * kZenithCount> result = integrate<2 * kZenithCount>(in_log, log_breaks, goal, both_scales);
+  Integral<kCount> result = integrate<kCount>(in_log, log_breaks, goal, both_scales<K>);
   const double power = slopes_.is_gaussian() ? 1.0 : std::min(1.0, 2.0 * slopes_.q() - 3.0);
-  const BothValues at_gap = row_values(-kHorizonGap);
+  const BothValues<K> at_gap = row_values(-kHorizonGap);
   for (std::size_t k = 0; k < result.value.size(); ++k) result.value[k] += kHorizonGap * at_gap[k] / power;
   return result;
 }
@@ -293,6 +327,13 @@ Integral<2 * kZenithCount> Hemisphere::integrate_zenith() {
 // The amplitudes r_s and r_p carry an absolute error, which shows in their squares where they are small: N near 1.
 double amplitude_rounding(double reflected, double albedo) {
   return kRounding * (2.0 * std::sqrt(reflected * albedo) + kRounding * albedo);
+}
+
+// The error of a component whose errors are relative to `magnitude`. G_1 is at least 1/2.
+template <std::size_t N>
+double error_of(const Integral<N>& integral, std::size_t k, double magnitude, const Refinement& refinement) {
+  const double masking_error = 2.0 * masking_tolerance_for(refinement);
+  return integral.error[k] + integral.value[N / 2 + k] + (masking_error + kRounding + kElevationRounding) * magnitude;
 }
 
 // The limits theta -> 90 degrees of a cauchy distribution whose vertical facets, which then reflect into the hemisphere
@@ -325,36 +366,45 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   if (theta_deg == 90.0 && is_unshadowed && !slopes.is_gaussian() && slopes.q() <= 1.5) {
     return divergent_moments(constants);
   }
-  Hemisphere hemisphere(slopes, masking, theta_deg, constants, refinement, sky);
-  const Integral<2 * kZenithCount> integral = hemisphere.integrate_zenith();
-  // G_1 is at least 1/2.
-  const double masking_error = 2.0 * masking_tolerance_for(refinement);
+  Hemisphere<0> hemisphere(slopes, masking, theta_deg, constants, refinement, sky);
+  const auto integral = hemisphere.integrate_zenith();
   const double cos_theta = zenith_from_deg(theta_deg).cos;
-  const auto error_of = [&](std::size_t k) {
-    const double magnitude = k == kAlbedo || k == kAbsorbed ? integral.value[k] : integral.value[kReflected];
-    return integral.error[k] + integral.value[kZenithCount + k] +
-           (masking_error + kRounding + kElevationRounding) * magnitude;
+  const auto error_at = [&](std::size_t k) {
+    return error_of(integral, k, integral.value[k == kAlbedo || k == kAbsorbed ? k : kReflected], refinement);
   };
   const double amplitude_error = amplitude_rounding(integral.value[kReflected], integral.value[kAlbedo]);
   Moments moments;
   moments.albedo = integral.value[kAlbedo];
   moments.r_i = integral.value[kReflected];
   moments.r_q = integral.value[kPolarised];
-  moments.albedo_error = error_of(kAlbedo);
-  moments.r_i_error = error_of(kReflected) + amplitude_error;
-  moments.r_q_error = error_of(kPolarised) + amplitude_error;
+  moments.albedo_error = error_at(kAlbedo);
+  moments.r_i_error = error_at(kReflected) + amplitude_error;
+  moments.r_q_error = error_at(kPolarised) + amplitude_error;
   // cos(theta) - r_i loses least where little is reflected, (cos(theta) - albedo) + absorbed where little is absorbed.
   const double direct_error = moments.r_i_error + kRounding * cos_theta;
-  const double split_error = moments.albedo_error + error_of(kAbsorbed) + kRounding * cos_theta;
+  const double split_error = moments.albedo_error + error_at(kAbsorbed) + kRounding * cos_theta;
   const bool is_split = split_error < direct_error;
   moments.deficit = is_split ? (cos_theta - moments.albedo) + integral.value[kAbsorbed] : cos_theta - moments.r_i;
   moments.deficit_error = is_split ? split_error : direct_error;
   moments.evaluations = hemisphere.evaluations();
   if (sky) {
-    const double sky_error = std::max(error_of(kSkyReflected), error_of(kSkyPolarised)) + amplitude_error;
-    moments.columns = {{integral.value[kSkyReflected], integral.value[kSkyPolarised], sky_error}};
+    const double sky_error = std::max(error_at(kSkyReflected<0>), error_at(kSkyPolarised<0>)) + amplitude_error;
+    moments.columns = {{integral.value[kSkyReflected<0>], integral.value[kSkyPolarised<0>], sky_error}};
   }
   return moments;
+}
+
+std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking masking, double theta_deg,
+                                                const Curves& curves, double bend, const Refinement& refinement) {
+  const OpticalConstants bent{1.0 / bend, 0.0};  // its Brewster angle is where the curves bend
+  const auto integral =
+      Hemisphere<kCurves>(slopes, masking, theta_deg, bent, refinement, nullptr, &curves).integrate_zenith();
+  std::vector<ColumnMoments> columns;
+  for (std::size_t i = kMomentCount, q = i + kCurves; i < kMomentCount + kCurves; ++i, ++q) {
+    const auto error = [&](std::size_t k) { return error_of(integral, k, integral.value[kAlbedo], refinement); };
+    columns.push_back({integral.value[i], integral.value[q], std::max(error(i), error(q))});
+  }
+  return columns;
 }
 
 Moments mirror_moments(double theta_deg, const OpticalConstants& constants) {

@@ -1,6 +1,7 @@
 #include "reference/reference_evaluator.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -54,6 +55,9 @@ void check_scattering(Scattering scattering, Masking masking) {
 }
 
 void check(const MomentsRequest& request) {
+  const bool has_sky_responses = request.response && request.response->of == Response::Of::kSky;
+  if (request.response && (has_sky_responses || request.response->count != reference::kCurves))
+    throw InputError("reference: responses must be 24, and without a sky");
   check_scattering(request.scattering, request.masking);
   const bool has_view_masking = request.masking == Masking::kVCavity || request.masking == Masking::kSmith;
   if (request.wants_direct && !has_view_masking) {
@@ -83,6 +87,27 @@ Moments mirror_of(const MomentsRequest& request, const MomentsPoint& point) {
   if (!request.sky) return m;
   for (const double g : request.sky->at(point.theta_deg)) m.columns.push_back({g * m.r_i, g * m.r_q, m.r_i_error});
   return m;
+}
+
+/// The responses of the reflected light, or of the direct emission.
+std::vector<ColumnMoments> responses_of(const MomentsRequest& request, const MomentsPoint& point,
+                                        const reference::Slopes& slopes, const reference::Refinement& refinement) {
+  const double c0 = request.response->c0;
+  const reference::Curves curves = [c0](double cos_beta) {
+    const double angle = std::acos(std::clamp(2.0 * std::asinh(cos_beta / c0) / std::asinh(1.0 / c0) - 1.0, -1.0, 1.0));
+    std::array<double, reference::kCurves> polynomials{};
+    for (std::size_t m = 0; m < polynomials.size(); ++m) polynomials[m] = std::cos(static_cast<double>(m) * angle);
+    return polynomials;
+  };
+  if (request.response->of != Response::Of::kDirect)
+    return reference::hemisphere_responses(slopes, request.masking, point.theta_deg, curves, c0, refinement);
+  std::vector<ColumnMoments> columns;
+  for (std::size_t m = 0; m < reference::kCurves; ++m) {
+    const Moments direct = reference::direct_response(
+        slopes, request.masking, point.theta_deg, [&](double cos_beta) { return curves(cos_beta)[m]; }, c0, refinement);
+    columns.push_back({direct.direct_i, direct.direct_q, std::max(direct.direct_i_error, direct.direct_q_error)});
+  }
+  return columns;
 }
 
 Moments moments_of(const MomentsRequest& request, const MomentsPoint& point, const reference::Refinement& refinement) {
@@ -115,6 +140,7 @@ Moments moments_of(const MomentsRequest& request, const MomentsPoint& point, con
     m.direct_q_error = direct.direct_q_error;
     m.evaluations += direct.evaluations;
   }
+  if (request.response) m.columns = responses_of(request, point, slopes, refinement);
   return m;
 }
 

@@ -26,6 +26,8 @@ SYMBOLS = {"surface.n": "n", "surface.k": "k", "surface.sigma": "σ", "surface.w
            "path.temperature_K": r"$T_{path}$ (K)", "path.transmittance": "τ", "source.scale": "scale of $E_0$"}
 PERCENT = 100.0
 REGIONS = ("68 %", "95 %")  # of all pairs, at the levels of the report
+MOST_PANELS = 4  # of a fit over a spectrum
+MARKS = ".x+^sv"
 
 
 def curves(points):
@@ -80,12 +82,57 @@ def draw_data(upper, lower, report):
                            label="bracket of all bounces" if i == 0 else None)
         seen += [low, high]
     frame(upper, seen)
-    lower.axhline(0.0, color="0.4", linewidth=1.0)
     lower.set_xlabel(r"zenith angle $\theta$ (degree)")
-    lower.set_ylabel("measured − model\n" + ("(uncertainties)" if has_uncertainties else "(points of 1 %)"))
-    names = dict.fromkeys(QUANTITIES[point["quantity"]] for point in report["points"])
-    upper.set_ylabel(", ".join(names) + " (%)")
+    label_residuals(lower, has_uncertainties)
+    upper.set_ylabel(names_in(report["points"]) + " (%)")
     upper.legend(frameon=False, fontsize=9)
+
+
+def label_residuals(axes, has_uncertainties):
+    axes.axhline(0.0, color="0.4", linewidth=1.0)
+    axes.set_ylabel("measured − model\n" + ("(uncertainties)" if has_uncertainties else "(points of 1 %)"))
+
+
+def names_in(points):
+    return ", ".join(dict.fromkeys(QUANTITIES[point["quantity"]] for point in points))
+
+
+def zeniths_of_a_spectrum(report):
+    """Zeniths to draw over wavelength, if there are more wavelengths than a plot over zenith can tell apart."""
+    zeniths = sorted({point["theta_deg"] for point in report["points"]})
+    wavelengths = {point["wavelength_um"] for point in report["points"]}
+    if len(wavelengths) <= max(len(COLOURS), len(zeniths)):
+        return []
+    count = min(len(zeniths), MOST_PANELS)
+    return [zeniths[(2 * i + 1) * len(zeniths) // (2 * count)] for i in range(count)]
+
+
+def draw_spectrum(panels, lower, report, zeniths):
+    """One panel for each zenith, and the residuals of these."""
+    has_uncertainties = report["scale_from"] == "uncertainties"
+    several = len({point["data"] for point in report["points"]}) > 1
+    for panel, zenith in zip(panels, zeniths):
+        own = {}
+        for point in report["points"]:
+            if point["theta_deg"] == zenith:
+                own.setdefault((point["data"], point["quantity"], None), []).append(point)
+        for (key, members), mark in zip(own.items(), MARKS):
+            members.sort(key=lambda point: point["wavelength_um"])
+            column = lambda name: np.array([np.nan if p[name] is None else p[name] for p in members], dtype=float)
+            colour = COLOURS[zeniths.index(zenith) % len(COLOURS)]
+            bars = PERCENT * column("uncertainty") if has_uncertainties else None
+            panel.errorbar(column("wavelength_um"), PERCENT * column("measured"), bars, fmt=mark, markersize=3.0,
+                           linewidth=0.6, color=colour, alpha=0.5, label=label_of(key, several))
+            panel.plot(column("wavelength_um"), PERCENT * column("model"), color="black", linewidth=1.4)
+            lower.plot(column("wavelength_um"), (1.0 if has_uncertainties else PERCENT) * column("residual"), mark,
+                       markersize=2.5, color=colour)
+        panel.set_title(f"$\\theta$ = {zenith:g}°", fontsize=10, loc="left")
+        panel.set_ylabel(names_in(report["points"]) + " (%)")
+        panel.tick_params(labelbottom=False)
+    if len(own) > 1:
+        panels[0].legend(frameon=False, fontsize=8)
+    lower.set_xlabel("wavelength λ (µm)")
+    label_residuals(lower, has_uncertainties)
 
 
 def draw_pair(axes, report):
@@ -147,12 +194,18 @@ def title_of(report):
 
 def draw(report, suffix):
     plt.rcParams.update({"font.size": 10.5, "axes.spines.top": False, "axes.spines.right": False})
-    figure = plt.figure(figsize=(11.5, 5.0), dpi=150, layout="constrained")
-    grid = figure.add_gridspec(2, 2, height_ratios=(3, 1), width_ratios=(3, 2))
-    upper = figure.add_subplot(grid[0, 0])
-    lower = figure.add_subplot(grid[1, 0], sharex=upper)
-    upper.tick_params(labelbottom=False)
-    draw_data(upper, lower, report)
+    zeniths = zeniths_of_a_spectrum(report)
+    panels = max(len(zeniths), 1)
+    figure = plt.figure(figsize=(11.5, 3.5 + 1.5 * panels), dpi=150, layout="constrained")
+    heights = (3,) * panels + (2 if zeniths else 1,)
+    grid = figure.add_gridspec(panels + 1, 2, height_ratios=heights, width_ratios=(3, 2))
+    lower = figure.add_subplot(grid[panels, 0])
+    upper = [figure.add_subplot(grid[i, 0], sharex=lower) for i in range(panels)]
+    if zeniths:
+        draw_spectrum(upper, lower, report, zeniths)
+    else:
+        upper[0].tick_params(labelbottom=False)
+        draw_data(upper[0], lower, report)
     draw_pair(figure.add_subplot(grid[:, 1]), report)
     for axes in figure.axes:
         axes.grid(alpha=0.25, linewidth=0.6)

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "evaluate/interpolation/interpolating_evaluator.hpp"
+#include "evaluate/planned_moments.hpp"
 #include "model/response_basis.hpp"
 #include "plan/response_plan.hpp"
 #include "properties_support.hpp"
@@ -101,7 +101,8 @@ class Grids : public testing::TestWithParam<std::tuple<Kernel, Sharing>> {
 TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
   const auto [kernel, sharing] = GetParam();
   const std::size_t grids = draws_wanted(2);
-  InterpolatingEvaluator evaluator(make_evaluator(kernel));
+  const auto evaluator = make_evaluator(kernel);
+  Work work;
   std::size_t entries = 0;
   for (const Scattering scattering : {Scattering::kSingle, Scattering::kMultiple}) {
     for (const Model& model : kModels) {
@@ -113,7 +114,7 @@ TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
         SCOPED_TRACE(name_of(model) + " grid " + std::to_string(grid));
         MomentsRequest request = random_grid(random, model, scattering, sharing);
         request.precision = is_double(kernel) ? Precision::kDouble : Precision::kFloat;
-        const std::vector<Moments> moments = evaluator.evaluate(request, {});
+        const std::vector<Moments> moments = planned_moments(MomentsPlan(request), *evaluator, {}, work);
         entries += moments.size();
         expect_like_alone(request, moments, random);
       }
@@ -121,9 +122,9 @@ TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
   }
   // The draw decides if many indices have a basis.
   if (sharing == Sharing::kShapes) {
-    EXPECT_GT(2 * evaluator.report().interpolated, entries);
+    EXPECT_GT(2 * work.interpolated, entries);
   } else if (sharing != Sharing::kIndices) {
-    EXPECT_EQ(evaluator.report().interpolated, 0U);
+    EXPECT_EQ(work.interpolated, 0U);
   }
 }
 

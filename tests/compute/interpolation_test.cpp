@@ -1,4 +1,4 @@
-// Interpolation between slope distributions: the evaluator around a made-up one, whose moments are known.
+// Plans of requests for moments, carried out with an invented evaluator whose moments are known.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "draws.hpp"
-#include "evaluate/interpolation/interpolating_evaluator.hpp"
+#include "evaluate/planned_moments.hpp"
 #include "moments_only.hpp"
 #include "properties_support.hpp"
 
@@ -45,15 +45,7 @@ class Invented final : public MomentsOnly {
   Function function_;
 };
 
-struct Interpolated {
-  MomentsRequest request;
-  Invented* inner;
-  InterpolatingEvaluator evaluator;
-};
-
-Interpolated interpolated(Invented::Function function) {
-  auto inner = std::make_unique<Invented>(function);
-  Invented* const known = inner.get();
+MomentsRequest dense_request() {
   MomentsRequest request;
   request.tolerance = 1e-4;
   request.precision = Precision::kDouble;
@@ -61,7 +53,7 @@ Interpolated interpolated(Invented::Function function) {
   request.indices = {{1.5, 0.1}};
   request.sigma = spaced(0.05, 1.0, 48);
   request.q = spaced(1.75, 8.0, 40);
-  return {std::move(request), known, InterpolatingEvaluator(std::move(inner))};
+  return request;
 }
 
 // A test function with the features of real moments: a peak that moves with sigma, a power that q sets.
@@ -72,46 +64,54 @@ double smooth(const SlopeShape& shape) {
 
 double kinked(const SlopeShape& shape) { return 1.0 + std::abs(std::log(shape.sigma / 0.3)) * shape.q; }
 
-TEST(InterpolatingEvaluator, MomentsWithAKink_StateALargeError) {
-  Interpolated one = interpolated(kinked);
+TEST(PlannedMoments, MomentsWithAKink_StateALargeError) {
+  const MomentsRequest request = dense_request();
+  Invented invented(kinked);
+  Work work;
   constexpr double kRounding = 1e-14;
-  const std::vector<Moments> moments = one.evaluator.evaluate(one.request, {});
+  const std::vector<Moments> moments = planned_moments(MomentsPlan(request), invented, {}, work);
   double largest_bound = 0.0;
   for (std::size_t i = 0; i < moments.size(); ++i) {
-    const double r = kinked(one.request[i].shape);
+    const double r = kinked(request[i].shape);
     EXPECT_NEAR(moments[i].r_i, r, moments[i].r_i_error + kRounding);
     EXPECT_NEAR(moments[i].r_q, -0.5 * r, moments[i].r_q_error + kRounding);
     largest_bound = std::max(largest_bound, moments[i].r_i_error / r);
   }
-  EXPECT_GT(largest_bound, one.request.tolerance);
+  EXPECT_GT(largest_bound, request.tolerance);
 }
 
-TEST(InterpolatingEvaluator, NodeWithoutABound_ItsDirectionIsComputedEntryByEntry) {
+TEST(PlannedMoments, NodeWithoutABound_ItsDirectionIsComputedEntryByEntry) {
   const Invented::Function infinite = [](const SlopeShape& shape) {
     return shape.q == 8.0 ? std::numeric_limits<double>::infinity() : smooth(shape);
   };
-  Interpolated one = interpolated(infinite);
-  const std::vector<Moments> moments = one.evaluator.evaluate(one.request, {});
-  ASSERT_EQ(one.inner->requests.size(), 2U);
-  EXPECT_EQ(one.inner->requests[1].size(), one.request.size());
-  EXPECT_EQ(one.inner->requests[1].tolerance, one.request.tolerance);
-  EXPECT_EQ(one.evaluator.report().interpolated, 0U);
+  const MomentsRequest request = dense_request();
+  Invented invented(infinite);
+  Work work;
+  const std::vector<Moments> moments = planned_moments(MomentsPlan(request), invented, {}, work);
+  ASSERT_EQ(invented.requests.size(), 2U);
+  EXPECT_EQ(invented.requests[1].size(), request.size());
+  EXPECT_EQ(invented.requests[1].tolerance, request.tolerance);
+  EXPECT_EQ(work.interpolated, 0U);
   for (std::size_t i = 0; i < moments.size(); ++i) {
-    EXPECT_EQ(moments[i].r_i, infinite(one.request[i].shape));
+    EXPECT_EQ(moments[i].r_i, infinite(request[i].shape));
   }
 }
 
-TEST(InterpolatingEvaluator, Progress_RisesToAll_AndCancels) {
-  Interpolated one = interpolated(smooth);
+TEST(PlannedMoments, Progress_RisesToAll_AndCancels) {
+  const MomentsPlan plan(dense_request());
+  Invented invented(smooth);
+  Work work;
   std::vector<std::size_t> done;
-  one.evaluator.evaluate(one.request, [&](std::size_t now, std::size_t total) {
-    EXPECT_EQ(total, one.request.size());
+  const auto note = [&](std::size_t now, std::size_t total) {
+    EXPECT_EQ(total, plan.size());
     done.push_back(now);
     return true;
-  });
+  };
+  planned_moments(plan, invented, note, work);
   EXPECT_TRUE(std::ranges::is_sorted(done));
-  EXPECT_EQ(done.back(), one.request.size());
-  EXPECT_THROW(one.evaluator.evaluate(one.request, [](std::size_t, std::size_t) { return false; }), Cancelled);
+  EXPECT_EQ(done.back(), plan.size());
+  const auto cancel = [](std::size_t, std::size_t) { return false; };
+  EXPECT_THROW(planned_moments(plan, invented, cancel, work), Cancelled);
 }
 
 }  // namespace

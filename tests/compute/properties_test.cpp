@@ -117,11 +117,11 @@ Reordered reordered(const MomentsRequest& request, Random& random) {
   other.request.indices = permuted(request.indices, indices);
   other.request.sigma = permuted(request.sigma, sigmas);
   other.request.q = permuted(request.q, qs);
-  for (const std::size_t theta : thetas) {
-    for (const std::size_t index : indices) {
+  for (const std::size_t index : indices) {
+    for (const std::size_t theta : thetas) {
       for (const std::size_t sigma : sigmas) {
         for (const std::size_t q : qs) {
-          other.place_of.push_back(((theta * indices.size() + index) * sigmas.size() + sigma) * qs.size() + q);
+          other.place_of.push_back(((index * thetas.size() + theta) * sigmas.size() + sigma) * qs.size() + q);
         }
       }
     }

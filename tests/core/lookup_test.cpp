@@ -9,6 +9,7 @@
 #include <dolp/status.hpp>
 #include "draws.hpp"
 #include "error_text.hpp"
+#include "table/masking_kinks.hpp"
 #include "table/table_lookup.hpp"
 
 namespace {
@@ -27,6 +28,12 @@ Truth truth(double theta_deg, double sigma, double q) {
 }
 
 constexpr double kEntryError = 1e-7;
+
+SceneModel with_tolerance(double tolerance) {
+  SceneModel scene;
+  scene.accuracy.tolerance = tolerance;
+  return scene;
+}
 
 TableValues made_up(const std::vector<double>& theta, const std::vector<double>& sigma, const std::vector<double>& q) {
   TableValues table;
@@ -67,7 +74,7 @@ void expect_holds(const PointResult& result, double theta_deg, double sigma, dou
 TEST(TableLookup, BetweenEntries_ErrorIsWithinWhatIsStated) {
   for (const std::size_t count : {3U, 5U, 9U, 17U, 33U}) {
     const TableValues table = made_up(spaced(0, 80, count), spaced(0.1, 1.0, count), spaced(1.5, 6.0, count));
-    const TableLookup lookup(table, 1e-4, "t.nc");
+    const TableLookup lookup(table, with_tolerance(1e-4), "t.nc");
     double worst = 0.0;
     for (const double theta : {1.0, 33.3, 47.0, 79.0}) {
       for (const double sigma : {0.11, 0.37, 0.98}) {
@@ -91,7 +98,7 @@ TEST(TableLookup, BetweenEntries_ErrorIsWithinWhatIsStated) {
 
 TEST(TableLookup, AtAnEntry_ItsValuesAndItsErrors) {
   const TableValues table = made_up(spaced(0, 80, 9), {0.1, 0.3, 0.9}, {2.0, 3.0});
-  const TableLookup lookup(table, 1e-4, "t.nc");
+  const TableLookup lookup(table, with_tolerance(1e-4), "t.nc");
   const std::size_t position = table.position(4, 1, 1);
   const PointResult result = lookup.at(40.0, 0.3, 3.0);
   EXPECT_EQ(result[Quantity::kStokesQ], table[Quantity::kStokesQ][position]);
@@ -103,7 +110,7 @@ TEST(TableLookup, AtAnEntry_ItsValuesAndItsErrors) {
 
 TEST(TableLookup, AxisWithTwoOrThreeValues_StatesNoErrorBetweenThem) {
   const TableValues table = made_up(spaced(0, 80, 9), {0.1, 0.3, 0.9}, {2.0});
-  const TableLookup lookup(table, 1e-4, "t.nc");
+  const TableLookup lookup(table, with_tolerance(1e-4), "t.nc");
   const PointResult between = lookup.at(41.0, 0.2, 2.0);
   EXPECT_TRUE(std::isinf(between[Quantity::kErrorEstimate]) && std::isinf(between[Quantity::kRhoErrorEstimate]));
   EXPECT_EQ(between.status, kToleranceNotMet | kRhoToleranceNotMet);
@@ -112,7 +119,7 @@ TEST(TableLookup, AxisWithTwoOrThreeValues_StatesNoErrorBetweenThem) {
 
 TEST(TableLookup, AxesWithOneValue_AreNotInterpolated) {
   const TableValues table = made_up(spaced(0, 80, 33), {0.3}, {2.0});
-  const TableLookup lookup(table, 1e-4, "t.nc");
+  const TableLookup lookup(table, with_tolerance(1e-4), "t.nc");
   const PointResult result = lookup.at(41.3, 0.3, 2.0);
   expect_holds(result, 41.3, 0.3, 2.0);
   EXPECT_LT(result[Quantity::kErrorEstimate], 1e-5);
@@ -121,8 +128,8 @@ TEST(TableLookup, AxesWithOneValue_AreNotInterpolated) {
 TEST(TableLookup, DescendingAxes_TheSameResult) {
   const TableValues up = made_up(spaced(0, 80, 9), spaced(0.1, 1.0, 7), {2.0, 3.0, 4.0, 5.0});
   const TableValues down = made_up(spaced(80, 0, 9), spaced(1.0, 0.1, 7), {5.0, 4.0, 3.0, 2.0});
-  const PointResult a = TableLookup(up, 1e-4, "").at(33.0, 0.42, 2.7);
-  const PointResult b = TableLookup(down, 1e-4, "").at(33.0, 0.42, 2.7);
+  const PointResult a = TableLookup(up, with_tolerance(1e-4), "").at(33.0, 0.42, 2.7);
+  const PointResult b = TableLookup(down, with_tolerance(1e-4), "").at(33.0, 0.42, 2.7);
   EXPECT_NEAR(a[Quantity::kDolp], b[Quantity::kDolp], 1e-12);
   EXPECT_NEAR(a[Quantity::kErrorEstimate], b[Quantity::kErrorEstimate], 1e-12);
 }
@@ -136,7 +143,7 @@ TEST(TableLookup, NextToUnknownEntries_ReadsThoseItKnows) {
     table[quantity][last] = nan;
   }
   table.status[last] = kOutsideModelDomain | kReflectanceOutsideZeroToOne;
-  const TableLookup lookup(table, 1e-3, "t.nc");
+  const TableLookup lookup(table, with_tolerance(1e-3), "t.nc");
   const PointResult before = lookup.at(84.0, 0.3, 2.0);
   expect_holds(before, 84.0, 0.3, 2.0);
   EXPECT_EQ(before.status, 0U);
@@ -155,7 +162,7 @@ TEST(TableLookup, StatusOfTheCell_IsKept_AndNegativeIntensityIsFound) {
   TableValues table = made_up(spaced(0, 80, 9), {0.3}, {2.0});
   table.status[5] = kReflectanceOutsideZeroToOne;
   for (std::size_t i = 6; i < table.size(); ++i) table[Quantity::kStokesI][i] = -1.0;
-  const TableLookup lookup(table, 1e-3, "t.nc");
+  const TableLookup lookup(table, with_tolerance(1e-3), "t.nc");
   EXPECT_EQ(lookup.at(12.0, 0.3, 2.0).status & kReflectanceOutsideZeroToOne, 0U);
   EXPECT_NE(lookup.at(45.0, 0.3, 2.0).status & kReflectanceOutsideZeroToOne, 0U);
   EXPECT_NE(lookup.at(65.0, 0.3, 2.0).status & kIntensityNotPositive, 0U);
@@ -164,7 +171,7 @@ TEST(TableLookup, StatusOfTheCell_IsKept_AndNegativeIntensityIsFound) {
 TEST(TableLookup, EntryWithoutABound_IsReadWithoutABound) {
   TableValues table = made_up(spaced(0, 80, 9), {0.3}, {2.0});
   table[Quantity::kErrorEstimate][4] = std::numeric_limits<double>::infinity();
-  const PointResult result = TableLookup(table, 1e-3, "t.nc").at(42.0, 0.3, 2.0);
+  const PointResult result = TableLookup(table, with_tolerance(1e-3), "t.nc").at(42.0, 0.3, 2.0);
   EXPECT_TRUE(std::isinf(result[Quantity::kErrorEstimate]));
   EXPECT_EQ(result.status, kToleranceNotMet);
   EXPECT_TRUE(std::isfinite(result[Quantity::kDolp]));
@@ -176,7 +183,7 @@ TEST(TableLookup, QuantitiesThatTheTableLacks_AreNan) {
   table[Quantity::kRhoQ].clear();
   table[Quantity::kAlbedo].clear();
   table[Quantity::kRhoErrorEstimate].clear();
-  const PointResult result = TableLookup(table, 1e-2, "t.nc").at(42.0, 0.3, 2.0);
+  const PointResult result = TableLookup(table, with_tolerance(1e-2), "t.nc").at(42.0, 0.3, 2.0);
   EXPECT_TRUE(std::isnan(result[Quantity::kRhoI]) && std::isnan(result[Quantity::kAlbedo]) &&
               std::isnan(result[Quantity::kRhoErrorEstimate]));
   EXPECT_GT(result[Quantity::kDolp], 0.0);
@@ -185,7 +192,9 @@ TEST(TableLookup, QuantitiesThatTheTableLacks_AreNan) {
 
 TEST(TableLookup, VariablesThatEveryResultNeeds_AreNamedWhereTheyAreMissing) {
   const TableValues whole = made_up(spaced(0, 80, 9), {0.3}, {2.0});
-  const auto message = [](const TableValues& table) { return error_text([&] { TableLookup(table, 1e-4, "t.nc"); }); };
+  const auto message = [](const TableValues& table) {
+    return error_text([&] { TableLookup(table, with_tolerance(1e-4), "t.nc"); });
+  };
   for (const Quantity needed : {Quantity::kDolp, Quantity::kStokesI, Quantity::kStokesQ, Quantity::kStokesU,
                                 Quantity::kStokesV, Quantity::kErrorEstimate, Quantity::kRhoI}) {
     TableValues table = whole;
@@ -204,7 +213,7 @@ TEST(TableLookup, VariablesThatEveryResultNeeds_AreNamedWhereTheyAreMissing) {
 
 TEST(TableLookup, AValueTwice_IsRefused) {
   const TableValues table = made_up({0.0, 10.0, 10.0}, {0.3}, {2.0});
-  EXPECT_THROW(TableLookup(table, 1e-4, "t.nc"), InputError);
+  EXPECT_THROW(TableLookup(table, with_tolerance(1e-4), "t.nc"), InputError);
 }
 
 // The lower end of a bracket is often zero everywhere.
@@ -212,10 +221,39 @@ TEST(TableLookup, QuantityThatIs0Everywhere_Is0) {
   TableValues table = made_up(spaced(0.0, 60.0, 8), spaced(0.1, 0.5, 6), spaced(1.5, 4.0, 6));
   table[Quantity::kDolpLow].assign(table[Quantity::kDolp].size(), 0.0);
   table[Quantity::kDolpHigh] = table[Quantity::kDolp];
-  const PointResult result = TableLookup(table, 1e-4, "t").at(31.0, 0.22, 2.3);
+  const PointResult result = TableLookup(table, with_tolerance(1e-4), "t").at(31.0, 0.22, 2.3);
   EXPECT_EQ(result[Quantity::kDolpLow], 0.0);
   EXPECT_GT(result[Quantity::kDolpHigh], 0.0);
   EXPECT_TRUE(std::isnan(result[Quantity::kEmissivityS]));
+}
+
+TEST(MaskingKinks, BistaticBeams_LieWhereTheLowerDirectionChanges_AndWhereNothingIsHidden) {
+  const struct {
+    Mode mode;
+    Masking masking;
+    double view_deg, azimuth_deg;
+    std::vector<double> kinks_deg;
+  } rows[] = {
+      {Mode::kBistatic, Masking::kIntegral, 33.0, 120.0, {33.0}},
+      {Mode::kBistatic, Masking::kSmith, 33.0, 120.0, {}},
+      {Mode::kBistatic, Masking::kNone, 33.0, 120.0, {}},
+      {Mode::kHemispherical, Masking::kIntegral, 33.0, 120.0, {}},
+      // On the specular side 2 cos(alpha) cos(theta_low) = cos(beta) at 3 theta - view = 180 and at view - theta =
+      // 180 - 2 view, where one of the two is the view.
+      {Mode::kBistatic, Masking::kVCavity, 70.0, 180.0, {30.0, 60.0 + 70.0 / 3.0}},
+      {Mode::kBistatic, Masking::kVCavity, 30.0, 180.0, {70.0}},
+      {Mode::kBistatic, Masking::kVCavity, 65.0, 0.0, {65.0}},
+  };
+  for (const auto& row : rows) {
+    SceneModel scene;
+    scene.surface.masking = row.masking;
+    scene.geometry = {row.mode, row.view_deg, row.azimuth_deg};
+    EXPECT_TRUE(masking_kinks(scene).empty());  // without a source
+    scene.source.emplace();
+    const std::vector<double> kinks_deg = masking_kinks(scene);
+    ASSERT_EQ(kinks_deg.size(), row.kinks_deg.size()) << row.view_deg;
+    for (std::size_t i = 0; i < kinks_deg.size(); ++i) EXPECT_NEAR(kinks_deg[i], row.kinks_deg[i], 0.02);
+  }
 }
 
 }  // namespace

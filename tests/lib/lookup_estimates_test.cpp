@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iostream>
 
 #include <dolp/status.hpp>
@@ -122,39 +121,44 @@ struct Tally {
   std::vector<double> stated = {};
 };
 
-void expect_honest(const std::function<SceneValues(Draws&)>& next_scene) {
+using NextScene = SceneValues (*)(Draws&);
+
+/// Looks up random points of one table of a seed, and adds them to the totals.
+void expect_honest(NextScene next_scene, std::uint64_t seed, std::size_t table_number, Tally& tally) {
+  Draws draw(seed * 1000003 + table_number);
+  const SceneValues scene = next_scene(draw);
+  const TableValues table = table_of(scene);
+  const TableLookup lookup(table, scene, "random");
+  const std::vector<TableLookup::Point> points = random_points(scene.grid, draw);
+  const std::vector<PointResult> exact = exact_at(scene, points);
+  for (std::size_t j = 0; j < points.size(); ++j) {
+    if (!promises_dolp(exact[j].status)) continue;
+    const PointResult found = lookup.at(points[j]);
+    if (!promises_dolp(found.status)) continue;
+    SCOPED_TRACE(testing::Message() << "table " << table_number << " of seed " << seed << ", theta " << points[j][3]
+                                    << ", sigma " << points[j][4] << ", q " << points[j][5] << ", "
+                                    << name_of(scene.surface.masking));
+    const double dolp_error = std::abs(found[Quantity::kDolp] - exact[j][Quantity::kDolp]);
+    const double dolp_stated = found[Quantity::kErrorEstimate] + exact[j][Quantity::kErrorEstimate];
+    EXPECT_LE(dolp_error, dolp_stated);
+    const double rho_error = std::max(std::abs(found[Quantity::kRhoI] - exact[j][Quantity::kRhoI]),
+                                      std::abs(found[Quantity::kRhoQ] - exact[j][Quantity::kRhoQ])) /
+                             exact[j][Quantity::kRhoI];
+    const double rho_stated = found[Quantity::kRhoErrorEstimate] + exact[j][Quantity::kRhoErrorEstimate];
+    EXPECT_LE(rho_error, rho_stated);
+    ++tally.points;
+    tally.stated.push_back(found[Quantity::kErrorEstimate]);
+    tally.flagged += (found.status & kAnyToleranceNotMet) != 0 ? 1 : 0;
+    tally.missed += std::max(dolp_error, rho_error) > scene.accuracy.tolerance ? 1 : 0;
+    tally.worst = std::max({tally.worst, dolp_error / dolp_stated, rho_error / rho_stated});
+  }
+}
+
+void expect_honest(NextScene next_scene) {
   const std::size_t tables = draws_wanted(kTables);
   const std::uint64_t seed = draws_wanted(kSeed, "DOLP_PROPERTY_SEED");
   Tally tally;
-  for (std::size_t i = 0; i < tables; ++i) {
-    Draws draw(seed * 1000003 + i);
-    const SceneValues scene = next_scene(draw);
-    const TableValues table = table_of(scene);
-    const TableLookup lookup(table, scene.accuracy.tolerance, "random");
-    const std::vector<TableLookup::Point> points = random_points(scene.grid, draw);
-    const std::vector<PointResult> exact = exact_at(scene, points);
-    for (std::size_t j = 0; j < points.size(); ++j) {
-      if (!promises_dolp(exact[j].status)) continue;
-      const PointResult found = lookup.at(points[j]);
-      if (!promises_dolp(found.status)) continue;
-      SCOPED_TRACE(testing::Message() << "table " << i << " of seed " << seed << ", theta " << points[j][3]
-                                      << ", sigma " << points[j][4] << ", q " << points[j][5] << ", "
-                                      << name_of(scene.surface.masking));
-      const double dolp_error = std::abs(found[Quantity::kDolp] - exact[j][Quantity::kDolp]);
-      EXPECT_LE(dolp_error, found[Quantity::kErrorEstimate] + exact[j][Quantity::kErrorEstimate]);
-      const double rho_error = std::max(std::abs(found[Quantity::kRhoI] - exact[j][Quantity::kRhoI]),
-                                        std::abs(found[Quantity::kRhoQ] - exact[j][Quantity::kRhoQ])) /
-                               exact[j][Quantity::kRhoI];
-      EXPECT_LE(rho_error, found[Quantity::kRhoErrorEstimate] + exact[j][Quantity::kRhoErrorEstimate]);
-      ++tally.points;
-      tally.stated.push_back(found[Quantity::kErrorEstimate]);
-      tally.flagged += (found.status & kAnyToleranceNotMet) != 0 ? 1 : 0;
-      tally.missed += std::max(dolp_error, rho_error) > scene.accuracy.tolerance ? 1 : 0;
-      tally.worst =
-          std::max({tally.worst, dolp_error / (found[Quantity::kErrorEstimate] + exact[j][Quantity::kErrorEstimate]),
-                    rho_error / (found[Quantity::kRhoErrorEstimate] + exact[j][Quantity::kRhoErrorEstimate])});
-    }
-  }
+  for (std::size_t i = 0; i < tables; ++i) expect_honest(next_scene, seed, i, tally);
   EXPECT_GT(tally.points, 40 * tables);
   std::ranges::sort(tally.stated);
   const double share = 100.0 / static_cast<double>(tally.points);
@@ -195,6 +199,49 @@ TEST(LookupEstimates, RandomPointsOfBistaticTables_ErrorsAreWithinThem) { expect
 
 TEST(LookupEstimates, RandomPointsAcrossTotalReflection_ErrorsAreWithinThem) {
   expect_honest(scene_across_total_reflection);
+}
+
+// Tables with lookups that erred by 1.8 to 5.7 times what was stated, before kinks were known and changes that are
+// small by chance were distrusted.
+TEST(LookupEstimates, TablesWithKinksOrShortAxes_ErrorsAreWithinThem) {
+  const struct {
+    NextScene next_scene;
+    std::uint64_t seed;
+    std::size_t table;
+  } rows[] = {
+      // A kink of V-cavities in one of the last two cells of theta.
+      {bistatic_scene, 101, 207},
+      {bistatic_scene, 203, 65},
+      {bistatic_scene, 211, 159},
+      {bistatic_scene, 208, 61},
+      // Four to seven values of sigma.
+      {bistatic_scene, 2, 140},
+      {bistatic_scene, 102, 69},
+      {bistatic_scene, 104, 1},
+      {bistatic_scene, 105, 217},
+      {bistatic_scene, 204, 153},
+      {bistatic_scene, 210, 4},
+      {scene_across_total_reflection, 11, 180},
+      {scene_across_total_reflection, 13, 51},
+  };
+  for (const auto& row : rows) {
+    Tally tally;
+    expect_honest(row.next_scene, row.seed, row.table, tally);
+    EXPECT_GT(tally.points, kPoints / 2);
+  }
+}
+
+TEST(LookupEstimates, SixValuesOfSigmaUnderASource_ErrorIsWithinIt) {
+  SceneValues scene = make_scene(Distribution::kCauchy, Masking::kSmith, {1.5, 0.1});
+  scene.surroundings = Surroundings{280.0};
+  scene.source.emplace().irradiance = 10.0;
+  scene.geometry = {Mode::kBistatic, 60.0, 180.0};
+  scene.grid = axes_of(axis(20.0, 88.0, 48, 0.0, false), axis(0.05, 0.8, 6, 0.0, true), {2.5});
+  scene.accuracy.tolerance = 1e-2;
+  const TableValues table = table_of(scene);
+  const PointResult found = TableLookup(table, scene, "six").at(70.63829787, 0.17323322517, 2.5);
+  EXPECT_NEAR(found[Quantity::kDolp], 0.224068402881, found[Quantity::kErrorEstimate]);
+  EXPECT_LT(found[Quantity::kErrorEstimate], 0.1);
 }
 
 }  // namespace

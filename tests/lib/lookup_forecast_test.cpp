@@ -35,7 +35,7 @@ double flagged_share(const SceneValues& scene) {
   const EffectPlan plan = keep_everything(scene);
   const TableValues table = table_part(table_layout(scene, plan, scene.grid), grid,
                                        evaluate_scene(scene, grid, *make_evaluator(Evaluator::kFloat), {}));
-  const TableLookup lookup(table, kTolerance, "table");
+  const TableLookup lookup(table, scene, "table");
   std::mt19937_64 engine(3);
   const auto within = [&](const std::vector<double>& values) {
     return std::lerp(values.front(), values.back(), std::generate_canonical<double, 53>(engine));

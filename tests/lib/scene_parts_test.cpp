@@ -8,7 +8,6 @@
 
 #include "draws.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
-#include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "run/scene_run.hpp"
 #include "scene_run_support.hpp"
@@ -20,10 +19,8 @@ namespace {
 using namespace scene_run_support;
 
 std::unique_ptr<ModelEvaluator> evaluator_on(bool device) {
-  std::unique_ptr<ModelEvaluator> inner;
-  if (device) inner = std::make_unique<VulkanEvaluator>(VulkanOptions{});
-  if (!device) inner = std::make_unique<CpuEvaluator>();
-  return std::make_unique<InterpolatingEvaluator>(std::move(inner));
+  if (device) return std::make_unique<VulkanEvaluator>(VulkanOptions{});
+  return std::make_unique<CpuEvaluator>();
 }
 
 constexpr std::size_t kFewParts = 4;  // making an evaluator takes longer than a part
@@ -109,8 +106,9 @@ TEST(SceneParts, CombinedIndices_KeepTheirBitsInParts) {
     scene.accuracy.tolerance = 1e-3;
     scene.grid = axes_of({80.0}, spaced(0.1, 0.4, 5), spaced(2.0, 5.0, 5), {}, spaced(1.3, 3.0, 10), {0.1, 0.3, 0.9});
     const auto evaluator = evaluator_on(true);
-    evaluate_scene(scene, grid_entries(scene), *evaluator, {});
-    EXPECT_LT(2 * evaluator->report().interpolation_nodes, evaluator->report().interpolated);
+    CollectedResults results(grid_entries(scene));
+    const Work work = run_scene(scene, grid_entries(scene), keep_everything(scene), evaluator.get(), results, {}).work;
+    EXPECT_LT(2 * work.interpolation_nodes, work.interpolated);
     expect_same_bits(scene, true);
   }
 }

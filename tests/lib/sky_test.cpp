@@ -11,7 +11,6 @@
 
 #include "draws.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
-#include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "reference/reference_evaluator.hpp"
 #include "scene/scene_reader.hpp"
@@ -194,7 +193,7 @@ TEST(Sky, DenseGridsAndBands_OnTheDevice_AgreeWithTheReferenceWithinTheirBounds)
       {"band", Masking::kSmith, axes_of({70.0}, {0.2}, {3.0}), {8.0, 14.0}, "overcast"},
   };
   VulkanOptions options;
-  InterpolatingEvaluator device(std::make_unique<VulkanEvaluator>(options));
+  VulkanEvaluator device(options);
   ReferenceEvaluator reference;
   for (const Case& c : cases) {
     SceneValues scene = scene_under(*built_in_sky(c.sky));

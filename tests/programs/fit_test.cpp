@@ -1,4 +1,5 @@
 // `dolp fit` from outside: report, fitted scene, comparison and messages.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -318,6 +319,35 @@ TEST_F(FitProgram, Plot_OfDataWithWavelengths_HasACurveForEachAndNoBracket) {
     EXPECT_NEAR(curve["model"].front().get<double>(), ends.front(), 1e-3);
     EXPECT_NEAR(curve["model"].back().get<double>(), ends.back(), 1e-3);
   }
+}
+
+TEST_F(FitProgram, Spectrum_SharesItsPasses_AndIsDrawnOverWavelength) {
+  constexpr int kWavelengths = 40;
+  std::string points = "theta_deg,wavelength_um\n";
+  for (int i = 0; i < kWavelengths; ++i) {
+    for (const char* zenith : {"40", "60", "75"}) points += fmt::format("{},{}\n", zenith, 8.0 + 0.15 * i);
+  }
+  put("points.csv", points);
+  const std::vector<std::string> water = {"--set", "surface.material=water", "--set", "surface.sigma=0.2"};
+  const Columns exact =
+      eval(joined(water, {"--tolerance", "1e-6", "--evaluator", "cpu", "--set", "accuracy.interpolation=off"}));
+  std::string data = "theta_deg,wavelength_um,q_over_i,uncertainty\n";
+  for (std::size_t i = 0; i < exact.at("dolp").size(); ++i) {
+    data += fmt::format("{},{},{:.12g},0.001\n", exact.at("theta_deg")[i], exact.at("wavelength_um")[i],
+                        exact.at("stokes_q")[i] / exact.at("stokes_i")[i]);
+  }
+  put("data.csv", data);
+  const Outcome outcome =
+      fit({"--set", "surface.material=water", "--data", "data.csv", "--vary", "surface.sigma=0.02:1", "--vary",
+           "emission.temperature_K=280:320", "--plot", "fit.png", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const json report = json::parse(outcome.out);
+  EXPECT_NEAR(report["parameters"][0]["value"].get<double>(), 0.2, 1e-3);
+  EXPECT_NEAR(report["parameters"][1]["value"].get<double>(), 300.0, 0.3);
+  EXPECT_LT(report["chi_square"].get<double>(), 0.1);
+  // Some dispatches for a set of values, not some for each wavelength.
+  EXPECT_LT(report["dispatches"].get<int>(), kWavelengths / 4 * report["evaluations"].get<int>());
 }
 
 TEST_F(FitProgram, BadInput_IsOneLineThatSaysWhatIsAllowed) {

@@ -6,6 +6,8 @@ The blocks that are marked ```sh or ```python in FILES_WITH_COMMANDS run as they
 a copy of a user's checkout with host, bench and the programs that quickstart.sh builds. NOT_RUN names those that do not,
 with the reason.
 """
+import csv
+import functools
 import os
 import pathlib
 import re
@@ -29,10 +31,30 @@ NOT_RUN = {
     "export PATH": "has no effect beyond its own shell; the test sets PATH likewise",
 }
 
+# rho_i, rho_q of each entry in a line, then cosines and weights of each entry for the GLSL function.
+PRINT_RHO = """
+print(*np.stack([rho_i, rho_q], axis=-1).ravel())
+for w, v in zip(table.response_i.values.reshape(-1, 24), table.response_q.values.reshape(-1, 24)):
+    print(*c.values, *w, *v)
+"""
+RHO_IN_CPP = """#include <cstdio>
+#include <glm/glm.hpp>
+using namespace glm;
+{glsl}
+int main() {{
+  float numbers[3][24];
+  for (int i = 0; std::scanf("%f", &numbers[0][0] + i) == 1; i = (i + 1) % 72) {{
+    if (i < 71) continue;
+    const vec2 r = rho(1.33f, 0.05f, numbers[0], numbers[1], numbers[2]);
+    std::printf("%.9g %.9g\\n", r.x, r.y);
+  }}
+}}
+"""
+
 RUN_BLOCK = re.compile(r"^```(sh|python)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 SHELLS = {"sh": ("bash", "-eu", "-c"), "python": ("/usr/bin/python3", "-c")}
 ANY_BLOCK = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
-COMMAND = re.compile(r"^ *(build/release/)?dolp (table|eval|mueller|plan|verify|lookup|fit|materials|devices|explore)\b", re.MULTILINE)
+COMMAND = re.compile(r"^ *(build/release/)?dolp (table|response|eval|mueller|plan|verify|lookup|fit|materials|devices|explore)\b", re.MULTILINE)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADING = re.compile(r"^#+ +(.*)$", re.MULTILINE)
 
@@ -91,6 +113,33 @@ class Manual(unittest.TestCase):
                                       stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                       timeout=BLOCK_TIMEOUT_S)
                 self.assertEqual(done.returncode, 0, done.stdout)
+
+    def test_response_functions_give_what_tables_hold(self):
+        """The Python and GLSL of README.md turn a response table into rho_i and rho_q of a table of the same scene."""
+        text = (ROOT / "README.md").read_text(encoding="utf-8")
+        python, = [block for _, block in RUN_BLOCK.findall(text) if "response.nc" in block and "import" in block]
+        glsl, = re.findall(r"^```glsl\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+        self.assertLessEqual(glsl.count("\n"), 10)
+        with tempfile.TemporaryDirectory() as folder:
+            run = functools.partial(subprocess.run, cwd=folder, check=True, text=True, stdout=subprocess.PIPE)
+            scene = [ROOT / "host/scenes/night_paint.toml", "--quiet", "--evaluator", "cpu", "--set", "surface.n=1.33", "--set",
+                     "surface.k=0.05", "--set", "surface.specular=1", "--set", "surface.diffuse=0", "--set", "grid.theta_deg=[0,60,85]"]
+            run([BUILD_FOLDER / "dolp", "response", *scene, "-o", "response.nc"])
+            run([BUILD_FOLDER / "dolp", "table", *scene, "--keep-all", "-o", "table.csv"])
+            (pathlib.Path(folder) / "python.py").write_text(python + PRINT_RHO, encoding="utf-8")
+            done = run(["/usr/bin/python3", "python.py"]).stdout.split("\n", 1)
+            shader = f"#version 450\n{glsl}\nvoid main() {{ float c[24]; vec2 r = rho(1.0, 0.0, c, c, c); }}\n"
+            run(["glslangValidator", "--stdin", "-S", "comp"], input=shader)
+            (pathlib.Path(folder) / "rho.cpp").write_text(RHO_IN_CPP.format(glsl=glsl), encoding="utf-8")
+            run(["c++", "-fsingle-precision-constant", "-o", "rho", "rho.cpp"])
+            from_glsl = run(["./rho"], input=done[1]).stdout.split()
+            with open(pathlib.Path(folder) / "table.csv", encoding="utf-8") as file:
+                rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+        from_table = [float(row[name]) for row in rows for name in ("rho_i", "rho_q")]
+        for found in (done[0].split(), from_glsl):
+            self.assertEqual(len(found), len(from_table))
+            for value, expected in zip(found, from_table):
+                self.assertAlmostEqual(float(value), expected, delta=2e-5)
 
     def test_quickstart_builds_what_is_installed(self):
         """README runs cmake --install in the build folder that quickstart.sh leaves."""

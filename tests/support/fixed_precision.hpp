@@ -28,6 +28,7 @@ class FixedPrecision final : public ModelEvaluator {
     return evaluator_->scatter(own, progress);
   }
   bool has_double() const override { return precision_ == Precision::kDouble; }
+  bool computes_each_entry() const override { return true; }
   EvaluationReport report() const override { return evaluator_->report(); }
 
  private:

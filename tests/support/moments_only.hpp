@@ -14,6 +14,7 @@ class MomentsOnly : public ModelEvaluator {
   std::vector<ScatteringMatrix> scatter(const ScatteringRequest&, const Progress&) override {
     throw std::logic_error("this evaluator has moments alone");
   }
+  bool computes_each_entry() const override { return true; }
   EvaluationReport report() const override { return {}; }
 };
 

@@ -174,12 +174,13 @@ EffectBounds::EffectBounds(const SceneModel& scene, const EntriesExtent& extent)
   std::vector<OpticalConstants> indices = rule.indices();
   indices.insert(indices.end(), extent.indices.begin(), extent.indices.end());
   const Surface& surface = scene_.surface;
-  const double seen_deg = is_bistatic_ ? scene_.geometry.view_zenith_deg : *std::ranges::max_element(extent.theta_deg);
-  const CosSin a = cos_sin_deg(zenith_before_limit_deg(surface.masking, seen_deg));
+  const double moment_zenith_deg =
+      is_bistatic_ ? scene_.geometry.view_zenith_deg : *std::ranges::max_element(extent.theta_deg);
+  const CosSin a = cos_sin_deg(zenith_before_limit_deg(surface.masking, moment_zenith_deg));
   const double cosine = std::max(a.cos, kSmallestCosine);
   most_specular_ = surface.specular * most_albedo(surface, a, extent.roughest);
   const double c = surface.diffuse_exponent;
-  const bool diverges = c < 0.0 && seen_deg == 90.0;
+  const bool diverges = c < 0.0 && moment_zenith_deg == 90.0;
   if (surface.diffuse > 0.0)
     most_diffuse_ = diverges ? kInfinity : 2.0 * surface.diffuse * std::pow(cosine, c) / (c + 2.0);
   least_smooth_ = 0.5 * (1.0 - fresnel(indices, cosine).most_s);

@@ -306,9 +306,9 @@ MomentsEntry KernelData::operator[](std::size_t entry) const {
     return {point, shape_of[entry], point};
   }
   const auto shape = static_cast<std::uint32_t>(entry % shapes.size());
-  const std::size_t of_index = entry / shapes.size();
-  const auto index = static_cast<std::uint32_t>(of_index % indices.size());
-  return {theta_of(static_cast<std::uint32_t>(of_index / indices.size()), index, shape), shape, index};
+  const std::size_t of_theta = entry / shapes.size();
+  const auto index = static_cast<std::uint32_t>(of_theta / directions);
+  return {theta_of(static_cast<std::uint32_t>(of_theta % directions), index, shape), shape, index};
 }
 
 }  // namespace dolp

@@ -78,7 +78,7 @@ struct KernelData {
   }
   /// The entry of a direction, an index and a shape.
   std::size_t entry_of(std::uint32_t direction, std::uint32_t index, std::uint32_t shape) const {
-    return is_grid ? (direction * indices.size() + index) * shapes.size() + shape : direction;
+    return is_grid ? (index * directions + direction) * shapes.size() + shape : direction;
   }
   MomentsEntry operator[](std::size_t entry) const;
 };

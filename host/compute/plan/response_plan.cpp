@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <tuple>
 #include <utility>
 
 #include "base/parallel_ranges.hpp"
@@ -19,16 +21,12 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 /// Wanted entries of a grid that has some of the request's indices: for each of these, flags of the request's indices
 /// that need it.
 std::vector<char> wanted_of(const MomentsRequest& request, const std::vector<std::vector<std::size_t>>& needed_by) {
-  const std::size_t shapes = request.sigma.size() * request.q.size();
+  const std::size_t of_index = request.theta_deg.size() * request.shapes();
   std::vector<char> wanted;
-  for (std::size_t theta = 0; !request.wanted.empty() && theta < request.theta_deg.size(); ++theta) {
-    for (const std::vector<std::size_t>& indices : needed_by) {
-      for (std::size_t shape = 0; shape < shapes; ++shape) {
-        const bool is_wanted = std::ranges::any_of(indices, [&](std::size_t index) {
-          return request.is_wanted((theta * request.indices.size() + index) * shapes + shape);
-        });
-        wanted.push_back(is_wanted ? 1 : 0);
-      }
+  for (const std::vector<std::size_t>& indices : needed_by) {
+    for (std::size_t i = 0; !request.wanted.empty() && i < of_index; ++i) {
+      const auto wants = [&](std::size_t index) { return request.is_wanted(index * of_index + i); };
+      wanted.push_back(std::ranges::any_of(indices, wants) ? 1 : 0);
     }
   }
   return wanted;
@@ -99,15 +97,16 @@ struct Sums {
 /// Combines all reached indices, direction by direction.
 class Combination {
  public:
-  Combination(const MomentsRequest& request, const ResponsePlan& plan) : request_(request), plan_(plan) {
+  Combination(const MomentsRequest& request, const ResponsePlan& plan)
+      : request_(request), sources_(*plan.sources), passes_(plan.passes.size()) {
     const ResponseWeights& reference = request.basis->of_reference();
-    for (std::size_t i = 0; i < plan.sources.size(); ++i) {
-      if (plan.sources[i].weights) reached_.push_back(i);
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+      if (sources_[i].weights) reached_.push_back(i);
     }
     const auto rows = static_cast<Eigen::Index>(reached_.size());
     absorbed_ = split_ = RowMajor(rows, static_cast<Eigen::Index>(request.basis->count()));
     for (Eigen::Index i = 0; i < rows; ++i) {
-      const ResponseWeights& own = *plan.sources[reached_[static_cast<std::size_t>(i)]].weights;
+      const ResponseWeights& own = *sources_[reached_[static_cast<std::size_t>(i)]].weights;
       absorbed_.row(i) = own.absorbed.transpose();
       split_.row(i) = own.split.transpose();
     }
@@ -130,7 +129,7 @@ class Combination {
   void for_all(std::size_t shapes, std::span<Moments> moments, const Function& set) const {
     for (std::size_t i = 0; i < reached_.size(); ++i) {
       for (std::size_t shape = 0; shape < shapes; ++shape) {
-        set(moments[reached_[i] * shapes + shape], *plan_.sources[reached_[i]].weights, static_cast<Eigen::Index>(i),
+        set(moments[reached_[i] * shapes + shape], *sources_[reached_[i]].weights, static_cast<Eigen::Index>(i),
             static_cast<Eigen::Index>(shape));
       }
     }
@@ -144,7 +143,7 @@ class Combination {
     const Sums more_absorbed = Sums::of_difference(all, Responses::kI, Responses::kIApart, absorbed_apart_);
     const Sums more_split = Sums::of_difference(all, Responses::kQ, Responses::kQApart, split_apart_);
     const ResponseWeights& of_reference = request_.basis->of_reference();
-    const double evaluations_share = static_cast<double>(plan_.passes.size()) / static_cast<double>(reached_.size());
+    const double evaluations_share = static_cast<double>(passes_) / static_cast<double>(reached_.size());
     for_all(reference.size(), moments, [&](Moments& sum, const ResponseWeights& own, auto index, auto shape) {
       const Moments& from = reference[static_cast<std::size_t>(shape)];
       sum.albedo = from.albedo;
@@ -199,85 +198,170 @@ class Combination {
   }
 
   const MomentsRequest& request_;
-  const ResponsePlan& plan_;
+  const std::vector<ResponsePlan::Source>& sources_;
+  std::size_t passes_;
   std::vector<std::size_t> reached_;  ///< of the request's indices
   RowMajor absorbed_, split_, absorbed_apart_, split_apart_, reflected_;
 };
 
 }  // namespace
 
-std::size_t ResponsePlan::wanted_count() const {
-  std::size_t count = others ? others->wanted_count() : 0;
-  for (const MomentsRequest& pass : passes) count += pass.wanted_count();
-  return count;
+ResponsePlan ResponsePlan::of_directions(std::span<const std::size_t> directions) const {
+  ResponsePlan part{.sources = sources};
+  for (const MomentsRequest& pass : passes) part.passes.push_back(pass.of_directions(directions));
+  if (others) part.others = others->of_directions(directions);
+  return part;
 }
 
 std::size_t response_passes(bool wants_direct, std::size_t sky_functions) {
   return 1 + (wants_direct ? 1 : 0) + sky_functions;
 }
 
-ResponsePlan response_plan(const MomentsRequest& request) {
+namespace {
+
+/// The sources of some indices. Depends on nothing but the basis and the indices.
+std::vector<ResponsePlan::Source> sources_of(const ResponseBasis& basis, std::span<const OpticalConstants> indices) {
+  std::vector<ResponsePlan::Source> sources(indices.size());
+  parallel_ranges(sources.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) sources[i].weights = basis.weights_of(indices[i]);
+  });
+  return sources;
+}
+
+/// Adds the passes with the entries of `reference`, at the reference index.
+void add_passes(ResponsePlan& plan, const MomentsRequest& request, MomentsRequest reference) {
   const ResponseBasis& basis = *request.basis;
+  reference.basis = nullptr;
+  reference.sky = nullptr;
+  reference.wants_direct = false;
+  reference.tolerance = request.finer_tolerance(kResponseTolerance);
+  reference.response = {.count = basis.count(), .c0 = basis.c0(), .bend = basis.bend(), .of = Response::Of::kReflected};
+  plan.passes.push_back(reference);
+  if (request.wants_direct) {
+    MomentsRequest& direct = plan.passes.emplace_back(reference);
+    direct.wants_direct = true;
+    direct.response->of = Response::Of::kDirect;
+  }
+  for (std::size_t k = 0; request.sky && k < request.sky->size(); ++k) {
+    MomentsRequest& with_sky = plan.passes.emplace_back(reference);
+    with_sky.sky = std::make_shared<const SkyBasis>(request.sky->only(k));
+    with_sky.response->of = Response::Of::kSky;
+  }
+}
+
+/// The request without entries.
+MomentsRequest without_entries(const MomentsRequest& request) {
+  MomentsRequest empty = request;
+  empty.basis = nullptr;
+  for (std::vector<double>* const axis : {&empty.theta_deg, &empty.sigma, &empty.q}) axis->clear();
+  empty.indices.clear();
+  empty.wanted.clear();
+  return empty;
+}
+
+ResponsePlan plan_of_points(const MomentsRequest& request) {
   ResponsePlan plan;
+  MomentsRequest reference = without_entries(request), others = reference;
+  std::map<std::tuple<double, double, double>, std::uint32_t> passes;
+  std::map<std::pair<double, double>, std::uint32_t> numbers;
+  std::vector<OpticalConstants> indices;
+  for (std::size_t i = 0; i < request.size(); ++i) {
+    MomentsPoint point = request[i];
+    const auto [source, is_new_index] =
+        numbers.try_emplace({point.index.n, point.index.k}, static_cast<std::uint32_t>(indices.size()));
+    if (is_new_index) indices.push_back(point.index);
+    const auto [pass, is_new] = passes.try_emplace({point.theta_deg, point.shape.sigma, point.shape.q},
+                                                   static_cast<std::uint32_t>(reference.size()));
+    point.index = request.basis->reference();
+    if (is_new) reference.append(point);
+    plan.points.push_back({.pass = pass->second, .source = source->second});
+  }
+  std::vector<ResponsePlan::Source> sources = sources_of(*request.basis, indices);
+  for (std::size_t i = 0; i < request.size(); ++i) {
+    if (sources[plan.points[i].source].weights) continue;
+    plan.points[i].other = static_cast<std::uint32_t>(others.size());
+    others.append(request[i]);
+  }
+  plan.sources = std::make_shared<const std::vector<ResponsePlan::Source>>(std::move(sources));
+  if (others.size() > 0) plan.others = std::move(others);
+  add_passes(plan, request, std::move(reference));
+  return plan;
+}
+
+ResponsePlan plan_of_grid(const MomentsRequest& request) {
+  ResponsePlan plan;
+  std::vector<ResponsePlan::Source> sources = sources_of(*request.basis, request.indices);
   MomentsRequest others = request;
   others.basis = nullptr;
   others.indices.clear();
   std::vector<std::size_t> reached;
   std::vector<std::vector<std::size_t>> beyond;
   for (std::size_t i = 0; i < request.indices.size(); ++i) {
-    ResponsePlan::Source& source = plan.sources.emplace_back();
-    source.weights = basis.weights_of(request.indices[i]);
-    if (source.weights) {
+    if (sources[i].weights) {
       reached.push_back(i);
       continue;
     }
-    source.other = others.indices.size();
+    sources[i].other = others.indices.size();
     others.indices.push_back(request.indices[i]);
     beyond.push_back({i});
   }
+  plan.sources = std::make_shared<const std::vector<ResponsePlan::Source>>(std::move(sources));
   others.wanted = wanted_of(request, beyond);
   if (!others.indices.empty()) plan.others = std::move(others);
   if (reached.empty()) return plan;
-  MomentsRequest pass = request;
-  pass.basis = nullptr;
-  pass.sky = nullptr;
-  pass.wants_direct = false;
-  pass.tolerance = request.finer_tolerance(kResponseTolerance);
-  pass.indices = {basis.reference()};
-  pass.wanted = wanted_of(request, {reached});
-  pass.response = {.count = basis.count(), .c0 = basis.c0(), .bend = basis.bend(), .of = Response::Of::kReflected};
-  plan.passes.push_back(pass);
-  if (request.wants_direct) {
-    MomentsRequest& direct = plan.passes.emplace_back(pass);
-    direct.wants_direct = true;
-    direct.response->of = Response::Of::kDirect;
-  }
-  for (std::size_t k = 0; request.sky && k < request.sky->size(); ++k) {
-    MomentsRequest& with_sky = plan.passes.emplace_back(pass);
-    with_sky.sky = std::make_shared<const SkyBasis>(request.sky->only(k));
-    with_sky.response->of = Response::Of::kSky;
-  }
+  MomentsRequest reference = request;
+  reference.indices = {request.basis->reference()};
+  reference.wanted = wanted_of(request, {reached});
+  add_passes(plan, request, std::move(reference));
   return plan;
+}
+
+std::vector<Moments> combined_points(const MomentsRequest& request, const ResponsePlan& plan,
+                                     std::span<const std::vector<Moments>> passes, std::span<const Moments> others) {
+  const Combination combine(request, plan);
+  std::vector<std::vector<std::size_t>> points_of(plan.passes.front().size());
+  for (std::size_t i = 0; i < plan.points.size(); ++i) points_of[plan.points[i].pass].push_back(i);
+  std::vector<Moments> moments(request.size());
+  parallel_ranges(points_of.size(), 1, [&](std::size_t first, std::size_t last) {
+    std::vector<Moments> of_sources(plan.sources->size());
+    for (std::size_t pass = first; pass < last; ++pass) {
+      std::vector<std::span<const Moments>> of_passes;
+      for (const std::vector<Moments>& one : passes) of_passes.push_back(std::span(one).subspan(pass, 1));
+      combine(cos_sin_deg(plan.passes.front().theta_deg[pass]).cos, of_passes, of_sources);
+      for (const std::size_t i : points_of[pass]) {
+        const ResponsePlan::PointSource& point = plan.points[i];
+        moments[i] = (*plan.sources)[point.source].weights ? of_sources[point.source] : others[point.other];
+      }
+    }
+  });
+  return moments;
+}
+
+}  // namespace
+
+ResponsePlan response_plan(const MomentsRequest& request) {
+  return request.layout == MomentsRequest::Layout::kList ? plan_of_points(request) : plan_of_grid(request);
 }
 
 std::vector<Moments> combined(const MomentsRequest& request, const ResponsePlan& plan,
                               std::span<const std::vector<Moments>> passes, std::span<const Moments> others) {
+  if (request.layout == MomentsRequest::Layout::kList) return combined_points(request, plan, passes, others);
   const Combination combine(request, plan);
-  const std::size_t shapes = request.sigma.size() * request.q.size();
-  const std::size_t of_theta = request.indices.size() * shapes;
-  const std::size_t of_others = others.size() / request.theta_deg.size();
+  const std::size_t shapes = request.shapes();
+  const std::size_t directions = request.theta_deg.size();
   std::vector<Moments> moments(request.size());
-  parallel_ranges(request.theta_deg.size(), 1, [&](std::size_t first, std::size_t last) {
+  parallel_ranges(directions, 1, [&](std::size_t first, std::size_t last) {
+    std::vector<Moments> own(request.indices.size() * shapes);
     for (std::size_t theta = first; theta < last; ++theta) {
-      const std::span<Moments> own = std::span(moments).subspan(theta * of_theta, of_theta);
       std::vector<std::span<const Moments>> of_passes;
       for (const std::vector<Moments>& pass : passes)
         of_passes.push_back(std::span(pass).subspan(theta * shapes, shapes));
       if (!of_passes.empty()) combine(cos_sin_deg(request.theta_deg[theta]).cos, of_passes, own);
-      for (std::size_t i = 0; i < plan.sources.size(); ++i) {
-        if (plan.sources[i].weights) continue;
-        const auto from = others.subspan(theta * of_others + plan.sources[i].other * shapes, shapes);
-        std::ranges::copy(from, own.begin() + static_cast<std::ptrdiff_t>(i * shapes));
+      for (std::size_t i = 0; i < plan.sources->size(); ++i) {
+        const ResponsePlan::Source& source = (*plan.sources)[i];
+        const auto from = source.weights ? std::span<const Moments>(own).subspan(i * shapes, shapes)
+                                         : others.subspan((source.other * directions + theta) * shapes, shapes);
+        std::ranges::copy(from, moments.begin() + static_cast<std::ptrdiff_t>((i * directions + theta) * shapes));
       }
     }
   });

@@ -1,6 +1,9 @@
-// Selects what to compute of a grid of many indices, and combines their moments from it (model/response_basis.hpp).
+// Selects what to compute of a request with many indices, and combines their moments from it
+// (model/response_basis.hpp).
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -10,21 +13,30 @@
 
 namespace dolp {
 
-/// Plan for a grid with a basis. The result of an entry does not depend on the other entries of the
+/// Plan for a request with a basis. The result of an entry does not depend on the other entries of the
 /// request.
 struct ResponsePlan {
-  /// Source of the moments of one index of the request.
+  /// Source of the moments of one index.
   struct Source {
     std::optional<ResponseWeights> weights;  ///< of the responses; none: the index is computed by itself,
-    std::size_t other = 0;                   ///< as this one of `others`
+    std::size_t other = 0;                   ///< as this one of the indices of `others`
   };
-  /// The request's grid at the reference index, with responses: of the light reflected, then, as far as they are
-  /// wanted, of the direct emission and of the light reflected with each function of the sky.
+  /// Position of a point among the points of the passes, which all differ in direction or slope distribution, and among
+  /// the sources or, where that has no weights, among the points of `others`.
+  struct PointSource {
+    std::uint32_t pass = 0;
+    std::uint32_t source = 0;
+    std::uint32_t other = 0;
+  };
+  /// The request's directions and slope distributions at the reference index, with responses: of the light reflected,
+  /// then, as far as they are wanted, of the direct emission and of the light reflected with each function of the sky.
   std::vector<MomentsRequest> passes;
-  std::optional<MomentsRequest> others;  ///< the indices that are not reached
-  std::vector<Source> sources;
+  std::optional<MomentsRequest> others;                ///< the indices, or points, that are not reached
+  std::shared_ptr<const std::vector<Source>> sources;  ///< one for each index of a grid, each different index of points
+  std::vector<PointSource> points;                     ///< of a request for points
 
-  std::size_t wanted_count() const;  ///< of all requests
+  /// The plan of some directions of a grid.
+  ResponsePlan of_directions(std::span<const std::size_t> directions) const;
 };
 
 /// Passes for what a request wants.

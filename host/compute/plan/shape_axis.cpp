@@ -2,7 +2,6 @@
 #include "model/choices.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -40,14 +39,14 @@ ShapeParameter q_parameter(const MomentsRequest& request) {
   return {needs_mean_slope && has_mean_slope ? 1.5 : 1.0, 1.45};
 }
 
-std::vector<MomentsRequest> with_one_parameter(const MomentsRequest& request) {
-  if (request.layout == MomentsRequest::Layout::kList) return {request};
-  const auto grazing = static_cast<std::size_t>(std::ranges::count_if(request.theta_deg, is_grazing));
-  if (keeps_projected_area(request.masking) || grazing == 0 || grazing == request.theta_deg.size()) return {request};
-  std::array<std::vector<std::size_t>, 2> directions;
-  for (std::size_t i = 0; i < request.theta_deg.size(); ++i)
-    directions[is_grazing(request.theta_deg[i]) ? 1 : 0].push_back(i);
-  return {request.of_directions(directions[0]), request.of_directions(directions[1])};
+std::vector<std::vector<std::size_t>> split_grazing_directions(const MomentsRequest& request) {
+  std::vector<std::vector<std::size_t>> groups(2);
+  for (std::size_t i = 0; i < request.theta_deg.size(); ++i) {
+    const bool is_apart = !keeps_projected_area(request.masking) && is_grazing(request.theta_deg[i]);
+    groups[is_apart ? 1 : 0].push_back(i);
+  }
+  std::erase_if(groups, [](const std::vector<std::size_t>& group) { return group.empty(); });
+  return groups;
 }
 
 ShapeAxis shape_axis(const ShapeParameter& parameter, const std::vector<double>& values, double digits) {

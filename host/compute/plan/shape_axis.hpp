@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <vector>
 
 #include "model/choices.hpp"
@@ -23,9 +24,9 @@ struct ShapeParameter {
 ShapeParameter sigma_parameter(Distribution distribution);
 /// All of the request's directions are grazing, or none is.
 ShapeParameter q_parameter(const MomentsRequest& request);
-/// Splits the request into parts whose directions have one parameter each, in the order of the request. Usually there
-/// is one part; a request for points, between which nothing is interpolated, is always one part.
-std::vector<MomentsRequest> with_one_parameter(const MomentsRequest& request);
+/// Positions of the directions of a grid, in groups that have one parameter each: all of them, or the grazing ones
+/// apart.
+std::vector<std::vector<std::size_t>> split_grazing_directions(const MomentsRequest& request);
 
 /// Values of a parameter, and the nodes from which they are interpolated.
 struct ShapeAxis {

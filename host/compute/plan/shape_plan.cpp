@@ -37,8 +37,9 @@ void store(const Values& values, double Moments::*quantity, std::span<Moments> m
   for (std::size_t i = 0; i < moments.size(); ++i) moments[i].*quantity = values.data()[i];
 }
 
-/// The moments with function `k` of a sky, as those without.
-void interpolate_sky(const ShapePlan& plan, std::span<const Moments> nodes, std::size_t k, std::span<Moments> moments) {
+/// Column `k` of the moments, as these. Bounds lose their signs.
+void interpolate_column(const ShapePlan& plan, std::span<const Moments> nodes, std::size_t k,
+                        std::span<Moments> moments) {
   const Values sigma = plan.sigma.cardinal;
   const Values q = plan.q.cardinal.transpose();
   for (Moments& of_entry : moments) of_entry.columns.resize(k + 1);
@@ -46,8 +47,10 @@ void interpolate_sky(const ShapePlan& plan, std::span<const Moments> nodes, std:
     Values at(static_cast<Eigen::Index>(plan.sigma.nodes.size()), static_cast<Eigen::Index>(plan.q.nodes.size()));
     Values bound(at.rows(), at.cols());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      at.data()[i] = nodes[i].columns[k].*component;
-      bound.data()[i] = nodes[i].columns[k].error;
+      const ColumnMoments& column = nodes[i].columns[k];
+      at.data()[i] = column.*component;
+      bound.data()[i] = column.error + std::max(std::abs(column.i_apart), std::abs(column.q_apart)) +
+                        column.relative_error * std::abs(column.*component);
     }
     bound.rowwise() += tails(plan.sigma, at);
     bound.colwise() += tails(plan.q, at.transpose()).transpose();
@@ -63,7 +66,7 @@ void interpolate_sky(const ShapePlan& plan, std::span<const Moments> nodes, std:
 /// True if for each direction and index all entries are wanted, or none.
 bool wants_whole_directions(const MomentsRequest& request) {
   if (request.layout != MomentsRequest::Layout::kGrid) return false;
-  const std::size_t shapes = request.sigma.size() * request.q.size();
+  const std::size_t shapes = request.shapes();
   for (std::size_t i = 0; i < request.wanted.size(); ++i) {
     if (request.wanted[i] != request.wanted[i - i % shapes]) return false;
   }
@@ -78,29 +81,18 @@ std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
   ShapePlan plan;
   plan.sigma = shape_axis(sigma_parameter(request.distribution), request.sigma, digits);
   plan.q = shape_axis(q_parameter(request), request.q, digits);
-  if (request.sigma.size() * request.q.size() < kLeastShapeGain * plan.nodes_of_a_direction()) return std::nullopt;
+  if (request.shapes() < kLeastShapeGain * plan.nodes_of_a_direction()) return std::nullopt;
   plan.nodes = request;
   plan.nodes.tolerance = request.finer_tolerance(kShapeNodeTolerance);
   plan.nodes.sigma = plan.sigma.nodes;
   plan.nodes.q = plan.q.nodes;
-  const std::size_t shapes = request.sigma.size() * request.q.size();
+  const std::size_t shapes = request.shapes();
   if (!request.wanted.empty()) {
     plan.nodes.wanted.clear();
     for (std::size_t first = 0; first < request.size(); first += shapes)
       plan.nodes.wanted.insert(plan.nodes.wanted.end(), plan.nodes_of_a_direction(), request.wanted[first]);
   }
   return plan;
-}
-
-std::vector<char> interpolated_directions(const MomentsRequest& request) {
-  std::vector<char> is_interpolated(request.theta_deg.size(), request.basis ? 1 : 0);
-  for (const MomentsRequest& part : with_one_parameter(request)) {
-    if (!shape_plan(part)) continue;
-    for (std::size_t i = 0; i < is_interpolated.size(); ++i) {
-      if (std::ranges::find(part.theta_deg, request.theta_deg[i]) != part.theta_deg.end()) is_interpolated[i] = 1;
-    }
-  }
-  return is_interpolated;
 }
 
 void interpolate(const ShapePlan& plan, std::span<const Moments> nodes, std::span<Moments> moments) {
@@ -115,7 +107,7 @@ void interpolate(const ShapePlan& plan, std::span<const Moments> nodes, std::spa
     store(sigma * at * q, value, moments);
     store(sigma.cwiseAbs() * bound * q.cwiseAbs(), error, moments);
   }
-  for (std::size_t k = 0; k < nodes.front().columns.size(); ++k) interpolate_sky(plan, nodes, k, moments);
+  for (std::size_t k = 0; k < nodes.front().columns.size(); ++k) interpolate_column(plan, nodes, k, moments);
   double evaluations = 0.0;
   for (const Moments& node : nodes) evaluations += node.evaluations;
   for (Moments& of_entry : moments) of_entry.evaluations = evaluations / static_cast<double>(moments.size());

@@ -23,12 +23,9 @@ struct ShapePlan {
   std::size_t nodes_of_a_direction() const { return sigma.nodes.size() * q.nodes.size(); }
 };
 
-/// The plan of a request whose directions have one parameter (with_one_parameter), or none where every entry is
+/// The plan of a request whose directions have one parameter (split_grazing_directions), or none where every entry is
 /// computed by itself, as where only some entries of a direction and index are wanted.
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request);
-
-/// Flags of the grid's directions that the plans of its parts interpolate, or that are combined from responses.
-std::vector<char> interpolated_directions(const MomentsRequest& request);
 
 /// The moments of one direction and index at the request's sigma x q, from those at its nodes. Bounds are those of the
 /// nodes, weighted with the interpolant's own weights, plus an interpolation error estimated

@@ -60,8 +60,8 @@ class ModelEvaluator {
   virtual void prepare(const ScatteringRequest& /*request*/) {}
   /// True if requests in double are possible.
   virtual bool has_double() const { return true; }
-  /// For each direction of a grid 1 where evaluate() interpolates between slope distributions; empty if it never does.
-  virtual std::vector<char> interpolated_directions(const MomentsRequest& /*request*/) const { return {}; }
+  /// True if each entry is to be computed by itself, without interpolation or responses.
+  virtual bool computes_each_entry() const { return false; }
   /// Totals over all calls since clear_report.
   virtual EvaluationReport report() const = 0;
   /// Begins a new run: the report, and all that follows from it, no longer contains earlier runs.

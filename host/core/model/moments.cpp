@@ -22,22 +22,22 @@ double MomentsRequest::finer_tolerance(double share) const {
 MomentsPoint MomentsRequest::operator[](std::size_t entry) const {
   if (layout == Layout::kList) return {theta_deg[entry], {sigma[entry], q[entry]}, indices[entry]};
   const std::size_t of_sigma = entry / q.size();
-  const std::size_t of_index = of_sigma / sigma.size();
-  return {theta_deg[of_index / indices.size()],
+  const std::size_t of_theta = of_sigma / sigma.size();
+  return {theta_deg[of_theta % theta_deg.size()],
           {sigma[of_sigma % sigma.size()], q[entry % q.size()]},
-          indices[of_index % indices.size()]};
+          indices[of_theta / theta_deg.size()]};
 }
 
 MomentsRequest MomentsRequest::of_directions(std::span<const std::size_t> directions) const {
   MomentsRequest part = *this;
   part.theta_deg.clear();
   part.wanted.clear();
-  const std::size_t of_theta = size() / theta_deg.size();
-  for (const std::size_t i : directions) {
-    part.theta_deg.push_back(theta_deg[i]);
-    if (wanted.empty()) continue;
-    const auto first = wanted.begin() + static_cast<std::ptrdiff_t>(i * of_theta);
-    part.wanted.insert(part.wanted.end(), first, first + static_cast<std::ptrdiff_t>(of_theta));
+  for (const std::size_t i : directions) part.theta_deg.push_back(theta_deg[i]);
+  for (std::size_t index = 0; !wanted.empty() && index < indices.size(); ++index) {
+    for (const std::size_t i : directions) {
+      const auto first = wanted.begin() + static_cast<std::ptrdiff_t>((index * theta_deg.size() + i) * shapes());
+      part.wanted.insert(part.wanted.end(), first, first + static_cast<std::ptrdiff_t>(shapes()));
+    }
   }
   return part;
 }

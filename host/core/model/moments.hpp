@@ -44,8 +44,8 @@ struct Response {
   Of of = Of::kReflected;
 };
 
-/// The entries whose moments are wanted: the grid theta x index x sigma x q, q fastest, or points, for which the four
-/// lists have one value each. An entry is its position in that order.
+/// The entries whose moments are wanted: the grid index x theta x sigma x q, q fastest, as in a table, or points, for
+/// which the four lists have one value each. An entry is its position in that order.
 struct MomentsRequest {
   enum class Layout { kGrid, kList };
 
@@ -57,7 +57,7 @@ struct MomentsRequest {
   Precision precision = Precision::kAuto;       ///< kAuto: float
   bool may_interpolate = true;                  ///< between slope distributions, to the same tolerance
   bool has_extra_splits = false;                ///< a rule of another kind, to check others with
-  std::shared_ptr<const ResponseBasis> basis;   ///< of a grid, to combine the moments of its indices from; null: none
+  std::shared_ptr<const ResponseBasis> basis;   ///< to combine the moments of the indices from; null: none
   std::shared_ptr<const SkyBasis> sky;          ///< Moments::columns are those with its functions; null: none
   std::optional<Response> response;             ///< Moments::columns are the responses
   Layout layout = Layout::kGrid;
@@ -72,6 +72,8 @@ struct MomentsRequest {
   std::size_t wanted_count() const;
   /// A share of the tolerance, as far as the rules of the precision go.
   double finer_tolerance(double share) const;
+  /// Of a grid: slope distributions of one direction and index.
+  std::size_t shapes() const { return sigma.size() * q.size(); }
   MomentsPoint operator[](std::size_t entry) const;
   /// The same of some directions of a grid, by their positions.
   MomentsRequest of_directions(std::span<const std::size_t> directions) const;

@@ -22,7 +22,8 @@ constexpr double kTimeOfResponse = 0.08;
 constexpr double kLeastGain = 1.25;  // what the passes must spare, as a factor
 // Numbers of responses: of each a driver compiles kernels.
 constexpr std::array<std::size_t, 3> kCounts = {8, 16, kMostResponses};
-constexpr std::size_t kMostCandidates = 256;  // of the run's indices, for which the basis is chosen
+constexpr std::size_t kMostCandidates = 256;  // of the run's indices, to which the basis is fitted
+constexpr std::size_t kMostTried = 32;        // of the run's indices, for which scale and count are chosen
 
 /// All known coefficients of the curves of an index; columns: absorbed, split.
 using CurveCoefficients = Eigen::Matrix<double, kCoefficients, 2>;
@@ -61,9 +62,10 @@ std::size_t needed(const OpticalConstants& index, double c0, double tolerance) {
   return count;
 }
 
-std::vector<OpticalConstants> candidates_of(const std::vector<OpticalConstants>& indices) {
+/// At most so many different ones of the indices, spread evenly.
+std::vector<OpticalConstants> candidates_of(const std::vector<OpticalConstants>& indices, std::size_t most) {
   std::vector<OpticalConstants> candidates;
-  const std::size_t count = std::min(indices.size(), kMostCandidates);
+  const std::size_t count = std::min(indices.size(), most);
   for (std::size_t i = 0; i < count; ++i) {
     const OpticalConstants& index = indices[(2 * i + 1) * indices.size() / (2 * count)];
     if (std::ranges::find(candidates, index) == candidates.end()) candidates.push_back(index);
@@ -84,15 +86,14 @@ double distance_of_bend(const OpticalConstants& index) {
 
 std::shared_ptr<const ResponseBasis> ResponseBasis::of(const std::vector<OpticalConstants>& indices, double tolerance,
                                                        std::size_t passes) {
-  const std::vector<OpticalConstants> candidates = candidates_of(indices);
-  const double of_candidate = static_cast<double>(indices.size()) / static_cast<double>(candidates.size());
+  const std::vector<OpticalConstants> tried = candidates_of(indices, kMostTried);
+  const double of_candidate = static_cast<double>(indices.size()) / static_cast<double>(tried.size());
   std::shared_ptr<ResponseBasis> basis(new ResponseBasis);
   basis->tolerance_ = tolerance;
   double least = static_cast<double>(indices.size()) / kLeastGain;
-  std::vector<std::size_t> of_least;
   for (const double c0 : kScales) {
     std::vector<std::size_t> counts;
-    for (const OpticalConstants& index : candidates) counts.push_back(needed(index, c0, tolerance));
+    for (const OpticalConstants& index : tried) counts.push_back(needed(index, c0, tolerance));
     for (const std::size_t count : kCounts) {
       const auto left = static_cast<double>(std::ranges::count_if(counts, [&](auto own) { return own > count; }));
       const double time =
@@ -101,19 +102,18 @@ std::shared_ptr<const ResponseBasis> ResponseBasis::of(const std::vector<Optical
       least = time;
       basis->count_ = count;
       basis->c0_ = c0;
-      of_least = counts;
     }
   }
-  if (of_least.empty()) return nullptr;
+  if (basis->count_ == 0) return nullptr;
   double lowest = std::numeric_limits<double>::infinity();
   basis->bend_ = basis->c0_;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (of_least[i] > basis->count_) continue;
-    basis->bend_ = std::min(basis->bend_, distance_of_bend(candidates[i]));
+  for (const OpticalConstants& index : candidates_of(indices, kMostCandidates)) {
+    if (needed(index, basis->c0_, tolerance) > basis->count_) continue;
+    basis->bend_ = std::min(basis->bend_, distance_of_bend(index));
     // Not one of total reflection: its kink would add to the errors of responses, which have none.
-    if (critical_cosine(candidates[i]) > 0.0 || level_of(candidates[i]) >= lowest) continue;
-    lowest = level_of(candidates[i]);
-    basis->reference_ = candidates[i];
+    if (critical_cosine(index) > 0.0 || level_of(index) >= lowest) continue;
+    lowest = level_of(index);
+    basis->reference_ = index;
   }
   if (std::isinf(lowest)) return nullptr;
   basis->of_reference_ = *basis->weights_of(basis->reference_);

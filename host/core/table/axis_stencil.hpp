@@ -31,6 +31,7 @@ class LookupAxis {
 
   double min() const { return values_.front(); }
   double max() const { return values_.back(); }
+  double coordinate_at(std::size_t place) const { return coordinates_[place]; }
   std::size_t size() const { return values_.size(); }
   /// The axis has a single value, within rounding of its last digits, or the range contains it.
   bool contains(double value) const;

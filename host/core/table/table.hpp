@@ -34,6 +34,7 @@ struct TableLayout {
   TableHead head;
   Quantities quantities;
   bool has_status = true;
+  std::vector<ResponseVariable> responses = {};
 };
 
 /// Shape: a column for each of `quantities`, and the status.

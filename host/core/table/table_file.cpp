@@ -134,7 +134,11 @@ std::string table_rows(const TableValues& part, const TableLayout& layout, Table
 
 void write_table(const TableValues& table, const fs::path& path) {
   const TableFormat format = format_of(path);
-  const TableLayout layout{static_cast<const TableHead&>(table), table.quantities(), !table.status.empty()};
+  TableLayout layout{static_cast<const TableHead&>(table), table.quantities(), !table.status.empty()};
+  std::ranges::copy_if(kAllResponseVariables, std::back_inserter(layout.responses),
+                       [&](ResponseVariable variable) { return !table.responses[variable].empty(); });
+  if (format != TableFormat::kNetcdf && !layout.responses.empty())
+    throw InputError(path.string() + ": the name of a response table must end in .nc");
   if (format != TableFormat::kNetcdf)
     return write_text_atomically(path, table_start(layout, format) + table_rows(table, layout, format));
   AtomicFile file(path);

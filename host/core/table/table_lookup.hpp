@@ -6,6 +6,7 @@
 
 #include <dolp/results.hpp>
 #include "model/axes.hpp"
+#include "scene/scene.hpp"
 #include "table/axis_stencil.hpp"
 #include "table/table.hpp"
 
@@ -18,17 +19,16 @@ namespace dolp {
 /// may lack; fewer where an axis has fewer. DOLP follows from the interpolated Stokes parameters, which stay smooth
 /// where it has a kink.
 /// Errors stated: the bounds of the entries read, each with the size of its weight, and the error of the
-/// interpolation along each axis: the change that one value more makes on the lines through the corners of the point's
-/// cell, or the last one where all values are read; kInside or kAtEnds times its sum with all that would follow, if
-/// changes went on to fall as the last ones do. That part is an estimate: structure narrower than the grid is missed.
-/// Between the values of an axis that has fewer than four it is infinite.
-/// Accuracy: tests LookupEstimates.
+/// interpolation along each axis: kInside or kAtEnds times the change that one value more makes on the lines through
+/// the corners of the point's cell, or that the last one makes where all values are read; along theta also the error
+/// that each kink of the masking causes in the window. That part is an estimate: structure narrower than the grid is
+/// missed. Between the values of an axis that has fewer than four it is infinite. Accuracy: tests LookupEstimates.
 class TableLookup {
  public:
-  /// `table` must outlive the object; `tolerance` is its own, for status 2. Errors: InputError, which begins with
-  /// `name`, for an axis that has a value twice, and for a table without dolp, its error, Stokes parameters or status,
-  /// or with an error of rho but no rho.
-  TableLookup(const TableValues& table, double tolerance, const std::string& name);
+  /// `table` must outlive the object; `scene` is its own. Errors: InputError, which begins with `name`, for an axis
+  /// that has a value twice, and for a table without dolp, its error, Stokes parameters or status, or with an error of
+  /// rho but no rho.
+  TableLookup(const TableValues& table, const SceneModel& scene, const std::string& name);
 
   /// Null for an axis that the table lacks.
   const LookupAxis* axis(Axis axis) const;
@@ -60,11 +60,12 @@ class TableLookup {
   void add_status(PointResult& result) const;
 
   const TableValues& table_;
-  double tolerance_;
-  std::vector<LookupAxis> axes_;  ///< in the table's order; one value of those that it lacks
-  PerAxis strides_ = {};          ///< between the entries of an axis
-  Quantities interpolated_;       ///< those that are smooth, and not 0 everywhere
-  std::vector<char> is_known_;    ///< of each theta in ascending order: every entry is finite
+  double tolerance_;               ///< for status 2
+  std::vector<double> kinks_deg_;  ///< of theta
+  std::vector<LookupAxis> axes_;   ///< in the table's order; one value of those that it lacks
+  PerAxis strides_ = {};           ///< between the entries of an axis
+  Quantities interpolated_;        ///< those that are smooth, and not 0 everywhere
+  std::vector<char> is_known_;     ///< of each theta in ascending order: every entry is finite
 };
 
 }  // namespace dolp

@@ -23,6 +23,7 @@ namespace dolp {
 namespace {
 
 constexpr std::size_t kEntriesAtOnce = std::size_t{1} << 18U;  // of a part that is read
+constexpr std::size_t kMostAngles = 1024;                      // of a response table
 
 namespace fs = std::filesystem;
 
@@ -229,8 +230,9 @@ struct TableReader::Impl {
   Reader reader;
   TableHead head;
   Quantities quantities;
+  std::vector<ResponseVariable> responses;
   bool has_status = false;
-  std::vector<std::pair<std::string, Hdf5Handle>> open;  // the quantities and status
+  std::vector<std::pair<std::string, Hdf5Handle>> open;  // the quantities, responses and status
 
   explicit Impl(const fs::path& path) : reader(path) {}
 
@@ -243,21 +245,23 @@ struct TableReader::Impl {
         reader.fail("is not a table of dolp (no axis theta, sigma or q)");
       most /= std::max<std::size_t>(values.size(), 1);
     }
+    head.beta_deg = read_list(reader, kBeta.name, kMostAngles);
     head.wind_m_s = read_list(reader, kWind.name, kMostTableEntries);
     if (!head.wind_m_s.empty() && head.wind_m_s.size() != head.axes[Axis::kSigma].size())
       reader.fail("is not a table of dolp (wind_m_s is not over sigma)");
   }
 
-  bool find(const char* name, std::size_t value_bytes) {
+  bool find(const char* name, std::size_t value_bytes, bool has_beta = false) {
     Hdf5Handle variable = reader.find(name);
     if (!variable) return false;
     std::vector<hsize_t> shape;
     for (const std::vector<double>& values : head.axes) {
       if (!values.empty()) shape.push_back(values.size());
     }
+    if (has_beta) shape.push_back(head.beta_deg.size());
     if (reader.shape_of(variable, name) != shape)
       reader.fail(fmt::format("is not a table of dolp ({} is not over its axes)", name));
-    reader.check_claim(name, head.size() * value_bytes);
+    reader.check_claim(name, head.size() * value_bytes * (has_beta ? head.beta_deg.size() : 1));
     open.emplace_back(name, std::move(variable));
     return true;
   }
@@ -269,6 +273,11 @@ struct TableReader::Impl {
       quantities.push_back(quantity);
       if (described.has_stokes_units)
         head.stokes_units = find_text(reader, open.back().second, "units").value_or(head.stokes_units);
+    }
+    for (const ResponseVariable variable : kAllResponseVariables) {
+      const ResponseDescription& described = description_of(variable);
+      if (!head.beta_deg.empty() && find(described.name, sizeof(double), described.has_beta))
+        responses.push_back(variable);
     }
     has_status = find("status", sizeof(std::uint32_t));
     if (quantities.empty()) reader.fail("is not a table of dolp (none of its variables is there)");
@@ -289,7 +298,8 @@ struct TableReader::Impl {
   }
 
   template <class Value>
-  void read(std::size_t number, const TableBox& box, hid_t type, std::vector<Value>& values) const {
+  void read(std::size_t number, const TableBox& box, hid_t type, std::vector<Value>& values,
+            std::size_t angles = 0) const {
     const auto& [name, variable] = open[number];
     std::vector<hsize_t> first, count;
     for (const Axis axis : kAllAxes) {
@@ -297,7 +307,11 @@ struct TableReader::Impl {
       first.push_back(box.first[axis]);
       count.push_back(box.count[axis]);
     }
-    values.resize(size_of(box.count));
+    if (angles > 0) {
+      first.push_back(0);
+      count.push_back(angles);
+    }
+    values.resize(size_of(box.count) * std::max<std::size_t>(angles, 1));
     const Hdf5Handle in_file(H5Dget_space(variable.id()), H5Sclose);
     const Hdf5Handle in_memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose);
     reader.check(in_file && in_memory ? 0 : -1, name);
@@ -326,7 +340,11 @@ TableValues TableReader::read(const TableBox& box) const {
   static_cast<TableHead&>(part) = head_of(impl_->head, box);
   const Quantities& quantities = impl_->quantities;
   for (std::size_t i = 0; i < quantities.size(); ++i) impl_->read(i, box, H5T_NATIVE_DOUBLE, part[quantities[i]]);
-  if (impl_->has_status) impl_->read(quantities.size(), box, H5T_NATIVE_UINT, part.status);
+  std::size_t number = quantities.size();
+  for (const ResponseVariable variable : impl_->responses)
+    impl_->read(number++, box, H5T_NATIVE_DOUBLE, part.responses[variable],
+                description_of(variable).has_beta ? part.beta_deg.size() : 0);
+  if (impl_->has_status) impl_->read(number, box, H5T_NATIVE_UINT, part.status);
   return part;
 }
 
@@ -350,7 +368,8 @@ TableValues TableReader::read_entries(std::span<const std::size_t> positions, co
   static_cast<TableHead&>(entries) = impl_->head;
   ValueSums sums;
   std::size_t before = 0;
-  for (const TableBox& box : boxes_in_order(impl_->head.counts(), kEntriesAtOnce)) {
+  const std::size_t at_once = kEntriesAtOnce / std::max<std::size_t>(impl_->head.beta_deg.size(), 1);
+  for (const TableBox& box : boxes_in_order(impl_->head.counts(), at_once)) {
     if (progress && !progress(before, impl_->head.size())) throw Cancelled();
     const TableValues part = read(box);
     add(sums, sums_of(part, box));
@@ -358,6 +377,11 @@ TableValues TableReader::read_entries(std::span<const std::size_t> positions, co
     for (; !positions.empty() && positions.front() < end; positions = positions.subspan(1)) {
       const std::size_t position = positions.front() - before;
       for (const Quantity quantity : impl_->quantities) entries[quantity].push_back(part[quantity][position]);
+      for (const ResponseVariable variable : impl_->responses) {
+        const std::size_t width = part.width_of(variable);
+        const auto own = std::span(part.responses[variable]).subspan(position * width, width);
+        entries.responses[variable].insert(entries.responses[variable].end(), own.begin(), own.end());
+      }
       if (impl_->has_status) entries.status.push_back(part.status[position]);
     }
     before = end;

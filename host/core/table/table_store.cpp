@@ -234,17 +234,20 @@ AxisVariables put_axes(const Writer& writer, const TableHead& head) {
   return axes;
 }
 
+/// `beta`: the coordinate that the variable has besides the axes, if it has one.
 Hdf5Handle define_over_axes(const Writer& writer, const TableHead& head, const AxisVariables& axes, const char* name,
-                            hid_t type, const void* fill) {
+                            hid_t type, const void* fill, const Hdf5Handle* beta = nullptr) {
   std::vector<hsize_t> shape;
   for (const std::vector<double>& values : head.axes) {
     if (!values.empty()) shape.push_back(values.size());
   }
+  if (beta) shape.push_back(head.beta_deg.size());
   Hdf5Handle variable = writer.define(name, type, shape, fill);
   unsigned dimension = 0;
   for (const Hdf5Handle& axis : axes) {
     if (axis) writer.check(H5DSattach_scale(variable.id(), axis.id(), dimension++));
   }
+  if (beta) writer.check(H5DSattach_scale(variable.id(), beta->id(), dimension));
   if (const std::string names = coordinates_of(head); !names.empty()) writer.put_text(variable, "coordinates", names);
   return variable;
 }
@@ -256,15 +259,39 @@ std::uint64_t offset_of(const Writer& writer, const Hdf5Handle& variable) {
   return offset;
 }
 
-std::uint64_t put_variable(const Writer& writer, const TableHead& head, const AxisVariables& axes, Quantity quantity) {
-  const QuantityDescription& described = description_of(quantity);
+/// `qualifiers`: names of the variables that qualify it, or "".
+std::uint64_t put_variable(const Writer& writer, const TableHead& head, const AxisVariables& axes, const char* name,
+                           const char* long_name, const std::string& units, const char* qualifiers,
+                           const Hdf5Handle* beta = nullptr) {
   constexpr double kFill = std::numeric_limits<double>::quiet_NaN();
-  const Hdf5Handle variable = define_over_axes(writer, head, axes, described.name, H5T_IEEE_F64LE, &kFill);
+  const Hdf5Handle variable = define_over_axes(writer, head, axes, name, H5T_IEEE_F64LE, &kFill, beta);
   writer.put_number(variable, "_FillValue", kFill);
-  writer.put_text(variable, "long_name", described.long_name);
-  writer.put_text(variable, "units", units_of(quantity, head.stokes_units));
-  if (*described.ancillary != '\0') writer.put_text(variable, "ancillary_variables", described.ancillary);
+  writer.put_text(variable, "long_name", long_name);
+  writer.put_text(variable, "units", units);
+  if (*qualifiers != '\0') writer.put_text(variable, "ancillary_variables", qualifiers);
   return offset_of(writer, variable);
+}
+
+std::uint64_t put_quantity(const Writer& writer, const TableHead& head, const AxisVariables& axes, Quantity quantity) {
+  const QuantityDescription& described = description_of(quantity);
+  const bool is_response = !head.beta_deg.empty();
+  return put_variable(writer, head, axes, described.name, described.long_name, units_of(quantity, head.stokes_units),
+                      is_response ? kResponseQualifier : described.ancillary);
+}
+
+Hdf5Handle put_beta(const Writer& writer, const TableHead& head) {
+  if (head.beta_deg.empty()) return {};
+  Hdf5Handle beta = writer.define(kBeta.name, H5T_IEEE_F64LE, {head.beta_deg.size()}, nullptr);
+  writer.check(H5DSset_scale(beta.id(), kBeta.name));
+  put_coordinate(writer, beta, kBeta, head.beta_deg);
+  return beta;
+}
+
+std::uint64_t put_response(const Writer& writer, const TableHead& head, const AxisVariables& axes,
+                           const Hdf5Handle& beta, ResponseVariable variable) {
+  const ResponseDescription& described = description_of(variable);
+  return put_variable(writer, head, axes, described.name, described.long_name, "1",
+                      described.has_beta ? kResponseQualifier : "", described.has_beta ? &beta : nullptr);
 }
 
 std::uint64_t put_status(const Writer& writer, const TableHead& head, const AxisVariables& axes) {
@@ -287,7 +314,9 @@ std::uint64_t bytes_of(const std::vector<Attribute>& attributes) {
 /// No file of this layout is longer.
 std::uint64_t most_bytes(const TableLayout& layout) {
   const TableHead& head = layout.head;
-  std::uint64_t numbers = head.wind_m_s.size() + head.size() * (layout.quantities.size() + 1);
+  const std::size_t of_entry =
+      layout.quantities.size() + 1 + layout.responses.size() * std::max<std::size_t>(head.beta_deg.size(), 1);
+  std::uint64_t numbers = head.wind_m_s.size() + head.beta_deg.size() + head.size() * of_entry;
   for (const std::vector<double>& values : head.axes) numbers += values.size();
   for (const TableCurve& described : kTableCurves) numbers += (head.*described.curve).used.size();
   return numbers * sizeof(double) + bytes_of(head.attributes) + spectral_data_of(head).size() + kMostOverhead;
@@ -308,7 +337,8 @@ struct TableStore::Impl {
   AtomicFile& file;
   MemoryFile memory;
   Writer writer{memory};
-  /// Where the values of each of the quantities, and last of status (32 bits each) if it is there, begin in the file.
+  /// Where the values of each of the quantities, the responses, and last of status (32 bits each) if it is there, begin
+  /// in the file.
   std::vector<std::uint64_t> offsets;
 
   Impl(TableLayout own, AtomicFile& of_table)
@@ -316,7 +346,10 @@ struct TableStore::Impl {
     const TableHead& head = layout.head;
     put_attributes(writer, head);
     const AxisVariables axes = put_axes(writer, head);
-    for (const Quantity quantity : layout.quantities) offsets.push_back(put_variable(writer, head, axes, quantity));
+    const Hdf5Handle beta = put_beta(writer, head);
+    for (const Quantity quantity : layout.quantities) offsets.push_back(put_quantity(writer, head, axes, quantity));
+    for (const ResponseVariable variable : layout.responses)
+      offsets.push_back(put_response(writer, head, axes, beta, variable));
     if (layout.has_status) offsets.push_back(put_status(writer, head, axes));
   }
 
@@ -325,22 +358,29 @@ struct TableStore::Impl {
   void each_run(Values& part, const PerAxis& first, const Use& use) const {
     const auto of_variable = [&](std::size_t variable, auto& values) {
       const std::span all(values);
+      const std::size_t width = all.size() / part.size();
       for_each_run(first, part.counts(), layout.head.counts(), [&](const GridRun& run) {
-        use(offsets[variable] + run.in_whole * sizeof(all[0]), all.subspan(run.in_part, run.count));
+        use(offsets[variable] + run.in_whole * width * sizeof(all[0]),
+            all.subspan(run.in_part * width, run.count * width));
       });
     };
-    for (std::size_t i = 0; i < layout.quantities.size(); ++i) of_variable(i, part[layout.quantities[i]]);
-    if (layout.has_status) of_variable(layout.quantities.size(), part.status);
+    std::size_t variable = 0;
+    for (const Quantity quantity : layout.quantities) of_variable(variable++, part[quantity]);
+    for (const ResponseVariable response : layout.responses) of_variable(variable++, part.responses[response]);
+    if (layout.has_status) of_variable(variable, part.status);
   }
 
   /// Writes the bytes of the file that are not values: between and around them, where there is anything at all.
   void write_gaps() {
     writer.check(H5Fflush(writer.file().id(), H5F_SCOPE_GLOBAL));
     std::vector<std::pair<std::uint64_t, std::uint64_t>> values;
-    for (std::size_t i = 0; i < offsets.size(); ++i) {
-      const std::size_t of_value = i < layout.quantities.size() ? sizeof(double) : sizeof(std::uint32_t);
-      values.emplace_back(offsets[i], offsets[i] + layout.head.size() * of_value);
-    }
+    const auto add = [&](std::size_t of_entry) {
+      const std::uint64_t first = offsets[values.size()];
+      values.emplace_back(first, first + layout.head.size() * of_entry);
+    };
+    for (std::size_t i = 0; i < layout.quantities.size(); ++i) add(sizeof(double));
+    for (const ResponseVariable response : layout.responses) add(layout.head.width_of(response) * sizeof(double));
+    if (layout.has_status) add(sizeof(std::uint32_t));
     const std::uint64_t size = memory.size();
     values.emplace_back(size, size);
     std::ranges::sort(values);
@@ -372,6 +412,8 @@ TableValues TableStore::read(const TableBox& box) const {
   TableValues part;
   static_cast<TableHead&>(part) = head_of(impl_->layout.head, box);
   for (const Quantity quantity : impl_->layout.quantities) part[quantity].resize(part.size());
+  for (const ResponseVariable response : impl_->layout.responses)
+    part.responses[response].resize(part.size() * part.width_of(response));
   if (impl_->layout.has_status) part.status.resize(part.size());
   impl_->each_run(part, box.first, [&](std::uint64_t offset, auto values) {
     impl_->file.read_at(offset, values.data(), values.size_bytes());

@@ -37,11 +37,15 @@ ValueSums sums_of(const TableValues& part, const Quantities& quantities, const P
   ValueSums sums;
   const auto append = [&](const auto& values) {
     std::uint64_t& sum = sums.emplace_back(0);
+    const std::size_t width = values.size() / part.size();
     for_each_run(first, part.counts(), whole, [&](const GridRun& run) {
-      sum += sum_of_values(std::span(values).subspan(run.in_part, run.count), run.in_whole);
+      sum += sum_of_values(std::span(values).subspan(run.in_part * width, run.count * width), run.in_whole * width);
     });
   };
   for (const Quantity quantity : quantities) append(part[quantity]);
+  for (const std::vector<double>& values : part.responses) {
+    if (!values.empty()) append(values);
+  }
   if (!part.status.empty()) append(part.status);
   return sums;
 }
@@ -54,14 +58,17 @@ void add(ValueSums& sums, const ValueSums& of_part) {
 std::string values_hash(const TableHead& head, const Quantities& quantities, const ValueSums& sums) {
   std::uint64_t hash = kHashStart;
   for (const std::vector<double>& values : head.axes) hash = hashed(hash, std::span(values));
-  if (!head.wind_m_s.empty()) hash = hashed(hash, std::span(head.wind_m_s));
+  for (const std::vector<double>* values : {&head.wind_m_s, &head.beta_deg}) {
+    if (!values->empty()) hash = hashed(hash, std::span(*values));
+  }
   for (const TableCurve& described : kTableCurves) {
     const Curve& curve = head.*described.curve;
     for (const std::vector<double>* values : {&curve.wavelength_um, &curve.values, &curve.used})
       if (!values->empty()) hash = hashed(hash, std::span(*values));
   }
   for (std::size_t i = 0; i < sums.size(); ++i) {
-    hash = hashed(hash, std::string_view(i < quantities.size() ? description_of(quantities[i]).name : "status"));
+    const char* const other = head.beta_deg.empty() ? "status" : "response";
+    hash = hashed(hash, std::string_view(i < quantities.size() ? description_of(quantities[i]).name : other));
     hash = hashed(hash, sums[i]);
   }
   return fmt::format("placed64:{:016x}", hash);

@@ -16,7 +16,7 @@ inline constexpr const char* kValuesHash = "values_hash";
 /// The sums of a table's values, or of a part of them: of the bits of each value, times an odd number that follows from
 /// its place, so that another value or place changes the sum. Parts may come in any order.
 ///
-/// Shape: one number for each of the quantities, and for status where it is there.
+/// Shape: one number for each of the quantities, of the responses that are there, and for status where it is there.
 using ValueSums = std::vector<std::uint64_t>;
 
 /// The sum of a variable's values from a place on.

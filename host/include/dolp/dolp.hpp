@@ -117,6 +117,10 @@ class DOLP_EXPORT Scene {
   std::shared_ptr<const Impl> impl_;
 };
 
+/// Settings that take out of a scene what responses do not depend on: with them a scene needs no material and no
+/// radiation.
+DOLP_EXPORT std::vector<Setting> surface_settings();
+
 /// The text of a scene to begin with: bare stainless steel at 10.6 um.
 DOLP_EXPORT std::string example_scene();
 
@@ -222,6 +226,12 @@ class DOLP_EXPORT Evaluator {
   /// its count; IoError. The file is complete or absent.
   Report write_table(const Scene& scene, const std::filesystem::path& path, const RunOptions& options = {},
                      const Shard& shard = {});
+  /// The response table over the scene's theta, sigma and q: TableValues::responses and the albedo. It does not depend
+  /// on material, wavelength or radiation, and its scene is that of surface_settings(). Tolerance: response_error is at
+  /// most this times the albedo. Errors: InputError for scattering "multiple".
+  Table response(const Scene& scene, const RunOptions& options = {});
+  /// The same straight into a .nc file, part by part. The file is complete or absent. Errors: InputError, IoError.
+  Report write_response(const Scene& scene, const std::filesystem::path& path, const RunOptions& options = {});
   /// The same quantities at scattered points; missing columns take the scene's values.
   Results evaluate(const Scene& scene, const std::vector<Column>& points, const RunOptions& options = {});
   /// The same of a CSV of points into a CSV that has their columns first; "-" is stdin and stdout.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <dolp/axis.hpp>
+#include <dolp/response.hpp>
 #include <dolp/results.hpp>
 
 namespace dolp {
@@ -34,6 +35,7 @@ struct Curve {
 struct TableHead {
   Axes axes;                     ///< in the user's order; wavelength, n and k only where the table has them
   std::vector<double> wind_m_s;  ///< that give the values of sigma; empty where the scene gives sigma itself
+  std::vector<double> beta_deg;  ///< of a response table: local angles of incidence, ascending
   Curve index_n;                 ///< n, k and E0 that the table was computed with; empty where there is none
   Curve index_k;
   Curve irradiance;                         ///< before source.scale
@@ -51,6 +53,10 @@ struct TableHead {
     for (const std::size_t count : counts()) size *= count;
     return size;
   }
+  /// Values that a response variable has of an entry.
+  std::size_t width_of(ResponseVariable variable) const {
+    return description_of(variable).has_beta ? beta_deg.size() : 1;
+  }
   /// At the first wavelength, n and k.
   std::size_t position(std::size_t theta, std::size_t sigma_index, std::size_t q_index) const {
     return (theta * axes[Axis::kSigma].size() + sigma_index) * axes[Axis::kQ].size() + q_index;
@@ -60,7 +66,10 @@ struct TableHead {
 /// A lookup table in memory, or a part of one.
 ///
 /// Shape: columns in C order of the axes.
-struct TableValues : TableHead, ResultColumns {};
+struct TableValues : TableHead, ResultColumns {
+  /// Of a response table: width_of values of each entry.
+  ResponseArray<std::vector<double>> responses;
+};
 
 /// One curve of a table.
 struct TableCurve {

@@ -19,6 +19,7 @@
 #include "run/scene_run.hpp"
 #include "run/table_scene.hpp"
 #include "table/table_reader.hpp"
+#include "verify/response_check.hpp"
 
 namespace dolp {
 namespace {
@@ -61,7 +62,8 @@ Report verify(const std::filesystem::path& path, const TableCheckOptions& option
   TableSample sample;
   sample.positions = sample_positions(reader.head().size(), report.options);
   sample.table = reader.read_entries(sample.positions, options.progress);
-  report.check = check_table(sample, scene, name, options.progress);
+  const bool is_response = !sample.table.beta_deg.empty();
+  report.check = (is_response ? check_responses : check_table)(sample, scene, name, options.progress);
   report.wall_s = seconds_since(start);
   return public_report(table_report(report), report.check.passed());
 }

@@ -181,7 +181,7 @@ Report write_lookup(const std::filesystem::path& table_path, const std::filesyst
   const Points points = load_points(points_path, PointsKind::kDirections, {table_path.string()}, path);
   const TableValues table = load_table(table_path.string());
   const SceneValues scene = table_scene(table, table_path.string());
-  const TableLookup lookup(table, scene.accuracy.tolerance, table_path.string());
+  const TableLookup lookup(table, scene, table_path.string());
   check_writable(path);
   begin(progress, points.size());
   const std::vector<PointResult> results = lookup_points(lookup, scene, points, progress);

@@ -1,10 +1,8 @@
 #include "api/evaluator_impl.hpp"
 
 #include <dolp/errors.hpp>
-#include <utility>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
-#include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "reference/reference_evaluator.hpp"
 
@@ -25,17 +23,12 @@ std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, b
     throw InputError("device " + wanted.device + ": needs the evaluator vulkan, and it is " + wanted.evaluator);
   }
   if (wanted.evaluator == "reference") return std::make_unique<ReferenceEvaluator>();
-  std::unique_ptr<ModelEvaluator> evaluator;
-  if (is_vulkan) {
-    VulkanOptions options;
-    options.device = wanted.device;
-    options.needs_double = needs_double;
-    if (wanted.is_interactive) options.max_tile_invocations = kInteractiveTileInvocations;
-    evaluator = std::make_unique<VulkanEvaluator>(options);
-  } else {
-    evaluator = std::make_unique<CpuEvaluator>();
-  }
-  return std::make_unique<InterpolatingEvaluator>(std::move(evaluator));
+  if (!is_vulkan) return std::make_unique<CpuEvaluator>();
+  VulkanOptions options;
+  options.device = wanted.device;
+  options.needs_double = needs_double;
+  if (wanted.is_interactive) options.max_tile_invocations = kInteractiveTileInvocations;
+  return std::make_unique<VulkanEvaluator>(options);
 }
 
 }  // namespace dolp

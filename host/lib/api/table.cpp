@@ -103,7 +103,7 @@ const TableLookup& Table::Impl::lookup() const {
   std::call_once(is_made, [&] {
     scene = table_scene(table, name);
     check_computed(table, *scene, name);
-    between.emplace(table, scene->accuracy.tolerance, name);
+    between.emplace(table, *scene, name);
   });
   return *between;
 }

@@ -149,41 +149,48 @@ SceneValues Model::scene_of(const SceneValues& scene, const MeasuredData& data, 
 }
 
 void Model::add_groups(const SceneValues& scene, const MeasuredData& data, Eigen::Index first_row) {
-  std::map<std::optional<double>, Group> of_wavelength;
-  for (std::size_t i = 0; i < data.measurements.size(); ++i) {
-    Group& group = of_wavelength[data.measurements[i].wavelength_um];
-    group.measurements.push_back(&data.measurements[i]);
-    group.rows.push_back(first_row + static_cast<Eigen::Index>(i));
+  Group group{.data = &data, .first_row = first_row};
+  for (const Measurement& one : data.measurements) {
+    if (one.wavelength_um) group.wavelength_um.push_back(*one.wavelength_um);
   }
-  for (auto& [wavelength_um, group] : of_wavelength) {
-    std::vector<Setting> own;
-    if (wavelength_um) {
-      const auto sets_spectrum = [](const Setting& one) { return one.key.starts_with("spectrum."); };
-      if (std::ranges::any_of(data.settings, sets_spectrum) ||
-          std::ranges::find(parameters_, "spectrum.wavelength_um", &FitRange::key) != parameters_.end()) {
-        throw InputError(data.name + ": column \"wavelength_um\" and a spectrum key contradict each other");
-      }
-      own.push_back({"spectrum.wavelength_um", *wavelength_um,
-                     fmt::format("{}: wavelength_um = {}", data.name, format_number(*wavelength_um))});
+  std::ranges::sort(group.wavelength_um);
+  const auto twice = std::ranges::unique(group.wavelength_um);
+  group.wavelength_um.erase(twice.begin(), twice.end());
+  if (group.wavelength_um.empty()) {
+    group.scene = scene_of(scene, data, {}, starts_of(parameters_));
+  } else {
+    const auto sets_spectrum = [](const Setting& one) { return one.key.starts_with("spectrum."); };
+    if (std::ranges::any_of(data.settings, sets_spectrum) || varies("spectrum.wavelength_um")) {
+      throw InputError(data.name + ": column \"wavelength_um\" and a spectrum key contradict each other");
     }
-    group.scene = scene_of(scene, data, own, starts_of(parameters_));
-    const Surface& surface = group.scene.surface;
-    const bool is_tabulated = group.scene.source && group.scene.source->kind == Source::Kind::kTabulated;
-    if (std::ranges::find(parameters_, "spectrum.wavelength_um", &FitRange::key) != parameters_.end() &&
-        (!surface.material.is_constant() || is_tabulated)) {
-      throw InputError("spectrum.wavelength_um: to vary it needs n, k and a source that are constants of the scene");
+    for (const double at_um : {group.wavelength_um.back(), group.wavelength_um.front()}) {
+      const Setting own{"spectrum.wavelength_um", at_um,
+                        fmt::format("{}: wavelength_um = {}", data.name, format_number(at_um))};
+      group.scene = scene_of(scene, data, {own}, starts_of(parameters_));
     }
-    if (data.zenith_column == "theta_i_deg" && group.scene.geometry.mode != Mode::kBistatic) {
-      throw InputError(data.name + ": column \"theta_i_deg\" needs geometry.mode = \"bistatic\"");
-    }
-    const bool is_emissivity = group.measurements.front()->observable == Observable::kEmissivityS ||
-                               group.measurements.front()->observable == Observable::kEmissivityP;
-    if (is_emissivity && !group.scene.emission) {
-      throw InputError(data.name + ": emissivities need the table [emission] in the scene");
-    }
-    if (has_model_error()) group.other_end = other_end_of(group.scene);
-    groups_.push_back(std::move(group));
+    const std::shared_ptr<const Material>& tabulated = group.scene.surface.material.tabulated;
+    for (const double at_um : group.wavelength_um)
+      group.indices.push_back(tabulated ? tabulated->at(at_um) : OpticalConstants{});
   }
+  const Surface& surface = group.scene.surface;
+  const bool is_tabulated = group.scene.source && group.scene.source->kind == Source::Kind::kTabulated;
+  if (varies("spectrum.wavelength_um") && (!surface.material.is_constant() || is_tabulated)) {
+    throw InputError("spectrum.wavelength_um: to vary it needs n, k and a source that are constants of the scene");
+  }
+  if (data.zenith_column == "theta_i_deg" && group.scene.geometry.mode != Mode::kBistatic) {
+    throw InputError(data.name + ": column \"theta_i_deg\" needs geometry.mode = \"bistatic\"");
+  }
+  const bool is_emissivity = data.measurements.front().observable == Observable::kEmissivityS ||
+                             data.measurements.front().observable == Observable::kEmissivityP;
+  if (is_emissivity && !group.scene.emission) {
+    throw InputError(data.name + ": emissivities need the table [emission] in the scene");
+  }
+  if (has_model_error()) group.other_end = other_end_of(group.scene);
+  groups_.push_back(std::move(group));
+}
+
+bool Model::varies(const std::string& key) const {
+  return std::ranges::find(parameters_, key, &FitRange::key) != parameters_.end();
 }
 
 SceneValues Model::with(const SceneValues& scene, const Eigen::VectorXd& values) const {
@@ -207,6 +214,7 @@ std::vector<Prediction> Model::predict(const std::vector<Eigen::VectorXd>& value
 void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>& values, double tolerance,
                           ModelEvaluator& evaluator, const Progress& progress,
                           std::vector<Prediction>& predictions) const {
+  const std::vector<Measurement>& measurements = group.data->measurements;
   // Sets that agree in all but the keys of points make one call.
   std::map<std::vector<double>, std::vector<std::size_t>> calls;
   for (std::size_t set = 0; set < values.size(); ++set) {
@@ -217,18 +225,24 @@ void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>
     calls[common].push_back(set);
   }
   for (const auto& [common, sets] : calls) {
-    std::vector<SceneEntry> entries;
-    entries.reserve(sets.size() * group.measurements.size());
+    std::vector<SceneEntry> points;
+    points.reserve(sets.size() * measurements.size());
     SceneValues scene;
     for (const std::size_t set : sets) {
       scene = with(group.scene, values[set]);
       const Surface& surface = scene.surface;
-      for (const Measurement* observation : group.measurements) {
-        SceneEntry entry{observation->theta_deg, {surface.sigma, surface.q}, {}};
-        if (surface.material.is_constant()) entry.index = surface.material.constant;
-        entries.push_back(entry);
+      for (const Measurement& one : measurements) {
+        SceneEntry& point = points.emplace_back(SceneEntry{one.theta_deg, {surface.sigma, surface.q}, {}});
+        if (surface.material.is_constant()) point.index = surface.material.constant;
+        if (!one.wavelength_um) continue;
+        const auto place = std::ranges::lower_bound(group.wavelength_um, *one.wavelength_um);
+        point.wavelength = static_cast<std::uint32_t>(place - group.wavelength_um.begin());
+        if (!surface.material.tabulated) continue;
+        if (!varies("surface.n")) point.index->n = group.indices[point.wavelength].n;
+        if (!varies("surface.k")) point.index->k = group.indices[point.wavelength].k;
       }
     }
+    const SceneEntries entries(std::move(points), group.wavelength_um);
     scene.accuracy.tolerance = tolerance;
     const std::vector<PointResult> results = evaluate_scene(scene, entries, evaluator, progress);
     std::vector<PointResult> others;
@@ -237,11 +251,12 @@ void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>
       others = evaluate_scene(scene, entries, evaluator, progress);
     }
     for (std::size_t i = 0; i < results.size(); ++i) {
-      const std::size_t member = i % group.measurements.size();
-      const Measurement& measured = *group.measurements[member];
-      Prediction& prediction = predictions[sets[i / group.measurements.size()]];
-      auto components = prediction.components.row(group.rows[member]);
-      double& error = prediction.error[group.rows[member]];
+      const std::size_t member = i % measurements.size();
+      const Measurement& measured = measurements[member];
+      const Eigen::Index row = group.first_row + static_cast<Eigen::Index>(member);
+      Prediction& prediction = predictions[sets[i / measurements.size()]];
+      auto components = prediction.components.row(row);
+      double& error = prediction.error[row];
       components = components_of(measured.observable, results[i]);
       error = error_of(measured.observable, results[i]);
       prediction.status |= results[i].status;

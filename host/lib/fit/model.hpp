@@ -43,8 +43,8 @@ class Model {
   bool has_model_error() const { return error_ != ModelError::kNone; }
   bool has_uncertainties() const { return data_.front().has_uncertainties; }
 
-  /// Predictions for each set of values, in one call of the evaluator for each group of observations that differ in
-  /// angle alone, as long as the sets differ in n, k, sigma and q alone.
+  /// Predictions for each set of values. Sets that differ in nothing but n, k, sigma and q are evaluated together, with
+  /// all angles and wavelengths of a data set.
   std::vector<Prediction> predict(const std::vector<Eigen::VectorXd>& values, double tolerance,
                                   ModelEvaluator& evaluator, const Progress& progress) const;
 
@@ -52,15 +52,18 @@ class Model {
   std::vector<Setting> settings(const Eigen::VectorXd& values) const;
 
  private:
-  /// Observations of one data set at one wavelength.
+  /// The scene of one data set.
   struct Group {
-    SceneValues scene;
+    const MeasuredData* data = nullptr;
+    Eigen::Index first_row = 0;              ///< of the predictions
+    SceneValues scene;                       ///< at the shortest wavelength of the data, if these have any
     std::optional<EmissionModel> other_end;  ///< of the bracket: the emission model there
-    std::vector<const Measurement*> measurements;
-    std::vector<Eigen::Index> rows;  ///< of the predictions
+    std::vector<double> wavelength_um;       ///< of the data, ascending; empty: that of the scene
+    std::vector<OpticalConstants> indices;   ///< of a material that depends on the wavelength, at each of these
   };
 
   void check() const;
+  bool varies(const std::string& key) const;
   void add_groups(const SceneValues& scene, const MeasuredData& data, Eigen::Index first_row);
   /// The scene of some data. Errors: InputError that says whose setting is refused.
   SceneValues scene_of(const SceneValues& scene, const MeasuredData& data, const std::vector<Setting>& own,

@@ -32,7 +32,7 @@ Device device_of(const std::string& choice, const SceneValues& scene, PlanReport
   }
 }
 
-void add_dispatches(PlanReport& report, const DispatchForecast& of_request) {
+void add_dispatches(PlanReport& report, const vulkan::DispatchCount& of_request) {
   report.dispatches.dispatches += of_request.dispatches;
   report.dispatches.tile_invocations = std::max(report.dispatches.tile_invocations, of_request.tile_invocations);
   report.dispatches.row_width = std::max(report.dispatches.row_width, of_request.row_width);
@@ -51,7 +51,7 @@ void add_pipeline(PlanReport& report, const char* kernel, Precision precision, c
 }
 
 void add_request(PlanReport& report, const MomentsRequest& request, const Device& device) {
-  add_dispatches(report, dispatch_forecast(request, device));
+  add_dispatches(report, count_dispatches(request, device));
   const KernelData data = kernel_data(request);
   report.rule = {data.rule.digits, data.rule_order};
   std::string more;
@@ -62,7 +62,7 @@ void add_request(PlanReport& report, const MomentsRequest& request, const Device
 }
 
 void add_request(PlanReport& report, const ScatteringRequest& request, const Device& device) {
-  add_dispatches(report, dispatch_forecast(request, device));
+  add_dispatches(report, count_dispatches(request, device));
   add_pipeline(report, "mueller", request.precision);
 }
 

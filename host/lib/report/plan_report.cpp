@@ -90,7 +90,7 @@ std::string how_counted(const RunPrediction& run) {
 /// Adds the work of the first attempt and of the repeated ones; `is_idle`: there is none.
 void add_attempts(ReportBuilder& report, const PlanReport& plan, bool is_idle) {
   const RunPrediction& run = plan.run;
-  const DispatchForecast& dispatches = plan.dispatches;
+  const vulkan::DispatchCount& dispatches = plan.dispatches;
   report.row_if(
       !is_idle, "attempts", "first: {} at tolerance {:g}, {} moments, {} values of f; {:.3g} % again, tighter",
       key("first_attempt/precision", name_of(run.first.precision)), key("first_attempt/tolerance", run.first.tolerance),

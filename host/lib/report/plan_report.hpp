@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/vulkan/dispatch_forecast.hpp"
+#include "evaluate/vulkan/tiles.hpp"
 #include "plan/effects.hpp"
 #include "report/report.hpp"
 #include "run/estimates.hpp"
@@ -32,7 +32,7 @@ struct PlanReport {
   RunPrediction run;
   std::optional<RuleSize> rule;        ///< none without moments
   std::vector<std::string> pipelines;  ///< of the first attempt; none when nothing is left for the evaluator
-  DispatchForecast dispatches;         ///< likewise
+  vulkan::DispatchCount dispatches;    ///< likewise
   std::vector<AxisForecast> lookup;    ///< of the axes of more than one value
   std::string device;                  ///< its name; empty without one
   std::string why_no_device;

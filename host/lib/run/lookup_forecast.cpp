@@ -23,11 +23,11 @@ constexpr std::size_t kLeastValues = 4;   // for which a lookup states an error
 constexpr int kMostAttempts = 4;          // to find how many values are needed
 constexpr double kMostValueGrowth = 8.0;  // of the number of values in one attempt
 constexpr double kMargin = 1.5;           // of the error that an attempt aims at
-// A lookup reads six values of theta, sigma and q, and four of wavelength, n and k. The error falls with this power of
-// the spacing; the sizes of the weights in the middle of a cell add up to so much, which multiplies the errors along
-// the other axes.
-constexpr double kOrderOfSix = 6.0;
-constexpr double kOrderOfFour = 4.0;
+// A lookup reads six values of theta, sigma and q, and four of wavelength, n and k. In dense grids the stated error is
+// a share of the change by the last of these values, and falls with this power of the spacing; the sizes of the weights
+// in the middle of a cell add up to so much, which multiplies the errors along the other axes.
+constexpr double kOrderOfSix = 5.0;
+constexpr double kOrderOfFour = 3.0;
 constexpr double kWeightsOfSix = 356.0 / 256.0;
 constexpr double kWeightsOfFour = 20.0 / 16.0;
 
@@ -157,7 +157,7 @@ class Forecast {
       next = end;
       std::ranges::fill(table[Quantity::kErrorEstimate], 0.0);  // what remains is the interpolation's
       std::ranges::fill(table[Quantity::kRhoErrorEstimate], 0.0);
-      const TableLookup lookup(table, scene_.accuracy.tolerance, "forecast");
+      const TableLookup lookup(table, scene_, "forecast");
       errors.push_back(lookup.at(stretches[i].point)[Quantity::kErrorEstimate]);
     }
     return errors;

@@ -1,7 +1,9 @@
 #include "run/part_requests.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <map>
 
 namespace dolp {
 namespace {
@@ -18,7 +20,8 @@ SlopeShape normalised(const SceneValues& scene, const SlopeShape& shape) {
 }
 
 Treatment treatment(const SceneValues& scene, const SceneEntry& entry) {
-  return treatment_of(scene.surface.distribution, scene.surface.masking, seen_deg(scene, entry.theta_deg), entry.shape);
+  return treatment_of(scene.surface.distribution, scene.surface.masking, moment_zenith_deg(scene, entry.theta_deg),
+                      entry.shape);
 }
 
 /// Values that are used go to `axis`, in their order.
@@ -34,7 +37,7 @@ std::vector<std::uint32_t> numbered(const std::vector<double>& values, const std
 
 }  // namespace
 
-double seen_deg(const SceneValues& scene, double theta_deg) {
+double moment_zenith_deg(const SceneValues& scene, double theta_deg) {
   return scene.geometry.mode == Mode::kBistatic ? scene.geometry.view_zenith_deg : theta_deg;
 }
 
@@ -168,11 +171,10 @@ PartRequests::Place PartRequests::moments_of(std::size_t member) const {
   if (!places_.empty()) return places_[member];
   const SceneEntries& grid = selection_.part;
   const PerAxis place = grid.place(selection_.position(member));
-  const std::size_t shapes = moments_.sigma.size() * moments_.q.size();
+  const std::size_t of_index = moments_.theta_deg.size() * moments_.shapes();
   const std::size_t shape = sigma_at_[place[Axis::kSigma]] * moments_.q.size() + q_at_[place[Axis::kQ]];
-  const std::size_t theta = theta_at_[place[Axis::kTheta]];
-  return {(theta * moments_.indices.size() + set_at_[set_of(grid, place)]) * shapes + shape,
-          grid.has_own_index() ? std::size_t{0} : shapes};
+  const std::size_t of_theta = theta_at_[place[Axis::kTheta]] * moments_.shapes();
+  return {set_at_[set_of(grid, place)] * of_index + of_theta + shape, grid.has_own_index() ? std::size_t{0} : of_index};
 }
 
 std::size_t PartRequests::direction_of(std::size_t member) const {
@@ -182,25 +184,26 @@ std::size_t PartRequests::direction_of(std::size_t member) const {
 void PartRequests::ask_points(const Selection& selection) {
   moments_.layout = MomentsRequest::Layout::kList;
   places_.reserve(selection.size());
-  std::vector<MomentsPoint> last;  // those of the entry before, which begin at `place`
-  std::vector<MomentsPoint> own;
-  Place place;
+  std::map<std::array<double, 5>, Place> known;
   for (std::size_t i = 0; i < selection.size(); ++i) {
     const SceneEntry entry = selection[i];
-    if (wants_moments(scene_, entry, plan_)) {
-      const double used_deg = zenith_before_limit_deg(scene_.surface.masking, seen_deg(scene_, entry.theta_deg));
-      const SlopeShape shape = normalised(scene_, entry.shape);
-      own.clear();
-      if (entry.index) own.push_back({used_deg, shape, *entry.index});
-      for (std::size_t j = 0; !entry.index && j < samples_[entry.wavelength].size(); ++j)
-        own.push_back({used_deg, shape, samples_[entry.wavelength][j]});
-      if (own != last) {
-        place = {moments_.size(), entry.index ? std::size_t{0} : std::size_t{1}};
-        for (const MomentsPoint& point : own) moments_.append(point);
-        last.swap(own);
-      }
+    if (!wants_moments(scene_, entry, plan_)) {
+      places_.emplace_back();
+      continue;
     }
-    places_.push_back(place);
+    const double zenith_deg =
+        zenith_before_limit_deg(scene_.surface.masking, moment_zenith_deg(scene_, entry.theta_deg));
+    const SlopeShape shape = normalised(scene_, entry.shape);
+    // Without an index of its own it has the indices of a wavelength; no k is negative.
+    const OpticalConstants key = entry.index.value_or(OpticalConstants{static_cast<double>(entry.wavelength), -1.0});
+    const auto [place, is_new] =
+        known.try_emplace({zenith_deg, shape.sigma, shape.q, key.n, key.k},
+                          Place{moments_.size(), entry.index ? std::size_t{0} : std::size_t{1}});
+    places_.push_back(place->second);
+    if (!is_new) continue;
+    if (entry.index) moments_.append({zenith_deg, shape, *entry.index});
+    for (std::size_t j = 0; !entry.index && j < samples_[entry.wavelength].size(); ++j)
+      moments_.append({zenith_deg, shape, samples_[entry.wavelength][j]});
   }
 }
 

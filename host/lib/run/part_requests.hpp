@@ -27,7 +27,7 @@ struct Selection {
 };
 
 /// The direction that an entry's moments depend on: in bistatic mode that of the view.
-double seen_deg(const SceneValues& scene, double theta_deg);
+double moment_zenith_deg(const SceneValues& scene, double theta_deg);
 
 bool wants_moments(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
@@ -45,8 +45,8 @@ SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& e
 
 /// The requests of one level for a selection. For a grid the moments form a grid again: of the directions and indices
 /// of the selection, and of all slope distributions, so that the result of an entry does not depend on the entries
-/// selected in other directions; in bistatic mode of one direction, the view. Neighbouring points that differ only in
-/// values that the moments do not depend on share them.
+/// selected in other directions; in bistatic mode of one direction, the view. Points that differ only in values that
+/// the moments do not depend on share them.
 class PartRequests {
  public:
   PartRequests(const SceneValues& scene, const SpectralIndices& samples, const EffectPlan& plan,

@@ -1,16 +1,11 @@
 #include "run/prediction.hpp"
 
 #include <algorithm>
-#include <memory>
-#include <optional>
-#include <utility>
 #include <vector>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
-#include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/kernel/slope_samples.hpp"
-#include "plan/response_plan.hpp"
-#include "plan/shape_plan.hpp"
+#include "plan/moments_plan.hpp"
 #include "run/drawn_entries.hpp"
 #include "run/part_requests.hpp"
 #include "run/response_bases.hpp"
@@ -20,9 +15,9 @@
 namespace dolp {
 namespace {
 
-/// All slope distributions of some directions of a grid, the middles of equal parts of them, at one wavelength and
-/// index.
-SceneEntries entries_of_drawn_directions(const SceneEntries& grid) {
+/// All slope distributions of some directions of a grid, the middles of equal parts of them: at all wavelengths and
+/// indices if responses serve these together, else at one.
+SceneEntries entries_of_drawn_directions(const SceneEntries& grid, bool has_responses) {
   Axes axes = grid.axes();
   std::vector<double>& theta_deg = axes[Axis::kTheta];
   std::ranges::sort(theta_deg);
@@ -31,33 +26,35 @@ SceneEntries entries_of_drawn_directions(const SceneEntries& grid) {
   for (std::size_t i = 0; i < count; ++i) drawn.push_back(theta_deg[(2 * i + 1) * theta_deg.size() / (2 * count)]);
   theta_deg = drawn;
   for (const Axis axis : {Axis::kWavelength, Axis::kN, Axis::kK}) {
-    if (!axes[axis].empty()) axes[axis] = {axes[axis][axes[axis].size() / 2]};
+    if (!axes[axis].empty() && !has_responses) axes[axis] = {axes[axis][axes[axis].size() / 2]};
   }
   return SceneEntries::of_grid(axes, grid.index());
 }
 
-/// Sums of one kind of request, of the first level and of all others.
+/// Sums over the requests of one kind: those of the first level, which come first, and all others.
 struct Count {
-  bool is_first = true;   ///< until the first level has made its request
-  std::size_t first = 0;  ///< moments or beams
+  std::size_t first_requests = 0;  ///< requests of the first level that are still to come
+  std::size_t first = 0;           ///< moments or beams
   std::size_t again = 0;
   double first_evaluations = 0.0;
   double again_evaluations = 0.0;
   double spent_s = 0.0;
 
   void add(std::size_t entries, const EvaluationReport& before, const EvaluationReport& after) {
+    const bool is_first = first_requests > 0;
     const double evaluations = after.evaluations - before.evaluations;
     (is_first ? first : again) += entries;
     (is_first ? first_evaluations : again_evaluations) += evaluations;
-    is_first = false;
+    if (is_first) --first_requests;
     spent_s += after.kernel_s - before.kernel_s;
   }
 };
 
-/// Records the requests of a run's levels.
+/// Counts the requests of a run's levels.
 class CountingEvaluator final : public ModelEvaluator {
  public:
-  explicit CountingEvaluator(bool has_double) : has_double_(has_double) {}
+  CountingEvaluator(bool has_double, std::size_t first_moments_requests)
+      : has_double_(has_double), moments_{.first_requests = first_moments_requests}, beams_{.first_requests = 1} {}
 
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
     const EvaluationReport before = cpu_.report();
@@ -89,14 +86,31 @@ double scale_of(std::size_t all, const Count& counted) {
   return counted.first == 0 ? 0.0 : static_cast<double>(all) / static_cast<double>(counted.first);
 }
 
+/// The requests of the first level for a part of a run, and their plan.
+struct FirstLevel {
+  FirstLevel(const SceneValues& scene, const SceneEntries& part, const EffectPlan& plan, const RefinementLevel& level)
+      : indices(spectral_indices(scene, part)),
+        requests(scene, indices, plan, {part}, level),
+        moments(requests.moments()) {}
+  std::size_t kernel_requests() const {
+    std::size_t count = 0;
+    for (const MomentsStep& step : moments.steps()) count += step.kernel_requests().size();
+    return count;
+  }
+  SpectralIndices indices;
+  PartRequests requests;
+  MomentsPlan moments;
+};
+
 void count_work(RunPrediction& run, const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
                 bool has_double) {
-  const SceneEntries drawn =
-      run.counts_directions ? entries_of_drawn_directions(entries) : drawn_entries(entries, kCountedEntries);
-  auto owned = std::make_unique<CountingEvaluator>(has_double);
-  const CountingEvaluator& counting = *owned;
-  InterpolatingEvaluator interpolating(std::move(owned));
-  evaluate_scene(scene, drawn, interpolating, {}, plan);
+  const SceneEntries drawn = run.counts_directions ? entries_of_drawn_directions(entries, run.first.basis != nullptr)
+                                                   : drawn_entries(entries, kCountedEntries);
+  const SceneEntries part = run_parts(drawn, run.spectral_samples).front();
+  RefinementLevel level = run.first;
+  level.basis = ResponseBases(scene, part, plan).of(level);
+  CountingEvaluator counting(has_double, FirstLevel(scene, part, plan, level).kernel_requests());
+  evaluate_scene(scene, part, counting, {}, plan);
   const Count& moments = counting.moments();
   const Count& beams = counting.beams();
   const double moments_scale = scale_of(run.moments, moments);
@@ -111,14 +125,12 @@ void count_work(RunPrediction& run, const SceneValues& scene, const SceneEntries
   run.beams_s = beams_scale * beams.spent_s;
 }
 
-/// The requests that a request of one shape parameter is computed by.
-std::vector<MomentsRequest> computed_requests(const MomentsRequest& request) {
-  const std::optional<ShapePlan> shapes = shape_plan(request);
-  const MomentsRequest& nodes = shapes ? shapes->nodes : request;
-  if (!nodes.basis) return {nodes};
-  ResponsePlan plan = response_plan(nodes);
-  if (plan.others) plan.passes.push_back(*std::move(plan.others));
-  return std::move(plan.passes);
+/// Memory of the responses of a step.
+std::size_t response_bytes(const MomentsStep& step) {
+  std::size_t columns = 0;
+  for (const MomentsRequest* request : step.kernel_requests())
+    columns += request->response ? request->size() * request->response->count : 0;
+  return columns * sizeof(ColumnMoments);
 }
 
 }  // namespace
@@ -132,27 +144,25 @@ RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries,
   std::size_t largest = 0, columns_before = 0;
   run.first.basis = ResponseBases(scene, entries, plan).of(run.first);
   for (const SceneEntries& part : run_parts(entries, run.spectral_samples)) {
-    const SpectralIndices indices = spectral_indices(scene, part);
-    const PartRequests requests(scene, indices, plan, {part}, run.first);
-    const std::size_t moments = requests.moments().size();
-    const std::size_t beams = requests.beams().entries.size();
-    for (const MomentsRequest& asked : with_one_parameter(requests.moments())) {
-      if (asked.size() == 0) continue;
-      const bool is_interpolated = asked.basis || shape_plan(asked);
-      if (is_interpolated) run.interpolated += asked.size();
-      for (const MomentsRequest& computed : computed_requests(asked)) {
-        run.counts_directions = entries.is_grid() && (is_interpolated || has_slope_samples(computed));
-        run.moments += computed.size();
-        visit.moments(computed);
+    const FirstLevel first(scene, part, plan, run.first);
+    const std::size_t beams = first.requests.beams().entries.size();
+    std::size_t largest_step = 0;
+    run.interpolated += first.moments.saved_entries();
+    run.moments += first.moments.kernel_moments();
+    for (const MomentsStep& step : first.moments.steps()) {
+      largest_step = std::max(largest_step, response_bytes(step));
+      for (const MomentsRequest* request : step.kernel_requests()) {
+        run.counts_directions |= entries.is_grid() && (step.saves_work() || has_slope_samples(*request));
+        visit.moments(*request);
       }
     }
     run.beams += beams;
-    if (beams > 0) visit.beams(requests.beams());
+    if (beams > 0) visit.beams(first.requests.beams());
     // Memory of the results, the columns made of them, and those of the part before, which are being written.
     const std::size_t columns = part.size() * (kQuantityCount * sizeof(double) + sizeof(std::uint32_t));
-    largest =
-        std::max(largest, part.size() * sizeof(PointResult) + columns + columns_before + moments * sizeof(Moments) +
-                              beams * (sizeof(ScatteringEntry) + sizeof(ScatteringMatrix)));
+    largest = std::max(largest, part.size() * sizeof(PointResult) + columns + columns_before +
+                                    first.moments.size() * sizeof(Moments) + largest_step +
+                                    beams * (sizeof(ScatteringEntry) + sizeof(ScatteringMatrix)));
     columns_before = columns;
   }
   run.host_bytes = static_cast<double>(largest);

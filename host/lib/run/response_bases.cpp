@@ -1,6 +1,9 @@
 #include "run/response_bases.hpp"
 
 #include <algorithm>
+#include <set>
+#include <tuple>
+#include <utility>
 
 #include "model/sky_basis.hpp"
 #include "plan/response_plan.hpp"
@@ -10,8 +13,31 @@ namespace dolp {
 namespace {
 
 constexpr std::size_t kLeastEntries = 24;  // chosen, of an index: its weights take as long as some of them
+// Of points: the directions and slope distributions times the indices, over the points. Each of the first is combined
+// with all of the second.
+constexpr std::size_t kMostOfPoints = 2;
 
-std::vector<OpticalConstants> indices_of(const SceneValues& scene, const SceneEntries& entries) {
+std::vector<OpticalConstants> indices_of_points(const SceneValues& scene, const SceneEntries& entries) {
+  const SpectralIndices spectral = spectral_indices(scene, entries);
+  std::set<std::pair<double, double>> indices;
+  std::set<std::tuple<double, double, double>> shapes;
+  std::size_t points = 0;
+  const auto add = [&](const OpticalConstants& index) { indices.insert({index.n, index.k}); };
+  for (const SceneEntry& entry : entries.all()) {
+    shapes.insert({moment_zenith_deg(scene, entry.theta_deg), entry.shape.sigma, entry.shape.q});
+    if (entry.index) add(*entry.index);
+    if (!entry.index) std::ranges::for_each(spectral[entry.wavelength], add);
+    points += entry.index ? 1 : spectral[entry.wavelength].size();
+  }
+  if (shapes.size() * indices.size() > kMostOfPoints * points) return {};
+  std::vector<OpticalConstants> all;
+  for (const auto& [n, k] : indices) all.push_back({n, k});
+  return all;
+}
+
+std::vector<OpticalConstants> indices_of_grid(const SceneValues& scene, const SceneEntries& entries) {
+  const PerAxis& counts = entries.whole();
+  if (counts[Axis::kTheta] * counts[Axis::kSigma] * counts[Axis::kQ] < kLeastEntries) return {};
   const SceneEntries whole = SceneEntries::of_grid(entries.whole_axes(), entries.index());
   std::vector<OpticalConstants> indices;
   if (whole.has_own_index()) {
@@ -34,9 +60,8 @@ std::vector<OpticalConstants> indices_of(const SceneValues& scene, const SceneEn
 ResponseBases::ResponseBases(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan)
     : passes_(response_passes(plan.needs_direct, plan.sky ? plan.sky->size() : 0)) {
   const bool has_bounces = plan.kept.further_bounces && scene.surface.scattering == Scattering::kMultiple;
-  const PerAxis& counts = entries.whole();
-  const bool pays = counts[Axis::kTheta] * counts[Axis::kSigma] * counts[Axis::kQ] >= kLeastEntries;
-  if (entries.is_grid() && pays && plan.kept.moments && !has_bounces) indices_ = indices_of(scene, entries);
+  if (!plan.kept.moments || has_bounces) return;
+  indices_ = entries.is_grid() ? indices_of_grid(scene, entries) : indices_of_points(scene, entries);
 }
 
 std::shared_ptr<const ResponseBasis> ResponseBases::of(const RefinementLevel& level) {

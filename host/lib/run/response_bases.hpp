@@ -18,8 +18,8 @@ class ResponseBases {
  public:
   ResponseBases(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan);
 
-  /// The basis of a level that may interpolate; null where it saves nothing: for points, few entries of each index, few
-  /// indices and many bounces.
+  /// The basis of a level that may interpolate; null where it saves nothing: for a grid with few entries of each index,
+  /// points that mostly differ in direction or slope distribution, few indices, and many bounces.
   std::shared_ptr<const ResponseBasis> of(const RefinementLevel& level);
 
  private:

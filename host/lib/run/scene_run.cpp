@@ -11,7 +11,9 @@
 #include <dolp/status.hpp>
 #include "base/parallel_ranges.hpp"
 #include "base/stopwatch.hpp"
+#include "evaluate/planned_moments.hpp"
 #include "model/angles.hpp"
+#include "plan/moments_plan.hpp"
 #include "plan/refinement.hpp"
 #include "run/closed_forms.hpp"
 #include "run/part_requests.hpp"
@@ -48,7 +50,7 @@ struct RunContext {
   const Spectra& spectra;
   ModelEvaluator* evaluator;
   ResponseBases& bases;
-  double& radiometry_s;
+  RunSummary& summary;  ///< of the run so far: the work of the host is added
 
   std::size_t samples() const { return spectra.indices.front().size(); }  ///< of every entry
 };
@@ -92,7 +94,7 @@ class MemberResults {
   /// Neighbours in a grid mostly have one direction, and all of them one way to treat it.
   const Direction& seen(const SceneEntry& entry) {
     const Surface& surface = context_.scene.surface;
-    const double theta_deg = seen_deg(context_.scene, entry.theta_deg);
+    const double theta_deg = moment_zenith_deg(context_.scene, entry.theta_deg);
     const Treatment treatment = treatment_of(surface.distribution, surface.masking, theta_deg, entry.shape);
     if (!has_direction_ || theta_deg != direction_.theta_deg || treatment != direction_.treatment) {
       direction_ = direction_of(surface.distribution, surface.masking, theta_deg, entry.shape);
@@ -146,35 +148,38 @@ Progress part_of(const Progress& progress, std::size_t before, std::size_t total
 }
 
 /// Moments and beams of one level, in the same precision.
-Answer asked(const RunContext& context, const PartRequests& requests, const Progress& progress) {
+Answer asked(const RunContext& context, const PartRequests& requests, const MomentsPlan& plan,
+             const Progress& progress) {
   const std::size_t moments = requests.moments().wanted_count();
   const std::size_t beams = requests.beams().entries.size();
   const std::size_t total = moments + beams;
   if (total == 0) return {};
   Answer answer;
   if (beams > 0 && moments > 0) context.evaluator->prepare(requests.beams());
-  if (moments > 0) answer.moments = context.evaluator->evaluate(requests.moments(), part_of(progress, 0, total));
+  if (moments > 0) {
+    answer.moments = planned_moments(plan, *context.evaluator, part_of(progress, 0, total), context.summary.work);
+  }
   if (beams > 0) answer.beams = context.evaluator->scatter(requests.beams(), part_of(progress, moments, total));
   return answer;
 }
 
 std::vector<PointResult> results_of(const RunContext& context, const Selection& selection, const PartRequests& requests,
-                                    const Progress& progress) {
-  const Answer answer = asked(context, requests, progress);
+                                    const MomentsPlan& plan, const Progress& progress) {
+  const Answer answer = asked(context, requests, plan, progress);
   const auto start = std::chrono::steady_clock::now();
   std::vector<PointResult> results(selection.size());
   parallel_ranges(results.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
     MemberResults result_of(context, selection, requests, answer);
     for (std::size_t i = first; i < last; ++i) results[i] = result_of(i);
   });
-  context.radiometry_s += seconds_since(start);
+  context.summary.radiometry_s += seconds_since(start);
   return results;
 }
 
 std::vector<PointResult> computed_at(const RunContext& context, const Selection& selection,
                                      const RefinementLevel& level, const Progress& progress) {
-  return results_of(context, selection, {context.scene, context.spectra.indices, context.plan, selection, level},
-                    progress);
+  const PartRequests requests(context.scene, context.spectra.indices, context.plan, selection, level);
+  return results_of(context, selection, requests, MomentsPlan(requests.moments()), progress);
 }
 
 bool is_better(const PointResult& a, const PointResult& b) {
@@ -224,14 +229,14 @@ struct FirstResults {
 FirstResults first_results(const RunContext& context, const SceneEntries& part, const Progress& progress) {
   FirstResults first;
   first.level = first_level(context.scene.accuracy, context.evaluator->has_double());
+  if (context.evaluator->computes_each_entry()) first.level.may_interpolate = false;
   first.level.basis = context.bases.of(first.level);
   const PartRequests requests(context.scene, context.spectra.indices, context.plan, {part}, first.level);
-  first.results = results_of(context, {part}, requests, progress);
-  if (!part.is_grid()) return first;
-  const std::vector<char> of_request = context.evaluator->interpolated_directions(requests.moments());
-  if (of_request.empty()) return first;
-  for (std::size_t i = 0; i < part.size(); i += part.of_direction())
-    first.is_interpolated.push_back(of_request[requests.direction_of(i)]);
+  const MomentsPlan plan(requests.moments());
+  first.results = results_of(context, {part}, requests, plan, progress);
+  const std::vector<char> saves = plan.saving_directions();
+  for (std::size_t i = 0; !saves.empty() && i < part.size(); i += part.of_direction())
+    first.is_interpolated.push_back(saves[requests.direction_of(i)]);
   return first;
 }
 
@@ -404,7 +409,7 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
       --left;
     } else {
       const Spectra spectra(scene, plan, part.wavelength_um());
-      const RunContext context{scene, plan, spectra, evaluator, bases, summary.radiometry_s};
+      const RunContext context{scene, plan, spectra, evaluator, bases, summary};
       std::vector<PointResult> results = part_results(context, part, checked, summary.check, part_progress);
       summary.add(scene, part, results);
       sink.write(part, std::move(results), with_evaluation());

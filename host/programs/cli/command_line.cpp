@@ -177,6 +177,8 @@ std::unique_ptr<CLI::App> command_line(Options& options) {
   table->add_option("--shard", options.shard,
                     "I/N: this part of the grid, into FILE with .I-of-N before its suffix; auto: in a Slurm array");
   table->add_flag("--resume", options.resume, "go on where an interrupted run of the same scene stopped");
+  add_run(*app.add_subcommand("response", "response table over the scene's theta, sigma and q, for any material (.nc)"),
+          options);
   CLI::App* merge = app.add_subcommand("merge", "the shards of a table as one table");
   merge->add_option("SHARD", options.shards, "all shards of one table (.nc)")->required();
   merge->add_option("-o,--output", options.output_path, "file to write")->required();
@@ -227,6 +229,8 @@ std::unique_ptr<CLI::App> command_line(Options& options) {
 
   add_examples(*app.get_subcommand("table"), "dolp table scene.toml -o table.nc",
                "dolp table scene.toml -o table.csv --set surface.masking=smith --tolerance 1e-3");
+  add_examples(*app.get_subcommand("response"), "dolp response scene.toml -o response.nc",
+               "dolp response scene.toml -o response.nc --set surface.masking=smith --tolerance 1e-6");
   add_examples(*app.get_subcommand("merge"), "dolp merge table.*-of-4.nc -o table.nc",
                "dolp merge table.1-of-2.nc table.2-of-2.nc -o table.csv");
   add_examples(*app.get_subcommand("eval"), "dolp eval scene.toml --points points.csv -o results.csv",

@@ -8,6 +8,9 @@ namespace dolp::cli {
 /// `dolp table SCENE -o FILE`: a lookup table over the scene's grid.
 int run_table(const Options& options);
 
+/// `dolp response SCENE -o FILE`: a response table, which serves any material.
+int run_response(const Options& options);
+
 /// `dolp merge SHARD... -o FILE`: the shards of a table as one.
 int run_merge(const Options& options);
 

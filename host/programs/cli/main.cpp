@@ -42,6 +42,7 @@ int run(CLI::App& app, Options& options) {
   }
   const auto given = [&app](const char* name) { return app.got_subcommand(name); };
   if (given("table")) return run_table(options);
+  if (given("response")) return run_response(options);
   if (given("merge")) return run_merge(options);
   if (given("eval")) return run_eval(options);
   if (given("mueller")) return run_mueller(options);

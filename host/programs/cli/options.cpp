@@ -35,9 +35,11 @@ std::vector<Setting> all_settings(const Options& options) {
 
 std::string allowed(const std::string& key) { return std::ranges::find(dolp::keys(), key, &Key::key)->allowed(); }
 
-Scene load_scene(const Options& options) {
+Scene load_scene(const Options& options, const std::vector<Setting>& more) {
   check_one_stdin(options);
-  const Scene scene = Scene::from_file(options.scene_path, all_settings(options));
+  std::vector<Setting> settings = all_settings(options);
+  settings.insert(settings.end(), more.begin(), more.end());
+  const Scene scene = Scene::from_file(options.scene_path, settings);
   warn("dolp", scene.remarks());
   return scene;
 }

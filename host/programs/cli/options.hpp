@@ -58,8 +58,8 @@ std::vector<Setting> all_settings(const Options& options);
 /// The allowed values of a scene key: "a number in [0, 10]".
 std::string allowed(const std::string& key);
 
-/// The scene with all_settings, after a warning on stderr for each of its remarks.
-Scene load_scene(const Options& options);
+/// The scene with all_settings and then `more`, after a warning on stderr for each of its remarks.
+Scene load_scene(const Options& options, const std::vector<Setting>& more = {});
 
 /// The evaluator that --evaluator and --device ask for.
 Evaluator evaluator_of(const Options& options);

@@ -55,6 +55,14 @@ int run_table(const Options& options) {
   return finish(report, options);
 }
 
+int run_response(const Options& options) {
+  const Scene scene = load_scene(options, surface_settings());
+  return finish(evaluator_of(options).write_response(
+                    scene, options.output_path,
+                    {.progress = ProgressBar(options.quiet).callback(), .history = options.command_line}),
+                options);
+}
+
 int run_merge(const Options& options) {
   return finish(merge({options.shards.begin(), options.shards.end()}, options.output_path, options.command_line),
                 options);

@@ -22,6 +22,7 @@ Scene                   a scene: a file or a text, with other values of its keys
 table, write_table      the quantities over the scene's grid: a Dataset, or a file
 evaluate, mueller       the same at points; Mueller matrices of pairs of directions
 lookup                  a table between its entries
+response, moments       a table for any material; reflectances of materials from it
 fit                     numbers of a scene from measured data
 plan                    what a table would compute and cost
 material                n and k of a built-in material
@@ -47,12 +48,13 @@ from ._arguments import MissingFileError
 from ._fit import Fit, fit
 from ._model_warning import ModelWarning
 from ._native import DeviceError, InputError, InputWarning, IoError
+from ._response import moments, response
 from ._runs import Plan, devices, evaluate, lookup, mueller, plan, table, write_table
 from ._scene import Material, Scene, keys, material, materials
 
 # The exceptions stand in the text above: with them `help` would print the methods of Python's own.
 __all__ = ["Fit", "Material", "Plan", "Scene", "citation", "devices", "evaluate", "fit", "keys", "lookup", "material", "materials",
-           "mueller", "plan", "table", "write_table"]
+           "moments", "mueller", "plan", "response", "table", "write_table"]
 __version__ = _native.version()
 
 

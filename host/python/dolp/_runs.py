@@ -36,8 +36,8 @@ def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all
     """
     key = next((name for name in axes if "." in name), None)
     if key is None:
-        with_axes = _with_axes(scene, axes)
-        whole = table_dataset(*native_evaluator(evaluator, device).table(with_axes, flag("keep_all", keep_all)))
+        on_axes = with_axes(scene, axes)
+        whole = table_dataset(*native_evaluator(evaluator, device).table(on_axes, flag("keep_all", keep_all)))
         warn_of_model(scene, whole.get("status", 0), whole.attrs.get("model_change"))
         return whole
     _check_varied("axes", [key], [column for column, *_ in _native.axes()])
@@ -60,8 +60,8 @@ def write_table(scene: Scene, path: Path, *, evaluator: str = "vulkan", device: 
     """
     if key := next((name for name in axes if "." in name), None):
         raise InputError(f"axes: {key} is no axis of a file; write a file for each value, of scene.with_({{{key!r}: VALUE}})")
-    with_axes = _with_axes(scene, axes)
-    return native_evaluator(evaluator, device).write_table(with_axes, native_path("path", path), flag("keep_all", keep_all),
+    on_axes = with_axes(scene, axes)
+    return native_evaluator(evaluator, device).write_table(on_axes, native_path("path", path), flag("keep_all", keep_all),
                                                            flag("resume", resume))
 
 
@@ -184,7 +184,7 @@ def native_scene(scene: Scene) -> _native.Scene:
     raise TypeError(f"scene: must be a dolp.Scene, not {type(scene).__name__}{hint}")
 
 
-def _with_axes(scene: Scene, axes: Mapping[str, Array]) -> _native.Scene:
+def with_axes(scene: Scene, axes: Mapping[str, Array]) -> _native.Scene:
     """The scene on other axes, by the names of their columns."""
     native = native_scene(scene)
     check_names("axes", axes, [column for column, *_ in _native.axes()])

@@ -47,6 +47,21 @@ class Library : public testing::Test {
   dolp::TemporaryFolder files_;
 };
 
+TEST_F(Library, ResponseTables_InMemoryAndInAFile_AreTheSameBits) {
+  const dolp::Table response = evaluator_.response(scene_);
+  const dolp::Table written = dolp::Table::read(evaluator_.write_response(scene_, at("r.nc")).output);
+  response.write(at("again.nc"));
+  const dolp::TableValues& values = response.values();
+  EXPECT_EQ(values.responses[dolp::ResponseVariable::kEmissionQ].size(), 12 * values.beta_deg.size());
+  for (const dolp::Table& table : {written, dolp::Table::read(at("again.nc"))}) {
+    EXPECT_EQ(table.values().responses, values.responses);
+    EXPECT_EQ(table.values()[Quantity::kAlbedo], values[Quantity::kAlbedo]);
+    EXPECT_EQ(table.values().beta_deg, values.beta_deg);
+  }
+  EXPECT_NE(dolp::error_text([&] { response.write(at("r.csv")); }).find("must end in .nc"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(at("r.csv")));
+}
+
 TEST_F(Library, Tables_InMemoryAndInAFile_AreTheSameBits_AndPointsAgree) {
   const dolp::Table table = evaluator_.table(scene_);
   for (const dolp::Axis axis : dolp::kAllAxes)

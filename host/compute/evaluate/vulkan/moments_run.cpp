@@ -10,64 +10,43 @@ namespace dolp::vulkan {
 namespace {
 
 using TaskWords = std::array<std::uint32_t, 4>;
-using RulePoint = std::array<double, 2>;
 
 // Rows that a thread processes at a time.
 constexpr std::size_t kRowsAtOnce = 512;
 
 }  // namespace
 
-MomentsRun::MomentsRun(const KernelContext& context, const MomentsRequest& request, std::uint32_t tile_invocations,
-                       std::uint32_t block_shapes)
-    : context_(context),
+MomentsRun::MomentsRun(const KernelContext& context, const MomentsRequest& request, const VulkanOptions& options)
+    : TiledRun(context, Packing(request.precision == Precision::kDouble)),
       request_(request),
-      data_(kernel_data(request)),
-      rows_(rows_of(request, data_)),
-      sizes_(sizes(tile_invocations, block_shapes)),
+      tiles_(request, context.description, options),
+      data_(tiles_.data),
+      rows_(tiles_.rows),
       thetas_(data_.thetas.size()),
       indices_(request.indices.size()) {
   create_buffers();
 }
 
-TileSizes MomentsRun::sizes(std::uint32_t tile_invocations, std::uint32_t block_shapes) const {
-  const VkPhysicalDeviceLimits& limits = context_.device.limits();
-  return tile_sizes({.buffer_bytes = limits.maxStorageBufferRange,
-                     .heap_bytes = context_.device.heap_bytes(),
-                     .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * context_.device.local_size(),
-                     .tile_invocations = std::min<std::uint64_t>(tile_invocations, rows_.rows.size() * DOLP_MAX_PIECES),
-                     .block_shapes = block_limit(rows_, block_shapes),
-                     .texels = limits.maxTexelBufferElements},
-                    tile_costs(context_.packing, data_, rows_.width));
-}
-
 void MomentsRun::create_buffers() {
-  const Packing& packing = context_.packing;
   const Device& device = context_.device;
-  const bool staged = context_.staged_uploads;
-  const std::size_t thetas = std::min<std::size_t>(sizes_.invocations, data_.thetas.size());
-  const std::size_t indices = std::min<std::size_t>(sizes_.invocations, data_.indices.size());
-  theta_buffer_.emplace(device, thetas * packing.node_bytes<kernel::ThetaNode>(), staged);
-  shape_buffer_.emplace(device, sizes_.shapes * packing.node_bytes<kernel::ShapeNode>(), staged);
-  index_buffer_.emplace(device, indices * packing.node_bytes<kernel::IndexNode>(), staged);
-  task_buffer_.emplace(device, sizes_.invocations * sizeof(TaskWords), staged);
-  rule_buffer_.emplace(device, packing.node_bytes<kernel::RuleNode>(), staged);
-  rule_node_buffer_.emplace(device, data_.rule_nodes.size() * packing.node_bytes<RulePoint>(), staged,
-                            packing.rule_texels());
-  masking_buffer_.emplace(device,
-                          std::size_t{sizes_.shapes} * packing.masking_nodes() * packing.node_bytes<MaskingNode>(),
-                          MemoryUse::kDeviceOnly, packing.masking_texels());
-  moments_buffer_.emplace(
-      device,
-      std::size_t{sizes_.invocations} * rows_.width * packing.output_bytes<kernel::MomentsNode>(column_sums(data_)),
-      MemoryUse::kReadback);
+  const std::size_t invocations = tiles_.sizes.invocations;
+  const std::size_t shapes = tiles_.sizes.shapes;
+  theta_buffer_.emplace(input_buffer<kernel::ThetaNode>(std::min(invocations, data_.thetas.size())));
+  shape_buffer_.emplace(input_buffer<kernel::ShapeNode>(shapes));
+  index_buffer_.emplace(input_buffer<kernel::IndexNode>(std::min(invocations, data_.indices.size())));
+  task_buffer_.emplace(device, invocations * sizeof(TaskWords), context_.staged_uploads);
+  masking_buffer_.emplace(device, shapes * packing_.masking_nodes() * packing_.node_bytes<MaskingNode>(),
+                          MemoryUse::kDeviceOnly, packing_.masking_texels());
+  moments_buffer_.emplace(device,
+                          invocations * rows_.width * packing_.output_bytes<kernel::MomentsNode>(column_sums(data_)),
+                          MemoryUse::kReadback);
 
   Kernels::Bindings bindings;
+  create_rule(data_, bindings);
   bindings.buffers[DOLP_BINDING_THETAS] = theta_buffer_->get();
   bindings.buffers[DOLP_BINDING_SHAPES] = shape_buffer_->get();
   bindings.buffers[DOLP_BINDING_INDICES] = index_buffer_->get();
   bindings.buffers[DOLP_BINDING_TASKS] = task_buffer_->get();
-  bindings.buffers[DOLP_BINDING_RULE] = rule_buffer_->get();
-  bindings.texels[DOLP_BINDING_RULE_NODES - kStorageCount] = rule_node_buffer_->texels();
   bindings.buffers[DOLP_BINDING_MASKING_TABLE] = masking_buffer_->get();
   bindings.texels[DOLP_BINDING_MASKING_NODES - kStorageCount] = masking_buffer_->texels();
   bindings.buffers[DOLP_BINDING_MOMENTS] = moments_buffer_->get();
@@ -88,11 +67,11 @@ std::optional<std::vector<Moments>> MomentsRun::compute(const Progress& progress
   std::vector<kernel::MomentsNode> results(rows_.rows.size() * rows_.width);
   column_results_.assign(results.size() * column_sums(data_), 0.0);
   const std::size_t wanted = request_.wanted_count();
-  for (const Block& block : blocks_of(rows_, sizes_.shapes)) {
+  for (const Block& block : tiles_.blocks()) {
     const std::vector<RowPiece> pieces = pieces_of(rows_, data_, block.first_row, block.row_count);
     if (!pieces.empty()) begin_block(block);
-    for (std::size_t first = 0; first < pieces.size(); first += sizes_.invocations) {
-      const std::size_t count = std::min<std::size_t>(sizes_.invocations, pieces.size() - first);
+    for (std::size_t first = 0; first < pieces.size(); first += tiles_.sizes.invocations) {
+      const std::size_t count = std::min<std::size_t>(tiles_.sizes.invocations, pieces.size() - first);
       if (first > 0) context_.stream.begin();
       run_tile(block, std::span(pieces).subspan(first, count), results);
       const double of_block = static_cast<double>(first + count) / static_cast<double>(pieces.size());
@@ -104,18 +83,11 @@ std::optional<std::vector<Moments>> MomentsRun::compute(const Progress& progress
   return moments_of(results);
 }
 
-template <class NodeOf>
-void MomentsRun::upload(InputBuffer& buffer, std::size_t count, const NodeOf& node_of) {
-  context_.packing.pack(count, node_of, scratch_);
-  buffer.write(scratch_, context_.stream);
-}
-
 void MomentsRun::begin_block(const Block& block) {
   CommandStream& stream = context_.stream;
   stream.begin();
   upload(*shape_buffer_, block.shape_count, [&](std::size_t i) { return rows_.shapes[block.first_shape + i]; });
-  upload(*rule_node_buffer_, data_.rule_nodes.size(), [&](std::size_t i) { return data_.rule_nodes[i]; });
-  upload(*rule_buffer_, 1, [&](std::size_t) { return data_.rule; });
+  upload_rule(data_);
   if (!data_.needs_masking_table()) return;
   stream.barrier(Barrier::kUploadToKernel);
   stream.dispatch(context_.kernels, context_.kernels.pipeline(masking_table_variant(data_)), 0, block.shape_count,
@@ -144,26 +116,18 @@ void MomentsRun::upload_tile(const Block& block, std::span<const RowPiece> piece
 
 void MomentsRun::run_tile(const Block& block, std::span<const RowPiece> pieces,
                           std::span<kernel::MomentsNode> results) {
-  CommandStream& stream = context_.stream;
   upload_tile(block, pieces);
-  stream.barrier(Barrier::kUploadToKernel);
-  stream.dispatch(context_.kernels, context_.kernels.pipeline(moments_variant(data_, rows_.width)), 0,
-                  static_cast<std::uint32_t>(pieces.size()), data_.rule_order, data_.sky.word());
-  stream.barrier(Barrier::kKernelToHost);
-  cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
-  ++cost_.dispatches;
-
+  run_kernel(moments_variant(data_, rows_.width), pieces.size(), data_);
   add_pieces(pieces, results);
 }
 
 void MomentsRun::add_pieces(std::span<const RowPiece> pieces, std::span<kernel::MomentsNode> results) {
-  const Packing& packing = context_.packing;
   const std::size_t members = pieces.size() * rows_.width;
   const std::size_t per_entry = column_sums(data_);
-  scratch_.resize(members * packing.output_bytes<kernel::MomentsNode>(per_entry));
+  scratch_.resize(members * packing_.output_bytes<kernel::MomentsNode>(per_entry));
   moments_buffer_->read(scratch_);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    cost_.evaluations += packing.read<kernel::MomentsNode>(scratch_, i * rows_.width).evaluations;
+    cost_.evaluations += packing_.read<kernel::MomentsNode>(scratch_, i * rows_.width).evaluations;
   }
   // Each range owns its rows, so that the pieces of a row are summed in their order on any thread.
   const auto [least, most] = std::ranges::minmax(pieces, {}, &RowPiece::row);
@@ -175,14 +139,14 @@ void MomentsRun::add_pieces(std::span<const RowPiece> pieces, std::span<kernel::
       if (row < first || row >= last) continue;
       const Row& of_piece = rows_.rows[pieces[i].row];
       for (std::uint32_t g = 0; g < rows_.chunks[of_piece.chunk].count; ++g) {
-        auto node = packing.read<kernel::MomentsNode>(scratch_, i * rows_.width + g);
+        auto node = packing_.read<kernel::MomentsNode>(scratch_, i * rows_.width + g);
         node.evaluations /= of_piece.used;
         const std::size_t place = pieces[i].row * std::size_t{rows_.width} + g;
         add_piece(results[place], node);
-        packing.read_numbers(scratch_,
-                             members * packing.node_bytes<kernel::MomentsNode>() +
-                                 (i * rows_.width + g) * per_entry * packing.real_bytes(),
-                             columns);
+        packing_.read_numbers(scratch_,
+                              members * packing_.node_bytes<kernel::MomentsNode>() +
+                                  (i * rows_.width + g) * per_entry * packing_.real_bytes(),
+                              columns);
         add_columns(data_, std::span<const double>(columns),
                     std::span(column_results_).subspan(place * per_entry, per_entry));
       }
@@ -201,7 +165,7 @@ std::vector<Moments> MomentsRun::moments_of(std::span<const kernel::MomentsNode>
       for (std::uint32_t g = 0; g < chunk.count; ++g) {
         const std::uint32_t shape = rows_.shape_of[chunk.first + g];
         moments[data_.entry_of(row.direction, row.index, shape)] = moments_from_kernel(
-            results[i * rows_.width + g], data_, {theta, shape, row.index}, context_.packing.unit_roundoff(),
+            results[i * rows_.width + g], data_, {theta, shape, row.index}, packing_.unit_roundoff(),
             std::span(column_results_).subspan((i * rows_.width + g) * per_entry, per_entry));
       }
     }

@@ -3,30 +3,35 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <map>
+#include <utility>
+
+#include "base/parallel_ranges.hpp"
 
 namespace dolp::vulkan {
 namespace {
 
-constexpr std::uint64_t kHeapFraction = 8;
+using EntryWords = std::array<std::uint32_t, 4>;
+
+constexpr std::uint64_t kHeapFraction = 8;    // of the device's memory for tiles, and for masking tables
+constexpr std::size_t kSampledAtOnce = 1024;  // bounds the memory of a batch: some hundred slopes each
 
 std::uint32_t at_least_one(std::uint64_t count) {
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(count, 1, UINT32_MAX));
 }
 
-}  // namespace
-
-TileSizes tile_sizes(const TileLimits& limits, const TileCosts& costs) {
+/// The largest sizes of at most so many invocations and shapes that the device takes.
+TileSizes sizes_on(const dolp::Device& device, const TileCosts& costs, std::uint64_t invocations,
+                   std::uint64_t shapes = 1) {
   // Both costs are sums over buffers, so they bound each of the buffers.
-  const std::uint64_t bytes = std::min(limits.buffer_bytes, limits.heap_bytes / kHeapFraction);
-  return {.invocations =
-              at_least_one(std::min({bytes / costs.invocation_bytes, limits.dispatch_count, limits.tile_invocations})),
-          .shapes = at_least_one(
-              std::min({bytes / costs.shape_bytes, limits.dispatch_count, limits.block_shapes,
-                        costs.shape_texels > 0 ? limits.texels / costs.shape_texels : limits.block_shapes}))};
+  const std::uint64_t bytes = std::min(device.max_storage_buffer_bytes, device.memory_bytes / kHeapFraction);
+  const std::uint64_t of_dispatch = std::uint64_t{device.max_workgroups} * device.local_size;
+  const std::uint64_t tables = costs.shape_texels > 0 ? device.max_texels / costs.shape_texels : shapes;
+  return {.invocations = at_least_one(std::min({bytes / costs.invocation_bytes, of_dispatch, invocations})),
+          .shapes = at_least_one(std::min({bytes / costs.shape_bytes, of_dispatch, shapes, tables}))};
 }
 
-TileCosts tile_costs(const Packing& packing, const KernelData& data, std::uint32_t width) {
-  using EntryWords = std::array<std::uint32_t, 4>;
+TileCosts row_costs(const Packing& packing, const KernelData& data, std::uint32_t width) {
   return {.invocation_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
                               packing.node_bytes<kernel::IndexNode>() +
                               width * packing.output_bytes<kernel::MomentsNode>(column_sums(data)),
@@ -35,33 +40,70 @@ TileCosts tile_costs(const Packing& packing, const KernelData& data, std::uint32
           .shape_texels = packing.texels_of_table()};
 }
 
-TileCosts scattering_tile_costs(const Packing& packing) {
+TileCosts slope_costs(const Packing& packing, const KernelData& data) {
+  return {.invocation_bytes = packing.node_bytes<kernel::SlopeNode>() + packing.node_bytes<kernel::ThetaNode>() +
+                              packing.node_bytes<kernel::IndexNode>() +
+                              packing.output_bytes<kernel::AzimuthNode>(column_azimuths(data)),
+          .shape_bytes = 1};
+}
+
+TileCosts beam_costs(const Packing& packing) {
   return {.invocation_bytes = packing.node_bytes<kernel::BeamNode>() + packing.node_bytes<kernel::MuellerNode>(),
           .shape_bytes = 1};
 }
 
-std::uint32_t slope_tile_size(const TileLimits& limits, const Packing& packing, const KernelData& data) {
-  const TileCosts costs{.invocation_bytes = packing.node_bytes<kernel::SlopeNode>() +
-                                            packing.node_bytes<kernel::ThetaNode>() +
-                                            packing.node_bytes<kernel::IndexNode>() +
-                                            packing.output_bytes<kernel::AzimuthNode>(column_azimuths(data)),
-                        .shape_bytes = 1};
-  const std::uint32_t slopes = tile_sizes(limits, costs).invocations;
-  return std::max(slopes - slopes % kLockstep, kLockstep);
+std::uint64_t rule_bytes(const Packing& packing, const KernelData& data) {
+  return data.rule_nodes.size() * packing.node_bytes<std::array<double, 2>>();
 }
 
-std::uint64_t block_limit(const Rows& rows, std::uint64_t wanted) {
-  return std::min<std::uint64_t>(std::max<std::uint64_t>(wanted, rows.width), rows.shapes.size());
+std::uint64_t tiles_in(std::uint64_t invocations, std::uint32_t tile) { return (invocations + tile - 1) / tile; }
+
+// The slopes in the order for the device: slopes that run in lockstep have the same loop bounds. Copies of the slope
+// before a gap fill the gap.
+std::vector<std::uint32_t> in_lockstep(const SlopeBatch& batch, const KernelData& data) {
+  std::map<std::uint16_t, std::vector<std::uint32_t>> by_bound;
+  for (std::size_t i = 0; i < batch.samples.size(); ++i) {
+    const SlopeSamples& samples = batch.samples[i];
+    const Pieces& pieces = data.pieces[samples.entries.theta];
+    for (const SampledPiece& piece : samples.pieces) {
+      std::vector<std::uint32_t>& alike = by_bound[pieces.lockstep[piece.of_direction]];
+      for (std::uint32_t k = piece.first; k < piece.first + piece.fine + piece.coarse; ++k) {
+        alike.push_back(static_cast<std::uint32_t>(batch.first[i] + k));
+      }
+    }
+  }
+  std::vector<std::uint32_t> order;
+  for (const auto& [bound, alike] : by_bound) {
+    order.insert(order.end(), alike.begin(), alike.end());
+    while (order.size() % kLockstep != 0) order.push_back(alike.back());
+  }
+  return order;
 }
 
-std::vector<Block> blocks_of(const Rows& rows, std::uint32_t block_shapes) {
+Packing packing_of(Precision precision) { return Packing(precision == Precision::kDouble); }
+
+}  // namespace
+
+RowTiles::RowTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options)
+    : packing(packing_of(request.precision)),
+      data(kernel_data(request)),
+      rows(rows_of(request, data)),
+      costs(row_costs(packing, data, rows.width)) {
+  const std::uint64_t pieces = rows.rows.size() * DOLP_MAX_PIECES;
+  // A block holds any chunk.
+  const std::uint64_t shapes =
+      std::min<std::uint64_t>(std::max(options.max_block_shapes, rows.width), rows.shapes.size());
+  sizes = sizes_on(device, costs, std::min<std::uint64_t>(options.max_tile_invocations, pieces), shapes);
+}
+
+std::vector<Block> RowTiles::blocks() const {
   std::vector<Block> blocks;
   std::uint32_t last_chunk = 0;
   for (std::uint32_t i = 0; i < rows.rows.size(); ++i) {
     const std::uint32_t number = rows.rows[i].chunk;
     const Chunk& chunk = rows.chunks[number];
     const bool is_new = blocks.empty() || number != last_chunk;
-    const bool fits = !blocks.empty() && chunk.first + chunk.count - blocks.back().first_shape <= block_shapes;
+    const bool fits = !blocks.empty() && chunk.first + chunk.count - blocks.back().first_shape <= sizes.shapes;
     if (is_new && !fits) blocks.push_back({.first_shape = chunk.first, .first_row = i});
     Block& block = blocks.back();
     block.shape_count = chunk.first + chunk.count - block.first_shape;
@@ -69,6 +111,76 @@ std::vector<Block> blocks_of(const Rows& rows, std::uint32_t block_shapes) {
     last_chunk = number;
   }
   return blocks;
+}
+
+DispatchCount RowTiles::count() const {
+  DispatchCount count{.tile_invocations = sizes.invocations, .block_shapes = sizes.shapes, .row_width = rows.width};
+  count.rows = rows.rows.size();
+  for (const Block& block : blocks()) {
+    count.dispatches += tiles_in(pieces_of(rows, data, block.first_row, block.row_count).size(), sizes.invocations);
+    if (data.needs_masking_table()) ++count.dispatches;
+  }
+  count.device_bytes =
+      sizes.invocations * costs.invocation_bytes + sizes.shapes * costs.shape_bytes + rule_bytes(packing, data);
+  return count;
+}
+
+SlopeTiles::SlopeTiles(const MomentsRequest& of_request, const dolp::Device& device, const VulkanOptions& options)
+    : request(of_request),
+      packing(packing_of(request.precision)),
+      data(kernel_data(request)),
+      sampling(data),
+      costs(slope_costs(packing, data)) {
+  const std::uint64_t pairs = std::uint64_t{data.directions} * (data.is_grid ? data.indices.size() : 1);
+  const std::uint64_t most = pairs * DOLP_MAX_PIECES * 2 * static_cast<std::uint64_t>(data.rule_order);
+  const std::uint32_t fit =
+      sizes_on(device, costs, std::min<std::uint64_t>(options.max_tile_invocations, most)).invocations;
+  slopes = std::max(fit - fit % kLockstep, kLockstep);
+}
+
+std::size_t SlopeTiles::batch_directions() const {
+  return std::max<std::size_t>(kSampledAtOnce / (data.is_grid ? data.indices.size() : 1), 1);
+}
+
+SlopeBatch SlopeTiles::batch(std::size_t first) const {
+  const std::size_t last = std::min(first + batch_directions(), data.directions);
+  std::vector<SampledEntries> entries = sampled_entries(request, data, first, last);
+  SlopeBatch batch;
+  batch.samples.resize(entries.size());
+  parallel_ranges(entries.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) batch.samples[i] = sampling.plan(std::move(entries[i]));
+  });
+  for (const SlopeSamples& samples : batch.samples) {
+    batch.first.push_back(batch.slopes.size());
+    sampling.append(samples, batch.slopes);
+  }
+  batch.in_lockstep = in_lockstep(batch, data);
+  return batch;
+}
+
+DispatchCount SlopeTiles::count() const {
+  DispatchCount count{.tile_invocations = slopes};
+  for (std::size_t first = 0; first < data.directions; first += batch_directions()) {
+    const SlopeBatch own = batch(first);
+    count.dispatches += tiles_in(own.in_lockstep.size(), slopes);
+    count.rows += own.samples.size();
+    count.slopes += own.slopes.size();
+  }
+  count.device_bytes = slopes * costs.invocation_bytes + rule_bytes(packing, data);
+  return count;
+}
+
+BeamTiles::BeamTiles(const ScatteringRequest& request, const dolp::Device& device, const VulkanOptions& options)
+    : packing(packing_of(request.precision)),
+      plan(request),
+      costs(beam_costs(packing)),
+      entries(request.entries.size()),
+      beams(sizes_on(device, costs, std::min<std::uint64_t>(options.max_tile_invocations, entries)).invocations) {}
+
+DispatchCount BeamTiles::count() const {
+  return {.tile_invocations = beams,
+          .dispatches = tiles_in(entries, beams),
+          .device_bytes = beams * costs.invocation_bytes + rule_bytes(packing, plan.data())};
 }
 
 std::uint32_t Renumbering::operator()(std::uint32_t member) {
@@ -86,3 +198,28 @@ void Renumbering::clear() {
 }
 
 }  // namespace dolp::vulkan
+
+namespace dolp {
+
+vulkan::DispatchCount count_dispatches(const MomentsRequest& request, const dolp::Device& device) {
+  if (request.wanted_count() == 0) return {};
+  const VulkanOptions options = for_device({}, device, request.precision);
+  if (has_slope_samples(request)) return vulkan::SlopeTiles(request, device, options).count();
+  return vulkan::RowTiles(request, device, options).count();
+}
+
+vulkan::DispatchCount count_dispatches(const ScatteringRequest& request, const dolp::Device& device) {
+  if (request.entries.empty()) return {};
+  return vulkan::BeamTiles(request, device, for_device({}, device, request.precision)).count();
+}
+
+dolp::Device least_device() {
+  dolp::Device least;
+  least.max_storage_buffer_bytes = std::uint64_t{1} << 27U;
+  least.max_texels = 65536;
+  least.max_workgroups = 65535;
+  least.memory_bytes = std::uint64_t{1} << 30U;
+  return least;
+}
+
+}  // namespace dolp

@@ -1,4 +1,4 @@
-// Division of a request into tiles and blocks for the device. Pure: no Vulkan.
+// Divides a request into the dispatches of a device, for a run and for a forecast of it. Pure: no Vulkan.
 #pragma once
 
 #include <array>
@@ -7,23 +7,17 @@
 #include <span>
 #include <vector>
 
+#include "device/devices.hpp"
+#include "evaluate/kernel/slope_samples.hpp"
 #include "evaluate/vulkan/packing.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "plan/beam.hpp"
 #include "plan/rows.hpp"
 
 namespace dolp::vulkan {
 
 /// A node of a masking table, in double.
 using MaskingNode = std::array<double, 4>;
-
-/// Limits set by the device and the options.
-struct TileLimits {
-  std::uint64_t buffer_bytes = 0;      ///< of one storage buffer
-  std::uint64_t heap_bytes = 0;        ///< of the device's memory
-  std::uint64_t dispatch_count = 0;    ///< invocations of one dispatch
-  std::uint64_t tile_invocations = 0;  ///< wanted at most
-  std::uint64_t block_shapes = 0;      ///< wanted at most
-  std::uint64_t texels = 0;            ///< of a texel buffer
-};
 
 /// Bytes that an invocation (a piece of a row, or a beam) and a shape take in the buffers.
 struct TileCosts {
@@ -38,21 +32,9 @@ struct TileSizes {
   std::uint32_t shapes = 1;
 };
 
-/// The largest sizes within the limits; tiles and masking tables take at most an eighth of the heap each.
-TileSizes tile_sizes(const TileLimits& limits, const TileCosts& costs);
-
-/// Bytes of a piece of a row, and of a shape, of the moments in a precision.
-TileCosts tile_costs(const Packing& packing, const KernelData& data, std::uint32_t width);
-
-/// The same costs for pBRDFs, whose entries bring their own shapes.
-TileCosts scattering_tile_costs(const Packing& packing);
-
 /// Invocations that may run in lockstep on a device that bounds their loops, so that each waits for the longest: the
 /// numbers of lavapipe's widest vector.
 inline constexpr std::uint32_t kLockstep = 16;
-
-/// Slope samples in a dispatch: a multiple of kLockstep, so that none of its groups is cut.
-std::uint32_t slope_tile_size(const TileLimits& limits, const Packing& packing, const KernelData& data);
 
 /// Chunks of shapes whose masking tables are bound together, and the rows that need them.
 struct Block {
@@ -62,11 +44,67 @@ struct Block {
   std::uint32_t row_count = 0;
 };
 
-/// The limit of a block's shapes, which holds any chunk.
-std::uint64_t block_limit(const Rows& rows, std::uint64_t wanted);
+/// Slope samples that are planned, sampled and integrated together, with the kernel's input for them.
+struct SlopeBatch {
+  std::vector<SlopeSamples> samples;
+  std::vector<std::size_t> first;          ///< first slope of each
+  std::vector<kernel::SlopeNode> slopes;   ///< of all samples
+  std::vector<std::uint32_t> in_lockstep;  ///< the order for the device, with gaps filled: positions of slopes
+};
 
-/// Cuts the shapes between chunks into blocks of at most `block_shapes`, which hold any chunk.
-std::vector<Block> blocks_of(const Rows& rows, std::uint32_t block_shapes);
+/// Size of the dispatches of a request, and their number.
+struct DispatchCount {
+  std::uint32_t tile_invocations = 0;
+  std::uint32_t block_shapes = 0;
+  std::uint32_t row_width = 1;  ///< most entries that share an invocation, see plan/rows.hpp
+  std::uint64_t rows = 0;       ///< of the moments, or pairs of a direction and an index with slope samples
+  std::uint64_t slopes = 0;     ///< of all slope samples
+  std::uint64_t dispatches = 0;
+  std::uint64_t device_bytes = 0;  ///< bound of the memory of all buffers
+};
+
+/// The dispatches of a request for moments, row by row. The request must outlive it.
+struct RowTiles {
+  RowTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options);
+  /// The rows, cut between chunks into blocks of at most sizes.shapes shapes.
+  std::vector<Block> blocks() const;
+  DispatchCount count() const;
+
+  Packing packing;
+  KernelData data;
+  Rows rows;
+  TileCosts costs;
+  TileSizes sizes;
+};
+
+/// The dispatches of a request for moments by slope samples, some directions at a time.
+struct SlopeTiles {
+  SlopeTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options);
+  /// Number of directions in a batch that keeps the memory of its azimuths small.
+  std::size_t batch_directions() const;
+  /// The batch that begins at direction `first`.
+  SlopeBatch batch(std::size_t first) const;
+  DispatchCount count() const;
+
+  const MomentsRequest& request;
+  Packing packing;
+  KernelData data;
+  SlopeSampling sampling;
+  TileCosts costs;
+  std::uint32_t slopes = 0;  ///< of a dispatch: a multiple of kLockstep, so that none of its groups is cut
+};
+
+/// The dispatches of a request for pBRDFs, whose entries bring their own shapes.
+struct BeamTiles {
+  BeamTiles(const ScatteringRequest& request, const dolp::Device& device, const VulkanOptions& options);
+  DispatchCount count() const;
+
+  Packing packing;
+  BeamPlan plan;
+  TileCosts costs;
+  std::size_t entries = 0;
+  std::uint32_t beams = 0;  ///< of a dispatch
+};
 
 /// Numbers the members of a list in the order of their first use: a tile binds only what its rows use.
 class Renumbering {
@@ -84,3 +122,14 @@ class Renumbering {
 };
 
 }  // namespace dolp::vulkan
+
+namespace dolp {
+
+/// The dispatches of VulkanEvaluator for a request on a device.
+vulkan::DispatchCount count_dispatches(const MomentsRequest& request, const dolp::Device& device);
+vulkan::DispatchCount count_dispatches(const ScatteringRequest& request, const dolp::Device& device);
+
+/// The limits that every Vulkan device guarantees, for plans without a device. The heap size is a guess.
+dolp::Device least_device();
+
+}  // namespace dolp

@@ -88,11 +88,11 @@ class VulkanEvaluator::Impl {
     const vulkan::KernelContext context = context_for(request.precision);
     const VulkanOptions options = for_device(options_, description(), request.precision);
     if (has_slope_samples(request)) {
-      slope_run_.emplace(context, request, options.max_tile_invocations);
+      slope_run_.emplace(context, request, options);
       prepare_pipelines(*slope_run_, report);
       return finish(slope_run_, slope_run_->compute(progress), request.precision, report);
     }
-    run_.emplace(context, request, options.max_tile_invocations, options.max_block_shapes);
+    run_.emplace(context, request, options);
     prepare_pipelines(*run_, report);
     return finish(run_, run_->compute(progress), request.precision, report);
   }
@@ -103,7 +103,7 @@ class VulkanEvaluator::Impl {
     kernels_for(request.precision).pipeline(vulkan::mueller_variant(request));
     note_pipelines(seconds_since(start), report);
     scattering_run_.emplace(context_for(request.precision), request,
-                            for_device(options_, description(), request.precision).max_tile_invocations);
+                            for_device(options_, description(), request.precision));
     return finish(scattering_run_, scattering_run_->compute(progress), request.precision, report);
   }
   void prepare(const ScatteringRequest& request) {
@@ -115,9 +115,9 @@ class VulkanEvaluator::Impl {
  private:
   vulkan::KernelContext context_for(Precision requested) {
     return {.device = context_.device(),
+            .description = description(),
             .kernels = kernels_for(requested),
             .stream = stream_,
-            .packing = vulkan::Packing(requested == Precision::kDouble),
             .staged_uploads = options_.staged_uploads,
             .tile_timeout_s = options_.tile_timeout_s};
   }
@@ -214,7 +214,9 @@ std::vector<Result> VulkanEvaluator::compute(const Request& request, const Progr
 }
 
 std::vector<Moments> VulkanEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
-  return compute<Moments>(request, progress);
+  std::vector<Moments> moments = compute<Moments>(request, progress);
+  moments.resize(request.size());  // it is empty where nothing is wanted
+  return moments;
 }
 
 void VulkanEvaluator::prepare(const ScatteringRequest& request) {

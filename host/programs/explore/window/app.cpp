@@ -11,6 +11,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <dolp/errors.hpp>
 #include <filesystem>
 #include <thread>
@@ -49,9 +50,20 @@ std::string glfw_error() {
   return text ? text : "unknown reason";
 }
 
+bool is_set(const char* variable) {
+  const char* value = std::getenv(variable);
+  return value != nullptr && *value != '\0';
+}
+
 /// GLFW, started and ended once.
 struct Library {
   Library() {
+    if (!is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY"))
+      throw DeviceError("no display for the window: neither DISPLAY nor WAYLAND_DISPLAY is set");
+#ifdef GLFW_PLATFORM
+    // Otherwise GLFW 3.4 tries Wayland first, whose library then prints a line of its own.
+    if (!is_set("WAYLAND_DISPLAY")) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+#endif
     if (glfwInit() == GLFW_FALSE) throw DeviceError("no display for the window: " + glfw_error());
     if (glfwVulkanSupported() == GLFW_FALSE) {
       glfwTerminate();

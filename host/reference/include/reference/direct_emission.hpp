@@ -1,6 +1,8 @@
 // Emission of the facets straight to the viewer.
 #pragma once
 
+#include <functional>
+
 #include "model/moments.hpp"
 #include "reference/hemisphere.hpp"
 #include "reference/slopes.hpp"
@@ -15,5 +17,10 @@ namespace dolp::reference {
 /// Accuracy: that of `refinement`, relative to direct_i.
 Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
                         const Refinement& refinement);
+
+/// The same with a curve in place of 1 - (R_s + R_p) / 2 and of (R_p - R_s) / (2 sin^2), to an accuracy relative to
+/// cos(theta). `bend`: cosine at which the curve bends.
+Moments direct_response(const Slopes& slopes, Masking masking, double theta_deg,
+                        const std::function<double(double cos_beta)>& curve, double bend, const Refinement& refinement);
 
 }  // namespace dolp::reference

@@ -1,6 +1,7 @@
 // The hemispherical moments of one direction, integrated over the other direction.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <vector>
@@ -23,6 +24,11 @@ struct SkyFunction {
   std::vector<double> corners_deg;
 };
 
+/// Functions of cos(beta) that take the place of (R_s + R_p) / 2 and of (R_s - R_p) / (2 sin^2), of either sign and at
+/// most 1.
+inline constexpr std::size_t kCurves = 24;
+using Curves = std::function<std::array<double, kCurves>(double cos_beta)>;
+
 /// Zenith angle in degrees, exact at 0 and 90.
 Zenith zenith_from_deg(double theta_deg);
 
@@ -33,6 +39,11 @@ Zenith zenith_from_deg(double theta_deg);
 ///   infinite for the cauchy distribution with q <= 3/2, whose vertical facets are too many.
 Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
                            const Refinement& refinement, const SkyFunction* sky = nullptr);
+
+/// The moments with each curve in place of the reflectances, r_i and r_q, relative to the albedo. `bend`: cosine at
+/// which the curves bend.
+std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking masking, double theta_deg,
+                                                const Curves& curves, double bend, const Refinement& refinement);
 
 /// The moments of the mirror, the case sigma = 0, its direct emission included.
 Moments mirror_moments(double theta_deg, const OpticalConstants& constants);

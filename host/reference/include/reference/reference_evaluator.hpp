@@ -39,6 +39,7 @@ class ReferenceEvaluator final : public ModelEvaluator {
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
   /// pBRDFs from explicit vectors (reference/mueller.hpp), to kScatteringErrorDouble.
   std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override;
+  bool computes_each_entry() const override { return true; }
   EvaluationReport report() const override { return report_; }
   void clear_report() override { report_ = {}; }
 

@@ -1,0 +1,132 @@
+#include "evaluate/planned_moments.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "base/parallel_ranges.hpp"
+#include "base/stopwatch.hpp"
+
+namespace dolp {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+bool is_finite(const Moments& m) {
+  return std::isfinite(m.r_i + m.r_q + m.albedo + m.deficit) &&
+         std::isfinite(m.r_i_error + m.r_q_error + m.albedo_error + m.deficit_error);
+}
+
+/// Fills in the moments of each direction and index whose nodes are finite. Returns 1 for each other wanted pair of
+/// direction and index, else 0.
+std::vector<char> interpolate_all(const ShapePlan& plan, std::span<const Moments> nodes, const MomentsRequest& request,
+                                  std::span<Moments> moments) {
+  const std::size_t of_nodes = plan.nodes_of_a_direction();
+  const std::size_t shapes = request.shapes();
+  std::vector<char> is_left(request.size() / shapes, 0);
+  parallel_ranges(is_left.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      if (!request.is_wanted(i * shapes)) continue;
+      const std::span<const Moments> own = nodes.subspan(i * of_nodes, of_nodes);
+      is_left[i] = std::ranges::all_of(own, is_finite) ? 0 : 1;
+      if (is_left[i] == 0) interpolate(plan, own, moments.subspan(i * shapes, shapes));
+    }
+  });
+  return is_left;
+}
+
+/// Computes a plan step by step.
+class PlannedMoments {
+ public:
+  PlannedMoments(const MomentsPlan& plan, ModelEvaluator& evaluator, const Progress& progress, Work& work)
+      : plan_(plan), evaluator_(evaluator), progress_(progress), work_(work), kernel_moments_(plan.kernel_moments()) {
+    work_.interpolated += plan.saved_entries();
+    work_.interpolation_nodes += plan.nodes_of_saved();
+  }
+
+  std::vector<Moments> all() {
+    const std::span<const MomentsStep> steps = plan_.steps();
+    if (steps.size() == 1) return moments_of(steps.front());
+    std::vector<Moments> moments(plan_.size());
+    for (const MomentsStep& step : steps) {
+      std::vector<Moments> own = moments_of(step);
+      const std::size_t shapes = step.request.shapes();
+      const std::size_t directions = plan_.directions();
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        const std::size_t of_theta = i / shapes;
+        const std::size_t index = of_theta / step.directions.size();
+        const std::size_t direction = step.directions[of_theta % step.directions.size()];
+        moments[(index * directions + direction) * shapes + i % shapes] = std::move(own[i]);
+      }
+    }
+    return moments;
+  }
+
+ private:
+  std::vector<Moments> from_kernel(const MomentsRequest& request) {
+    const std::size_t count = request.wanted_count();
+    const Progress of_plan = [&](std::size_t done, std::size_t all) {
+      const std::size_t so_far = done_ + count * done / std::max<std::size_t>(all, 1);
+      return !progress_ || progress_(plan_.size() * so_far / std::max<std::size_t>(kernel_moments_, 1), plan_.size());
+    };
+    std::vector<Moments> moments = evaluator_.evaluate(request, of_plan);
+    done_ += count;
+    return moments;
+  }
+
+  std::vector<Moments> nodes_of(const MomentsStep& step) {
+    if (!step.responses) return from_kernel(step.nodes());
+    std::vector<std::vector<Moments>> passes;
+    for (const MomentsRequest& pass : step.responses->passes) passes.push_back(from_kernel(pass));
+    std::vector<Moments> others;
+    if (step.responses->others) others = from_kernel(*step.responses->others);
+    const Clock::time_point start = Clock::now();
+    std::vector<Moments> moments = combined(step.nodes(), *step.responses, passes, others);
+    work_.sums_s += seconds_since(start);
+    return moments;
+  }
+
+  std::vector<Moments> moments_of(const MomentsStep& step) {
+    std::vector<Moments> nodes = nodes_of(step);
+    if (!step.shapes) return nodes;
+    const Clock::time_point start = Clock::now();
+    std::vector<Moments> moments(step.request.size());
+    const std::vector<char> is_left = interpolate_all(*step.shapes, nodes, step.request, moments);
+    work_.sums_s += seconds_since(start);
+    if (std::ranges::find(is_left, 1) != is_left.end()) compute_left(step.request, is_left, moments);
+    return moments;
+  }
+
+  /// Computes the pairs of direction and index that are left, entry by entry.
+  void compute_left(const MomentsRequest& request, std::span<const char> is_left, std::span<Moments> moments) {
+    MomentsRequest direct = request;
+    direct.basis = nullptr;
+    direct.wanted.assign(request.size(), 0);
+    const std::size_t shapes = request.shapes();
+    for (std::size_t i = 0; i < request.size(); ++i) direct.wanted[i] = is_left[i / shapes];
+    work_.interpolated -= direct.wanted_count();
+    const Progress is_wanted = [&](std::size_t, std::size_t) { return !progress_ || progress_(1, 1); };
+    const std::vector<Moments> computed = evaluator_.evaluate(direct, is_wanted);
+    for (std::size_t i = 0; i < computed.size(); ++i) {
+      if (direct.wanted[i] != 0) moments[i] = computed[i];
+    }
+  }
+
+  const MomentsPlan& plan_;
+  ModelEvaluator& evaluator_;
+  const Progress& progress_;
+  Work& work_;
+  std::size_t kernel_moments_;
+  std::size_t done_ = 0;
+};
+
+}  // namespace
+
+std::vector<Moments> planned_moments(const MomentsPlan& plan, ModelEvaluator& evaluator, const Progress& progress,
+                                     Work& work) {
+  return plan.size() == 0 ? std::vector<Moments>{} : PlannedMoments(plan, evaluator, progress, work).all();
+}
+
+}  // namespace dolp

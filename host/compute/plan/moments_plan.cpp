@@ -1,0 +1,92 @@
+#include "plan/moments_plan.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace dolp {
+namespace {
+
+constexpr std::size_t kColumnsAtOnce = 1U << 20U;  // of a step, for the memory that they take
+
+std::size_t moments_of(const MomentsStep& step) {
+  std::size_t count = 0;
+  for (const MomentsRequest* request : step.kernel_requests()) count += request->wanted_count();
+  return count;
+}
+
+}  // namespace
+
+std::vector<const MomentsRequest*> MomentsStep::kernel_requests() const {
+  if (!responses) return {&nodes()};
+  std::vector<const MomentsRequest*> requests;
+  for (const MomentsRequest& pass : responses->passes) requests.push_back(&pass);
+  if (responses->others) requests.push_back(&*responses->others);
+  return requests;
+}
+
+MomentsPlan::MomentsPlan(const MomentsRequest& request) : size_(request.size()) {
+  if (size_ == 0) return;
+  if (request.layout == MomentsRequest::Layout::kList) {
+    MomentsStep& step = steps_.emplace_back();
+    step.request = request;
+    if (request.basis) step.responses = response_plan(request);
+    return;
+  }
+  directions_ = request.theta_deg.size();
+  for (std::vector<std::size_t>& directions : split_grazing_directions(request)) {
+    MomentsStep step{.directions = std::move(directions)};
+    step.request = request.of_directions(step.directions);
+    step.shapes = shape_plan(step.request);
+    add(std::move(step));
+  }
+}
+
+void MomentsPlan::add(MomentsStep step) {
+  const MomentsRequest& nodes = step.nodes();
+  if (!nodes.basis) {
+    steps_.push_back(std::move(step));
+    return;
+  }
+  const ResponsePlan responses = response_plan(nodes);
+  const std::size_t columns = nodes.basis->count() * nodes.sigma.size() * nodes.q.size();
+  const std::size_t at_once = std::max<std::size_t>(1, kColumnsAtOnce / columns);
+  for (std::size_t first = 0; first < step.directions.size(); first += at_once) {
+    std::vector<std::size_t> positions(std::min(at_once, step.directions.size() - first));
+    std::iota(positions.begin(), positions.end(), first);
+    MomentsStep& part = steps_.emplace_back();
+    for (const std::size_t i : positions) part.directions.push_back(step.directions[i]);
+    part.request = step.request.of_directions(positions);
+    part.shapes = step.shapes;
+    if (part.shapes) part.shapes->nodes = step.shapes->nodes.of_directions(positions);
+    part.responses = responses.of_directions(positions);
+  }
+}
+
+std::size_t MomentsPlan::saved_entries() const {
+  std::size_t count = 0;
+  for (const MomentsStep& step : steps_) count += step.saves_work() ? step.request.wanted_count() : 0;
+  return count;
+}
+
+std::size_t MomentsPlan::nodes_of_saved() const {
+  std::size_t count = 0;
+  for (const MomentsStep& step : steps_) count += step.saves_work() ? moments_of(step) : 0;
+  return count;
+}
+
+std::size_t MomentsPlan::kernel_moments() const {
+  std::size_t count = 0;
+  for (const MomentsStep& step : steps_) count += moments_of(step);
+  return count;
+}
+
+std::vector<char> MomentsPlan::saving_directions() const {
+  std::vector<char> saves(directions_, 0);
+  for (const MomentsStep& step : steps_) {
+    for (const std::size_t direction : step.directions) saves[direction] = step.saves_work() ? 1 : 0;
+  }
+  return saves;
+}
+
+}  // namespace dolp

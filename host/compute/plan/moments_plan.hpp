@@ -1,0 +1,58 @@
+// Decides what the kernels compute of a request, and how all of its moments follow from that.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "model/moments.hpp"
+#include "plan/response_plan.hpp"
+#include "plan/shape_plan.hpp"
+
+namespace dolp {
+
+/// Directions of a request that are computed together.
+struct MomentsStep {
+  std::vector<std::size_t> directions;  ///< positions in the request's directions; empty for points
+  MomentsRequest request;               ///< the request's entries at these directions
+  /// Nodes between which the slope distributions are interpolated; without it, each one is computed.
+  std::optional<ShapePlan> shapes;
+  /// Responses from which the indices are combined, at the nodes if there are any; without it, each index is computed.
+  std::optional<ResponsePlan> responses;
+
+  const MomentsRequest& nodes() const { return shapes ? shapes->nodes : request; }
+  /// True if the step computes fewer moments than it gives.
+  bool saves_work() const { return shapes || responses; }
+  /// The requests that the kernels get.
+  std::vector<const MomentsRequest*> kernel_requests() const;
+};
+
+/// The plan of a request. It follows from the request alone, and an entry's moments do not depend on the other
+/// directions of the request.
+class MomentsPlan {
+ public:
+  explicit MomentsPlan(const MomentsRequest& request);
+
+  std::size_t size() const { return size_; }              ///< entries of the request
+  std::size_t directions() const { return directions_; }  ///< of a grid
+  std::span<const MomentsStep> steps() const { return steps_; }
+  /// Wanted entries that are interpolated or combined instead of computed.
+  std::size_t saved_entries() const;
+  /// Moments that the kernels compute for those.
+  std::size_t nodes_of_saved() const;
+  /// Moments that the kernels compute, of all steps.
+  std::size_t kernel_moments() const;
+  /// For each direction of a grid: true if its entries are interpolated or combined. Empty for points.
+  std::vector<char> saving_directions() const;
+
+ private:
+  /// Adds a step, or several where its responses would take too much memory.
+  void add(MomentsStep step);
+
+  std::size_t size_ = 0;
+  std::size_t directions_ = 0;
+  std::vector<MomentsStep> steps_;
+};
+
+}  // namespace dolp

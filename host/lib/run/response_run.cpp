@@ -1,0 +1,296 @@
+#include "run/response_run.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <dolp/errors.hpp>
+#include <limits>
+#include <numbers>
+
+#include "base/stopwatch.hpp"
+#include "evaluate/planned_moments.hpp"
+#include "model/angles.hpp"
+#include "model/direction.hpp"
+#include "model/response_basis.hpp"
+#include "plan/effects.hpp"
+#include "plan/refinement.hpp"
+#include "run/closed_forms.hpp"
+#include "run/scene_run.hpp"
+#include "run/scene_table.hpp"
+#include "table/table_box.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr std::size_t kBetaAngles = kMostResponses;
+constexpr double kResponseC0 = 0.01;                // cosine at which the polynomials bend
+constexpr OpticalConstants kUnusedIndex{1.5, 0.0};  // moments of it come along unused
+// Tolerance of the first rules over the table's. Chosen: million evaluations of 64 x 16 x 16 entries at 1e-4, smith and
+// integral, at half, this and double: 21.0, 22.5, 24.1 and 3.24, 3.00, 2.90.
+constexpr double kFirstShare = 0.1;
+constexpr double kFinerBy = 0.03;  // tolerance of the next rules over the last. Chosen: no difference
+constexpr int kMostLevels = 6;
+constexpr std::size_t kColumnsAtOnce = std::size_t{1} << 20U;  // for the memory that they take
+
+/// The abscissa of the polynomials, in [-1, 1].
+double abscissa(double cosine) { return 2.0 * std::asinh(cosine / kResponseC0) / std::asinh(1.0 / kResponseC0) - 1.0; }
+
+/// T_m(x), m < kBetaAngles. Domain: x in [-1, 1].
+Eigen::VectorXd chebyshev_at(double x) {
+  const double angle = std::acos(std::clamp(x, -1.0, 1.0));
+  return Eigen::VectorXd::LinSpaced(kBetaAngles, 0.0, kBetaAngles - 1.0).unaryExpr([=](double m) {
+    return std::cos(m * angle);
+  });
+}
+
+/// The angles of a table.
+struct Nodes {
+  Eigen::MatrixXd polynomials;  ///< T_m(x_j): polynomials x angles
+  Eigen::ArrayXd sin2;          ///< of beta
+  std::vector<double> beta_deg;
+
+  Nodes() : polynomials(kBetaAngles, kBetaAngles), sin2(kBetaAngles) {
+    for (Eigen::Index j = 0; j < sin2.size(); ++j) {
+      const double x = std::cos(std::numbers::pi * (static_cast<double>(j) + 0.5) / kBetaAngles);
+      const double cosine = kResponseC0 * std::sinh(0.5 * (1.0 + x) * std::asinh(1.0 / kResponseC0));
+      polynomials.col(j) = chebyshev_at(x);
+      sin2[j] = (1.0 - cosine) * (1.0 + cosine);
+      beta_deg.push_back(std::acos(cosine) * 180.0 / std::numbers::pi);
+    }
+  }
+};
+
+const Nodes& nodes() {
+  static const Nodes known;
+  return known;
+}
+
+/// Weights of an entry, times cos(theta), and the bound of their sums for curves with coefficients 2^-m.
+struct Weights {
+  Eigen::ArrayXd i, q;
+  double error = 0.0;
+};
+
+/// `whole_error`: bound of the sum with 1 instead of a polynomial, from distances of the rules without their signs,
+/// which in those of the columns may cancel by chance. What spoils it spoils the sums with all polynomials, as they are
+/// at most 1.
+Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error) {
+  Weights own{Eigen::ArrayXd::Zero(kBetaAngles), Eigen::ArrayXd::Zero(kBetaAngles)};
+  for (std::size_t m = 0; m < columns.size(); ++m) {
+    const ColumnMoments& sum = columns[m];
+    const Eigen::ArrayXd share =
+        (m == 0 ? 1.0 : 2.0) / kBetaAngles * nodes().polynomials.row(static_cast<Eigen::Index>(m));
+    own.i += sum.i * share;
+    own.q += sum.q * share / nodes().sin2;
+    // The rules of q may agree by chance too, so that the bound of i is added to its own.
+    const double of_i = std::abs(sum.i_apart) + sum.relative_error * std::abs(sum.i) + sum.error;
+    const double of_q = std::abs(sum.q_apart) + sum.relative_error * std::abs(sum.q) + sum.error;
+    own.error += std::ldexp(std::max(of_i, whole_error) + of_q, -static_cast<int>(m));
+  }
+  return own;
+}
+
+/// Moments of a mirror, whose columns are the polynomials at the direction itself.
+Moments mirror_of(const MomentsRequest& request, const Direction& direction, const SlopeShape& shape) {
+  Surface surface;
+  surface.distribution = request.distribution;
+  Moments mirror = closed_form(surface, direction, shape, kUnusedIndex, nullptr);
+  const double sine = cos_sin_deg(direction.theta_deg).sin;
+  for (const double polynomial : chebyshev_at(abscissa(direction.cos_theta))) {
+    const double i = polynomial * direction.cos_theta;
+    mirror.columns.push_back({.i = i, .q = sine * sine * i, .error = mirror.albedo_error});
+  }
+  return mirror;
+}
+
+bool has_emission(Masking masking) { return keeps_projected_area(masking); }
+
+/// Stores an entry where its bound is below the one that is there.
+void take_better(const Moments& reflected, const Moments* direct, double cosine, std::size_t entry,
+                 EntryResponses& to) {
+  const Weights weights = weights_of(reflected.columns, reflected.albedo_error);
+  const Weights emitted = direct ? weights_of(direct->columns, direct->direct_i_error) : Weights{};
+  const double error = std::max(weights.error, emitted.error) / cosine;
+  double& known = to.responses[ResponseVariable::kResponseError][entry];
+  if (!(error < known)) return;
+  known = error;
+  to.albedo[entry] = weights.i.sum() / cosine;
+  const auto store = [&](ResponseVariable variable, const Eigen::ArrayXd& values) {
+    const auto at = to.responses[variable].begin() + static_cast<std::ptrdiff_t>(entry * kBetaAngles);
+    std::ranges::transform(values, at, [&](double value) { return value / cosine; });
+  };
+  store(ResponseVariable::kResponseI, weights.i);
+  store(ResponseVariable::kResponseQ, weights.q);
+  if (!direct) return;
+  store(ResponseVariable::kEmissionI, emitted.i);
+  store(ResponseVariable::kEmissionQ, emitted.q);
+}
+
+EntryResponses nothing_of(const MomentsRequest& request) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EntryResponses none;
+  for (const ResponseVariable variable : kAllResponseVariables) {
+    const bool is_emission = variable == ResponseVariable::kEmissionI || variable == ResponseVariable::kEmissionQ;
+    if (is_emission && !has_emission(request.masking)) continue;
+    none.responses[variable].assign(request.size() * (description_of(variable).has_beta ? kBetaAngles : 1), kNan);
+  }
+  none.albedo.assign(request.size(), kNan);
+  return none;
+}
+
+/// Sets the entries without an evaluator: mirrors, and where rho has no value. Returns flags of the others.
+std::vector<char> set_closed_forms(const MomentsRequest& request, EntryResponses& to) {
+  std::vector<char> wanted(request.size(), 1);
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const MomentsPoint point = request[i];
+    const Direction direction = direction_of(request.distribution, request.masking, point.theta_deg, point.shape);
+    wanted[i] = direction.treatment == Treatment::kIntegrated && direction.cos_theta > 0.0 ? 1 : 0;
+    double& error = to.responses[ResponseVariable::kResponseError][i];
+    if (wanted[i] != 0 || direction.treatment == Treatment::kMirror) error = std::numeric_limits<double>::infinity();
+    if (direction.treatment != Treatment::kMirror) continue;
+    const Moments mirror = mirror_of(request, direction, point.shape);
+    take_better(mirror, has_emission(request.masking) ? &mirror : nullptr, direction.cos_theta, i, to);
+  }
+  return wanted;
+}
+
+bool misses(const EntryResponses& of, std::size_t entry, double tolerance) {
+  const double error = of.responses[ResponseVariable::kResponseError][entry];
+  return !std::isnan(error) && !(error <= tolerance * of.albedo[entry]);
+}
+
+}  // namespace
+
+TableLayout response_layout(const SceneValues& scene) {
+  if (scene.surface.scattering != Scattering::kSingle)
+    throw InputError(
+        fmt::format("{}: surface.scattering = \"multiple\": must be \"single\" for a response table, because "
+                    "the reflectances of several bounces multiply",
+                    scene.path_name));
+  TableLayout layout = table_layout(scene, {}, scene.grid);
+  layout.head.index_n = layout.head.index_k = {};
+  layout.head.beta_deg = nodes().beta_deg;
+  layout.head.attributes.push_back({"c0", kResponseC0});
+  layout.head.attributes.push_back(
+      {"comment",
+       "rho_i = sum over beta of response_i r, rho_q = sum over beta of response_q d, where r = (r_s + r_p) / 2 and "
+       "d = (r_s - r_p) / 2 of a facet at the angle beta, k_s = 1, without a diffuse part. Let a_m and b_m, m < 24, be "
+       "the coefficients of r and of d / sin(beta)^2 in Chebyshev polynomials of "
+       "2 asinh(cos(beta) / c0) / asinh(1 / c0) - 1. The error of rho_i and rho_q is at most response_error times the "
+       "largest 2^m |a_m| or 2^m |b_m|, which is about 1 for bare materials, plus what the polynomials leave out of r "
+       "and d."});
+  layout.quantities = {Quantity::kAlbedo};
+  layout.has_status = false;
+  layout.responses = {ResponseVariable::kResponseI, ResponseVariable::kResponseQ};
+  if (has_emission(scene.surface.masking))
+    layout.responses.insert(layout.responses.end(), {ResponseVariable::kEmissionI, ResponseVariable::kEmissionQ});
+  layout.responses.push_back(ResponseVariable::kResponseError);
+  return layout;
+}
+
+MomentsRequest response_request(const Surface& surface) {
+  MomentsRequest request;
+  request.distribution = surface.distribution;
+  request.masking = surface.masking;
+  request.response = {.count = kBetaAngles, .c0 = kResponseC0, .bend = kResponseC0};
+  request.indices = {kUnusedIndex};
+  return request;
+}
+
+double response_distance(std::span<const double> a, std::span<const double> b, bool is_of_q) {
+  using Values = Eigen::Map<const Eigen::ArrayXd>;
+  Eigen::ArrayXd apart = Values(a.data(), kBetaAngles) - Values(b.data(), kBetaAngles);
+  if (is_of_q) apart *= nodes().sin2;
+  const Eigen::VectorXd sums = nodes().polynomials * apart.matrix();
+  double distance = 0.0;
+  for (Eigen::Index m = 0; m < sums.size(); ++m) distance += std::ldexp(std::abs(sums[m]), -static_cast<int>(m));
+  return distance;
+}
+
+EntryResponses responses_of(MomentsRequest request, const Accuracy& accuracy, ModelEvaluator& evaluator,
+                            const Progress& progress) {
+  EntryResponses all = nothing_of(request);
+  request.wanted = set_closed_forms(request, all);
+  for (double& theta : request.theta_deg) theta = zenith_before_limit_deg(request.masking, theta);
+  const bool wants_direct = has_emission(request.masking);
+  request.precision = first_level(accuracy, evaluator.has_double()).precision;
+  request.may_interpolate = accuracy.may_interpolate && !evaluator.computes_each_entry();
+  request.tolerance = accuracy.tolerance;
+  Work of_host;
+  double share = kFirstShare;
+  for (int level = 0; level < kMostLevels && request.wanted_count() > 0; ++level, share *= kFinerBy) {
+    const auto evaluated = [&](Response::Of of) {
+      MomentsRequest pass = request;
+      pass.tolerance = request.finer_tolerance(share);
+      pass.wants_direct = of == Response::Of::kDirect;
+      pass.response->of = of;
+      const std::size_t size = request.size();
+      const Progress of_pass = [&, size](std::size_t done, std::size_t total) {
+        const std::size_t own = size * done / std::max<std::size_t>(total, 1);
+        const std::size_t half = pass.wants_direct ? (size + own) / 2 : wants_direct ? own / 2 : own;
+        return !progress || progress(level == 0 ? half : size, size);
+      };
+      return planned_moments(MomentsPlan(pass), evaluator, of_pass, of_host);
+    };
+    const std::vector<Moments> reflected = evaluated(Response::Of::kReflected);
+    const std::vector<Moments> direct = wants_direct ? evaluated(Response::Of::kDirect) : std::vector<Moments>();
+    for (std::size_t i = 0; i < reflected.size(); ++i) {
+      if (!request.is_wanted(i)) continue;
+      const double cosine = cos_sin_deg(request[i].theta_deg).cos;
+      take_better(reflected[i], wants_direct ? &direct[i] : nullptr, cosine, i, all);
+      request.wanted[i] = misses(all, i, accuracy.tolerance) ? 1 : 0;
+    }
+    if (accuracy.precision != Precision::kFloat && evaluator.has_double()) request.precision = Precision::kDouble;
+    request.may_interpolate = false;
+  }
+  return all;
+}
+
+ResponseOutcome run_responses(const SceneValues& scene, const TableLayout& layout, const RunOptions& options,
+                              ModelEvaluator& evaluator, const TakePart& take) {
+  const auto start = std::chrono::steady_clock::now();
+  const Axes& axes = layout.head.axes;
+  ResponseOutcome outcome;
+  const std::size_t of_theta = axes[Axis::kSigma].size() * axes[Axis::kQ].size();
+  const std::size_t at_once = std::max<std::size_t>(1, kColumnsAtOnce / (kBetaAngles * of_theta));
+  const Progress& progress = options.progress;
+  begin(progress, layout.head.size());
+  for (std::size_t first = 0; first < axes[Axis::kTheta].size(); first += at_once) {
+    TableBox box{{}, layout.head.counts()};
+    box.first[Axis::kTheta] = first;
+    box.count[Axis::kTheta] = std::min(at_once, axes[Axis::kTheta].size() - first);
+    TableValues part;
+    static_cast<TableHead&>(part) = head_of(layout.head, box);
+    MomentsRequest request = response_request(scene.surface);
+    request.theta_deg = part.axes[Axis::kTheta];
+    request.sigma = part.axes[Axis::kSigma];
+    request.q = part.axes[Axis::kQ];
+    EntryResponses of_part = responses_of(request, scene.accuracy, evaluator, [&](std::size_t done, std::size_t) {
+      return !progress || progress(outcome.entries + done, layout.head.size());
+    });
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      const double relative = of_part.responses[ResponseVariable::kResponseError][i] / of_part.albedo[i];
+      outcome.missed += misses(of_part, i, scene.accuracy.tolerance) ? 1 : 0;
+      if (relative > outcome.worst_error) outcome.worst_error = relative;
+    }
+    outcome.entries += part.size();
+    part.responses = std::move(of_part.responses);
+    part[Quantity::kAlbedo] = std::move(of_part.albedo);
+    take(std::move(part), box.first);
+  }
+  const EvaluationReport& evaluation = outcome.evaluation = evaluator.report();
+  outcome.wall_s = seconds_since(start);
+  outcome.attributes = {{"history", history_text(options.history)},
+                        {"device", evaluation.device},
+                        {"driver", evaluation.driver},
+                        {"evaluator", evaluation.evaluator},
+                        {"precision", evaluation.precision},
+                        {"rule", rule_text(scene.accuracy.tolerance, evaluation)},
+                        {"wall_time_s", outcome.wall_s}};
+  return outcome;
+}
+
+}  // namespace dolp

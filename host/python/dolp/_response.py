@@ -1,0 +1,126 @@
+"""Response tables, and the reflectance of any material from them."""
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from ._arguments import Array, check_names, floats
+from ._datasets import table_dataset
+from ._native import InputError
+from ._points import columns_of
+from ._runs import native_evaluator, with_axes
+from ._scene import Scene
+
+_ANGLES = 256  # at which a curve and its interpolant are compared
+
+
+def response(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **axes: Array) -> xr.Dataset:
+    """The response table over the scene's grid, which serves any material: a Dataset that is what the file would hold.
+
+    `axes` (theta_deg, sigma or wind_m_s, q) replace those of the scene. Over beta, local angles of incidence, it has the
+    weights response_i and response_q of the facets' reflectances, with masking smith and v-cavity also emission_i and
+    emission_q of the direct emission; and without beta albedo and response_error, which long_name describes. Nothing
+    depends on material, wavelength and radiation of the scene.
+
+    >>> r = dolp.response(scene, theta_deg=[0, 60], sigma=[0.1, 0.2])
+    >>> r.response_i.dims, bool(abs(r.response_i.sum("beta") - r.albedo).max() < 1e-12)
+    (('theta', 'sigma', 'q', 'beta'), True)
+    """
+    check_names("axes", axes, ["theta_deg", "sigma", "wind_m_s", "q"])
+    contents, (beta, long_name, units, variables) = native_evaluator(evaluator, device).response(with_axes(scene, axes))
+    table = table_dataset(*contents)
+    dims, shape = table.albedo.dims, table.albedo.shape
+    table.coords["beta"] = xr.Variable("beta", beta, {"long_name": long_name, "units": units}, {"dtype": beta.dtype})
+    for name, meaning, ancillary, has_beta, values in variables:
+        known = {"long_name": meaning, "units": "1"} | ({"ancillary_variables": ancillary} if ancillary else {})
+        table[name] = xr.Variable((*dims, "beta") if has_beta else dims, values.reshape(*shape, -1) if has_beta
+                                  else values.reshape(shape), known, dict(table.albedo.encoding))
+    table.albedo.attrs["ancillary_variables"] = "response_error"
+    return table
+
+
+def moments(response: xr.Dataset, *, n: Array | None = None, k: Array = 0.0, r_s: xr.DataArray | None = None,
+            r_p: xr.DataArray | None = None) -> xr.Dataset:
+    """rho_i, rho_q (k_s = 1, no diffuse part), albedo and rho_error of materials, from a response table or a part of one.
+
+    The material is n and k, arrays or DataArrays as for `evaluate`, or the reflectances r_s and r_p of a smooth surface,
+    DataArrays over the response's beta, which may have further dimensions. rho_error bounds the errors of rho_i and rho_q
+    from numerics and, of n and k, from the distance of the reflectances from their interpolants, the largest at 256
+    angles. Values r_s and r_p at beta do not show this distance: it comes on top.
+
+    >>> r = dolp.response(scene, theta_deg=60)
+    >>> m = dolp.moments(r, n=[1.3, 1.5, 4], k=0.05)
+    >>> m.rho_i.dims, bool(abs(m.rho_i[..., 1] - dolp.table(scene, theta_deg=60).rho_i).max() < 1e-4)
+    (('theta', 'sigma', 'q', 'n'), True)
+    """
+    if (n is None) == (r_s is None and r_p is None) or (r_s is None) != (r_p is None):
+        raise InputError("moments: needs either n, and k where it is not 0, or both r_s and r_p")
+    beta = response.beta
+    distance = 0.0
+    if n is None:
+        r_s, r_p = (_at_beta(name, values, beta) for name, values in (("r_s", r_s), ("r_p", r_p)))
+        beyond = "; the distance of r_s and r_p from their interpolants comes on top"
+    else:
+        index, beyond = _index(n, k), ""
+        r_s, r_p = _fresnel(index, np.cos(np.deg2rad(beta)))
+        distance = _distance(response, index, r_s, r_p)
+    mean, half = (r_s + r_p) / 2, (r_s - r_p) / 2
+    known = {"rho_i": (response.response_i.dot(mean, "beta"), "hemispherical-directional reflectance, mean of s and p"),
+             "rho_q": (response.response_q.dot(half, "beta"),
+                       "hemispherical-directional reflectance, half the difference of s and p"),
+             "albedo": (response.albedo, response.albedo.attrs.get("long_name", "")),
+             "rho_error": (response.response_error * _size(mean, half) + distance * response.albedo,
+                           f"bound of the absolute errors of rho_i and rho_q{beyond}")}
+    return xr.Dataset({name: values.assign_attrs(long_name=meaning, units="1") for name, (values, meaning) in known.items()})
+
+
+def _index(n: Array, k: Array) -> xr.DataArray:
+    frame, columns = columns_of({"n": n} if np.iscomplexobj(n) else {"n": n, "k": k})
+    if not (np.all(columns["n"] > 0) and np.all(columns["k"] >= 0)):
+        raise InputError("moments: n must be above 0, and k from 0 on")
+    index = np.broadcast_to(columns["n"] + 1j * columns["k"], int(np.prod(frame.shape))).reshape(frame.shape)
+    return xr.DataArray(index, frame.coordinates, frame.dims)
+
+
+def _fresnel(index: xr.DataArray, cosine: xr.DataArray) -> tuple[xr.DataArray, xr.DataArray]:
+    w = np.sqrt((index - 1) * (index + 1) + cosine ** 2)
+    return abs((cosine - w) / (cosine + w)) ** 2, abs((index ** 2 * cosine - w) / (index ** 2 * cosine + w)) ** 2
+
+
+def _coefficients(beta: xr.DataArray) -> xr.DataArray:
+    """Of Chebyshev polynomials through values at beta, which are their zeros."""
+    count = beta.size
+    values = np.polynomial.chebyshev.chebvander(np.polynomial.chebyshev.chebpts1(count)[::-1], count - 1).T
+    return xr.DataArray(values * np.where(np.arange(count) == 0, 1, 2)[:, None] / count, {"beta": beta}, ("m", "beta"))
+
+
+def _size(mean: xr.DataArray, half: xr.DataArray) -> xr.DataArray:
+    """What response_error is to be multiplied by."""
+    growth = xr.DataArray(2.0 ** np.arange(mean.sizes["beta"]), dims="m")
+    curves = mean, half / np.sin(np.deg2rad(mean.beta)) ** 2
+    return np.maximum(*((growth * abs(curve.dot(_coefficients(mean.beta), "beta"))).max("m") for curve in curves))
+
+
+def _distance(response: xr.Dataset, index: xr.DataArray, r_s: xr.DataArray, r_p: xr.DataArray) -> xr.DataArray:
+    """The largest distance of (r_s + r_p) / 2 and (r_s - r_p) / 2 from what the weights assume between the angles."""
+    beta, c0 = response.beta, float(response.attrs["c0"])
+    x = np.polynomial.chebyshev.chebpts1(_ANGLES)
+    cosine = xr.DataArray(c0 * np.sinh(0.5 * (1 + x) * np.arcsinh(1 / c0)), dims="angle")
+    polynomials = xr.DataArray(np.polynomial.chebyshev.chebvander(x, beta.size - 1), dims=("angle", "m"))
+    between = polynomials.dot(_coefficients(beta), "m")
+    s, p = _fresnel(index, cosine)
+    mean_off = abs(s + p - (r_s + r_p).dot(between, "beta"))
+    half_off = abs(s - p - (1 - cosine ** 2) * ((r_s - r_p) / np.sin(np.deg2rad(beta)) ** 2).dot(between, "beta"))
+    return np.maximum(mean_off, half_off).max("angle") / 2
+
+
+def _at_beta(name: str, values: xr.DataArray, beta: xr.DataArray) -> xr.DataArray:
+    """Reflectances, refused where they are not at the angles of the response."""
+    if not isinstance(values, xr.DataArray) or "beta" not in values.coords or values.beta.shape != beta.shape \
+            or not np.allclose(values.beta, beta):
+        raise InputError(f"{name}: must be a DataArray at the angles beta of the response; "
+                         f"{name}.interp(beta=response.beta) of one over degrees brings it there")
+    checked = floats(name, values)
+    if not np.all((checked >= 0) & (checked <= 1)):
+        raise InputError(f"{name}: must be numbers in [0, 1]")
+    return values.copy(data=checked).assign_coords(beta=beta)

@@ -1,0 +1,134 @@
+// `dolp response` from outside: its file, what it needs of a scene, and what it refuses.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "cli_support.hpp"
+#include "table/table_file.hpp"
+#include "table/table_reader.hpp"
+
+namespace {
+
+using namespace dolp;
+
+constexpr const char* kSurface = R"(title = "A surface"
+[surface]
+sigma = 0.3
+masking = "smith"
+[grid]
+theta_deg = [0, 60, 89]
+sigma = [0.1, 0.4]
+q = [2, 3.5]
+)";
+
+class Response : public CommandLine {
+ protected:
+  Outcome response(const std::vector<std::string>& options, const std::string& output = "r.nc") const {
+    return dolp(joined({"response", "surface.toml", "-o", output, "--evaluator", "cpu"}, options));
+  }
+  void SetUp() override {
+    CommandLine::SetUp();
+    put("surface.toml", kSurface);
+  }
+};
+
+TEST_F(Response, SceneWithoutAMaterial_HasOneForEachMasking) {
+  for (const std::string masking : {"none", "v-cavity", "integral", "smith"}) {
+    const Outcome outcome = response({"--set", "surface.masking=" + masking, "--quiet", "--strict"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.out + outcome.err, "");
+    const TableReader reader(at("r.nc"));
+    const TableBox all{{}, reader.head().counts()};
+    const TableValues table = reader.read(all);
+    reader.check_hash(reader.sums_of(table, all));
+    ASSERT_EQ(table.size(), 12U);
+    ASSERT_EQ(table.beta_deg.size(), 24U);
+    const bool has_emission = masking == "smith" || masking == "v-cavity";
+    for (const ResponseVariable variable : kAllResponseVariables) {
+      const bool is_emission = variable == ResponseVariable::kEmissionI || variable == ResponseVariable::kEmissionQ;
+      EXPECT_EQ(table.responses[variable].size(),
+                is_emission && !has_emission ? 0 : table.size() * table.width_of(variable))
+          << masking << " " << description_of(variable).name;
+    }
+    EXPECT_TRUE(table.index_n.used.empty());
+  }
+}
+
+TEST_F(Response, WhatItDoesNotDependOn_ChangesNoWeight) {
+  ASSERT_EQ(response({"--quiet"}).status, 0);
+  const std::vector<std::string> scene = {"response", "scene.toml", "-o", "same.nc", "--evaluator", "cpu", "--quiet"};
+  // Files that the scene names are not opened.
+  ASSERT_EQ(dolp(joined(scene, {"--set", "surface.masking=smith", "--set", "grid.theta_deg=[0,60,89]", "--set",
+                                "surface.material_file=missing.csv", "--set", "source.file=missing.csv"}))
+                .status,
+            0);
+  const TableReader a(at("r.nc")), b(at("same.nc"));
+  EXPECT_EQ(a.read({{}, a.head().counts()}).responses, b.read({{}, b.head().counts()}).responses);
+}
+
+TEST_F(Response, Report_SaysHowLargeTheErrorIs) {
+  const nlohmann::json json =
+      report({"response", "surface.toml", "-o", "r.nc", "--evaluator", "cpu", "--tolerance", "1e-3"});
+  EXPECT_EQ(json["entries"], 12);
+  EXPECT_EQ(json["angles"], 24);
+  EXPECT_EQ(json["missed_tolerance"], 0);
+  EXPECT_LE(json["worst_error_estimate"], 1e-3);
+}
+
+TEST_F(Response, ToleranceOutOfReach_FailsStrictAlone) {
+  const std::vector<std::string> hard = {"--set", "accuracy.precision=float", "--tolerance", "1e-8", "--quiet"};
+  EXPECT_EQ(response(hard).status, 0);
+  const Outcome strict = response(joined(hard, {"--strict"}));
+  EXPECT_EQ(strict.status, 1);
+  expect_one_line(strict.err, "--strict: the tolerance is not met everywhere");
+}
+
+TEST_F(Response, WhatIsWrong_IsRefusedInOneLine) {
+  struct Row {
+    std::vector<std::string> options;
+    std::string output, message;
+  };
+  for (const Row& row : {Row{{}, "r.csv", "r.csv: the name of a response table must end in .nc"},
+                         {{}, "-", "-: the name of a response table must end in .nc"},
+                         {{"--set", "surface.masking=v-cavity", "--set", "surface.scattering=multiple"},
+                          "r.nc",
+                          "surface.scattering = \"multiple\": must be \"single\" for a response table"},
+                         {{"--set", "surface.sigmas=1"}, "r.nc", "surface.sigmas"},
+                         {{"--shard", "1/2"}, "r.nc", "--shard"}}) {
+    expect_refused(response(row.options, row.output), row.message);
+    EXPECT_FALSE(std::filesystem::exists(at(row.output)));
+  }
+  put("scene.nc", kSurface);
+  expect_refused(dolp({"response", "scene.nc", "-o", "scene.nc", "--evaluator", "cpu"}), "would overwrite an input");
+}
+
+TEST_F(Response, AsATable_IsRefused) {
+  ASSERT_EQ(response({"--quiet"}).status, 0);
+  expect_refused(dolp({"lookup", "r.nc", "--points", "points.csv", "-o", "-"}), "r.nc: ");
+  expect_refused(dolp({"merge", "r.nc", "-o", "m.nc"}), "r.nc: ");
+}
+
+TEST_F(Response, Verify_ComparesWithTheReference) {
+  for (const std::string masking : {"none", "smith"}) {
+    ASSERT_EQ(response({"--set", "surface.masking=" + masking, "--set", "grid.q=2", "--quiet"}).status, 0);
+    const nlohmann::json json = report({"verify", "r.nc", "--samples", "4"});
+    EXPECT_EQ(json["checked"], 4);
+    EXPECT_EQ(json["quantities"].size(), masking == "smith" ? 4U : 2U);
+    for (const auto& quantity : json["quantities"]) {
+      EXPECT_EQ(quantity["compared"], 4);
+      EXPECT_LE(quantity["worst"]["error"], quantity["worst"]["stated"]);
+    }
+  }
+}
+
+TEST_F(Response, Verify_FindsWrongWeights) {
+  ASSERT_EQ(response({"--set", "grid.q=2", "--set", "surface.masking=none", "--quiet"}).status, 0);
+  TableValues table = read_table(at("r.nc"));
+  table.responses[ResponseVariable::kResponseQ][30] += 1e-3;  // of the second entry
+  write_table(table, at("r.nc"));
+  const Outcome outcome = dolp({"verify", "r.nc"});
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_NE(outcome.out.find("response_q at theta 0, sigma 0.4, q 2 is too far"), std::string::npos) << outcome.out;
+}
+
+}  // namespace

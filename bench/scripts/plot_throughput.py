@@ -31,6 +31,16 @@ def grid_table(rows):
     return lines
 
 
+def materials_table(rows):
+    lines = head(["masking", "indices", "entries", "whole run", "kernels", "kernels over those of one index",
+                  "per entry, whole"])
+    for row in rows:
+        lines.append(row_of_cells([
+            row["case"], row["setting"], digits(row["entries"]), time_text(row["run_s"]), time_text(row["kernel_run_s"]),
+            f"{row['kernels_over_one']:.1f}", time_text(row["time_s"])]))
+    return lines
+
+
 def arithmetic_table(result, rows):
     peak = result["peak"]
     lines = [f"Peak of the device, measured in the same run: {1e-9 * peak['flops_per_s']:.0f} GFLOP/s "
@@ -61,6 +71,8 @@ def markdown(result):
     blocks = []
     if part(result, "grids"):
         blocks.append(grid_table(part(result, "grids")))
+    if part(result, "materials"):
+        blocks.append(materials_table(part(result, "materials")))
     if part(result, "arithmetic"):
         blocks.append(arithmetic_table(result, part(result, "arithmetic")))
     for name, variable in (("cores", "LP_NUM_THREADS"), ("vector-width", "LP_NATIVE_VECTOR_WIDTH")):

@@ -19,6 +19,10 @@ constexpr std::size_t kMostOfPoints = 2;
 
 std::vector<OpticalConstants> indices_of_points(const SceneValues& scene, const SceneEntries& entries) {
   const SpectralIndices spectral = spectral_indices(scene, entries);
+  const bool has_one_index =
+      spectral.size() == 1 && spectral.front().size() == 1 &&
+      std::ranges::none_of(entries.all(), [](const SceneEntry& e) { return e.index.has_value(); });
+  if (has_one_index) return {};
   std::set<std::pair<double, double>> indices;
   std::set<std::tuple<double, double, double>> shapes;
   std::size_t points = 0;

@@ -55,8 +55,8 @@ inline constexpr double kLargestTableScale = 0.5;         // chosen: corners
 inline constexpr double kSteepStep = 16.0;  // chosen: 1773, 1765, 1759
 /// Bounces whose critical line splits the slopes.
 inline constexpr int kCriticalBounces = 3;  // chosen
-/// Tolerance of a pass with responses, over the request's: bounds grow by the weights. Tuned. Million evaluations for 50
-/// wavelengths of water at 0.1, this and 0.5: smith 6.6, 6.9, 9.2; integral 8.3, 7.4, 8.5.
+/// Tolerance of a pass with responses, over the request's: bounds grow by the weights. Tuned. Million evaluations for
+/// 50 wavelengths of water at 0.1, this and 0.5: smith 6.6, 6.9, 9.2; integral 8.3, 7.4, 8.5.
 inline constexpr double kResponseTolerance = 0.25;
 /// Roundings of the abscissa of a response's polynomial.
 inline constexpr double kResponseRoundings = 4.0;  // chosen

@@ -33,7 +33,7 @@ constexpr int kHalvings = 60;
 enum Component : std::size_t { kIntensity, kPolarised, kCount };
 using Emitted = Values<kCount>;
 
-/// What facets absorb, by the cosine of the local angle; only the absorptances count.
+/// Absorptances of facets, by the cosine of the local angle.
 using Absorption = std::function<FresnelCoefficients(double cos_beta)>;
 
 // The facets of one surface, seen from one direction. `is_response`: errors are relative to cos(theta).

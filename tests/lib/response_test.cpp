@@ -40,8 +40,8 @@ double error_at(const EntryResponses& all, std::size_t entry) {
   return all.responses[ResponseVariable::kResponseError][entry];
 }
 
-/// The largest distance of the weights of any point over both bounds, which must be at most 1. `step`: from the entry
-/// of one point to that of the next in `a`.
+/// The largest distance of the weights of any point over both bounds, which must be at most 1. `step`: entries of `a`
+/// from one point to the next.
 double expect_within_bounds(const EntryResponses& a, const EntryResponses& b, const std::vector<Point>& points,
                             std::size_t step = 1) {
   double worst = 0.0;

@@ -8,10 +8,9 @@
 
 namespace dolp {
 
-/// The moments of the plan's request. A direction whose nodes have no finite bound is computed entry by entry.
-/// Adds to `work` what the evaluator does not report: the entries that were interpolated or combined, the moments
-/// computed for them, and the time that this took. Errors: those of the evaluator, which throws Cancelled when
-/// `progress`, which counts entries, returns false.
+/// Computes the moments of the plan's request. A direction whose nodes have no finite bound is computed entry by entry.
+/// Adds the work of the host to `work`: entries that were interpolated or combined, moments computed for them, and time.
+/// `progress` counts entries. Errors: the evaluator's errors, and Cancelled if `progress` returns false.
 std::vector<Moments> planned_moments(const MomentsPlan& plan, ModelEvaluator& evaluator, const Progress& progress,
                                      Work& work);
 

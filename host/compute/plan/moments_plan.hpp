@@ -28,8 +28,8 @@ struct MomentsStep {
   std::vector<const MomentsRequest*> kernel_requests() const;
 };
 
-/// The plan of a request. It follows from the request alone, and an entry's moments do not depend on the other
-/// directions of the request.
+/// The plan of a request. It depends only on the request, and an entry's moments do not depend on the other directions
+/// of the request.
 class MomentsPlan {
  public:
   explicit MomentsPlan(const MomentsRequest& request);

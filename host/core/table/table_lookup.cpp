@@ -27,8 +27,8 @@ constexpr std::size_t kLeastValues = 4;  // of an axis: fewer give no reliable e
 // what is stated: 1.56, 3.02, 6.00e-4.
 constexpr double kInside = 16.0;
 constexpr double kAtEnds = 37.0;
-// Tuned. What falls faster in one step, and on a short axis in two, is small by chance. With half, this and double: 44,
-// 2 and 0 of these lookups; the median: 2.65, 3.02, 3.95e-4.
+// Tuned. A change that falls faster in one step, or on a short axis in two steps, is small by chance. With half, this
+// and double: 44, 2 and 0 of these lookups; the median: 2.65, 3.02, 3.95e-4.
 constexpr double kFastestFall = 0.2;
 constexpr double kFastestFallOfTwo = 0.25;
 // Tuned. Stated error by a kink over that of a ramp. Without, with half, this and double: 38, 4, 2 and 2 of these

@@ -58,7 +58,7 @@ class Model {
     Eigen::Index first_row = 0;              ///< of the predictions
     SceneValues scene;                       ///< at the shortest wavelength of the data, if these have any
     std::optional<EmissionModel> other_end;  ///< of the bracket: the emission model there
-    std::vector<double> wavelength_um;       ///< of the data, ascending; empty: that of the scene
+    std::vector<double> wavelength_um;       ///< of the data, ascending; empty: the scene's
     std::vector<OpticalConstants> indices;   ///< of a material that depends on the wavelength, at each of these
   };
 

@@ -32,7 +32,7 @@ struct PlanReport {
   RunPrediction run;
   std::optional<RuleSize> rule;        ///< none without moments
   std::vector<std::string> pipelines;  ///< of the first attempt; none when nothing is left for the evaluator
-  vulkan::DispatchCount dispatches;    ///< likewise
+  vulkan::DispatchCount dispatches;    ///< of the first attempt
   std::vector<AxisForecast> lookup;    ///< of the axes of more than one value
   std::string device;                  ///< its name; empty without one
   std::string why_no_device;

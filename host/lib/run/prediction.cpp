@@ -31,7 +31,7 @@ SceneEntries entries_of_drawn_directions(const SceneEntries& grid, bool has_resp
   return SceneEntries::of_grid(axes, grid.index());
 }
 
-/// Sums over the requests of one kind: those of the first level, which come first, and all others.
+/// Sums over the requests of one kind: the first level's, which come first, and all later ones.
 struct Count {
   std::size_t first_requests = 0;  ///< requests of the first level that are still to come
   std::size_t first = 0;           ///< moments or beams
@@ -103,7 +103,7 @@ struct FirstLevel {
 };
 
 void count_work(RunPrediction& run, const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
-                bool has_double) {
+                bool has_double, std::size_t given) {
   const SceneEntries drawn = run.counts_directions ? entries_of_drawn_directions(entries, run.first.basis != nullptr)
                                                    : drawn_entries(entries, kCountedEntries);
   const SceneEntries part = run_parts(drawn, run.spectral_samples).front();
@@ -119,7 +119,7 @@ void count_work(RunPrediction& run, const SceneValues& scene, const SceneEntries
   run.again_evaluations = moments_scale * moments.again_evaluations;
   run.again_beams = beams_scale * static_cast<double>(beams.again);
   const double again = moments_scale * static_cast<double>(moments.again) + run.again_beams;
-  if (run.moments + run.beams > 0) run.again_share = again / static_cast<double>(run.moments + run.beams);
+  run.again_share = again / static_cast<double>(std::max<std::size_t>(given, 1));
   run.is_exact = moments.first == run.moments && beams.first == run.beams;
   run.moments_s = moments_scale * moments.spent_s;
   run.beams_s = beams_scale * beams.spent_s;
@@ -141,7 +141,7 @@ RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries,
   run.entries = entries.size();
   run.spectral_samples = spectral_rule(scene).samples.size();
   run.first = first_level(scene.accuracy, has_double);
-  std::size_t largest = 0, columns_before = 0;
+  std::size_t largest = 0, columns_before = 0, given = 0;
   run.first.basis = ResponseBases(scene, entries, plan).of(run.first);
   for (const SceneEntries& part : run_parts(entries, run.spectral_samples)) {
     const FirstLevel first(scene, part, plan, run.first);
@@ -149,6 +149,7 @@ RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries,
     std::size_t largest_step = 0;
     run.interpolated += first.moments.saved_entries();
     run.moments += first.moments.kernel_moments();
+    given += first.moments.size() + beams;
     for (const MomentsStep& step : first.moments.steps()) {
       largest_step = std::max(largest_step, response_bytes(step));
       for (const MomentsRequest* request : step.kernel_requests()) {
@@ -166,7 +167,7 @@ RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries,
     columns_before = columns;
   }
   run.host_bytes = static_cast<double>(largest);
-  if (run.moments + run.beams > 0) count_work(run, scene, entries, plan, has_double);
+  if (run.moments + run.beams > 0) count_work(run, scene, entries, plan, has_double, given);
   return run;
 }
 

@@ -27,7 +27,8 @@ struct RunPrediction {
   std::size_t beams = 0;           ///< that the first level asks for: f of one geometry and index each
   RefinementLevel first;           ///< precision and tolerance of the first level
   double first_evaluations = 0.0;  ///< integrand evaluations of it
-  double again_share = 0.0;        ///< of its moments and beams, those that need another level
+  double again_share =
+      0.0;  ///< moments and beams of other levels, over the entries and beams that the first level gives
   double again_evaluations = 0.0;
   double again_beams = 0.0;
   bool counts_directions = false;

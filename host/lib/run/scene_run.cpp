@@ -55,7 +55,7 @@ struct RunContext {
   std::size_t samples() const { return spectra.indices.front().size(); }  ///< of every entry
 };
 
-/// What the evaluator computed for the requests of a part.
+/// The evaluator's results for the requests of a part.
 struct EvaluatorResults {
   std::vector<Moments> moments;
   std::vector<ScatteringMatrix> beams;
@@ -195,7 +195,7 @@ bool would_improve(const RunContext& context, const RefinementLevel& level, cons
          (wants_beam(context.scene, entry, context.plan) && level.precision != last.precision);
 }
 
-/// Entries that wait for their next level: those of one level are computed together.
+/// Entries that wait for the same level are computed together.
 using EntriesByLevel = std::map<RefinementLevel, std::vector<std::size_t>>;
 
 /// The next level of one direction whose `members` were computed at `last`: of all of it, between nodes again, where

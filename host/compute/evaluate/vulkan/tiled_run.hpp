@@ -1,4 +1,4 @@
-// What the runs of all kernels share: the rule, uploads, and the dispatch of a tile.
+// Base of all kernel runs: uploads, the buffers of the rule, and the dispatch of a tile.
 #pragma once
 
 #include <array>

@@ -18,7 +18,7 @@ namespace dolp::reference {
 Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
                         const Refinement& refinement);
 
-/// The same with a curve in place of 1 - (R_s + R_p) / 2 and of (R_p - R_s) / (2 sin^2), to an accuracy relative to
+/// The same with a curve instead of 1 - (R_s + R_p) / 2 and (R_p - R_s) / (2 sin^2), to an accuracy relative to
 /// cos(theta). `bend`: cosine at which the curve bends.
 Moments direct_response(const Slopes& slopes, Masking masking, double theta_deg,
                         const std::function<double(double cos_beta)>& curve, double bend, const Refinement& refinement);

@@ -40,7 +40,7 @@ Zenith zenith_from_deg(double theta_deg);
 Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
                            const Refinement& refinement, const SkyFunction* sky = nullptr);
 
-/// The moments with each curve in place of the reflectances, r_i and r_q, relative to the albedo. `bend`: cosine at
+/// The moments with each curve instead of the reflectances, r_i and r_q, relative to the albedo. `bend`: cosine at
 /// which the curves bend.
 std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking masking, double theta_deg,
                                                 const Curves& curves, double bend, const Refinement& refinement);

@@ -74,8 +74,8 @@ struct Weights {
   double error = 0.0;
 };
 
-/// `whole_error`: bound of the sum with 1 instead of a polynomial. It adds the sizes of the distances between the rules,
-/// which may cancel by chance in the columns, and holds for all polynomials, because these are at most 1.
+/// `whole_error`: bound of the sum with 1 instead of a polynomial. It adds the sizes of the distances between the
+/// rules, which may cancel by chance in the columns, and holds for all polynomials, because these are at most 1.
 Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error) {
   Weights own{Eigen::ArrayXd::Zero(kBetaAngles), Eigen::ArrayXd::Zero(kBetaAngles)};
   for (std::size_t m = 0; m < columns.size(); ++m) {

@@ -406,26 +406,6 @@ SpectralRule spectral_rule(const SceneModel& scene) {
   return rule;
 }
 
-double panel_error(const SpectralRule& rule, const std::function<double(std::size_t, std::size_t)>& term) {
-  double error = 0.0;
-  for (std::size_t panel = rule.samples.size() - rule.panels * kPanelNodes; panel < rule.samples.size();
-       panel += kPanelNodes) {
-    for (std::size_t j = 1; j < kPanelNodes; j += 2) {
-      double left = term(panel + j, panel + j);
-      for (std::size_t m = 0; m < kPanelNodes; m += 2) {
-        double weight = 1.0;
-        for (std::size_t l = 0; l < kPanelNodes; l += 2) {
-          const auto at = [&](std::size_t i) { return rule.samples[panel + i].wavelength_um; };
-          if (l != m) weight *= (at(j) - at(l)) / (at(m) - at(l));
-        }
-        left -= weight * term(panel + j, panel + m);
-      }
-      error += std::abs(left);
-    }
-  }
-  return error;
-}
-
 SpectralRule kept_rule(SpectralRule rule, const KeptEffects& kept) {
   for (SpectralSample& sample : rule.samples) {
     if (!kept.surroundings) sample.excess = -sample.emitted;

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
-#include <functional>
 #include <vector>
 
 #include "model/kept_effects.hpp"
@@ -51,7 +51,26 @@ SpectralRule spectral_rule(const SceneModel& scene);
 /// Every other value of a panel is predicted from the rest; the error is the sum of what the predictions miss. For a
 /// square root that begins at any place among the nodes, this is 2.3 times the error and more, in the median 6 times
 /// (tests Bands_*).
-double panel_error(const SpectralRule& rule, const std::function<double(std::size_t, std::size_t)>& term);
+template <typename Term>
+double panel_error(const SpectralRule& rule, const Term& term) {
+  double error = 0.0;
+  for (std::size_t panel = rule.samples.size() - rule.panels * kPanelNodes; panel < rule.samples.size();
+       panel += kPanelNodes) {
+    for (std::size_t j = 1; j < kPanelNodes; j += 2) {
+      double left = term(panel + j, panel + j);
+      for (std::size_t m = 0; m < kPanelNodes; m += 2) {
+        double weight = 1.0;
+        for (std::size_t l = 0; l < kPanelNodes; l += 2) {
+          const auto at = [&](std::size_t i) { return rule.samples[panel + i].wavelength_um; };
+          if (l != m) weight *= (at(j) - at(l)) / (at(m) - at(l));
+        }
+        left -= weight * term(panel + j, panel + m);
+      }
+      error += std::abs(left);
+    }
+  }
+  return error;
+}
 
 /// The rule with the factors of dropped effects set to 0.
 SpectralRule kept_rule(SpectralRule rule, const KeptEffects& kept);

@@ -28,6 +28,7 @@
 #define DOLP_SPEC_DIRECT 5            // whether the direct emission is wanted too
 #define DOLP_SPEC_COLUMN_COUNT 6      // number of columns, see physics/columns.glsl
 #define DOLP_SPEC_COLUMNS 7           // their kind, DOLP_COLUMNS_*
+#define DOLP_SPEC_CURVES 8            // whether reflectances are read from tables, for films and measurements
 
 #define DOLP_CAUCHY 0u
 #define DOLP_GAUSSIAN 1u
@@ -84,6 +85,7 @@
 #define DOLP_GROUPS_PER_DISTANCE 6 // bounces taken as one at once, over those before or after them
 #define DOLP_MOST_DOUBLINGS 12
 #define DOLP_LAST_BOUNCES (DOLP_MOST_BOUNCES << DOLP_MOST_DOUBLINGS)  // after more bounces no light is left
+#define DOLP_CURVE_NODES 6       // of a cell of a table of reflectances: a cubic of each of three quantities
 #define DOLP_MAX_ORDER 128       // largest Gauss order of the rule nodes
 #define DOLP_MASKING_OCTAVES 29  // of v = 1 + tau/scale
 #define DOLP_MASKING_CELL_BITS_FLOAT 3   // 2^bits cells per octave
@@ -148,6 +150,8 @@ struct IndexNode {
   real branch_re;     // the branch point of w in cos(beta), i sqrt(N^2 - 1), where both parts are positive
   real branch_im;
   real critical_cos;  // sqrt(1 - Re N^2), where total reflection begins, sharply (k = 0) or nearly so; otherwise 0
+  real curve_start;   // first of the rule nodes that hold the table of reflectances,
+  real curve_cells;   // and its cells; 0 without one
 };
 
 // One geometry of the pBRDF: incident and reflected beam, and the facet between them.
@@ -158,23 +162,24 @@ struct GeometryNode {
   real s_r;
   real slope;  // tan(alpha)
   real cos_beta;
-  real sin2_beta;
   real cos_2eta_i;
   real sin_2eta_i;
   real cos_2eta_r;
   real sin_2eta_r;
 };
 
-// One pBRDF to evaluate. The host computes the terms that cancel or overflow in a float: the geometry, w^2 and the
-// density.
+// One pBRDF to evaluate. The host computes what cancels or overflows in a float: the geometry, the reflection of the
+// facet and the density.
 struct BeamNode {
   GeometryNode g;
   ShapeNode shape;  // its scale and cut are those of physics/in_plane.glsl
   real density;     // D(alpha) / 4 [1/sr] over a power of two that the host keeps: in [1/2, 1), or 0
-  real n2_re;       // Re(N^2)
-  real n2m1_re;     // Re(N^2 - 1)
-  real n2m1_im;     // Im(N^2)
-  real w2_re;       // Re(N^2 - sin^2(beta))
+  // Mueller matrix of the facet in its own frame: [m00 m01 0 0; m01 m00 0 0; 0 0 cross_re -cross_im; 0 0 cross_im
+  // cross_re], r_s* r_p = cross_re + i cross_im.
+  real m00;
+  real m01;
+  real cross_re;
+  real cross_im;
 };
 
 // A Mueller matrix, row by row.

@@ -39,7 +39,7 @@ using Absorption = std::function<FresnelCoefficients(double cos_beta)>;
 // The facets of one surface, seen from one direction. `is_response`: errors are relative to cos(theta).
 class Facets {
  public:
-  Facets(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
+  Facets(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
          Absorption absorption, bool is_response)
       : axis_(slopes),
         masking_(masking),
@@ -159,7 +159,7 @@ Moments Facets::emission(const Refinement& refinement) {
 
 }  // namespace
 
-Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
+Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
                         const Refinement& refinement) {
   if (zenith_from_deg(theta_deg).cos == 0.0) return {.direct_i = 0.0, .direct_q = 0.0};
   const auto absorption = [&](double cos_beta) { return fresnel(constants, cos_beta); };
@@ -169,7 +169,7 @@ Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg,
 Moments direct_response(const Slopes& slopes, Masking masking, double theta_deg,
                         const std::function<double(double cos_beta)>& curve, double bend,
                         const Refinement& refinement) {
-  const OpticalConstants bent{1.0 / bend, 0.0};  // its Brewster angle is where the curve bends
+  const FacetOptics bent{1.0 / bend, 0.0};  // its Brewster angle is where the curve bends
   const auto absorption = [&](double cos_beta) -> FresnelCoefficients {
     const double sin2_beta = (1.0 - cos_beta) * (1.0 + cos_beta);
     const double f = curve(cos_beta);

@@ -76,7 +76,7 @@ Groove<double> groove_of(double t) {
 double intensity(const Electric& e) { return std::norm(e[0]) + std::norm(e[1]) + std::norm(e[2]); }
 
 void follow(const Groove<double>& groove, const SlopePoint& point, const Vector3& omega, Facet first,
-            const OpticalConstants& constants, const SkyFunction* sky, GrooveLight& total) {
+            const FacetOptics& constants, const SkyFunction* sky, GrooveLight& total) {
   GrooveBeam<double> beam(groove, omega, first);
   UnitLight light = unit_light(point, beam.direction());
   for (int count = 1; beam.flux() > 0.0; ++count) {
@@ -144,7 +144,7 @@ GrooveValues values_of(const GrooveLight& light) {
 // The grooves of one surface, seen from one direction.
 class Surveyor {
  public:
-  Surveyor(const Slopes& slopes, double theta_deg, const OpticalConstants& constants, const Refinement& refinement,
+  Surveyor(const Slopes& slopes, double theta_deg, const FacetOptics& constants, const Refinement& refinement,
            const SkyFunction* sky, bool may_abandon)
       : axis_(slopes),
         theta_rad_(theta_deg * pi / 180.0),
@@ -187,7 +187,7 @@ class Surveyor {
   SlopeAxis axis_;
   double theta_rad_;
   Zenith view_;
-  OpticalConstants constants_;
+  FacetOptics constants_;
   Refinement refinement_;
   const SkyFunction* sky_;
   bool may_abandon_;
@@ -273,7 +273,7 @@ Moments Surveyor::moments() {
 }  // namespace
 
 GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zenith& view,
-                            const OpticalConstants& constants, const SkyFunction* sky) {
+                            const FacetOptics& constants, const SkyFunction* sky) {
   const SlopePoint point{t, sin_chi, cos_chi};
   const Groove<double> groove = groove_of(t);
   const Vector3 omega = toward_view(point, view);
@@ -287,7 +287,7 @@ GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zeni
   return total;
 }
 
-Moments groove_moments(const Slopes& slopes, double theta_deg, const OpticalConstants& constants,
+Moments groove_moments(const Slopes& slopes, double theta_deg, const FacetOptics& constants,
                        const Refinement& refinement, const SkyFunction* sky) {
   if (zenith_from_deg(theta_deg).cos == 0.0)
     return {.direct_i = 0.0, .direct_q = 0.0, .columns = std::vector<ColumnMoments>(sky ? 1 : 0)};

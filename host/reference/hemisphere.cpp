@@ -102,7 +102,7 @@ MuellerRow mueller_row(const FresnelCoefficients& r, double cos_eta, double sin_
 template <std::size_t K>
 class Hemisphere {
  public:
-  Hemisphere(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
+  Hemisphere(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
              const Refinement& refinement, const SkyFunction* sky, const Curves* curves = nullptr)
       : slopes_(slopes),
         masking_(masking),
@@ -136,7 +136,7 @@ class Hemisphere {
   Masking masking_;
   double theta_rad_;
   Zenith fixed_;
-  OpticalConstants constants_;
+  FacetOptics constants_;
   Refinement refinement_;
   const SkyFunction* sky_;
   const Curves* curves_;
@@ -181,8 +181,8 @@ MomentValues<K> Hemisphere<K>::integrand(const Row& row, double delta) const {
 // Angles beta where the Fresnel coefficients bend: total reflection, and the (pseudo-)Brewster angle.
 template <std::size_t K>
 std::vector<double> Hemisphere<K>::special_beta_rad() const {
-  std::vector<double> angles{std::atan(std::hypot(constants_.n, constants_.k))};
-  if (constants_.n < 1.0) angles.push_back(std::asin(constants_.n));
+  std::vector<double> angles{std::atan(std::hypot(constants_.index.n, constants_.index.k))};
+  if (constants_.index.n < 1.0) angles.push_back(std::asin(constants_.index.n));
   return angles;
 }
 
@@ -339,8 +339,8 @@ double error_of(const Integral<N>& integral, std::size_t k, double magnitude, co
 // The limits theta -> 90 degrees of a cauchy distribution whose vertical facets, which then reflect into the hemisphere
 // all together, are too many: r grows without bound. They turn the plane of incidence by 90 degrees, so r_q is
 // negative.
-Moments divergent_moments(const OpticalConstants& constants) {
-  const bool is_vacuum = constants.n == 1.0 && constants.k == 0.0;
+Moments divergent_moments(const FacetOptics& constants) {
+  const bool is_vacuum = constants == FacetOptics(1.0, 0.0);
   const double grown = is_vacuum ? 0.0 : kInfinity;
   return {.r_i = grown,
           .r_q = -grown,
@@ -360,7 +360,7 @@ Zenith zenith_from_deg(double theta_deg) {
   return {elevation_rad, std::sin(elevation_rad), std::sin(theta_deg * pi / 180.0)};
 }
 
-Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
+Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
                            const Refinement& refinement, const SkyFunction* sky) {
   const bool is_unshadowed = masking == Masking::kNone || masking == Masking::kIntegral;
   if (theta_deg == 90.0 && is_unshadowed && !slopes.is_gaussian() && slopes.q() <= 1.5) {
@@ -396,7 +396,7 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
 
 std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking masking, double theta_deg,
                                                 const Curves& curves, double bend, const Refinement& refinement) {
-  const OpticalConstants bent{1.0 / bend, 0.0};  // its Brewster angle is where the curves bend
+  const FacetOptics bent{1.0 / bend, 0.0};  // its Brewster angle is where the curves bend
   const auto integral =
       Hemisphere<kCurves>(slopes, masking, theta_deg, bent, refinement, nullptr, &curves).integrate_zenith();
   std::vector<ColumnMoments> columns;
@@ -407,7 +407,7 @@ std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking ma
   return columns;
 }
 
-Moments mirror_moments(double theta_deg, const OpticalConstants& constants) {
+Moments mirror_moments(double theta_deg, const FacetOptics& constants) {
   const Zenith zenith = zenith_from_deg(theta_deg);
   const FresnelCoefficients r = fresnel(constants, zenith.cos);
   const double reflected_s = std::norm(r.r_s);

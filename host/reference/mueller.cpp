@@ -10,6 +10,8 @@
 #include <limits>
 
 #include "reference/attenuation.hpp"
+#include "reference/film_stack.hpp"
+#include "reference/fresnel.hpp"
 #include "reference/groove_beam.hpp"
 #include "reference/hemisphere.hpp"
 #include "reference/slopes.hpp"
@@ -75,10 +77,15 @@ BeamFrame reflected_beam(double zenith_deg, double azimuth_deg) {
 }
 
 template <class Number>
-reference::Amplitudes<Number> fresnel_amplitudes(const OpticalConstants& constants,
+reference::Amplitudes<Number> fresnel_amplitudes(const FacetOptics& constants,
                                                  const typename Number::value_type& cos_beta,
                                                  const typename Number::value_type& sin2_beta) {
-  const Number n(constants.n, constants.k);
+  if (!constants.films.empty()) return reference::stack_amplitudes<Number>(constants, cos_beta, sin2_beta);
+  if (constants.measured) {
+    const reference::FresnelCoefficients r = reference::fresnel(constants, static_cast<double>(cos_beta));
+    return {Number(r.r_s.real()), Number(r.r_p.real())};
+  }
+  const Number n(constants.index.n, constants.index.k);
   const Number n2 = n * n;
   const Number w = sqrt(Number(n2 - sin2_beta));
   return {(cos_beta - w) / (cos_beta + w), (n2 * cos_beta - w) / (n2 * cos_beta + w)};
@@ -181,7 +188,7 @@ Number along(const RealVector<Number>& a, const std::array<Number, 3>& e) {
 
 // f^(k) cos(theta_i) cos(theta_r) of the beams that meet A of one groove plane first, `Number` being complex.
 template <class Number>
-ReferenceMueller bounces_in_plane(const reference::Slopes& slopes, const OpticalConstants& constants,
+ReferenceMueller bounces_in_plane(const reference::Slopes& slopes, const FacetOptics& constants,
                                   const BeamFrame& in, const BeamFrame& out, const GroovePlane& plane, int bounces) {
   using Part = typename Number::value_type;
   const Real gamma = plane.gamma(bounces);
@@ -219,7 +226,7 @@ struct GroovePair {
         toward(in, out, 1),
         against(in, out, -1) {}
   bool is_mirrored() const { return toward.across * toward.across < kMirrored; }
-  ReferenceMueller term(const reference::Slopes& slopes, const OpticalConstants& constants, int bounces) const {
+  ReferenceMueller term(const reference::Slopes& slopes, const FacetOptics& constants, int bounces) const {
     const auto& in_plane = bounces > kMostInQuad ? bounces_in_plane<std::complex<double>> : bounces_in_plane<Complex>;
     ReferenceMueller total = in_plane(slopes, constants, in, out, toward, bounces);
     add(total, in_plane(slopes, constants, in, out, against, bounces));
@@ -241,14 +248,14 @@ ReferenceMueller not_a_number() {
 
 }  // namespace
 
-ReferenceMueller reference_bounces(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
+ReferenceMueller reference_bounces(const Surface& surface, const FacetOptics& constants, double theta_i_deg,
                                    double theta_r_deg, double delta_phi_deg, int bounces) {
   const GroovePair pair(theta_i_deg, theta_r_deg, delta_phi_deg);
   if (pair.is_mirrored()) return not_a_number();
   return pair.term(reference::Slopes(surface.distribution, surface.sigma, surface.q), constants, bounces);
 }
 
-BouncesSum reference_all_bounces(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
+BouncesSum reference_all_bounces(const Surface& surface, const FacetOptics& constants, double theta_i_deg,
                                  double theta_r_deg, double delta_phi_deg) {
   const GroovePair pair(theta_i_deg, theta_r_deg, delta_phi_deg);
   if (pair.is_mirrored()) return {not_a_number(), std::numeric_limits<double>::quiet_NaN()};
@@ -271,7 +278,7 @@ BouncesSum reference_all_bounces(const Surface& surface, const OpticalConstants&
   return sum;
 }
 
-ReferenceMueller reference_scattering(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
+ReferenceMueller reference_scattering(const Surface& surface, const FacetOptics& constants, double theta_i_deg,
                                       double theta_r_deg, double delta_phi_deg) {
   if (surface.scattering == Scattering::kMultiple) {
     return reference_all_bounces(surface, constants, theta_i_deg, theta_r_deg, delta_phi_deg).matrix;
@@ -291,7 +298,7 @@ ReferenceMueller reference_scattering(const Surface& surface, const OpticalConst
   return scaled_matrix(mueller_from_jones(jones_matrix(in, out, r)), factor);
 }
 
-ReferenceMueller reference_pbrdf(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
+ReferenceMueller reference_pbrdf(const Surface& surface, const FacetOptics& constants, double theta_i_deg,
                                  double theta_r_deg, double delta_phi_deg) {
   const double cosines = reference::zenith_from_deg(theta_i_deg).cos * reference::zenith_from_deg(theta_r_deg).cos;
   return scaled_matrix(reference_scattering(surface, constants, theta_i_deg, theta_r_deg, delta_phi_deg),

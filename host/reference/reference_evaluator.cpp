@@ -43,7 +43,8 @@ void check_shape(Distribution distribution, Masking masking, const SlopeShape& s
   require(!is_cauchy || masking != Masking::kSmith || shape.q > 1.5, "smith masking needs q above 1.5", shape.q);
 }
 
-void check_index(const OpticalConstants& index) {
+void check_index(const FacetOptics& optics) {
+  const OpticalConstants& index = optics.index;
   require(index.n > 0.0, "n must be above 0", index.n);
   require(index.k >= 0.0, "k must not be negative", index.k);
 }
@@ -66,7 +67,7 @@ void check(const MomentsRequest& request) {
   for (const double theta_deg : request.theta_deg) check_zenith(theta_deg);
   for (const double sigma : request.sigma) check_shape(request.distribution, request.masking, {.sigma = sigma});
   for (const double q : request.q) check_shape(request.distribution, request.masking, {.q = q});
-  for (const OpticalConstants& index : request.indices) check_index(index);
+  for (const FacetOptics& index : request.indices) check_index(index);
 }
 
 void check(const ScatteringRequest& request) {
@@ -79,7 +80,7 @@ void check(const ScatteringRequest& request) {
     check_shape(request.distribution, request.masking, shape);
     require(shape.sigma > 0.0, "sigma must be above 0", shape.sigma);
   }
-  for (const OpticalConstants& index : request.indices) check_index(index);
+  for (const FacetOptics& index : request.indices) check_index(index);
 }
 
 Moments mirror_of(const MomentsRequest& request, const MomentsPoint& point) {
@@ -152,7 +153,7 @@ ScatteringMatrix matrix_of(const ScatteringRequest& request, const ScatteringEnt
   surface.masking = request.masking;
   surface.sigma = shape.sigma;
   surface.q = shape.q;
-  const OpticalConstants& index = request.indices.at(entry.index);
+  const FacetOptics& index = request.indices.at(entry.index);
   const auto [theta_i_deg, theta_r_deg, delta_phi_deg] = angles;
   const BouncesSum f =
       request.scattering == Scattering::kMultiple

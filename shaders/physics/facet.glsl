@@ -27,7 +27,12 @@ Facet facet(ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   real along = theta.c * t * x - theta.s;
   real across = t * sin_phi;
   real cos_beta = sqrt(r2) * e;
-  Fresnel f = fresnel(index, cos_beta);
+  Fresnel f;
+  if (kHasCurves) {
+    f = reflectance_at(index, cos_beta);
+  } else {
+    f = fresnel(index, cos_beta);
+  }
   real half_split = real(0.5) * f.split_over_sin2 * r2;
   real split = half_split * (along * along + across * across);
   Facet result;

@@ -42,3 +42,19 @@ Fresnel fresnel(IndexNode index, real cos_beta) {
   real2 p_sum = real2((index.n2m1_re + real(1.0)) * cos_beta + w.x, index.n2m1_im * cos_beta + w.y);
   return fresnel_of_sums(real2(index.n2m1_re, index.n2m1_im), cos_beta, w, s_sum, p_sum);
 }
+
+// The same from a table: cubics over sqrt(cos(beta)) in cells of one width, of R_s, 1 - R_s and the split
+// (host/compute/plan/reflectance_curve.cpp).
+Fresnel reflectance_at(IndexNode index, real cos_beta) {
+  real place = sqrt(cos_beta) * index.curve_cells;
+  int cell = clamp(int(place), 0, int(index.curve_cells) - 1);
+  real x = place - real(cell);
+  int first = int(index.curve_start) + DOLP_CURVE_NODES * cell;
+  real value[3];
+  for (int i = 0; i < 3; ++i) {
+    real2 low = rule_node(first + 2 * i);
+    real2 high = rule_node(first + 2 * i + 1);
+    value[i] = low.x + x * (low.y + x * (high.x + x * high.y));
+  }
+  return Fresnel(max(value[0], real(0.0)), max(value[1], real(0.0)), value[2]);
+}

@@ -7,15 +7,7 @@
 // U = 2 Re(E_s* E_p), V = 2 Im(E_s* E_p) that is
 //   Q' = cos(2 eta_i) Q + sin(2 eta_i) U,   U' = -sin(2 eta_i) Q + cos(2 eta_i) U,   the facet's matrix
 //   [A B 0 0; B A 0 0; 0 0 C -S; 0 0 S C],   A, B = (R_s +- R_p)/2,   C + i S = r_s* r_p,   and the reverse by eta_r.
-// Without cancellation: r_s* r_p = a (sin^2 beta - c w) / (conj(c + w) (N^2 c + w)), a as in fresnel.glsl.
-
-// r_s* r_p, as (Re, Im), from R_s, w, c + w and N^2 c + w: R_s (sin^2 beta - c w) (c + w) / (N^2 c + w), since a = R_s B.
-real2 cross_amplitude(real r_s, GeometryNode g, real2 w, real2 s_sum, real2 p_sum) {
-  real2 numerator = multiply(real2(g.sin2_beta - g.cos_beta * w.x, -g.cos_beta * w.y), s_sum);
-  real norm = max(p_sum.x * p_sum.x + p_sum.y * p_sum.y, kSmallestSquare);
-  real2 quotient = multiply(numerator, real2(p_sum.x / norm, -p_sum.y / norm));
-  return real2(r_s * quotient.x, r_s * quotient.y);
-}
+// The host computes A, B, C and S (host/compute/plan/beam.cpp).
 
 // G of one geometry.
 real attenuation(GeometryNode g, ShapeNode shape) {
@@ -36,17 +28,11 @@ real attenuation(GeometryNode g, ShapeNode shape) {
 // incidence.
 MuellerNode mueller(BeamNode beam) {
   GeometryNode g = beam.g;
-  real2 w = sqrt_upper(beam.w2_re, beam.n2m1_im);
-  real2 s_sum = real2(g.cos_beta + w.x, w.y);
-  real2 p_sum = real2(beam.n2_re * g.cos_beta + w.x, beam.n2m1_im * g.cos_beta + w.y);
-  Fresnel f = fresnel_of_sums(real2(beam.n2m1_re, beam.n2m1_im), g.cos_beta, w, s_sum, p_sum);
   real scale = beam.density * attenuation(g, beam.shape);
-  real half_split = real(0.5) * f.split_over_sin2 * g.sin2_beta;
-  real a = scale * (f.r_s - half_split);
-  real b = scale * half_split;
-  real2 cross = cross_amplitude(f.r_s, g, w, s_sum, p_sum);
-  real c = scale * cross.x;
-  real s = scale * cross.y;
+  real a = scale * beam.m00;
+  real b = scale * beam.m01;
+  real c = scale * beam.cross_re;
+  real s = scale * beam.cross_im;
   MuellerNode result;
   result.m[0] = a;
   result.m[1] = b * g.cos_2eta_i;

@@ -22,6 +22,7 @@ struct Source {
 
   static constexpr uint kDistribution = DOLP_CAUCHY;
   static constexpr bool kTotalReflection = false;
+  static constexpr bool kHasCurves = false;
   static constexpr bool kIsMultiple = false;
   static constexpr bool kHasDirect = false;
   static constexpr uint kColumns = DOLP_COLUMNS_SKY;

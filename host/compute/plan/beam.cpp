@@ -5,11 +5,13 @@
 #include <boost/math/special_functions/sin_pi.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 
 #include "base/numbers.hpp"
 #include "model/gamma_ratio.hpp"
+#include "model/smooth_surface.hpp"
 #include "plan/further_bounces.hpp"
 #include "plan/geometry.hpp"
 #include "plan/rule_nodes.hpp"
@@ -31,6 +33,8 @@ constexpr double kSmallestMaskingSigma = 1e-15;
 
 // Share of N^2 and sin^2(beta) below which their difference has lost digits that its square root needs.
 constexpr double kCritical = 1e-6;
+constexpr double kSmallestSquare = 1e-300;
+constexpr double kSmallestFacetCosine = 1e-12;
 
 // ln(1 + x^2), where x^2 may overflow.
 double log1p_square(double x) { return x > 1e8 ? 2.0 * std::log(x) : std::log1p(x * x); }
@@ -59,6 +63,44 @@ double exact_w_squared(const BeamAngles& angles, const OpticalConstants& index) 
   return static_cast<double>((n - k) * (n + k) - (1 - cos_2beta) / 2);
 }
 
+// Mueller matrix of a facet in its own frame: (R_s + R_p) / 2, (R_s - R_p) / 2 and r_s* r_p.
+struct FacetReflection {
+  double m00 = 0.0;
+  double m01 = 0.0;
+  std::complex<double> cross;
+};
+
+// Equations: shaders/physics/fresnel.glsl, which do not cancel; r_s* r_p = a (sin^2 beta - c w) / (conj(c + w) (N^2 c +
+// w)), a = |N^2 - 1|^2 / |c + w|^2.
+FacetReflection bare_reflection(const BeamAngles& angles, const BeamGeometry& geometry, const OpticalConstants& index) {
+  using Complex = std::complex<double>;
+  const double n2_re = (index.n - index.k) * (index.n + index.k);
+  const Complex n2m1((index.n - 1.0) * (index.n + 1.0) - index.k * index.k, 2.0 * index.n * index.k);
+  const double c = geometry.node.cos_beta;
+  const double sin2 = geometry.sin2_beta;
+  // Uses the form with the smaller terms.
+  double w2 = sin2 < 0.5 ? n2_re - sin2 : n2m1.real() + c * c;
+  if (std::hypot(w2, n2m1.imag()) <= kCritical * std::max(std::abs(n2_re), sin2)) w2 = exact_w_squared(angles, index);
+  const Complex w = std::sqrt(Complex(w2, n2m1.imag()));
+  const Complex s_sum = c + w;
+  const Complex p_sum = Complex(n2_re, n2m1.imag()) * c + w;
+  const double a = std::norm(n2m1) / std::max(std::norm(s_sum), kSmallestSquare);  // N = 1 at grazing incidence: 0/0
+  const double r_s = a / std::max(std::norm(s_sum), kSmallestSquare);
+  const double p_norm = std::max(std::norm(p_sum), kSmallestSquare);
+  const double m01 = 0.5 * (4.0 * c * w.real() * a / p_norm) * sin2;
+  return {r_s - m01, m01, r_s * (sin2 - c * w) * s_sum * std::conj(p_sum) / p_norm};
+}
+
+// Of measured reflectances, which have no phase, r_s* r_p is left out.
+FacetReflection covered_reflection(const BeamGeometry& geometry, const FacetOptics& optics) {
+  const double c = std::max(geometry.node.cos_beta, kSmallestFacetCosine);
+  const SmoothAbsorptance absorbed = smooth_absorptance(optics, c);
+  const double m01 = 0.5 * absorbed.split * geometry.sin2_beta;
+  if (optics.measured) return {1.0 - absorbed.s - m01, m01, 0.0};
+  const ReflectedAmplitudes r = film_amplitudes(optics, c);
+  return {std::norm(r.s) - m01, m01, std::conj(r.s) * r.p};
+}
+
 KernelData model_data(const ScatteringRequest& request) {
   KernelData data;
   data.distribution = request.distribution;
@@ -81,29 +123,25 @@ double log_density(Distribution distribution, const SlopeShape& shape, double sl
 BeamPlan::BeamPlan(const ScatteringRequest& request) : request_(request), data_(model_data(request)) {
   geometries_.reserve(request.angles.size());
   for (const BeamAngles& angles : request.angles) {
-    geometries_.push_back(geometry_node(angles.theta_i_deg, angles.theta_r_deg, angles.delta_phi_deg));
+    geometries_.push_back(beam_geometry(angles.theta_i_deg, angles.theta_r_deg, angles.delta_phi_deg));
   }
   for (const SlopeShape& shape : request.shapes) data_.shapes.push_back(masking_shape(request.distribution, shape));
 }
 
-double BeamPlan::w_squared(const ScatteringEntry& entry, const kernel::BeamNode& node) const {
-  // Uses the form with the smaller terms.
-  const double w2 =
-      node.g.sin2_beta < 0.5 ? node.n2_re - node.g.sin2_beta : node.n2m1_re + node.g.cos_beta * node.g.cos_beta;
-  if (std::hypot(w2, node.n2m1_im) > kCritical * std::max(std::abs(node.n2_re), node.g.sin2_beta)) return w2;
-  return exact_w_squared(request_.angles[entry.angles], request_.indices[entry.index]);
-}
-
 Beam BeamPlan::operator()(const ScatteringEntry& entry) const {
-  const OpticalConstants& index = request_.indices[entry.index];
   Beam beam;
   kernel::BeamNode& node = beam.node;
-  node.g = geometries_[entry.angles];
+  const BeamGeometry& geometry = geometries_[entry.angles];
+  node.g = geometry.node;
   node.shape = data_.shapes[entry.shape];
-  node.n2_re = (index.n - index.k) * (index.n + index.k);
-  node.n2m1_re = (index.n - 1.0) * (index.n + 1.0) - index.k * index.k;
-  node.n2m1_im = 2.0 * index.n * index.k;
-  node.w2_re = w_squared(entry, node);
+  const FacetOptics& optics = request_.indices[entry.index];
+  const FacetReflection facet = optics.is_bare()
+                                    ? bare_reflection(request_.angles[entry.angles], geometry, optics.index)
+                                    : covered_reflection(geometry, optics);
+  node.m00 = facet.m00;
+  node.m01 = facet.m01;
+  node.cross_re = facet.cross.real();
+  node.cross_im = facet.cross.imag();
   const double exponent = log_density(request_.distribution, request_.shapes[entry.shape], node.g.slope);
   if (!(exponent > std::log(std::numeric_limits<double>::denorm_min()))) return beam;
   const double power = std::floor(exponent / ln2) + 1.0;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "model/scattering.hpp"
+#include "plan/geometry.hpp"
 #include "plan/kernel_data.hpp"
 
 namespace dolp {
@@ -16,7 +17,7 @@ struct Beam {
 
 /// Makes the beams of a request, which must outlive the object. Pure.
 ///
-/// The geometry, D and w^2 = N^2 - sin^2(beta) are computed here and not by the kernel: near the normal and the retro
+/// The geometry, D and the reflection of the facet are computed here and not by the kernel: near the normal and the retro
 /// direction, far down the slope distribution and near the critical angle their rounding in a float would be amplified
 /// beyond 1e-5 of m00. D is handed over without its power of two, so that no float over- or underflows.
 class BeamPlan {
@@ -33,11 +34,9 @@ class BeamPlan {
   const KernelData& data() const { return data_; }
 
  private:
-  double w_squared(const ScatteringEntry& entry, const kernel::BeamNode& node) const;
-
   const ScatteringRequest& request_;
   KernelData data_;
-  std::vector<kernel::GeometryNode> geometries_;
+  std::vector<BeamGeometry> geometries_;
 };
 
 /// ln(D / 4) at a slope.

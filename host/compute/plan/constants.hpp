@@ -37,6 +37,10 @@ inline constexpr int kPlainOrder = 64;         // chosen
 inline constexpr double kOrderPerDigit = 8.0;  // chosen: 629, 629, 631
 /// Kinks where the beams of a groove end matter less after more bounces: each split gains about this many digits.
 inline constexpr double kDigitsPerSplit = 2.0;  // chosen: 2350, 1765, 1394; flagged 5, 11, 23 %
+/// Nodes of the slope axis and of the azimuth for each fringe that films have between grazing and normal incidence.
+inline constexpr double kNodesOfFringe = 2.0;  // chosen
+/// Roundings of the place in a table of reflectances.
+inline constexpr double kCurveRoundings = 4.0;  // chosen
 /// Of the tolerance: far below the reflection of the darkest surfaces.
 inline constexpr double kDimmest = 1e-10;  // chosen: corners
 

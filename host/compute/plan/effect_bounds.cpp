@@ -37,9 +37,9 @@ struct Fresnel {
   double most = 0.0;
 };
 
-Fresnel fresnel(const std::vector<OpticalConstants>& indices, double cosine) {
+Fresnel fresnel(const std::vector<FacetOptics>& indices, double cosine) {
   Fresnel all;
-  for (const OpticalConstants& index : indices) {
+  for (const FacetOptics& index : indices) {
     const SmoothAbsorptance absorbed = smooth_absorptance(index, std::max(cosine, kSmallestCosine));
     const double mean = 1.0 - 0.5 * (absorbed.s + absorbed.p);
     all.most_s = std::max(all.most_s, std::min(1.0, 1.0 - absorbed.s + kRoundingOfOne));
@@ -92,9 +92,9 @@ Range slope_density(Distribution distribution, const EntriesExtent& extent, doub
 /// f cos(theta_i) cos(theta_r) for k_s = 1, in 1/sr: the closed form p (1 + t^2)^2 G M / 4 but for G, which is exact
 /// for `none` and `v-cavity`, in [1/2, 1] for `integral`, in [1 / (1 + L + L_r), 1] for `smith`.
 Range beam_range(const Surface& surface, const BeamAngles& angles, const EntriesExtent& extent,
-                 const std::vector<OpticalConstants>& indices) {
+                 const std::vector<FacetOptics>& indices) {
   if (!has_facet(angles)) return {};
-  const kernel::GeometryNode g = geometry_node(angles.theta_i_deg, angles.theta_r_deg, angles.delta_phi_deg);
+  const kernel::GeometryNode g = beam_geometry(angles.theta_i_deg, angles.theta_r_deg, angles.delta_phi_deg).node;
   const double sec2 = 1.0 + g.slope * g.slope;
   Range masking{1.0, 1.0};
   if (surface.masking == Masking::kIntegral) masking.least = 0.5;
@@ -171,8 +171,15 @@ EffectBounds::EffectBounds(const SceneModel& scene, const EntriesExtent& extent)
   }
   path_ = rule.path_exitance;
   if (extent.theta_deg.empty()) return;
-  std::vector<OpticalConstants> indices = rule.indices();
-  indices.insert(indices.end(), extent.indices.begin(), extent.indices.end());
+  std::vector<FacetOptics> indices = rule.indices();
+  const std::vector<FacetOptics> samples = indices;
+  for (const FacetOptics& own : extent.indices) {
+    for (FacetOptics sample : samples) {
+      sample.index = own.index;
+      indices.push_back(std::move(sample));
+      if (own.is_bare() && samples.front().is_bare()) break;
+    }
+  }
   const Surface& surface = scene_.surface;
   const double moment_zenith_deg =
       is_bistatic_ ? scene_.geometry.view_zenith_deg : *std::ranges::max_element(extent.theta_deg);
@@ -183,11 +190,12 @@ EffectBounds::EffectBounds(const SceneModel& scene, const EntriesExtent& extent)
   const bool diverges = c < 0.0 && moment_zenith_deg == 90.0;
   if (surface.diffuse > 0.0)
     most_diffuse_ = diverges ? kInfinity : 2.0 * surface.diffuse * std::pow(cosine, c) / (c + 2.0);
-  least_smooth_ = 0.5 * (1.0 - fresnel(indices, cosine).most_s);
+  // R_s of a bare medium grows with the zenith; that of films need not.
+  if (surface.is_bare()) least_smooth_ = 0.5 * (1.0 - fresnel(indices, cosine).most_s);
   if (is_bistatic_ && total_.irradiance > 0.0) add_beams(extent, indices);
 }
 
-void EffectBounds::add_beams(const EntriesExtent& extent, const std::vector<OpticalConstants>& indices) {
+void EffectBounds::add_beams(const EntriesExtent& extent, const std::vector<FacetOptics>& indices) {
   const Surface& surface = scene_.surface;
   const double view_deg = zenith_before_limit_deg(surface.masking, scene_.geometry.view_zenith_deg);
   const double cosine = std::max(cos_sin_deg(view_deg).cos, kSmallestCosine);

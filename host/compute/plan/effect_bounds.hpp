@@ -20,7 +20,7 @@ struct EntriesExtent {
   std::vector<double> theta_deg;
   SlopeShape roughest;                    ///< the largest sigma and the smallest q
   SlopeShape smoothest;                   ///< the smallest sigma and the largest q
-  std::vector<OpticalConstants> indices;  ///< of the entries' own
+  std::vector<FacetOptics> indices;  ///< of the entries' own
 };
 
 /// The extent of a grid, which has each direction at each wavelength; else those of the points at each wavelength.
@@ -52,7 +52,7 @@ class EffectBounds {
 
  private:
   struct Sums;
-  void add_beams(const EntriesExtent& extent, const std::vector<OpticalConstants>& indices);
+  void add_beams(const EntriesExtent& extent, const std::vector<FacetOptics>& indices);
   double weight(const KeptEffects& kept) const;
   double incident(const KeptEffects& kept) const;
   double most_rho(const KeptEffects& kept) const;

@@ -176,7 +176,10 @@ Effect scattering_row(const SceneValues& scene, const EffectPlan& plan, const Sc
 
 Effect complex_index_row(const SceneValues& scene, const EffectPlan& plan, const SceneEntries& entries) {
   constexpr const char* kName = "complex index";
-  const auto is_complex = [](const OpticalConstants& index) { return index.k > 0.0; };
+  const auto is_complex = [](const FacetOptics& optics) {
+    const auto absorbs = [](const Film& film) { return film.index.k > 0.0; };
+    return optics.index.k > 0.0 || optics.measured || std::ranges::any_of(optics.films, absorbs);
+  };
   const bool own =
       entries.is_grid()
           ? std::ranges::any_of(entries.axes()[Axis::kK], [](double k) { return k > 0.0; })

@@ -84,6 +84,7 @@ double masking_error(const KernelData& data, const MomentsEntry& entry, double u
 
 // R_s, which falls with cos(beta) and bounds M00.
 double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
+  if (index.curve_cells > 0.0) return 1.0;  // of films it need not fall
   const std::complex<double> w =
       std::sqrt(std::complex<double>(index.n2m1_re + cos_beta * cos_beta, std::max(index.n2m1_im, 0.0)));
   return std::min(1.0, std::norm((cos_beta - w) / (cos_beta + w)));
@@ -222,6 +223,13 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
     moments.direct_q = node.direct_q;
     moments.direct_i_error = pair * node.direct_difference + least_of_masked * theta.c + cut;
     moments.direct_q_error = moments.direct_i_error;
+  }
+  if (data.has_curves) {
+    const CurveError& error = data.curve_errors[entry.index];
+    const double of_facet = 1.5 * (error.absolute + kCurveRoundings * unit_roundoff * error.per_roundoff);
+    for (double* const bound : {&moments.r_i_error, &moments.r_q_error, &moments.deficit_error})
+      *bound += of_facet * std::abs(node.albedo);
+    for (double* const bound : {&moments.direct_i_error, &moments.direct_q_error}) *bound += of_facet * theta.c;
   }
   for (std::size_t k = 0; k < data.column_count(); ++k) {
     const auto part = columns.subspan(DOLP_COLUMN_PARTS * k, DOLP_COLUMN_PARTS);

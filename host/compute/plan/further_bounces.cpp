@@ -130,7 +130,7 @@ double beyond_last(const ScatteringRequest& request, const SlopeShape& shape, in
 FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, const ScatteringEntry& entry, double h,
                            double first, double accuracy) {
   const SlopeShape& shape = request.shapes[entry.shape];
-  const Facet facet(request.indices[entry.index]);
+  const Facet facet(request.indices[entry.index].index);
   const double least_gamma = 0.49 * std::abs(std::abs(at.psi_i) - std::abs(at.psi_r));
   FurtherBeams beams;
   // Of even and odd bounces, which have laws of their own.

@@ -31,7 +31,7 @@ CosSin mean_zenith(double theta_i_deg, double theta_r_deg) {
 
 }  // namespace
 
-kernel::GeometryNode geometry_node(double theta_i_deg, double theta_r_deg, double delta_phi_deg) {
+BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_phi_deg) {
   const CosSin i = cos_sin_deg(theta_i_deg);
   const CosSin r = cos_sin_deg(theta_r_deg);
   // In [-180, 180], without rounding: near the specular and the retro direction the half angle keeps all digits.
@@ -46,14 +46,15 @@ kernel::GeometryNode geometry_node(double theta_i_deg, double theta_r_deg, doubl
   const double flat_difference = sin_difference * sin_difference + product * half.sin * half.sin;
   const double height_sum = i.cos + r.cos;
 
-  kernel::GeometryNode node{};
+  BeamGeometry geometry;
+  kernel::GeometryNode& node = geometry.node;
   node.c_i = i.cos;
   node.s_i = i.sin;
   node.c_r = r.cos;
   node.s_r = r.sin;
   node.slope = std::sqrt(flat_sum) / height_sum;
   node.cos_beta = 0.5 * std::sqrt(height_sum * height_sum + flat_sum);
-  node.sin2_beta = 0.25 * (cos_difference * cos_difference + flat_difference);
+  geometry.sin2_beta = 0.25 * (cos_difference * cos_difference + flat_difference);
 
   // Uses the form of cos(dphi) = 1 - 2 sin^2(dphi/2) = 2 cos^2(dphi/2) - 1 with the smaller correction.
   const bool forward = std::abs(half.cos) < std::abs(half.sin);
@@ -74,7 +75,7 @@ kernel::GeometryNode geometry_node(double theta_i_deg, double theta_r_deg, doubl
   node.sin_2eta_i = eta_i.sin;
   node.cos_2eta_r = eta_r.cos;
   node.sin_2eta_r = eta_r.sin;
-  return node;
+  return geometry;
 }
 
 }  // namespace dolp

@@ -16,6 +16,7 @@
 #include "model/smooth_surface.hpp"
 #include "plan/breakpoints.hpp"
 #include "plan/constants.hpp"
+#include "plan/reflectance_curve.hpp"
 #include "plan/rule.hpp"
 #include "plan/rule_nodes.hpp"
 
@@ -151,22 +152,55 @@ kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& sh
   return node;
 }
 
-kernel::IndexNode index_node(const OpticalConstants& index) {
+// The pole of R_p in cos(beta), and the branch point of the amplitudes, both with parts of at least 0.
+struct FresnelSingularities {
+  std::complex<double> pole;
+  std::complex<double> branch;
+};
+
+FresnelSingularities singularities_of(const OpticalConstants& index) {
   const std::complex<double> n(index.n, index.k);
-  const double n2m1_re = (index.n - 1.0) * (index.n + 1.0) - index.k * index.k;
-  const double n2m1_im = 2.0 * index.n * index.k;
+  const std::complex<double> n2m1((index.n - 1.0) * (index.n + 1.0) - index.k * index.k, 2.0 * index.n * index.k);
   const auto bounded_root = [](std::complex<double> square) {
     return std::sqrt(std::abs(square) > kSmallestPole ? square : std::complex<double>(kSmallestPole));
   };
   const std::complex<double> pole = -1.0 / bounded_root(n * n + 1.0);
-  const std::complex<double> branch = bounded_root({n2m1_re, n2m1_im});
-  return {n2m1_re,
-          n2m1_im,
-          pole.real(),
-          std::abs(pole.imag()),
-          std::abs(branch.imag()),
-          std::abs(branch.real()),
-          critical_cosine(index)};
+  const std::complex<double> branch = bounded_root(n2m1);
+  return {{pole.real(), std::abs(pole.imag())}, {std::abs(branch.imag()), std::abs(branch.real())}};
+}
+
+kernel::IndexNode index_node(const FacetOptics& optics) {
+  const OpticalConstants& index = optics.index;
+  // Films add none of these: their amplitudes are even in the wave number across them.
+  const FresnelSingularities nearest = singularities_of(index);
+  return {(index.n - 1.0) * (index.n + 1.0) - index.k * index.k,
+          2.0 * index.n * index.k,
+          nearest.pole.real(),
+          nearest.pole.imag(),
+          nearest.branch.real(),
+          nearest.branch.imag(),
+          critical_cosine(optics),
+          0.0,
+          0.0};
+}
+
+// Tables of the reflectances of all indices, and the nodes that the fringes of films take.
+void add_curves(KernelData& data, const MomentsRequest& request) {
+  data.has_curves = std::ranges::any_of(request.indices, [](const FacetOptics& optics) { return !optics.is_bare(); });
+  if (!data.has_curves) return;
+  double fringes = 0.0;
+  for (std::size_t i = 0; i < request.indices.size(); ++i) {
+    const ReflectanceCurve curve = reflectance_curve(request.indices[i], request.tolerance);
+    data.indices[i].curve_start = static_cast<double>(data.rule_nodes.size());
+    data.indices[i].curve_cells = static_cast<double>(curve.cells);
+    data.indices[i].pole_re = curve.pole.real();
+    data.indices[i].pole_im = curve.pole.imag();
+    data.curve_errors.push_back({curve.error, curve.steepness});
+    data.rule_nodes.insert(data.rule_nodes.end(), curve.nodes.begin(), curve.nodes.end());
+    fringes = std::max(fringes, fringe_count(request.indices[i]));
+  }
+  data.rule.t_nodes += kNodesOfFringe * fringes;
+  data.rule.phi_nodes += kNodesOfFringe * fringes;
 }
 
 // Every direction of a grid, for each of the lines of total reflection that its indices have, without and with the line
@@ -273,7 +307,8 @@ KernelData kernel_data(const MomentsRequest& request, const RuleModel& model) {
   data.rule_nodes = rule_nodes(data.rule_order);
   const bool is_single = request.scattering == Scattering::kSingle;
   if (request.sky) data.sky = append_sky(*request.sky, request.tolerance, is_single, data.rule_nodes);
-  for (const OpticalConstants& index : request.indices) data.indices.push_back(index_node(index));
+  for (const FacetOptics& index : request.indices) data.indices.push_back(index_node(index));
+  add_curves(data, request);
   if (request.response) take_responses(data, *request.response);
   if (data.is_grid) {
     add_grid(data, request);

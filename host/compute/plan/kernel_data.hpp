@@ -41,6 +41,12 @@ struct MomentsEntry {
   std::uint32_t index = 0;
 };
 
+/// Errors of the table of an index, of any of its quantities.
+struct CurveError {
+  double absolute = 0.0;
+  double per_roundoff = 0.0;  ///< of the precision
+};
+
 /// Inputs of one run of the kernel. Of a grid `indices` and `shapes` (sigma x q, q fastest) match its axes and `thetas`
 /// has its directions first, then as often as necessary the variants of them all: for total reflection, whose split
 /// lines depend on the index, and for shapes that need one line more. Of points each has its own direction and index,
@@ -54,6 +60,9 @@ struct KernelData {
   kernel::RuleNode rule{};
   int rule_order = 1;                 ///< largest order of the rule nodes
   bool has_total_reflection = false;  ///< of any index, sharp or nearly so
+  bool has_curves = false;            ///< the kernel reads the reflectances of all indices from tables
+  /// Errors of these tables, for each index; empty without them.
+  std::vector<CurveError> curve_errors;
   bool is_grid = false;
   std::size_t directions = 0;  ///< of the request
   std::vector<kernel::ThetaNode> thetas;
@@ -63,7 +72,7 @@ struct KernelData {
   std::vector<kernel::IndexNode> indices;
   std::vector<std::uint32_t> index_variant;  ///< of each index of a grid, over the first of its variants of directions
   std::vector<std::uint32_t> shape_of;       ///< of each point
-  std::vector<std::array<double, 2>> rule_nodes;  ///< and behind them the cells of the sky
+  std::vector<std::array<double, 2>> rule_nodes;  ///< and behind them the cells of the sky and of tables of reflectances
   SkyTable sky;
   std::optional<Response> response;  ///< the columns; none: they are the functions of the sky
 

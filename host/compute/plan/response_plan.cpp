@@ -227,7 +227,7 @@ std::size_t response_passes(bool wants_direct, std::size_t sky_functions) {
 namespace {
 
 /// The sources of some indices. Depends on nothing but the basis and the indices.
-std::vector<ResponsePlan::Source> sources_of(const ResponseBasis& basis, std::span<const OpticalConstants> indices) {
+std::vector<ResponsePlan::Source> sources_of(const ResponseBasis& basis, std::span<const FacetOptics> indices) {
   std::vector<ResponsePlan::Source> sources(indices.size());
   parallel_ranges(sources.size(), 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) sources[i].weights = basis.weights_of(indices[i]);
@@ -270,12 +270,12 @@ ResponsePlan plan_of_points(const MomentsRequest& request) {
   ResponsePlan plan;
   MomentsRequest reference = without_entries(request), others = reference;
   std::map<std::tuple<double, double, double>, std::uint32_t> passes;
-  std::map<std::pair<double, double>, std::uint32_t> numbers;
-  std::vector<OpticalConstants> indices;
+  std::map<FacetOptics, std::uint32_t> numbers;
+  std::vector<FacetOptics> indices;
   for (std::size_t i = 0; i < request.size(); ++i) {
     MomentsPoint point = request[i];
     const auto [source, is_new_index] =
-        numbers.try_emplace({point.index.n, point.index.k}, static_cast<std::uint32_t>(indices.size()));
+        numbers.try_emplace(point.index, static_cast<std::uint32_t>(indices.size()));
     if (is_new_index) indices.push_back(point.index);
     const auto [pass, is_new] = passes.try_emplace({point.theta_deg, point.shape.sigma, point.shape.q},
                                                    static_cast<std::uint32_t>(reference.size()));

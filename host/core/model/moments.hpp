@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "model/choices.hpp"
-#include "model/optical_constants.hpp"
+#include "model/facet_optics.hpp"
 #include "model/slopes.hpp"
 
 namespace dolp {
@@ -26,7 +26,7 @@ inline constexpr double kLeastFloatTolerance = 2e-6;
 struct MomentsPoint {
   double theta_deg = 0.0;
   SlopeShape shape;
-  OpticalConstants index;
+  FacetOptics index;
   friend bool operator==(const MomentsPoint&, const MomentsPoint&) = default;
 };
 
@@ -62,7 +62,7 @@ struct MomentsRequest {
   std::optional<Response> response;             ///< Moments::columns are the responses
   Layout layout = Layout::kGrid;
   std::vector<double> theta_deg;
-  std::vector<OpticalConstants> indices;
+  std::vector<FacetOptics> indices;  ///< bare, or with films
   std::vector<double> sigma;
   std::vector<double> q;
   std::vector<char> wanted;  ///< of each entry of a grid; empty: all. The moments of the others are undefined

@@ -28,7 +28,7 @@ constexpr std::size_t kMostTried = 32;        // of the run's indices, for which
 /// All known coefficients of the curves of an index; columns: absorbed, split.
 using CurveCoefficients = Eigen::Matrix<double, kCoefficients, 2>;
 
-CurveCoefficients coefficients_of(const OpticalConstants& index, double c0) {
+CurveCoefficients coefficients_of(const FacetOptics& index, double c0) {
   static const std::vector<double> points = lobatto_points(kCoefficients);
   static const Eigen::MatrixXd transform = chebyshev_coefficients(kCoefficients);
   CurveCoefficients values;
@@ -47,27 +47,21 @@ Eigen::RowVector2d errors_of(const CurveCoefficients& all, Eigen::Index count) {
          kCoefficients * all.bottomRows<kLastOfCurve>().cwiseAbs().colwise().maxCoeff();
 }
 
-/// Reference level of the relative errors of a curve.
-double level_of(const OpticalConstants& index) {
-  const SmoothAbsorptance absorbed = smooth_absorptance(index, 1.0);
-  return std::min(absorbed.s, 1.0 - absorbed.s);
-}
-
 /// The fewest polynomials for an index; more than kMostResponses where it is not reached.
-std::size_t needed(const OpticalConstants& index, double c0, double tolerance) {
+std::size_t needed(const FacetOptics& index, double c0, double tolerance) {
   const CurveCoefficients all = coefficients_of(index, c0);
-  const double most = kReach * tolerance * level_of(index);
+  const double most = kReach * tolerance * reflectance_level(index);
   std::size_t count = 2;
   while (count <= kMostResponses && !(errors_of(all, static_cast<Eigen::Index>(count)).maxCoeff() <= most)) ++count;
   return count;
 }
 
 /// At most so many different ones of the indices, spread evenly.
-std::vector<OpticalConstants> candidates_of(const std::vector<OpticalConstants>& indices, std::size_t most) {
-  std::vector<OpticalConstants> candidates;
+std::vector<FacetOptics> candidates_of(const std::vector<FacetOptics>& indices, std::size_t most) {
+  std::vector<FacetOptics> candidates;
   const std::size_t count = std::min(indices.size(), most);
   for (std::size_t i = 0; i < count; ++i) {
-    const OpticalConstants& index = indices[(2 * i + 1) * indices.size() / (2 * count)];
+    const FacetOptics& index = indices[(2 * i + 1) * indices.size() / (2 * count)];
     if (std::ranges::find(candidates, index) == candidates.end()) candidates.push_back(index);
   }
   return candidates;
@@ -82,18 +76,24 @@ double distance_of_bend(const OpticalConstants& index) {
   return std::min(std::abs(pole), std::hypot(std::abs(branch.real()) - nearest, branch.imag()));
 }
 
+double distance_of_bend(const FacetOptics& optics) {
+  double least = distance_of_bend(optics.index);
+  for (const Film& film : optics.films) least = std::min(least, distance_of_bend(film.index));
+  return least;
+}
+
 }  // namespace
 
-std::shared_ptr<const ResponseBasis> ResponseBasis::of(const std::vector<OpticalConstants>& indices, double tolerance,
+std::shared_ptr<const ResponseBasis> ResponseBasis::of(const std::vector<FacetOptics>& indices, double tolerance,
                                                        std::size_t passes) {
-  const std::vector<OpticalConstants> tried = candidates_of(indices, kMostTried);
+  const std::vector<FacetOptics> tried = candidates_of(indices, kMostTried);
   const double of_candidate = static_cast<double>(indices.size()) / static_cast<double>(tried.size());
   std::shared_ptr<ResponseBasis> basis(new ResponseBasis);
   basis->tolerance_ = tolerance;
   double least = static_cast<double>(indices.size()) / kLeastGain;
   for (const double c0 : kScales) {
     std::vector<std::size_t> counts;
-    for (const OpticalConstants& index : tried) counts.push_back(needed(index, c0, tolerance));
+    for (const FacetOptics& index : tried) counts.push_back(needed(index, c0, tolerance));
     for (const std::size_t count : kCounts) {
       const auto left = static_cast<double>(std::ranges::count_if(counts, [&](auto own) { return own > count; }));
       const double time =
@@ -107,12 +107,12 @@ std::shared_ptr<const ResponseBasis> ResponseBasis::of(const std::vector<Optical
   if (basis->count_ == 0) return nullptr;
   double lowest = std::numeric_limits<double>::infinity();
   basis->bend_ = basis->c0_;
-  for (const OpticalConstants& index : candidates_of(indices, kMostCandidates)) {
+  for (const FacetOptics& index : candidates_of(indices, kMostCandidates)) {
     if (needed(index, basis->c0_, tolerance) > basis->count_) continue;
     basis->bend_ = std::min(basis->bend_, distance_of_bend(index));
     // Not one of total reflection: its kink would add to the errors of responses, which have none.
-    if (critical_cosine(index) > 0.0 || level_of(index) >= lowest) continue;
-    lowest = level_of(index);
+    if (critical_cosine(index) > 0.0 || reflectance_level(index) >= lowest) continue;
+    lowest = reflectance_level(index);
     basis->reference_ = index;
   }
   if (std::isinf(lowest)) return nullptr;
@@ -120,11 +120,11 @@ std::shared_ptr<const ResponseBasis> ResponseBasis::of(const std::vector<Optical
   return basis;
 }
 
-std::optional<ResponseWeights> ResponseBasis::weights_of(const OpticalConstants& index) const {
+std::optional<ResponseWeights> ResponseBasis::weights_of(const FacetOptics& index) const {
   const CurveCoefficients all = coefficients_of(index, c0_);
   const auto count = static_cast<Eigen::Index>(count_);
   const Eigen::RowVector2d errors = errors_of(all, count);
-  if (!(errors.maxCoeff() <= kReach * tolerance_ * level_of(index))) return std::nullopt;
+  if (!(errors.maxCoeff() <= kReach * tolerance_ * reflectance_level(index))) return std::nullopt;
   return ResponseWeights{all.col(0).head(count), all.col(1).head(count), errors[0], errors[1]};
 }
 

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "model/optical_constants.hpp"
+#include "model/facet_optics.hpp"
 
 namespace dolp {
 
@@ -29,12 +29,12 @@ class ResponseBasis {
   /// Errors of the combined curves stay below the tolerance, relative to the reflectance or to the absorptance at
   /// normal incidence, whichever is less. `passes`: kernel passes with responses. Null where they cost more than
   /// integrating each index.
-  static std::shared_ptr<const ResponseBasis> of(const std::vector<OpticalConstants>& indices, double tolerance,
+  static std::shared_ptr<const ResponseBasis> of(const std::vector<FacetOptics>& indices, double tolerance,
                                                  std::size_t passes);
 
   /// The index integrated along with the responses: sums relative to it have less noise. It is the one with the
   /// smallest reflectance or absorptance.
-  const OpticalConstants& reference() const { return reference_; }
+  const FacetOptics& reference() const { return reference_; }
   std::size_t count() const { return count_; }
   double c0() const { return c0_; }
   /// Distance of the nearest singularity of the polynomials and the curves from the cosines of angles.
@@ -42,12 +42,12 @@ class ResponseBasis {
   const ResponseWeights& of_reference() const { return of_reference_; }
   /// None for an index whose curves need more responses, as total reflection does. Depends on nothing but the basis
   /// and the index.
-  std::optional<ResponseWeights> weights_of(const OpticalConstants& index) const;
+  std::optional<ResponseWeights> weights_of(const FacetOptics& index) const;
 
  private:
   ResponseBasis() = default;
 
-  OpticalConstants reference_;
+  FacetOptics reference_;
   ResponseWeights of_reference_;
   std::size_t count_ = 0;
   double c0_ = 1.0;

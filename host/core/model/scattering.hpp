@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "model/choices.hpp"
-#include "model/optical_constants.hpp"
+#include "model/facet_optics.hpp"
 #include "model/slopes.hpp"
 
 namespace dolp {
@@ -44,7 +44,7 @@ struct ScatteringRequest {
   Precision precision = Precision::kAuto;       ///< kAuto: float
   std::vector<BeamAngles> angles;
   std::vector<SlopeShape> shapes;
-  std::vector<OpticalConstants> indices;
+  std::vector<FacetOptics> indices;
   std::vector<ScatteringEntry> entries;
 };
 

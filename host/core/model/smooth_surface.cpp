@@ -1,16 +1,18 @@
 #include "model/smooth_surface.hpp"
-#include "model/moments.hpp"
-#include "model/optical_constants.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <numbers>
 
 namespace dolp {
+namespace {
 
-SmoothAbsorptance smooth_absorptance(const OpticalConstants& index, double cosine) {
-  using Complex = std::complex<double>;
+using Complex = std::complex<double>;
+
+SmoothAbsorptance bare_absorptance(const OpticalConstants& index, double cosine) {
   // Squares of squares of what is smaller underflow, and what it absorbs is less than 4e-75.
   constexpr double kLeast = 1e-75;
   const double n = index.k < kLeast ? std::max(index.n, kLeast) : index.n;
@@ -28,15 +30,75 @@ SmoothAbsorptance smooth_absorptance(const OpticalConstants& index, double cosin
           transmitted / of_s * (std::norm(square - 1.0) / of_p)};
 }
 
-double critical_cosine(const OpticalConstants& index) {
+/// 1 - R_s and 1 - R_p of films, or of measured reflectances.
+SmoothAbsorptance covered_absorptance(const FacetOptics& optics, double cosine) {
+  if (!optics.measured) {
+    const ReflectedAmplitudes r = film_amplitudes(optics, cosine);
+    return {std::max(1.0 - std::norm(r.s), 0.0), std::max(1.0 - std::norm(r.p), 0.0)};
+  }
+  const MeasuredReflectance& measured = *optics.measured;
+  const double beta_deg = std::acos(std::min(cosine, 1.0)) * 180.0 / std::numbers::pi;
+  const auto above = std::ranges::upper_bound(measured.beta_deg, beta_deg);
+  const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
+      above - measured.beta_deg.begin(), 1, static_cast<std::ptrdiff_t>(measured.beta_deg.size()) - 1));
+  const double share = (beta_deg - measured.beta_deg[i - 1]) / (measured.beta_deg[i] - measured.beta_deg[i - 1]);
+  const double r_s = std::lerp(measured.r_s[i - 1], measured.r_s[i], share);
+  const double r_p = std::lerp(measured.r_p[i - 1], measured.r_p[i], share);
+  if (i > 1) return {1.0 - r_s, 1.0 - r_p};
+  // Next to normal incidence the difference goes as sin^2.
+  const double end = std::sin(measured.beta_deg[1] * std::numbers::pi / 180.0);
+  const double half = 0.5 * (measured.r_s[1] - measured.r_p[1]) * (1.0 - cosine) * (1.0 + cosine) / (end * end);
+  const double mean = 0.5 * (r_s + r_p);
+  return {1.0 - mean - half, 1.0 - mean + half};
+}
+
+/// (R_s - R_p) / sin^2: both reflectances agree at normal incidence, next to which it is a straight line in sin^2.
+double split_of(const FacetOptics& optics, double cosine, const SmoothAbsorptance& own) {
+  constexpr double kStep = 1e-5;
+  const double sin2 = (1.0 - cosine) * (1.0 + cosine);
+  if (sin2 >= kStep) return (own.p - own.s) / sin2;
+  const auto at = [&](double square) {
+    const SmoothAbsorptance absorbed = covered_absorptance(optics, std::sqrt(1.0 - square));
+    return (absorbed.p - absorbed.s) / square;
+  };
+  const double first = at(kStep);
+  return first + (sin2 / kStep - 1.0) * (at(2.0 * kStep) - first);
+}
+
+}  // namespace
+
+SmoothAbsorptance smooth_absorptance(const FacetOptics& optics, double cosine) {
+  if (optics.is_bare()) return bare_absorptance(optics.index, cosine);
+  SmoothAbsorptance absorbed = covered_absorptance(optics, cosine);
+  absorbed.split = split_of(optics, cosine, absorbed);
+  return absorbed;
+}
+
+double reflectance_level(const FacetOptics& optics) {
+  if (optics.is_bare()) {
+    const double absorbed = bare_absorptance(optics.index, 1.0).s;
+    return std::min(absorbed, 1.0 - absorbed);
+  }
+  constexpr std::array<double, 4> kCosines = {1.0, 0.75, 0.5, 0.25};
+  double absorbed = 0.0;
+  for (const double cosine : kCosines) {
+    const SmoothAbsorptance at = covered_absorptance(optics, cosine);
+    absorbed += 0.5 * (at.s + at.p) / static_cast<double>(kCosines.size());
+  }
+  return std::min(absorbed, 1.0 - absorbed);
+}
+
+double critical_cosine(const FacetOptics& optics) {
+  if (optics.measured) return 0.0;
+  const OpticalConstants& index = optics.index;
   constexpr double kSoft = 0.3;  // chosen, of Im N^2: from there on the rules need no line
   const double squared = (1.0 - index.n) * (1.0 + index.n) + index.k * index.k;
   const bool is_sharp = 2.0 * index.n * index.k < kSoft;
   return is_sharp && squared > 0.0 && squared < 1.0 ? std::sqrt(squared) : 0.0;
 }
 
-Moments mirror_moments(const OpticalConstants& index, double cosine) {
-  const SmoothAbsorptance absorbed = smooth_absorptance(index, cosine);
+Moments mirror_moments(const FacetOptics& optics, double cosine) {
+  const SmoothAbsorptance absorbed = smooth_absorptance(optics, cosine);
   const double rounding = 16.0 * std::numeric_limits<double>::epsilon() * cosine;
   Moments moments;
   moments.albedo = cosine;

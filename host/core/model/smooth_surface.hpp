@@ -1,5 +1,6 @@
 #pragma once
 
+#include "model/facet_optics.hpp"
 #include "model/moments.hpp"
 
 namespace dolp {
@@ -13,19 +14,24 @@ struct SmoothAbsorptance {
 
 /// Absorptance of a smooth surface at an angle of incidence.
 ///
-/// Equation: 1 - R_s = 4 c Re(w) / |c + w|^2, 1 - R_p = 4 c Re(N^2* w) / |N^2 c + w|^2, w = sqrt(N^2 - 1 + c^2).
+/// Equation: 1 - R_s = 4 c Re(w) / |c + w|^2, 1 - R_p = 4 c Re(N^2* w) / |N^2 c + w|^2, w = sqrt(N^2 - 1 + c^2); with
+/// films 1 - |r|^2 of film_amplitudes.
 /// Domain: cosine c in (0, 1], n > 0, k >= 0; total reflection (n < 1, k = 0) gives exactly 0.
-/// Accuracy: no cancellation, however good the reflector.
-SmoothAbsorptance smooth_absorptance(const OpticalConstants& index, double cosine);
+/// Accuracy: a bare medium: no cancellation, however good the reflector. Films: 1e-14; their split 1e-10 of it.
+SmoothAbsorptance smooth_absorptance(const FacetOptics& optics, double cosine);
+
+/// The smaller of reflectance and absorptance, to which errors are relative: at normal incidence, and under films their
+/// means over a few angles, because films may reflect nothing at one of them.
+double reflectance_level(const FacetOptics& optics);
 
 /// Cosine of the angle at which total reflection begins, sqrt(1 - Re N^2), where that is a kink (k = 0) or nearly one;
 /// 0 elsewhere.
-double critical_cosine(const OpticalConstants& index);
+double critical_cosine(const FacetOptics& optics);
 
 /// Moments of the mirror, the limit sigma -> 0 of every surface: R_s and R_p at the direction itself, no masking.
 ///
 /// Domain: cosine in (0, 1].
 /// Accuracy: as smooth_absorptance.
-Moments mirror_moments(const OpticalConstants& index, double cosine);
+Moments mirror_moments(const FacetOptics& optics, double cosine);
 
 }  // namespace dolp

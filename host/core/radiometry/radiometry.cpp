@@ -190,7 +190,7 @@ PointResult Radiometry::point(const Direction& direction, std::span<const Moment
 }
 
 PointResult Radiometry::point(const Direction& direction, std::span<const Moments> moments,
-                              std::span<const OpticalConstants> indices) const {
+                              std::span<const FacetOptics> indices) const {
   assert(moments.size() == rule_.samples.size() && indices.size() == moments.size());
   if (!std::ranges::all_of(moments, is_known)) return outside_domain();
   if (reflectance_diverges(scene_.surface, direction, moments)) {
@@ -200,7 +200,7 @@ PointResult Radiometry::point(const Direction& direction, std::span<const Moment
 }
 
 PointResult Radiometry::bistatic_point(const Direction& view, double cos_theta_i, std::span<const Moments> moments,
-                                       std::span<const OpticalConstants> indices,
+                                       std::span<const FacetOptics> indices,
                                        std::span<const Scattered> scattered) const {
   assert(moments.size() == rule_.samples.size() && scattered.size() == moments.size());
   if (!std::ranges::all_of(moments, is_known)) return outside_domain();
@@ -213,7 +213,7 @@ PointResult Radiometry::bistatic_point(const Direction& view, double cos_theta_i
 }
 
 PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_theta,
-                                 std::span<const OpticalConstants> indices, double cos_theta_i,
+                                 std::span<const FacetOptics> indices, double cos_theta_i,
                                  std::span<const Scattered> scattered) const {
   const bool bistatic = scene_.geometry.mode == Mode::kBistatic;
   PointResult result;

@@ -45,16 +45,16 @@ class Radiometry {
   /// The same with other indices than those of rule(), as scattered points with their own n or k have; only the fresnel
   /// emission uses them.
   PointResult point(const Direction& direction, std::span<const Moments> moments,
-                    std::span<const OpticalConstants> indices) const;
+                    std::span<const FacetOptics> indices) const;
 
   /// Bistatic result: `moments` and rho at the view direction, the source at theta_i.
   /// Shape: one Moments and one Scattered per sample of rule(), in its order.
   /// Domain: a view at 90 degrees as in `point`, but where rho diverges everything is NaN with status 1 | 4.
   PointResult bistatic_point(const Direction& view, double cos_theta_i, std::span<const Moments> moments,
-                             std::span<const OpticalConstants> indices, std::span<const Scattered> scattered) const;
+                             std::span<const FacetOptics> indices, std::span<const Scattered> scattered) const;
 
  private:
-  PointResult assemble(std::span<const Moments> moments, double cos_theta, std::span<const OpticalConstants> indices,
+  PointResult assemble(std::span<const Moments> moments, double cos_theta, std::span<const FacetOptics> indices,
                        double cos_theta_i, std::span<const Scattered> scattered) const;
 
   PointResult finished(PointResult result) const;
@@ -66,7 +66,7 @@ class Radiometry {
   bool knows_rho_;
   SpectralRule rule_;
   SpectralRule kept_rule_;  ///< without the factors that are not kept
-  std::vector<OpticalConstants> indices_;
+  std::vector<FacetOptics> indices_;
   std::vector<SkyFactor> sky_;  ///< of each sample; empty without a profile
 };
 

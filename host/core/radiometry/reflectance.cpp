@@ -83,7 +83,7 @@ MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Refle
   return mean;
 }
 
-Emissivity fresnel_emissivity(const OpticalConstants& index, double cos_theta) {
+Emissivity fresnel_emissivity(const FacetOptics& index, double cos_theta) {
   const SmoothAbsorptance absorptance = smooth_absorptance(index, cos_theta);
   const double mean = 0.5 * (absorptance.s + absorptance.p);
   return {.i = mean, .q = 0.5 * (absorptance.s - absorptance.p), .terms = mean};

@@ -48,7 +48,7 @@ bool is_unphysical(const Reflectance& r);
 MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances, double cos_theta);
 
 /// Emissivity of the smooth surface.
-Emissivity fresnel_emissivity(const OpticalConstants& index, double cos_theta);
+Emissivity fresnel_emissivity(const FacetOptics& index, double cos_theta);
 
 /// Emissivity of the facets, straight to the viewer.
 ///

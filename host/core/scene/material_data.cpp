@@ -105,6 +105,34 @@ OpticalConstants Material::at(double wavelength_um) const {
   return {n.at(wavelength_um), k.wavelength_um.empty() ? constant.k : k.at(wavelength_um)};
 }
 
+bool Surface::has_constant_optics() const {
+  return coating.empty() && (reflectance ? reflectance->measured.size() == 1 : material.is_constant());
+}
+
+FacetOptics Surface::optics_at(double wavelength_um) const {
+  FacetOptics optics;
+  if (reflectance) {
+    optics.measured = reflectance->at(wavelength_um);
+    return optics;
+  }
+  optics.index = material.at(wavelength_um);
+  for (const Layer& layer : coating)
+    optics.films.push_back({layer.material.at(wavelength_um), layer.thickness_um / wavelength_um});
+  return optics;
+}
+
+std::vector<double> Surface::optics_rows_um() const {
+  if (reflectance) return reflectance->wavelength_um;
+  std::vector<double> rows;
+  const auto add = [&](const Material& of) {
+    for (const SpectralTable* table : {&of.n, &of.k})
+      rows.insert(rows.end(), table->wavelength_um.begin(), table->wavelength_um.end());
+  };
+  add(material);
+  for (const Layer& layer : coating) add(layer.material);
+  return rows;
+}
+
 void append_index(Material& material, double wavelength_um, std::optional<double> n, std::optional<double> k,
                   const std::string& where) {
   if (n) append_row(material.n, wavelength_um, {"n", *n, kNRange}, where);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "model/choices.hpp"
-#include "model/optical_constants.hpp"
+#include "model/facet_optics.hpp"
 #include "model/scene_entry.hpp"
 #include "scene/dispersion.hpp"
 #include "scene/sky_profile.hpp"
@@ -40,8 +40,24 @@ struct Material {
   OpticalConstants at(double wavelength_um) const;
 };
 
+/// A film of a coating.
+struct Layer {
+  Material material;
+  double thickness_um = 0.0;
+};
+
+/// Reflectances of a smooth surface at ascending wavelengths; one of them is for all wavelengths.
+struct ReflectanceTable {
+  std::vector<double> wavelength_um;
+  std::vector<std::shared_ptr<const MeasuredReflectance>> measured;
+  /// Straight lines between wavelengths.
+  std::shared_ptr<const MeasuredReflectance> at(double wavelength_um) const;
+};
+
 struct Surface {
   Material material;
+  std::vector<Layer> coating;  ///< from the outside in
+  std::shared_ptr<const ReflectanceTable> reflectance = nullptr;  ///< instead of material and coating
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
   Scattering scattering = Scattering::kSingle;  ///< kMultiple: with v-cavity
@@ -53,6 +69,12 @@ struct Surface {
   double diffuse_exponent = -0.5;  ///< c in (-1, 0]
   /// True if the masking needs the mean slope, which the distribution does not always have: kSmithCauchyQRange.
   bool needs_mean_slope() const { return masking == Masking::kSmith && distribution == Distribution::kCauchy; }
+  bool is_bare() const { return coating.empty() && !reflectance; }
+  /// True if the facets reflect alike at all wavelengths.
+  bool has_constant_optics() const;
+  FacetOptics optics_at(double wavelength_um) const;
+  /// Wavelengths at which the optics bend: the rows of tables.
+  std::vector<double> optics_rows_um() const;
 };
 
 struct Emission {
@@ -103,7 +125,11 @@ struct Accuracy {
 
 /// Names in a scene, that of the material in full; empty where the scene gives no name.
 struct SceneNames {
-  std::string material, material_file;
+  struct OfLayer {
+    std::string material, material_file;
+  };
+  std::string material, material_file, reflectance_file;
+  std::vector<OfLayer> coating;
   std::string source_preset, source_file;
   std::string profile;  ///< built-in, or a file
 };

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdint>
 #include <dolp/errors.hpp>
+#include <limits>
 #include <optional>
 #include <sstream>
 #include <variant>
@@ -71,6 +73,14 @@ std::size_t line_of_deep_nesting(std::string_view text) {
              1;
   }
   return 0;
+}
+
+/// Position in a list, whose elements count from 1 in a key; beyond every list for anything else.
+std::size_t list_position(std::string_view part) {
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
+  const bool is_number = error == std::errc() && end == part.data() + part.size() && number > 0;
+  return is_number ? number - 1 : std::numeric_limits<std::size_t>::max();
 }
 
 std::string last_part(std::string_view key) { return std::string(key.substr(key.find_last_of('.') + 1)); }
@@ -175,14 +185,32 @@ void SceneDocument::apply(const Setting& setting) {
 
 toml::table& SceneDocument::create_table(const std::vector<std::string_view>& path, const std::string& origin) {
   toml::table* table = &root_;
+  toml::array* list = nullptr;  // whose element comes next
   std::string key;
   for (const std::string_view part : path) {
-    key += (key.empty() ? "" : ".") + std::string(part);
-    if (!table->contains(part)) {
-      table->insert(part, toml::table{});
-      origins_[key] = origin;
+    if (list) {
+      const std::size_t position = list_position(part);
+      if (position > list->size()) {
+        throw InputError(fmt::format("{}: {} has {} layers, and the next is {}", origin, key, list->size(),
+                                     list->size() + 1));
+      }
+      key += '.' + std::string(part);
+      if (position == list->size()) {
+        list->push_back(toml::table{});
+        origins_[key] = origin;
+      }
+      table = list->get_as<toml::table>(position);
+      list = nullptr;
+    } else {
+      key += (key.empty() ? "" : ".") + std::string(part);
+      if (!table->contains(part)) {
+        if (is_coating(key)) table->insert(part, toml::array{});
+        if (!is_coating(key)) table->insert(part, toml::table{});
+        origins_[key] = origin;
+      }
+      list = is_coating(key) ? table->get_as<toml::array>(part) : nullptr;
+      table = list ? table : table->get_as<toml::table>(part);
     }
-    table = table->get_as<toml::table>(part);
     if (!table) throw InputError(fmt::format("{}: {} is not a table in this scene", origin, one_line(key)));
   }
   return *table;
@@ -195,17 +223,23 @@ void SceneDocument::drop_other_alternatives(const std::string& key) {
 }
 
 void SceneDocument::erase(const std::string& key) {
-  const std::string_view table_name = table_part(key);
-  toml::table* table = table_name.empty() ? &root_ : root_.get_as<toml::table>(table_name);
-  if (table) table->erase(last_part(key));
+  const std::string_view around = table_part(key);
+  toml::node* parent = around.empty() ? &root_ : const_cast<toml::node*>(find(around));
+  if (toml::table* table = parent ? parent->as_table() : nullptr) table->erase(last_part(key));
+  if (toml::array* list = parent ? parent->as_array() : nullptr; list && find(key))
+    list->erase(list->begin() + static_cast<std::ptrdiff_t>(list_position(last_part(key))));
   std::erase_if(origins_, [&](const auto& entry) { return entry.first == key || entry.first.starts_with(key + '.'); });
 }
 
 const toml::node* SceneDocument::find(std::string_view key) const {
   const toml::node* node = &root_;
   for (const std::string_view part : split(key, '.')) {
-    const toml::table* table = node->as_table();
-    node = table ? table->get(part) : nullptr;
+    if (const toml::array* list = node->as_array()) {
+      node = list->get(list_position(part));
+    } else {
+      const toml::table* table = node->as_table();
+      node = table ? table->get(part) : nullptr;
+    }
     if (!node) return nullptr;
   }
   return node;

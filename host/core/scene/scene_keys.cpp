@@ -1,7 +1,10 @@
 #include "scene/scene_keys.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
+#include <type_traits>
 #include <utility>
 
 #include "base/text.hpp"
@@ -30,7 +33,7 @@ std::optional<KeyValue> value_at(const std::vector<double>* at) {
 // In all of these `place` gives the address of the key's value in a Scene.
 
 template <class Place>
-SceneKey number(const char* key, const char* unit, const NumberRange& range, const char* fallback, const char* meaning,
+SceneKey number(const std::string& key, const char* unit, const NumberRange& range, const char* fallback, const char* meaning,
                 Place place) {
   return {{key, Type::kNumber, unit, range, {}, fallback, meaning},
           [place](SceneValues& s, const KeyValue& v) { *place(s) = v.number; },
@@ -39,7 +42,7 @@ SceneKey number(const char* key, const char* unit, const NumberRange& range, con
 
 /// One of several keys for one thing: its place is there once it was set.
 template <class Place, class Set>
-SceneKey number(const char* key, const char* unit, const NumberRange& range, const char* fallback, const char* meaning,
+SceneKey number(const std::string& key, const char* unit, const NumberRange& range, const char* fallback, const char* meaning,
                 Place place, Set set) {
   return {{key, Type::kNumber, unit, range, {}, fallback, meaning}, set, [place](const SceneValues& s) {
             return value_at(place(s));
@@ -67,7 +70,7 @@ SceneKey flag(const char* key, const char* meaning, Place place) {
 }
 
 template <class Place>
-SceneKey text(const char* key, const char* meaning, Place place) {
+SceneKey text(const std::string& key, const char* meaning, Place place) {
   return {{key, Type::kText, "", {}, {}, "", meaning},
           [place](SceneValues& s, const KeyValue& v) { *place(s) = v.text; },
           [place](const SceneValues& s) { return value_at(place(s)); }};
@@ -110,6 +113,53 @@ SceneKey wind_axis() {
           [](const SceneValues& s) { return value_at(&s.wind_m_s); }};
 }
 
+/// The layer of a key, counted from 1 in its name; made where the scene has fewer.
+Layer& layer_of(SceneValues& s, std::size_t layer) {
+  if (s.surface.coating.size() < layer) {
+    s.surface.coating.resize(layer);
+    s.names.coating.resize(layer);
+  }
+  return s.surface.coating[layer - 1];
+}
+
+std::vector<SceneKey> layer_keys(std::size_t layer) {
+  const std::string begin = fmt::format("surface.coating.{}.", layer);
+  const auto has_layer = [layer](const SceneValues& s) { return s.surface.coating.size() >= layer; };
+  const auto index_place = [=](auto OpticalConstants::*part) {
+    return [=](const SceneValues& s) -> const double* {
+      if (!has_layer(s)) return nullptr;
+      const SceneNames::OfLayer& names = s.names.coating[layer - 1];
+      const bool has_name = !names.material.empty() || !names.material_file.empty();
+      return has_name ? nullptr : &(s.surface.coating[layer - 1].material.constant.*part);
+    };
+  };
+  const auto set_index = [=](auto OpticalConstants::*part) {
+    return [=](SceneValues& s, const KeyValue& v) { layer_of(s, layer).material.constant.*part = v.number; };
+  };
+  const auto name_place = [=](auto SceneNames::OfLayer::*name) {
+    return [=](auto& s) {
+      if constexpr (!std::is_const_v<std::remove_reference_t<decltype(s)>>) layer_of(s, layer);
+      return has_layer(s) ? &(s.names.coating[layer - 1].*name) : nullptr;
+    };
+  };
+  std::vector<SceneKey> keys = {
+      number(begin + "n", "1", kNRange, "", "n of a film on the surface; layers count from the outside in",
+             index_place(&OpticalConstants::n), set_index(&OpticalConstants::n)),
+      number(begin + "k", "1", kKRange, "0", "k of the film, with n", index_place(&OpticalConstants::k),
+             set_index(&OpticalConstants::k)),
+      text(begin + "material", "a built-in material by name, instead of the film's n and k",
+           name_place(&SceneNames::OfLayer::material)),
+      text(begin + "material_file", "your own n and k of the film, instead of n and k",
+           name_place(&SceneNames::OfLayer::material_file)),
+      number(
+          begin + "thickness_um", "um", kThicknessUmRange, "required", "thickness of the film",
+          [=](const SceneValues& s) { return has_layer(s) ? &s.surface.coating[layer - 1].thickness_um : nullptr; },
+          [=](SceneValues& s, const KeyValue& v) { layer_of(s, layer).thickness_um = v.number; }),
+  };
+  for (SceneKey& key : keys) key.description.layer = layer;
+  return keys;
+}
+
 std::vector<SceneKey> surface_keys() {
   return {
       text("title", "name of the scene, for the table and the window", [](auto& s) { return &s.title; }),
@@ -125,6 +175,10 @@ std::vector<SceneKey> surface_keys() {
            [](auto& s) { return &s.names.material; }),
       text("surface.material_file", "your own n and k: refractiveindex.info YAML or CSV, instead of n and k",
            [](auto& s) { return &s.names.material_file; }),
+      text("surface.reflectance_file",
+           "measured reflectances of the smooth surface: CSV of beta_deg, r_s, r_p, maybe wavelength_um; instead of n, "
+           "k and a coating",
+           [](auto& s) { return &s.names.reflectance_file; }),
       choice("surface.distribution", Surface().distribution, "slope distribution D",
              [](auto& s) { return &s.surface.distribution; }),
       number(
@@ -281,6 +335,7 @@ std::vector<SceneKey> geometry_keys() {
 const std::vector<SceneKey>& scene_key_table() {
   static const std::vector<SceneKey> keys = [] {
     std::vector<SceneKey> all = surface_keys();
+    for (std::size_t layer = 1; layer <= kMostLayers; ++layer) append(all, layer_keys(layer));
     append(all, radiation_keys());
     append(all, geometry_keys());
     return all;
@@ -289,14 +344,25 @@ const std::vector<SceneKey>& scene_key_table() {
 }
 
 const std::vector<KeyChoice>& key_choices() {
-  static const std::vector<KeyChoice> choices = {
-      {"surface", {{"surface.n", "surface.k"}, {"surface.material"}, {"surface.material_file"}}, true, "grid.n"},
+  static const std::vector<KeyChoice> choices = [] {
+    std::vector<KeyChoice> all = {
+      {"surface",
+       {{"surface.n", "surface.k"}, {"surface.material"}, {"surface.material_file"}, {"surface.reflectance_file"}},
+       true,
+       "grid.n"},
       {"surface", {{"surface.sigma", "grid.sigma"}, {"surface.wind_m_s", "grid.wind_m_s"}}, true, {}, true},
       {"source", {{"source.irradiance"}, {"source.relative_irradiance"}, {"source.preset"}, {"source.file"}}},
       {"surroundings", {{"surroundings.temperature_K"}, {"surroundings.profile"}}},
       {"path", {{"path.temperature_K"}, {"path.radiance"}}, false},
       {"spectrum", {{"spectrum.wavelength_um"}, {"spectrum.band_um"}}, true, "grid.wavelength_um"},
-  };
+    };
+    for (std::size_t layer = 1; layer <= kMostLayers; ++layer) {
+      const std::string table = fmt::format("surface.coating.{}", layer);
+      const auto key = [&](const char* name) { return table + '.' + name; };
+      all.push_back({table, {{key("n"), key("k")}, {key("material")}, {key("material_file")}}, true, {}, false, true});
+    }
+    return all;
+  }();
   return choices;
 }
 
@@ -365,9 +431,16 @@ bool is_effect_table(std::string_view table) {
   return table == "emission" || table == "source" || table == "surroundings" || table == "path";
 }
 
+bool is_coating(std::string_view key) {
+  constexpr std::string_view kCoating = "surface.coating";
+  if (!key.starts_with(kCoating)) return false;
+  const std::string_view layer = key.substr(kCoating.size());
+  return layer.empty() || (layer.front() == '.' && layer.find('.', 1) == std::string_view::npos);
+}
+
 bool is_removed_by_none(std::string_view key) {
   const SceneKey* known = find_scene_key(key);
-  if (!known) return is_effect_table(key);
+  if (!known) return is_effect_table(key) || is_coating(key);
   return known->description.type != Key::Type::kWord && known->description.type != Key::Type::kText;
 }
 

@@ -34,7 +34,10 @@ struct KeyChoice {
   bool is_required = true;        ///< if the table is there, or must be
   std::string substitute = {};    ///< a key that does instead
   bool does_each_choose = false;  ///< any key of an alternative chooses it, alone or with the others
+  bool is_of_layer = false;       ///< of a layer of a coating, which a scene may lack
 };
+
+inline constexpr std::size_t kMostLayers = 16;  ///< of a coating
 
 const std::vector<SceneKey>& scene_key_table();
 const std::vector<KeyChoice>& key_choices();
@@ -48,6 +51,9 @@ std::vector<std::string> scene_tables();
 
 /// True if a scene without that table has no such effect.
 bool is_effect_table(std::string_view table);
+
+/// True for the coating of a scene and for one of its layers: "surface.coating", "surface.coating.2".
+bool is_coating(std::string_view key);
 
 /// True if the word none takes a key or a table away. Where it may be a value, `{}` does.
 bool is_removed_by_none(std::string_view key);

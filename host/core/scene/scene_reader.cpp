@@ -14,6 +14,7 @@
 #include "base/text.hpp"
 #include "model/direction.hpp"
 #include "scene/material_data.hpp"
+#include "scene/reflectance_file.hpp"
 #include "scene/scene_document.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/scene_values.hpp"
@@ -36,6 +37,22 @@ std::string key_hint(const std::string& key) {
                            [&](const std::string& a, const std::string& b) { return distance(a) < distance(b); });
 }
 
+/// The keys of a coating, a list of tables.
+void append_layer_keys(const SceneDocument& document, const std::string& coating, const toml::node& node,
+                       std::vector<std::string>& keys) {
+  const std::string allowed =
+      fmt::format("must be a list of at most {} tables, from the outside in: [{{ material = \"...\", thickness_um = 0.5 }}]",
+                  kMostLayers);
+  const toml::array* layers = node.as_array();
+  if (!layers || layers->size() > kMostLayers) document.fail(coating, allowed);
+  for (std::size_t i = 0; i < layers->size(); ++i) {
+    const std::string layer = fmt::format("{}.{}", coating, i + 1);
+    const toml::table* table = layers->get(i)->as_table();
+    if (!table) document.fail(layer, allowed);
+    for (const auto& [name, value] : *table) keys.push_back(layer + '.' + std::string(name.str()));
+  }
+}
+
 /// Every key of the document that should be in the list of keys, in the order of the lines.
 std::vector<std::string> document_keys(const SceneDocument& document) {
   std::vector<std::string> keys;
@@ -48,7 +65,14 @@ std::vector<std::string> document_keys(const SceneDocument& document) {
       continue;
     }
     if (!node.is_table()) document.fail(key, fmt::format("must be a table, [{}]", key));
-    for (const auto& [inner, inner_node] : *node.as_table()) keys.push_back(key + '.' + std::string(inner.str()));
+    for (const auto& [inner, inner_node] : *node.as_table()) {
+      const std::string inner_key = key + '.' + std::string(inner.str());
+      if (is_coating(inner_key)) {
+        append_layer_keys(document, inner_key, inner_node, keys);
+      } else {
+        keys.push_back(inner_key);
+      }
+    }
   }
   std::stable_sort(keys.begin(), keys.end(), [&](const std::string& a, const std::string& b) {
     return document.line_of(a) < document.line_of(b);
@@ -78,7 +102,7 @@ void check_choice(const SceneDocument& document, const KeyChoice& choice) {
   const bool is_present = document.find(choice.table) != nullptr;
   const bool has_substitute = !choice.substitute.empty() && document.find(choice.substitute);
   if (chosen_key(document, choice) || !choice.is_required || has_substitute) return;
-  if (!is_present && is_effect_table(choice.table)) return;
+  if (!is_present && (is_effect_table(choice.table) || choice.is_of_layer)) return;
   std::vector<std::string> heads;
   for (const auto& alternative : choice.alternatives) heads.push_back(alternative.front());
   document.fail(heads.front(), fmt::format("missing; must be {}, or give one of {}",
@@ -111,8 +135,9 @@ void check_wind(const SceneValues& scene, const SceneDocument& document) {
 
 void check_required(const SceneDocument& document, const Key& known) {
   if (known.fallback != "required" || !known.rivals.empty() || document.find(known.key)) return;
-  const std::string table = known.key.substr(0, known.key.find('.'));
-  if (document.find(table) || !is_effect_table(table)) document.fail(known.key, "missing; must be " + known.allowed());
+  const std::string table = known.key.substr(0, known.key.rfind('.'));
+  const bool may_lack = is_effect_table(table) || known.layer > 0;
+  if (document.find(table) || !may_lack) document.fail(known.key, "missing; must be " + known.allowed());
 }
 
 /// Errors that are told together, in one line.
@@ -197,34 +222,56 @@ Spectrum all_wavelengths(const SceneValues& scene) {
   return all;
 }
 
-void load_material(SceneValues& scene, const SceneDocument& document, const std::string& scene_path,
-                   const KnownData* known) {
-  const bool is_file = document.find("surface.material_file") != nullptr;
-  if (!is_file && !document.find("surface.material")) return;
-  const std::string prefix = document.prefix(is_file ? "surface.material_file" : "surface.material");
-  Material& material = scene.surface.material;
+/// Loads the material of the table `prefix_key`: the surface, or a layer of its coating. `own` is as a table has it.
+void load_material(SceneValues& scene, const SceneDocument& document, const std::string& table, Material& material,
+                   std::string& name, const std::string& file, const KnownData* known, const Material* own) {
+  const bool is_file = document.find(table + ".material_file") != nullptr;
+  if (!is_file && !document.find(table + ".material")) return;
+  const std::string prefix = document.prefix(table + (is_file ? ".material_file" : ".material"));
   const Spectrum all = all_wavelengths(scene);
   const auto check_axis = [&](const Material& used) {
     const Material& known_everywhere = used.tabulated ? *used.tabulated : used;
     check_covers(known_everywhere, all, prefix);
     for (const double um : scene.grid[Axis::kWavelength]) check_formula(known_everywhere, {um, um}, prefix);
   };
-  if (known && known->material) {
-    material = *known->material;
-    material.name = is_file ? scene.names.material_file : scene.names.material;
+  if (own) {
+    material = *own;
+    material.name = is_file ? file : name;
     if (material.is_constant()) return;
     material = fit_to_spectrum(material, scene.spectrum, prefix);
   } else if (is_file) {
-    material = read_file_of(scene, scene.names.material_file, scene_path, prefix, known, [&](const std::string& path) {
+    material = read_file_of(scene, file, scene.path_name, prefix, known, [&](const std::string& path) {
       Material read = read_material_file(path, scene.spectrum, prefix);
       check_axis(read);
       return read;
     });
   } else {
-    material = find_material(scene.names.material, scene.spectrum, prefix);
-    scene.names.material = material.name;
+    material = find_material(name, scene.spectrum, prefix);
+    name = material.name;
   }
   check_axis(material);
+}
+
+void load_materials(SceneValues& scene, const SceneDocument& document, const KnownData* known) {
+  Surface& surface = scene.surface;
+  load_material(scene, document, "surface", surface.material, scene.names.material, scene.names.material_file, known,
+                known && known->material ? &*known->material : nullptr);
+  for (std::size_t i = 0; i < surface.coating.size(); ++i) {
+    SceneNames::OfLayer& names = scene.names.coating[i];
+    const bool is_known = known && i < known->layers.size() && known->layers[i];
+    load_material(scene, document, fmt::format("surface.coating.{}", i + 1), surface.coating[i].material,
+                  names.material, names.material_file, known, is_known ? &*known->layers[i] : nullptr);
+  }
+  if (!document.find("surface.reflectance_file")) return;
+  const std::string prefix = document.prefix("surface.reflectance_file");
+  if (!surface.coating.empty()) throw InputError(prefix + "cannot be combined with surface.coating");
+  ReflectanceTable table =
+      known && known->reflectance
+          ? *known->reflectance
+          : read_file_of(scene, scene.names.reflectance_file, scene.path_name, prefix, known,
+                         [&](const std::string& path) { return read_reflectance_file(path, prefix); });
+  if (!table.wavelength_um.empty()) check_covers({table.wavelength_um, {}}, all_wavelengths(scene), prefix);
+  surface.reflectance = std::make_shared<const ReflectanceTable>(std::move(table));
 }
 
 void load_source(SceneValues& scene, const SceneDocument& document, const std::string& scene_path,
@@ -286,7 +333,7 @@ void fill_from_grid(SceneValues& scene, const SceneDocument& document) {
       scene.spectrum = {grid[Axis::kWavelength].front(), grid[Axis::kWavelength].front()};
   }
   for (const char* axis : {"grid.n", "grid.k"}) {
-    for (const char* material : {"surface.material", "surface.material_file"}) {
+    for (const char* material : {"surface.material", "surface.material_file", "surface.reflectance_file"}) {
       if (document.find(axis) && document.find(material))
         document.fail(document.first_set({axis, material}),
                       fmt::format("{} and {} cannot be combined", axis, material));
@@ -330,6 +377,7 @@ void check_scattering(const SceneValues& scene, const SceneDocument& document) {
   if (surface.scattering == Scattering::kMultiple) {
     check_needs(document, "surface.scattering",
                 {{surface.masking == Masking::kVCavity, "surface.masking = \"v-cavity\""},
+                 {surface.is_bare(), "no surface.coating or surface.reflectance_file"},
                  {!is_direct, "emission.model = \"moments\" or \"fresnel\""},
                  {!emission.has_bracket, "emission.bracket = false"}});
   }
@@ -356,7 +404,8 @@ void check_radiation(const SceneValues& scene, const SceneDocument& document) {
 /// Applies a setting. Errors: InputError, also where it takes a key away that no scene has.
 void apply(SceneDocument& document, const Setting& setting) {
   const std::vector<std::string> tables = scene_tables();
-  const bool is_known = find_scene_key(setting.key) || std::ranges::find(tables, setting.key) != tables.end();
+  const bool is_known = find_scene_key(setting.key) || is_coating(setting.key) ||
+                        std::ranges::find(tables, setting.key) != tables.end();
   if (is_removal(setting) && !is_known) {
     throw InputError(
         fmt::format("{}: unknown key; the nearest known key is {}", one_line(setting.key), key_hint(setting.key)));
@@ -368,14 +417,14 @@ void apply(SceneDocument& document, const Setting& setting) {
 SceneValues scene_of(const SceneDocument& document, const std::string& path_name, const KnownData* known) {
   SceneValues scene = read_keys(document);
   fill_from_grid(scene, document);
-  load_material(scene, document, path_name, known);
+  scene.path_name = path_name;
+  load_materials(scene, document, known);
   load_source(scene, document, path_name, known);
   load_profile(scene, document, path_name, known);
   fill_grid(scene, document);
   check_smith(scene, document);
   check_radiation(scene, document);
   check_scattering(scene, document);
-  scene.path_name = path_name;
   scene.document = std::make_shared<const SceneDocument>(document);
   return scene;
 }

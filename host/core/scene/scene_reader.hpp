@@ -23,6 +23,8 @@ SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& 
 /// n, k, E0 and the sky as they were when the table was computed, in place of the names in its scene.
 struct KnownData {
   std::optional<Material> material = {};
+  std::vector<std::optional<Material>> layers = {};  ///< of a coating
+  std::optional<ReflectanceTable> reflectance = {};
   std::optional<SpectralTable> irradiance = {};
   std::optional<SkyProfile> profile = {};
   bool may_open_files = false;  ///< for missing data; messages then do not quote their contents

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <sstream>
 
 #include "base/text.hpp"
@@ -40,9 +41,11 @@ std::string value_text(const toml::node& node) {
 
 /// True if a key's value is the name of a file.
 bool names_file(const std::string& key, const std::string& value) {
-  return key == "surface.material_file" || key == "source.file" ||
+  return key.ends_with("material_file") || key == "surface.reflectance_file" || key == "source.file" ||
          (key == "surroundings.profile" && !built_in_sky(value));
 }
+
+std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
 
 /// Path from `folder` to a file that a scene names.
 std::string path_from(const std::filesystem::path& folder, const std::string& file, const std::string& scene_path) {
@@ -63,6 +66,7 @@ std::string scene_toml(const SceneValues& scene, const std::filesystem::path& fo
       written += description.key + " = " + value_text(*node) + '\n';
     }
   }
+  std::map<std::size_t, std::string> layers;
   for (const std::string& table : scene_tables()) {
     if (!document.find(table)) continue;
     written += "\n[" + table + "]\n";
@@ -73,8 +77,18 @@ std::string scene_toml(const SceneValues& scene, const std::filesystem::path& fo
           names_file(description.key, node->value_or(std::string()))
               ? formatted(toml::value(path_from(folder, node->value_or(std::string()), scene.path_name)))
               : value_text(*node);
-      written += description.key.substr(table.size() + 1) + " = " + value + '\n';
+      if (description.layer > 0) {
+        std::string& layer = layers[description.layer];
+        layer += (layer.empty() ? "" : ", ") + last_part(description.key) + " = " + value;
+      } else {
+        written += description.key.substr(table.size() + 1) + " = " + value + '\n';
+      }
     }
+    if (layers.empty()) continue;
+    written += "coating = [";
+    for (const auto& [number, layer] : layers) written += fmt::format("{}{{ {} }}", number == 1 ? "" : ", ", layer);
+    written += "]\n";
+    layers.clear();
   }
   return written;
 }

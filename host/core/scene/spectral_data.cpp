@@ -120,12 +120,15 @@ SceneModel at_wavelength(const SceneModel& scene, double wavelength_um) {
                 .spectrum = {wavelength_um, wavelength_um},
                 .geometry = scene.geometry,
                 .accuracy = scene.accuracy};
-  Material& material = at.surface.material;
-  if (material.tabulated) {
-    check_covers(*material.tabulated, at.spectrum, "surface.material: ");
+  const auto take_constant = [&](Material& material, const std::string& prefix) {
+    if (!material.tabulated) return;
+    check_covers(*material.tabulated, at.spectrum, prefix);
     material.constant = material.tabulated->at(wavelength_um);
     material.tabulated.reset();
-  }
+  };
+  take_constant(at.surface.material, "surface.material: ");
+  for (std::size_t i = 0; i < at.surface.coating.size(); ++i)
+    take_constant(at.surface.coating[i].material, fmt::format("surface.coating.{}: ", i + 1));
   if (!scene.source) return at;
   const Source& source = *scene.source;
   at.source = {.kind = source.kind,

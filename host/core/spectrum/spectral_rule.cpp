@@ -1,6 +1,6 @@
 #include "spectrum/spectral_rule.hpp"
 #include "model/kept_effects.hpp"
-#include "model/optical_constants.hpp"
+#include "model/facet_optics.hpp"
 
 #include <algorithm>
 #include <array>
@@ -228,7 +228,7 @@ std::vector<SpectralSample> samples_at(const SceneModel& scene, const std::vecto
   std::vector<SpectralSample> samples(nodes_um.size());
   for (std::size_t j = 0; j < nodes_um.size(); ++j) {
     samples[j].wavelength_um = nodes_um[j];
-    samples[j].index = scene.surface.material.at(nodes_um[j]);
+    samples[j].index = scene.surface.optics_at(nodes_um[j]);
   }
   for (const FineNode& node : fine) {
     const std::vector<double> values = lagrange(nodes_um, node.wavelength_um);
@@ -238,10 +238,10 @@ std::vector<SpectralSample> samples_at(const SceneModel& scene, const std::vecto
 }
 
 /// The cosines at which the rule of a segment is probed.
-std::vector<double> probe_cosines(const Material& material, double from_um, double to_um) {
+std::vector<double> probe_cosines(const Surface& surface, double from_um, double to_um) {
   std::vector<double> cosines(kProbeCosines.begin(), kProbeCosines.end());
   for (const double place : kCriticalPlaces) {
-    const OpticalConstants index = material.at(std::lerp(from_um, to_um, place));
+    const OpticalConstants index = surface.material.at(std::lerp(from_um, to_um, place));
     const double square = index.n * index.n - index.k * index.k;
     if (square > 0.0 && square < 1.0) cosines.push_back(std::sqrt(1.0 - square));
   }
@@ -257,7 +257,7 @@ struct ProbeSum {
 using ProbeSums = std::array<ProbeSum, 3>;
 
 template <typename Node>
-void add_probe(ProbeSums& sums, const Node& node, const OpticalConstants& index, double cosine) {
+void add_probe(ProbeSums& sums, const Node& node, const FacetOptics& index, double cosine) {
   const SmoothAbsorptance at = smooth_absorptance(index, cosine);
   const std::array<double, 3> factors = {node.emitted, node.surroundings, node.irradiance};
   for (std::size_t i = 0; i < factors.size(); ++i) {
@@ -268,11 +268,11 @@ void add_probe(ProbeSums& sums, const Node& node, const OpticalConstants& index,
 }
 
 /// The integrals at each cosine by the fine rule.
-std::vector<ProbeSums> exact_sums(const Material& material, const std::vector<FineNode>& fine,
+std::vector<ProbeSums> exact_sums(const Surface& surface, const std::vector<FineNode>& fine,
                                   const std::vector<double>& cosines) {
   std::vector<ProbeSums> sums(cosines.size());
   for (const FineNode& node : fine) {
-    const OpticalConstants index = material.at(node.wavelength_um);
+    const FacetOptics index = surface.optics_at(node.wavelength_um);
     for (std::size_t i = 0; i < cosines.size(); ++i) add_probe(sums[i], node, index, cosines[i]);
   }
   return sums;
@@ -319,13 +319,13 @@ struct SegmentRule {
 
 SegmentRule smooth_segment(const SceneModel& scene, double from_um, double to_um, const std::vector<FineNode>& fine,
                            const std::vector<double>& cosines) {
-  if (scene.surface.material.is_constant()) return {samples_at(scene, gauss_wavelengths(from_um, to_um, 1), fine), 0.0};
+  if (scene.surface.has_constant_optics()) return {samples_at(scene, gauss_wavelengths(from_um, to_um, 1), fine), 0.0};
   SegmentRule rule;
   // The nodes to compare with are none of the rule's own, whatever their number.
   const double middle_um = 0.5 * (from_um + to_um);
   std::vector<FineNode> finer = fine_nodes(scene, from_um, middle_um);
   for (const FineNode& node : fine_nodes(scene, middle_um, to_um)) finer.push_back(node);
-  const std::vector<ProbeSums> exact = exact_sums(scene.surface.material, finer, cosines);
+  const std::vector<ProbeSums> exact = exact_sums(scene.surface, finer, cosines);
   for (int count = 1; count <= kMostNodes; ++count) {
     rule.samples = samples_at(scene, gauss_wavelengths(from_um, to_um, count), fine);
     rule.error = nodes_error(rule.samples, exact, cosines, kSmallestPart);
@@ -349,7 +349,7 @@ SegmentRule segment_of_panels(const SceneModel& scene, double from_um, double to
       rule.samples.push_back(sample);
     all.insert(all.end(), fine.begin(), fine.end());
   }
-  rule.error = nodes_error(rule.samples, exact_sums(scene.surface.material, all, cosines), cosines, 1.0);
+  rule.error = nodes_error(rule.samples, exact_sums(scene.surface, all, cosines), cosines, 1.0);
   return rule;
 }
 
@@ -358,7 +358,7 @@ void append_segment(const SceneModel& scene, double from_um, double to_um, Spect
                     std::vector<SpectralSample>& panels) {
   const std::vector<FineNode> fine = fine_nodes(scene, from_um, to_um);
   for (const FineNode& node : fine) rule.path_exitance += node.path;
-  const std::vector<double> cosines = probe_cosines(scene.surface.material, from_um, to_um);
+  const std::vector<double> cosines = probe_cosines(scene.surface, from_um, to_um);
   SegmentRule segment = smooth_segment(scene, from_um, to_um, fine, cosines);
   const double tolerance = scene.accuracy.tolerance;
   if (segment.error <= std::max(kShareOfTolerance * tolerance, kNodesRelativeError)) {
@@ -379,15 +379,15 @@ SpectralRule single_wavelength_rule(const SceneModel& scene, double wavelength_u
   const FineNode node = fine_node(scene, sampler_of(scene), wavelength_um, 1.0);
   SpectralSample sample;
   sample.wavelength_um = wavelength_um;
-  sample.index = scene.surface.material.at(wavelength_um);
+  sample.index = scene.surface.optics_at(wavelength_um);
   add(sample, node, 1.0);
   return {.samples = {sample}, .path_exitance = node.path};
 }
 
 }  // namespace
 
-std::vector<OpticalConstants> SpectralRule::indices() const {
-  std::vector<OpticalConstants> result;
+std::vector<FacetOptics> SpectralRule::indices() const {
+  std::vector<FacetOptics> result;
   for (const SpectralSample& sample : samples) result.push_back(sample.index);
   return result;
 }
@@ -396,9 +396,8 @@ SpectralRule spectral_rule(const SceneModel& scene) {
   if (!scene.spectrum.is_band()) return single_wavelength_rule(scene, scene.spectrum.min_um);
   SpectralRule rule;
   rule.relative_error = kPieceRelativeError;
-  const Material& material = scene.surface.material;
-  const std::vector<double> ends = segment_ends(scene.spectrum.min_um, scene.spectrum.max_um,
-                                                {&material.n.wavelength_um, &material.k.wavelength_um});
+  const std::vector<double> rows_um = scene.surface.optics_rows_um();
+  const std::vector<double> ends = segment_ends(scene.spectrum.min_um, scene.spectrum.max_um, {&rows_um});
   std::vector<SpectralSample> panels;
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) append_segment(scene, ends[i], ends[i + 1], rule, panels);
   rule.panels = panels.size() / kPanelNodes;

@@ -17,7 +17,7 @@ namespace dolp {
 /// integrals of the factors are below. They can be negative (of a node that other nodes outweigh); their sums are the
 /// band integrals. Units: exitances and irradiances in W m-2 um-1 at a single wavelength, in W m-2 over a band.
 struct SpectralSample {
-  OpticalConstants index;
+  FacetOptics index;
   double wavelength_um = 0.0;    ///< where the index was first met
   double emitted = 0.0;          ///< pi B(T); 0 without [emission]
   double surroundings = 0.0;     ///< pi B(T_surr), of a profile its mean; 0 without [surroundings]
@@ -37,7 +37,7 @@ struct SpectralRule {
   double path_exitance = 0.0;   ///< pi times the path radiance; 0 without [path]
   double relative_error = 0.0;  ///< bound of the relative error of the band sums; 0 at a single wavelength
   std::size_t panels = 0;       ///< the last samples are this many panels of kPanelNodes each, apart from the error
-  std::vector<OpticalConstants> indices() const;
+  std::vector<FacetOptics> indices() const;
 };
 
 /// Spectral rule of a scene: one sample at a single wavelength or for a constant index, Gauss nodes on each segment of

@@ -1,6 +1,7 @@
 // Keys that scenes have.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -33,6 +34,7 @@ struct DOLP_EXPORT Key {
   std::string fallback;            ///< default as in a scene file; "required"; empty when the key is simply absent
   std::string meaning;             ///< one line, with the symbol
   std::vector<std::string> rivals = {};  ///< alternative keys, which stand in no scene together
+  std::size_t layer = 0;  ///< layer of the coating that the key describes; all layers have the keys of the first
 
   /// "a number in [0, 90]", "one of cauchy, gaussian", …
   std::string allowed() const;

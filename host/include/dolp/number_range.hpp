@@ -13,6 +13,7 @@ inline constexpr NumberRange kWindRange{0.0, 100.0};
 inline constexpr NumberRange kQRange{1.0, 1e4, NumberRange::Ends::kOpenBelow};
 inline constexpr NumberRange kNRange{0.0, 1e6, NumberRange::Ends::kOpenBelow};
 inline constexpr NumberRange kKRange{0.0, 1e6};
+inline constexpr NumberRange kThicknessUmRange{0.0, 1000.0};
 inline constexpr NumberRange kFractionRange{0.0, 1.0};
 inline constexpr NumberRange kDiffuseExponentRange{-1.0, 0.0, NumberRange::Ends::kOpenBelow};
 inline constexpr NumberRange kEmissionTemperatureRange{0.0, 1e4, NumberRange::Ends::kOpenBelow};

@@ -32,7 +32,9 @@ constexpr double kSmallestCosine = 1e-100;
 
 /// The angle at which total reflection begins, abruptly (k = 0) or nearly so; 0 without one. Units: rad from grazing
 /// incidence.
-double critical_angle(const OpticalConstants& index) {
+double critical_angle(const FacetOptics& optics) {
+  if (optics.measured) return 0.0;
+  const OpticalConstants& index = optics.index;
   const double squared_sine = (1.0 - index.n) * (1.0 + index.n) + index.k * index.k;
   const double squared_cosine = (index.n - index.k) * (index.n + index.k);
   return squared_sine > 0.0 && squared_cosine > 0.0 ? std::atan2(std::sqrt(squared_sine), std::sqrt(squared_cosine))
@@ -57,7 +59,7 @@ void add_sky(Moments& moments, const SkyBasis& sky, double zenith_deg, double sp
 }  // namespace
 
 Moments closed_form(const Surface& surface, const Direction& direction, const SlopeShape& shape,
-                    const OpticalConstants& index, const SkyBasis* sky) {
+                    const FacetOptics& index, const SkyBasis* sky) {
   if (direction.treatment == Treatment::kDivergentLimit) {
     Moments moments = grazing_limit_moments(index, shape.q);
     if (sky) add_sky(moments, *sky, kHorizon_deg, 0.0);  // vertical facets reflect the horizon
@@ -70,7 +72,7 @@ Moments closed_form(const Surface& surface, const Direction& direction, const Sl
   return moments;
 }
 
-Moments grazing_limit_moments(const OpticalConstants& index, double q) {
+Moments grazing_limit_moments(const FacetOptics& index, double q) {
   boost::math::quadrature::tanh_sinh<double> integrator;
   const double critical = critical_angle(index);
   // phi = pi/2 - psi, so that x = sin(psi) keeps its digits at grazing incidence, where the power is not smooth.

@@ -11,7 +11,7 @@ namespace dolp {
 /// With a basis of a sky (null: none) those with its functions too. Domain: a direction whose treatment is not
 /// kIntegrated.
 Moments closed_form(const Surface& surface, const Direction& direction, const SlopeShape& shape,
-                    const OpticalConstants& index, const SkyBasis* sky);
+                    const FacetOptics& index, const SkyBasis* sky);
 
 /// Moments at exactly 90 degrees where they diverge, up to their common factor: masking none or `integral`, cauchy with
 /// q <= 3/2. Their quotients are the limits theta -> 90 degrees.
@@ -20,6 +20,6 @@ Moments closed_form(const Surface& surface, const Direction& direction, const Sl
 /// the azimuths of vertical facets, cos(beta) = x = cos(phi), cos(2 eta) = -1; G tends to a constant.
 ///
 /// Accuracy: 1e-12 of r_i and 2e-15 of the albedo, for r_q too (tests GrazingLimit_*).
-Moments grazing_limit_moments(const OpticalConstants& index, double q);
+Moments grazing_limit_moments(const FacetOptics& index, double q);
 
 }  // namespace dolp

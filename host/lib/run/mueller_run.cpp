@@ -94,19 +94,29 @@ std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points&
   check_shapes(scene, points);
   const Surface& surface = scene.surface;
   const bool has_own_index = points[Axis::kN] && points[Axis::kK];
-  if (scene.spectrum.is_band() && !surface.material.is_constant() && !has_own_index) {
+  const bool needs_one_wavelength = !surface.coating.empty() || (!surface.material.is_constant() && !has_own_index);
+  if (scene.spectrum.is_band() && needs_one_wavelength) {
     throw InputError(fmt::format(
-        "{}: spectrum.band_um: the Mueller matrix is that of one wavelength and the material \"{}\" depends on "
-        "it; give spectrum.wavelength_um, or columns n and k",
-        scene.path_name, surface.material.name));
+        "{}: spectrum.band_um: the Mueller matrix is that of one wavelength and {} depends on it; give "
+        "spectrum.wavelength_um{}",
+        scene.path_name,
+        surface.coating.empty() ? fmt::format("the material \"{}\"", surface.material.name) : "a coating",
+        surface.coating.empty() ? ", or columns n and k" : ""));
   }
-  const OpticalConstants index = surface.material.at(scene.spectrum.min_um);
+  if (surface.reflectance) {
+    throw InputError(fmt::format("{}: surface.reflectance_file: the Mueller matrix needs phases, which reflectances lack; "
+                                 "give n and k, or a material and a coating",
+                                 scene.path_name));
+  }
+  const FacetOptics optics = surface.optics_at(scene.spectrum.min_um);
   std::vector<MuellerPoint> result;
   result.reserve(points.size());
   for (std::size_t row = 0; row < points.size(); ++row) {
     result.push_back({{(*points.theta_i_deg)[row], (*points.theta_r_deg)[row], (*points.delta_phi_deg)[row]},
                       {value_or(points[Axis::kSigma], row, surface.sigma), value_or(points[Axis::kQ], row, surface.q)},
-                      {value_or(points[Axis::kN], row, index.n), value_or(points[Axis::kK], row, index.k)}});
+                      optics});
+    OpticalConstants& index = result.back().index.index;
+    index = {value_or(points[Axis::kN], row, index.n), value_or(points[Axis::kK], row, index.k)};
   }
   return result;
 }

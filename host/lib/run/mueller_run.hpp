@@ -15,7 +15,7 @@ namespace dolp {
 struct MuellerPoint {
   BeamAngles angles;
   SlopeShape shape;
-  OpticalConstants index;
+  FacetOptics index;
 };
 
 /// Scattered geometries; values that they lack come from the scene, n and k at its wavelength.

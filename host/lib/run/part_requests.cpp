@@ -56,6 +56,14 @@ Scattered beam_without_evaluator(const SceneValues& scene, double theta_deg) {
   return {.i = glare, .q = glare};
 }
 
+std::vector<FacetOptics> with_index(const std::vector<FacetOptics>& samples, const std::optional<OpticalConstants>& index) {
+  if (!index) return samples;
+  if (samples.front().is_bare()) return {*index};
+  std::vector<FacetOptics> own = samples;
+  for (FacetOptics& sample : own) sample.index = *index;
+  return own;
+}
+
 SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& entries) {
   if (entries.wavelength_um().empty()) return {spectral_rule(scene).indices()};
   SpectralIndices indices;
@@ -84,14 +92,27 @@ PartRequests::PartRequests(const SceneValues& scene, const SpectralIndices& samp
 
 std::size_t PartRequests::index_set(const SceneEntries& grid, const PerAxis& place) const {
   if (!grid.has_own_index()) return place[Axis::kWavelength];
-  return place[Axis::kN] * grid.counts()[Axis::kK] + place[Axis::kK];
+  const PerAxis& counts = grid.counts();
+  const std::size_t wavelength = has_films() ? place[Axis::kWavelength] : 0;
+  return (wavelength * counts[Axis::kN] + place[Axis::kN]) * counts[Axis::kK] + place[Axis::kK];
+}
+
+std::vector<FacetOptics> PartRequests::samples_of(const SceneEntries& grid, std::size_t set) const {
+  if (!grid.has_own_index()) return samples_[set];
+  const std::size_t n_values = grid.counts()[Axis::kN];
+  const std::size_t k_values = grid.counts()[Axis::kK];
+  PerAxis place = {};
+  place[Axis::kN] = set / k_values % n_values;
+  place[Axis::kK] = set % k_values;
+  return with_index(samples_[set / (n_values * k_values)], grid.index_at(place));
 }
 
 void PartRequests::ask_grid(const Selection& selection) {
   const SceneEntries& grid = selection.part;
   const PerAxis& counts = grid.counts();
   const bool is_whole = selection.chosen.empty();
-  const std::size_t sets = grid.has_own_index() ? counts[Axis::kN] * counts[Axis::kK] : counts[Axis::kWavelength];
+  const std::size_t wavelengths = !grid.has_own_index() || has_films() ? counts[Axis::kWavelength] : 1;
+  const std::size_t sets = grid.has_own_index() ? wavelengths * counts[Axis::kN] * counts[Axis::kK] : wavelengths;
   std::vector<char> theta(grid.theta_deg().size(), 0), sigma(grid.sigma().size(), 0), q(grid.q().size(), 0);
   std::vector<char> set(sets, is_whole ? 1 : 0);
   for (const std::size_t i : selection.chosen) {
@@ -133,19 +154,11 @@ void PartRequests::ask_grid(const Selection& selection) {
 /// Equal sets share their indices.
 void PartRequests::ask_indices(const SceneEntries& grid, const std::vector<char>& is_used) {
   index_set_offset_.assign(is_used.size(), 0);
-  std::vector<OpticalConstants> last;
+  std::vector<FacetOptics> last;
   std::uint32_t first = 0;
   for (std::size_t set = 0; set < is_used.size(); ++set) {
     if (is_used[set] == 0) continue;
-    std::vector<OpticalConstants> own;
-    if (grid.has_own_index()) {
-      PerAxis place = {};
-      place[Axis::kN] = set / grid.counts()[Axis::kK];
-      place[Axis::kK] = set % grid.counts()[Axis::kK];
-      own = {grid.index_at(place)};
-    } else {
-      own = samples_[set];
-    }
+    std::vector<FacetOptics> own = samples_of(grid, set);
     if (own != last) {
       first = static_cast<std::uint32_t>(moments_.indices.size());
       moments_.indices.insert(moments_.indices.end(), own.begin(), own.end());
@@ -161,7 +174,7 @@ void PartRequests::mask(const Selection& selection) {
     const SceneEntry entry = selection[i];
     if (!wants_moments(scene_, entry, plan_)) continue;
     const Place place = moments_of(i);
-    const std::size_t samples = entry.index ? 1 : samples_[entry.wavelength].size();
+    const std::size_t samples = place.stride == 0 ? 1 : samples_[entry.wavelength].size();
     for (std::size_t j = 0; j < samples; ++j) moments_.wanted[place.first + j * place.stride] = 1;
   }
   if (moments_.wanted_count() == moments_.size()) moments_.wanted.clear();
@@ -174,8 +187,9 @@ PartRequests::Place PartRequests::moments_of(std::size_t member) const {
   const std::size_t of_index = moments_.theta_deg.size() * moments_.shapes();
   const std::size_t shape = sigma_at_[place[Axis::kSigma]] * moments_.q.size() + q_at_[place[Axis::kQ]];
   const std::size_t of_theta = theta_at_[place[Axis::kTheta]] * moments_.shapes();
+  const bool has_one_index = grid.has_own_index() && !has_films();
   return {index_set_offset_[index_set(grid, place)] * of_index + of_theta + shape,
-          grid.has_own_index() ? std::size_t{0} : of_index};
+          has_one_index ? std::size_t{0} : of_index};
 }
 
 std::size_t PartRequests::direction_of(std::size_t member) const {
@@ -185,7 +199,7 @@ std::size_t PartRequests::direction_of(std::size_t member) const {
 void PartRequests::ask_points(const Selection& selection) {
   moments_.layout = MomentsRequest::Layout::kList;
   places_.reserve(selection.size());
-  std::map<std::array<double, 5>, Place> known;
+  std::map<std::array<double, 6>, Place> known;
   for (std::size_t i = 0; i < selection.size(); ++i) {
     const SceneEntry entry = selection[i];
     if (!wants_moments(scene_, entry, plan_)) {
@@ -197,14 +211,14 @@ void PartRequests::ask_points(const Selection& selection) {
     const SlopeShape shape = normalised(scene_, entry.shape);
     // Without an index of its own it has the indices of a wavelength; no k is negative.
     const OpticalConstants key = entry.index.value_or(OpticalConstants{static_cast<double>(entry.wavelength), -1.0});
-    const auto [place, is_new] =
-        known.try_emplace({zenith_deg, shape.sigma, shape.q, key.n, key.k},
-                          Place{moments_.size(), entry.index ? std::size_t{0} : std::size_t{1}});
+    const double films_at = has_films() ? entry.wavelength : -1.0;
+    const auto [place, is_new] = known.try_emplace({zenith_deg, shape.sigma, shape.q, key.n, key.k, films_at}, Place{});
+    if (is_new) {
+      const std::vector<FacetOptics> own = with_index(samples_[entry.wavelength], entry.index);
+      place->second = {moments_.size(), entry.index && !has_films() ? std::size_t{0} : std::size_t{1}};
+      for (const FacetOptics& sample : own) moments_.append({zenith_deg, shape, sample});
+    }
     places_.push_back(place->second);
-    if (!is_new) continue;
-    if (entry.index) moments_.append({zenith_deg, shape, *entry.index});
-    for (std::size_t j = 0; !entry.index && j < samples_[entry.wavelength].size(); ++j)
-      moments_.append({zenith_deg, shape, samples_[entry.wavelength][j]});
   }
 }
 
@@ -218,7 +232,7 @@ void PartRequests::ask_beams(const Selection& selection) {
     }
   }
   std::vector<std::uint32_t> first_index;
-  for (const std::vector<OpticalConstants>& of_wavelength : samples_) {
+  for (const std::vector<FacetOptics>& of_wavelength : samples_) {
     first_index.push_back(static_cast<std::uint32_t>(beams_.indices.size()));
     beams_.indices.insert(beams_.indices.end(), of_wavelength.begin(), of_wavelength.end());
   }
@@ -238,11 +252,14 @@ void PartRequests::ask_beams(const Selection& selection) {
       beams_.angles.push_back(angles_of(scene_, entry.theta_deg));
       beams_.shapes.push_back(entry.shape);
     }
-    if (entry.index && (beams_.indices.empty() || beams_.indices.back() != *entry.index))
-      beams_.indices.push_back(*entry.index);
-    const auto own = static_cast<std::uint32_t>(beams_.indices.size() - 1);
     for (std::uint32_t j = 0; j < samples_[entry.wavelength].size(); ++j) {
-      wanted.index = entry.index ? own : first_index[entry.wavelength] + j;
+      wanted.index = first_index[entry.wavelength] + j;
+      if (entry.index) {
+        FacetOptics own = samples_[entry.wavelength][j];
+        own.index = *entry.index;
+        if (beams_.indices.back() != own) beams_.indices.push_back(std::move(own));
+        wanted.index = static_cast<std::uint32_t>(beams_.indices.size() - 1);
+      }
       beams_.entries.push_back(wanted);
     }
   }

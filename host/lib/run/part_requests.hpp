@@ -40,8 +40,12 @@ bool wants_beam(const SceneValues& scene, const SceneEntry& entry, const EffectP
 Scattered beam_without_evaluator(const SceneValues& scene, double theta_deg);
 
 /// The indices at which a scene needs moments: of each wavelength of its entries, or of its spectrum.
-using SpectralIndices = std::vector<std::vector<OpticalConstants>>;
+using SpectralIndices = std::vector<std::vector<FacetOptics>>;
 SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& entries);
+
+/// Samples with another medium under their films. Bare ones are then the same, of which one is enough.
+std::vector<FacetOptics> with_index(const std::vector<FacetOptics>& samples,
+                                    const std::optional<OpticalConstants>& index);
 
 /// The requests of one level for a selection. For a grid the moments form a grid again: of the directions and indices
 /// of the selection, and of all slope distributions, so that the result of an entry does not depend on the entries
@@ -71,6 +75,8 @@ class PartRequests {
   void ask_indices(const SceneEntries& grid, const std::vector<char>& is_used);
   void mask(const Selection& selection);
   std::size_t index_set(const SceneEntries& grid, const PerAxis& place) const;
+  std::vector<FacetOptics> samples_of(const SceneEntries& grid, std::size_t set) const;
+  bool has_films() const { return !samples_.front().front().is_bare(); }
   void ask_points(const Selection& selection);
   void ask_beams(const Selection& selection);
 

@@ -17,42 +17,45 @@ constexpr std::size_t kLeastEntries = 24;  // chosen, of an index: its weights t
 // with all of the second.
 constexpr std::size_t kMostOfPoints = 2;
 
-std::vector<OpticalConstants> indices_of_points(const SceneValues& scene, const SceneEntries& entries) {
+std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const SceneEntries& entries) {
   const SpectralIndices spectral = spectral_indices(scene, entries);
   const bool has_one_index =
       spectral.size() == 1 && spectral.front().size() == 1 &&
       std::ranges::none_of(entries.all(), [](const SceneEntry& e) { return e.index.has_value(); });
   if (has_one_index) return {};
-  std::set<std::pair<double, double>> indices;
+  std::set<FacetOptics> indices;
   std::set<std::tuple<double, double, double>> shapes;
   std::size_t points = 0;
-  const auto add = [&](const OpticalConstants& index) { indices.insert({index.n, index.k}); };
+  const auto add = [&](const FacetOptics& index) { indices.insert(index); };
   for (const SceneEntry& entry : entries.all()) {
     shapes.insert({moment_zenith_deg(scene, entry.theta_deg), entry.shape.sigma, entry.shape.q});
-    if (entry.index) add(*entry.index);
-    if (!entry.index) std::ranges::for_each(spectral[entry.wavelength], add);
-    points += entry.index ? 1 : spectral[entry.wavelength].size();
+    const std::vector<FacetOptics> own = with_index(spectral[entry.wavelength], entry.index);
+    std::ranges::for_each(own, add);
+    points += own.size();
   }
   if (shapes.size() * indices.size() > kMostOfPoints * points) return {};
-  std::vector<OpticalConstants> all;
-  for (const auto& [n, k] : indices) all.push_back({n, k});
-  return all;
+  return {indices.begin(), indices.end()};
 }
 
-std::vector<OpticalConstants> indices_of_grid(const SceneValues& scene, const SceneEntries& entries) {
+std::vector<FacetOptics> indices_of_grid(const SceneValues& scene, const SceneEntries& entries) {
   const PerAxis& counts = entries.whole();
   if (counts[Axis::kTheta] * counts[Axis::kSigma] * counts[Axis::kQ] < kLeastEntries) return {};
   const SceneEntries whole = SceneEntries::of_grid(entries.whole_axes(), entries.index());
-  std::vector<OpticalConstants> indices;
+  std::vector<FacetOptics> indices;
   if (whole.has_own_index()) {
     PerAxis place{};
-    for (std::size_t& n = place[Axis::kN]; n < whole.counts()[Axis::kN]; ++n) {
-      std::size_t& k = place[Axis::kK];
-      for (k = 0; k < whole.counts()[Axis::kK]; ++k) indices.push_back(whole.index_at(place));
+    for (const std::vector<FacetOptics>& samples : spectral_indices(scene, whole)) {
+      for (std::size_t& n = place[Axis::kN] = 0; n < whole.counts()[Axis::kN]; ++n) {
+        for (std::size_t& k = place[Axis::kK] = 0; k < whole.counts()[Axis::kK]; ++k) {
+          const std::vector<FacetOptics> own = with_index(samples, whole.index_at(place));
+          indices.insert(indices.end(), own.begin(), own.end());
+        }
+      }
+      if (samples.front().is_bare()) break;  // they are the same at all wavelengths
     }
     return indices;
   }
-  for (const std::vector<OpticalConstants>& own : spectral_indices(scene, whole)) {
+  for (const std::vector<FacetOptics>& own : spectral_indices(scene, whole)) {
     if (indices.size() < own.size() || !std::ranges::equal(own, std::span(indices).last(own.size())))
       indices.insert(indices.end(), own.begin(), own.end());
   }

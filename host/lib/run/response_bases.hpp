@@ -23,7 +23,7 @@ class ResponseBases {
   std::shared_ptr<const ResponseBasis> of(const RefinementLevel& level);
 
  private:
-  std::vector<OpticalConstants> indices_;  ///< of the run; none where they are not combined
+  std::vector<FacetOptics> indices_;  ///< of the run; none where they are not combined
   std::size_t passes_;
   std::map<double, std::shared_ptr<const ResponseBasis>> of_tolerance_;
 };

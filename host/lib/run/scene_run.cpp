@@ -80,8 +80,11 @@ class MemberResults {
   PointResult operator()(std::size_t member) {
     const SceneEntry entry = selection_[member];
     const Direction direction = seen(entry);
-    if (entry.index) std::ranges::fill(indices_, *entry.index);
-    const std::span<const OpticalConstants> indices =
+    for (std::size_t j = 0; entry.index && j < indices_.size(); ++j) {
+      indices_[j] = context_.spectra.indices[entry.wavelength][j];
+      indices_[j].index = *entry.index;
+    }
+    const std::span<const FacetOptics> indices =
         entry.index ? indices_ : context_.spectra.indices[entry.wavelength];
     const std::span<const Moments> moments = moments_of(member, entry, direction, indices);
     const Radiometry& radiometry = context_.spectra.radiometries[entry.wavelength];
@@ -105,7 +108,7 @@ class MemberResults {
 
   /// Moments from the evaluator, or closed forms, or zeros where the plan needs none.
   std::span<const Moments> moments_of(std::size_t member, const SceneEntry& entry, const Direction& direction,
-                                      std::span<const OpticalConstants> indices) {
+                                      std::span<const FacetOptics> indices) {
     if (!context_.plan.kept.moments) return moments_;  // never written to
     if (direction.treatment != Treatment::kIntegrated) {
       for (std::size_t j = 0; j < moments_.size(); ++j) {
@@ -136,7 +139,7 @@ class MemberResults {
   const PartRequests& requests_;
   const EvaluatorResults& evaluated_;
   std::vector<Moments> moments_;
-  std::vector<OpticalConstants> indices_;
+  std::vector<FacetOptics> indices_;
   std::vector<Scattered> beams_;
   Direction direction_;
   bool has_direction_ = false;

@@ -15,7 +15,7 @@ namespace {
 /// A request for the sample's entries.
 MomentsRequest request_of(const TableSample& sample, const Surface& surface) {
   MomentsRequest request = response_request(surface);
-  const OpticalConstants index = request.indices.front();
+  const OpticalConstants index = request.indices.front().index;
   request.indices.clear();
   const SceneEntries grid = SceneEntries::of_grid(sample.table.axes, index);
   for (const std::size_t position : sample.positions) {

@@ -42,6 +42,7 @@ struct KernelSource {
   uint kDistribution = DOLP_CAUCHY;
   uint kMasking = DOLP_MASKING_NONE;
   bool kTotalReflection = false;
+  bool kHasCurves = false;
   bool kIsMultiple = false;
   bool kHasDirect = false;
   uint kColumnCount = 0;
@@ -59,6 +60,7 @@ struct KernelSource {
     source.kDistribution = static_cast<uint>(data.distribution);
     source.kMasking = static_cast<uint>(data.masking);
     source.kTotalReflection = data.has_total_reflection;
+    source.kHasCurves = data.has_curves;
     source.kIsMultiple = data.scattering == Scattering::kMultiple;
     source.kHasDirect = data.has_direct;
     source.kColumnCount = static_cast<uint>(data.column_count());

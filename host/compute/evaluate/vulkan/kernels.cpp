@@ -54,23 +54,25 @@ UniquePipeline compile(VkDevice device, VkPipelineLayout layout, std::uint32_t l
   const UniqueShaderModule shader(device, created_module);
 
   // The enumerators are the values of interface.glsl.
-  const std::array<std::uint32_t, 8> values{local_size,
+  const std::array<std::uint32_t, 9> values{local_size,
                                             static_cast<std::uint32_t>(variant.distribution),
                                             static_cast<std::uint32_t>(variant.masking),
                                             variant.has_total_reflection ? 1U : 0U,
                                             variant.is_multiple ? 1U : 0U,
                                             variant.has_direct ? 1U : 0U,
                                             variant.columns,
-                                            variant.column_kind};
+                                            variant.column_kind,
+                                            variant.has_curves ? 1U : 0U};
   constexpr std::uint32_t kSize = sizeof(std::uint32_t);
-  const std::array<VkSpecializationMapEntry, 8> entries{{{DOLP_SPEC_LOCAL_SIZE, 0, kSize},
+  const std::array<VkSpecializationMapEntry, 9> entries{{{DOLP_SPEC_LOCAL_SIZE, 0, kSize},
                                                          {DOLP_SPEC_DISTRIBUTION, kSize, kSize},
                                                          {DOLP_SPEC_MASKING, 2 * kSize, kSize},
                                                          {DOLP_SPEC_TOTAL_REFLECTION, 3 * kSize, kSize},
                                                          {DOLP_SPEC_MULTIPLE, 4 * kSize, kSize},
                                                          {DOLP_SPEC_DIRECT, 5 * kSize, kSize},
                                                          {DOLP_SPEC_COLUMN_COUNT, 6 * kSize, kSize},
-                                                         {DOLP_SPEC_COLUMNS, 7 * kSize, kSize}}};
+                                                         {DOLP_SPEC_COLUMNS, 7 * kSize, kSize},
+                                                         {DOLP_SPEC_CURVES, 8 * kSize, kSize}}};
   const VkSpecializationInfo constants{.mapEntryCount = static_cast<std::uint32_t>(entries.size()),
                                        .pMapEntries = entries.data(),
                                        .dataSize = sizeof values,
@@ -111,6 +113,7 @@ KernelVariant moments_variant(const KernelData& data, std::uint32_t width) {
           .has_direct = data.has_direct,
           .columns = static_cast<std::uint32_t>(data.column_count()),
           .column_kind = column_kind(data),
+          .has_curves = data.has_curves,
           .width = width};
 }
 
@@ -122,7 +125,8 @@ KernelVariant slopes_variant(const KernelData& data) {
           .is_multiple = data.scattering == Scattering::kMultiple,
           .has_direct = data.has_direct,
           .columns = static_cast<std::uint32_t>(data.column_count()),
-          .column_kind = column_kind(data)};
+          .column_kind = column_kind(data),
+          .has_curves = data.has_curves};
 }
 
 KernelVariant masking_table_variant(const KernelData& data) {

@@ -33,6 +33,7 @@ struct KernelVariant {
   bool has_direct = false;
   std::uint32_t columns = 0;
   std::uint32_t column_kind = DOLP_COLUMNS_SKY;
+  bool has_curves = false;
   std::uint32_t width = 1;  ///< of moments: 1 or kRowWidth of plan/rows.hpp
   auto operator<=>(const KernelVariant&) const = default;
 };

@@ -15,7 +15,7 @@ namespace dolp::reference {
 ///   cos(phi), over all facets with e > 0, G_1 the masking of the view alone.
 /// Domain: masking smith or v-cavity; theta in [0, 90] degrees; at 90 both are 0, the limit.
 /// Accuracy: that of `refinement`, relative to direct_i.
-Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
+Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
                         const Refinement& refinement);
 
 /// The same with a curve instead of 1 - (R_s + R_p) / 2 and (R_p - R_s) / (2 sin^2), to an accuracy relative to

@@ -3,7 +3,7 @@
 
 #include <complex>
 
-#include "model/optical_constants.hpp"
+#include "model/facet_optics.hpp"
 
 namespace dolp::reference {
 
@@ -17,6 +17,6 @@ struct FresnelCoefficients {
 
 /// Reflection at the angle beta from the facet normal.
 /// Conventions: r_p = -r_s at normal incidence.
-FresnelCoefficients fresnel(const OpticalConstants& constants, double cos_beta);
+FresnelCoefficients fresnel(const FacetOptics& optics, double cos_beta);
 
 }  // namespace dolp::reference

@@ -17,7 +17,7 @@ namespace dolp::reference {
 ///   work: metals reach 1e-8 to 1e-4 of r_i, total reflection at q close to 1 nothing. Grooves steeper than the last
 ///   slope followed are taken to reflect between nothing and twice the share that those of that slope do (test
 ///   ReferenceGrooves.CoarseQuadrature_StaysWithinItsErrors).
-Moments groove_moments(const Slopes& slopes, double theta_deg, const OpticalConstants& constants,
+Moments groove_moments(const Slopes& slopes, double theta_deg, const FacetOptics& constants,
                        const Refinement& refinement, const SkyFunction* sky = nullptr);
 
 /// Balance of the light that enters one groove, over both facets. All values are per width of the aperture, so that the
@@ -37,6 +37,6 @@ struct GrooveLight {
 
 /// Domain: t > 0; cos(theta) > 0; chi = 90 degrees - phi, with sin_chi = cos(phi).
 GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zenith& view,
-                            const OpticalConstants& constants, const SkyFunction* sky = nullptr);
+                            const FacetOptics& constants, const SkyFunction* sky = nullptr);
 
 }  // namespace dolp::reference

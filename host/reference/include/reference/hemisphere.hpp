@@ -37,7 +37,7 @@ Zenith zenith_from_deg(double theta_deg);
 ///   theta_r (outer) and delta = pi - Delta_phi (inner).
 /// Domain: theta in [0, 90] degrees. At 90 all four are the limits: 0 for v-cavity and smith, finite for the others but
 ///   infinite for the cauchy distribution with q <= 3/2, whose vertical facets are too many.
-Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
+Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
                            const Refinement& refinement, const SkyFunction* sky = nullptr);
 
 /// The moments with each curve instead of the reflectances, r_i and r_q, relative to the albedo. `bend`: cosine at
@@ -46,6 +46,6 @@ std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking ma
                                                 const Curves& curves, double bend, const Refinement& refinement);
 
 /// The moments of the mirror, the case sigma = 0, its direct emission included.
-Moments mirror_moments(double theta_deg, const OpticalConstants& constants);
+Moments mirror_moments(double theta_deg, const FacetOptics& constants);
 
 }  // namespace dolp::reference

@@ -18,7 +18,7 @@ using ReferenceMueller = std::array<std::array<double, 4>, 4>;
 ///   at the beam's azimuth; Q = I_s - I_p, U = 2 Re(E_s* E_p), V = 2 Im(E_s* E_p).
 /// Domain: zeniths in [0, 90] degrees, not 90 both; sigma > 0.
 /// Accuracy: 1e-12 of m00.
-ReferenceMueller reference_scattering(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
+ReferenceMueller reference_scattering(const Surface& surface, const FacetOptics& constants, double theta_i_deg,
                                       double theta_r_deg, double delta_phi_deg);
 
 /// The part of the light that bounces `bounces` times in V-grooves.
@@ -29,7 +29,7 @@ ReferenceMueller reference_scattering(const Surface& surface, const OpticalConst
 ///   Mueller matrix of the electric vectors followed through them.
 /// Domain: masking v-cavity. NaN where h = 0, in the direction of a mirror's reflection: for k >= 2 grooves of every
 ///   azimuth reflect into it, so that f^(k) grows like 1/|h|, which can be integrated.
-ReferenceMueller reference_bounces(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
+ReferenceMueller reference_bounces(const Surface& surface, const FacetOptics& constants, double theta_i_deg,
                                    double theta_r_deg, double delta_phi_deg, int bounces);
 
 /// The sum over all bounces, and a bound of its truncation error: 0 except for theta_i close to theta_r, where beams of
@@ -38,11 +38,11 @@ struct BouncesSum {
   ReferenceMueller matrix{};
   double error = 0.0;
 };
-BouncesSum reference_all_bounces(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
+BouncesSum reference_all_bounces(const Surface& surface, const FacetOptics& constants, double theta_i_deg,
                                  double theta_r_deg, double delta_phi_deg);
 
 /// reference_scattering without the cosines: f_s. Domain: zeniths below 90 degrees.
-ReferenceMueller reference_pbrdf(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
+ReferenceMueller reference_pbrdf(const Surface& surface, const FacetOptics& constants, double theta_i_deg,
                                  double theta_r_deg, double delta_phi_deg);
 
 }  // namespace dolp

@@ -4,16 +4,16 @@
 #include <cmath>
 #include <cstdint>
 
-#include "model/optical_constants.hpp"
+#include "model/facet_optics.hpp"
 
 namespace dolp::reference {
 
 /// The angles beta of total reflection and of the (pseudo-)Brewster minimum.
 class SpecialAngles {
  public:
-  explicit SpecialAngles(const OpticalConstants& constants)
-      : brewster_(1.0 / std::hypot(1.0, constants.n, constants.k)),
-        critical_(constants.n < 1.0 ? std::sqrt(1.0 - constants.n * constants.n) : 0.0) {}
+  explicit SpecialAngles(const FacetOptics& constants)
+      : brewster_(1.0 / std::hypot(1.0, constants.index.n, constants.index.k)),
+        critical_(constants.index.n < 1.0 ? std::sqrt(1.0 - constants.index.n * constants.index.n) : 0.0) {}
 
   /// Code of the angles that cos(beta) is beyond: 0 to 3.
   std::uint64_t side(double cos_beta) const {

@@ -2,9 +2,9 @@
 """Draws a lookup table: DOLP against theta for several sigma, and over theta and sigma where both have enough values.
 
 Usage: plot_table.py TABLE.nc OUT.png [--q Q] [--wavelength UM] [--n N] [--k K]
-One value of each other axis is drawn: the nearest to its option, by default the middle one. A table with winds has them in
-the place of sigma. Entries with a status other than 0 are drawn faint in the curves and hatched grey in the map. Needs
-python3-netcdf4, python3-numpy and python3-matplotlib.
+Draws one value of each other axis: the one nearest to its option, by default to the value in the scene, else the middle one.
+One of the curves has the sigma of the scene. A table with winds is drawn over wind instead of sigma. Entries with a status other
+than 0 are drawn faint in the curves and hatched grey in the map. Needs python3-netcdf4, python3-numpy and python3-matplotlib.
 Exit status: 0 done, 2 usage or a file that is not such a table, 4 the picture could not be written.
 """
 import argparse
@@ -43,8 +43,10 @@ STATUS_MEANINGS = {
 RHO_TOLERANCE_NOT_MET = 16
 
 
-SYMBOLS = {"q": "q", "wavelength": "λ", "n": "n", "k": "k"}  # of the axes of which one value is drawn
+SYMBOLS = {"q": "q", "wavelength": "λ", "n": "n", "k": "k"}  # axes of which one value is drawn
 UNITS = {"wavelength": " µm"}
+KEYS = {"q": ("surface", "q"), "wavelength": ("spectrum", "wavelength_um"), "n": ("surface", "n"), "k": ("surface", "k"),
+        "sigma": ("surface", "sigma"), "wind_m_s": ("surface", "wind_m_s")}  # where a scene has its own value of an axis
 
 
 def text_of(dataset, name):
@@ -52,18 +54,31 @@ def text_of(dataset, name):
     return dataset[name][:].tobytes().decode() if name in dataset.variables else getattr(dataset, name, "")
 
 
+def scene_part(dataset, part):
+    """The keys of one part of the scene, such as surface, with its overrides; empty where they are no TOML."""
+    try:
+        keys = tomllib.loads(text_of(dataset, "scene")).get(part, {})
+        for line in text_of(dataset, "scene_overrides").splitlines():
+            if line.startswith(f"{part}."):
+                kept = {} if part == "spectrum" else keys  # wavelength and band exclude each other
+                keys = {**kept, **tomllib.loads(line.removeprefix(f"{part}."))}
+        return keys
+    except ValueError:
+        return {}
+
+
 def spectrum_of(dataset):
     """Wavelength or band of a table without an axis of wavelengths, in words."""
-    if "wavelength" in dataset.variables:
-        return ""
-    try:
-        spectrum = tomllib.loads(text_of(dataset, "scene")).get("spectrum", {})
-        for line in text_of(dataset, "scene_overrides").splitlines():
-            if line.startswith("spectrum."):  # wavelength and band exclude each other
-                spectrum = tomllib.loads(line.removeprefix("spectrum."))
-        return "–".join(f"{end:g}" for end in np.ravel(list(spectrum.values()))) + " µm" if spectrum else ""
-    except ValueError:
-        return ""
+    spectrum = scene_part(dataset, "spectrum") if "wavelength" not in dataset.variables else {}
+    return "–".join(f"{end:g}" for end in np.ravel(list(spectrum.values()))) + " µm" if spectrum else ""
+
+
+def index_in_scene(dataset, axis):
+    """Position of the value nearest to the scene's own; the middle one where the scene has none."""
+    part, key = KEYS[axis]
+    own = scene_part(dataset, part).get(key)
+    along = np.asarray(dataset[axis][:])
+    return int(np.argmin(np.abs(along - own))) if isinstance(own, (int, float)) else len(along) // 2
 
 
 def title_of(dataset):
@@ -82,7 +97,7 @@ class Slice:
     """One value of all axes but theta and sigma, which are ascending; DOLP in percent."""
 
     def __init__(self, dataset, wanted):
-        """`wanted`: a value of each axis in SYMBOLS, or None for the middle one."""
+        """`wanted`: a value of each axis in SYMBOLS, or None for the scene's own."""
         for name in ("theta", "sigma", "q", "dolp"):
             if name not in dataset.variables:
                 raise NotATable(f"has no variable {name}; a table with DOLP is expected")
@@ -92,7 +107,7 @@ class Slice:
         for axis, value in wanted.items():
             if axis in axes:
                 along = np.asarray(dataset[axis][:])
-                at[axis] = int(np.argmin(np.abs(along - (along[len(along) // 2] if value is None else value))))
+                at[axis] = index_in_scene(dataset, axis) if value is None else int(np.argmin(np.abs(along - value)))
                 if value is not None and not np.isclose(along[at[axis]], value):
                     self.replaced.append(f"has no {axis} = {value:g}; the nearest, {along[at[axis]]:g}, is drawn")
             elif value is not None:
@@ -100,9 +115,11 @@ class Slice:
         place = tuple(at.get(axis, slice(None)) for axis in axes)
         self.has_winds = "wind_m_s" in dataset.variables
         theta = np.asarray(dataset["theta"][:])
-        sigma = np.asarray(dataset["wind_m_s" if self.has_winds else "sigma"][:])
+        roughness = "wind_m_s" if self.has_winds else "sigma"
+        sigma = np.asarray(dataset[roughness][:])
         rows, columns = np.argsort(theta), np.argsort(sigma)
         self.theta, self.sigma = theta[rows], sigma[columns]
+        self.column_in_scene = int(np.flatnonzero(columns == index_in_scene(dataset, roughness))[0])
         self.place = ", ".join(f"{SYMBOLS[axis]} = {dataset[axis][i]:g}{UNITS.get(axis, '')}" for axis, i in at.items())
 
         def values(name, fill):
@@ -160,8 +177,15 @@ def highest_peak(curve):
     return max(known[1:-1][is_peak], default=0.0)
 
 
+def drawn_columns(table):
+    """Up to MOST_CURVES columns, evenly spread; the scene's own takes the place of the nearest one."""
+    chosen = np.linspace(0, table.sigma.size - 1, min(MOST_CURVES, table.sigma.size)).round().astype(int)
+    chosen[np.argmin(np.abs(chosen - table.column_in_scene))] = table.column_in_scene
+    return chosen
+
+
 def draw_curves(axes, table):
-    chosen = np.unique(np.linspace(0, table.sigma.size - 1, min(MOST_CURVES, table.sigma.size)).round().astype(int))
+    chosen = drawn_columns(table)
     colours = matplotlib.colormaps[COLOURS](np.linspace(0.0, 0.88, chosen.size))
     highest = [table.largest()]
     for colour, j in zip(colours, chosen):

@@ -1,14 +1,16 @@
 #!/usr/bin/env bash
 # From a fresh machine to a lookup table: quickstart.sh [SCENE] [OUT]
 #
-# Installs the packages that are missing, builds the program, its Python package and its pages into build/release, from
-# which `cmake --install` works, writes the table of SCENE (default: the stainless-steel scene) to OUT (default: dolp.nc
-# in the current folder), prints the summary and draws OUT with the suffix .png. Any other suffix than .nc gives the
-# table alone.
+# Installs the packages that are missing, and builds the program, its Python package and its pages into build/release, from
+# which `cmake --install` works. Then writes the table of SCENE to OUT, prints the summary and draws OUT with the suffix .png.
+# Default SCENE: night_paint.toml with 36 roughnesses. Default OUT: dolp.nc in the current folder. An OUT with another suffix
+# than .nc has no picture.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-scene=${1:-$root/host/scenes/stainless_steel.toml}
+scene=${1:-$root/host/scenes/night_paint.toml}
+settings=()
+(($# > 0)) || settings=(--set 'grid.sigma={ from = 0.05, to = 0.4, count = 36 }')
 table=${2:-dolp.nc}
 build=$root/build/release
 
@@ -17,7 +19,7 @@ cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING
 cmake --build "$build" --target dolp dolp_python dolp_pages
 
 echo
-"$build/dolp" table "$scene" -o "$table"
+"$build/dolp" table "$scene" "${settings[@]}" -o "$table"
 echo
 echo "table:   $(realpath -- "$table")"
 if [[ $table != *.nc ]]; then

@@ -26,6 +26,9 @@ grep -q '^\.SS dolp table' "$prefix/share/man/man1/dolp.1" || fail "the manual p
 for section in DESCRIPTION FILES ENVIRONMENT "SEE ALSO"; do
   grep -q "^\.SH $section" "$prefix/share/man/man1/dolp.1" || fail "the manual page lacks $section"
 done
+grep -oP '\]\(\K[^)#]+' "$prefix/share/doc/dolp/README.md" | grep -v '^https:' | sort -u | while read -r link; do
+  [[ -e $prefix/share/doc/dolp/$link ]] || fail "README.md links to $link, which is not installed"
+done
 pages=$prefix/share
 words=$(bash -c 'source "$1"; COMP_WORDS=(dolp tab); COMP_CWORD=1; _dolp; echo "${COMPREPLY[*]}"
                  COMP_WORDS=(dolp eval --evaluator c); COMP_CWORD=3; _dolp; echo "${COMPREPLY[*]}"

@@ -7,13 +7,14 @@ sources=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-"$program" table "$sources/host/scenes/stainless_steel.toml" -o steel.nc --quiet
+"$program" table "$sources/host/scenes/night_paint.toml" -o grid.nc --quiet --set 'grid.sigma={ from = 0.05, to = 0.4, count = 36 }' \
+  --set 'grid.q=[2,3,5]'
 # All but the picture, which needs a display.
 sed -n '/^```matlab$/,/^```$/p' "$sources/README.md" | grep -vE '^(```|plot)' > block.m
 echo "printf('%.17g\n', between);" >> block.m
 found=$(HOME=$work octave --no-gui --quiet --no-init-file block.m | tail -n 1)
-printf 'theta_deg,sigma,q\n62.5,0.3,5\n' > points.csv
-"$program" lookup steel.nc --points points.csv -o r.csv --quiet
+printf 'theta_deg,sigma,q\n62.5,0.155,3\n' > points.csv
+"$program" lookup grid.nc --points points.csv -o r.csv --quiet
 /usr/bin/python3 - "$found" <<'END'
 import csv, sys
 row = next(csv.DictReader(line for line in open("r.csv") if not line.startswith("#")))

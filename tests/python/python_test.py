@@ -536,6 +536,14 @@ theta_deg = {from = 0, to = 80, count = 5}
             if table.bracket:
                 self.assertLess(np.nanmax(table.bracket), drawn[0].get_ylim()[1])
             plot_table.plt.close(figure)
+        # By default a picture shows the scene's own q, n and k, and one of its curves has the scene's own sigma.
+        own = self.scene.with_({"surface.n": 1.4, "surface.k": 0.2, "surface.q": 5, "surface.sigma": 0.24})
+        dolp.write_table(own, self.folder / "t.nc", evaluator="cpu", theta_deg=[0, 60], n=[1.4, 1.5, 1.6], k=[0.2],
+                         sigma=np.linspace(0.1, 0.5, 41), q=[2, 3, 5])
+        with netCDF4.Dataset(self.folder / "t.nc") as dataset:
+            table = plot_table.Slice(dataset, dict.fromkeys(plot_table.SYMBOLS))
+        self.assertEqual(table.place, "q = 5, n = 1.4, k = 0.2")
+        np.testing.assert_allclose(table.sigma[plot_table.drawn_columns(table)], [0.1, 0.18, 0.24, 0.34, 0.42, 0.5])
         # A peak of one curve among many stays in the frame, and no line leads to a limit at 90 degrees.
         for diffuse in (0, 0.1):
             dolp.write_table(self.scene.with_({"surface.diffuse": diffuse, "surface.masking": "v-cavity"}), self.folder / "t.nc",

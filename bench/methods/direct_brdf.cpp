@@ -175,7 +175,7 @@ double MaskingTails::at(const Interpolant& function, double tau, double exponent
 
 Entry entry_of(const MomentsRequest& request, std::size_t position) {
   const MomentsPoint point = request[position];
-  return {request.distribution, request.masking, point.theta_deg * pi / 180.0, point.shape, point.index};
+  return {request.distribution, request.masking, point.theta_deg * pi / 180.0, point.shape, point.index.index};
 }
 
 DirectSurface::DirectSurface(const Entry& entry, SmithBy smith_by)

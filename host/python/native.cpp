@@ -438,6 +438,7 @@ PYBIND11_MODULE(_native, module) {
   module.def("keys", [] {
     py::list all;
     for (const dolp::Key& key : dolp::keys()) {
+      if (key.layer > 1) continue;  // as the first
       all.append(py::make_tuple(key.key, key.unit, key.allowed(), key.fallback, key.meaning));
     }
     return all;

@@ -46,8 +46,9 @@ Fresnel fresnel(IndexNode index, real cos_beta) {
 // The same from a table: cubics over sqrt(cos(beta)) in cells of one width, of R_s, 1 - R_s and the split
 // (host/compute/plan/reflectance_curve.cpp).
 Fresnel reflectance_at(IndexNode index, real cos_beta) {
-  real place = sqrt(cos_beta) * index.curve_cells;
-  int cell = clamp(int(place), 0, int(index.curve_cells) - 1);
+  int cells = int(index.curve_cells);
+  real place = sqrt(cos_beta) * real(cells);
+  int cell = min(int(place), cells - 1);
   real x = place - real(cell);
   int first = int(index.curve_start) + DOLP_CURVE_NODES * cell;
   real value[3];

@@ -92,8 +92,8 @@ MomentsPoint neighbour(Draw& draw, const MomentsPoint& entry, Domain domain, dou
   const double largest_deg = domain == Domain::kOrdinary ? 85.0 : 90.0;
   next.theta_deg = std::clamp(largest_deg - moved(draw, largest_deg - entry.theta_deg, 0.0, width), 0.0, largest_deg);
   next.shape = {moved(draw, entry.shape.sigma, 0.0, width), moved(draw, entry.shape.q, q_end, width)};
-  next.index = {moved(draw, entry.index.n, domain == Domain::kOrdinary ? 1.0 : 0.0, width),
-                moved(draw, entry.index.k, 0.0, width)};
+  next.index.index = {moved(draw, entry.index.index.n, domain == Domain::kOrdinary ? 1.0 : 0.0, width),
+                      moved(draw, entry.index.index.k, 0.0, width)};
   return next;
 }
 
@@ -101,7 +101,7 @@ MomentsPoint neighbour(Draw& draw, const MomentsPoint& entry, Domain domain, dou
 bool is_in(Domain domain, const MomentsPoint& entry, double q_end) {
   if (domain == Domain::kCorners) return entry.shape.sigma <= 10.0 && entry.shape.q <= q_end + 20.0;
   return entry.shape.sigma >= 0.01 && entry.shape.sigma <= 2.0 && entry.shape.q >= q_end + 0.1 &&
-         entry.shape.q <= q_end + 10.0 && entry.index.n >= 1.1;
+         entry.shape.q <= q_end + 10.0 && entry.index.index.n >= 1.1;
 }
 
 CheckedEntry climbed(const Check& check, Draw& draw, CheckedEntry best, Domain domain, double q_end) {

@@ -55,7 +55,7 @@ void fit(const std::string& name, const dolp::RuleFitOptions& options) {
 std::string entry_text(const dolp::CheckedEntry& checked) {
   const dolp::MomentsPoint& e = checked.entry;
   return fmt::format("{:.3g} at theta {:.17g} sigma {:.17g} q {:.17g} n {:.17g} k {:.17g}", checked.ratio, e.theta_deg,
-                     e.shape.sigma, e.shape.q, e.index.n, e.index.k);
+                     e.shape.sigma, e.shape.q, e.index.index.n, e.index.index.k);
 }
 
 /// A line for each tolerance, masking and distribution. Returns true where all bounds hold.

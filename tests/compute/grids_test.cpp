@@ -31,9 +31,9 @@ std::vector<double> in_ratios(double first, double last, std::size_t count, doub
   return values;
 }
 
-std::vector<OpticalConstants> many_indices(Random& random) {
+std::vector<FacetOptics> many_indices(Random& random) {
   const OpticalConstants least{random.log_uniform(0.2, 20.0), random.log_uniform(1e-3, 20.0)};
-  std::vector<OpticalConstants> indices;
+  std::vector<FacetOptics> indices;
   for (const double n : in_ratios(least.n, least.n * random.log_uniform(1.2, 3.0), 12)) {
     for (const double k : in_ratios(least.k, least.k * random.log_uniform(1.2, 3.0), 10)) indices.push_back({n, k});
   }
@@ -91,7 +91,7 @@ class Grids : public testing::TestWithParam<std::tuple<Kernel, Sharing>> {
     const std::vector<Moments> exact = exact_->evaluate(alone, {});
     for (std::size_t i = 0; i < kChecked; ++i) {
       expect_within_bounds(moments[positions[i]], exact[i],
-                           text_of({alone[i].theta_deg, alone[i].shape, alone[i].index}));
+                           text_of({alone[i].theta_deg, alone[i].shape, alone[i].index.index}));
     }
   }
 

@@ -138,7 +138,7 @@ std::vector<Point> drawn(Domain domain, Distribution distribution, Masking maski
   std::vector<Point> points;
   for (int i = 0; i < 20; ++i) {
     const MomentsPoint entry = random_entry(draw, domain, distribution, masking);
-    points.push_back({entry.theta_deg, entry.shape, entry.index});
+    points.push_back({entry.theta_deg, entry.shape, entry.index.index});
   }
   return points;
 }

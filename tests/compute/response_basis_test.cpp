@@ -24,8 +24,8 @@ constexpr Box kBoxes[] = {{"paints", {1.3, 0.01}, {2.5, 1.0}},
                           {"metals", {1.0, 5.0}, {40.0, 90.0}},
                           {"everything", {1.05, 1e-3}, {60.0, 120.0}}};
 
-std::vector<OpticalConstants> random_indices(const Box& box, std::size_t count, Random& random) {
-  std::vector<OpticalConstants> indices;
+std::vector<FacetOptics> random_indices(const Box& box, std::size_t count, Random& random) {
+  std::vector<FacetOptics> indices;
   for (std::size_t i = 0; i < count; ++i) {
     indices.push_back({random.uniform(box.least.n, box.most.n), random.uniform(box.least.k, box.most.k)});
   }
@@ -59,17 +59,18 @@ TEST(ResponseBasis, CombinedReflectances_StayWithinTheirBounds) {
   for (const Box& box : kBoxes) {
     for (const double tolerance : {1e-2, 1e-4, 1e-6, 1e-9}) {
       SCOPED_TRACE(std::string(box.name) + " at " + fmt::format("{:g}", tolerance));
-      const std::vector<OpticalConstants> run = random_indices(box, 300, random);
+      const std::vector<FacetOptics> run = random_indices(box, 300, random);
       const auto basis = ResponseBasis::of(run, tolerance, 1);
       if (!basis) {
         EXPECT_LT(tolerance, 1e-4);
         continue;
       }
       EXPECT_LE(basis->count(), kMostResponses);
-      std::vector<OpticalConstants> asked(run.begin(), run.begin() + 20);
-      for (const OpticalConstants& other : random_indices(box, 20, random)) asked.push_back(other);
+      std::vector<FacetOptics> asked(run.begin(), run.begin() + 20);
+      for (const FacetOptics& other : random_indices(box, 20, random)) asked.push_back(other);
       int reached = 0;
-      for (const OpticalConstants& index : asked) {
+      for (const FacetOptics& optics : asked) {
+        const OpticalConstants& index = optics.index;
         const auto weights = basis->weights_of(index);
         if (!weights) continue;
         ++reached;
@@ -96,7 +97,7 @@ TEST(ResponseBasis, FewIndices_HaveNone) {
   EXPECT_FALSE(ResponseBasis::of({}, 1e-4, 1));
   EXPECT_FALSE(ResponseBasis::of({{1.5, 0.1}}, 1e-4, 1));
   // One pass pays for three indices, three passes for seven.
-  const std::vector<OpticalConstants> three = {{1.5, 0.1}, {1.6, 0.1}, {1.7, 0.2}};
+  const std::vector<FacetOptics> three = {{1.5, 0.1}, {1.6, 0.1}, {1.7, 0.2}};
   EXPECT_TRUE(ResponseBasis::of(three, 1e-4, 1));
   EXPECT_FALSE(ResponseBasis::of(three, 1e-4, 3));
 }

@@ -69,8 +69,8 @@ TEST(Radiometry, TabulatedMaterialBand_AgreesWithPrintedFormulas) {
       const Direction direction = direction_of(theta_deg);
       const auto specular = [&](const OpticalConstants& index) { return printed_fresnel(index, direction.cos_theta); };
       std::vector<Moments> moments;
-      for (const OpticalConstants& index : radiometry.rule().indices()) {
-        moments.push_back(moments_of(specular(index), direction.cos_theta));
+      for (const FacetOptics& optics : radiometry.rule().indices()) {
+        moments.push_back(moments_of(specular(optics.index), direction.cos_theta));
       }
       const PointResult actual = radiometry.point(direction, moments);
       const auto at = [&](Real um) {
@@ -92,10 +92,10 @@ TEST(Radiometry, IndicesOfThePoint_ReplaceThoseOfTheRule) {
   scene.emission->model = EmissionModel::kFresnel;
   const Direction direction = direction_of(60.0);
   const Moments moments = moments_of({0.3, 0.1}, direction.cos_theta);
-  const std::vector<OpticalConstants> indices = {{3.0, 0.5}};
+  const std::vector<FacetOptics> indices = {{3.0, 0.5}};
   const PointResult replaced = Radiometry(scene).point(direction, std::vector<Moments>{moments}, indices);
   const PointResult own = evaluate(scene, direction, moments);
-  scene.surface.material.constant = indices[0];
+  scene.surface.material.constant = indices[0].index;
   const PointResult other = evaluate(scene, direction, moments);
   EXPECT_EQ(replaced[Quantity::kStokesQ], other[Quantity::kStokesQ]);
   EXPECT_NE(replaced[Quantity::kStokesQ], own[Quantity::kStokesQ]);

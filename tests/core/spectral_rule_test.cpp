@@ -115,7 +115,7 @@ void expect_promised_reflectances(const Material& material) {
     Real actual_emitted = 0.0L;
     Real actual_direct = 0.0L;
     for (const SpectralSample& sample : rule.samples) {
-      const PrintedReflectance r = printed_fresnel(sample.index, cosine);
+      const PrintedReflectance r = printed_fresnel(sample.index.index, cosine);
       actual_emitted += sample.emitted * r.s;
       actual_direct += sample.irradiance * r.p;
     }

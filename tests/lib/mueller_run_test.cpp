@@ -138,8 +138,8 @@ TEST(MuellerPoints, MaterialOfAWavelength_IsThatOfTheScene) {
   scene.surface.material.k = {{8.0, 12.0}, {0.2, 0.4}, SpectralTable::Interpolation::kLinear};
   const std::string csv = "theta_i_deg,theta_r_deg,delta_phi_deg,sigma\n10,20,30,0.5\n";
   const MuellerPoint point = mueller_points(scene, parse_points(csv, "p.csv", PointsKind::kGeometries)).front();
-  EXPECT_DOUBLE_EQ(point.index.n, 2.0);
-  EXPECT_DOUBLE_EQ(point.index.k, 0.3);
+  EXPECT_DOUBLE_EQ(point.index.index.n, 2.0);
+  EXPECT_DOUBLE_EQ(point.index.index.k, 0.3);
   EXPECT_EQ(point.shape.sigma, 0.5);
   EXPECT_EQ(point.shape.q, 3.0);
   EXPECT_EQ(point.angles.delta_phi_deg, 30.0);

@@ -24,7 +24,7 @@ EntryResponses responses(const Model& model, const std::vector<Point>& points, d
   surface.distribution = model.distribution;
   surface.masking = model.masking;
   MomentsRequest request = response_request(surface);
-  const OpticalConstants index = request.indices.front();
+  const FacetOptics index = request.indices.front();
   request.indices.clear();
   request.has_extra_splits = has_extra_splits;
   for (const Point& p : points) request.append({p.theta_deg, p.shape, index});

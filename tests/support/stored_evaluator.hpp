@@ -25,7 +25,7 @@ class StoredEvaluator final : public MomentsOnly {
     std::vector<Moments> results;
     for (std::size_t i = 0; i < request.size(); ++i) {
       const MomentsPoint point = request[i];
-      const auto found = moments_.find(key(point.theta_deg, point.shape, point.index));
+      const auto found = moments_.find(key(point.theta_deg, point.shape, point.index.index));
       EXPECT_NE(found, moments_.end());
       results.push_back(found == moments_.end() ? Moments{} : found->second);
     }

@@ -72,8 +72,11 @@ MeasuredReflectance measured_in(std::span<const ReflectanceRow> rows, const std:
 }  // namespace
 
 ReflectanceTable read_reflectance_file(const std::string& path, const std::string& prefix) {
-  const std::string text = read_text(path, prefix);
-  CsvReader reader(text, path);
+  return parse_reflectances(read_text(path, prefix), path);
+}
+
+ReflectanceTable parse_reflectances(const std::string& text, const std::string& name) {
+  CsvReader reader(text, name);
   const std::vector<ReflectanceRow> rows = read_rows(reader);
   ReflectanceTable table;
   for (auto first = rows.begin(); first != rows.end();) {
@@ -81,7 +84,7 @@ ReflectanceTable read_reflectance_file(const std::string& path, const std::strin
       return row.wavelength_um != first->wavelength_um;
     });
     const std::vector<double> expected = table.measured.empty() ? std::vector<double>{} : table.measured[0]->beta_deg;
-    table.measured.push_back(std::make_shared<const MeasuredReflectance>(measured_in({first, last}, expected, path)));
+    table.measured.push_back(std::make_shared<const MeasuredReflectance>(measured_in({first, last}, expected, name)));
     if (first->wavelength_um > 0.0) table.wavelength_um.push_back(first->wavelength_um);
     first = last;
   }

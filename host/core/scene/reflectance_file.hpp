@@ -14,4 +14,7 @@ namespace dolp {
 /// Errors: InputError with file and line; `prefix` begins the message when the file cannot be opened.
 ReflectanceTable read_reflectance_file(const std::string& path, const std::string& prefix);
 
+/// Reads a text instead of a file; `name` begins messages. Errors: InputError with the line.
+ReflectanceTable parse_reflectances(const std::string& text, const std::string& name);
+
 }  // namespace dolp

@@ -12,6 +12,7 @@
 
 #include "base/hash.hpp"
 #include "base/version.hpp"
+#include "run/surface_data.hpp"
 #include "run/table_scene.hpp"
 
 namespace dolp {
@@ -30,7 +31,7 @@ void fill_curves(TableHead& head, const SceneValues& scene) {
     if (tabulated.wavelength_um.empty()) return {one_um, {constant}, {}};
     return {tabulated.wavelength_um, tabulated.value, {}};
   };
-  if (head.axes[Axis::kN].empty() && head.axes[Axis::kK].empty()) {
+  if (head.axes[Axis::kN].empty() && head.axes[Axis::kK].empty() && !scene.surface.reflectance) {
     const Material& material = recorded_material(head.axes, scene);
     head.index_n = curve_of(material.n, material.constant.n);
     head.index_k = curve_of(material.k, material.constant.k);
@@ -154,6 +155,10 @@ TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const
                      {"tolerance", scene.accuracy.tolerance}};
   const Dispersion& formula = recorded_material(axes, scene).n.formula;
   if (formula.number != 0) head.attributes.push_back({"index_n_formula", formula_text(formula)});
+  const std::string coating = coating_text(scene.surface, !axes[Axis::kWavelength].empty());
+  if (!coating.empty()) head.attributes.push_back({"coating", coating});
+  const std::string reflectance = reflectance_text(scene.surface);
+  if (!reflectance.empty()) head.attributes.push_back({"reflectance", reflectance});
   const std::string profile = profile_text(scene);
   if (!profile.empty()) head.attributes.push_back({"surroundings_profile", profile});
   layout.quantities = quantities_of(scene, &plan);
@@ -177,6 +182,7 @@ std::uint64_t data_hash(const SceneValues& scene) {
     add(material->n);
     add(material->k);
   }
+  hash = hashed(hashed(hash, coating_text(scene.surface, true)), reflectance_text(scene.surface));
   if (scene.source) add(scene.source->table);
   if (scene.surroundings && scene.surroundings->profile) hash = hashed(hash, scene.surroundings->profile->hash());
   return hash;

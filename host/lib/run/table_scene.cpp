@@ -10,6 +10,8 @@
 #include <dolp/number_range.hpp>
 #include "base/hash.hpp"
 #include "base/text.hpp"
+#include "run/surface_data.hpp"
+#include "scene/reflectance_file.hpp"
 #include "scene/scene_reader.hpp"
 #include "scene/spectral_data.hpp"
 #include "table/table_file.hpp"
@@ -41,20 +43,6 @@ SpectralTable checked_table(const Curve& curve, const NamedValue& value, const s
   return table;
 }
 
-Dispersion formula_of(const std::string& text, const std::string& where) {
-  Dispersion formula;
-  for (const std::string_view word : split(text, ' '))
-    formula.coefficients.push_back(parse_number(word).value_or(-1.0));
-  formula.number = static_cast<int>(std::clamp(formula.coefficients.front(), -1.0, kDispersionFormulas + 1.0));
-  formula.coefficients.erase(formula.coefficients.begin());
-  const bool is_known = formula.number >= 1 && formula.number <= kDispersionFormulas;
-  const std::vector<std::size_t> counts = is_known ? coefficient_counts(formula.number) : std::vector<std::size_t>{};
-  if (std::ranges::find(counts, formula.coefficients.size()) == counts.end()) {
-    throw InputError(fmt::format("{}attribute \"index_n_formula\": is no dispersion formula", where));
-  }
-  return formula;
-}
-
 /// n, k, E0 and the sky as the table has them.
 KnownData known_data(const TableHead& table, const std::string& name) {
   const std::string where = name + ": ";
@@ -65,7 +53,7 @@ KnownData known_data(const TableHead& table, const std::string& name) {
     material.k = checked_table(table.index_k, {"index_k", 0.0, kKRange}, where);
     material.constant = {material.n.value.front(), material.k.value.front()};
     const std::string* formula = find_text(table, "index_n_formula");
-    if (formula) material.n.formula = formula_of(*formula, where);
+    if (formula) material.n.formula = parse_formula(*formula, where + "attribute \"index_n_formula\": ");
     for (SpectralTable* values : {&material.n, &material.k}) {
       if (values->value.size() == 1) *values = {};
     }
@@ -73,6 +61,10 @@ KnownData known_data(const TableHead& table, const std::string& name) {
   if (!table.irradiance.values.empty()) {
     known.irradiance = checked_table(table.irradiance, {"irradiance", 0.0, kNonNegativeRange}, where);
   }
+  if (const std::string* coating = find_text(table, "coating"))
+    known.layers = parse_coating(*coating, name + ": attribute \"coating\"");
+  if (const std::string* reflectance = find_text(table, "reflectance"))
+    known.reflectance = parse_reflectances(*reflectance, name + ": attribute \"reflectance\"");
   const std::string* profile = find_text(table, "surroundings_profile");
   if (profile && !profile->empty()) {
     known.profile = parse_sky_profile(*profile, name + ": attribute \"surroundings_profile\"");
@@ -81,12 +73,6 @@ KnownData known_data(const TableHead& table, const std::string& name) {
 }
 
 }  // namespace
-
-std::string formula_text(const Dispersion& formula) {
-  std::string text = std::to_string(formula.number);
-  for (const double coefficient : formula.coefficients) text += ' ' + format_number(coefficient);
-  return text;
-}
 
 std::string settings_text(const std::vector<Setting>& settings) {
   std::string text;

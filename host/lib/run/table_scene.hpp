@@ -25,8 +25,6 @@ void check_may_hold_scene(const std::string& path);
 /// Reads a table file that holds its scene. Errors: those of check_may_hold_scene and read_table.
 TableValues load_table(const std::string& path);
 
-/// The attribute "index_n_formula": the number of a dispersion formula and its coefficients, with blanks between them.
-std::string formula_text(const Dispersion& formula);
 
 /// The sources of the n, k and E0 that a scene names.
 enum class NamedData {

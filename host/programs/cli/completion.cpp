@@ -34,6 +34,7 @@ Words names_of(const CLI::Option& option) {
 Words settings() {
   Words all;
   for (const Key& key : dolp::keys()) {
+    if (key.layer > 1) continue;  // as the first
     if (key.words.empty()) all.push_back(key.key + '=');
     for (const std::string& word : key.words) all.push_back(key.key + '=' + word);
   }
@@ -44,7 +45,7 @@ Words settings() {
 Words keys_of(bool (*is_wanted)(const Key&)) {
   Words all;
   for (const Key& key : dolp::keys()) {
-    if (is_wanted(key)) all.push_back(key.key + '=');
+    if (is_wanted(key) && key.layer <= 1) all.push_back(key.key + '=');
   }
   return all;
 }

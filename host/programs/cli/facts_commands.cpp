@@ -101,7 +101,9 @@ int run_keys(const Options& options) {
   std::vector<std::string> names;
   for (const Key& key : dolp::keys()) {
     names.push_back(key.key);
-    const bool is_wanted = options.key.empty() || key.key == options.key || key.key.starts_with(options.key + ".");
+    const bool is_further_layer = key.layer > 1;  // they have the keys of the first
+    const bool is_wanted = (options.key.empty() && !is_further_layer) || key.key == options.key ||
+                           (!options.key.empty() && key.key.starts_with(options.key + "."));
     if (is_wanted) add_key(report, list, key);
   }
   if (list.empty()) {

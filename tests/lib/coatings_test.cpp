@@ -1,0 +1,347 @@
+// Films and measured reflectances: the closed forms that they must meet, the independent reference, and scenes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <cstdio>
+#include <dolp/errors.hpp>
+#include <dolp/status.hpp>
+#include <numbers>
+
+#include "fixed_precision.hpp"
+#include "model/smooth_surface.hpp"
+#include "properties_support.hpp"
+#include "reference/fresnel.hpp"
+#include "reference/reference_evaluator.hpp"
+#include "run/scene_run.hpp"
+#include "scene/scene_reader.hpp"
+#include "scene/scene_writer.hpp"
+#include "temporary_file.hpp"
+
+namespace dolp {
+namespace {
+
+using enum Quantity;
+
+constexpr std::uint64_t kSeed = 20261125;
+constexpr double kClosedForm = 1e-12;
+
+FacetOptics coated(const OpticalConstants& medium, std::vector<Film> films) {
+  FacetOptics optics(medium);
+  optics.films = std::move(films);
+  return optics;
+}
+
+/// One to three films on a dielectric, a metal or water; some absorb, some are thick.
+FacetOptics random_coating(Random& random) {
+  FacetOptics optics(random.chance(0.4) ? OpticalConstants{random.uniform(2.0, 30.0), random.uniform(10.0, 90.0)}
+                                        : OpticalConstants{random.uniform(1.1, 3.5), random.log_uniform(1e-3, 0.5)});
+  for (std::size_t i = random.count(1, 3); i > 0; --i) {
+    const double k = random.chance(0.3) ? 0.0 : random.log_uniform(1e-3, 1.0);
+    optics.films.push_back({{random.uniform(0.6, 3.0), k}, random.log_uniform(0.01, 1.0)});
+  }
+  return optics;
+}
+
+std::string text_of(const FacetOptics& optics) {
+  std::string text = fmt::format("n {:.17g} k {:.17g}", optics.index.n, optics.index.k);
+  for (const Film& film : optics.films)
+    text += fmt::format(", film n {:.17g} k {:.17g} d/lambda {:.17g}", film.index.n, film.index.k, film.thickness);
+  return text;
+}
+
+// ---- Smooth surfaces -----------------------------------------------------------------------------------------------
+
+TEST(Films, WithoutThickness_AreTheBareMedium) {
+  const OpticalConstants medium{1.8, 0.4};
+  for (const double cosine : {1.0, 0.6, 0.05}) {
+    const SmoothAbsorptance bare = smooth_absorptance(medium, cosine);
+    const SmoothAbsorptance films = smooth_absorptance(coated(medium, {{{2.4, 0.1}, 0.0}, {{0.7, 0.2}, 0.0}}), cosine);
+    EXPECT_NEAR(films.s, bare.s, kClosedForm);
+    EXPECT_NEAR(films.p, bare.p, kClosedForm);
+    EXPECT_NEAR(films.split, bare.split, 1e-9);
+  }
+}
+
+TEST(Films, QuarterWaveOfTheRootOfTheIndex_DoesNotReflectAtNormalIncidence) {
+  const double n = std::sqrt(2.25);
+  const SmoothAbsorptance absorbed = smooth_absorptance(coated({2.25, 0.0}, {{{n, 0.0}, 0.25 / n}}), 1.0);
+  EXPECT_NEAR(absorbed.s, 1.0, kClosedForm);
+  EXPECT_NEAR(absorbed.p, 1.0, kClosedForm);
+}
+
+TEST(Films, OfOneIndex_AddTheirThicknesses) {
+  const OpticalConstants film{1.6, 0.03};
+  for (const double cosine : {0.9, 0.3}) {
+    const ReflectedAmplitudes two = film_amplitudes(coated({27.0, 90.0}, {{film, 0.3}, {film, 0.5}}), cosine);
+    const ReflectedAmplitudes one = film_amplitudes(coated({27.0, 90.0}, {{film, 0.8}}), cosine);
+    EXPECT_LT(std::abs(two.s - one.s) + std::abs(two.p - one.p), kClosedForm);
+  }
+}
+
+TEST(Films, Amplitudes_AgreeWithCharacteristicMatrices) {
+  Random random(kSeed);
+  for (int i = 0; i < 2000; ++i) {
+    const FacetOptics optics = random_coating(random);
+    const double cosine = random.chance(0.2) ? random.log_uniform(1e-6, 1.0) : random.uniform(0.01, 1.0);
+    const ReflectedAmplitudes r = film_amplitudes(optics, cosine);
+    const reference::FresnelCoefficients right = reference::fresnel(optics, cosine);
+    EXPECT_LT(std::abs(r.s - right.r_s) + std::abs(r.p - right.r_p), 1e-11) << text_of(optics) << " at " << cosine;
+    const SmoothAbsorptance absorbed = smooth_absorptance(optics, cosine);
+    const double sin2 = (1.0 - cosine) * (1.0 + cosine);
+    EXPECT_NEAR(absorbed.split * sin2, std::norm(right.r_s) - std::norm(right.r_p), 1e-11) << text_of(optics);
+  }
+}
+
+// ---- Moments and beams ---------------------------------------------------------------------------------------------
+
+/// Compares random coatings, one for each model in turn.
+void expect_within_bounds_of_reference(Precision precision, double tolerance, std::uint64_t seed, std::size_t draws) {
+  Random random(seed);
+  FixedPrecision evaluator(precision);
+  ReferenceEvaluator reference;
+  for (std::size_t i = 0; i < draws; ++i) {
+    MomentsRequest request;
+    request.distribution = kModels[i % kModels.size()].distribution;
+    request.masking = kModels[i % kModels.size()].masking;
+    request.wants_direct = request.masking == Masking::kSmith || request.masking == Masking::kVCavity;
+    request.tolerance = tolerance;
+    const MomentsPoint point{random.uniform(0.0, 88.0),
+                             {random.log_uniform(0.02, 1.0), random.uniform(1.8, 6.0)},
+                             random_coating(random)};
+    request.append(point);
+    const Moments own = evaluator.evaluate(request, {}).front();
+    const Moments right = reference.evaluate(request, {}).front();
+    const std::string where =
+        fmt::format("theta {:.17g} sigma {:.17g} q {:.17g} {}", point.theta_deg, point.shape.sigma, point.shape.q,
+                    text_of(point.index));
+    const std::size_t members = kMomentMembers.size() - (request.wants_direct ? 0 : kDirectMembers);
+    for (std::size_t j = 0; j < members; ++j) {
+      const auto& [value, error] = kMomentMembers[j];
+      EXPECT_LE(std::abs(own.*value - right.*value), own.*error + right.*error) << "moment " << j << " at " << where;
+    }
+    EXPECT_LT(own.r_i_error, 30.0 * tolerance * right.r_i + 1e-6) << where;
+  }
+}
+
+TEST(Coatings, MomentsInFloat_AreWithinTheirBoundsOfTheReference) {
+  expect_within_bounds_of_reference(Precision::kFloat, 1e-4, kSeed + 1, draws_wanted(96));
+}
+
+TEST(Coatings, MomentsInDouble_AreWithinTheirBoundsOfTheReference) {
+  expect_within_bounds_of_reference(Precision::kDouble, 1e-6, kSeed + 2, draws_wanted(48));
+}
+
+TEST(Coatings, MuellerMatrices_AgreeWithTheReference) {
+  Random random(kSeed + 3);
+  for (const Precision precision : {Precision::kFloat, Precision::kDouble}) {
+    ScatteringRequest request;
+    request.masking = Masking::kSmith;
+    request.precision = precision;
+    for (std::uint32_t i = 0; i < 100; ++i) {
+      request.angles.push_back({random.uniform(0.0, 85.0), random.uniform(0.0, 85.0), random.uniform(-180.0, 180.0)});
+      request.shapes.push_back({random.uniform(0.1, 0.6), random.uniform(1.8, 5.0)});
+      request.indices.push_back(random_coating(random));
+      request.entries.push_back({i, i, i});
+    }
+    const std::vector<ScatteringMatrix> own = FixedPrecision(precision).scatter(request, {});
+    const std::vector<ScatteringMatrix> right = ReferenceEvaluator().scatter(request, {});
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      for (std::size_t j = 0; j < 16; ++j) {
+        EXPECT_LE(std::abs(own[i].m[j] - right[i].m[j]), own[i].error + right[i].error)
+            << "element " << j << " of " << text_of(request.indices[i]);
+      }
+    }
+  }
+}
+
+// ---- Scenes --------------------------------------------------------------------------------------------------------
+
+const std::string kScene = R"toml(
+[surface]
+n = 27.0
+k = 90.0
+sigma = 0.2
+q = 3.0
+masking = "smith"
+coating = [ { n = 0.7, k = 0.1, thickness_um = 1.0 } ]
+[emission]
+temperature_K = 300.0
+[spectrum]
+wavelength_um = 10.6
+[grid]
+theta_deg = [60]
+)toml";
+
+SceneValues scene_with(const std::vector<std::string>& overrides) {
+  return parse_scene(kScene, "s.toml", settings_from_text(overrides));
+}
+
+PointResult result_of(const std::vector<std::string>& overrides) {
+  const SceneValues scene = scene_with(overrides);
+  CpuEvaluator evaluator;
+  return evaluate_scene(scene, grid_entries(scene), evaluator, {}).front();
+}
+
+TEST(Coatings, OxideOnAluminium_PolarisesTheEmissionFarMore) {
+  const auto q_over_i = [](const std::vector<std::string>& overrides) { return result_of(overrides)[kQOverI]; };
+  EXPECT_NEAR(q_over_i({"surface.sigma=0", "surface.coating=none"}), -0.597, 1e-3);
+  EXPECT_NEAR(q_over_i({"surface.sigma=0"}), -0.945, 1e-3);
+}
+
+TEST(Coatings, EmissionOfTheSmoothSurface_IsThatOfTheFilms) {
+  const PointResult result = result_of({"emission.model=fresnel"});
+  const SmoothAbsorptance right =
+      smooth_absorptance(coated({27.0, 90.0}, {{{0.7, 0.1}, 1.0 / 10.6}}), std::cos(std::numbers::pi / 3.0));
+  EXPECT_NEAR(result[kEmissivityS], right.s, 1e-9);
+  EXPECT_NEAR(result[kEmissivityP], right.p, 1e-9);
+}
+
+TEST(Coatings, GridOfIndices_KeepsItsFilms) {
+  const std::vector<std::string> n_axis = {"surface.n={}", "surface.k={}", "grid.n=[1.4, 2.0]", "grid.k=[0.05, 0.4]"};
+  const SceneValues scene = scene_with(n_axis);
+  CpuEvaluator evaluator;
+  const SceneEntries entries = grid_entries(scene);
+  const std::vector<PointResult> results = evaluate_scene(scene, entries, evaluator, {});
+  ASSERT_EQ(results.size(), 4U);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const OpticalConstants index = *entries[i].index;
+    const PointResult alone =
+        result_of({fmt::format("surface.n={}", index.n), fmt::format("surface.k={}", index.k)});
+    EXPECT_NEAR(results[i][kDolp], alone[kDolp], results[i][kErrorEstimate] + alone[kErrorEstimate]);
+  }
+}
+
+// Mirrors have closed forms at each wavelength, so that the band's integral can be summed finely.
+TEST(Coatings, BandWithThickFilms_IsWithinItsBoundOfAFineSum) {
+  for (const char* thickness : {"0.5", "5", "20"}) {
+    const std::vector<std::string> film = {"surface.sigma=0", "surface.n=1.5", "surface.k=0.05",
+                                           std::string("surface.coating=[{n=2.2,k=0.01,thickness_um=") + thickness + "}]",
+                                           "spectrum.wavelength_um={}", "spectrum.band_um=[8,14]"};
+    const PointResult band = result_of(film);
+    std::vector<std::string> one = film;
+    double i = 0.0, q = 0.0;
+    constexpr int kSteps = 1500;
+    for (int j = 0; j < kSteps; ++j) {
+      one[4] = "spectrum.band_um={}";
+      one[5] = fmt::format("spectrum.wavelength_um={:.17g}", 8.0 + 6.0 * (j + 0.5) / kSteps);
+      const PointResult at = result_of(one);
+      i += at[kStokesI];
+      q += at[kStokesQ];
+    }
+    EXPECT_LE(std::abs(band[kQOverI] - q / i), band[kErrorEstimate] + 1e-6) << thickness;
+    EXPECT_LT(band[kErrorEstimate], 1e-4) << thickness;
+  }
+}
+
+TEST(Coatings, ScenesWithAllEffects_AgreeWithTheReference) {
+  const std::vector<std::string> films = {"surface.material=\"BK7 borosilicate\"",
+                                          "surface.coating=[{material=\"PMMA acrylic\",thickness_um=3}]"};
+  const std::vector<std::vector<std::string>> cases = {
+      {"spectrum.band_um=[8,12]", "surroundings.temperature_K=240"},
+      {"spectrum.band_um=[10,12]", "surroundings.profile=clear-sky", "surface.masking=integral"},
+      {"emission.model=direct", "emission.bracket=true", "surroundings.temperature_K=240"},
+      {"geometry.mode=bistatic", "geometry.view_zenith_deg=40", "source.irradiance=20"},
+      {"grid.wavelength_um=[9, 11]", "surface.diffuse=0.2"}};
+  for (const std::vector<std::string>& more : cases) {
+    std::vector<std::string> overrides = films;
+    overrides.insert(overrides.end(), more.begin(), more.end());
+    overrides.emplace_back("grid.theta_deg=[20, 75]");
+    const SceneValues scene = scene_with(overrides);
+    CpuEvaluator evaluator;
+    ReferenceEvaluator reference;
+    const std::vector<PointResult> own = evaluate_scene(scene, grid_entries(scene), evaluator, {});
+    const std::vector<PointResult> right = evaluate_scene(scene, grid_entries(scene), reference, {});
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      SCOPED_TRACE(more.front() + " entry " + std::to_string(i));
+      EXPECT_LE(std::abs(own[i][kDolp] - right[i][kDolp]), own[i][kErrorEstimate] + right[i][kErrorEstimate]);
+      EXPECT_LE(own[i][kErrorEstimate], 1e-4);
+      EXPECT_EQ(own[i].status & kAnyToleranceNotMet, 0U);
+    }
+  }
+}
+
+TEST(Coatings, SceneWritten_ReadsTheSame) {
+  const SceneValues scene = scene_with({"surface.coating.2.material=\"PMMA acrylic\"", "surface.coating.2.thickness_um=2"});
+  ASSERT_EQ(scene.surface.coating.size(), 2U);
+  const SceneValues again = parse_scene(scene_toml(scene, "."), "again.toml");
+  ASSERT_EQ(again.surface.coating.size(), 2U);
+  EXPECT_EQ(again.surface.coating[1].thickness_um, 2.0);
+  EXPECT_EQ(again.names.coating[1].material, "PMMA acrylic");
+  EXPECT_EQ(again.surface.optics_at(10.6), scene.surface.optics_at(10.6));
+}
+
+TEST(Coatings, Mistakes_AreToldWithTheKeyAndWhatIsAllowed) {
+  struct Case {
+    std::vector<std::string> overrides;
+    const char* message;
+  };
+  const Case cases[] = {
+      {{"surface.coating=3"}, "surface.coating=3: must be a list of at most 16 tables"},
+      {{"surface.coating=[{n=1.5}]"}, "surface.coating.1.thickness_um: missing"},
+      {{"surface.coating=[{thickness_um=1}]"}, "missing; must be a number in (0, 1e6], or give one of surface.coating.1.n"},
+      {{"surface.coating.1.thickness_um=-1"}, "-1 is out of range; must be a number in [0, 1000]"},
+      {{"surface.coating.3.n=1.5"}, "surface.coating has 1 layers, and the next is 2"},
+      {{"surface.coating.1.colour=1"}, "unknown key"},
+      {{"surface.masking=v-cavity", "surface.scattering=multiple"}, "needs no surface.coating"},
+      {{"surface.n={}", "surface.k={}", "surface.reflectance_file=r.csv"}, "cannot be combined with surface.coating"},
+  };
+  for (const Case& c : cases) {
+    try {
+      scene_with(c.overrides);
+      ADD_FAILURE() << c.overrides.front() << " is accepted";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(c.message), std::string::npos) << error.what();
+    }
+  }
+}
+
+// ---- Measured reflectances -----------------------------------------------------------------------------------------
+
+/// The reflectances of a medium at every `step_deg`.
+std::string measured_csv(const OpticalConstants& index, double step_deg) {
+  std::string csv = "beta_deg,r_s,r_p\n";
+  for (double beta_deg = 0.0; beta_deg <= 90.0; beta_deg += step_deg) {
+    const double cosine = std::max(std::cos(beta_deg * std::numbers::pi / 180.0), 1e-9);
+    const SmoothAbsorptance absorbed = smooth_absorptance(index, beta_deg == 90.0 ? 1e-9 : cosine);
+    csv += fmt::format("{},{:.12g},{:.12g}\n", beta_deg, 1.0 - absorbed.s, 1.0 - absorbed.p);
+  }
+  return csv;
+}
+
+TEST(MeasuredReflectances, OfAMedium_GiveNearlyItsTable) {
+  const TemporaryFile file("measured.csv", measured_csv({1.5, 0.1}, 0.5));
+  for (const char* masking : {"smith", "integral"}) {
+    const std::string of_masking = std::string("surface.masking=") + masking;
+    const PointResult measured = result_of({of_masking, "surface.coating=none", "surface.n={}", "surface.k={}",
+                                            "surface.reflectance_file=" + file.path()});
+    const PointResult medium =
+        result_of({of_masking, "surface.coating=none", "surface.n=1.5", "surface.k=0.1"});
+    EXPECT_NEAR(measured[kDolp], medium[kDolp], 1e-4) << masking;
+    EXPECT_NEAR(measured[kRhoI], medium[kRhoI], 1e-4) << masking;
+    EXPECT_LE(measured[kErrorEstimate], 1e-4) << masking;
+  }
+}
+
+TEST(MeasuredReflectances, BadFiles_AreRefusedWithTheirLine) {
+  struct Case {
+    const char* csv;
+    const char* message;
+  };
+  const Case cases[] = {{"beta_deg,r_s,r_p\n0,0.1,0.1\n80,0.5,0.2\n", ":3: beta_deg must be 90 in one row"},
+                        {"beta_deg,r_s,r_p\n10,0.1,0.1\n90,1,1\n", ":2: beta_deg must be 0 in one row"},
+                        {"beta_deg,r_s,r_p\n0,0.1,0.3\n90,1,1\n", ":2: r_s = 0.1 and r_p = 0.3 must agree"},
+                        {"beta_deg,r_s,r_p\n0,10,10\n90,100,100\n", ":2: column \"r_s\""}};
+  for (const Case& c : cases) {
+    const TemporaryFile file("measured.csv", c.csv);
+    try {
+      scene_with({"surface.coating=none", "surface.n={}", "surface.k={}", "surface.reflectance_file=" + file.path()});
+      ADD_FAILURE() << c.csv << " is accepted";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(c.message), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dolp

@@ -78,7 +78,7 @@ TEST(RandomEntries, BothDomains_LieWhereScenesMay) {
         EXPECT_TRUE(entry.theta_deg >= 0.0 && entry.theta_deg <= (domain == Domain::kOrdinary ? 85.0 : 90.0));
         EXPECT_TRUE(entry.shape.sigma > 0.0 && entry.shape.sigma <= 10.0);
         EXPECT_GT(entry.shape.q, least_q(Distribution::kCauchy, masking));
-        EXPECT_TRUE(entry.index.n > 0.0 && entry.index.k >= 0.0);
+        EXPECT_TRUE(entry.index.index.n > 0.0 && entry.index.index.k >= 0.0);
       }
     }
   }

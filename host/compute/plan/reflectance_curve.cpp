@@ -19,6 +19,7 @@ constexpr double kSafety = 2.0;  // of errors that are seen at places inside of 
 
 /// R_s, 1 - R_s and (R_s - R_p) / sin^2 at v = sqrt(cos(beta)).
 using Values = std::array<double, 3>;
+constexpr std::size_t kSplit = 2;
 
 Values values_at(const FacetOptics& optics, double v) {
   constexpr double kLeastCosine = 1e-12;  // where films still reflect everything
@@ -46,10 +47,14 @@ void add_cell(ReflectanceCurve& curve, const FacetOptics& optics, double start, 
         cubic_through(values[0][part], values[2][part], values[4][part], values[6][part]);
     curve.nodes.push_back({cubic[0], cubic[1]});
     curve.nodes.push_back({cubic[2], cubic[3]});
-    for (const std::size_t i : {1U, 3U, 5U})
-      curve.error = std::max(curve.error, kSafety * std::abs(at(cubic, static_cast<double>(i) / 6.0) - values[i][part]));
+    // The split counts with sin^2(beta).
+    const double weight = part == kSplit ? 1.0 - std::pow(start, 4.0) : 1.0;
+    for (const std::size_t i : {1U, 3U, 5U}) {
+      const double off = std::abs(at(cubic, static_cast<double>(i) / 6.0) - values[i][part]);
+      curve.error = std::max(curve.error, kSafety * weight * off);
+    }
     const double change = std::abs(values[6][part] - values[0][part]) / width;
-    curve.steepness = std::max(curve.steepness, change * (start + width));
+    curve.steepness = std::max(curve.steepness, weight * change * (start + width));
   }
 }
 

@@ -55,6 +55,7 @@ constexpr double kPanelShareOfTolerance = 0.03;
 constexpr int kLeastPanels = 4;
 constexpr double kMostPanels = 32.0;
 constexpr double kMostMirrorPanels = 512.0;
+constexpr double kMostFringes = 256.0;  // that films may add to a band, each with its own nodes
 
 /// A node of the fine rule with the spectral factors there, all multiplied by the node's weight.
 struct FineNode {
@@ -237,6 +238,21 @@ std::vector<SpectralSample> samples_at(const SceneModel& scene, const std::vecto
   return samples;
 }
 
+/// Wavelengths that divide a band so that films add no more than a fringe to a segment.
+std::vector<double> fringe_ends(const SceneModel& scene) {
+  const double from = 1.0 / scene.spectrum.max_um;
+  const double to = 1.0 / scene.spectrum.min_um;
+  double fringes = 0.0;
+  for (const Layer& layer : scene.surface.coating) {
+    const double n = std::max(layer.material.at(scene.spectrum.min_um).n, layer.material.at(scene.spectrum.max_um).n);
+    fringes += 2.0 * layer.thickness_um * n * (to - from);
+  }
+  const int count = static_cast<int>(std::min(std::ceil(fringes), kMostFringes));
+  std::vector<double> ends_um;
+  for (int i = 1; i < count; ++i) ends_um.push_back(1.0 / std::lerp(from, to, static_cast<double>(i) / count));
+  return ends_um;
+}
+
 /// The cosines at which the rule of a segment is probed.
 std::vector<double> probe_cosines(const Surface& surface, double from_um, double to_um) {
   std::vector<double> cosines(kProbeCosines.begin(), kProbeCosines.end());
@@ -397,7 +413,8 @@ SpectralRule spectral_rule(const SceneModel& scene) {
   SpectralRule rule;
   rule.relative_error = kPieceRelativeError;
   const std::vector<double> rows_um = scene.surface.optics_rows_um();
-  const std::vector<double> ends = segment_ends(scene.spectrum.min_um, scene.spectrum.max_um, {&rows_um});
+  const std::vector<double> fringes_um = fringe_ends(scene);
+  const std::vector<double> ends = segment_ends(scene.spectrum.min_um, scene.spectrum.max_um, {&rows_um, &fringes_um});
   std::vector<SpectralSample> panels;
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) append_segment(scene, ends[i], ends[i + 1], rule, panels);
   rule.panels = panels.size() / kPanelNodes;

@@ -53,8 +53,7 @@ std::vector<double> band_breaks_um(const SceneValues& scene) {
     for (const double at_um : rows_um)
       if (at_um > scene.spectrum.min_um && at_um < scene.spectrum.max_um) breaks.push_back(at_um);
   };
-  add(scene.surface.material.n.wavelength_um);
-  add(scene.surface.material.k.wavelength_um);
+  add(scene.surface.optics_rows_um());
   if (scene.source) add(scene.source->table.wavelength_um);
   if (scene.surroundings && scene.surroundings->profile) add(scene.surroundings->profile->breaks_um());
   std::ranges::sort(breaks);

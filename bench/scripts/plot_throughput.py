@@ -32,7 +32,7 @@ def grid_table(rows):
 
 
 def materials_table(rows):
-    lines = head(["masking", "indices", "entries", "whole run", "kernels", "kernels over those of one index",
+    lines = head(["masking", "surface", "entries", "whole run", "kernels", "kernels over those of one bare index",
                   "per entry, whole"])
     for row in rows:
         lines.append(row_of_cells([

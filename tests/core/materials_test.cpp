@@ -124,11 +124,13 @@ TEST(Material_OutsideItsTable, IsRefusedWithTheRange) {
   }
 }
 
-TEST(Material_Name, IgnoresCaseAndMayBeCutAtABlank) {
+TEST(Material_Name, IgnoresCaseAndMayBeSomeOfItsWords) {
   EXPECT_EQ(find_material("IRON", kCo2Line, "").name, "iron");
   EXPECT_EQ(find_material(" water", kCo2Line, "").name, "water 25C");
   EXPECT_EQ(find_material("zinc", kCo2Line, "").name, "zinc selenide");
   EXPECT_EQ(find_material("Aluminium (rakic)", kCo2Line, "").name, "aluminium (Rakic)");
+  EXPECT_EQ(find_material("quartz", kCo2Line, "").name, "SiO2 amorphous quartz");
+  EXPECT_EQ(find_material("acrylic", kCo2Line, "").name, "PMMA acrylic");
 }
 
 TEST(Material_NameUnknown, NamesTheNearest) {

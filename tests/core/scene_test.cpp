@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 
 #include "base/text.hpp"
 #include "scene_support.hpp"
@@ -58,6 +59,7 @@ TEST(Scene_Described, DefaultsAreTheRealOnes) {
   const std::vector<std::string> base = {"source.irradiance=1", "path.radiance=1"};
   expect_defaults(parse(kMinimal, base));
   for (const Key& key : dolp::keys()) {
+    if (key.layer > 0) continue;  // scenes have no coating by default
     const bool is_value = !key.fallback.empty() && key.fallback != "required" && !key.fallback.starts_with("surface.");
     if (!is_value) continue;
     SCOPED_TRACE(key.key);
@@ -88,6 +90,7 @@ const std::vector<KeyCase>& key_cases() {
       {"surface.k", "0.25", [](At s) { return s.surface.material.constant.k == 0.25; }},
       {"surface.material", "\"iron\"", [](At s) { return s.surface.material.name == "iron"; }},
       {"surface.material_file", "\"index.csv\"", [](At s) { return s.surface.material.at(10.0).n == 2.0; }},
+      {"surface.reflectance_file", "\"reflectance.csv\"", [](At s) { return s.surface.reflectance != nullptr; }},
       {"surface.distribution", "\"gaussian\"", [](At s) { return s.surface.distribution == Distribution::kGaussian; }},
       {"surface.sigma", "0.5", [](At s) { return s.surface.sigma == 0.5 && s.grid[Axis::kSigma][0] == 0.5; }},
       {"surface.wind_m_s", "5",
@@ -101,6 +104,12 @@ const std::vector<KeyCase>& key_cases() {
       {"surface.specular", "0.5", [](At s) { return s.surface.specular == 0.5; }},
       {"surface.diffuse", "0.25", [](At s) { return s.surface.diffuse == 0.25; }},
       {"surface.diffuse_exponent", "-0.25", [](At s) { return s.surface.diffuse_exponent == -0.25; }},
+      {"surface.coating.1.n", "1.25", [](At s) { return s.surface.coating[0].material.constant.n == 1.25; }},
+      {"surface.coating.1.k", "0.25", [](At s) { return s.surface.coating[0].material.constant.k == 0.25; }},
+      {"surface.coating.1.material", "\"iron\"", [](At s) { return s.surface.coating[0].material.name == "iron"; }},
+      {"surface.coating.1.material_file", "\"index.csv\"",
+       [](At s) { return s.surface.coating[0].material.at(10.0).n == 2.0; }},
+      {"surface.coating.1.thickness_um", "2", [](At s) { return s.surface.coating[0].thickness_um == 2.0; }},
       {"emission.temperature_K", "290", [](At s) { return s.emission->temperature_K == 290.0; }},
       {"emission.model", "\"fresnel\"", [](At s) { return s.emission->model == EmissionModel::kFresnel; }},
       {"emission.bracket", "false", [](At s) { return !s.emission->has_bracket; }},
@@ -140,10 +149,27 @@ const std::vector<KeyCase>& key_cases() {
 }
 
 bool is_wind(const std::string& key) { return key.ends_with(".wind_m_s"); }
+bool is_of_layer(const std::string& key) { return key.starts_with("surface.coating."); }
+
+/// The keys without those of further layers, which are the same as those of the first.
+std::vector<Key> listed_keys() {
+  std::vector<Key> keys;
+  std::ranges::copy_if(dolp::keys(), std::back_inserter(keys), [](const Key& key) { return key.layer <= 1; });
+  return keys;
+}
+
+/// What a key needs beside it.
+std::vector<std::string> companions_of(const std::string& key) {
+  if (key == "source.scale") return {"source.irradiance=1"};
+  if (is_wind(key)) return {"surface.distribution=gaussian"};
+  if (is_of_layer(key)) return {"surface.coating=[{n=1.5,thickness_um=1}]"};
+  return {};
+}
 
 TEST(Scene_EveryKey, HasACaseBelow) {
-  ASSERT_EQ(key_cases().size(), dolp::keys().size());
-  for (std::size_t i = 0; i < dolp::keys().size(); ++i) EXPECT_EQ(dolp::keys()[i].key, key_cases()[i].key);
+  const std::vector<Key> keys = listed_keys();
+  ASSERT_EQ(key_cases().size(), keys.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) EXPECT_EQ(keys[i].key, key_cases()[i].key);
 }
 
 TEST(Scene_EveryKey, IsDescribed) {
@@ -157,13 +183,14 @@ TEST(Scene_EveryKey, IsDescribed) {
 TEST(Scene_EveryKey, CanBeSetByAnOverride) {
   const TemporaryFile index("index.csv", "wavelength_um,n,k\n10,2,0\n11,2,0\n");
   const TemporaryFile light("light.csv", "10,1\n11,2\n");
+  const TemporaryFile reflectance("reflectance.csv", "beta_deg,r_s,r_p\n0,0.1,0.1\n90,1,1\n");
   for (const KeyCase& row : key_cases()) {
     const std::string key = row.key;
-    std::vector<std::string> overrides;
-    if (key == "source.scale") overrides.emplace_back("source.irradiance=1");
-    if (is_wind(key)) overrides.emplace_back("surface.distribution=gaussian");
-    if (key == "surface.material_file") {
+    std::vector<std::string> overrides = companions_of(key);
+    if (key.ends_with("material_file")) {
       overrides.push_back(key + "=" + index.path());
+    } else if (key == "surface.reflectance_file") {
+      overrides.push_back(key + "=" + reflectance.path());
     } else if (key == "source.file") {
       overrides.push_back(key + "=" + light.path());
     } else {
@@ -178,29 +205,39 @@ TEST(Scene_EveryKey, CanBeSetByAnOverride) {
 TEST(Scene_EveryKey, CanBeWrittenInTheFile) {
   const TemporaryFile index("index.csv", "wavelength_um,n,k\n10,2,0\n11,2,0\n");
   const TemporaryFile light("light.csv", "10,1\n11,2\n");
+  const TemporaryFile reflectance("reflectance.csv", "beta_deg,r_s,r_p\n0,0.1,0.1\n90,1,1\n");
   for (const KeyCase& row : key_cases()) {
     const std::string key = row.key;
     // Dotted keys at the top make a scene whose parts can be left out one by one.
     std::string text = "accuracy.tolerance = 1e-5\n";
     if (key == "accuracy.tolerance") text.clear();
-    if (!key.starts_with("surface.n") && !key.starts_with("surface.material")) text += "surface.n = 1.5\n";
+    const bool gives_optics = key == "surface.n" || key.starts_with("surface.material") || key == "surface.reflectance_file";
+    if (!gives_optics) text += "surface.n = 1.5\n";
     if (is_wind(key)) text += "surface.distribution = \"gaussian\"\n";
     if (key != "surface.sigma" && !is_wind(key)) text += "surface.sigma = 0.3\n";
     if (key != "emission.temperature_K") text += "emission.temperature_K = 300\n";
     if (!key.starts_with("spectrum")) text += "spectrum.wavelength_um = 10.6\n";
     if (key == "source.scale") text += "source.irradiance = 1\n";
-    text += key + " = " + row.value + "\n";
-    const std::string folder = std::filesystem::path(key == "source.file" ? light.path() : index.path()).parent_path();
+    if (is_of_layer(key)) {
+      const std::string name = key.substr(key.rfind('.') + 1);
+      const std::string beside = name == "k" || name == "thickness_um" ? "n = 1.5, " : "";
+      const std::string thickness = name == "thickness_um" ? "" : ", thickness_um = 1";
+      text += "surface.coating = [{ " + beside + name + " = " + row.value + thickness + " }]\n";
+    } else {
+      text += key + " = " + row.value + "\n";
+    }
+    const std::string& file = key == "source.file"                ? light.path()
+                              : key == "surface.reflectance_file" ? reflectance.path()
+                                                                  : index.path();
+    const std::string folder = std::filesystem::path(file).parent_path();
     EXPECT_TRUE(row.arrived(parse_scene(text, folder + "/s.toml", {}))) << text;
   }
 }
 
 TEST(Scene_EveryNumber, AcceptsItsClosedEndsAndRefusesItsOpenOnes) {
-  for (const Key& key : dolp::keys()) {
+  for (const Key& key : listed_keys()) {
     if (key.type != Key::Type::kNumber) continue;
-    std::vector<std::string> base;
-    if (key.key == "source.scale") base.emplace_back("source.irradiance=1");
-    if (is_wind(key.key)) base.emplace_back("surface.distribution=gaussian");
+    const std::vector<std::string> base = companions_of(key.key);
     for (const double end : {key.range.min, key.range.max}) {
       if (std::isinf(end)) continue;
       std::vector<std::string> overrides = base;
@@ -212,14 +249,16 @@ TEST(Scene_EveryNumber, AcceptsItsClosedEndsAndRefusesItsOpenOnes) {
 }
 
 TEST(Scene_EveryNumber, RefusesWhatIsOutOfRangeNotFiniteOrNoNumber) {
-  for (const Key& key : dolp::keys()) {
+  for (const Key& key : listed_keys()) {
     if (key.type != Key::Type::kNumber && key.type != Key::Type::kAxis) continue;
     std::vector<std::string> values = {"nan", "inf", "-inf", "true", "many", "2020-01-01", ""};
     if (std::isfinite(key.range.min)) values.push_back(format_number(key.range.min - 1.0));
     if (std::isfinite(key.range.max)) values.push_back(format_number(key.range.max * 2.0 + 1.0));
     for (const std::string& value : values) {
       const std::string argument = key.key + "=" + value;
-      const std::string error = error_of(kMinimal, {argument});
+      std::vector<std::string> overrides = is_of_layer(key.key) ? companions_of(key.key) : std::vector<std::string>{};
+      overrides.push_back(argument);
+      const std::string error = error_of(kMinimal, overrides);
       EXPECT_TRUE(error.starts_with("--set " + argument + ": ")) << error;
       EXPECT_TRUE(contains(error, key.range.text())) << error;
     }
@@ -228,17 +267,19 @@ TEST(Scene_EveryNumber, RefusesWhatIsOutOfRangeNotFiniteOrNoNumber) {
 
 TEST(Scene_EveryNumber, TakesIntegersThatNoDoubleHolds) {
   const std::string integer = "9007199254740993";  // 2^53 + 1
-  for (const Key& key : dolp::keys()) {
+  for (const Key& key : listed_keys()) {
     if (key.type != Key::Type::kNumber && key.type != Key::Type::kAxis) continue;
     if (std::isinf(key.range.max)) continue;
-    const std::string error = error_of(kMinimal, {key.key + "=" + integer});
+    std::vector<std::string> overrides = is_of_layer(key.key) ? companions_of(key.key) : std::vector<std::string>{};
+    overrides.push_back(key.key + "=" + integer);
+    const std::string error = error_of(kMinimal, overrides);
     EXPECT_TRUE(contains(error, "out of range")) << error;
   }
   EXPECT_EQ(parse(kMinimal + "[source]\nirradiance = " + integer).source->irradiance, 9007199254740993.0);
 }
 
 TEST(Scene_EveryWord, NamesTheAllowedWords) {
-  for (const Key& key : dolp::keys()) {
+  for (const Key& key : listed_keys()) {
     if (key.type != Key::Type::kWord) continue;
     const std::string error = error_of(kMinimal, {key.key + "=nonsense"});
     for (const std::string& word : key.words) EXPECT_TRUE(contains(error, word)) << error;
@@ -329,7 +370,7 @@ TEST(ShippedScenes, AllParse) {
         << entry.path();
     ++count;
   }
-  EXPECT_EQ(count, 14U);
+  EXPECT_EQ(count, 17U);
 }
 
 TEST(ShippedScenes_OfThePaper, HaveItsSamples) {

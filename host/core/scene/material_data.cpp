@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <dolp/errors.hpp>
@@ -50,37 +51,58 @@ std::vector<Material> read_built_in_materials() {
   return materials;
 }
 
-/// The one material of that name, or the only one that begins with it up to a blank.
+/// True if `words` stands in a name with no letter or digit before or behind it; case does not matter.
+bool has_words(const std::string& name, std::string_view words) {
+  const std::string known = lower_case(name);
+  const std::string wanted = lower_case(words);
+  const auto is_inside_word = [&](std::size_t i) {
+    return i < known.size() && std::isalnum(static_cast<unsigned char>(known[i])) != 0;
+  };
+  for (std::size_t at = known.find(wanted); at != std::string::npos; at = known.find(wanted, at + 1)) {
+    if ((at == 0 || !is_inside_word(at - 1)) && !is_inside_word(at + wanted.size())) return !wanted.empty();
+  }
+  return false;
+}
+
+std::vector<const Material*> materials_with(std::string_view words) {
+  std::vector<const Material*> found;
+  for (const Material& material : built_in_materials()) {
+    if (has_words(material.name, words)) found.push_back(&material);
+  }
+  return found;
+}
+
+/// The material of that name, else the only one whose name begins with it up to a blank, else the only one that has the
+/// words.
 const Material* match_name(std::string_view name) {
   const std::string wanted = lower_case(trim(name));
-  const Material* match = nullptr;
+  std::vector<const Material*> beginning;
   for (const Material& material : built_in_materials()) {
     const std::string known = lower_case(material.name);
     if (known == wanted) return &material;
-    if (known.starts_with(wanted + ' ')) {
-      if (match) return nullptr;
-      match = &material;
-    }
+    if (known.starts_with(wanted + ' ')) beginning.push_back(&material);
   }
-  return match;
+  if (beginning.empty()) beginning = materials_with(wanted);
+  return beginning.size() == 1 ? beginning.front() : nullptr;
 }
 
-/// The names that begin with a text.
-std::vector<std::string> names_from(std::string_view begin) {
-  std::vector<std::string> names;
-  for (const Material& material : built_in_materials()) {
-    if (lower_case(material.name).starts_with(lower_case(begin))) names.push_back(material.name);
-  }
-  return names;
-}
-
-/// Where a name is cut too short, what it could be; else those with the nearest name or first word.
+/// What a name could mean: the materials that have its words or begin alike, else those with the nearest name or word.
 std::string name_hint(std::string_view name) {
-  const std::vector<std::string> begin_alike = names_from(trim(name));
-  if (!begin_alike.empty() && !trim(name).empty()) return join(begin_alike);
-  std::vector<std::string> begins = names_from("");
-  for (const std::string& known : names_from("")) begins.push_back(known.substr(0, known.find(' ')));
-  return join(names_from(nearest_name(name, begins)));
+  std::vector<std::string> alike;
+  for (const Material* material : materials_with(trim(name))) alike.push_back(material->name);
+  for (const Material& material : built_in_materials()) {
+    const bool begins_alike = !trim(name).empty() && lower_case(material.name).starts_with(lower_case(trim(name)));
+    if (begins_alike && std::ranges::find(alike, material.name) == alike.end()) alike.push_back(material.name);
+  }
+  if (!alike.empty()) return join(alike);
+  std::vector<std::string> words;
+  for (const Material& material : built_in_materials()) {
+    words.push_back(material.name);
+    for (const std::string_view word : split(material.name, ' ')) words.emplace_back(word);
+  }
+  const std::string nearest = nearest_name(name, words);
+  for (const Material* material : materials_with(nearest)) alike.push_back(material->name);
+  return join(alike);
 }
 
 }  // namespace
@@ -96,6 +118,9 @@ Material find_material(std::string_view name, const Spectrum& spectrum, const st
 
 const Material& named_material(std::string_view name, const std::string& prefix) {
   if (const Material* material = match_name(name)) return *material;
+  if (const std::size_t count = materials_with(trim(name)).size(); count > 1) {
+    throw InputError(fmt::format("{}names {} materials: {}", prefix, count, name_hint(name)));
+  }
   throw InputError(fmt::format("{}unknown material; the nearest of the {} known: {}", prefix,
                                built_in_materials().size(), name_hint(name)));
 }

@@ -15,7 +15,8 @@ const std::vector<Material>& built_in_materials();
 
 /// The built-in material called `name`.
 ///
-/// Case does not matter, and a name may be cut at a blank where that leaves one material ("water" for "water 25C").
+/// Case does not matter, and whole words of a name do where that leaves one material ("water" for "water 25C", "quartz"
+/// for "SiO2 amorphous quartz").
 /// Errors: InputError that begins with `prefix`: unknown name, with the nearest.
 const Material& named_material(std::string_view name, const std::string& prefix);
 

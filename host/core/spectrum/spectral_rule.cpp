@@ -333,10 +333,16 @@ struct SegmentRule {
   double error = 0.0;
 };
 
+double enough_for_tolerance(const SceneModel& scene) {
+  return std::max(kShareOfTolerance * scene.accuracy.tolerance, kNodesRelativeError);
+}
+
 SegmentRule smooth_segment(const SceneModel& scene, double from_um, double to_um, const std::vector<FineNode>& fine,
                            const std::vector<double>& cosines) {
   if (scene.surface.has_constant_optics()) return {samples_at(scene, gauss_wavelengths(from_um, to_um, 1), fine), 0.0};
   SegmentRule rule;
+  // Fringes take many nodes: there no more than the tolerance needs.
+  const double enough = scene.surface.coating.empty() ? kNodesRelativeError : enough_for_tolerance(scene);
   // The nodes to compare with are none of the rule's own, whatever their number.
   const double middle_um = 0.5 * (from_um + to_um);
   std::vector<FineNode> finer = fine_nodes(scene, from_um, middle_um);
@@ -345,7 +351,7 @@ SegmentRule smooth_segment(const SceneModel& scene, double from_um, double to_um
   for (int count = 1; count <= kMostNodes; ++count) {
     rule.samples = samples_at(scene, gauss_wavelengths(from_um, to_um, count), fine);
     rule.error = nodes_error(rule.samples, exact, cosines, kSmallestPart);
-    if (rule.error <= kNodesRelativeError) break;
+    if (rule.error <= enough) break;
   }
   return rule;
 }
@@ -377,7 +383,7 @@ void append_segment(const SceneModel& scene, double from_um, double to_um, Spect
   const std::vector<double> cosines = probe_cosines(scene.surface, from_um, to_um);
   SegmentRule segment = smooth_segment(scene, from_um, to_um, fine, cosines);
   const double tolerance = scene.accuracy.tolerance;
-  if (segment.error <= std::max(kShareOfTolerance * tolerance, kNodesRelativeError)) {
+  if (segment.error <= enough_for_tolerance(scene)) {
     if (segment.error > 0.0) rule.relative_error = std::max(rule.relative_error, kProbeSafety * segment.error);
     for (const SpectralSample& sample : segment.samples) append_merged(rule.samples, sample);
     return;

@@ -261,6 +261,24 @@ TEST(Coatings, ScenesWithAllEffects_AgreeWithTheReference) {
   }
 }
 
+TEST(Coatings, ColumnsOfPoints_AreTheNumbersOfTheirFilms) {
+  const std::string csv =
+      "theta_deg,surface.coating.1.thickness_um,surface.coating.1.n\n60,1,0.7\n60,0.5,0.7\n30,0.5,1.5\n60,1,0.7\n";
+  const SceneValues scene = scene_with({"spectrum.wavelength_um=10"});
+  const SceneEntries points = point_entries(scene, parse_points(csv, "p.csv", PointsKind::kDirections));
+  EXPECT_EQ(points.variants().size(), 3U);
+  CpuEvaluator evaluator;
+  const std::vector<PointResult> results = evaluate_scene(scene, points, evaluator, {});
+  const PointResult alone = result_of({"spectrum.wavelength_um=10", "surface.coating.1.thickness_um=0.5",
+                                       "surface.coating.1.n=1.5", "grid.theta_deg=30"});
+  EXPECT_NEAR(results[2][kDolp], alone[kDolp], results[2][kErrorEstimate] + alone[kErrorEstimate]);
+  EXPECT_EQ(results[0][kDolp], results[3][kDolp]);
+  EXPECT_GT(std::abs(results[0][kDolp] - results[1][kDolp]), 0.01);
+  EXPECT_THROW(point_entries(scene, parse_points("theta_deg,surface.coating.2.n\n60,1.5\n", "p.csv",
+                                                 PointsKind::kDirections)),
+               InputError);
+}
+
 TEST(Coatings, SceneWritten_ReadsTheSame) {
   const SceneValues scene = scene_with({"surface.coating.2.material=\"PMMA acrylic\"", "surface.coating.2.thickness_um=2"});
   ASSERT_EQ(scene.surface.coating.size(), 2U);

@@ -102,14 +102,14 @@ std::vector<PointResult> exact_at(const SceneValues& scene, const std::vector<Ta
       entry.index = OpticalConstants{
           point[Axis::kN], scene.grid[Axis::kK].empty() ? scene.surface.material.constant.k : point[Axis::kK]};
     if (!scene.grid[Axis::kWavelength].empty()) {
-      entry.wavelength = static_cast<std::uint32_t>(wavelengths.size());
+      entry.variant = static_cast<std::uint32_t>(wavelengths.size());
       wavelengths.push_back(point[Axis::kWavelength]);
     }
     entries.push_back(entry);
   }
   SceneValues exact = scene;
   exact.accuracy.tolerance = kExact;
-  return evaluate_scene(exact, {entries, wavelengths}, *make_evaluator(Evaluator::kDouble), {});
+  return evaluate_scene(exact, {entries, variants_of(wavelengths)}, *make_evaluator(Evaluator::kDouble), {});
 }
 
 /// Totals over all points.

@@ -44,11 +44,11 @@ TEST(ChosenEntries, OfAGrid_HaveTheWavelengthsAmongThemAlone) {
   const SceneEntries grid = SceneEntries::of_grid(axes, {});
   const std::vector<std::size_t> positions = {2, 3, 7};
   const SceneEntries chosen = grid.chosen(positions);
-  EXPECT_EQ(chosen.wavelength_um().size(), 2U);  // of three entries
+  EXPECT_EQ(chosen.variants().size(), 2U);  // of three entries
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const SceneEntry whole = grid[positions[i]];
     EXPECT_EQ(chosen[i].theta_deg, whole.theta_deg);
-    EXPECT_EQ(chosen.wavelength_um()[chosen[i].wavelength], grid.wavelength_um()[whole.wavelength]);
+    EXPECT_EQ(chosen.variants()[chosen[i].variant], grid.variants()[whole.variant]);
   }
 }
 

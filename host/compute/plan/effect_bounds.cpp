@@ -128,10 +128,9 @@ EntriesExtent extent_of_grid(const SceneEntries& entries) {
 
 std::vector<EntriesExtent> extents_of(const SceneEntries& entries) {
   if (entries.is_grid()) return {extent_of_grid(entries)};
-  std::vector<EntriesExtent> extents(std::max<std::size_t>(1, entries.wavelength_um().size()),
-                                     {{}, {0.0, kInfinity}, {kInfinity, 0.0}, {}});
+  std::vector<EntriesExtent> extents(entries.variants().size(), {{}, {0.0, kInfinity}, {kInfinity, 0.0}, {}});
   for (const SceneEntry& entry : entries.all()) {
-    EntriesExtent& extent = extents[entry.wavelength];
+    EntriesExtent& extent = extents[entry.variant];
     extent.theta_deg.push_back(entry.theta_deg);
     extent.roughest = {std::max(extent.roughest.sigma, entry.shape.sigma), std::min(extent.roughest.q, entry.shape.q)};
     extent.smoothest = {std::min(extent.smoothest.sigma, entry.shape.sigma),

@@ -14,15 +14,14 @@ namespace {
 constexpr std::array kDroppingOrder = {Part::kMoments,  Part::kSource,       Part::kProfile, Part::kSurroundings,
                                        Part::kEmission, Part::kPathRadiance, Part::kMoments, Part::kFurtherBounces};
 
-/// The bounds of a scene at each wavelength of its entries.
+/// The bounds of each variant of a scene among its entries.
 std::vector<EffectBounds> bounds_of(const SceneValues& scene, const SceneEntries& entries) {
   const std::vector<EntriesExtent> extents = extents_of(entries);
   std::vector<EffectBounds> bounds;
-  for (const double wavelength_um : entries.wavelength_um()) {
+  for (const SceneVariant& variant : entries.variants()) {
     const std::size_t own = std::min(bounds.size(), extents.size() - 1);
-    bounds.emplace_back(at_wavelength(scene, wavelength_um), extents[own]);
+    bounds.emplace_back(with_variant(scene, variant), extents[own]);
   }
-  if (bounds.empty()) bounds.emplace_back(scene, extents.front());
   return bounds;
 }
 
@@ -271,7 +270,7 @@ EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, b
 
 EffectPlan with_sky(EffectPlan plan, const SceneValues& scene, const SceneEntries& entries) {
   if (!plan.sky && plan.kept.moments && plan.kept.surroundings && plan.kept.profile)
-    plan.sky = sky_basis(scene, entries.wavelength_um());
+    plan.sky = sky_basis(scene, entries.variants());
   return plan;
 }
 

@@ -17,20 +17,20 @@ std::vector<std::vector<SceneEntry>> cut(const std::vector<SceneEntry>& list, st
   return pieces;
 }
 
-/// Points with the wavelengths that are among them alone.
-SceneEntries with_own_wavelengths(std::vector<SceneEntry> points, const std::vector<double>& wavelength_um) {
-  if (wavelength_um.empty()) return {std::move(points)};
+/// Points with only those variants that are among them.
+SceneEntries with_own_variants(std::vector<SceneEntry> points, const std::vector<SceneVariant>& variants) {
   constexpr std::uint32_t kUnused = 0xffffffffU;
-  std::vector<std::uint32_t> number(wavelength_um.size(), kUnused);
-  std::vector<double> own;
+  std::vector<std::uint32_t> number(variants.size(), kUnused);
+  std::vector<SceneVariant> own;
   for (SceneEntry& point : points) {
-    std::uint32_t& of_wavelength = number[point.wavelength];
-    if (of_wavelength == kUnused) {
-      of_wavelength = static_cast<std::uint32_t>(own.size());
-      own.push_back(wavelength_um[point.wavelength]);
+    std::uint32_t& of_variant = number[point.variant];
+    if (of_variant == kUnused) {
+      of_variant = static_cast<std::uint32_t>(own.size());
+      own.push_back(variants[point.variant]);
     }
-    point.wavelength = of_wavelength;
+    point.variant = of_variant;
   }
+  if (own.empty()) own = {{}};
   return {std::move(points), std::move(own)};
 }
 
@@ -39,6 +39,13 @@ constexpr std::array kCuttingOrder = {Axis::kTheta, Axis::kWavelength, Axis::kN,
 
 }  // namespace
 
+std::vector<SceneVariant> variants_of(const std::vector<double>& wavelength_um) {
+  std::vector<SceneVariant> variants;
+  for (const double at_um : wavelength_um) variants.push_back({at_um});
+  if (variants.empty()) variants.emplace_back();
+  return variants;
+}
+
 SceneEntries SceneEntries::of_grid(Axes axes, const OpticalConstants& index) {
   SceneEntries entries;
   entries.is_grid_ = true;
@@ -46,6 +53,7 @@ SceneEntries SceneEntries::of_grid(Axes axes, const OpticalConstants& index) {
   for (const Axis axis : kAllAxes) {
     if (description_of(axis).is_required && axes[axis].empty()) entries.counts_ = {};
   }
+  entries.variants_ = variants_of(axes[Axis::kWavelength]);
   entries.whole_ = entries.counts_;
   entries.whole_axes_ = std::make_shared<const Axes>(axes);
   entries.axes_ = std::move(axes);
@@ -69,7 +77,7 @@ SceneEntry SceneEntries::operator[](std::size_t entry) const {
   result.theta_deg = theta_deg()[at[Axis::kTheta]];
   result.shape = {sigma()[at[Axis::kSigma]], q()[at[Axis::kQ]]};
   if (has_own_index()) result.index = index_at(at);
-  result.wavelength = static_cast<std::uint32_t>(at[Axis::kWavelength]);
+  result.variant = static_cast<std::uint32_t>(at[Axis::kWavelength]);
   return result;
 }
 
@@ -82,6 +90,7 @@ SceneEntries SceneEntries::part(const PerAxis& first, const PerAxis& count) cons
   part.whole_axes_ = whole_axes_;
   for (const Axis axis : kAllAxes) part.first_[axis] = first_[axis] + first[axis];
   part.axes_ = part_of(axes_, first, count);
+  part.variants_ = variants_of(part.axes_[Axis::kWavelength]);
   return part;
 }
 
@@ -99,7 +108,7 @@ SceneEntries SceneEntries::chosen(std::span<const std::size_t> positions) const 
   std::vector<SceneEntry> points;
   points.reserve(positions.size());
   for (const std::size_t position : positions) points.push_back((*this)[position]);
-  return with_own_wavelengths(std::move(points), wavelength_um());
+  return with_own_variants(std::move(points), variants_);
 }
 
 std::vector<SceneEntries> SceneEntries::parts(std::size_t most) const {
@@ -108,7 +117,7 @@ std::vector<SceneEntries> SceneEntries::parts(std::size_t most) const {
   std::vector<SceneEntries> parts;
   if (!is_grid_) {
     for (std::vector<SceneEntry>& points : cut(points_, most))
-      parts.push_back(with_own_wavelengths(std::move(points), wavelength_um()));
+      parts.push_back(with_own_variants(std::move(points), variants_));
     return parts;
   }
   const std::function<void(PerAxis, PerAxis, std::size_t)> cut_along = [&](PerAxis first, PerAxis count,

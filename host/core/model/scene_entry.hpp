@@ -1,6 +1,7 @@
 // The entries of a scene: a grid or scattered points.
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -23,8 +24,27 @@ struct SceneEntry {
   double theta_deg = 0.0;
   SlopeShape shape;
   std::optional<OpticalConstants> index;
-  std::uint32_t wavelength = 0;  ///< position in SceneEntries::wavelength_um
+  std::uint32_t variant = 0;  ///< position in SceneEntries::variants
 };
+
+/// A number of a film that an entry has instead of the scene's.
+struct FilmValue {
+  enum class Part : std::uint8_t { kN, kK, kThickness };
+  std::size_t layer = 0;  ///< from 0, from the outside in
+  Part part = Part::kThickness;
+  double value = 0.0;
+  friend auto operator<=>(const FilmValue&, const FilmValue&) = default;
+};
+
+/// What else entries change in the scene. Neighbours mostly share it, and it has a radiometry of its own.
+struct SceneVariant {
+  std::optional<double> wavelength_um;  ///< none: the scene's spectrum
+  std::vector<FilmValue> films = {};
+  friend auto operator<=>(const SceneVariant&, const SceneVariant&) = default;
+};
+
+/// A variant for each wavelength; of none, the scene as it is.
+std::vector<SceneVariant> variants_of(const std::vector<double>& wavelength_um);
 
 /// Neighbours of a part of a grid that are neighbours in the whole as well.
 struct GridRun {
@@ -37,10 +57,8 @@ struct GridRun {
 class SceneEntries {
  public:
   SceneEntries() = default;
-  SceneEntries(std::vector<SceneEntry> points, std::vector<double> wavelength_um = {})  // NOLINT: a list is entries
-      : points_(std::move(points)) {
-    axes_[Axis::kWavelength] = std::move(wavelength_um);
-  }
+  SceneEntries(std::vector<SceneEntry> points, std::vector<SceneVariant> variants = {{}})  // NOLINT: a list is entries
+      : variants_(std::move(variants)), points_(std::move(points)) {}
   SceneEntries(std::initializer_list<SceneEntry> points) : points_(points) {}
   /// `index`: that of the surface, for a grid with an axis of only n or only k.
   static SceneEntries of_grid(Axes axes, const OpticalConstants& index);
@@ -54,8 +72,8 @@ class SceneEntries {
     return std::views::iota(std::size_t{0}, size()) |
            std::views::transform([this](std::size_t i) { return (*this)[i]; });
   }
-  /// For a grid its axis, for points the wavelengths among them. Empty: the scene's spectrum.
-  const std::vector<double>& wavelength_um() const { return axes_[Axis::kWavelength]; }
+  /// At least one: of a grid one for each wavelength of its axis, of points those among them.
+  const std::vector<SceneVariant>& variants() const { return variants_; }
 
   // Of a grid.
   const Axes& axes() const { return axes_; }
@@ -71,7 +89,7 @@ class SceneEntries {
   /// The index of an entry, of a grid with an axis of n or k.
   OpticalConstants index_at(const PerAxis& place) const;
 
-  /// The entries at some positions, as points with the wavelengths among them.
+  /// The entries at some positions, as points with the variants among them.
   SceneEntries chosen(std::span<const std::size_t> positions) const;
   /// Parts of at most `most` entries each: of a grid as many directions of all wavelengths and indices as fit, else
   /// parts of these, each a grid; of points consecutive ones.
@@ -93,6 +111,7 @@ class SceneEntries {
   PerAxis first_ = {};
   PerAxis whole_ = {};
   std::shared_ptr<const Axes> whole_axes_;
+  std::vector<SceneVariant> variants_ = {{}};
   std::vector<SceneEntry> points_;
 };
 

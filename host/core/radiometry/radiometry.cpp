@@ -172,7 +172,7 @@ Radiometry::Radiometry(const SceneModel& scene, const KeptEffects& kept, double 
   if (!kept.moments) scene_.surface.specular = 0.0;
   if (!kept.diffuse) scene_.surface.diffuse = 0.0;
   if (kept.surroundings && kept.profile)
-    sky_ = sky_factors(kept_rule_, (sky ? sky : sky_basis(scene, {})).get(), scene_.surface);
+    sky_ = sky_factors(kept_rule_, (sky ? sky : sky_basis(scene, {{}})).get(), scene_.surface);
 }
 
 PointResult Radiometry::finished(PointResult result) const {

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <dolp/errors.hpp>
+#include <iterator>
 #include <string_view>
 #include <variant>
 
@@ -11,30 +13,52 @@
 #include "base/text.hpp"
 #include "model/slopes.hpp"
 #include "scene/csv.hpp"
+#include "scene/scene_keys.hpp"
 
 namespace dolp {
 namespace {
 
 constexpr std::size_t kMostPointsBytes = 1U << 30U;
 
-/// A column that a file may have: a coordinate, or one of a pair of directions, which has to be there.
+using FilmColumn = std::pair<std::size_t, FilmValue::Part>;
+
+/// A column that a file may have: a coordinate, one of a pair of directions, which has to be there, or a number of a
+/// film.
 struct ColumnRule {
-  const char* name;
+  std::string name;
   NumberRange range;
-  std::variant<Axis, Points::Column Points::*> column;
+  std::variant<Axis, Points::Column Points::*, FilmColumn> column;
   bool is_wind = false;  ///< in the place of sigma
 
   double value(double number) const { return is_wind ? sigma_of_wind(number) : number; }
   bool is_required() const { return column.index() == 1; }
   CsvColumn in_file() const { return {name, range, is_required()}; }
-  template <class AnyPoints>
-  auto& of(AnyPoints& points) const {
+  Points::Column& of(Points& points) const {
+    if (const FilmColumn* film = std::get_if<FilmColumn>(&column)) return points.films[*film];
     const Axis* axis = std::get_if<Axis>(&column);
     return axis ? points[*axis] : points.*std::get<1>(column);
   }
 };
 
-std::vector<ColumnRule> column_rules(PointsKind kind) {
+/// The rules of the keys of films among some names.
+void append_film_rules(std::vector<ColumnRule>& rules, const std::vector<std::string>& names) {
+  struct Part {
+    const char* name;
+    FilmValue::Part part;
+  };
+  constexpr std::array<Part, 3> kParts = {
+      {{"n", FilmValue::Part::kN}, {"k", FilmValue::Part::kK}, {"thickness_um", FilmValue::Part::kThickness}}};
+  for (const std::string& name : names) {
+    const SceneKey* const key = find_scene_key(name);
+    if (!key || key->description.layer == 0 || std::ranges::find(rules, name, &ColumnRule::name) != rules.end()) continue;
+    const auto part = std::ranges::find(kParts, name.substr(name.rfind('.') + 1), &Part::name);
+    if (part == kParts.end()) continue;
+    rules.push_back({name, key->description.range, FilmColumn{key->description.layer - 1, part->part}});
+  }
+}
+
+/// `names`: the columns that are given.
+std::vector<ColumnRule> column_rules(PointsKind kind, const std::vector<std::string>& names) {
   std::vector<ColumnRule> rules;
   const bool has_pairs = kind == PointsKind::kGeometries;
   if (has_pairs) {
@@ -47,6 +71,7 @@ std::vector<ColumnRule> column_rules(PointsKind kind) {
     rules.push_back({description_of(axis).column, description_of(axis).range, axis});
   }
   rules.push_back({kWind.column, kWind.range, Axis::kSigma, true});
+  append_film_rules(rules, names);
   return rules;
 }
 
@@ -77,7 +102,7 @@ std::vector<double>& add_column(Points& points, const ColumnRule& rule) {
 }
 
 /// Refuses points that lack columns, and names all of them.
-void check_required(const Points& points, const std::vector<ColumnRule>& rules) {
+void check_required(Points& points, const std::vector<ColumnRule>& rules) {
   std::vector<std::string> missing;
   for (const ColumnRule& rule : rules) {
     if (rule.is_required() && !rule.of(points))
@@ -124,8 +149,16 @@ std::string Points::where(std::size_t row) const {
   return header_line > 0 ? fmt::format("{}:{}", name, row_lines[row]) : fmt::format("{}[{}]", name, row);
 }
 
+std::vector<FilmValue> Points::films_at(std::size_t row) const {
+  std::vector<FilmValue> values;
+  for (const auto& [film, column] : films) values.push_back({film.first, film.second, (*column)[row]});
+  return values;
+}
+
 Points points_of(std::span<const Column> columns, std::size_t count, PointsKind kind) {
-  const std::vector<ColumnRule> rules = column_rules(kind);
+  std::vector<std::string> names;
+  std::ranges::transform(columns, std::back_inserter(names), [](const Column& column) { return std::string(column.name); });
+  const std::vector<ColumnRule> rules = column_rules(kind, names);
   Points points;
   points.name = "points";
   points.count = count;
@@ -151,10 +184,12 @@ Points points_of(std::span<const Column> columns, std::size_t count, PointsKind 
 
 Points parse_points(const std::string& text, const std::string& path_name, PointsKind kind,
                     const std::vector<std::string>& results) {
-  const std::vector<ColumnRule> rules = column_rules(kind);
   Points points;
   points.name = input_name(path_name);
   CsvReader row(text, points.name, {.has_blank_lines = false});
+  std::vector<std::string> names;
+  if (CsvReader header = row; header.next()) names.assign(header.cells().begin(), header.cells().end());
+  const std::vector<ColumnRule> rules = column_rules(kind, names);
   const CsvColumns columns = CsvColumns::first_of(row, csv_columns(rules), results);
   points.header_line = row.line_number();
   add_columns(row, columns, rules, points);

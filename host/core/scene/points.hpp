@@ -4,18 +4,21 @@
 #include <cstddef>
 #include <cstdint>
 #include <dolp/options.hpp>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/axes.hpp"
+#include "model/scene_entry.hpp"
 
 namespace dolp {
 
 enum class PointsKind {
-  kDirections,  ///< eval, lookup: any of theta_deg, sigma, q, n, k, wavelength_um, at least one
-  kGeometries,  ///< mueller: theta_i_deg, theta_r_deg, delta_phi_deg, and any of sigma, q, n, k
+  kDirections,  ///< eval, lookup: any of theta_deg, sigma, q, n, k, wavelength_um and numbers of films, at least one
+  kGeometries,  ///< mueller: theta_i_deg, theta_r_deg, delta_phi_deg, and any of sigma, q, n, k and numbers of films
 };
 
 /// The points in their order; a column that they do not have is nullopt.
@@ -27,6 +30,8 @@ struct Points {
   std::vector<std::string> left_out;  ///< columns of the file that are results
   using Column = std::optional<std::vector<double>>;
   AxisArray<Column> coordinates;
+  /// Numbers of films, by layer (from 0) and part: columns called as the keys, "surface.coating.1.thickness_um".
+  std::map<std::pair<std::size_t, FilmValue::Part>, Column> films;
   bool has_winds = false;                          ///< sigma was given as winds
   Column theta_i_deg, theta_r_deg, delta_phi_deg;  ///< of kGeometries, in the place of theta_deg and wavelength_um
   std::size_t header_line = 0;                     ///< 0 of arrays
@@ -34,6 +39,8 @@ struct Points {
   std::size_t size() const { return count; }
   Column& operator[](Axis axis) { return coordinates[axis]; }
   const Column& operator[](Axis axis) const { return coordinates[axis]; }
+  /// The numbers of films of a row.
+  std::vector<FilmValue> films_at(std::size_t row) const;
   /// The beginning of a message about a row, "file:line" or "points[row]", and about the columns.
   std::string where(std::size_t row) const;
   std::string where() const;

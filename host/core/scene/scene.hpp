@@ -163,4 +163,7 @@ struct SceneValues : SceneModel {
 /// The scene at one wavelength. Errors: InputError, where n, k or E0 are not known there.
 SceneModel at_wavelength(const SceneModel& scene, double wavelength_um);
 
+/// The scene as a variant changes it. Domain: films that the scene has. Errors: those of at_wavelength.
+SceneModel with_variant(const SceneModel& scene, const SceneVariant& variant);
+
 }  // namespace dolp

@@ -143,4 +143,15 @@ SceneModel at_wavelength(const SceneModel& scene, double wavelength_um) {
   return at;
 }
 
+SceneModel with_variant(const SceneModel& scene, const SceneVariant& variant) {
+  SceneModel own = variant.wavelength_um ? at_wavelength(scene, *variant.wavelength_um) : scene;
+  for (const FilmValue& film : variant.films) {
+    Layer& layer = own.surface.coating.at(film.layer);
+    if (film.part == FilmValue::Part::kN) layer.material.constant.n = film.value;
+    if (film.part == FilmValue::Part::kK) layer.material.constant.k = film.value;
+    if (film.part == FilmValue::Part::kThickness) layer.thickness_um = film.value;
+  }
+  return own;
+}
+
 }  // namespace dolp

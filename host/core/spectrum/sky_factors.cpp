@@ -39,14 +39,13 @@ Eigen::VectorXd SkySampler::at(double wavelength_um) const {
   return exitances;
 }
 
-std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, const std::vector<double>& wavelength_um) {
+std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, const std::vector<SceneVariant>& variants) {
   if (!scene.surroundings || !scene.surroundings->profile) return nullptr;
   std::vector<Eigen::VectorXd> functions;
   const auto add = [&](const SpectralRule& rule) {
     for (const SpectralSample& sample : rule.samples) functions.push_back(vector_of(sample.sky));
   };
-  if (wavelength_um.empty()) add(spectral_rule(scene));
-  for (const double of_entry : wavelength_um) add(spectral_rule(at_wavelength(scene, of_entry)));
+  for (const SceneVariant& variant : variants) add(spectral_rule(with_variant(scene, variant)));
   SkyNodes nodes(scene.surroundings->profile->ends_deg());
   auto basis = std::make_shared<const SkyBasis>(std::move(nodes), functions, kBasisShare * scene.accuracy.tolerance);
   return basis->size() > 0 ? basis : nullptr;

@@ -30,7 +30,7 @@ class SkySampler {
 
 /// A basis of what the sky adds to its mean, in all samples of a scene at `wavelength_um`, or of its spectrum where the
 /// list is empty. Null where it adds nothing.
-std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, const std::vector<double>& wavelength_um);
+std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, const std::vector<SceneVariant>& variants);
 
 /// The part of a sample that the sky adds to its mean.
 struct SkyFactor {

@@ -236,13 +236,13 @@ void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>
         if (surface.material.is_constant()) point.index = surface.material.constant;
         if (!one.wavelength_um) continue;
         const auto place = std::ranges::lower_bound(group.wavelength_um, *one.wavelength_um);
-        point.wavelength = static_cast<std::uint32_t>(place - group.wavelength_um.begin());
+        point.variant = static_cast<std::uint32_t>(place - group.wavelength_um.begin());
         if (!surface.material.tabulated) continue;
-        if (!varies("surface.n")) point.index->n = group.indices[point.wavelength].n;
-        if (!varies("surface.k")) point.index->k = group.indices[point.wavelength].k;
+        if (!varies("surface.n")) point.index->n = group.indices[point.variant].n;
+        if (!varies("surface.k")) point.index->k = group.indices[point.variant].k;
       }
     }
-    const SceneEntries entries(std::move(points), group.wavelength_um);
+    const SceneEntries entries(std::move(points), variants_of(group.wavelength_um));
     scene.accuracy.tolerance = tolerance;
     const std::vector<PointResult> results = evaluate_scene(scene, entries, evaluator, progress);
     std::vector<PointResult> others;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <dolp/errors.hpp>
+#include <map>
 
 #include <dolp/number_range.hpp>
 #include "base/text.hpp"
@@ -34,27 +35,22 @@ void check_columns(const SceneValues& scene, const Points& points) {
   }
 }
 
-/// The distinct wavelengths of the points, which all must be where n, k and E0 are known.
-std::vector<double> wavelengths_of(const SceneValues& scene, const Points& points) {
+/// Refuses wavelengths beside a band, or where n, k or E0 are not known.
+void check_wavelengths(const SceneValues& scene, const Points& points) {
   if (scene.spectrum.is_band()) {
     throw InputError(
         fmt::format("{}: column \"wavelength_um\" cannot be combined with spectrum.band_um", points.where()));
   }
   const std::vector<double>& all = *points[Axis::kWavelength];
-  std::vector<double> wavelengths = all;
-  std::ranges::sort(wavelengths);
-  const auto twice = std::ranges::unique(wavelengths);
-  wavelengths.erase(twice.begin(), twice.end());
-  for (const double wavelength_um : {wavelengths.front(), wavelengths.back()}) {
+  const auto [least, most] = std::ranges::minmax_element(all);
+  for (const auto at : {least, most}) {
     try {
-      at_wavelength(scene, wavelength_um);
+      at_wavelength(scene, *at);
     } catch (const InputError& error) {
-      const auto row = static_cast<std::size_t>(std::ranges::find(all, wavelength_um) - all.begin());
-      throw InputError(
-          fmt::format("{}: wavelength_um = {}: {}", points.where(row), format_number(wavelength_um), error.what()));
+      const auto row = static_cast<std::size_t>(at - all.begin());
+      throw InputError(fmt::format("{}: wavelength_um = {}: {}", points.where(row), format_number(*at), error.what()));
     }
   }
-  return wavelengths;
 }
 
 }  // namespace
@@ -75,6 +71,20 @@ void check_shapes(const SceneValues& scene, const Points& points) {
   }
 }
 
+void check_films(const SceneValues& scene, const Points& points) {
+  const std::vector<Layer>& coating = scene.surface.coating;
+  for (const auto& [film, column] : points.films) {
+    const std::size_t layer = film.first + 1;
+    if (layer > coating.size()) {
+      throw InputError(fmt::format("{}: column of layer {}: the scene's surface.coating has {} layers", points.where(),
+                                   layer, coating.size()));
+    }
+    if (film.second == FilmValue::Part::kThickness || coating[film.first].material.name.empty()) continue;
+    throw InputError(fmt::format("{}: columns of n and k of layer {} need n and k of it in the scene, which has \"{}\"",
+                                 points.where(), layer, coating[film.first].material.name));
+  }
+}
+
 SceneEntries grid_entries(const SceneValues& scene) {
   const PerAxis counts = counts_of(scene.grid);
   double size = 1.0;
@@ -90,12 +100,15 @@ SceneEntries point_entries(const SceneValues& scene, const Points& points) {
   check_columns(scene, points);
   check_shapes(scene, points);
   const Surface& surface = scene.surface;
+  check_films(scene, points);
   const bool has_own_index = points[Axis::kN] || points[Axis::kK];
   const bool has_wavelength = points[Axis::kWavelength] && points.size() > 0;
-  if (points[Axis::kTheta] && !points[Axis::kSigma] && !points[Axis::kQ] && !has_own_index && !has_wavelength) {
+  const bool has_variants = has_wavelength || !points.films.empty();
+  if (points[Axis::kTheta] && !points[Axis::kSigma] && !points[Axis::kQ] && !has_own_index && !has_variants) {
     return SceneEntries::grid(*points[Axis::kTheta], {surface.sigma}, {surface.q});
   }
-  const std::vector<double> wavelengths = has_wavelength ? wavelengths_of(scene, points) : std::vector<double>{};
+  if (has_wavelength) check_wavelengths(scene, points);
+  std::map<SceneVariant, std::uint32_t> variants;
   std::vector<SceneEntry> entries;
   entries.reserve(points.size());
   for (std::size_t row = 0; row < points.size(); ++row) {
@@ -106,13 +119,14 @@ SceneEntries point_entries(const SceneValues& scene, const Points& points) {
     if (has_own_index)
       entry.index =
           OpticalConstants{value_or(points[Axis::kN], row, index.n), value_or(points[Axis::kK], row, index.k)};
-    if (has_wavelength) {
-      const auto found = std::ranges::lower_bound(wavelengths, (*points[Axis::kWavelength])[row]);
-      entry.wavelength = static_cast<std::uint32_t>(found - wavelengths.begin());
-    }
+    SceneVariant variant{.films = points.films_at(row)};
+    if (has_wavelength) variant.wavelength_um = (*points[Axis::kWavelength])[row];
+    entry.variant = variants.try_emplace(std::move(variant), static_cast<std::uint32_t>(variants.size())).first->second;
     entries.push_back(entry);
   }
-  return {std::move(entries), wavelengths};
+  std::vector<SceneVariant> all(std::max<std::size_t>(1, variants.size()));
+  for (const auto& [variant, position] : variants) all[position] = variant;
+  return {std::move(entries), std::move(all)};
 }
 
 }  // namespace dolp

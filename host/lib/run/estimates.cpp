@@ -80,10 +80,18 @@ Sample sample_of(const SceneValues& scene, const SceneEntries& entries) {
   }
   std::vector<SceneEntry> all;
   for (SceneEntry entry : sample.entries.all()) {
-    for (entry.wavelength = 0; entry.wavelength < wavelength_um.size(); ++entry.wavelength) all.push_back(entry);
+    const std::uint32_t first = entry.variant * static_cast<std::uint32_t>(kBandWavelengths);
+    for (std::uint32_t j = 0; j < kBandWavelengths; ++j) {
+      entry.variant = first + j;
+      all.push_back(entry);
+    }
+  }
+  std::vector<SceneVariant> variants;
+  for (const SceneVariant& variant : sample.entries.variants()) {
+    for (const double at_um : wavelength_um) variants.push_back({at_um, variant.films});
   }
   sample.scene.spectrum = {middle, middle};
-  sample.entries = {std::move(all), std::move(wavelength_um)};
+  sample.entries = {std::move(all), std::move(variants)};
   return sample;
 }
 

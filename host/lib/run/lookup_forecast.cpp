@@ -136,18 +136,18 @@ class Forecast {
   /// The error of a lookup in each stretch; NaN where the model has no value. All stretches are computed together.
   std::vector<double> errors_in(const std::vector<Stretch>& stretches) {
     std::vector<SceneEntry> all;
-    std::vector<double> wavelengths;
+    std::vector<SceneVariant> variants;
     std::vector<SceneEntries> grids;
     for (const Stretch& stretch : stretches) {
       scene_.grid = stretch.axes;
       const SceneEntries& own = grids.emplace_back(grid_entries(scene_));
       for (std::size_t i = 0; i < own.size(); ++i) {
         all.push_back(own[i]);
-        all.back().wavelength += static_cast<std::uint32_t>(wavelengths.size());
+        all.back().variant += static_cast<std::uint32_t>(variants.size());
       }
-      wavelengths.insert(wavelengths.end(), own.wavelength_um().begin(), own.wavelength_um().end());
+      variants.insert(variants.end(), own.variants().begin(), own.variants().end());
     }
-    const std::vector<PointResult> results = evaluate_scene(scene_, {all, wavelengths}, evaluator_, {}, plan_);
+    const std::vector<PointResult> results = evaluate_scene(scene_, {all, variants}, evaluator_, {}, plan_);
     std::vector<double> errors;
     auto next = results.begin();
     for (std::size_t i = 0; i < stretches.size(); ++i) {

@@ -108,10 +108,18 @@ std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points&
                                  "give n and k, or a material and a coating",
                                  scene.path_name));
   }
-  const FacetOptics optics = surface.optics_at(scene.spectrum.min_um);
+  check_films(scene, points);
+  const double at_um = scene.spectrum.min_um;
+  FacetOptics optics = surface.optics_at(at_um);
   std::vector<MuellerPoint> result;
   result.reserve(points.size());
   for (std::size_t row = 0; row < points.size(); ++row) {
+    for (const FilmValue& value : points.films_at(row)) {
+      Film& film = optics.films[value.layer];
+      if (value.part == FilmValue::Part::kN) film.index.n = value.value;
+      if (value.part == FilmValue::Part::kK) film.index.k = value.value;
+      if (value.part == FilmValue::Part::kThickness) film.thickness = value.value / at_um;
+    }
     result.push_back({{(*points.theta_i_deg)[row], (*points.theta_r_deg)[row], (*points.delta_phi_deg)[row]},
                       {value_or(points[Axis::kSigma], row, surface.sigma), value_or(points[Axis::kQ], row, surface.q)},
                       optics});

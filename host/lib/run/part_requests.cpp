@@ -65,10 +65,9 @@ std::vector<FacetOptics> with_index(const std::vector<FacetOptics>& samples, con
 }
 
 SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& entries) {
-  if (entries.wavelength_um().empty()) return {spectral_rule(scene).indices()};
   SpectralIndices indices;
-  for (const double wavelength_um : entries.wavelength_um())
-    indices.push_back(spectral_rule(at_wavelength(scene, wavelength_um)).indices());
+  for (const SceneVariant& variant : entries.variants())
+    indices.push_back(spectral_rule(with_variant(scene, variant)).indices());
   return indices;
 }
 
@@ -174,7 +173,7 @@ void PartRequests::mask(const Selection& selection) {
     const SceneEntry entry = selection[i];
     if (!wants_moments(scene_, entry, plan_)) continue;
     const Place place = moments_of(i);
-    const std::size_t samples = place.stride == 0 ? 1 : samples_[entry.wavelength].size();
+    const std::size_t samples = place.stride == 0 ? 1 : samples_[entry.variant].size();
     for (std::size_t j = 0; j < samples; ++j) moments_.wanted[place.first + j * place.stride] = 1;
   }
   if (moments_.wanted_count() == moments_.size()) moments_.wanted.clear();
@@ -210,11 +209,11 @@ void PartRequests::ask_points(const Selection& selection) {
         zenith_before_limit_deg(scene_.surface.masking, moment_zenith_deg(scene_, entry.theta_deg));
     const SlopeShape shape = normalised(scene_, entry.shape);
     // Without an index of its own it has the indices of a wavelength; no k is negative.
-    const OpticalConstants key = entry.index.value_or(OpticalConstants{static_cast<double>(entry.wavelength), -1.0});
-    const double films_at = has_films() ? entry.wavelength : -1.0;
+    const OpticalConstants key = entry.index.value_or(OpticalConstants{static_cast<double>(entry.variant), -1.0});
+    const double films_at = has_films() ? entry.variant : -1.0;
     const auto [place, is_new] = known.try_emplace({zenith_deg, shape.sigma, shape.q, key.n, key.k, films_at}, Place{});
     if (is_new) {
-      const std::vector<FacetOptics> own = with_index(samples_[entry.wavelength], entry.index);
+      const std::vector<FacetOptics> own = with_index(samples_[entry.variant], entry.index);
       place->second = {moments_.size(), entry.index && !has_films() ? std::size_t{0} : std::size_t{1}};
       for (const FacetOptics& sample : own) moments_.append({zenith_deg, shape, sample});
     }
@@ -252,10 +251,10 @@ void PartRequests::ask_beams(const Selection& selection) {
       beams_.angles.push_back(angles_of(scene_, entry.theta_deg));
       beams_.shapes.push_back(entry.shape);
     }
-    for (std::uint32_t j = 0; j < samples_[entry.wavelength].size(); ++j) {
-      wanted.index = first_index[entry.wavelength] + j;
+    for (std::uint32_t j = 0; j < samples_[entry.variant].size(); ++j) {
+      wanted.index = first_index[entry.variant] + j;
       if (entry.index) {
-        FacetOptics own = samples_[entry.wavelength][j];
+        FacetOptics own = samples_[entry.variant][j];
         own.index = *entry.index;
         if (beams_.indices.back() != own) beams_.indices.push_back(std::move(own));
         wanted.index = static_cast<std::uint32_t>(beams_.indices.size() - 1);

@@ -39,7 +39,7 @@ bool wants_beam(const SceneValues& scene, const SceneEntry& entry, const EffectP
 /// radiance is not defined, as it is not with source and view both at 90 degrees.
 Scattered beam_without_evaluator(const SceneValues& scene, double theta_deg);
 
-/// The indices at which a scene needs moments: of each wavelength of its entries, or of its spectrum.
+/// The indices at which a scene needs moments, for each variant among its entries.
 using SpectralIndices = std::vector<std::vector<FacetOptics>>;
 SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& entries);
 

@@ -29,7 +29,7 @@ std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const Scene
   const auto add = [&](const FacetOptics& index) { indices.insert(index); };
   for (const SceneEntry& entry : entries.all()) {
     shapes.insert({moment_zenith_deg(scene, entry.theta_deg), entry.shape.sigma, entry.shape.q});
-    const std::vector<FacetOptics> own = with_index(spectral[entry.wavelength], entry.index);
+    const std::vector<FacetOptics> own = with_index(spectral[entry.variant], entry.index);
     std::ranges::for_each(own, add);
     points += own.size();
   }

@@ -31,12 +31,11 @@ constexpr std::size_t kPointsAtOnce = 1U << 17U;
 constexpr std::size_t kWholeDirectionMissRatio = 8;
 constexpr std::size_t kEntriesAtOnce = 4096;  // of a thread: their radiometry takes longer than to start one
 
-/// The scene's radiometry at each wavelength of a part.
+/// The radiometry of each variant in a part.
 struct Spectra {
-  Spectra(const SceneValues& scene, const EffectPlan& plan, const std::vector<double>& wavelength_um) {
-    if (wavelength_um.empty()) radiometries.emplace_back(scene, plan.kept, plan.bound, plan.sky);
-    for (const double of_entry : wavelength_um)
-      radiometries.emplace_back(at_wavelength(scene, of_entry), plan.kept, plan.bound, plan.sky);
+  Spectra(const SceneValues& scene, const EffectPlan& plan, const std::vector<SceneVariant>& variants) {
+    for (const SceneVariant& variant : variants)
+      radiometries.emplace_back(with_variant(scene, variant), plan.kept, plan.bound, plan.sky);
     for (const Radiometry& radiometry : radiometries) indices.push_back(radiometry.rule().indices());
   }
   std::vector<Radiometry> radiometries;
@@ -81,13 +80,13 @@ class MemberResults {
     const SceneEntry entry = selection_[member];
     const Direction direction = seen(entry);
     for (std::size_t j = 0; entry.index && j < indices_.size(); ++j) {
-      indices_[j] = context_.spectra.indices[entry.wavelength][j];
+      indices_[j] = context_.spectra.indices[entry.variant][j];
       indices_[j].index = *entry.index;
     }
     const std::span<const FacetOptics> indices =
-        entry.index ? indices_ : context_.spectra.indices[entry.wavelength];
+        entry.index ? indices_ : context_.spectra.indices[entry.variant];
     const std::span<const Moments> moments = moments_of(member, entry, direction, indices);
-    const Radiometry& radiometry = context_.spectra.radiometries[entry.wavelength];
+    const Radiometry& radiometry = context_.spectra.radiometries[entry.variant];
     if (context_.scene.geometry.mode != Mode::kBistatic) return radiometry.point(direction, moments, indices);
     fill_beams(member, entry);
     return radiometry.bistatic_point(direction, cos_sin_deg(entry.theta_deg).cos, moments, indices, beams_);
@@ -413,7 +412,7 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
     if (left > 0) {
       --left;
     } else {
-      const Spectra spectra(scene, plan, part.wavelength_um());
+      const Spectra spectra(scene, plan, part.variants());
       const RunContext context{scene, plan, spectra, evaluator, bases, summary};
       std::vector<PointResult> results = part_results(context, part, checked, summary.check, part_progress);
       summary.add(scene, part, results);

@@ -33,6 +33,9 @@ SceneEntries point_entries(const SceneValues& scene, const Points& points);
 /// Errors: InputError that names the points' file and line, column, value and what is allowed.
 void check_shapes(const SceneValues& scene, const Points& points);
 
+/// Refuses numbers of films that the scene does not have, and n and k of a film that has a material.
+void check_films(const SceneValues& scene, const Points& points);
+
 /// Destination of results, part by part.
 class Sink {
  public:

@@ -136,7 +136,7 @@ void integrate_new(const SceneValues& scene, std::vector<PointIntegral*>& points
       const BandPiece& interval = point->intervals[i];
       for (const KronrodNode& node : kNodes) {
         entries.push_back(point->entry);
-        entries.back().wavelength = static_cast<std::uint32_t>(wavelengths_um.size());
+        entries.back().variant = static_cast<std::uint32_t>(wavelengths_um.size());
         wavelengths_um.push_back(std::midpoint(interval.from_um, interval.to_um) +
                                  0.5 * node.place * (interval.to_um - interval.from_um));
       }
@@ -144,7 +144,7 @@ void integrate_new(const SceneValues& scene, std::vector<PointIntegral*>& points
   }
   SceneValues at_one = scene;
   at_one.spectrum = {wavelengths_um.front(), wavelengths_um.front()};
-  const std::vector<PointResult> results = evaluate_scene(at_one, {entries, wavelengths_um}, evaluator, progress);
+  const std::vector<PointResult> results = evaluate_scene(at_one, {entries, variants_of(wavelengths_um)}, evaluator, progress);
   std::size_t next = 0;
   for (PointIntegral* point : points) {
     const double zenith_deg =

@@ -137,7 +137,7 @@ CheckedValue compare(const TableValues& table, const Compared& compared, std::si
   value.sigma = entry.shape.sigma;
   value.q = entry.shape.q;
   const std::vector<double>& wavelengths = table.axes[Axis::kWavelength];
-  if (!wavelengths.empty()) value.wavelength_um = wavelengths[entry.wavelength];
+  if (!wavelengths.empty()) value.wavelength_um = wavelengths[entry.variant];
   if (!table.axes[Axis::kN].empty()) value.n = entry.index->n;
   if (!table.axes[Axis::kK].empty()) value.k = entry.index->k;
   value.stored = table[compared.quantity][i];
@@ -233,7 +233,7 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
     QuantityCheck& of_quantity = check.quantities.emplace_back();
     of_quantity.name = description_of(compared.quantity).name;
     for (std::size_t i = 0; i < entries.size(); ++i) {
-      const CheckedValue value = compare(table, compared, i, entries[i], results[i], terms[entries[i].wavelength]);
+      const CheckedValue value = compare(table, compared, i, entries[i], results[i], terms[entries[i].variant]);
       add(of_quantity, value);
       if (!value.complaint.empty()) check.failures.push_back(value);
     }

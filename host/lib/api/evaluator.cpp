@@ -4,11 +4,11 @@
 #include <chrono>
 
 #include "api/evaluator_impl.hpp"
-#include "api/reports.hpp"
-#include "api/results.hpp"
-#include "api/scene_impl.hpp"
-#include "api/table_impl.hpp"
+#include "api/impl.hpp"
 #include "base/stopwatch.hpp"
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "reference/reference_evaluator.hpp"
 #include "report/run_report.hpp"
 #include "run/mueller_run.hpp"
 #include "run/scene_run.hpp"
@@ -26,6 +26,23 @@ std::vector<Attribute> all_attributes(const SceneValues& scene, const TableLayou
 }
 
 }  // namespace
+
+std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, bool needs_double) {
+  const bool is_vulkan = wanted.evaluator == "vulkan";
+  if (!is_vulkan && wanted.evaluator != "cpu" && wanted.evaluator != "reference") {
+    throw InputError("evaluator " + wanted.evaluator + ": is not one of vulkan, cpu, reference");
+  }
+  if (!is_vulkan && !wanted.device.empty()) {
+    throw InputError("device " + wanted.device + ": needs the evaluator vulkan, and it is " + wanted.evaluator);
+  }
+  if (wanted.evaluator == "reference") return std::make_unique<ReferenceEvaluator>();
+  if (!is_vulkan) return std::make_unique<CpuEvaluator>();
+  VulkanOptions options;
+  options.device = wanted.device;
+  options.needs_double = needs_double;
+  if (wanted.is_interactive) options.max_tile_invocations = 2'048;  // some milliseconds on two cores
+  return std::make_unique<VulkanEvaluator>(options);
+}
 
 void check_no_fork() {
   static std::atomic<pid_t> first_user = 0;

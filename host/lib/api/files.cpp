@@ -9,8 +9,7 @@
 #include <dolp/number_range.hpp>
 #include <dolp/status.hpp>
 #include "api/evaluator_impl.hpp"
-#include "api/reports.hpp"
-#include "api/scene_impl.hpp"
+#include "api/impl.hpp"
 #include "base/atomic_file.hpp"
 #include "base/number_text.hpp"
 #include "base/stopwatch.hpp"
@@ -189,10 +188,19 @@ Report write_lookup(const std::filesystem::path& table_path, const std::filesyst
   csv.append(results);
   csv.commit();
 
-  const std::size_t missed = count_status(results, kToleranceNotMet);
-  const std::size_t rho_missed = count_status(results, kRhoToleranceNotMet);
-  const std::size_t inaccurate = count_status(results, kModelInaccurate);
-  const std::optional<double> worst = worst_of(results, Quantity::kErrorEstimate, kNoDolpPromised);
+  const auto count = [&](std::uint32_t bit) {
+    return std::ranges::count_if(results, [bit](const PointResult& one) { return (one.status & bit) != 0; });
+  };
+  const auto worst_of = [&](Quantity error) {
+    std::optional<double> worst;
+    for (const PointResult& one : results) {
+      if (promises_dolp(one.status)) worst = std::max(worst.value_or(0.0), one[error]);
+    }
+    return worst;
+  };
+  const auto missed = count(kToleranceNotMet), rho_missed = count(kRhoToleranceNotMet);
+  const auto inaccurate = count(kModelInaccurate);
+  const std::optional<double> worst = worst_of(Quantity::kErrorEstimate);
   ReportBuilder report;
   report.line("{}", key("table", table_path.string()));
   report.row("points", "{}", key("points", results.size()));
@@ -208,7 +216,7 @@ Report write_lookup(const std::filesystem::path& table_path, const std::filesyst
   add_left_out(report, points);
   report.row("written", "{}", key("output", path.string()));
   report.value("worst_error_estimate", worst);
-  report.value("worst_rho_error_estimate", worst_of(results, Quantity::kRhoErrorEstimate, kNoDolpPromised));
+  report.value("worst_rho_error_estimate", worst_of(Quantity::kRhoErrorEstimate));
   report.value("wall_s", seconds_since(start));
   return public_report(report, missed + rho_missed == 0, path);
 }

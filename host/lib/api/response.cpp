@@ -5,9 +5,7 @@
 #include <span>
 
 #include "api/evaluator_impl.hpp"
-#include "api/reports.hpp"
-#include "api/scene_impl.hpp"
-#include "api/table_impl.hpp"
+#include "api/impl.hpp"
 #include "report/run_report.hpp"
 #include "run/response_run.hpp"
 #include "scene/scene_reader.hpp"

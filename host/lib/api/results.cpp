@@ -1,4 +1,4 @@
-#include "api/results.hpp"
+#include "api/impl.hpp"
 
 #include <fmt/format.h>
 

@@ -6,9 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "api/reports.hpp"
-#include "api/results.hpp"
-#include "api/table_impl.hpp"
+#include "api/impl.hpp"
 #include "base/text.hpp"
 #include "run/lookup_run.hpp"
 #include "run/scene_run.hpp"

@@ -116,11 +116,16 @@ struct Walk {
     point = (where.at + step).cwiseMax(0.0).cwiseMin(1.0);
     promised = weights.cwiseProduct(where.residuals).squaredNorm() -
                weights.cwiseProduct(where.residuals + where.jacobian * step).squaredNorm();
+    constexpr double kLeastStepLength = 1e-7;
     is_done = !(promised >= options.least_gain * options.scale) || step.norm() <= kLeastStepLength;
   }
 
-  /// Goes to a point that was tried, or takes a shorter step next time.
+  /// Goes to a point that was tried, or takes a shorter step next time. The rules of the radius are those of Nielsen
+  /// (1999); Levenberg's damping is the scale over the radius. Marquardt's damping, by the derivatives, would allow
+  /// leaps along directions that the data hardly constrain.
   void judge(Linearisation tried, const DescentOptions& options) {
+    constexpr double kLeastRadius = 1e-8, kMostRadius = 1e8;
+    constexpr double kLeastDecrease = 1e-8;  // relative
     const double found = objective(tried.residuals, options.loss);
     const double ratio = (minimum->objective - found) / promised;
     if (!(ratio > kLeastRatio)) {
@@ -135,7 +140,7 @@ struct Walk {
     minimum->radius =
         std::min(kMostRadius, minimum->radius / std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * ratio - 1.0, 3)));
     shrink = 2.0;
-    is_updated = options.secant_below && ratio > kForetoldRatio && ratio < 1.0 / kForetoldRatio;
+    is_updated = options.secant_below && ratio > kPredictedRatio && ratio < 1.0 / kPredictedRatio;
     is_stale = !is_updated;
   }
 };
@@ -179,8 +184,8 @@ Eigen::VectorXd loss_weights(const Eigen::VectorXd& residuals, Loss loss) {
 }
 
 bool is_straight(const Linearisation& from, const Linearisation& to, double scale) {
-  const Eigen::VectorXd foretold = from.residuals + from.jacobian * (to.at - from.at);
-  return (foretold - to.residuals).squaredNorm() < kBent * ((from.residuals - to.residuals).squaredNorm() + scale);
+  const Eigen::VectorXd predicted = from.residuals + from.jacobian * (to.at - from.at);
+  return (predicted - to.residuals).squaredNorm() < kBent * ((from.residuals - to.residuals).squaredNorm() + scale);
 }
 
 void descend(Residuals& residuals, std::vector<Minimum>& all, const DescentOptions& options) {
@@ -218,7 +223,7 @@ void descend(Residuals& residuals, std::vector<Minimum>& all, const DescentOptio
   refresh(residuals, walks, options);
 }
 
-std::pair<Eigen::VectorXd, double> foretell(const Neighbour& neighbour, double scale) {
+std::pair<Eigen::VectorXd, double> predict_step(const Neighbour& neighbour, double scale) {
   const Linearisation& near = neighbour.near->where;
   Eigen::VectorXd step = Eigen::VectorXd::Zero(near.at.size());
   for (const std::size_t one : neighbour.held) {
@@ -240,14 +245,14 @@ std::pair<Eigen::VectorXd, double> foretell(const Neighbour& neighbour, double s
 
 std::vector<Minimum> follow(Residuals& residuals, const std::vector<Neighbour>& all, const DescentOptions& options) {
   std::vector<Eigen::VectorXd> points;
-  for (const Neighbour& one : all) points.push_back(foretell(one, options.scale).first);
+  for (const Neighbour& one : all) points.push_back(predict_step(one, options.scale).first);
   std::vector<Linearisation> found = residuals.at(points);
   std::vector<Minimum> minima;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Linearisation& near = all[i].near->where;
-    const bool is_foretold = near.jacobian.size() > 0 && is_straight(near, found[i], options.scale);
+    const bool is_predicted = near.jacobian.size() > 0 && is_straight(near, found[i], options.scale);
     Minimum& one = minima.emplace_back();
-    one.where = is_foretold ? moved(near, std::move(found[i])) : std::move(found[i]);
+    one.where = is_predicted ? moved(near, std::move(found[i])) : std::move(found[i]);
     one.where.steps = near.steps;
     one.held = all[i].held;
     one.radius = kRadiusOfNeighbours;

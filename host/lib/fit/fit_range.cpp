@@ -1,4 +1,4 @@
-#include "fit/fit_range.hpp"
+#include "fit/model.hpp"
 
 #include <fmt/format.h>
 

@@ -14,6 +14,10 @@
 
 namespace dolp::fit {
 
+/// Refuses a range that the scene's key does not have. Errors: InputError that begins with `origin`: an unknown key or
+/// one that is no number, low >= high, a start outside of them, values out of the key's range.
+void check_range(const FitRange& range, const std::string& origin);
+
 /// The model's predictions of all observations, in their order.
 struct Prediction {
   /// The observable in the first column; of DOLP the signed Q/I and U/I, whose length it is. With the model error of
@@ -64,7 +68,10 @@ class Model {
 
   void check() const;
   bool varies(const std::string& key) const;
-  void add_groups(const SceneValues& scene, const MeasuredData& data, Eigen::Index first_row);
+  Group group_of(const SceneValues& scene, const MeasuredData& data, Eigen::Index first_row) const;
+  void check_group(const Group& group) const;
+  /// Adds the points of a group's measurements.
+  void add_points(std::vector<SceneEntry>& points, const Group& group, const SceneValues& scene) const;
   /// The scene of some data. Errors: InputError that says whose setting is refused.
   SceneValues scene_of(const SceneValues& scene, const MeasuredData& data, const std::vector<Setting>& own,
                        const Eigen::VectorXd& values) const;

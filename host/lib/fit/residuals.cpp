@@ -133,7 +133,8 @@ double Residuals::next_step(double step, const Linearisation& point, const Predi
   const double change = (beside.components - point.components).cwiseAbs().maxCoeff();
   if (!std::isfinite(change) || change <= 0.0) return step;
   const double largest = point.components.cwiseAbs().maxCoeff();
-  const double error = std::clamp(beside.error.maxCoeff(), kLeastErrorShare * tolerance_, tolerance_);
+  // Smaller bounds leave out what they cannot know.
+  const double error = std::clamp(beside.error.maxCoeff(), 1e-3 * tolerance_, tolerance_);
   const double balanced = std::cbrt(3.0 * error * largest * largest);
   const double seen = std::max(kSeenShare / weights_.maxCoeff(), kErrorsOfAChange * error);
   const double factor = std::clamp(std::min(balanced, seen) / change, 1.0 / kMostChangeOfStep, kMostChangeOfStep);

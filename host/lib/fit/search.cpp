@@ -78,6 +78,8 @@ Eigen::VectorXd on_floor(const Eigen::VectorXd& point, const Eigen::VectorXd& re
                          const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& line) {
   const Eigen::VectorXd along = line.normalized();
   const Eigen::MatrixXd across = jacobian - jacobian * along * along.transpose();
+  // The residuals do not change along axes of less. Far above the rounding of a normal matrix.
+  constexpr double kFlatShare = 1e-12;
   const PrincipalAxes axes = principal_axes(across.transpose() * across);
   const Eigen::VectorXd moved = point - axes.inverse(kFlatShare) * across.transpose() * residuals;
   return moved.cwiseMax(0.0).cwiseMin(1.0);
@@ -185,7 +187,7 @@ std::vector<Minimum> find_minima(Residuals& coarse, Residuals& fine, const Searc
   if (far.empty()) return far;
   DescentOptions last_steps;
   last_steps.loss = options.loss;
-  last_steps.most_steps = kStepsToTheBottom;
+  last_steps.most_steps = 100;
   last_steps.scale = std::max(scale_of(options, far.front()), fine.tolerance() * fine.tolerance());
   const double most = far.front().objective + kFarAbove * scale_of(options, far.front());
   const auto end_of_near = std::ranges::find_if(far, [&](const Minimum& one) { return one.objective > most; });

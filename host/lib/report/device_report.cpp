@@ -1,35 +1,33 @@
-#include "report/device_report.hpp"
+#include "report/verify_report.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <dolp/errors.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "model/choices.hpp"
-#include "model/moments.hpp"
-#include "verify/qualification.hpp"
 
 namespace dolp {
 namespace {
 
-// Requested tolerance of each arithmetic: near the best that it can reach.
-constexpr double kFloatTolerance = 1e-6;
-constexpr double kDoubleTolerance = 1e-9;
+/// The requested tolerance: near the best that the arithmetic can reach.
+double tolerance_in(Precision precision) { return precision == Precision::kDouble ? 1e-9 : 1e-6; }
 
-/// A device's accuracy in one precision, or the reason why it is unknown.
+/// The results of ordinary cases in one precision, or the reason why there are none.
 struct Quality {
-  const char* precision;
-  std::optional<DeviceQuality> measured;
+  Precision precision;
   std::string why_not;
+  std::vector<CaseOutcome> outcomes = {};
 };
 
 Quality quality_in(const Device& device, std::size_t position, Precision precision) {
   const bool in_double = precision == Precision::kDouble;
-  Quality quality{name_of(precision), {}, {}};
-  if (!device.usable) quality.why_not = "the device is not usable";
+  Quality quality{precision, device.usable ? "" : "the device is not usable"};
   if (in_double && !device.has_double) quality.why_not = "the device has no double precision (shaderFloat64)";
   if (!quality.why_not.empty()) return quality;
   try {
@@ -37,7 +35,7 @@ Quality quality_in(const Device& device, std::size_t position, Precision precisi
     options.device = std::to_string(position);
     options.needs_double = in_double;
     VulkanEvaluator evaluator(options);
-    quality.measured = measure_quality(evaluator, {in_double ? kDoubleTolerance : kFloatTolerance, precision});
+    quality.outcomes = qualify(ordinary_cases(), evaluator, {tolerance_in(precision), precision}, {});
   } catch (const DeviceError& error) {
     quality.why_not = error.what();
   }
@@ -46,33 +44,32 @@ Quality quality_in(const Device& device, std::size_t position, Precision precisi
 
 ReportBuilder quality_report(const Quality& quality) {
   ReportBuilder report;
-  if (!quality.measured) {
-    report.line("   {:<6} not measured: {}", quality.precision, key("why_not", quality.why_not));
+  if (quality.outcomes.empty()) {
+    report.line("   {:<6} not measured: {}", name_of(quality.precision), key("why_not", quality.why_not));
     return report;
   }
-  const DeviceQuality& q = *quality.measured;
+  const auto error_of = [](const CaseOutcome& one) { return std::isnan(one.rho.error) ? kInfinity : one.rho.error; };
+  const CaseOutcome& worst = *std::ranges::max_element(quality.outcomes, {}, error_of);
+  const auto missed = std::ranges::count_if(quality.outcomes, &CaseOutcome::misses_tolerance);
+  const bool is_sound =
+      std::ranges::all_of(quality.outcomes, [](const CaseOutcome& one) { return one.complaint.empty(); });
   report.line(
-      "   {:<6} true error of rho at most {:.1e} in {} ordinary cases; with tolerance {:g} {} of them get status 2 or "
-      "16, "
-      "because "
-      "the stated bound, larger than the error, misses it{}",
-      quality.precision, key("worst_rho_error", q.worst_error), key("cases", q.cases), key("tolerance", q.tolerance),
-      key("missed_tolerance", q.missed),
-      q.is_sound ? "" : "; SOME ERRORS EXCEED THEIR ESTIMATES, see dolp verify --hard-cases");
-  report.values({{"worst_case", q.worst_case}, {"sound", q.is_sound}});
+      "   {:<6} true error of rho at most {:.1e} in {} ordinary cases; with tolerance {:g}, {} of them get status 2 or "
+      "16, because the stated bound, larger than the error, misses it{}",
+      name_of(quality.precision), key("worst_rho_error", worst.rho.error), key("cases", quality.outcomes.size()),
+      key("tolerance", tolerance_in(quality.precision)), key("missed_tolerance", missed),
+      is_sound ? "" : "; SOME ERRORS EXCEED THEIR ESTIMATES, see dolp verify --hard-cases");
+  const StoredCase& stored = worst.stored;
+  report.value("worst_case",
+               fmt::format("{} {} {}", name_of(stored.distribution), name_of(stored.masking), stored.name));
+  report.value("sound", is_sound);
   return report;
-}
-
-/// The reason why a device that the driver calls usable is not: its kernels do not compile or run.
-std::string why_not_usable(const Device& device, const Quality& in_float) {
-  if (!device.usable) return device.why_not;
-  return in_float.measured ? "" : in_float.why_not;
 }
 
 ReportBuilder device_report(const Device& device, std::size_t position) {
   const Quality in_float = quality_in(device, position, Precision::kFloat);
-  Device examined = device;
-  examined.why_not = why_not_usable(device, in_float);
+  Device examined = device;  // its kernels may not compile or run, though the driver calls it usable
+  if (device.usable) examined.why_not = in_float.why_not;
   examined.usable = examined.why_not.empty();
   const Quality in_double = quality_in(examined, position, Precision::kDouble);
   ReportBuilder report;
@@ -93,7 +90,7 @@ ReportBuilder device_report(const Device& device, std::size_t position) {
                  {"heap_bytes", device.memory_bytes},
                  {"timestamps", device.timestamps}});
   for (const Quality& quality : {in_float, in_double}) {
-    report.add((std::string("quality/") + quality.precision).c_str(), quality_report(quality));
+    report.add((std::string("quality/") + name_of(quality.precision)).c_str(), quality_report(quality));
   }
   return report;
 }

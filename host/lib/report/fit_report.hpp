@@ -11,6 +11,9 @@
 
 namespace dolp {
 
+/// The text of host/tools/plot_fit.py, which draws the JSON of a report.
+extern const char* const kFitPictureScript;
+
 /// One of the models that are compared.
 struct ComparedModel {
   std::vector<Setting> settings;         ///< that tell it from the others

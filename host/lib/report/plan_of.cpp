@@ -37,7 +37,6 @@ void add_dispatches(PlanReport& report, const vulkan::DispatchCount& of_request)
   report.dispatches.tile_invocations = std::max(report.dispatches.tile_invocations, of_request.tile_invocations);
   report.dispatches.row_width = std::max(report.dispatches.row_width, of_request.row_width);
   report.dispatches.rows += of_request.rows;
-  report.dispatches.slopes += of_request.slopes;
   report.dispatches.block_shapes = std::max(report.dispatches.block_shapes, of_request.block_shapes);
   report.dispatches.device_bytes = std::max(report.dispatches.device_bytes, of_request.device_bytes);
 }
@@ -81,46 +80,6 @@ void add_forecast(PlanReport& report, const SceneEntries& entries, const Device&
   share_evaluations(report);
 }
 
-/// Evaluations, and values of f.
-struct Work {
-  double moments = 0.0;
-  double beams = 0.0;
-  double total() const { return moments + beams; }
-};
-
-Work work_of(const RunPrediction& run) {
-  return {run.first_evaluations + run.again_evaluations, static_cast<double>(run.beams) + run.again_beams};
-}
-
-/// The work of the run without one more part.
-Work work_without(const PlanReport& report, Part part, const SceneEntries& entries, const Device& device) {
-  if (part == Part::kFurtherBounces) {  // the moments stay, but of another kernel
-    PlanReport single;
-    single.scene = report.scene;
-    single.plan = report.plan;
-    single.plan.kept.further_bounces = false;
-    add_forecast(single, entries, device);
-    return work_of(single.run);
-  }
-  const Needs left = needs_without(report.scene, report.plan, part);
-  const Work work = work_of(report.run);
-  return {left.moments ? work.moments : 0.0, left.beams ? work.beams : 0.0};
-}
-
-/// The share of the evaluations that each effect causes.
-std::vector<double> work_shares(const PlanReport& report, const SceneEntries& entries, const Device& device) {
-  const double total = work_of(report.run).total();
-  std::vector<double> shares;
-  for (const Effect& row : report.effects) {
-    double saved = 0.0;
-    if (row.part && row.state == EffectState::kKept) {
-      saved = total - work_without(report, *row.part, entries, device).total();
-    }
-    shares.push_back(saved > 0.0 ? saved / total : 0.0);
-  }
-  return shares;
-}
-
 }  // namespace
 
 PlanReport plan_of(const SceneValues& scene, const std::string& device, EffectPlan plan) {
@@ -134,7 +93,6 @@ PlanReport plan_of(const SceneValues& scene, const std::string& device, EffectPl
   report.looked = add_influences(report.effects, scene, entries);
   report.model_change = estimated_model_change(scene, entries);
   add_forecast(report, entries, limits);
-  report.work_shares = work_shares(report, entries, limits);
   report.lookup = lookup_forecast(scene, report.plan);
   report.run.host_bytes += static_cast<double>(without_a_run);
   return report;

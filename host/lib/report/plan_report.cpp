@@ -21,21 +21,14 @@ std::string influence_text(const Effect& row) {
   return points >= 10.0 ? fmt::format("{} {:.0f}", relation, points) : fmt::format("{} {:.2g}", relation, points);
 }
 
-std::string work_text(const Effect& row, double share) {
-  if (!row.part || row.state != EffectState::kKept) return "-";
-  return share == 0.0 ? "0 %" : fmt::format("{:.3g} %", kPoints * share);
-}
-
-ReportBuilder effect_report(const Effect& row, double share) {
+ReportBuilder effect_report(const Effect& row) {
   ReportBuilder report;
-  report.line("  {:<14} {:<11} {:>11} {:>7}  {}{}", key("name", row.name), state_text(row.state), influence_text(row),
-              work_text(row, share), key("reason", row.reason),
-              row.needs.empty() ? "" : fmt::format(" [{}]", row.needs));
+  report.line("  {:<14} {:<11} {:>11}  {}{}", key("name", row.name), state_text(row.state), influence_text(row),
+              key("reason", row.reason), row.needs.empty() ? "" : fmt::format(" [{}]", row.needs));
   report.values(
       {{"asked_for", row.state != EffectState::kAbsent}, {"state", name_of(row.state)}, {"needs", row.needs}});
   report.value("bound", row.bound);
   report.value("influence_estimate", row.influence);
-  report.value("work_share", share);
   return report;
 }
 
@@ -47,19 +40,14 @@ void add_model_change(ReportBuilder& report, double change) {
 
 void add_effects(ReportBuilder& report, const PlanReport& plan) {
   report.value("effects", effects_json(plan.effects, plan.plan));
-  report.line("  {:<14} {:<11} {:>11} {:>7}  {}", "effect", "plan", "influence", "work", "why [what it takes]");
+  report.line("  {:<14} {:<11} {:>11}  {}", "effect", "plan", "influence", "why [what it takes]");
   std::vector<ReportBuilder> rows;
-  for (std::size_t i = 0; i < plan.effects.size(); ++i) {
-    rows.push_back(effect_report(plan.effects[i], plan.work_shares[i]));
-  }
+  for (const Effect& row : plan.effects) rows.push_back(effect_report(row));
   report.add("rows", rows);
   report.line(
       "  influence: change of (Q/I, U/I) without the effect, in points of DOLP (0.01): a bound of what is dropped, an "
       "estimate from {} of what is kept",
       plan.looked.text());
-  report.line(
-      "  work: share of the evaluations, f among them, that would go with the effect; those that share theirs have "
-      "none alone");
 }
 
 std::string dropped_text(const EffectPlan& plan, double tolerance) {
@@ -90,7 +78,6 @@ std::string how_counted(const RunPrediction& run) {
 /// Adds the work of the first attempt and of the repeated ones; `is_idle`: there is none.
 void add_attempts(ReportBuilder& report, const PlanReport& plan, bool is_idle) {
   const RunPrediction& run = plan.run;
-  const vulkan::DispatchCount& dispatches = plan.dispatches;
   report.row_if(
       !is_idle, "attempts", "first: {} at tolerance {:g}, {} moments, {} values of f; {:.3g} % again, tighter",
       key("first_attempt/precision", name_of(run.first.precision)), key("first_attempt/tolerance", run.first.tolerance),
@@ -102,12 +89,6 @@ void add_attempts(ReportBuilder& report, const PlanReport& plan, bool is_idle) {
   report.row_if(run.moments > 0, "work", "{:.4g} integrand evaluations in the first attempt ({}), {:.2g} in others",
                 key("first_attempt/evaluations", run.first_evaluations), how_counted(run),
                 key("further_attempts/evaluations", run.again_evaluations));
-  report.row_if(run.moments > 0 && dispatches.row_width > 1, "sharing",
-                "entries that differ in q alone share their evaluations: {} groups of up to {}", dispatches.rows,
-                dispatches.row_width);
-  report.row_if(dispatches.slopes > 0, "sharing",
-                "all slope distributions share the sums over the azimuths: {} slopes of {} directions and indices",
-                dispatches.slopes, dispatches.rows);
   report.value("first_attempt/is_exact", run.is_exact);
   report.value("further_attempts/beams", run.again_beams);
   report.value("evaluations", run.first_evaluations + run.again_evaluations);

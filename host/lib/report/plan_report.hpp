@@ -26,9 +26,8 @@ struct PlanReport {
   SceneValues scene;
   EffectPlan plan;
   std::vector<Effect> effects;
-  Looked looked;                    ///< by the influences
-  double model_change = 0.0;        ///< estimated_model_change
-  std::vector<double> work_shares;  ///< of each effect: evaluations and f that would go with it, 0 to 1
+  Looked looked;              ///< by the influences
+  double model_change = 0.0;  ///< estimated_model_change
   RunPrediction run;
   std::optional<RuleSize> rule;        ///< none without moments
   std::vector<std::string> pipelines;  ///< of the first attempt; none when nothing is left for the evaluator

@@ -28,10 +28,4 @@ ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, const 
 /// The evaluator and device of a run, and the time that it took.
 void add_evaluation(ReportBuilder& report, const EvaluationReport& evaluation, double wall_s);
 
-/// The results that carry a bit of the status.
-std::size_t count_status(const std::vector<PointResult>& results, std::uint32_t bit);
-
-/// The largest stated error of the results whose status has none of the bits `refused`; none without any.
-std::optional<double> worst_of(const std::vector<PointResult>& results, Quantity error, std::uint32_t refused);
-
 }  // namespace dolp

@@ -1,4 +1,4 @@
-#include "verify/band_reference.hpp"
+#include "verify/table_check.hpp"
 
 #include <algorithm>
 #include <array>

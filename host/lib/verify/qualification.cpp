@@ -11,7 +11,6 @@
 
 #include <dolp/results.hpp>
 #include "base/numbers.hpp"
-#include "model/choices.hpp"
 #include "reference/hemisphere.hpp"
 #include "run/scene_run.hpp"
 
@@ -20,9 +19,6 @@ namespace {
 
 // Rounding of r / cos(theta) and of the quotients of stored values.
 constexpr double kQuotientRounding = 8.0 * std::numeric_limits<double>::epsilon();
-
-constexpr std::array kOrdinaryCases{"ordinary",    "sigma-1e-2",     "brewster",     "index-27-90",
-                                    "index-0.2-3", "split-lines-18", "almost-normal"};
 
 /// Expected rho and DOLP, from the stored moments of a case.
 struct Expected {
@@ -80,7 +76,7 @@ std::string complaint_about(const char* quantity, const ErrorCheck& check, bool 
 
 CaseOutcome outcome_of(const StoredCase& stored, const PointResult& result, double tolerance) {
   const Expected expected = expected_of(stored);
-  CaseOutcome outcome;
+  CaseOutcome outcome{.stored = stored};
   outcome.status = result.status;
   outcome.promises_dolp = promises_dolp(result.status);
   const bool meets_dolp = (result.status & kToleranceNotMet) == 0;
@@ -148,29 +144,17 @@ std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, ModelEval
     for (std::size_t j = 0; j < positions.size(); ++j) {
       const std::size_t i = positions[j];
       outcomes[i] = outcome_of(cases[i], results[j], accuracy.tolerance);
-      outcomes[i].position = i;
     }
   }
   return outcomes;
 }
 
-DeviceQuality measure_quality(ModelEvaluator& evaluator, const Accuracy& accuracy) {
+std::vector<StoredCase> ordinary_cases() {
+  constexpr std::array kOrdinary{"ordinary",    "sigma-1e-2",     "brewster",     "index-27-90",
+                                 "index-0.2-3", "split-lines-18", "almost-normal"};
   std::vector<StoredCase> cases = hard_cases();
-  std::erase_if(cases,
-                [](const StoredCase& c) { return std::ranges::find(kOrdinaryCases, c.name) == kOrdinaryCases.end(); });
-  DeviceQuality quality;
-  quality.cases = cases.size();
-  quality.tolerance = accuracy.tolerance;
-  for (const CaseOutcome& outcome : qualify(cases, evaluator, accuracy, {})) {
-    const StoredCase& stored = cases[outcome.position];
-    quality.missed += (outcome.status & kAnyToleranceNotMet) != 0 ? 1 : 0;
-    quality.is_sound = quality.is_sound && outcome.complaint.empty();
-    // Written so that NaN is the worst, and stays it.
-    if (std::isnan(quality.worst_error) || outcome.rho.error <= quality.worst_error) continue;
-    quality.worst_error = outcome.rho.error;
-    quality.worst_case = fmt::format("{} {} {}", name_of(stored.distribution), name_of(stored.masking), stored.name);
-  }
-  return quality;
+  std::erase_if(cases, [&](const StoredCase& c) { return std::ranges::find(kOrdinary, c.name) == kOrdinary.end(); });
+  return cases;
 }
 
 }  // namespace dolp

@@ -1,4 +1,4 @@
-#include "verify/response_check.hpp"
+#include "verify/table_check.hpp"
 
 #include <fmt/format.h>
 
@@ -54,7 +54,7 @@ TableCheck check_responses(const TableSample& sample, const SceneValues& scene, 
       const auto own = [&](const std::vector<double>& weights) {
         return std::span(weights).subspan(i * table.beta_deg.size(), table.beta_deg.size());
       };
-      CheckedValue value{described.name, request.theta_deg[i], request.sigma[i], request.q[i]};
+      CheckedValue value{described.name, position_of(sample.positions[i], table.axes)};
       value.stored = response_distance(own(table.responses[variable]), own(right.responses[variable]), is_of_q);
       value.stated = stated[i];
       value.reference_error = reference_error[i];

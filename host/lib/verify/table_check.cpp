@@ -7,6 +7,7 @@
 #include <cmath>
 #include <dolp/errors.hpp>
 #include <random>
+#include <ranges>
 #include <set>
 
 #include <dolp/number_range.hpp>
@@ -16,7 +17,6 @@
 #include "reference/reference_evaluator.hpp"
 #include "run/scene_run.hpp"
 #include "spectrum/spectral_rule.hpp"
-#include "verify/band_reference.hpp"
 
 namespace dolp {
 namespace {
@@ -110,10 +110,9 @@ std::string complaint_about(const CheckedValue& value, double allowed) {
   return {};
 }
 
-/// The estimates of an entry; a table without them states nothing.
+/// The estimate of an entry; a table without estimates states nothing.
 double estimate_at(const std::vector<double>& estimates, std::size_t i) {
-  if (estimates.empty()) return kInfinity;
-  return estimates[i];
+  return estimates.empty() ? kInfinity : estimates[i];
 }
 
 double allowed_error(Bound bound, std::uint32_t status, double tolerance, const PointResult& reference) {
@@ -129,17 +128,10 @@ void add(QuantityCheck& check, const CheckedValue& value) {
   if (check.compared == 1 || value.ratio() > check.worst.ratio()) check.worst = value;
 }
 
-CheckedValue compare(const TableValues& table, const Compared& compared, std::size_t i, const SceneEntry& entry,
-                     const PointResult& reference, const BoundTerms& terms) {
-  CheckedValue value;
-  value.quantity = description_of(compared.quantity).name;
-  value.theta_deg = entry.theta_deg;
-  value.sigma = entry.shape.sigma;
-  value.q = entry.shape.q;
-  const std::vector<double>& wavelengths = table.axes[Axis::kWavelength];
-  if (!wavelengths.empty()) value.wavelength_um = wavelengths[entry.wavelength];
-  if (!table.axes[Axis::kN].empty()) value.n = entry.index->n;
-  if (!table.axes[Axis::kK].empty()) value.k = entry.index->k;
+CheckedValue compare(const TableSample& sample, const Compared& compared, std::size_t i, const PointResult& reference,
+                     const BoundTerms& terms) {
+  const TableValues& table = sample.table;
+  CheckedValue value{description_of(compared.quantity).name, position_of(sample.positions[i], table.axes)};
   value.stored = table[compared.quantity][i];
   value.reference = reference[compared.quantity];
   const double dolp_estimate = estimate_at(table[Quantity::kErrorEstimate], i);
@@ -184,6 +176,17 @@ double CheckedValue::ratio() const {
   return error() / (stated + reference_error);
 }
 
+std::vector<std::pair<Axis, double>> position_of(std::size_t entry, const Axes& axes) {
+  std::vector<std::pair<Axis, double>> position;
+  for (const Axis axis : kAllAxes | std::views::reverse) {
+    if (axes[axis].empty()) continue;
+    position.emplace_back(axis, axes[axis][entry % axes[axis].size()]);
+    entry /= axes[axis].size();
+  }
+  std::ranges::reverse(position);
+  return position;
+}
+
 std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckOptions& options) {
   std::set<std::size_t> chosen;
   if (options.samples >= entries) {
@@ -210,9 +213,7 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
                     name));
   }
   check_axes(table, scene, name);
-  std::vector<SceneEntry> entries;
   const SceneEntries grid = SceneEntries::of_grid(table.axes, scene.surface.material.constant);
-  for (const std::size_t position : sample.positions) entries.push_back(grid[position]);
   ReferenceEvaluator reference({.relative_tolerance = kReferenceTolerance});
   const SceneEntries chosen = grid.chosen(sample.positions);
   const std::vector<PointResult> results = scene.spectrum.is_band()
@@ -222,18 +223,15 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
   const std::vector<BoundTerms> terms = bound_terms(scene, table.axes[Axis::kWavelength]);
   TableCheck check;
   check.entries = table.size();
-  check.checked = entries.size();
+  check.checked = sample.positions.size();
   check.tolerance = scene.accuracy.tolerance;
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const std::uint32_t status = table.status.empty() ? 0 : table.status[i];
-    check.missed += (status & kAnyToleranceNotMet) != 0 ? 1 : 0;
-  }
+  for (const std::uint32_t status : table.status) check.missed += (status & kAnyToleranceNotMet) != 0 ? 1 : 0;
   for (const Compared& compared : kCompared) {
     if (!table.has(compared.quantity)) continue;
     QuantityCheck& of_quantity = check.quantities.emplace_back();
     of_quantity.name = description_of(compared.quantity).name;
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-      const CheckedValue value = compare(table, compared, i, entries[i], results[i], terms[entries[i].wavelength]);
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      const CheckedValue value = compare(sample, compared, i, results[i], terms[grid[sample.positions[i]].wavelength]);
       add(of_quantity, value);
       if (!value.complaint.empty()) check.failures.push_back(value);
     }

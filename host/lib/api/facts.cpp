@@ -8,7 +8,6 @@
 
 #include <dolp/number_range.hpp>
 #include <dolp/status.hpp>
-#include "api/evaluator_impl.hpp"
 #include "api/impl.hpp"
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
@@ -54,15 +53,15 @@ std::string commit() { return program_commit(); }
 std::string citation() { return fmt::format("{}commit: \"{}\"\n", embedded_citation_cff(), commit()); }
 
 Report plan(const Scene& scene, const std::string& device, bool keep_all) {
-  const SceneValues& own = scene.impl().scene;
-  return public_report(plan_report(plan_of(own, device, plan_effects(own, grid_entries(own), keep_all))));
+  const SceneValues& values = scene.impl().scene;
+  return public_report(plan_report(values, device, plan_effects(values, grid_entries(values), keep_all)));
 }
 
 std::vector<Effect> effects(const Scene& scene, const std::vector<Column>& points, bool keep_all) {
-  const SceneValues& own = scene.impl().scene;
-  const SceneEntries entries = point_entries(own, points_of_columns(points, PointsKind::kDirections));
-  std::vector<Effect> all = effects_of(own, entries, plan_effects(own, entries, keep_all));
-  add_influences(all, own, entries);
+  const SceneValues& values = scene.impl().scene;
+  const SceneEntries entries = point_entries(values, points_of_columns(points, PointsKind::kDirections));
+  std::vector<Effect> all = effects_of(values, entries, plan_effects(values, entries, keep_all));
+  add_influences(all, values, entries);
   return all;
 }
 

@@ -12,7 +12,6 @@
 
 #include <dolp/fit.hpp>
 #include <dolp/status.hpp>
-#include "api/evaluator_impl.hpp"
 #include "api/impl.hpp"
 #include "base/atomic_file.hpp"
 #include "base/python_picture.hpp"
@@ -35,12 +34,12 @@ using Json = ReportBuilder::Json;
 void check_loss(Loss loss, ModelError error, const std::vector<MeasuredData>& data) {
   if (loss != Loss::kSquares && error != ModelError::kNone) {
     throw InputError(
-        fmt::format("loss {}: cannot be combined with a model error, whose intervals are those of the loss squares",
+        fmt::format("loss {}: cannot be combined with a model error, whose intervals need the loss squares",
                     loss_names()[static_cast<std::size_t>(loss)]));
   }
   for (const MeasuredData& one : data) {
     if (loss == Loss::kSquares || one.has_uncertainties) continue;
-    throw InputError(fmt::format("loss {}: {} needs the column \"uncertainty\", which says what lies off",
+    throw InputError(fmt::format("loss {}: {} needs the column \"uncertainty\", against which residuals are weighed",
                                  loss_names()[static_cast<std::size_t>(loss)], one.name));
   }
 }
@@ -98,7 +97,7 @@ struct Best {
   }
 };
 
-/// Refuses what Matplotlib would not draw, or would draw in another format than the name says.
+/// Refuses a name whose suffix is no format of a picture.
 void check_plot(const std::filesystem::path& path) {
   const std::string suffix = lower_case(path.extension().string());
   if (path.empty() || suffix == ".png" || suffix == ".pdf" || suffix == ".svg") return;
@@ -120,7 +119,7 @@ void check_outputs(const FitOptions& options, const SceneValues& scene, const st
   }
 }
 
-/// Zeniths at which a picture draws curves: from the least to the largest of the data.
+/// Zeniths of the curves of a picture: from the least to the largest zenith of the data.
 std::vector<double> fine_zeniths(const MeasuredData& data) {
   constexpr int kSteps = 120;
   const auto [least, largest] = std::ranges::minmax(data.measurements, {}, &Measurement::theta_deg);
@@ -154,7 +153,7 @@ struct Bracketed {
 };
 
 /// The measured quantity of one data set at zeniths, with its bracket; empty where the scene has no bracket, other
-/// quantities were measured, or wavelengths are those of the measurements.
+/// quantities were measured, or the measurements have wavelengths.
 std::vector<Bracketed> bracketed(const Best& best, MeasuredData data, const std::vector<double>& theta_deg,
                                  const FitOptions& options, ModelEvaluator& evaluator) {
   const Measurement first = data.measurements.front();
@@ -269,7 +268,7 @@ Best best_of(std::vector<ComparedModel>& models, const SceneValues& scene, const
   return best;
 }
 
-/// Adds what only a picture needs, and draws it.
+/// Adds contours, brackets and curves to the report, and draws the picture.
 void draw(ReportBuilder& report, const Best& best, const Scene& fitted, const FitOptions& options,
           ModelEvaluator& evaluator) {
   add_contours(report, *best.model, *best.result, fit::contours_of(*best.model, evaluator, *best.result, options));
@@ -284,7 +283,7 @@ void draw(ReportBuilder& report, const Best& best, const Scene& fitted, const Fi
 }  // namespace
 
 Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, const FitOptions& of_call) {
-  return impl().exclusively(of_call, [&](const FitOptions& options) {
+  return impl().exclusively(scene, of_call, [&](const SceneValues& own, const FitOptions& options) {
     const auto start = std::chrono::steady_clock::now();
     check_loss(options.loss, options.model_error, data);
     check_starts(options.starts);
@@ -292,13 +291,13 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     report_start(options.progress, 1);
     std::vector<ComparedModel> models;
     ModelEvaluator* evaluator = nullptr;
-    const Best best = best_of(models, scene.impl().scene, data, options, [&](const SceneValues& first) {
+    const Best best = best_of(models, own, data, options, [&](const SceneValues& first) {
       check_outputs(options, first, data);
       return evaluator = impl_->begin(first);
     });
 
     ReportBuilder report;
-    report.line("{}", key("title", scene.impl().scene.title));
+    report.line("{}", key("title", own.title));
     if (best.result) {
       report.row("data", "{} measured values of {} file{}", key("observations", best.model->observation_count()),
                  data.size(), data.size() == 1 ? "" : "s");

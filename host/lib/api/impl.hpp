@@ -1,15 +1,23 @@
-// Implementations of the public classes Scene and Table, and what the calls of the public header share.
+// Implementations of the public classes, and functions that several calls of the public header use.
 #pragma once
 
+#include <unistd.h>
 #include <dolp/dolp.hpp>
 
+#include <atomic>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
+#include "model/evaluator.hpp"
 #include "report/report.hpp"
+#include "run/scene_run.hpp"
 #include "scene/points.hpp"
 #include "scene/scene.hpp"
 #include "table/table.hpp"
@@ -23,7 +31,7 @@ struct Scene::Impl {
 
 struct Table::Impl {
   Impl(TableValues own, std::string own_name) : table(std::move(own)), name(std::move(own_name)) {}
-  /// Made at the first request. Errors: those of table_scene and TableLookup.
+  /// Made at the first request. Errors: errors of table_scene and TableLookup.
   const TableLookup& lookup() const;
 
   const TableValues table;
@@ -40,7 +48,7 @@ Report public_report(const ReportBuilder& report, bool is_good = true, const std
 /// The files that a scene is read from.
 std::vector<std::string> files_of(const SceneValues& scene);
 
-/// Refuses to write over what is read. "-" is stdin and stdout. Errors: InputError.
+/// Refuses an output that would overwrite an input. "-" is stdin and stdout. Errors: InputError.
 void check_output_is_no_input(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
 /// `head`: the head of the table that a run over the points would write, or of the table that was read.
@@ -49,5 +57,69 @@ Results results_of(const std::vector<PointResult>& points, const Quantities& qua
 /// Points of columns, as many as the columns that have not one value for all; one where there is none.
 /// Errors: InputError for a column that is unknown, has another length, or has a value out of range.
 Points points_of_columns(const std::vector<Column>& columns, PointsKind kind);
+
+/// Refuses Vulkan in a process that was forked from one that has used it: drivers keep threads and locks that a fork
+/// does not copy, so that calls would wait without end.
+void check_no_fork();
+
+/// Evaluator factory. `needs_double`: of a device, double precision in kernels.
+/// Errors: InputError for another name, and for a device beside cpu or reference; DeviceError when vulkan is asked for
+/// and there is no usable device.
+std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, bool needs_double);
+
+struct Evaluator::Impl {
+  explicit Impl(EvaluatorOptions own) : options(std::move(own)) {}
+
+  /// The evaluator for a scene, before a run; a scene in double gets a device that has it. Errors: those of
+  /// make_evaluator.
+  ModelEvaluator* begin(const SceneValues& scene) {
+    const bool needs_double = scene.accuracy.precision == Precision::kDouble;
+    if (evaluator && (evaluator->has_double() || !needs_double)) {
+      evaluator->clear_report();
+    } else {
+      evaluator = make_evaluator(options, needs_double);
+    }
+    return evaluator.get();
+  }
+  EvaluatorMaker maker(const SceneValues& scene) {
+    return [this, &scene] { return begin(scene); };
+  }
+
+  /// Calls `body` with the scene and the options of the call while no other thread uses the evaluators; a device that
+  /// failed is not used again. Errors: InputError for a call from a callback of another.
+  template <class Options, class Body>
+  auto exclusively(const Scene& scene, Options of_call, const Body& body) {
+    if (in_callback == std::this_thread::get_id())
+      throw InputError("an Evaluator cannot be called from its own callback; another Evaluator can");
+    if (options.evaluator == "vulkan") check_no_fork();
+    const std::lock_guard lock(mutex);
+    of_call.progress = guard_reentry(of_call.progress);
+    if constexpr (requires { of_call.phase; }) of_call.phase = guard_reentry(of_call.phase);
+    try {
+      return body(scene.impl().scene, of_call);
+    } catch (const DeviceError&) {
+      evaluator.reset();
+      throw;
+    }
+  }
+
+  /// A callback, from which this object must not be called: that would wait without end.
+  template <class Result, class... Arguments>
+  std::function<Result(Arguments...)> guard_reentry(const std::function<Result(Arguments...)>& callback) {
+    if (!callback) return callback;
+    return [this, callback](Arguments... arguments) {
+      in_callback = std::this_thread::get_id();
+      const auto end = [this](void*) { in_callback = std::thread::id(); };
+      const std::unique_ptr<void, decltype(end)> at_end(this, end);
+      return callback(arguments...);
+    };
+  }
+
+  EvaluatorOptions options;
+  std::mutex mutex;
+  std::atomic<std::thread::id> in_callback;  ///< the thread that is in a callback
+  std::unique_ptr<ModelEvaluator> evaluator;
+  pid_t owner = getpid();
+};
 
 }  // namespace dolp

@@ -15,7 +15,7 @@ namespace dolp::fit {
 inline constexpr double kFineShare = 1e-2;      // 1412, 1421, 1448
 inline constexpr double kCoarseShare = 0.25;    // 1410, 1421, 1420
 inline constexpr double kMostTolerance = 1e-3;  // 1350, 1421, 1425
-/// Tolerances are those of this uncertainty where the data have none.
+/// Uncertainty from which the tolerances follow where the data have none.
 inline constexpr double kAssumedUncertainty = 1e-3;
 
 // ---- Words of a fit (fit.cpp) --------------------------------------------------------------------------------------

@@ -9,7 +9,6 @@
 
 #include "fit/constants.hpp"
 #include "fit/descent.hpp"
-#include "fit/principal_axes.hpp"
 #include "fit/residuals.hpp"
 
 namespace dolp::fit {

@@ -26,7 +26,7 @@ inline constexpr std::array kContourLevels = {2.2957, 5.9915};
 /// The objective is computed at the nodes of a regular grid along the principal axes of the covariance. The nodes begin
 /// at the minimum and the points of the profiles, and spread to beyond the higher level. Each descends
 /// from the bottom of the valley beside its lowest neighbour. A valley that takes more parameter sets than the fit gets
-/// a coarser grid, or ends. Errors: those of the evaluator; Cancelled.
+/// a coarser grid, or ends. Errors: errors of the evaluator; Cancelled.
 std::optional<Contours> contours_of(const Model& model, ModelEvaluator& evaluator, const FitResult& result,
                                     const FitOptions& options);
 

@@ -13,6 +13,17 @@
 
 namespace dolp::fit {
 
+/// Orthonormal eigenvectors of a symmetric matrix without negative eigenvalues, the largest eigenvalue first.
+struct PrincipalAxes {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd directions;  ///< one in each column
+
+  /// The inverse on the axes whose eigenvalue is above this share of the largest one, and 0 across them.
+  Eigen::MatrixXd inverse(double least_share = 0.0) const;
+};
+
+PrincipalAxes principal_axes(const Eigen::MatrixXd& symmetric);
+
 /// The sum of the loss over all residuals: chi^2 without a robust loss; infinite where a residual is not finite.
 double objective(const Eigen::VectorXd& residuals, Loss loss);
 
@@ -31,21 +42,21 @@ struct DescentOptions {
 
 /// The beginning of a descent, and its end.
 struct Minimum {
-  Linearisation where;                 ///< coordinates; residuals and Jacobian where they are known already
-  std::vector<std::size_t> held = {};  ///< parameters that stay
-  double objective = 0.0;              ///< infinite where the model has no value
+  Linearisation where;                  ///< coordinates; residuals and Jacobian where they are known already
+  std::vector<Eigen::Index> held = {};  ///< parameters that stay
+  double objective = 0.0;               ///< infinite where the model has no value
   bool has_converged = false;
   double radius = 0.1;  ///< radius of the trust region: with 1, to move over a whole range costs one standard deviation
 };
 
 /// Levenberg-Marquardt within the bounds: in each step one batch of the points that are tried, and one of all
-/// differences. Errors: those of the evaluator; Cancelled.
+/// differences. Errors: errors of the evaluator; Cancelled.
 void descend(Residuals& residuals, std::vector<Minimum>& all, const DescentOptions& options);
 
 /// Coordinates that are held at new values, beside a known point from which the others follow.
 struct Neighbour {
   const Minimum* near;
-  std::vector<std::size_t> held;
+  std::vector<Eigen::Index> held;
   Eigen::VectorXd to;  ///< coordinates, of which only the held ones count
 };
 

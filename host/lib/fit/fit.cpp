@@ -15,7 +15,6 @@
 #include "base/numbers.hpp"
 #include "base/text.hpp"
 #include "fit/constants.hpp"
-#include "fit/principal_axes.hpp"
 #include "fit/profile.hpp"
 #include "fit/search.hpp"
 
@@ -101,15 +100,12 @@ Covariance covariance_of(const Minimum& minimum, Loss loss, double scale) {
   return result;
 }
 
+/// NaN where a variance is not finite.
 Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance) {
-  Eigen::MatrixXd correlation(covariance.rows(), covariance.cols());
-  for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
-    for (Eigen::Index j = 0; j < covariance.cols(); ++j) {
-      const double product = covariance(i, i) * covariance(j, j);
-      const bool is_known = std::isfinite(product) && product > 0.0;
-      correlation(i, j) = !is_known ? kNaN : i == j ? 1.0 : covariance(i, j) / std::sqrt(product);
-    }
-  }
+  const auto known = [](double variance) { return variance > 0.0 && std::isfinite(variance) ? variance : kNaN; };
+  const Eigen::VectorXd inverses = covariance.diagonal().unaryExpr(known).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd correlation = inverses.asDiagonal() * covariance * inverses.asDiagonal();
+  for (double& own : correlation.diagonal()) own = std::isnan(own) ? kNaN : 1.0;
   return correlation;
 }
 
@@ -125,12 +121,11 @@ std::string words_of(const Direction& direction, const std::vector<FitRange>& pa
   const std::string extent = direction.is_null ? "at all" : "within its range";
   if (rising.size() + falling.size() == 1)
     return fmt::format("the data do not determine {} {}", rising.front(), extent);
-  std::vector<std::string> all = rising;
-  all.insert(all.end(), falling.begin(), falling.end());
-  const std::string names = fmt::format("{}", fmt::join(all, " and "));
-  if (falling.empty()) return fmt::format("the data cannot tell {} apart: both may rise or fall together", names);
-  return fmt::format("the data cannot tell {} apart: {} may rise while {} {}", names, fmt::join(rising, " and "),
-                     fmt::join(falling, " and "), falling.size() == 1 ? "falls" : "fall");
+  const std::string up = fmt::format("{}", fmt::join(rising, " and "));
+  if (falling.empty()) return fmt::format("the data cannot tell {} apart: both may rise or fall together", up);
+  const std::string down = fmt::format("{}", fmt::join(falling, " and "));
+  return fmt::format("the data cannot tell {} and {} apart: {} may rise while {} {}", up, down, up, down,
+                     falling.size() == 1 ? "falls" : "fall");
 }
 
 /// Sets the standard error of a value, or why it has none.
@@ -184,9 +179,13 @@ class Fit {
     if (minima_.empty()) return std::nullopt;
     for (int i = 0;; ++i) {
       const bool may_restart = i < kMostRestarts;
-      if (find_intervals(may_restart)) continue;
+      find_values();
+      if (has_scale() && options_.phase) options_.phase("sides of the intervals");
+      if (has_scale() && !find_intervals(result_.scale, may_restart, false)) continue;
       describe();
-      if (result_.aic > most_aic || !find_scaled(may_restart)) return std::move(result_);
+      const bool needs_scaled = result_.p_value.value_or(1.0) < kDoubtfulBelow && result_.aic <= most_aic;
+      if (!needs_scaled || find_intervals(result_.reduced_chi_square.value(), may_restart, true))
+        return std::move(result_);
     }
   }
 
@@ -257,32 +256,20 @@ class Fit {
     result_.valley_points = {best};
   }
 
-  /// Finds the values and the intervals of all parameters. True where a profile led to a lower minimum, which then is
-  /// the best.
-  bool find_intervals(bool may_restart) {
-    find_values();
-    if (!has_scale()) return false;
-    if (options_.phase) options_.phase("sides of the intervals");
-    const std::optional<Profiles> profiles = find_profiles(result_.scale, may_restart);
-    if (!profiles) return true;
+  /// Finds the intervals of all parameters, or their scaled ones. False where a profile led to a lower minimum, which
+  /// then is the best.
+  bool find_intervals(double scale, bool may_restart, bool is_scaled) {
+    const std::optional<Profiles> profiles = find_profiles(scale, may_restart);
+    if (!profiles) return false;
     for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
-      result_.parameters[j].interval_68 = interval_of(model_.parameters()[j], profiles->stretches[j][0]);
-      result_.parameters[j].interval_95 = interval_of(model_.parameters()[j], profiles->stretches[j][1]);
+      FitParameter& one = result_.parameters[j];
+      (is_scaled ? one.scaled_68.emplace() : one.interval_68) =
+          interval_of(model_.parameters()[j], profiles->stretches[j][0]);
+      (is_scaled ? one.scaled_95.emplace() : one.interval_95) =
+          interval_of(model_.parameters()[j], profiles->stretches[j][1]);
     }
-    std::ranges::copy(profiles->points, std::back_inserter(result_.valley_points));
-    return false;
-  }
-
-  /// Finds the scaled intervals of a doubtful or bad fit. True where a profile led to a lower minimum.
-  bool find_scaled(bool may_restart) {
-    if (result_.p_value.value_or(1.0) >= kDoubtfulBelow) return false;
-    const std::optional<Profiles> profiles = find_profiles(result_.reduced_chi_square.value(), may_restart);
-    if (!profiles) return true;
-    for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
-      result_.parameters[j].scaled_68 = interval_of(model_.parameters()[j], profiles->stretches[j][0]);
-      result_.parameters[j].scaled_95 = interval_of(model_.parameters()[j], profiles->stretches[j][1]);
-    }
-    return false;
+    if (!is_scaled) std::ranges::copy(profiles->points, std::back_inserter(result_.valley_points));
+    return true;
   }
 
   /// The profiles around the best minimum, and around others that the data do not exclude; none where one of them led

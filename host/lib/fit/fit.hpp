@@ -39,7 +39,7 @@ std::string fit_quality(const std::optional<double>& p_value);
 /// Fits the model to its data: minima by descents from many starts, then intervals of the best one. The tolerance of
 /// the model's values is a hundredth of the least uncertainty; the search uses a wider one. Scaled intervals are given
 /// if `aic` is at most `most_aic`, because a model that lies behind others needs none.
-/// None when no descent converged. Errors: those of the evaluator; Cancelled.
+/// None when no descent converged. Errors: errors of the evaluator; Cancelled.
 std::optional<FitResult> fit(const Model& model, ModelEvaluator& evaluator, const FitOptions& options,
                              double most_aic = std::numeric_limits<double>::infinity());
 

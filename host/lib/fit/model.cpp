@@ -20,7 +20,7 @@
 namespace dolp::fit {
 namespace {
 
-// Each point of a list has its own, so that sets which differ in these alone share a call.
+// Each point of a list has its own values of these keys, so that sets which differ only in them share a call.
 constexpr std::array<std::string_view, 5> kPointKeys = {"surface.n", "surface.k", "surface.sigma", "surface.wind_m_s",
                                                         "surface.q"};
 
@@ -208,7 +208,7 @@ std::vector<Prediction> Model::predict(const std::vector<Eigen::VectorXd>& value
 void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>& values, double tolerance,
                           ModelEvaluator& evaluator, const Progress& progress,
                           std::vector<Prediction>& predictions) const {
-  // Sets that agree in all keys but those of points make one call.
+  // Sets that differ only in the keys of points make one call.
   std::map<std::vector<double>, std::vector<std::size_t>> calls;
   for (std::size_t set = 0; set < values.size(); ++set) {
     std::vector<double> common;

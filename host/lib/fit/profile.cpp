@@ -23,7 +23,7 @@ struct ProfilePoint {
 /// The way from a point of a profile in one direction of the parameter.
 class Side {
  public:
-  Side(Minimum start, std::size_t parameter, int direction, double most, double least, const ProfileOptions& options)
+  Side(Minimum start, Eigen::Index parameter, int direction, double most, double least, const ProfileOptions& options)
       : parameter_(parameter), direction_(direction), most_(most), least_(least), options_(&options) {
     start.held = {parameter};
     points_.push_back({0.0, root_of(start), std::move(start)});
@@ -31,10 +31,10 @@ class Side {
   }
 
   bool is_done() const { return rise_ == options_->rises.size(); }
-  std::size_t parameter() const { return parameter_; }
+  std::size_t parameter() const { return static_cast<std::size_t>(parameter_); }
   const std::vector<ProfilePoint>& points() const { return points_; }
   const std::optional<Minimum>& lower() const { return lower_; }
-  /// The coordinate at which a rise is met, or the last one where none is. None where the start lies above it.
+  /// The coordinate at which a rise is met, or the last one where none is. None if the start lies above the rise.
   const std::optional<double>& end(std::size_t rise) const { return ends_[rise]; }
   /// The last point below a rise.
   const Minimum* last_below(std::size_t rise) const {
@@ -53,7 +53,7 @@ class Side {
         after != points_.end() && after->distance - distance_ < distance_ - (after - 1)->distance;
     const Minimum& near = is_nearer_after ? after->found : (after - 1)->found;
     Eigen::VectorXd to = near.where.at;
-    to[static_cast<Eigen::Index>(parameter_)] = std::clamp(coordinate(distance_), 0.0, 1.0);
+    to[parameter_] = std::clamp(coordinate(distance_), 0.0, 1.0);
     return {&near, {parameter_}, to};
   }
 
@@ -73,7 +73,7 @@ class Side {
   using PointPosition = std::vector<ProfilePoint>::const_iterator;
 
   double coordinate(double distance) const {
-    return points_.front().found.where.at[static_cast<Eigen::Index>(parameter_)] + direction_ * distance;
+    return points_.front().found.where.at[parameter_] + direction_ * distance;
   }
   double root_of(const Minimum& found) const {
     const double growth = (found.objective - options_->from) / options_->scale;
@@ -137,14 +137,14 @@ class Side {
   double first_distance() const {
     const ProfilePoint& first = points_.front();
     Neighbour probe{&first.found, {parameter_}, first.found.where.at};
-    probe.to[static_cast<Eigen::Index>(parameter_)] += direction_ * kFirstProbe;
+    probe.to[parameter_] += direction_ * kFirstProbe;
     const double squares = first.found.where.residuals.squaredNorm();
     const double growth = (predict_step(probe, options_->scale).second - squares) / options_->scale;
     const double slope = std::sqrt(std::max(growth, 1e-12)) / kFirstProbe;
     return std::clamp((wanted() - first.root) / slope, 1e-6, 0.5);
   }
 
-  std::size_t parameter_;
+  Eigen::Index parameter_;
   int direction_;
   double most_;   ///< largest distance
   double least_;  ///< objective of the best minimum
@@ -169,7 +169,8 @@ void merge(std::vector<Stretch>& all, Stretch one) {
 
 /// An end of the known part of a profile.
 struct ProfileEnd {
-  std::size_t parameter, rise;
+  Eigen::Index parameter;
+  std::size_t rise;
   int direction;
   double at;  ///< coordinate of the parameter
   auto operator<=>(const ProfileEnd&) const = default;
@@ -185,8 +186,8 @@ class Profiler {
     descent_.secant_below = options.from + kTrustedShare * options.rises[0] * options.scale;
     result_.stretches.resize(residuals.model().parameters().size());
     for (const Minimum& minimum : minima) {
-      for (std::size_t j = 0; j < result_.stretches.size(); ++j) {
-        const double at = minimum.where.at[static_cast<Eigen::Index>(j)];
+      for (Eigen::Index j = 0; j < minimum.where.at.size(); ++j) {
+        const double at = minimum.where.at[j];
         sides_.emplace_back(minimum, j, -1, at, least_, options_);
         sides_.emplace_back(minimum, j, 1, 1.0 - at, least_, options_);
       }
@@ -243,8 +244,10 @@ class Profiler {
     for (std::size_t j = 0; j < result_.stretches.size(); ++j) {
       for (std::size_t rise = 0; rise < options_.rises.size(); ++rise) {
         const std::vector<Stretch>& all = result_.stretches[j][rise];
+        const auto parameter = static_cast<Eigen::Index>(j);
         if (all.empty()) continue;  // the minimum lies above
-        for (const ProfileEnd& end : {ProfileEnd{j, rise, -1, all.front().low}, {j, rise, 1, all.back().high}}) {
+        for (const ProfileEnd& end :
+             {ProfileEnd{parameter, rise, -1, all.front().low}, {parameter, rise, 1, all.back().high}}) {
           if (end.at >= kAtBound && end.at <= 1.0 - kAtBound && searched_.insert(end).second) ends.push_back(end);
         }
       }
@@ -271,7 +274,7 @@ class Profiler {
     const std::size_t first = sides_.size();
     for (const auto& [end, best] : lowest) {
       if (!(best->objective < objective_at(kClearlyLower * options_.rises[end.rise]))) continue;
-      const double start = best->where.at[static_cast<Eigen::Index>(end.parameter)];
+      const double start = best->where.at[end.parameter];
       const double back = std::abs(start - end.at) + kAtBound;
       const double away = end.direction < 0 ? start : 1.0 - start;
       for (const int direction : {-1, 1}) {
@@ -287,11 +290,10 @@ class Profiler {
   /// of other sides that lie beyond it, clearly below the rise.
   std::vector<Neighbour> ways_beyond(const ProfileEnd& end) const {
     if (result_.stretches.size() == 1) return {};  // the profile of a single parameter has no other branch
-    const auto index = static_cast<Eigen::Index>(end.parameter);
-    const std::vector<Stretch>& all = result_.stretches[end.parameter][end.rise];
+    const std::vector<Stretch>& all = result_.stretches[static_cast<std::size_t>(end.parameter)][end.rise];
     const double width = all.back().high - all.front().low;
     const double beyond = std::clamp(end.at + end.direction * kBeyond * width, 0.0, 1.0);
-    const auto distance = [&](const Minimum& one) { return end.direction * (one.where.at[index] - end.at); };
+    const auto distance = [&](const Minimum& one) { return end.direction * (one.where.at[end.parameter] - end.at); };
     const Minimum* nearest = nullptr;
     std::vector<Neighbour> ways;
     for (const Side& side : sides_) {
@@ -299,7 +301,8 @@ class Profiler {
       if (last == nullptr) continue;
       if (nearest == nullptr || std::abs(distance(*last)) < std::abs(distance(*nearest))) nearest = last;
       Neighbour& way = ways.emplace_back(Neighbour{last, {end.parameter}, last->where.at});
-      way.to[index] = end.direction < 0 ? std::min(beyond, way.to[index]) : std::max(beyond, way.to[index]);
+      way.to[end.parameter] =
+          end.direction < 0 ? std::min(beyond, way.to[end.parameter]) : std::max(beyond, way.to[end.parameter]);
     }
     std::erase_if(ways, [&](const Neighbour& way) {
       return way.near == nearest || is_straight(nearest->where, way.near->where, options_.scale);

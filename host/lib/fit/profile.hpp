@@ -38,7 +38,7 @@ struct Profiles {
 /// Each side follows the valley from a minimum: at each coordinate of the parameter, the other parameters descend from
 /// where the derivatives at the nearest point lead, until the root of the growth is met to 0.5 %. A bent valley has
 /// several branches. Beyond each end, the ends of the other sides descend too, unless a straight way leads to them: if
-/// one comes below the rise, the profile goes on from there. Errors: those of the evaluator; Cancelled.
+/// one comes below the rise, the profile goes on from there. Errors: errors of the evaluator; Cancelled.
 Profiles profiles_of(Residuals& residuals, const std::vector<Minimum>& minima, const ProfileOptions& options);
 
 }  // namespace dolp::fit

@@ -1,13 +1,11 @@
 #include "fit/search.hpp"
 #include "fit/constants.hpp"
-#include "fit/principal_axes.hpp"
 
 #include <algorithm>
 #include <boost/random/sobol.hpp>
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numeric>
 #include <random>
 #include <span>
 #include <utility>
@@ -48,19 +46,20 @@ std::vector<Minimum> choose_starts(Residuals& residuals, const SearchOptions& op
     }
     points.insert(points.begin(), given);
   }
-  std::vector<Linearisation> found = residuals.at(points);
-  std::vector<double> objectives;
-  for (const Linearisation& one : found) objectives.push_back(objective(one.residuals, options.loss));
-  std::vector<std::size_t> order(points.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin() + (has_start ? 1 : 0), order.end(),
-                   [&](std::size_t a, std::size_t b) { return objectives[a] < objectives[b]; });
+  std::vector<Minimum> candidates;
+  for (Linearisation& one : residuals.at(points)) {
+    const double found = objective(one.residuals, options.loss);
+    candidates.push_back({.where = std::move(one), .objective = found});
+  }
+  std::ranges::stable_sort(std::span(candidates).subspan(has_start ? 1 : 0), {}, &Minimum::objective);
   const double apart = 0.5 * std::pow(static_cast<double>(points.size()), -1.0 / static_cast<double>(dimensions));
   std::vector<Minimum> starts;
-  for (const std::size_t i : order) {
-    const bool is_near = std::ranges::any_of(
-        starts, [&](const Minimum& one) { return (one.where.at - points[i]).lpNorm<Eigen::Infinity>() < apart; });
-    if (!is_near && std::isfinite(objectives[i])) starts.push_back({.where = found[i]});
+  for (Minimum& candidate : candidates) {
+    const auto is_near = [&](const Minimum& one) {
+      return (one.where.at - candidate.where.at).lpNorm<Eigen::Infinity>() < apart;
+    };
+    if (std::isfinite(candidate.objective) && std::ranges::none_of(starts, is_near))
+      starts.push_back({.where = std::move(candidate.where)});
     if (starts.size() == options.starts) break;
   }
   return starts;

@@ -70,7 +70,7 @@ Json parameter_json(const FitParameter& one) {
   return json;
 }
 
-/// Adds lines for what the table of a parameter does not show.
+/// Adds lines on a parameter that its row of the table has no room for.
 void add_remarks(ReportBuilder& report, const FitParameter& one, const FitResult& result) {
   report.row_if(!one.standard_error, "no error", "{}: {}", one.key, one.why_no_error);
   for (const auto& [key, name, interval] : intervals_of(one)) {
@@ -148,7 +148,7 @@ void add_misfit(ReportBuilder& report, const fit::Model& model, const FitResult&
                 "as many parameters as points: no interval can be given");
 }
 
-/// Names what intervals with a model error leave open, and the model that leaves less.
+/// Adds the shares of the ranges that intervals with a model error leave, and names the model that leaves less.
 void add_model_error(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   if (!model.has_model_error()) return;
   const auto is_empty_95 = [](const auto& parameter) { return parameter.interval_95.is_empty; };
@@ -211,7 +211,7 @@ std::vector<std::string> settings_of(const ComparedModel& model) {
 
 std::string model_text(const ComparedModel& model) { return fmt::format("{}", fmt::join(settings_of(model), " ")); }
 
-/// Why a picture has no contours, in a sentence; empty where it has some, or one number alone was fitted.
+/// Why a picture has no contours, in a sentence; empty where it has some, or where only one number was fitted.
 std::string why_no_contours(const FitResult& result, const std::optional<fit::Contours>& drawn) {
   if (result.parameters.size() < 2) return "";
   if (drawn && !(drawn->growth.array() > fit::kContourLevels.front()).any()) {

@@ -20,8 +20,8 @@ namespace dolp {
 inline constexpr const char* kModelInaccurateText =
     "single scattering, or a masking that creates light, changes I by an estimated more than 5 %";
 
-/// The report of a run. `shape`: that of the grid, or "200 points"; `path`: what was written; `gap`: of single
-/// scattering, none where it does not apply.
+/// The report of a run. `shape`: the shape of the grid, or "200 points"; `path`: the file that was written; `gap`: how
+/// far single scattering may be off, none where this does not apply.
 ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, const std::optional<ScatteringGap>& gap,
                          const std::string& shape, const std::string& path);
 

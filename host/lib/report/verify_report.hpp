@@ -33,7 +33,7 @@ struct HardCaseReport {
   double tolerance = 0.0;
   std::size_t cases = 0;
   std::vector<PrecisionReport> precisions;
-  std::string left_out;  ///< why a precision is missing; empty when none is
+  std::string left_out;  ///< why a precision is missing; empty if all are there
   std::size_t failures() const;
 };
 /// One line for each precision, distribution and masking, and one for each case that fails; `all`: for every case.

@@ -115,7 +115,7 @@ class Forecast {
     return axes;
   }
 
-  /// The table of the scene's grid, as if its entries had no error: what remains is the interpolation's.
+  /// The table of the scene's grid, as if its entries had no error: only the error of the interpolation remains.
   TableValues computed_table() {
     const SceneEntries entries = grid_entries(scene_);
     TableValues table = table_part(table_layout(scene_, plan_, scene_.grid), entries,

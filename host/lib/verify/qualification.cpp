@@ -24,7 +24,7 @@ constexpr double kQuotientRounding = 8.0 * std::numeric_limits<double>::epsilon(
 struct Expected {
   double rho_i = 0.0;
   double rho_q = 0.0;
-  double rho_error = 0.0;  ///< of both, over rho_I
+  double rho_error = 0.0;  ///< error of both, over rho_I
   double dolp = 0.0;
   double dolp_error = 0.0;
   bool has_rho = true;

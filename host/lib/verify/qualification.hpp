@@ -18,7 +18,7 @@ struct ErrorCheck {
   double error = 0.0;      ///< distance to the reference
   double estimate = 0.0;   ///< the stated bound; infinite where nothing is stated
   double reference = 0.0;  ///< bound of the reference's own error, in the same units
-  /// error / estimate, less what the reference may err itself: above 1 the estimate is wrong.
+  /// error / estimate, after subtracting the reference's own error: above 1 the estimate is wrong.
   double ratio() const;
   bool is_within_estimate() const { return ratio() <= 1.0; }
   /// True where the error certainly exceeds a tolerance.
@@ -45,7 +45,7 @@ SceneValues emission_scene(Distribution distribution, Masking masking, double to
 ///
 /// At 90 degrees, rho has no finite value with masking none and integral; DOLP is compared with |r_Q / r_I|.
 /// Domain: cases at 90 degrees are of those two maskings and have finite moments.
-/// Errors: those of evaluate_scene.
+/// Errors: errors of evaluate_scene.
 std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, ModelEvaluator& evaluator,
                                  const Accuracy& accuracy, const Progress& progress);
 

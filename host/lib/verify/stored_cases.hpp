@@ -18,7 +18,7 @@ struct StoredCase {
   SlopeShape shape;
   OpticalConstants index;
   Moments moments;     ///< times cos(theta), with bounds of the reference's own errors
-  std::string name;    ///< of the case; not unique: each distribution and masking has one
+  std::string name;    ///< name of the case; each distribution and masking has a case of that name
   std::string origin;  ///< where the values come from
 };
 
@@ -35,7 +35,7 @@ std::vector<StoredCase> hard_cases();
 /// Errors: InputError that names file, line and column.
 std::vector<StoredCase> parse_stored_cases(std::string_view text, const std::string& name);
 
-/// The same from a file.
+/// Cases from a file of that form. Errors: InputError.
 std::vector<StoredCase> read_stored_cases(const std::string& path);
 
 }  // namespace dolp

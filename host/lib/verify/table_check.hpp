@@ -1,4 +1,4 @@
-// Recomputes entries of a table with the independent reference and compares them with what the table states.
+// Recomputes entries of tables with the independent reference, and compares them with the values and errors stated.
 #pragma once
 
 #include <cstddef>
@@ -63,10 +63,10 @@ struct TableSample {
 /// Compares dolp, rho_i, rho_q and the Stokes parameters of the sample, as far as the table has them, with
 /// ReferenceEvaluator through the radiometry of the table's scene, over a band with integrate_band.
 ///
-/// A value is wrong if its error exceeds the stated bound plus the reference's own, if one of the two is no number and
-/// the other is, or if rho or DOLP misses the tolerance where status does not say so. The bounds: rho_error_estimate
-/// rho_I for rho, error_estimate for DOLP. What the latter implies for the Stokes parameters is error_estimate |I| for
-/// Q, U and V and error_estimate |I| / DOLP for I, which states nothing where DOLP vanishes.
+/// A value is wrong if its error exceeds the stated bound plus the reference's bound, if only one of both is a number,
+/// or if rho or DOLP misses the tolerance without the status for it. The bounds are rho_error_estimate rho_I for rho,
+/// error_estimate for DOLP, error_estimate |I| for Q, U and V, and error_estimate |I| / DOLP for I, which is infinite
+/// where DOLP vanishes.
 /// Not independent: closed forms of mirrors and limits, which come from the same code in every evaluator.
 /// Errors: InputError that begins with `name` for a table without anything to compare or with axes out of range;
 /// Cancelled when `progress` returns false.

@@ -1,5 +1,3 @@
-#include "cli/command_line.hpp"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

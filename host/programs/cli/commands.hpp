@@ -2,9 +2,16 @@
 // command_line.cpp says what each does.
 #pragma once
 
+#include <CLI/App.hpp>
+#include <memory>
+
 #include "cli/options.hpp"
 
 namespace dolp::cli {
+
+/// The commands and their options, for parsing, help, completions and the manual page. Parsing fills `options`, which
+/// must outlive it.
+std::unique_ptr<CLI::App> command_line(Options& options);
 
 int run_table(const Options& options);
 int run_response(const Options& options);

@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <dolp/dolp.hpp>
 
-#include "cli/command_line.hpp"
 #include "cli/commands.hpp"
 #include "terminal/exit_status.hpp"
 

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "base/text.hpp"
-#include "cli/command_line.hpp"
+#include "cli/commands.hpp"
 #include "device/result.hpp"
 #include "terminal/exit_status.hpp"
 #include "terminal/guarded.hpp"
@@ -71,7 +71,7 @@ int parse_and_run(int argc, char** argv) {
     if (options.run != nullptr) status = options.run(options);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) return fail("dolp", kExitInput, usage_message(app, error));
-    app.exit(error);  // prints what --help and the like ask for
+    app.exit(error);  // prints the help, the version or the citation
   }
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw IoError("standard output: cannot write the report");
   return status;

@@ -37,10 +37,7 @@ class GrowthMap {
                      const std::size_t most = result_.evaluations;
                      return !options.progress || options.progress(std::min(residuals_.evaluations(), most), most);
                    }) {
-    descent_.loss = options.loss;
-    descent_.scale = result.scale;
-    descent_.least_gain = kNodeGain;
-    descent_.secant_below = result.chi_square + result.scale;
+    descent_ = {options.loss, result.scale, descent_.most_steps, kNodeGain, result.chi_square + result.scale};
     steps_ = first_steps();
   }
 

@@ -291,12 +291,9 @@ class Fit {
 
   /// Descends from a point; true where that gives the new best minimum.
   bool take(const Minimum& lower) {
-    DescentOptions descent;
-    descent.loss = options_.loss;
-    descent.scale = result_.scale;
     std::vector<Minimum> bottoms(1);
     bottoms.front().where.at = lower.where.at;
-    descend(fine_, bottoms, descent);
+    descend(fine_, bottoms, {options_.loss, result_.scale});
     Minimum& bottom = bottoms.front();
     if (!bottom.has_converged || bottom.objective >= minima_.front().objective) return false;
     if (bottom.objective > minima_.front().objective - result_.scale) minima_.erase(minima_.begin());  // the same

@@ -180,10 +180,8 @@ class Profiler {
  public:
   Profiler(Residuals& residuals, const std::vector<Minimum>& minima, const ProfileOptions& options)
       : residuals_(residuals), options_(options), least_(minima.front().objective) {
-    descent_.loss = options.loss;
-    descent_.scale = options.scale;
-    descent_.least_gain = kProfileGain;
-    descent_.secant_below = options.from + kTrustedShare * options.rises[0] * options.scale;
+    const double secant_below = objective_at(kTrustedShare * options.rises[0]);
+    descent_ = {options.loss, options.scale, descent_.most_steps, kProfileGain, secant_below};
     result_.stretches.resize(residuals.model().parameters().size());
     for (const Minimum& minimum : minima) {
       for (Eigen::Index j = 0; j < minimum.where.at.size(); ++j) {

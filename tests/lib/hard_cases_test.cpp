@@ -21,7 +21,6 @@
 #include "run/scene_run.hpp"
 #include "stored_evaluator.hpp"
 #include "verify/qualification.hpp"
-#include "verify/stored_cases.hpp"
 
 namespace dolp {
 namespace {

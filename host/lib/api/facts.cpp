@@ -15,7 +15,7 @@
 #include "device/devices.hpp"
 #include "model/choices.hpp"
 #include "plan/effects.hpp"
-#include "report/plan_report.hpp"
+#include "report/run_report.hpp"
 #include "report/verify_report.hpp"
 #include "run/estimates.hpp"
 #include "run/scene_run.hpp"

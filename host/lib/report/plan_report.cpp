@@ -1,4 +1,4 @@
-#include "report/plan_report.hpp"
+#include "report/run_report.hpp"
 
 #include <algorithm>
 #include <dolp/errors.hpp>

@@ -46,7 +46,7 @@ std::string allowed(const std::string& key);
 /// The scene with all_settings and then `more`, after a warning on stderr for each of its remarks.
 Scene load_scene(const Options& options, const std::vector<Setting>& more = {});
 
-/// The evaluator that --evaluator and --device ask for.
+/// The evaluator of --evaluator and --device. Errors: InputError for a device of an evaluator that has none.
 Evaluator evaluator_of(const Options& options);
 
 /// Prints a report as --json and --quiet ask for: to stdout, or to stderr when the results themselves go to stdout.

@@ -17,7 +17,7 @@ struct NearestCase {
 };
 
 TEST(NearestMinimum, IsThatByTheCoordinatesOfTheRanges) {
-  Fit fit{{}, true, paint().scene()};
+  Fit fit{{}, {}, true, paint().scene()};
   fit.minima = {{{1.5, 2.37}, 4.0}, {{1.5, 0.22}, 5.0}, {{9.0, 0.22}, 80.0}};
   for (const auto& [n, k, nearest] :
        {NearestCase{1.5, 0.1, 1}, {1.5, 0.7, 1}, {1.5, 0.8, 0}, {1.4, 40.0, 0}, {8.0, 0.1, 2}}) {
@@ -33,7 +33,7 @@ TEST(ExploreSession, Minimum_IsVisitedInTheSceneThatWasFitted) {
   session.load_measured(file.path());
   session.mark("surface.k", true);
   const FitJob job = session.fit_job().value();
-  Fit fit{{}, true, job.edits.scene(), {{.key = "surface.k", .value = 2.0}}};
+  Fit fit{{.parameters = {{.key = "surface.k", .value = 2.0}}}, {}, true, job.edits.scene()};
   fit.minima = {{{2.0}, 4.0}, {{0.2}, 5.0}};
   EXPECT_EQ(session.take_fit(fit, job), 1U);
   EXPECT_EQ(session.view().panel, Panel::kFit);

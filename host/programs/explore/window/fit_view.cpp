@@ -47,8 +47,8 @@ std::optional<std::size_t> draw_minima(const Fit& fit, std::optional<std::size_t
 
 /// The lines of the report that say what the result means; the table above has the others.
 void draw_words(const Fit& fit) {
-  constexpr std::array<std::string_view, 10> kShown = {"minimum", "misfit",     "scale",      "scaled", "pieces",
-                                                       "open",    "correlated", "degenerate", "status", "model"};
+  constexpr std::array<std::string_view, 9> kShown = {"minimum",    "misfit",     "scale",  "scaled", "pieces",
+                                                      "correlated", "degenerate", "status", "model"};
   for (const auto& [label, text] : fit.report.rows) {
     if (std::ranges::find(kShown, label) == kShown.end()) continue;
     const ImU32 colour = label == "misfit" || label == "status" ? kErrorColour : kTextColour;

@@ -1,5 +1,5 @@
 #include "cli/commands.hpp"
-#include "explore/session_file.hpp"
+#include "explore/files.hpp"
 #include "explore/window/app.hpp"
 #include "terminal/exit_status.hpp"
 

@@ -1,4 +1,4 @@
-// The window's look: theme, scale, small windows, notes, and how all of it closes.
+// The window's look: theme, scale, small windows, notes, and closing.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -34,10 +34,7 @@ TEST_F(WindowLook, LightTheme_ChosenInTheMenu_IsKept) {
   frames();
   EXPECT_GT(brightness(), 200.0);
   EXPECT_NE(content("config/dolp/window.toml").find("light = true"), std::string::npos);
-  TearDown();
-  explore::AppOptions options;
-  options.preferences = at("config/dolp/window.toml");
-  app_ = std::make_unique<App>(explore::SceneEdits(Scene::from_text(kEdited)), options);
+  open({});
   frames();
   EXPECT_GT(brightness(), 200.0);
 }

@@ -21,7 +21,7 @@ void set_mouse(ImVec2 position, const std::array<bool, 5>& buttons) {
   std::ranges::copy(buttons, io.MouseDown);
 }
 #else
-// The backend takes Ctrl, Shift and Alt as they are by now, some events later.
+// The backend takes the present state of Ctrl, Shift and Alt, some events later.
 void set_modifiers(int key, int action, int modifiers) {
   if (key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER) {  // on X11 the modifiers are those before the event
     const int own = 1 << (key - GLFW_KEY_LEFT_SHIFT) % 4;
@@ -68,17 +68,14 @@ Input::Input(GLFWwindow* window, std::function<void(const std::string&)> on_drop
     });
   });
   glfwSetCharCallback(window,
-                      [](GLFWwindow* w, unsigned letter) { push(w, [=] { ImGui_ImplGlfw_CharCallback(w, letter); }); });
+                      [](GLFWwindow* w, unsigned sign) { push(w, [=] { ImGui_ImplGlfw_CharCallback(w, sign); }); });
   glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int) {
     push(w, [=] { of(w).buttons_.at(static_cast<std::size_t>(std::min(button, 4))) = action == GLFW_PRESS; });
   });
   glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
+    const ImVec2 at{static_cast<float>(x), static_cast<float>(y)};
     push(
-        w,
-        [=] {
-          of(w).mouse_ = {static_cast<float>(x), static_cast<float>(y)};
-        },
-        true);
+        w, [=] { of(w).mouse_ = at; }, true);
   });
   glfwSetScrollCallback(
       window, [](GLFWwindow* w, double x, double y) { push(w, [=] { ImGui_ImplGlfw_ScrollCallback(w, x, y); }); });
@@ -99,12 +96,13 @@ Input::Input(GLFWwindow* window, std::function<void(const std::string&)> on_drop
 
 void Input::begin_frame() {
   pressed_key_ = GLFW_KEY_UNKNOWN;
+  areas_.clear();
   if (has_more()) {
     events_.front().apply();
     events_.pop_front();
   }
   ImGui_ImplGlfw_NewFrame();
-  // ImGui's backend takes the mouse as it is by now, some events later. A drag may lead out of the window.
+  // ImGui's backend takes the present state of the mouse, some events later. A drag may lead out of the window.
   constexpr float kNowhere = std::numeric_limits<float>::lowest();
   const bool is_seen = is_inside_ || glfwGetWindowAttrib(window_, GLFW_FOCUSED) != 0;
   set_mouse(is_seen ? mouse_ : ImVec2(kNowhere, kNowhere), buttons_);
@@ -112,5 +110,10 @@ void Input::begin_frame() {
 }
 
 bool is_pressed(int key) { return static_cast<const Input*>(ImGui::GetIO().UserData)->pressed_key() == key; }
+void name_item(const std::string& name) { name_area(name, {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()}); }
+
+void name_area(const std::string& name, const Area& area) {
+  static_cast<Input*>(ImGui::GetIO().UserData)->areas()[name] = area;
+}
 
 }  // namespace dolp::explore

@@ -2,18 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <optional>
-#include <utility>
 
-#include "explore/parameters.hpp"
+#include "explore/readout.hpp"
 #include "explore/window/views.hpp"
 
 namespace dolp::explore {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr int kCells = 56;  // of a sphere's diameter: as large as a few pixels
+constexpr int kCells = 56;  // cells across a sphere, each a few pixels large
 
 /// A colour of the angle of polarisation, the same at 0 and 180 degrees.
 ImU32 angle_colour(double angle_deg) {
@@ -22,18 +18,18 @@ ImU32 angle_colour(double angle_deg) {
   return ImGui::ColorConvertFloat4ToU32({r, g, b, 1.0F});
 }
 
-/// The two images of a direction, and the range of the first.
+/// The colours of an image: of DOLP, or of the angle of polarisation.
 struct Colours {
-  Scale dolp;  ///< from the darkest colour to the lightest
+  Scale dolp;  ///< range from the darkest colour to the lightest
   bool is_angle = false;
 
-  ImU32 of(const std::optional<Seen>& seen) const {
+  ImU32 of(const std::optional<SeenPolarisation>& seen) const {
     if (!seen) return kBadColour;
     return is_angle ? angle_colour(seen->angle_deg) : viridis(dolp.position(seen->dolp));
   }
 };
 
-/// The range of DOLP from 0, or from the least of many directions on.
+/// The range of DOLP from 0, or from the least value.
 Scale dolp_range(const std::vector<Point>& points, double theta_max_deg, bool from_least) {
   constexpr double kLeastRange = 1e-6;
   Scale range{1.0, 0.0};
@@ -64,7 +60,7 @@ void draw_sphere(const Session& session, ImVec2 middle, float radius, const Colo
 
 /// A square plate seen from afar, with a line along its polarisation.
 void draw_plate(const Session& session, ImVec2 middle, float radius, double azimuth_deg, const Colours& colours) {
-  const std::optional<Seen> seen = seen_at(session.curve().points(), session.theta_deg(), azimuth_deg);
+  const std::optional<SeenPolarisation> seen = seen_at(session.curve().points(), session.theta_deg(), azimuth_deg);
   const double azimuth = azimuth_deg * kDegree;
   const double shortened = std::max(0.02, std::cos(session.theta_deg() * kDegree));
   const auto at = [&](double along, double across) {
@@ -86,26 +82,23 @@ void draw_plate(const Session& session, ImVec2 middle, float radius, double azim
 
 /// A bar of the colours with its ends in words.
 void draw_bar(ImVec2 corner, float width, const Colours& colours) {
-  constexpr int kSteps = 64;
   const float line = ImGui::GetTextLineHeight();
   ImDrawList* const list = ImGui::GetWindowDrawList();
-  for (int i = 0; i < kSteps; ++i) {
-    const double part = (i + 0.5) / kSteps;
-    const auto x = [&](int step) { return corner.x + width * static_cast<float>(step) / kSteps; };
-    list->AddRectFilled({x(i), corner.y}, {x(i + 1), corner.y + 0.6F * line},
-                        colours.of(Seen{colours.dolp.value(part), 180.0 * part}));
-  }
-  const auto percent = [](double dolp) { return fmt::format("{:.3g} %", 100.0 * dolp); };
-  const std::string last = colours.is_angle ? "180°" : percent(colours.dolp.to);
-  draw_text(list, {corner.x, corner.y + 0.7F * line}, {0.0F, 0.0F}, kDimColour,
-            colours.is_angle ? "0°" : percent(colours.dolp.from));
-  draw_text(list, {corner.x + width, corner.y + 0.7F * line}, {1.0F, 0.0F}, kDimColour, last);
-  draw_text(list, {corner.x + 0.5F * width, corner.y + 0.7F * line}, {0.5F, 0.0F}, kTextColour,
-            colours.is_angle ? "angle" : "DOLP");
+  const Area bar{corner, {corner.x + width, corner.y + 0.6F * line}};
+  draw_colours(list, bar, false, [&](double part) {
+    return colours.of(SeenPolarisation{colours.dolp.value(part), 180.0 * part});
+  });
+  const auto end_text = [&](double dolp, const char* angle) {
+    return colours.is_angle ? angle : fmt::format("{:.3g} %", 100.0 * dolp);
+  };
+  const float below = corner.y + 0.7F * line;
+  draw_text(list, {bar.min.x, below}, {0.0F, 0.0F}, kDimColour, end_text(colours.dolp.from, "0°"));
+  draw_text(list, {bar.max.x, below}, {1.0F, 0.0F}, kDimColour, end_text(colours.dolp.to, "180°"));
+  draw_text(list, {corner.x + 0.5F * width, below}, {0.5F, 0.0F}, kTextColour, colours.is_angle ? "angle" : "DOLP");
 }
 
-/// The place of a direction of the sky: zenith in the middle, 0 degrees of azimuth, the side of the view, on the right.
-struct SkyPlace {
+/// A sky as a disc: the zenith in the middle, azimuth 0, the side of the view, on the right.
+struct SkyDisc {
   ImVec2 middle;
   float radius;
 
@@ -116,20 +109,20 @@ struct SkyPlace {
   }
 };
 
-void draw_rings(const Sky& sky, const SkyPlace& at, const Colours& colours) {
+void draw_rings(const SourceSky& sky, const SkyDisc& at, const Colours& colours) {
   ImDrawList* const list = ImGui::GetWindowDrawList();
-  // Smooth edges are off: they would show as seams.
+  // Smooth edges would show as seams.
   const ImDrawListFlags flags = std::exchange(list->Flags, ImDrawListFlags_None);
-  const double half_deg = 0.5 * Sky::azimuth_deg(1);
-  for (std::size_t i = 0; i < Sky::kAzimuths; ++i) {
+  const double half_deg = 0.5 * SourceSky::azimuth_deg(1);
+  for (std::size_t i = 0; i < SourceSky::kAzimuths; ++i) {
     const std::vector<Point>& ring = sky.at(i);
     for (std::size_t j = 0; j + 1 < ring.size(); ++j) {
       const ImU32 colour = ring[j].is_good() ? viridis(colours.dolp.position(ring[j][Quantity::kDolp])) : kBadColour;
       const double inner = ring[j].theta_deg;
       const double outer = ring[j + 1].theta_deg;
       for (const double side : {1.0, -1.0}) {
-        const double from = side * (Sky::azimuth_deg(i) - half_deg);
-        const double to = side * (Sky::azimuth_deg(i) + half_deg);
+        const double from = side * (SourceSky::azimuth_deg(i) - half_deg);
+        const double to = side * (SourceSky::azimuth_deg(i) + half_deg);
         list->AddQuadFilled(at(inner, from), at(outer, from), at(outer, to), at(inner, to), colour);
       }
     }
@@ -138,7 +131,7 @@ void draw_rings(const Sky& sky, const SkyPlace& at, const Colours& colours) {
 }
 
 /// Circles of zeniths; a ring for the scene's source, a square for its view.
-void draw_sky_marks(const Scene& scene, double source_zenith_deg, const SkyPlace& at) {
+void draw_sky_marks(const Scene& scene, double source_zenith_deg, const SkyDisc& at) {
   ImDrawList* const list = ImGui::GetWindowDrawList();
   for (const double zenith_deg : {30.0, 60.0, 90.0}) {
     list->AddCircle(at.middle, at.radius * static_cast<float>(zenith_deg / 90.0), kGridColour, 96);
@@ -152,9 +145,9 @@ void draw_sky_marks(const Scene& scene, double source_zenith_deg, const SkyPlace
                   scaled(2.0F));
 }
 
-std::vector<Point> all_points(const Sky& sky) {
+std::vector<Point> all_points(const SourceSky& sky) {
   std::vector<Point> all;
-  for (std::size_t i = 0; i < Sky::kAzimuths; ++i) all.insert(all.end(), sky.at(i).begin(), sky.at(i).end());
+  for (std::size_t i = 0; i < SourceSky::kAzimuths; ++i) all.insert(all.end(), sky.at(i).begin(), sky.at(i).end());
   return all;
 }
 
@@ -162,7 +155,7 @@ std::vector<Point> all_points(const Sky& sky) {
 
 void ShapeView::draw(Session& session, ImVec2 size) {
   if (is_bistatic(session.scene())) {
-    return coloured_text(kDimColour, "Bistatic mode has one direction of view: see the sky.");
+    return coloured_text(kDimColour, "Bistatic mode has only one direction of view: see the view sky.");
   }
   const float line = ImGui::GetTextLineHeight();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -182,7 +175,7 @@ void ShapeView::draw(Session& session, ImVec2 size) {
   ImDrawList* const list = ImGui::GetWindowDrawList();
   draw_text(list, corner, {0.0F, 0.0F}, kTextColour,
             fmt::format("sphere, and a plate tilted by {:.1f}° (drag){}", session.theta_deg(),
-                        session.remark(session.curve())));
+                        remark(session, session.curve())));
   for (const bool is_angle : {false, true}) {
     const Colours colours{dolp_range(session.curve().points(), session.view().theta_max_deg, false), is_angle};
     const float x = plate.x + (is_angle ? 0.5F * size.x : 0.0F);
@@ -194,9 +187,9 @@ void ShapeView::draw(Session& session, ImVec2 size) {
 
 void draw_sky(const Session& session, ImVec2 size) {
   if (!is_bistatic(session.scene())) {
-    return coloured_text(kDimColour, "The sky is that of a source: choose the mode bistatic.");
+    return coloured_text(kDimColour, "This sky shows directions of a source: choose the mode bistatic.");
   }
-  const Sky& sky = session.sky();
+  const SourceSky& sky = session.source_sky();
   const Colours colours{dolp_range(all_points(sky), 90.0, true)};
   const float line = ImGui::GetTextLineHeight();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -207,7 +200,7 @@ void draw_sky(const Session& session, ImVec2 size) {
       list, corner, {0.0F, 0.0F}, kTextColour,
       fmt::format("DOLP over the source's direction, view at {:.4g}°{}",
                   session.scene().number("geometry.view_zenith_deg").value(), sky.is_finished() ? "" : ", refining"));
-  const SkyPlace at{middle, radius};
+  const SkyDisc at{middle, radius};
   draw_rings(sky, at, colours);
   draw_sky_marks(session.scene(), session.theta_deg(), at);
   draw_bar({middle.x - radius, middle.y + radius + 0.5F * line}, 2.0F * radius, colours);

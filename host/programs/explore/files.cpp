@@ -1,23 +1,22 @@
-#include "explore/session_file.hpp"
+#include "explore/files.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <filesystem>
+#include <cstdlib>
 #include <sstream>
 #include <type_traits>
-#include <utility>
+
+#include <toml++/toml.h>
 
 #include "base/atomic_file.hpp"
 #include "base/text.hpp"
-#include "explore/toml_file.hpp"
 
 namespace dolp::explore {
 namespace {
 
-constexpr int kVersion = 1;  // of the file
+constexpr int kVersion = 1;
 constexpr const char* kVersionKey = "dolp_session";
 
 struct Flag {
@@ -27,34 +26,59 @@ struct Flag {
 constexpr std::array kFlags = {Flag{"log", &View::is_log}, Flag{"theta_log", &View::is_theta_log},
                                Flag{"overlay", &View::has_overlay}, Flag{"keep_all", &View::keeps_all}};
 
-// Ranges in a file, but for those of the map's axes, which have their labels.
-constexpr const char* kZenithRange = "curve zenith";
-constexpr const char* kValueRange = "curve values";
-constexpr const char* kColourRange = "map colours";
-
 using Node = toml::node_view<const toml::node>;
 
-toml::array texts_of(const std::vector<Setting>& settings) {
-  toml::array texts;
-  for (const Setting& setting : settings) texts.push_back(setting.text());
+/// Errors: InputError in one line, with file and line, for a file that cannot be read or is not TOML.
+toml::table read_toml(const std::string& path) {
+  const std::string text = read_named_file(path, path + ": ");
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}:{}: {}", path, error.source().begin.line, one_line(error.description())));
+  }
+}
+
+/// Errors: IoError.
+void write_toml(const std::filesystem::path& path, const toml::table& table) {
+  std::ostringstream text;
+  text << table << '\n';
+  write_text_atomically(path, text.str());
+}
+
+/// The texts of an array; empty without it.
+std::vector<std::string> texts_in(Node node) {
+  std::vector<std::string> texts;
+  const toml::array* const array = node.as_array();
+  for (std::size_t i = 0; array && i < array->size(); ++i) {
+    if (const auto text = (*array)[i].value<std::string>()) texts.push_back(*text);
+  }
   return texts;
 }
 
-/// "KEY", or "KEY=LOW:HIGH" with a range that was typed.
-std::vector<std::string> texts_of(const FitMarks& marks) {
-  std::vector<std::string> texts;
-  for (const auto& [key, own] : marks)
-    texts.push_back(own ? fmt::format("{}={}:{}", key, format_number(own->low), format_number(own->high)) : key);
-  return texts;
+template <class Values, class TextOf>
+toml::array array_of(const Values& values, const TextOf& text_of) {
+  toml::array array;
+  for (const auto& value : values) array.push_back(text_of(value));
+  return array;
+}
+
+toml::array texts_of(const std::vector<Setting>& settings) {
+  return array_of(settings, [](const Setting& setting) { return setting.text(); });
+}
+
+/// "KEY", or "KEY=LOW:HIGH" with a typed range.
+std::string mark_text(const FitMarks::value_type& mark) {
+  const auto& [key, range] = mark;
+  return range ? fmt::format("{}={}:{}", key, format_number(range->low), format_number(range->high)) : key;
 }
 
 FitMarks marks_in(const std::vector<std::string>& texts, const std::string& place) {
   FitMarks marks;
   for (const std::string& text : texts) {
     const std::size_t equals = text.find('=');
-    std::optional<FitRange>& own = marks[text.substr(0, equals)];
+    std::optional<FitRange>& range = marks[text.substr(0, equals)];
     try {
-      if (equals != std::string::npos) own = FitRange::from_text(text);
+      if (equals != std::string::npos) range = FitRange::from_text(text);
     } catch (const InputError& error) {
       throw InputError(place + error.what());
     }
@@ -68,7 +92,7 @@ class StateWriter {
   StateWriter(const SkyFiles& skies, const std::filesystem::path& file)
       : skies_(skies), file_(std::filesystem::absolute(file).lexically_normal()) {}
 
-  /// A scene as it was opened, with its changes and a name.
+  /// A scene as opened, with its changes and a name.
   toml::table table(const SceneEdits& edits, const std::string& name) const {
     const Scene& opened = edits.opened();
     return toml::table{{"name", name},
@@ -79,7 +103,7 @@ class StateWriter {
   }
 
  private:
-  /// Settings that name a copy beside the session's file instead of a sky's file that goes with the window.
+  /// Settings that still hold without the window: skies of the window are copied beside the session's file.
   std::vector<Setting> lasting(std::vector<Setting> settings, const Scene& scene) const {
     for (Setting& setting : settings) {
       if (setting.key != "surroundings.profile" || !skies_.hold(word_of(setting.value))) continue;
@@ -100,11 +124,18 @@ toml::table range_table(const Scale& range) {
   return toml::table{{"from", range.from}, {"to", range.to}, {"log", range.is_log}};
 }
 
-toml::table ranges_table(const View& view) {
+/// The typed range of a name in the file; null for the label of an axis of the map.
+std::optional<Scale>* fixed_range(View& view, const std::string& name) {
+  if (name == "curve zenith") return &view.curve_zoom.x;
+  if (name == "curve values") return &view.curve_zoom.y;
+  return name == "map colours" ? &view.map_colours : nullptr;
+}
+
+toml::table ranges_table(View view) {
   toml::table table;
-  if (view.curve_zoom.x) table.insert(kZenithRange, range_table(*view.curve_zoom.x));
-  if (view.curve_zoom.y) table.insert(kValueRange, range_table(*view.curve_zoom.y));
-  if (view.map_colours) table.insert(kColourRange, range_table(*view.map_colours));
+  for (const char* name : {"curve zenith", "curve values", "map colours"}) {
+    if (const auto& range = *fixed_range(view, name)) table.insert(name, range_table(*range));
+  }
   for (const auto& [label, range] : view.map_ranges) table.insert(label, range_table(range));
   return table;
 }
@@ -115,7 +146,7 @@ toml::table view_table(const Session& session) {
                     {"theta_max_deg", view.theta_max_deg},
                     {"map_x", description_of(view.map_x).name},
                     {"map_y", description_of(view.map_y).name},
-                    {"panel", kPanels.at(static_cast<std::size_t>(view.panel)).name},
+                    {"panel", kPanelNames.at(static_cast<std::size_t>(view.panel))},
                     {"mueller_row", static_cast<int>(view.mueller_row)},
                     {"mueller_column", static_cast<int>(view.mueller_column)},
                     {"ranges", ranges_table(view)},
@@ -124,7 +155,7 @@ toml::table view_table(const Session& session) {
   return table;
 }
 
-/// A value of a file; `place` begins messages. Errors: InputError.
+/// A value of a file; `place` begins error messages. Errors: InputError.
 template <class T>
 T need(Node node, const std::string& place) {
   const std::optional<T> value = node ? node.value<T>() : std::nullopt;
@@ -159,26 +190,22 @@ Scale range_in(Node node, const std::string& place) {
   return range;
 }
 
-/// Ranges that are missing are automatic.
+/// Missing ranges stay automatic.
 void read_ranges(View& view, Node node, const std::string& place) {
   const toml::table* const table = node.as_table();
   if (!table) return;
-  for (const auto& [name, one] : *table) {
-    const std::string key(name.str());
-    const Scale range = range_in(Node(one), place + "." + key);
-    if (key == kZenithRange) {
-      view.curve_zoom.x = range;
-    } else if (key == kValueRange) {
-      view.curve_zoom.y = range;
-    } else if (key == kColourRange) {
-      view.map_colours = range;
+  for (const auto& [key, one] : *table) {
+    const std::string name(key.str());
+    const Scale range = range_in(Node(one), place + "." + name);
+    if (std::optional<Scale>* fixed = fixed_range(view, name)) {
+      *fixed = range;
     } else {
-      view.map_ranges[key] = range;
+      view.map_ranges[name] = range;
     }
   }
 }
 
-/// A number below `count`, 0 where it is missing.
+/// A number below `count`; 0 where it is missing.
 std::size_t index_in(Node node, std::size_t count, const std::string& place) {
   if (!node) return 0;
   const int index = need<int>(node, place);
@@ -188,14 +215,17 @@ std::size_t index_in(Node node, std::size_t count, const std::string& place) {
 }
 
 View view_in(Node node, const std::string& place) {
-  const auto name_of = [](const auto& one) { return one.name; };
   const auto axis = [&](const char* key) {
     return need_one_of(
-        kMapAxes, [](Axis of) { return description_of(of).name; }, node[key], place + key);
+        kMapAxes, [](Axis one) { return description_of(one).name; }, node[key], place + key);
   };
   View view;
-  view.quantity = need_one_of(kAllPlotted, name_of, node["quantity"], place + "quantity").quantity;
-  view.panel = need_one_of(kPanels, name_of, node["panel"], place + "panel").panel;
+  view.quantity =
+      need_one_of(
+          kAllPlotted, [](const PlottedDescription& one) { return one.name; }, node["quantity"], place + "quantity")
+          .quantity;
+  view.panel = panel_of(need_one_of(
+      kPanelNames, [](const char* name) { return name; }, node["panel"], place + "panel"));
   view.theta_max_deg = need<double>(node["theta_max_deg"], place + "theta_max_deg");
   view.map_x = axis("map_x");
   view.map_y = axis("map_y");
@@ -247,7 +277,7 @@ void save_session(const Session& session, const std::string& path) {
   toml::table file{{kVersionKey, kVersion},
                    {"scene", states.table(session.edits(), "")},
                    {"view", view_table(session)},
-                   {"vary", array_of(texts_of(session.marked()))}};
+                   {"vary", array_of(session.marked(), mark_text)}};
   if (const auto& data = session.residuals().data())
     file.insert("measured", std::filesystem::proximate(data->name, folder).string());
   toml::array pins, snapshots;
@@ -260,9 +290,25 @@ void save_session(const Session& session, const std::string& path) {
   for (const Snapshot& one : session.snapshots()) snapshots.push_back(states.table(one.edits, one.name));
   file.insert("pins", std::move(pins));
   file.insert("snapshots", std::move(snapshots));
-  std::ostringstream text;
-  text << file << '\n';
-  write_text_atomically(path, text.str());
+  write_toml(path, file);
+}
+
+void save_scene(Session& session, const std::string& path) {
+  namespace fs = std::filesystem;
+  if (session.has_own_sky()) {
+    const fs::path sky = fs::absolute(path).replace_filename(fs::path(path).stem().string() + "_sky.csv");
+    write_text_atomically(sky, read_sky_pair(sky_file(session.scene())).value().csv());
+    const fs::path folder = fs::absolute(session.scene().name()).parent_path();
+    session.set("surroundings.profile", sky.lexically_normal().lexically_relative(folder.lexically_normal()).string());
+  }
+  const fs::path folder = fs::path(path).parent_path();
+  write_text_atomically(path, session.scene().toml(folder.empty() ? "." : folder));
+  session.note_saved();
+}
+
+void save_curve(const Session& session, const std::string& path) {
+  if (!session.curve().is_finished()) throw InputError("the curve is not finished yet");
+  write_text_atomically(path, session.curve().finished().csv);
 }
 
 bool is_session_file(const std::string& path) {
@@ -282,6 +328,56 @@ void open_file(Session& session, const std::string& path) {
   } else {
     session.go_to(SceneEdits(Scene::from_file(path)));
   }
+}
+
+std::filesystem::path Preferences::default_path() {
+  const char* const config = std::getenv("XDG_CONFIG_HOME");
+  const char* const home = std::getenv("HOME");
+  if (config && *config != '\0') return std::filesystem::path(config) / "dolp/window.toml";
+  return home && *home != '\0' ? std::filesystem::path(home) / ".config/dolp/window.toml" : "";
+}
+
+void Preferences::load(const std::filesystem::path& path) {
+  path_ = path;
+  std::error_code unknown;
+  if (!std::filesystem::exists(path, unknown)) return;
+  const toml::table table = read_toml(path.string());
+  is_light = table["light"].value_or(false);
+  zoom_by(table["zoom"].value_or(0));
+  recent_ = texts_in(table["recent"]);
+}
+
+void Preferences::save() const {
+  if (path_.empty()) return;
+  std::error_code failure;
+  std::filesystem::create_directories(path_.parent_path(), failure);
+  if (failure) throw IoError(path_.parent_path().string() + ": " + failure.message());
+  const auto same = [](const std::string& path) { return path; };
+  write_toml(path_, toml::table{{"light", is_light}, {"zoom", zoom_steps_}, {"recent", array_of(recent(), same)}});
+}
+
+double Preferences::zoom() const {
+  constexpr double kStep = 1.1;
+  return std::pow(kStep, zoom_steps_);
+}
+
+void Preferences::zoom_by(int steps) {
+  constexpr int kMostSteps = 8;  // twice the size, or half of it
+  zoom_steps_ = std::clamp(zoom_steps_ + std::clamp(steps, -2 * kMostSteps, 2 * kMostSteps), -kMostSteps, kMostSteps);
+}
+
+void Preferences::remember(const std::filesystem::path& file) {
+  const std::string path = std::filesystem::absolute(file).lexically_normal().string();
+  std::erase(recent_, path);
+  recent_.insert(recent_.begin(), path);
+  recent_.resize(std::min(recent_.size(), kMostRecent));
+}
+
+std::vector<std::string> Preferences::recent() const {
+  std::vector<std::string> found = recent_;
+  std::error_code unknown;
+  std::erase_if(found, [&](const std::string& path) { return !std::filesystem::exists(path, unknown); });
+  return found;
 }
 
 }  // namespace dolp::explore

@@ -43,8 +43,6 @@ class BackgroundTask {
 
   /// The thread calls `on_change` at each progress and at the end.
   explicit BackgroundTask(std::function<void()> on_change) : on_change_(std::move(on_change)) {}
-  BackgroundTask(const BackgroundTask&) = delete;
-  BackgroundTask& operator=(const BackgroundTask&) = delete;
   /// Cancels and waits.
   ~BackgroundTask() { cancel(); }
 
@@ -109,8 +107,6 @@ class Worker {
  public:
   /// The worker's thread calls `on_news` after each part and after a failure.
   Worker(Evaluate evaluate, std::function<void()> on_news);
-  Worker(const Worker&) = delete;
-  Worker& operator=(const Worker&) = delete;
   ~Worker();
 
   /// Replaces the list of wanted jobs, the most wanted first. A running job continues if its key is still in the list.

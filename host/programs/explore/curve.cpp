@@ -183,9 +183,10 @@ bool Peak::take(const JobPart& news) {
     answer_from(news.points);
     return true;
   }
-  const auto own = std::ranges::find_if(without_, [&](const WithoutEffect& one) { return news.key == key_of(one); });
-  if (own == without_.end()) return false;
-  own->result = news.points.front();
+  const auto removed =
+      std::ranges::find_if(without_, [&](const WithoutEffect& one) { return news.key == key_of(one); });
+  if (removed == without_.end()) return false;
+  removed->result = news.points.front();
   return true;
 }
 

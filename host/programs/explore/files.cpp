@@ -16,6 +16,8 @@
 namespace dolp::explore {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr int kVersion = 1;
 constexpr const char* kVersionKey = "dolp_session";
 
@@ -39,7 +41,7 @@ toml::table read_toml(const std::string& path) {
 }
 
 /// Errors: IoError.
-void write_toml(const std::filesystem::path& path, const toml::table& table) {
+void write_toml(const fs::path& path, const toml::table& table) {
   std::ostringstream text;
   text << table << '\n';
   write_text_atomically(path, text.str());
@@ -62,17 +64,13 @@ toml::array array_of(const Values& values, const TextOf& text_of) {
   return array;
 }
 
-toml::array texts_of(const std::vector<Setting>& settings) {
-  return array_of(settings, [](const Setting& setting) { return setting.text(); });
-}
-
 /// "KEY", or "KEY=LOW:HIGH" with a typed range.
 std::string mark_text(const FitMarks::value_type& mark) {
   const auto& [key, range] = mark;
   return range ? fmt::format("{}={}:{}", key, format_number(range->low), format_number(range->high)) : key;
 }
 
-FitMarks marks_in(const std::vector<std::string>& texts, const std::string& place) {
+FitMarks marks_in(const std::vector<std::string>& texts, const std::string& location) {
   FitMarks marks;
   for (const std::string& text : texts) {
     const std::size_t equals = text.find('=');
@@ -80,45 +78,35 @@ FitMarks marks_in(const std::vector<std::string>& texts, const std::string& plac
     try {
       if (equals != std::string::npos) range = FitRange::from_text(text);
     } catch (const InputError& error) {
-      throw InputError(place + error.what());
+      throw InputError(location + error.what());
     }
   }
   return marks;
 }
 
-/// Writes states of scenes for the file of a session.
-class StateWriter {
- public:
-  StateWriter(const SkyFiles& skies, const std::filesystem::path& file)
-      : skies_(skies), file_(std::filesystem::absolute(file).lexically_normal()) {}
-
-  /// A scene as opened, with its changes and a name.
-  toml::table table(const SceneEdits& edits, const std::string& name) const {
-    const Scene& opened = edits.opened();
-    return toml::table{{"name", name},
-                       {"file", std::filesystem::proximate(opened.name(), file_.parent_path()).string()},
-                       {"text", opened.text()},
-                       {"opened_with", texts_of(lasting(opened.settings(), opened))},
-                       {"changes", texts_of(lasting(edits.changes(), opened))}};
+/// Settings that still hold without the window: skies of the window are copied beside the session's file.
+toml::array lasting_texts(std::vector<Setting> settings, const SkyFiles& skies, const fs::path& scene,
+                          const fs::path& session) {
+  for (Setting& setting : settings) {
+    if (setting.key != "surroundings.profile" || !skies.hold(word_of(setting.value))) continue;
+    const fs::path sky = word_of(setting.value);
+    const fs::path copy = session.parent_path() / (session.stem().string() + "_" + sky.filename().string());
+    write_text_atomically(copy, read_named_file(sky.string(), sky.string() + ": "));
+    setting.value = copy.lexically_relative(fs::absolute(scene).parent_path().lexically_normal()).string();
   }
+  return array_of(settings, [](const Setting& setting) { return setting.text(); });
+}
 
- private:
-  /// Settings that still hold without the window: skies of the window are copied beside the session's file.
-  std::vector<Setting> lasting(std::vector<Setting> settings, const Scene& scene) const {
-    for (Setting& setting : settings) {
-      if (setting.key != "surroundings.profile" || !skies_.hold(word_of(setting.value))) continue;
-      const std::filesystem::path sky = word_of(setting.value);
-      const std::filesystem::path copy = file_.parent_path() / (file_.stem().string() + "_" + sky.filename().string());
-      write_text_atomically(copy, read_named_file(sky.string(), sky.string() + ": "));
-      const std::filesystem::path folder = std::filesystem::absolute(scene.name()).parent_path();
-      setting.value = copy.lexically_relative(folder.lexically_normal()).string();
-    }
-    return settings;
-  }
-
-  const SkyFiles& skies_;
-  std::filesystem::path file_;
-};
+/// A scene as opened, with its changes and a name, for the file of a session.
+toml::table state_table(const SceneEdits& edits, const std::string& name, const SkyFiles& skies,
+                        const fs::path& session) {
+  const Scene& opened = edits.opened();
+  return toml::table{{"name", name},
+                     {"file", fs::proximate(opened.name(), session.parent_path()).string()},
+                     {"text", opened.text()},
+                     {"opened_with", lasting_texts(opened.settings(), skies, opened.name(), session)},
+                     {"changes", lasting_texts(edits.changes(), skies, opened.name(), session)}};
+}
 
 toml::table range_table(const Scale& range) {
   return toml::table{{"from", range.from}, {"to", range.to}, {"log", range.is_log}};
@@ -155,48 +143,48 @@ toml::table view_table(const Session& session) {
   return table;
 }
 
-/// A value of a file; `place` begins error messages. Errors: InputError.
+/// A value of a file; `location` begins error messages. Errors: InputError.
 template <class T>
-T need(Node node, const std::string& place) {
+T need(Node node, const std::string& location) {
   const std::optional<T> value = node ? node.value<T>() : std::nullopt;
-  if (!value) throw InputError(place + (node ? " is of another kind" : " is missing"));
+  if (!value) throw InputError(location + (node ? " is of another kind" : " is missing"));
   if constexpr (std::is_same_v<T, double>) {
-    if (!std::isfinite(*value)) throw InputError(fmt::format("{} = {}: must be a finite number", place, *value));
+    if (!std::isfinite(*value)) throw InputError(fmt::format("{} = {}: must be a finite number", location, *value));
   }
   return *value;
 }
 
 /// The one of `choices` that has the name in the file. Errors: InputError.
 template <class Choices, class NameOf>
-auto need_one_of(const Choices& choices, const NameOf& name_of, Node node, const std::string& place) {
-  const auto name = need<std::string>(node, place);
+auto need_one_of(const Choices& choices, const NameOf& name_of, Node node, const std::string& location) {
+  const auto name = need<std::string>(node, location);
   const auto found = std::ranges::find_if(choices, [&](const auto& one) { return name == name_of(one); });
-  if (found == choices.end()) throw InputError(place + " \"" + name + "\" is unknown");
+  if (found == choices.end()) throw InputError(location + " \"" + name + "\" is unknown");
   return *found;
 }
 
-SceneEdits state_in(Node node, const std::string& place, const std::filesystem::path& folder) {
-  const auto file = folder / need<std::string>(node["file"], place + ".file");
+SceneEdits state_in(Node node, const std::string& location, const fs::path& folder) {
+  const auto file = folder / need<std::string>(node["file"], location + ".file");
   const auto settings = [&](const char* key) { return settings_from_text(texts_in(node[key])); };
-  const Scene opened = Scene::from_text(need<std::string>(node["text"], place + ".text"), settings("opened_with"),
+  const Scene opened = Scene::from_text(need<std::string>(node["text"], location + ".text"), settings("opened_with"),
                                         file.lexically_normal().string());
   return {opened, settings("changes")};
 }
 
-Scale range_in(Node node, const std::string& place) {
-  const Scale range{need<double>(node["from"], place + ".from"), need<double>(node["to"], place + ".to"),
-                    need<bool>(node["log"], place + ".log")};
-  if (const std::string refusal = range.refusal(); !refusal.empty()) throw InputError(place + ": " + refusal);
+Scale read_range(Node node, const std::string& location) {
+  const Scale range{need<double>(node["from"], location + ".from"), need<double>(node["to"], location + ".to"),
+                    need<bool>(node["log"], location + ".log")};
+  if (const std::string refusal = range.refusal(); !refusal.empty()) throw InputError(location + ": " + refusal);
   return range;
 }
 
 /// Missing ranges stay automatic.
-void read_ranges(View& view, Node node, const std::string& place) {
+void read_ranges(View& view, Node node, const std::string& location) {
   const toml::table* const table = node.as_table();
   if (!table) return;
   for (const auto& [key, one] : *table) {
     const std::string name(key.str());
-    const Scale range = range_in(Node(one), place + "." + name);
+    const Scale range = read_range(Node(one), location + "." + name);
     if (std::optional<Scale>* fixed = fixed_range(view, name)) {
       *fixed = range;
     } else {
@@ -206,47 +194,47 @@ void read_ranges(View& view, Node node, const std::string& place) {
 }
 
 /// A number below `count`; 0 where it is missing.
-std::size_t index_in(Node node, std::size_t count, const std::string& place) {
+std::size_t index_in(Node node, std::size_t count, const std::string& location) {
   if (!node) return 0;
-  const int index = need<int>(node, place);
+  const int index = need<int>(node, location);
   if (index < 0 || static_cast<std::size_t>(index) >= count)
-    throw InputError(fmt::format("{} = {}: must be in [0, {}]", place, index, count - 1));
+    throw InputError(fmt::format("{} = {}: must be in [0, {}]", location, index, count - 1));
   return static_cast<std::size_t>(index);
 }
 
-View view_in(Node node, const std::string& place) {
+View view_in(Node node, const std::string& location) {
   const auto axis = [&](const char* key) {
     return need_one_of(
-        kMapAxes, [](Axis one) { return description_of(one).name; }, node[key], place + key);
+        kMapAxes, [](Axis one) { return description_of(one).name; }, node[key], location + key);
   };
   View view;
   view.quantity =
       need_one_of(
-          kAllPlotted, [](const PlottedDescription& one) { return one.name; }, node["quantity"], place + "quantity")
+          kAllPlotted, [](const PlottedDescription& one) { return one.name; }, node["quantity"], location + "quantity")
           .quantity;
   view.panel = panel_of(need_one_of(
-      kPanelNames, [](const char* name) { return name; }, node["panel"], place + "panel"));
-  view.theta_max_deg = need<double>(node["theta_max_deg"], place + "theta_max_deg");
+      kPanelNames, [](const char* name) { return name; }, node["panel"], location + "panel"));
+  view.theta_max_deg = need<double>(node["theta_max_deg"], location + "theta_max_deg");
   view.map_x = axis("map_x");
   view.map_y = axis("map_y");
-  for (const Flag& flag : kFlags) view.*flag.flag = need<bool>(node[flag.key], place + flag.key);
-  view.mueller_row = index_in(node["mueller_row"], 4, place + "mueller_row");
-  view.mueller_column = index_in(node["mueller_column"], 4, place + "mueller_column");
-  read_ranges(view, node["ranges"], place + "ranges");
+  for (const Flag& flag : kFlags) view.*flag.flag = need<bool>(node[flag.key], location + flag.key);
+  view.mueller_row = index_in(node["mueller_row"], 4, location + "mueller_row");
+  view.mueller_column = index_in(node["mueller_column"], 4, location + "mueller_column");
+  read_ranges(view, node["ranges"], location + "ranges");
   return view;
 }
 
 SavedSession session_in(const std::string& path, const toml::table& table) {
   const Node file(static_cast<const toml::node&>(table));
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  const std::string place = path + ": ";
-  if (need<int>(file[kVersionKey], place + kVersionKey) != kVersion)
-    throw InputError(fmt::format("{}{} is not {}: the session of another version", place, kVersionKey, kVersion));
-  SavedSession saved{.edits = state_in(file["scene"], place + "scene", folder)};
+  const fs::path folder = fs::path(path).parent_path();
+  const std::string location = path + ": ";
+  if (need<int>(file[kVersionKey], location + kVersionKey) != kVersion)
+    throw InputError(fmt::format("{}{} is not {}: the session of another version", location, kVersionKey, kVersion));
+  SavedSession saved{.edits = state_in(file["scene"], location + "scene", folder)};
   const auto for_each = [&](const char* key, const auto& use) {
     const toml::array* const array = file[key].as_array();
     for (std::size_t i = 0; array && i < array->size(); ++i) {
-      const std::string here = fmt::format("{}{}[{}]", place, key, i);
+      const std::string here = fmt::format("{}{}[{}]", location, key, i);
       use(Node((*array)[i]), need<std::string>(Node((*array)[i])["name"], here + ".name"), here);
     }
   };
@@ -259,42 +247,43 @@ SavedSession session_in(const std::string& path, const toml::table& table) {
   for_each("snapshots", [&](Node one, const std::string& name, const std::string& here) {
     saved.snapshots.push_back({name, state_in(one, here, folder)});
   });
-  saved.view = view_in(file["view"], place + "view.");
-  saved.theta_deg = need<double>(file["view"]["cursor_deg"], place + "view.cursor_deg");
+  saved.view = view_in(file["view"], location + "view.");
+  saved.theta_deg = need<double>(file["view"]["cursor_deg"], location + "view.cursor_deg");
   if (file["measured"]) {
-    const auto data = folder / need<std::string>(file["measured"], place + "measured");
+    const auto data = folder / need<std::string>(file["measured"], location + "measured");
     saved.measured = read_measured(data.lexically_normal().string());
   }
-  saved.marked = marks_in(texts_in(file["vary"]), place);
+  saved.marked = marks_in(texts_in(file["vary"]), location);
   return saved;
 }
 
 }  // namespace
 
 void save_session(const Session& session, const std::string& path) {
-  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-  const StateWriter states(session.skies(), path);
+  const fs::path target = fs::absolute(path).lexically_normal();
+  const auto state = [&](const SceneEdits& edits, const std::string& name) {
+    return state_table(edits, name, session.skies(), target);
+  };
   toml::table file{{kVersionKey, kVersion},
-                   {"scene", states.table(session.edits(), "")},
+                   {"scene", state(session.edits(), "")},
                    {"view", view_table(session)},
                    {"vary", array_of(session.marked(), mark_text)}};
   if (const auto& data = session.residuals().data())
-    file.insert("measured", std::filesystem::proximate(data->name, folder).string());
+    file.insert("measured", fs::proximate(data->name, target.parent_path()).string());
   toml::array pins, snapshots;
   for (const Pin& pin : session.pins()) {
-    toml::table table = states.table(SceneEdits(pin.curve.scene()), pin.name);
+    toml::table table = state(SceneEdits(pin.curve.scene()), pin.name);
     table.insert("visible", pin.is_visible);
     table.insert("colour", static_cast<int>(pin.colour));
     pins.push_back(std::move(table));
   }
-  for (const Snapshot& one : session.snapshots()) snapshots.push_back(states.table(one.edits, one.name));
+  for (const Snapshot& one : session.snapshots()) snapshots.push_back(state(one.edits, one.name));
   file.insert("pins", std::move(pins));
   file.insert("snapshots", std::move(snapshots));
   write_toml(path, file);
 }
 
 void save_scene(Session& session, const std::string& path) {
-  namespace fs = std::filesystem;
   if (session.has_own_sky()) {
     const fs::path sky = fs::absolute(path).replace_filename(fs::path(path).stem().string() + "_sky.csv");
     write_text_atomically(sky, read_sky_pair(sky_file(session.scene())).value().csv());
@@ -314,14 +303,14 @@ void save_curve(const Session& session, const std::string& path) {
 bool is_session_file(const std::string& path) {
   std::error_code unknown;
   try {
-    return std::filesystem::is_regular_file(path, unknown) && read_toml(path).contains(kVersionKey);
+    return fs::is_regular_file(path, unknown) && read_toml(path).contains(kVersionKey);
   } catch (const InputError&) {
     return false;
   }
 }
 
 void open_file(Session& session, const std::string& path) {
-  if (std::filesystem::path(path).extension() == ".csv") return session.load_measured(path);
+  if (fs::path(path).extension() == ".csv") return session.load_measured(path);
   const toml::table table = read_toml(path);
   if (table.contains(kVersionKey)) {
     session.restore(session_in(path, table));
@@ -330,17 +319,17 @@ void open_file(Session& session, const std::string& path) {
   }
 }
 
-std::filesystem::path Preferences::default_path() {
+fs::path Preferences::default_path() {
   const char* const config = std::getenv("XDG_CONFIG_HOME");
   const char* const home = std::getenv("HOME");
-  if (config && *config != '\0') return std::filesystem::path(config) / "dolp/window.toml";
-  return home && *home != '\0' ? std::filesystem::path(home) / ".config/dolp/window.toml" : "";
+  if (config && *config != '\0') return fs::path(config) / "dolp/window.toml";
+  return home && *home != '\0' ? fs::path(home) / ".config/dolp/window.toml" : "";
 }
 
-void Preferences::load(const std::filesystem::path& path) {
+void Preferences::load(const fs::path& path) {
   path_ = path;
   std::error_code unknown;
-  if (!std::filesystem::exists(path, unknown)) return;
+  if (!fs::exists(path, unknown)) return;
   const toml::table table = read_toml(path.string());
   is_light = table["light"].value_or(false);
   zoom_by(table["zoom"].value_or(0));
@@ -350,7 +339,7 @@ void Preferences::load(const std::filesystem::path& path) {
 void Preferences::save() const {
   if (path_.empty()) return;
   std::error_code failure;
-  std::filesystem::create_directories(path_.parent_path(), failure);
+  fs::create_directories(path_.parent_path(), failure);
   if (failure) throw IoError(path_.parent_path().string() + ": " + failure.message());
   const auto same = [](const std::string& path) { return path; };
   write_toml(path_, toml::table{{"light", is_light}, {"zoom", zoom_steps_}, {"recent", array_of(recent(), same)}});
@@ -366,8 +355,8 @@ void Preferences::zoom_by(int steps) {
   zoom_steps_ = std::clamp(zoom_steps_ + std::clamp(steps, -2 * kMostSteps, 2 * kMostSteps), -kMostSteps, kMostSteps);
 }
 
-void Preferences::remember(const std::filesystem::path& file) {
-  const std::string path = std::filesystem::absolute(file).lexically_normal().string();
+void Preferences::remember(const fs::path& file) {
+  const std::string path = fs::absolute(file).lexically_normal().string();
   std::erase(recent_, path);
   recent_.insert(recent_.begin(), path);
   recent_.resize(std::min(recent_.size(), kMostRecent));
@@ -376,7 +365,7 @@ void Preferences::remember(const std::filesystem::path& file) {
 std::vector<std::string> Preferences::recent() const {
   std::vector<std::string> found = recent_;
   std::error_code unknown;
-  std::erase_if(found, [&](const std::string& path) { return !std::filesystem::exists(path, unknown); });
+  std::erase_if(found, [&](const std::string& path) { return !fs::exists(path, unknown); });
   return found;
 }
 

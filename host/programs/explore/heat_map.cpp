@@ -126,9 +126,9 @@ PointList HeatMap::rows(std::size_t level, std::size_t first) const {
 
 std::optional<Job> HeatMap::wanted(std::size_t level) const {
   if (key_.empty() || (is_current() && is_complete(level))) return std::nullopt;
-  const Level& of = kLevels[level];
-  Job job{.key = key_of(level), .scene = scene_, .parts = {}, .tolerance = of.tolerance, .keep_all = keep_all_};
-  for (std::size_t row = 0; row < of.count; row += of.batch) job.parts.push_back(rows(level, row));
+  const Level& next = kLevels[level];
+  Job job{.key = key_of(level), .scene = scene_, .parts = {}, .tolerance = next.tolerance, .keep_all = keep_all_};
+  for (std::size_t row = 0; row < next.count; row += next.batch) job.parts.push_back(rows(level, row));
   return job;
 }
 

@@ -16,11 +16,11 @@ constexpr double kSpecularAzimuth_deg = 180.0;  // between the source and a mirr
 
 /// The wavelengths at which n and k are shown.
 std::pair<double, double> known_um(const Scene& scene) {
-  const auto own = spectrum_um(scene);
+  const auto spectrum = spectrum_um(scene);
   for (const BuiltInMaterial& known : materials()) {
     if (known.name == scene.word("surface.material")) return {known.from_um, known.to_um};
   }
-  return own.first < own.second ? own : std::pair{0.8 * own.first, 1.25 * own.second};
+  return spectrum.first < spectrum.second ? spectrum : std::pair{0.8 * spectrum.first, 1.25 * spectrum.second};
 }
 
 }  // namespace
@@ -96,7 +96,8 @@ ScatteringCut scattering_cut(Evaluator& evaluator, const Scene& scene, double th
   return cut;
 }
 
-std::optional<SeenPolarisation> seen_at(const std::vector<Point>& curve, double theta_deg, double azimuth_deg) {
+std::optional<ImagePolarisation> polarisation_at(const std::vector<Point>& curve, double theta_deg,
+                                                 double azimuth_deg) {
   const auto above = std::ranges::lower_bound(curve, theta_deg, {}, &Point::theta_deg);
   if (above == curve.end()) return std::nullopt;
   const auto below = above == curve.begin() ? above : std::prev(above);
@@ -105,7 +106,7 @@ std::optional<SeenPolarisation> seen_at(const std::vector<Point>& curve, double 
   const double part = width > 0.0 ? (theta_deg - below->theta_deg) / width : 0.0;
   const double q_over_i = (1.0 - part) * below->values[Quantity::kQOverI] + part * above->values[Quantity::kQOverI];
   const double angle_deg = std::fmod(azimuth_deg + (q_over_i > 0.0 ? 90.0 : 0.0) + 360.0, 180.0);
-  return SeenPolarisation{std::abs(q_over_i), angle_deg};
+  return ImagePolarisation{std::abs(q_over_i), angle_deg};
 }
 
 void SourceSky::follow(const std::string& key, const Scene& scene) {

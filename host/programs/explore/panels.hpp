@@ -50,7 +50,7 @@ struct ScatteringCut {
 ScatteringCut scattering_cut(Evaluator& evaluator, const Scene& scene, double theta_i_deg, std::size_t count);
 
 /// The polarisation of a facet of the mean surface in a camera's image.
-struct SeenPolarisation {
+struct ImagePolarisation {
   double dolp = 0.0;
   double angle_deg = 0.0;  ///< direction of the electric field from the image's horizontal, counterclockwise, 0 to 180
 };
@@ -59,7 +59,7 @@ struct SeenPolarisation {
 /// curve in hemispherical mode; none where the model fails.
 /// Conventions: s polarised (Q > 0) is normal to the plane of normal and view, which the image shows as a line along
 /// the azimuth; p lies in the plane.
-std::optional<SeenPolarisation> seen_at(const std::vector<Point>& curve, double theta_deg, double azimuth_deg);
+std::optional<ImagePolarisation> polarisation_at(const std::vector<Point>& curve, double theta_deg, double azimuth_deg);
 
 /// DOLP of a bistatic scene over the source's directions: rings of zeniths, one for each azimuth.
 class SourceSky {

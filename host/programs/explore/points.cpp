@@ -9,9 +9,9 @@ namespace {
 /// The scene with a list as its grid. Other axes of the scene's grid get the scene's single value.
 Scene with_grid(const Scene& scene, const PointList& list) {
   std::vector<Setting> axes = {{"theta_deg", list.theta_deg}, {list.roughness(), list.sigma}, {"q", list.q}};
-  for (const auto& [axis, of] :
+  for (const auto& [axis, key] :
        {std::pair{"wavelength_um", "spectrum.wavelength_um"}, {"n", "surface.n"}, {"k", "surface.k"}}) {
-    if (!scene.numbers(std::string("grid.") + axis).empty()) axes.push_back({axis, scene.number(of).value()});
+    if (!scene.numbers(std::string("grid.") + axis).empty()) axes.push_back({axis, scene.number(key).value()});
   }
   return scene.with_grid(axes);
 }

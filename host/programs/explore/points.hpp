@@ -33,7 +33,7 @@ PointList points_at(const Scene& scene, std::vector<double> theta_deg);
 /// `count` zeniths from `from` to `to`, both included.
 std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count);
 
-/// Errors: those of Evaluator::evaluate and Evaluator::table.
+/// Computes the points of a list. Errors: as Evaluator::evaluate and Evaluator::table.
 Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list, const RunOptions& options);
 
 /// The results at a point, in the units of a table.

@@ -124,10 +124,10 @@ std::vector<Setting> needed_with(const Scene& scene, const std::vector<Setting>&
   std::vector<Setting> needed;
   for (const std::array<Side, 2>& conflict : conflicts()) {
     for (const std::size_t i : {0U, 1U}) {
-      const Side& own = conflict[i];
+      const Side& side = conflict[i];
       const Side& other = conflict[1 - i];
-      const auto word = word_in(chosen, own.key);
-      if (!word || !own.excludes(*word) || word_in(chosen, other.key) || word_in(needed, other.key)) continue;
+      const auto word = word_in(chosen, side.key);
+      if (!word || !side.excludes(*word) || word_in(chosen, other.key) || word_in(needed, other.key)) continue;
       const auto now = word_in(words, other.key);
       if (now && other.excludes(*now)) needed.push_back({other.key, TomlText{other.instead}});
     }

@@ -139,23 +139,31 @@ TEST_F(Axes, LogarithmOfTheZenith_BeginsAtHalfADegree) {
   EXPECT_EQ(app_->curve_view().x(), (Scale{0.5, 90.0, true}));
 }
 
-TEST_F(Axes, Colours_AreTyped_AndStayWhileASliderIsDragged) {
+TEST_F(Axes, DragOfASlider_GivesCoarseCurves_AndHoldsZenithsAndColours_WhichCanBeTyped) {
   const explore::MapView& map = app_->map_view();
-  explore::View view = app_->session().view();
+  const explore::Session& session = app_->session();
+  explore::View view = session.view();
   view.quantity = explore::Plotted::kSignedDolp;
   app_->session().set_view(view);
   app_->settle();
-  const Scale before = map.colours();
-  EXPECT_EQ(before.from, -before.to);
+  const Scale colours = map.colours(), zeniths = app_->curve_view().x();
+  EXPECT_EQ(colours.from, -colours.to);
   const Area area = app_->control_area("surface.n");
   move_to(area.at(0.3F, 0.5F));
   press("mousedown");
-  move_to(area.at(0.5F, 0.5F));
-  app_->settle();
-  EXPECT_EQ(map.colours(), before);
+  for (const float part : {0.4F, 0.5F}) {
+    move_to(area.at(part, 0.5F));
+    app_->settle();
+    EXPECT_TRUE(session.is_dragged());
+    EXPECT_EQ(session.curve().points().size(), explore::Curve::kCoarseCount);
+    EXPECT_TRUE(explore::curve_name(session).ends_with(", coarse"));
+    EXPECT_EQ(app_->curve_view().x(), zeniths);
+    EXPECT_EQ(map.colours(), colours);
+  }
   press("mouseup");
   app_->settle();
-  EXPECT_NE(map.colours(), before);
+  EXPECT_TRUE(session.curve().is_finished());
+  EXPECT_NE(map.colours(), colours);
   const ImVec2 right = map.area().at(1.0F, 0.5F);
   type_ends({right.x + 3.0F * ImGui::GetTextLineHeight(), right.y}, "-8", "8");
   EXPECT_EQ(map.colours(), (Scale{-0.08, 0.08}));

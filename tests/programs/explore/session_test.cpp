@@ -179,18 +179,22 @@ TEST(ExploreSession, Map_InADrag_GoesFromOneCompleteMapToTheNext) {
   EXPECT_EQ(map_job().scene.number("surface.n"), session.scene().number("surface.n"));
 }
 
-TEST(ExploreSession, UndoAndRedo_GoThroughGestures) {
+TEST(ExploreSession, UndoAndRedo_GoThroughGestures_AndASavedSceneIsUnchanged) {
   Session session(paint());
   const Scene opened = session.scene();
   const auto sigma = [&] { return *session.scene().number("surface.sigma"); };
   for (const double dragged : {0.2, 0.25, 0.3}) session.set("surface.sigma", dragged);
   session.hold(false);
+  session.note_saved();
+  EXPECT_FALSE(session.edits().is_changed());
   session.set("surface.sigma", -1.0);  // refused: no change to undo
   session.hold(false);
   session.set("surroundings", Value{});
+  EXPECT_TRUE(session.edits().is_changed());
   session.undo();
   EXPECT_TRUE(session.scene().number("surroundings.temperature_K"));
   EXPECT_EQ(sigma(), 0.3);
+  EXPECT_FALSE(session.edits().is_changed());
   session.undo();
   EXPECT_EQ(session.scene().toml(), opened.toml());
   session.redo();
@@ -201,18 +205,6 @@ TEST(ExploreSession, UndoAndRedo_GoThroughGestures) {
   EXPECT_EQ(sigma(), 0.4);
   session.undo();
   EXPECT_EQ(sigma(), 0.3);
-}
-
-TEST(ExploreSession, SavedScene_IsUnchangedUntilTheNextChange) {
-  Session session(paint());
-  session.set("surface.sigma", 0.2);
-  session.note_saved();
-  session.hold(false);
-  EXPECT_FALSE(session.edits().is_changed());
-  session.set("surface.sigma", 0.3);
-  EXPECT_TRUE(session.edits().is_changed());
-  session.undo();
-  EXPECT_FALSE(session.edits().is_changed());
 }
 
 TEST(ExploreSession, PinNames_HaveTheWordsThatDiffer) {
@@ -340,38 +332,32 @@ TEST(ExploreSession, Map_FinishesAt128WithTheValuesOfTheScene) {
   }
 }
 
-TEST(ExploreSession, Peak_IsTheLargestOfTheCurve_AndItsCausesAddUp) {
+TEST(ExploreSession, Peak_IsTheLargestOfTheCurve_IsDrawn_AndItsCausesAddUp) {
   Driver driver(paint());
-  const Peak& peak = driver.session.peak();
+  Session& session = driver.session;
+  session.pin();
+  const Peak& peak = session.peak();
   ASSERT_TRUE(peak.is_complete());
+  const Point at = peak.answer()->at;
   double sum = 0.0;
-  for (const WithoutEffect& away : peak.without()) {
-    if (away.radiates) sum += peak.contribution(away);
-  }
-  EXPECT_NEAR(sum, peak.answer()->at[Quantity::kQOverI], 2e-3);  // two runs at a tolerance of 1e-3
-  for (const Point& result : driver.session.curve().points()) {
+  for (const WithoutEffect& one : peak.without()) sum += one.radiates ? peak.contribution(one) : 0.0;
+  EXPECT_NEAR(sum, at[Quantity::kQOverI], 2e-3);  // two runs at a tolerance of 1e-3
+  for (const Point& result : session.curve().points()) {
     if (!result.is_good()) continue;
-    EXPECT_LE(result[Quantity::kDolp], peak.answer()->at[Quantity::kDolp] + result[Quantity::kErrorEstimate]);
+    EXPECT_LE(result[Quantity::kDolp], at[Quantity::kDolp] + result[Quantity::kErrorEstimate]);
   }
-  EXPECT_LE(peak.answer()->theta_low_deg, peak.answer()->at.theta_deg);
-  EXPECT_GE(peak.answer()->theta_high_deg, peak.answer()->at.theta_deg);
-  EXPECT_NE(cause_text(driver.session).find("emission -"), std::string::npos) << cause_text(driver.session);
-  EXPECT_NE(cause_text(driver.session).find("against it: surroundings +"), std::string::npos);
-}
-
-TEST(ExploreSession, CurveAndItsPin_GoThroughThePeak_OfTheirScene) {
-  Driver driver(paint());
-  driver.session.pin();
-  const PeakAnswer peak = driver.session.peak().answer().value();
-  for (const Curve* curve : {&driver.session.curve(), &std::as_const(driver.session).pins()[0].curve}) {
-    const std::vector<Point> drawn = curve->drawn();
+  EXPECT_LE(peak.answer()->theta_low_deg, at.theta_deg);
+  EXPECT_GE(peak.answer()->theta_high_deg, at.theta_deg);
+  EXPECT_NE(cause_text(session).find("emission -"), std::string::npos) << cause_text(session);
+  EXPECT_NE(cause_text(session).find("against it: surroundings +"), std::string::npos);
+  for (const std::vector<Point>& drawn : {session.curve().drawn(), session.pins()[0].curve.drawn()}) {
     EXPECT_TRUE(std::ranges::is_sorted(drawn, {}, &Point::theta_deg));
-    const auto top = std::ranges::find(drawn, peak.at.theta_deg, &Point::theta_deg);
+    const auto top = std::ranges::find(drawn, at.theta_deg, &Point::theta_deg);
     ASSERT_NE(top, drawn.end());
-    EXPECT_EQ((*top)[Quantity::kDolp], peak.at[Quantity::kDolp]);
+    EXPECT_EQ((*top)[Quantity::kDolp], at[Quantity::kDolp]);
   }
-  driver.session.set("surface.sigma", 0.3);
-  EXPECT_EQ(driver.session.curve().drawn().size(), driver.session.curve().points().size());
+  session.set("surface.sigma", 0.3);
+  EXPECT_EQ(session.curve().drawn().size(), session.curve().points().size());
 }
 
 TEST(ExploreSession, ThetaMax_BoundsMapCursorAndPeak) {

@@ -49,7 +49,7 @@ TEST_F(WindowLook, MarkOfAMaximumAtTheEnd_IsWhole) {
   const auto column = [&](float right) {
     return pixels({{plot().max.x + right, plot().min.y}, {plot().max.x + right + 1.0F, plot().max.y}});
   };
-  EXPECT_TRUE(column(3.0F) != column(7.0F));  // the mark alone is drawn beside the plot
+  EXPECT_TRUE(column(3.0F) != column(7.0F));  // only the mark is drawn beside the plot
 }
 
 TEST_F(WindowLook, Lines_BreakAtSpacesAlone) {

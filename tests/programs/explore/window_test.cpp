@@ -204,7 +204,7 @@ TEST_F(Window, List_OpensAndClosesOnTheScreenWithoutTheMouseMoving) {
   EXPECT_EQ(closed_again, closed);
 }
 
-TEST_F(Window, KeysThatComeAndGoBetweenTwoFrames_AllCount) {
+TEST_F(Window, EventsBetweenTwoFrames_AllCount) {
   click_control("field surface.sigma");
   xdotool({"key", "--delay", "12", "0", "period", "2", "Tab", "4", "Return"});
   frames();
@@ -213,9 +213,7 @@ TEST_F(Window, KeysThatComeAndGoBetweenTwoFrames_AllCount) {
   xdotool({"key", "--delay", "12", "ctrl+p", "ctrl+p"});
   frames();
   EXPECT_EQ(app_->session().pins().size(), 2U);
-}
-
-TEST_F(Window, MouseThatClicksAndMovesOnBetweenTwoFrames_ClicksWhereItWas) {
+  // A mouse that moves on at once clicks where it was.
   const ImVec2 box = app_->control_area("emission.bracket").at(0.5F, 0.5F);
   xdotool({"mousemove", "--window", window_, std::to_string(std::lround(box.x)), std::to_string(std::lround(box.y)),
            "click", "1", "mousemove", "--window", window_, "700", "300"});
@@ -303,21 +301,17 @@ class ExploreCommand : public CommandLine {
   VirtualDisplay display_;
 };
 
-TEST_F(ExploreCommand, FramesAndScreenshot_WritesAPictureAndTheTimes) {
-  const Outcome outcome = dolp({"explore", "--frames", "5", "--screenshot", "shot.png"});
+TEST_F(ExploreCommand, FramesAndScreenshot_WriteAPictureAndTheTimes_AlsoOfASession) {
+  explore::Session session(explore::SceneEdits(Scene::from_file(at("scene.toml"))));
+  session.pin();
+  save_session(session, at("session.toml").string());
+  const Outcome outcome =
+      dolp({"explore", "session.toml", "--set", "surface.sigma=0.2", "--frames", "5", "--screenshot", "shot.png"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("frames     5 frames"), std::string::npos) << outcome.out;
   EXPECT_TRUE(content("shot.png").starts_with("\x89PNG"));
   EXPECT_GT(content("shot.png").size(), 50'000U);
-}
-
-TEST_F(ExploreCommand, Session_OpensWithItsView_AndABadOneIsOneLine) {
-  explore::Session session(explore::SceneEdits(Scene::from_file(at("scene.toml"))));
-  session.pin();
-  save_session(session, at("session.toml").string());
-  const std::vector<std::string> options = {"--frames", "5", "--screenshot", "shot.png"};
-  const Outcome outcome = dolp(joined({"explore", "session.toml", "--set", "surface.sigma=0.2"}, options));
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(dolp({"explore", "--frames", "1"}).status, 0);
   expect_refused(dolp({"explore", "session.toml", "--frames", "1", "--set", "surface.sigma=-1"}), "surface.sigma");
   put("session.toml", "dolp_session = 1\n");
   expect_refused(dolp({"explore", "session.toml", "--frames", "1"}), "session.toml: scene.file is missing");

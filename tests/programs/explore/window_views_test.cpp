@@ -78,15 +78,15 @@ TEST(ExplorePanels, SphereOfASurface_ShowsPAlongTheTiltAndSAcross) {
   explore::Driver driver(paint());
   const std::vector<explore::Point>& curve = driver.session.curve().points();
   ASSERT_LT(curve[120][Quantity::kQOverI], 0.0);
-  const std::optional<explore::SeenPolarisation> plate = explore::seen_at(curve, 60.0, 30.0);
+  const std::optional<explore::ImagePolarisation> plate = explore::polarisation_at(curve, 60.0, 30.0);
   ASSERT_TRUE(plate);
   EXPECT_DOUBLE_EQ(plate->dolp, -curve[120][Quantity::kQOverI]);
   EXPECT_NEAR(plate->angle_deg, 30.0, 1e-9);
-  EXPECT_NEAR(explore::seen_at(curve, 60.0, -150.0)->angle_deg, 30.0, 1e-9);
+  EXPECT_NEAR(explore::polarisation_at(curve, 60.0, -150.0)->angle_deg, 30.0, 1e-9);
   std::vector<explore::Point> s_polarised = curve;
   for (explore::Point& point : s_polarised) point.values[Quantity::kQOverI] *= -1.0;
-  EXPECT_NEAR(explore::seen_at(s_polarised, 60.0, 30.0)->angle_deg, 120.0, 1e-9);
-  const double between = explore::seen_at(curve, 60.25, 0.0)->dolp;
+  EXPECT_NEAR(explore::polarisation_at(s_polarised, 60.0, 30.0)->angle_deg, 120.0, 1e-9);
+  const double between = explore::polarisation_at(curve, 60.25, 0.0)->dolp;
   EXPECT_NEAR(between, -0.5 * (curve[120][Quantity::kQOverI] + curve[121][Quantity::kQOverI]), 1e-12);
 }
 
@@ -152,26 +152,6 @@ TEST_F(Window, SceneWithAWind_HasItsSliderAndItsAxis_InsteadOfSigma) {
   app_->settle();
   EXPECT_NE(session.scene().number("surface.wind_m_s"), wind);
   EXPECT_EQ(session.curve().points()[0].sigma, session.scene().number("surface.wind_m_s"));
-}
-
-TEST_F(Window, Slider_WhileItIsDragged_MovesACoarseCurve_AndTheAxisOfZenithsHolds) {
-  const Area area = app_->control_area("surface.sigma");
-  const explore::Session& session = app_->session();
-  const explore::Scale x = app_->curve_view().x();
-  move_to(area.at(0.3F, 0.5F));
-  press("mousedown");
-  for (const float part : {0.4F, 0.5F, 0.6F}) {
-    move_to(area.at(part, 0.5F));
-    app_->settle();
-    EXPECT_TRUE(session.is_dragged());
-    EXPECT_EQ(session.curve().points().size(), explore::Curve::kCoarseCount);
-    EXPECT_EQ(session.curve().points()[0].sigma, session.scene().number("surface.sigma"));
-    EXPECT_TRUE(explore::curve_name(session).ends_with(", coarse"));
-    EXPECT_EQ(app_->curve_view().x(), x);
-  }
-  press("mouseup");
-  app_->settle();
-  EXPECT_TRUE(session.curve().is_finished());
 }
 
 }  // namespace

@@ -20,8 +20,6 @@ class App {
 
   /// Opens the window. Errors: DeviceError without a display, or without a device that can show a window on it.
   App(SceneEdits edits, const AppOptions& options);
-  App(const App&) = delete;
-  App& operator=(const App&) = delete;
   ~App();
 
   Session& session();
@@ -70,7 +68,7 @@ struct ProgramOptions {
 };
 
 /// Shows the window. With a number of frames, prints their durations.
-/// Errors: those of the public header; DeviceError, IoError.
+/// Errors: as in the public header; DeviceError, IoError.
 void run_program(const Scene& scene, const ProgramOptions& options);
 
 }  // namespace dolp::explore

@@ -21,9 +21,7 @@ std::string file_name(const std::string& path) { return std::filesystem::path(pa
 
 void heading(const char* text) {
   ImGui::Spacing();
-  ImGui::PushStyleColor(ImGuiCol_Text, kHeadingColour);
-  ImGui::TextUnformatted(text);
-  ImGui::PopStyleColor();
+  coloured_text(kHeadingColour, text);
   ImGui::Separator();
 }
 
@@ -68,268 +66,286 @@ Value value_of(const std::string& text) {
   return number ? Value(*number) : Value(TomlText{text});
 }
 
+/// The controls of a session.
+struct Controls {
+  Session& session;
+  ControlsState& state;
+
+  /// A slider with a field beside it.
+  struct Slider {
+    std::string id;
+    std::string label;
+    std::string note;
+    std::string reset_key;  ///< Ctrl-click resets it
+    Scale scale;
+    std::function<Setting(double position)> moved;
+    std::function<Setting(const std::string& text)> typed;
+  };
+
+  /// Changes the scene; returns why it is refused, or nothing.
+  std::string set(const Setting& change) {
+    session.set({change});
+    return session.message().is_error ? session.message().text : "";
+  }
+
+  /// Draws fields, and removes the message about a text when the text is gone.
+  void draw_fields(const std::string& id, const std::function<void()>& draw) {
+    const std::string before = state.fields.reason(id);
+    draw();
+    if (!before.empty() && state.fields.reason(id).empty() && session.message().text == before) session.tell("");
+  }
+
+  void draw_ends(const std::string& id, const std::array<double, 2>& ends, const NumberFields::ApplyEnds& apply) {
+    const std::array<std::string, 2> ids = {id + " 0", id + " 1"};
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    const float width = 0.5F * (ImGui::GetContentRegionAvail().x - gap);
+    for (const std::size_t end : {0U, 1U}) {
+      if (end > 0) ImGui::SameLine(0.0F, gap);
+      ImGui::SetNextItemWidth(width);
+      draw_fields(ids[end], [&] { state.fields.draw_end(id, end, ends, apply); });
+    }
+    for (const std::string& one : ids) state.fields.draw_reason(one);
+  }
+
+  void draw_slider(const Slider& slider, double value, const Parameter* parameter = nullptr) {
+    row_label(slider.label);
+    const bool can_vary = parameter && session.residuals().data() && !slider.id.starts_with("accuracy.");
+    if (bool varies = session.varies(slider.id); can_vary) {
+      if (ImGui::Checkbox(("##vary " + slider.id).c_str(), &varies)) session.mark(slider.id, varies);
+      name_item("vary " + slider.id);
+      tooltip("varies in a fit to the measured points, over the range below its slider");
+      ImGui::SameLine();
+    }
+    ImGui::SetNextItemWidth(-5.2F * ImGui::GetFontSize() - ImGui::GetStyle().ItemSpacing.x);
+    auto position = static_cast<float>(slider.scale.position(slider.scale.clamp(value)));
+    const std::string id = "##slider " + slider.id;
+    const bool is_moved = ImGui::SliderFloat(id.c_str(), &position, 0.0F, 1.0F, "", ImGuiSliderFlags_NoInput);
+    name_item(slider.id);
+    if (const FitParameter* found = session.fitted(slider.id)) draw_interval(*parameter, found->interval_68);
+    const bool is_ctrl = ImGui::GetIO().KeyCtrl;
+    if (ImGui::IsItemClicked() && is_ctrl) session.reset(slider.reset_key);
+    if (is_moved && !is_ctrl) session.set({slider.moved(static_cast<double>(position))});
+    if (!ImGui::IsItemActive()) tooltip(slider.note);
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(-1.0F);
+    draw_fields(slider.id, [&] {
+      state.fields.draw(slider.id, value, [&](const std::string& text) { return set(slider.typed(text)); });
+    });
+    state.fields.draw_reason(slider.id);
+  }
+
+  void draw_parameter(const Parameter& parameter, double value) {
+    const std::string& key = parameter.key->key;
+    const std::string unit = unit_text(*parameter.key);
+    draw_slider({.id = key,
+                 .label = unit.empty() ? parameter.symbol : fmt::format("{} [{}]", parameter.symbol, unit),
+                 .note = note_on(parameter, session),
+                 .reset_key = key,
+                 .scale = parameter.slider,
+                 .moved =
+                     [&](double position) {
+                       return Setting{key, parameter.slider_value(position)};
+                     },
+                 .typed =
+                     [&](const std::string& text) {
+                       return Setting{key, value_of(text)};
+                     }},
+                value, &parameter);
+    draw_fit_range(parameter, value);
+  }
+
+  void draw_fit_range(const Parameter& parameter, double value) {
+    const std::string& key = parameter.key->key;
+    if (!session.residuals().data() || !session.varies(key)) return;
+    const FitRange range = fit_range(session.marked(), session.scene(), parameter, value);
+    row_label("  fit from, to");
+    draw_ends("fit " + key, {range.low, range.high},
+              [&](const std::string& low, const std::string& high) { return session.set_fit_range(key, low, high); });
+  }
+
+  void draw_table(const std::string& table) {
+    for (const Parameter& parameter : parameters()) {
+      if (table_of(parameter.key->key) != table) continue;
+      // The value is read for each control, because the control before may have changed the scene.
+      if (const auto value = parameter.value(session.scene())) draw_parameter(parameter, *value);
+    }
+  }
+
+  void draw_choice(const Choice& choice, std::size_t word) {
+    const std::string& key = choice.key->key;
+    const std::vector<std::string>& words = choice.key->words;
+    const std::string note = key + ": " + choice.key->meaning + "\n" + choice.equation;
+    row_label(choice.label);
+    if (bool is_set = word != 0; choice.is_flag()) {
+      if (ImGui::Checkbox(("##" + key).c_str(), &is_set)) session.set({{key, is_set}});
+      name_item(key);
+      return tooltip(note);
+    }
+    const auto entries = [&] {
+      std::vector<ListEntry> all;
+      for (const std::string& one : words) all.push_back({one});
+      return all;
+    };
+    if (const auto clicked = draw_list(key, -1.0F, words[word], note, word, entries))
+      set({key, TomlText{words[*clicked]}});
+  }
+
+  void draw_choices(const std::string& table) {
+    for (const Choice& choice : choices()) {
+      if (table_of(choice.key->key) != table) continue;
+      if (const auto word = choice.word(session.scene())) draw_choice(choice, *word);
+    }
+  }
+
+  void draw_material() {
+    static const std::vector<BuiltInMaterial> known = materials();
+    const Scene& scene = session.scene();
+    const bool is_typed = scene.number("surface.n").has_value();
+    const std::string current = is_typed ? "n and k as below" : scene.word("surface.material").value_or("file");
+    // The entry before the built-in materials is 0; a file has no entry.
+    const auto now = std::ranges::find(known, current, &BuiltInMaterial::name);
+    std::optional<std::size_t> chosen;
+    if (is_typed || now != known.end()) chosen = is_typed ? 0 : static_cast<std::size_t>(now - known.begin()) + 1;
+    const auto entries = [&] {
+      const auto [from_um, to_um] = spectrum_um(scene);
+      std::vector<ListEntry> all = {{"n and k as below"}};
+      for (const BuiltInMaterial& one : known) {
+        const bool is_known = one.from_um <= from_um && to_um <= one.to_um;
+        all.push_back({fmt::format("{}, {:g} to {:g} µm", one.name, one.from_um, one.to_um),
+                       one.source + (is_known ? "" : "\nnot known over the spectrum of this scene"), is_known});
+      }
+      return all;
+    };
+    row_label("material");
+    const std::string note = is_typed ? "a built-in material, or your n and k" : "N = n + ik of " + surface_name(scene);
+    const auto clicked = draw_list("material", -1.0F, current, note, chosen, entries);
+    if (!clicked) return;
+    if (*clicked > 0) return session.set("surface.material", known[*clicked - 1].name);
+    const auto [n, k] = scene.refractive_index(spectrum_um(scene).first);
+    session.set({{"surface.n", n}, {"surface.k", k}});
+  }
+
+  void draw_source_kind() {
+    const Scene& scene = session.scene();
+    const std::size_t now = scene.number("source.irradiance") ? 0 : scene.number("source.relative_irradiance") ? 1 : 2;
+    const std::array<ListEntry, 3> kinds = {{{"E0 as below"}, {"e = E0/(πB(T)) as below"}, {"the sun"}}};
+    const std::array<Setting, 3> changes = {
+        {{"source.irradiance", 1.0}, {"source.relative_irradiance", 0.6}, {"source.preset", "sun"}}};
+    row_label("kind");
+    const auto entries = [&] { return std::vector<ListEntry>(kinds.begin(), kinds.end()); };
+    if (const auto clicked = draw_list("source kind", -1.0F, kinds[now].text, "", now, entries)) set(changes[*clicked]);
+  }
+
+  /// A box that removes an effect from the scene, and brings it back as it was opened or with first values.
+  void draw_effect_box(const std::string& table) {
+    bool wanted = has_effect(session.scene(), table);
+    if (!ImGui::Checkbox(table.c_str(), &wanted)) return;
+    if (!wanted) return session.set({{table, Value()}});
+    session.reset(table);
+    if (has_effect(session.scene(), table)) return;
+    if (table == "emission") session.set({{"emission.temperature_K", 300.0}});
+    if (table == "source") session.set({{"source.preset", "sun"}});
+    if (table == "surroundings") session.set({{"surroundings.temperature_K", 250.0}});
+    if (table == "path") session.set({{"path.transmittance", 0.9}, {"path.temperature_K", 280.0}});
+  }
+
+  void draw_sky() {
+    const std::string file = sky_file(session.scene()).string();
+    if (file != state.sky_file) state.sky = read_sky_pair(file);
+    state.sky_file = file;
+    draw_sky_list();
+    if (state.sky) draw_sky_temperature("zenith", &SkyPair::zenith_K);
+    if (state.sky) draw_sky_temperature("horizon", &SkyPair::horizon_K);
+  }
+
+  void draw_sky_list() {
+    const std::string current = session.scene().word(kSkyProfile).value_or("");
+    const std::string opened = session.edits().opened().word(kSkyProfile).value_or("");
+    std::vector<ListEntry> skies = {{"uniform"}, {"clear-sky"}, {"overcast"}, {"zenith and horizon"}};
+    // The file of the scene as opened stays among the choices.
+    if (!sky_file(session.edits().opened()).empty()) skies.push_back({file_name(opened)});
+    const std::string name = current.empty() ? "uniform" : state.sky ? "zenith and horizon" : file_name(current);
+    const auto now = std::ranges::find(skies, name, &ListEntry::text);
+    const auto position = static_cast<std::size_t>(now - skies.begin());
+    row_label("sky");
+    const auto clicked =
+        draw_list("sky", -1.0F, name, fmt::format("{} {}: {}", kSkyProfile, current, described(kSkyProfile).meaning),
+                  position, [&] { return skies; });
+    if (!clicked) return;
+    if (*clicked == 0) {
+      session.set(kUniformSky, session.edits().opened().number(kUniformSky).value_or(kUniformSky_K));
+    } else if (*clicked == 3) {
+      session.set(kSkyProfile, session.skies().path({}));
+    } else {
+      session.set(kSkyProfile, *clicked < 3 ? skies[*clicked].text : opened);
+    }
+  }
+
+  void draw_sky_temperature(const std::string& name, double SkyPair::*part) {
+    SkyPair sky = *state.sky;
+    const auto with = [&](double temperature_K) {
+      sky.*part = temperature_K;
+      return Setting{kSkyProfile, session.skies().path(sky)};
+    };
+    draw_slider({.id = "sky " + name,
+                 .label = fmt::format("T_{} [K]", name.substr(0, 3)),
+                 .note = fmt::format("brightness temperature at the {}; a straight line in zenith between both", name),
+                 .reset_key = kSkyProfile,
+                 .scale = kSkySlider,
+                 .moved = [&](double position) { return with(std::round(10.0 * kSkySlider.value(position)) / 10.0); },
+                 .typed =
+                     [&](const std::string& text) {
+                       const std::optional<double> typed = parse_number(text);
+                       // Text that is no temperature is refused with the message for a uniform sky.
+                       const bool is_allowed = typed && described(kUniformSky).range.contains(*typed);
+                       return is_allowed ? with(*typed) : Setting{kUniformSky, TomlText{text}};
+                     }},
+                state.sky.value().*part);
+  }
+
+  void draw_spectrum() {
+    constexpr const char* kKey = "spectrum.band_um";
+    bool is_band = !session.scene().numbers(kKey).empty();
+    if (ImGui::Checkbox("band", &is_band))
+      set(is_band ? Setting{kKey, {8.0, 14.0}} : Setting{"spectrum.wavelength_um", 10.6});
+    const std::vector<double> ends = session.scene().numbers(kKey);
+    if (ends.empty()) return;
+    row_label("λ1, λ2 [µm]");
+    draw_ends(kKey, {ends[0], ends[1]}, [&](const std::string& low, const std::string& high) {
+      return set({kKey, TomlText{fmt::format("[{}, {}]", low, high)}});
+    });
+  }
+
+  void draw_all() {
+    heading("Surface");
+    draw_material();
+    draw_choices("surface");
+    draw_table("surface");
+    heading("Radiation");
+    for (const char* effect : {"emission", "source", "surroundings", "path"}) {
+      draw_effect_box(effect);
+      draw_choices(effect);
+      if (!has_effect(session.scene(), effect)) continue;
+      if (effect == std::string_view("source")) draw_source_kind();
+      if (effect == std::string_view("surroundings")) draw_sky();
+      draw_table(effect);
+    }
+    heading("Spectrum and geometry");
+    draw_spectrum();
+    draw_table("spectrum");
+    draw_choices("geometry");
+    draw_table("geometry");
+  }
+
+  void draw_accuracy() {
+    draw_table("accuracy");
+    draw_choices("accuracy");
+  }
+};
+
 }  // namespace
 
-std::string ControlsPanel::set(const Setting& change) {
-  session_.set({change});
-  return session_.message().is_error ? session_.message().text : "";
-}
-
-void ControlsPanel::draw_fields(const std::string& id, const std::function<void()>& draw) {
-  const std::string before = fields_.reason(id);
-  draw();
-  if (!before.empty() && fields_.reason(id).empty() && session_.message().text == before) session_.tell("");
-}
-
-void ControlsPanel::draw_ends(const std::string& id, const std::array<double, 2>& ends,
-                              const NumberFields::ApplyEnds& apply) {
-  const std::array<std::string, 2> ids = {id + " 0", id + " 1"};
-  const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
-  const float width = 0.5F * (ImGui::GetContentRegionAvail().x - gap);
-  for (const std::size_t end : {0U, 1U}) {
-    if (end > 0) ImGui::SameLine(0.0F, gap);
-    ImGui::SetNextItemWidth(width);
-    draw_fields(ids[end], [&] { fields_.draw_end(id, end, ends, apply); });
-  }
-  for (const std::string& one : ids) fields_.draw_reason(one);
-}
-
-void ControlsPanel::draw_slider(const Slider& slider, double value, const Parameter* parameter) {
-  row_label(slider.label);
-  const bool can_vary = parameter && session_.residuals().data() && !slider.id.starts_with("accuracy.");
-  if (bool varies = session_.varies(slider.id); can_vary) {
-    if (ImGui::Checkbox(("##vary " + slider.id).c_str(), &varies)) session_.mark(slider.id, varies);
-    name_item("vary " + slider.id);
-    tooltip("varies in a fit to the measured points, over the range below its slider");
-    ImGui::SameLine();
-  }
-  ImGui::SetNextItemWidth(-5.2F * ImGui::GetFontSize() - ImGui::GetStyle().ItemSpacing.x);
-  auto position = static_cast<float>(slider.scale.position(slider.scale.clamp(value)));
-  const std::string id = "##slider " + slider.id;
-  const bool is_moved = ImGui::SliderFloat(id.c_str(), &position, 0.0F, 1.0F, "", ImGuiSliderFlags_NoInput);
-  name_item(slider.id);
-  if (const FitParameter* found = session_.fitted(slider.id)) draw_interval(*parameter, found->interval_68);
-  const bool is_ctrl = ImGui::GetIO().KeyCtrl;
-  if (ImGui::IsItemClicked() && is_ctrl) session_.reset(slider.reset_key);
-  if (is_moved && !is_ctrl) session_.set({slider.moved(static_cast<double>(position))});
-  if (!ImGui::IsItemActive()) tooltip(slider.note);
-  ImGui::SameLine();
-  ImGui::SetNextItemWidth(-1.0F);
-  draw_fields(slider.id, [&] {
-    fields_.draw(slider.id, value, [&](const std::string& text) { return set(slider.typed(text)); });
-  });
-  fields_.draw_reason(slider.id);
-}
-
-void ControlsPanel::draw_parameter(const Parameter& parameter, double value) {
-  const std::string& key = parameter.key->key;
-  const std::string unit = unit_text(*parameter.key);
-  draw_slider({.id = key,
-               .label = unit.empty() ? parameter.symbol : fmt::format("{} [{}]", parameter.symbol, unit),
-               .note = note_on(parameter, session_),
-               .reset_key = key,
-               .scale = parameter.slider,
-               .moved =
-                   [&](double position) {
-                     return Setting{key, parameter.slider_value(position)};
-                   },
-               .typed =
-                   [&](const std::string& text) {
-                     return Setting{key, value_of(text)};
-                   }},
-              value, &parameter);
-  draw_fit_range(parameter, value);
-}
-
-void ControlsPanel::draw_fit_range(const Parameter& parameter, double value) {
-  const std::string& key = parameter.key->key;
-  if (!session_.residuals().data() || !session_.varies(key)) return;
-  const FitRange range = fit_range(session_.marked(), session_.scene(), parameter, value);
-  row_label("  fit from, to");
-  draw_ends("fit " + key, {range.low, range.high},
-            [&](const std::string& low, const std::string& high) { return session_.set_fit_range(key, low, high); });
-}
-
-void ControlsPanel::draw_table(const std::string& table) {
-  for (const Parameter& parameter : parameters()) {
-    if (table_of(parameter.key->key) != table) continue;
-    // The value is read for each control, because the control before may have changed the scene.
-    if (const auto value = parameter.value(session_.scene())) draw_parameter(parameter, *value);
-  }
-}
-
-void ControlsPanel::draw_choice(const Choice& choice, std::size_t word) {
-  const std::string& key = choice.key->key;
-  const std::vector<std::string>& words = choice.key->words;
-  const std::string note = key + ": " + choice.key->meaning + "\n" + choice.equation;
-  row_label(choice.label);
-  if (bool is_set = word != 0; choice.is_flag()) {
-    if (ImGui::Checkbox(("##" + key).c_str(), &is_set)) session_.set({{key, is_set}});
-    name_item(key);
-    return tooltip(note);
-  }
-  ImGui::SetNextItemWidth(-1.0F);
-  const auto entries = [&] {
-    std::vector<ListEntry> all;
-    for (const std::string& one : words) all.push_back({one});
-    return all;
-  };
-  if (const auto clicked = draw_list(key, words[word], note, word, entries)) set({key, TomlText{words[*clicked]}});
-}
-
-void ControlsPanel::draw_choices(const std::string& table) {
-  for (const Choice& choice : choices()) {
-    if (table_of(choice.key->key) != table) continue;
-    if (const auto word = choice.word(session_.scene())) draw_choice(choice, *word);
-  }
-}
-
-void ControlsPanel::draw_material() {
-  static const std::vector<BuiltInMaterial> known = materials();
-  const Scene& scene = session_.scene();
-  const bool is_typed = scene.number("surface.n").has_value();
-  const std::string current = is_typed ? "n and k as below" : scene.word("surface.material").value_or("file");
-  // The entry before the built-in materials is 0; a file has no entry.
-  const auto now = std::ranges::find(known, current, &BuiltInMaterial::name);
-  std::optional<std::size_t> chosen;
-  if (is_typed || now != known.end()) chosen = is_typed ? 0 : static_cast<std::size_t>(now - known.begin()) + 1;
-  const auto entries = [&] {
-    const auto [from_um, to_um] = spectrum_um(scene);
-    std::vector<ListEntry> all = {{"n and k as below"}};
-    for (const BuiltInMaterial& one : known) {
-      const bool is_known = one.from_um <= from_um && to_um <= one.to_um;
-      all.push_back({fmt::format("{}, {:g} to {:g} µm", one.name, one.from_um, one.to_um),
-                     one.source + (is_known ? "" : "\nnot known over the spectrum of this scene"), is_known});
-    }
-    return all;
-  };
-  row_label("material");
-  ImGui::SetNextItemWidth(-1.0F);
-  const std::string note = is_typed ? "a built-in material, or your n and k" : "N = n + ik of " + surface_name(scene);
-  const auto clicked = draw_list("material", current, note, chosen, entries);
-  if (!clicked) return;
-  if (*clicked > 0) return session_.set("surface.material", known[*clicked - 1].name);
-  const auto [n, k] = scene.refractive_index(spectrum_um(scene).first);
-  session_.set({{"surface.n", n}, {"surface.k", k}});
-}
-
-void ControlsPanel::draw_source_kind() {
-  const Scene& scene = session_.scene();
-  const std::size_t now = scene.number("source.irradiance") ? 0 : scene.number("source.relative_irradiance") ? 1 : 2;
-  const std::array<ListEntry, 3> kinds = {{{"E0 as below"}, {"e = E0/(πB(T)) as below"}, {"the sun"}}};
-  const std::array<Setting, 3> changes = {
-      {{"source.irradiance", 1.0}, {"source.relative_irradiance", 0.6}, {"source.preset", "sun"}}};
-  row_label("kind");
-  ImGui::SetNextItemWidth(-1.0F);
-  const auto entries = [&] { return std::vector<ListEntry>(kinds.begin(), kinds.end()); };
-  if (const auto clicked = draw_list("source kind", kinds[now].text, "", now, entries)) set(changes[*clicked]);
-}
-
-/// A box that removes an effect from the scene, and brings it back as it was opened or with first values.
-void ControlsPanel::draw_effect_box(const std::string& table) {
-  bool wanted = has_effect(session_.scene(), table);
-  if (!ImGui::Checkbox(table.c_str(), &wanted)) return;
-  if (!wanted) return session_.set({{table, Value()}});
-  session_.reset(table);
-  if (has_effect(session_.scene(), table)) return;
-  if (table == "emission") session_.set({{"emission.temperature_K", 300.0}});
-  if (table == "source") session_.set({{"source.preset", "sun"}});
-  if (table == "surroundings") session_.set({{"surroundings.temperature_K", 250.0}});
-  if (table == "path") session_.set({{"path.transmittance", 0.9}, {"path.temperature_K", 280.0}});
-}
-
-void ControlsPanel::draw_sky() {
-  const std::string file = sky_file(session_.scene()).string();
-  if (file != sky_file_) sky_ = read_sky_pair(file);
-  sky_file_ = file;
-  draw_sky_list();
-  if (sky_) draw_sky_temperature("zenith", &SkyPair::zenith_K);
-  if (sky_) draw_sky_temperature("horizon", &SkyPair::horizon_K);
-}
-
-void ControlsPanel::draw_sky_list() {
-  const std::string current = session_.scene().word(kSkyProfile).value_or("");
-  const std::string opened = session_.edits().opened().word(kSkyProfile).value_or("");
-  std::vector<ListEntry> skies = {{"uniform"}, {"clear-sky"}, {"overcast"}, {"zenith and horizon"}};
-  // The file of the scene as opened stays among the choices.
-  if (!sky_file(session_.edits().opened()).empty()) skies.push_back({file_name(opened)});
-  const std::string name = current.empty() ? "uniform" : sky_ ? "zenith and horizon" : file_name(current);
-  const auto now = std::ranges::find(skies, name, &ListEntry::text);
-  const auto position = static_cast<std::size_t>(now - skies.begin());
-  row_label("sky");
-  ImGui::SetNextItemWidth(-1.0F);
-  const auto clicked =
-      draw_list("sky", name, fmt::format("{} {}: {}", kSkyProfile, current, described(kSkyProfile).meaning), position,
-                [&] { return skies; });
-  if (!clicked) return;
-  if (*clicked == 0) {
-    session_.set(kUniformSky, session_.edits().opened().number(kUniformSky).value_or(kUniformSky_K));
-  } else if (*clicked == 3) {
-    session_.set(kSkyProfile, session_.skies().path({}));
-  } else {
-    session_.set(kSkyProfile, *clicked < 3 ? skies[*clicked].text : opened);
-  }
-}
-
-void ControlsPanel::draw_sky_temperature(const std::string& name, double SkyPair::*part) {
-  SkyPair sky = *sky_;
-  const auto with = [&](double temperature_K) {
-    sky.*part = temperature_K;
-    return Setting{kSkyProfile, session_.skies().path(sky)};
-  };
-  draw_slider({.id = "sky " + name,
-               .label = fmt::format("T_{} [K]", name.substr(0, 3)),
-               .note = fmt::format("brightness temperature at the {}; a straight line in zenith between both", name),
-               .reset_key = kSkyProfile,
-               .scale = kSkySlider,
-               .moved = [&](double position) { return with(std::round(10.0 * kSkySlider.value(position)) / 10.0); },
-               .typed =
-                   [&](const std::string& text) {
-                     const std::optional<double> typed = parse_number(text);
-                     // Text that is no temperature is refused with the message for a uniform sky.
-                     const bool is_allowed = typed && described(kUniformSky).range.contains(*typed);
-                     return is_allowed ? with(*typed) : Setting{kUniformSky, TomlText{text}};
-                   }},
-              sky_.value().*part);
-}
-
-void ControlsPanel::draw_spectrum() {
-  constexpr const char* kKey = "spectrum.band_um";
-  bool is_band = !session_.scene().numbers(kKey).empty();
-  if (ImGui::Checkbox("band", &is_band))
-    set(is_band ? Setting{kKey, {8.0, 14.0}} : Setting{"spectrum.wavelength_um", 10.6});
-  const std::vector<double> ends = session_.scene().numbers(kKey);
-  if (ends.empty()) return;
-  row_label("λ1, λ2 [µm]");
-  draw_ends(kKey, {ends[0], ends[1]}, [&](const std::string& low, const std::string& high) {
-    return set({kKey, TomlText{fmt::format("[{}, {}]", low, high)}});
-  });
-}
-
-void ControlsPanel::draw() {
-  heading("Surface");
-  draw_material();
-  draw_choices("surface");
-  draw_table("surface");
-  heading("Radiation");
-  for (const char* effect : {"emission", "source", "surroundings", "path"}) {
-    draw_effect_box(effect);
-    draw_choices(effect);
-    if (!has_effect(session_.scene(), effect)) continue;
-    if (effect == std::string_view("source")) draw_source_kind();
-    if (effect == std::string_view("surroundings")) draw_sky();
-    draw_table(effect);
-  }
-  heading("Spectrum and geometry");
-  draw_spectrum();
-  draw_table("spectrum");
-  draw_choices("geometry");
-  draw_table("geometry");
-}
-
-void ControlsPanel::draw_accuracy() {
-  draw_table("accuracy");
-  draw_choices("accuracy");
-}
+void draw_controls(Session& session, ControlsState& state) { Controls{session, state}.draw_all(); }
+void draw_accuracy_controls(Session& session, ControlsState& state) { Controls{session, state}.draw_accuracy(); }
 
 }  // namespace dolp::explore

@@ -52,7 +52,7 @@ class Input {
     std::function<void()> apply;
     bool is_motion;
   };
-  static Input& of(GLFWwindow* window);
+  static Input& input_of(GLFWwindow* window);
   static void push(GLFWwindow* window, std::function<void()> apply, bool is_motion = false);
 
   GLFWwindow* window_;

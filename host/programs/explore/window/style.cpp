@@ -52,9 +52,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 42> kNames =
 
 /// The colour at a position from 0 to 1; linear between equal steps.
 ImU32 colour_at(std::span<const Rgb> colours, double position) {
-  const double place = std::clamp(position, 0.0, 1.0) * static_cast<double>(colours.size() - 1);
-  const auto below = std::min(static_cast<std::size_t>(place), colours.size() - 2);
-  const double part = place - static_cast<double>(below);
+  const double steps = std::clamp(position, 0.0, 1.0) * static_cast<double>(colours.size() - 1);
+  const auto below = std::min(static_cast<std::size_t>(steps), colours.size() - 2);
+  const double part = steps - static_cast<double>(below);
   const auto mixed = [&](int Rgb::*channel) {
     const double a = colours[below].*channel;
     const double b = colours[below + 1].*channel;

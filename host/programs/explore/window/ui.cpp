@@ -67,7 +67,7 @@ void draw_removable(const char* title, const char* id, Things& things, const Dra
 }  // namespace
 
 Ui::Ui(Session& session, Actions& actions, std::function<void()> catch_up)
-    : session_(session), actions_(actions), catch_up_(std::move(catch_up)), controls_(session) {
+    : session_(session), actions_(actions), catch_up_(std::move(catch_up)) {
   for (std::vector<Command>& commands : std::array{file_commands(), view_commands(), scene_commands()})
     std::ranges::move(commands, std::back_inserter(commands_));
 }
@@ -76,14 +76,13 @@ void Ui::draw_view_controls() {
   View view = session_.view();
   const float width = 6.5F * ImGui::GetFontSize();
   label("show");
-  ImGui::SetNextItemWidth(width);
   const auto quantities = [] {
     std::vector<ListEntry> all;
     for (const PlottedDescription& one : kAllPlotted) all.push_back({fmt::format("{}: {}", one.name, one.meaning)});
     return all;
   };
   const auto position = static_cast<std::size_t>(view.quantity);
-  if (const auto clicked = draw_list("quantity", described(view.quantity).name, "", position, quantities))
+  if (const auto clicked = draw_list("quantity", width, described(view.quantity).name, "", position, quantities))
     view.quantity = kAllPlotted[*clicked].quantity;
   ImGui::SameLine();
   ImGui::Checkbox("log", &view.is_log);
@@ -118,9 +117,8 @@ void Ui::draw_map_axes(View& view) {
   };
   for (const auto& [id, axis, other] :
        {std::tuple{"map x", &view.map_x, &view.map_y}, {"map y", &view.map_y, &view.map_x}}) {
-    ImGui::SetNextItemWidth(5.5F * ImGui::GetFontSize());
     const auto position = static_cast<std::size_t>(std::ranges::find(kMapAxes, *axis) - kMapAxes.begin());
-    if (const auto clicked = draw_list(id, label_of(*axis), "", position, axes)) {
+    if (const auto clicked = draw_list(id, 5.5F * ImGui::GetFontSize(), label_of(*axis), "", position, axes)) {
       // The two axes swap if the other one is this.
       if (*other == kMapAxes[*clicked]) *other = *axis;
       *axis = kMapAxes[*clicked];
@@ -180,7 +178,7 @@ void Ui::draw_readout() {
 }
 
 void Ui::draw_accuracy() {
-  controls_.draw_accuracy();
+  draw_accuracy_controls(session_, controls_);
   for (const std::string& line : cost_lines(session_)) coloured_text(kTextColour, line);
   ImGui::BeginDisabled(!session_.curve().is_finished() || actions_.true_error_task().is_running());
   if (ImGui::Button("True error (Ctrl+K)")) actions_.find_true_error();
@@ -287,7 +285,7 @@ void Ui::draw() {
   is_narrow_ = all.x - left < 46.0F * em;
   ImGui::BeginChild("controls", {left, all.y}, true);
   draw_fit();
-  controls_.draw();
+  draw_controls(session_, controls_);
   draw_pins();
   draw_snapshots();
   ImGui::EndChild();

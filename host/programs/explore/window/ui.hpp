@@ -73,7 +73,7 @@ class Ui {
   std::pair<std::string, std::filesystem::path> saved_;  ///< a scene's file, and the last folder it was saved to
   std::function<void()> catch_up_;
   std::vector<Command> commands_;
-  ControlsPanel controls_;
+  ControlsState controls_;
   NumberFields fields_;
   MapView map_view_;
   ScatteringView scattering_view_;

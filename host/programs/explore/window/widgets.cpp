@@ -26,9 +26,9 @@ void NumberFields::draw(const std::string& id, double value, const Apply& apply)
   const auto found = typed_.find(id);
   // Text for another value is dropped.
   if (found != typed_.end() && !found->second.is_active && found->second.value != value) typed_.erase(found);
-  const std::string own = fmt::format("{:.6g}", value);
+  const std::string unedited = fmt::format("{:.6g}", value);
   const bool is_refused = !reason(id).empty();
-  const std::string before = typed_.contains(id) ? text(id) : own;
+  const std::string before = typed_.contains(id) ? text(id) : unedited;
   std::string now = before;
   if (is_refused) ImGui::PushStyleColor(ImGuiCol_FrameBg, kRefusedColour);
   ImGui::PushItemFlag(ImGuiItemFlags_NoTabStop, false);
@@ -45,7 +45,7 @@ void NumberFields::draw(const std::string& id, double value, const Apply& apply)
   const bool is_ended = was_active && !typed->second.is_active;
   const bool is_free = !ImGui::IsAnyItemActive() && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId);
   const bool is_taken_back = is_pressed(GLFW_KEY_ESCAPE) && (is_ended || is_free);
-  if (is_taken_back || (is_ended && now == own)) {
+  if (is_taken_back || (is_ended && now == unedited)) {
     typed_.erase(typed);
   } else if (is_ended) {
     typed->second.reason = apply(now);
@@ -77,9 +77,10 @@ void NumberFields::draw_reason(const std::string& id) const {
   if (const std::string why = reason(id); !why.empty()) coloured_text(kErrorColour, why);
 }
 
-std::optional<std::size_t> draw_list(const std::string& id, const std::string& current, const std::string& note,
-                                     std::optional<std::size_t> chosen,
+std::optional<std::size_t> draw_list(const std::string& id, float width, const std::string& current,
+                                     const std::string& note, std::optional<std::size_t> chosen,
                                      const std::function<std::vector<ListEntry>()>& entries) {
+  ImGui::SetNextItemWidth(width);
   const ImVec2 corner = ImGui::GetCursorScreenPos();  // an open list is another item
   name_area(id, {corner, {corner.x + ImGui::CalcItemWidth(), corner.y + ImGui::GetFrameHeight()}});
   std::optional<std::size_t> clicked;

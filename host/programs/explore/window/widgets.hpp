@@ -47,10 +47,10 @@ struct ListEntry {
   bool is_enabled = true;
 };
 
-/// A list that shows `current` while it is closed, with a note; its area has the name `id`. Returns the position of the
-/// entry that the user clicks, unless it is `chosen`.
-std::optional<std::size_t> draw_list(const std::string& id, const std::string& current, const std::string& note,
-                                     std::optional<std::size_t> chosen,
+/// A list of a width, as in ImGui, that shows `current` while it is closed, with a note; its area has the name `id`.
+/// Returns the position of the entry that the user clicks, unless it is `chosen`.
+std::optional<std::size_t> draw_list(const std::string& id, float width, const std::string& current,
+                                     const std::string& note, std::optional<std::size_t> chosen,
                                      const std::function<std::vector<ListEntry>()>& entries);
 
 /// Text in the column of labels; the control follows beside it.

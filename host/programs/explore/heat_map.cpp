@@ -162,8 +162,7 @@ std::size_t HeatMap::finished_count() const {
 }
 
 double HeatMap::progress() const {
-  std::size_t done = 0;
-  std::size_t all = 0;
+  std::size_t done = 0, all = 0;
   for (std::size_t level = 0; level < kLevels.size(); ++level) {
     all += entries(level);
     if (is_current()) done += points_[level].size();

@@ -1,7 +1,9 @@
 #include "explore/points.hpp"
 
 #include <cmath>
+
 #include <utility>
+#include "base/text.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -97,17 +99,15 @@ std::vector<Point> points_of(const PointList& list, const Results& results) {
 }
 
 std::string status_text(std::uint32_t status) {
-  std::string text;
-  const auto add = [&](std::uint32_t bit, const char* meaning) {
-    if (status & bit) text += (text.empty() ? "" : ", ") + std::string(meaning);
-  };
-  add(kReflectanceOutsideZeroToOne, "ρ outside [0, 1]");
-  add(kToleranceNotMet, "tolerance missed");
-  add(kOutsideModelDomain, "outside the model's domain");
-  add(kIntensityNotPositive, "I ≤ 0");
-  add(kRhoToleranceNotMet, "tolerance of ρ missed");
-  add(kModelInaccurate, "single scattering changes I by over 5 %");
-  return text.empty() ? "good" : text;
+  constexpr std::array<const char*, kStatusBits.size()> kMeanings = {
+      "ρ outside [0, 1]",           "tolerance missed",
+      "outside the model's domain", "I ≤ 0",
+      "tolerance of ρ missed",      "single scattering changes I by over 5 %"};
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < kMeanings.size(); ++i) {
+    if (status & kStatusBits[i].mask) texts.push_back(kMeanings[i]);
+  }
+  return texts.empty() ? "good" : join(texts);
 }
 
 }  // namespace dolp::explore

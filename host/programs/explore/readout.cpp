@@ -108,8 +108,7 @@ std::string cause_text(const Session& session) {
   const Peak& peak = session.peak();
   if (!session.curve().is_finished() || !peak.is_complete()) return "Cause: …";
   const double sum = peak.answer()->at[Quantity::kQOverI];
-  std::string with;
-  std::string against;
+  std::string with, against;
   for (const Part& part : radiating_parts(session)) {
     std::string& side = part.q_over_i * sum >= 0.0 ? with : against;
     side += fmt::format("{}{} {:+.2f}", side.empty() ? "" : ", ", part.name, kPercent * part.q_over_i);

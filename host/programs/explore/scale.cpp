@@ -65,8 +65,7 @@ double Scale::position(double value) const {
 double Scale::clamp(double value) const { return std::clamp(value, from, to); }
 
 Scale Scale::within(const Scale& all) const {
-  const double first = all.position(from);
-  const double last = all.position(to);
+  const double first = all.position(from), last = all.position(to);
   if (last - first >= 1.0) return all;
   const double shift = std::max(-first, 0.0) + std::min(1.0 - last, 0.0);
   return all.between(first + shift, last + shift);

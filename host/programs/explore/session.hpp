@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <type_traits>
 
 #include "explore/curve.hpp"
 #include "explore/heat_map.hpp"
@@ -98,6 +99,12 @@ class Session {
   void pin();
   /// Another quantity or kind of its axis ends typed ranges of values; another kind of zeniths ends ranges of zeniths.
   void set_view(const View& view);
+  template <class T>
+  void set_view(T View::*part, const std::type_identity_t<T>& value) {
+    View view = view_;
+    view.*part = value;
+    set_view(view);
+  }
   void set_theta(double theta_deg);
   /// Moves the cursor of the map; the parameters of its axes follow. Positions from 0 to 1.
   void set_map_cursor(double x, double y);

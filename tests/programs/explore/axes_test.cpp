@@ -142,9 +142,7 @@ TEST_F(Axes, LogarithmOfTheZenith_BeginsAtHalfADegree) {
 TEST_F(Axes, DragOfASlider_GivesCoarseCurves_AndHoldsZenithsAndColours_WhichCanBeTyped) {
   const explore::MapView& map = app_->map_view();
   const explore::Session& session = app_->session();
-  explore::View view = session.view();
-  view.quantity = explore::Plotted::kSignedDolp;
-  app_->session().set_view(view);
+  app_->session().set_view(&explore::View::quantity, explore::Plotted::kSignedDolp);
   app_->settle();
   const Scale colours = map.colours(), zeniths = app_->curve_view().x();
   EXPECT_EQ(colours.from, -colours.to);

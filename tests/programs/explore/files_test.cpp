@@ -227,9 +227,7 @@ TEST(ExplorePlots, Json_HasTheVisibleCurvesAndTheMap) {
   driver.settle();
   const std::string name = json()["curves"][1]["name"];
   EXPECT_TRUE(name.ends_with(", T 290 K")) << name;
-  View view = driver.session.view();
-  view.map_colours = Scale{0.01, 0.08};
-  driver.session.set_view(view);
+  driver.session.set_view(&View::map_colours, Scale{0.01, 0.08});
   EXPECT_EQ(json()["map"]["colours"]["to"], 8.0);
   driver.session.set_view({.panel = Panel::kSlopes});
   EXPECT_TRUE(json()["map"].is_null());

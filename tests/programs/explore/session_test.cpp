@@ -362,9 +362,7 @@ TEST(ExploreSession, Peak_IsTheLargestOfTheCurve_IsDrawn_AndItsCausesAddUp) {
 
 TEST(ExploreSession, ThetaMax_BoundsMapCursorAndPeak) {
   Driver driver(paint());
-  View view = driver.session.view();
-  view.theta_max_deg = 50.0;
-  driver.session.set_view(view);
+  driver.session.set_view(&View::theta_max_deg, 50.0);
   driver.settle();
   EXPECT_EQ(driver.session.map().x().scale.to, 50.0);
   EXPECT_EQ(driver.session.theta_deg(), 50.0);
@@ -393,9 +391,7 @@ TEST(ExploreSession, Effects_HaveTheirInfluenceAtTheCursor) {
 TEST(ExploreSession, RhoThatThePlanDrops_IsComputedWhenItIsShown) {
   Driver driver(paint({"surroundings.temperature_K=290"}));
   EXPECT_TRUE(std::isnan(driver.session.curve().points()[50][Quantity::kRhoI]));
-  View view = driver.session.view();
-  view.quantity = Plotted::kRhoS;
-  driver.session.set_view(view);
+  driver.session.set_view(&View::quantity, Plotted::kRhoS);
   driver.settle();
   EXPECT_TRUE(std::isfinite(driver.session.curve().points()[50][Quantity::kRhoI]));
 }

@@ -40,9 +40,7 @@ TEST_F(WindowLook, LightTheme_ChosenInTheMenu_IsKept) {
 }
 
 TEST_F(WindowLook, MarkOfAMaximumAtTheEnd_IsWhole) {
-  explore::View view = app_->session().view();
-  view.theta_max_deg = 60.0;
-  app_->session().set_view(view);
+  app_->session().set_view(&explore::View::theta_max_deg, 60.0);
   app_->settle();
   frames();
   ASSERT_GT(app_->session().peak().answer().value().at.theta_deg, 59.9);

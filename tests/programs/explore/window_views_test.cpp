@@ -94,9 +94,7 @@ TEST(ExplorePanels, Sky_OfABistaticScene_IsComputedWhileItIsShown) {
   explore::Driver driver(paint({"geometry.mode=\"bistatic\"", "source.preset=\"sun\"", "geometry.view_zenith_deg=60"}));
   explore::Session& session = driver.session;
   EXPECT_FALSE(session.source_sky().is_finished());
-  explore::View view = session.view();
-  view.panel = explore::Panel::kSky;
-  session.set_view(view);
+  session.set_view(&explore::View::panel, explore::Panel::kSky);
   driver.settle();
   ASSERT_TRUE(session.source_sky().is_finished());
   const std::size_t azimuth = 12;

@@ -78,10 +78,7 @@ using UniqueWindow = std::unique_ptr<GLFWwindow, DestroyWindow>;
 /// Opens a window as large as its content at the display's scale, or as the display.
 UniqueWindow open_window() {
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
-  int x = 0;
-  int y = 0;
-  int width = kWidth;
-  int height = kHeight;
+  int x = 0, y = 0, width = kWidth, height = kHeight;
   float scale = 1.0F;
   if (GLFWmonitor* monitor = glfwGetPrimaryMonitor()) {
     glfwGetMonitorWorkarea(monitor, &x, &y, &width, &height);
@@ -113,8 +110,7 @@ VkSurfaceKHR make_surface(VkInstance instance, GLFWwindow* window) {
 }
 
 VkExtent2D size_of(GLFWwindow* window) {
-  int width = 0;
-  int height = 0;
+  int width = 0, height = 0;
   glfwGetFramebufferSize(window, &width, &height);
   return {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
 }
@@ -144,9 +140,8 @@ struct Gui {
     const float wanted_scale = display * static_cast<float>(wanted.zoom());
     if (wanted_scale == scale) return false;
     scale = wanted_scale;
-    const bool is_light_now = is_light();
     ImGui::GetStyle() = ImGuiStyle();
-    set_theme(is_light_now);
+    set_theme(wanted.is_light);
     ImGui::GetStyle().ScaleAllSizes(scale);
     ImGui::GetIO().Fonts->Clear();
     load_font(kFontPixels * scale);
@@ -349,11 +344,7 @@ void run_program(const Scene& scene, const ProgramOptions& options) {
     session.set(options.settings);
     check();
   }
-  if (!options.panel.empty()) {
-    View view = session.view();
-    view.panel = panel_of(options.panel);
-    session.set_view(view);
-  }
+  if (!options.panel.empty()) session.set_view(&View::panel, panel_of(options.panel));
   if (!options.measured_path.empty()) {
     session.load_measured(options.measured_path);
     check();

@@ -100,11 +100,7 @@ std::vector<Ui::Command> Ui::file_commands() {
 
 std::vector<Ui::Command> Ui::view_commands() {
   const auto flip = [this](bool View::*flag) {
-    return [this, flag] {
-      View view = session_.view();
-      view.*flag = !(view.*flag);
-      session_.set_view(view);
-    };
+    return [this, flag] { session_.set_view(flag, !(session_.view().*flag)); };
   };
   const auto is_set = [this](bool View::*flag) { return [this, flag] { return session_.view().*flag; }; };
   const auto prefer = [this](void (*change)(Preferences&)) { return [this, change] { actions_.prefer(change); }; };

@@ -28,8 +28,7 @@ void heading(const char* text) {
 /// Draws the pieces of an interval as bars at the foot of the last item, a slider; an open end goes to the slider's
 /// end.
 void draw_interval(const Parameter& parameter, const FitInterval& interval) {
-  const ImVec2 corner = ImGui::GetItemRectMin();
-  const ImVec2 end = ImGui::GetItemRectMax();
+  const ImVec2 corner = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
   const auto at = [&](const std::optional<double>& value, double otherwise) {
     const double position = value ? parameter.slider_position(*value) : otherwise;
     return corner.x + static_cast<float>(position) * (end.x - corner.x);
@@ -73,8 +72,7 @@ struct Controls {
 
   /// A slider with a field beside it.
   struct Slider {
-    std::string id;
-    std::string label;
+    std::string id, label;
     std::string note;
     std::string reset_key;  ///< Ctrl-click resets it
     Scale scale;

@@ -160,12 +160,8 @@ bool add_curve(const char* id, const std::string& name, const CurveStyle& style,
 void draw_legend(const std::vector<Shown>& curves, Session& session) {
   const auto colour_of = [&](const Curve& curve) { return session.is_outdated(curve) ? kDimColour : kTextColour; };
   add_curve("curve", curves.back().name, curves.back().style, colour_of(session.curve()));
-  if (session.overlay() &&
-      add_curve("overlay", overlay_name(session), overlay_style(), colour_of(*session.overlay()))) {
-    View view = session.view();
-    view.has_overlay = false;
-    session.set_view(view);
-  }
+  if (session.overlay() && add_curve("overlay", overlay_name(session), overlay_style(), colour_of(*session.overlay())))
+    session.set_view(&View::has_overlay, false);
   for (Pin& pin : session.pins()) {
     const CurveStyle style = pin_style(pin.colour);
     ImGui::PushID(&pin);

@@ -139,8 +139,7 @@ void MapView::draw_contours(const Plot& plot) const {
 
 void MapView::draw_bar(const Plot& plot) const {
   if (!(field_.min <= field_.max)) return;
-  const float line = ImGui::GetTextLineHeight();
-  const float left = plot.max().x + 0.9F * line;
+  const float line = ImGui::GetTextLineHeight(), left = plot.max().x + 0.9F * line;
   const Area bar{{left, plot.min().y}, {left + 0.9F * line, plot.max().y}};
   draw_colours(plot.list(), bar, true, [this](double position) { return colour(position); });
   plot.list()->AddRect(bar.min, bar.max, kDimColour);

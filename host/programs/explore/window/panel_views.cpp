@@ -42,8 +42,7 @@ void draw_lines(const Plot& plot, const std::vector<double>& xs, const std::vect
       points.push_back(plot.can_show(xs[i], line.values[i]) ? plot.at(xs[i], line.values[i]) : kGap);
     draw_line(plot.list(), points, line.style, kLineWidth);
   }
-  const float height = ImGui::GetTextLineHeight();
-  const float right = plot.max().x - 0.6F * height;
+  const float height = ImGui::GetTextLineHeight(), right = plot.max().x - 0.6F * height;
   float y = plot.min().y + 0.8F * height;
   for (const NamedLine& line : lines) {
     draw_label(plot.list(), {right, y}, {1.0F, 0.5F}, kTextColour, line.name);
@@ -224,8 +223,7 @@ void draw_rings(const SourceSky& sky, const SkyDisc& at, const Colours& colours)
     const std::vector<Point>& ring = sky.at(i);
     for (std::size_t j = 0; j + 1 < ring.size(); ++j) {
       const ImU32 colour = ring[j].is_good() ? viridis(colours.dolp.position(ring[j][Quantity::kDolp])) : kBadColour;
-      const double inner = ring[j].theta_deg;
-      const double outer = ring[j + 1].theta_deg;
+      const double inner = ring[j].theta_deg, outer = ring[j + 1].theta_deg;
       for (const double side : {1.0, -1.0}) {
         const double from = side * (SourceSky::azimuth_deg(i) - half_deg);
         const double to = side * (SourceSky::azimuth_deg(i) + half_deg);

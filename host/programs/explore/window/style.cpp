@@ -56,8 +56,7 @@ ImU32 colour_at(std::span<const Rgb> colours, double position) {
   const auto below = std::min(static_cast<std::size_t>(steps), colours.size() - 2);
   const double part = steps - static_cast<double>(below);
   const auto mixed = [&](int Rgb::*channel) {
-    const double a = colours[below].*channel;
-    const double b = colours[below + 1].*channel;
+    const double a = colours[below].*channel, b = colours[below + 1].*channel;
     return static_cast<int>(std::lround(a + part * (b - a)));
   };
   return IM_COL32(mixed(&Rgb::r), mixed(&Rgb::g), mixed(&Rgb::b), 255);
@@ -150,8 +149,7 @@ void tooltip(const std::string& text) {
   // Beside the panel or above the item, so that the values below it stay in sight.
   const float width = 28.0F * ImGui::GetFontSize();
   const float gap = ImGui::GetStyle().ItemSpacing.x;
-  const ImVec2 first = ImGui::GetItemRectMin();
-  const ImVec2 last = ImGui::GetItemRectMax();
+  const ImVec2 first = ImGui::GetItemRectMin(), last = ImGui::GetItemRectMax();
   const float right = ImGui::GetWindowPos().x + ImGui::GetWindowWidth() + gap;
   if (right + width < io.DisplaySize.x) {
     const bool is_low = first.y > 0.5F * io.DisplaySize.y;

@@ -218,15 +218,13 @@ bool Ui::draw_tab(const std::string& name, bool is_shown) {
 }
 
 void Ui::draw_panel_tabs() {
-  View view = session_.view();
   for (std::size_t i = 0; i < kPanelNames.size(); ++i) {
     const auto panel = static_cast<Panel>(i);
     if (!draw_tab(kPanelNames[i], panel == session_.view().panel && (!is_narrow_ || page_.empty()))) continue;
-    view.panel = panel;
+    session_.set_view(&View::panel, panel);
     page_.clear();
   }
   ImGui::NewLine();
-  if (view != session_.view()) session_.set_view(view);
 }
 
 void Ui::draw_panel(ImVec2 size) {
@@ -292,7 +290,17 @@ void Ui::draw() {
   catch_up_();
   ImGui::SameLine();
   ImGui::BeginChild("right", {0.0F, all.y});
+  draw_right(all.y);
+  ImGui::EndChild();
+  ImGui::PopItemFlag();
+  ImGui::End();
+  draw_help();
+  dialog_.draw();
+}
+
+void Ui::draw_right(float window_height) {
   draw_view_controls();
+  const float em = ImGui::GetFontSize();
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const float readout = (room.x < 64.0F * em ? 4.8F : 3.8F) * ImGui::GetTextLineHeightWithSpacing();
   const float height = room.y - readout;
@@ -302,18 +310,13 @@ void Ui::draw() {
     ImGui::EndChild();
   } else {
     // The panels below scroll; the plots keep more than half of the height.
-    draw_plots(
-        {room.x, height - std::min(std::max(0.33F * all.y, 15.0F * ImGui::GetTextLineHeight()), 0.45F * height)});
+    draw_plots({room.x, height - std::min(std::max(0.33F * window_height, 15.0F * ImGui::GetTextLineHeight()),
+                                          0.45F * height)});
   }
   ImGui::BeginChild("readout", {0.0F, readout});
   draw_readout();
   ImGui::EndChild();
   if (!is_narrow_) draw_bottom();
-  ImGui::EndChild();
-  ImGui::PopItemFlag();
-  ImGui::End();
-  draw_help();
-  dialog_.draw();
 }
 
 }  // namespace dolp::explore

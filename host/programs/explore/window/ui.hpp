@@ -52,6 +52,8 @@ class Ui {
   void run_shortcuts();
   void draw_help();
 
+  /// Everything right of the controls.
+  void draw_right(float window_height);
   void draw_view_controls();
   void draw_map_axes(View& view);
   void draw_fit();

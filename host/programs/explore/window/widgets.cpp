@@ -20,6 +20,15 @@ constexpr const char* kPopup = "###path";
 constexpr const char* kUp = "../";
 constexpr float kListLines = 12.0F;
 
+/// Reads the ends of a range. Returns why they are refused, or nothing.
+std::string parse_range(const std::string& low, const std::string& high, Scale& range) {
+  const std::optional<double> from = parse_number(low), to = parse_number(high);
+  if (!from || !to) return fmt::format("{}: must be a number", one_line(from ? high : low));
+  range = {*from, *to, range.is_log};
+  const std::string why = range.refusal();
+  return why.empty() ? why : fmt::format("from {} to {}: {}", one_line(low), one_line(high), why);
+}
+
 }  // namespace
 
 void NumberFields::draw(const std::string& id, double value, const Apply& apply) {
@@ -114,26 +123,40 @@ std::optional<std::string> typed_name(std::string name, const std::string& hint)
   return is_typed ? std::optional(std::move(name)) : std::nullopt;
 }
 
+std::optional<AxisEditor::Change> AxisEditor::draw_content(const Scale& now, const Check& check) {
+  std::optional<Change> change;
+  const auto apply = [&](const std::string& low, const std::string& high) {
+    Scale range = now;
+    std::string why = parse_range(low, high, range);
+    if (why.empty()) why = check(range);
+    if (why.empty()) change = Change{range, range.is_log};
+    return why;
+  };
+  for (const std::size_t end : {0U, 1U}) {
+    ImGui::SetNextItemWidth(7.0F * ImGui::GetFontSize());
+    if (std::exchange(is_opening_, false)) ImGui::SetKeyboardFocusHere();
+    fields_.draw_end("axis", end, {now.from, now.to}, apply);
+    ImGui::SameLine();
+    ImGui::TextUnformatted(end == 0 ? "from" : "to");
+    fields_.draw_reason(end == 0 ? "axis 0" : "axis 1");
+  }
+  bool is_log = now.is_log;
+  if (ImGui::Checkbox("logarithmic", &is_log)) change = Change{std::nullopt, is_log};
+  name_item("logarithmic");
+  ImGui::SameLine();
+  if (ImGui::Button("automatic")) change = Change{std::nullopt, now.is_log};
+  return change;
+}
+
 std::optional<AxisEditor::Change> AxisEditor::draw(const std::string& label, const Area& numbers, const Scale& now,
                                                    const Check& check) {
-  std::optional<Change> change;
   if (ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(numbers.min, numbers.max) &&
       ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
     shown_ = label;
     is_opening_ = true;
     fields_ = {};
   }
-  if (shown_ != label) return change;
-  const auto apply = [&](const std::string& low, const std::string& high) {
-    const std::optional<double> from = parse_number(low), to = parse_number(high);
-    if (!from || !to) return fmt::format("{}: must be a number", one_line(from ? high : low));
-    const Scale range{*from, *to, now.is_log};
-    if (const std::string why = range.refusal(); !why.empty())
-      return fmt::format("from {} to {}: {}", one_line(low), one_line(high), why);
-    std::string why = check(range);
-    if (why.empty()) change = Change{range, range.is_log};
-    return why;
-  };
+  if (shown_ != label) return std::nullopt;
   const bool was_typed = !fields_.text("axis 0").empty() || !fields_.text("axis 1").empty();
   bool is_open = true;
   const ImVec2 mouse = ImGui::GetMousePos();
@@ -142,21 +165,8 @@ std::optional<AxisEditor::Change> AxisEditor::draw(const std::string& label, con
                           {mouse.x > middle.x ? 1.0F : 0.0F, mouse.y > middle.y ? 1.0F : 0.0F});
   if (is_opening_) ImGui::SetNextWindowFocus();
   constexpr ImGuiWindowFlags kEditorFlags = ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse;
-  if (ImGui::Begin(shown(label).c_str(), &is_open, kEditorFlags)) {
-    for (const std::size_t end : {0U, 1U}) {
-      ImGui::SetNextItemWidth(7.0F * ImGui::GetFontSize());
-      if (std::exchange(is_opening_, false)) ImGui::SetKeyboardFocusHere();
-      fields_.draw_end("axis", end, {now.from, now.to}, apply);
-      ImGui::SameLine();
-      ImGui::TextUnformatted(end == 0 ? "from" : "to");
-      fields_.draw_reason(end == 0 ? "axis 0" : "axis 1");
-    }
-    bool is_log = now.is_log;
-    if (ImGui::Checkbox("logarithmic", &is_log)) change = Change{std::nullopt, is_log};
-    name_item("logarithmic");
-    ImGui::SameLine();
-    if (ImGui::Button("automatic")) change = Change{std::nullopt, now.is_log};
-  }
+  std::optional<Change> change;
+  if (ImGui::Begin(shown(label).c_str(), &is_open, kEditorFlags)) change = draw_content(now, check);
   // The first Escape restores the value in a field, the next one closes the window.
   if (ImGui::IsWindowFocused() && !was_typed && is_pressed(GLFW_KEY_ESCAPE)) is_open = false;
   ImGui::End();

@@ -76,6 +76,8 @@ class AxisEditor {
   bool is_open() const { return !shown_.empty(); }
 
  private:
+  std::optional<Change> draw_content(const Scale& now, const Check& check);
+
   NumberFields fields_;
   std::string shown_;  ///< label of the axis; empty: no axis
   bool is_opening_ = false;

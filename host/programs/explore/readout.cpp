@@ -91,7 +91,7 @@ std::string peak_text(const Session& session) {
   if (peak->rival_deg) {
     text += fmt::format("within it the maximum may also be elsewhere, for example at {:g}°.", *peak->rival_deg);
   } else if (peak->theta_low_deg == peak->theta_high_deg) {
-    text += fmt::format("the maximum is there within {:g}°.", Peak::kStepDeg);
+    text += fmt::format("θ is right within {:g}°.", Peak::kStepDeg);
   } else {
     text +=
         fmt::format("the maximum is surely between {:.2f}° and {:.2f}°.", peak->theta_low_deg, peak->theta_high_deg);

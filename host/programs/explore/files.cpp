@@ -184,7 +184,7 @@ void read_ranges(View& view, Node node, const std::string& location) {
   if (!table) return;
   for (const auto& [key, one] : *table) {
     const std::string name(key.str());
-    const Scale range = read_range(Node(one), location + "." + name);
+    const Scale range = read_range(Node(one), fmt::format("{}.{}", location, name));
     if (std::optional<Scale>* fixed = fixed_range(view, name)) {
       *fixed = range;
     } else {

@@ -38,7 +38,8 @@ VkExtent2D extent_of(const VkSurfaceCapabilitiesKHR& capabilities, VkExtent2D wa
 
 }  // namespace
 
-struct Presenter::Impl {
+class Presenter::Impl {
+ public:
   using UniqueSwapchain = vulkan::Handle<VkSwapchainKHR, vkDestroySwapchainKHR>;
   using UniqueImageView = vulkan::Handle<VkImageView, vkDestroyImageView>;
   using UniqueFramebuffer = vulkan::Handle<VkFramebuffer, vkDestroyFramebuffer>;
@@ -399,6 +400,7 @@ struct Presenter::Impl {
     return bytes;
   }
 
+ private:
   vulkan::Context& context_;
   VkSurfaceKHR surface_;
   VkExtent2D size_;  ///< size of the window when the swapchain was made

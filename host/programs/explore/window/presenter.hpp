@@ -27,7 +27,7 @@ class Presenter {
   void restart_imgui();
 
  private:
-  struct Impl;
+  class Impl;
   std::unique_ptr<Impl> impl_;
 };
 

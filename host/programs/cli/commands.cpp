@@ -10,7 +10,7 @@
 #include <string>
 
 #include "base/text.hpp"
-#include "explore/session_file.hpp"
+#include "explore/files.hpp"
 #include "explore/window/app.hpp"
 #include "terminal/exit_status.hpp"
 #include "terminal/guarded.hpp"

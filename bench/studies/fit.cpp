@@ -50,7 +50,7 @@ ordered_json set_row(const char* part, const FitSet& set, std::size_t number, co
   row["chi_square_from_truth"] = outcome.chi_square_from_truth;
   row["is_global"] = outcome.is_global();
   row["is_consistent"] = outcome.is_consistent();
-  row["minima"] = outcome.result.minima.size();
+  row["minima"] = outcome.result.minima.size() - 1;
   row["evaluations"] = outcome.result.evaluations;
   row["error"] = outcome.result.numerical_error;
   row["time_s"] = outcome.time_s;

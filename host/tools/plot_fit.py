@@ -14,7 +14,6 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
-from matplotlib.collections import LineCollection  # noqa: E402
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 QUANTITIES = {"dolp": "DOLP", "q_over_i": "Q/I", "emissivity_s": r"$\varepsilon_s$", "emissivity_p": r"$\varepsilon_p$"}
@@ -143,9 +142,12 @@ def draw_pair(axes, report):
         axes.text(0.5, 0.5, textwrap.fill(report.get("no_contours", "").replace("none:", "No contours:"), 44), ha="center",
                   va="center", color="0.3")
         return
-    for level, segments, region, width in zip(contours["levels"], contours["segments"], REGIONS, (2.0, 1.0)):
-        axes.add_collection(LineCollection(np.reshape(segments, (-1, 2, 2)), colors=COLOURS[0], linewidths=width,
-                                           capstyle="round", label=f"{region} of both, $\\Delta\\chi^2$ = {level:.2f}"))
+    x, y, growth = (np.array(contours[name], dtype=float) for name in ("x", "y", "growth"))
+    root = np.ma.masked_invalid(np.sqrt(growth))  # straighter than the growth
+    widths = (2.0, 1.0)
+    axes.contour(x, y, root, np.sqrt(contours["levels"]), colors=COLOURS[0], linewidths=widths)
+    for level, region, width in zip(contours["levels"], REGIONS, widths):
+        axes.plot([], [], color=COLOURS[0], linewidth=width, label=f"{region} of both, $\\Delta\\chi^2$ = {level:.2f}")
     parameters = {one["key"]: one for one in report["parameters"]}
     first, second = (parameters[key] for key in contours["keys"])
     for one, line in ((first, axes.axvline), (second, axes.axhline)):
@@ -154,7 +156,6 @@ def draw_pair(axes, report):
                 line(end, color="0.5", linestyle="--", linewidth=1.0)
     axes.plot([], [], color="0.5", linestyle="--", linewidth=1.0, label="95 % of each, profile likelihood")
     axes.plot(first["value"], second["value"], "+", color="black", markersize=10)
-    axes.autoscale_view()
     axes.set_xlabel(symbol_of(first["key"]))
     axes.set_ylabel(symbol_of(second["key"]))
     positions = [list(parameters).index(key) for key in contours["keys"]]

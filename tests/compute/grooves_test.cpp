@@ -19,7 +19,7 @@
 #include "rough_metal.hpp"
 #include "run/scene_run.hpp"
 #include "scene/scene_reader.hpp"
-#include "verify/stored_cases.hpp"
+#include "verify/qualification.hpp"
 
 namespace dolp {
 namespace {

@@ -18,7 +18,6 @@
 #include "spectrum/planck.hpp"
 #include "stored_evaluator.hpp"
 #include "verify/qualification.hpp"
-#include "verify/stored_cases.hpp"
 
 namespace dolp {
 namespace {

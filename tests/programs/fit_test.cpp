@@ -215,9 +215,11 @@ TEST_F(FitProgram, Plot_IsAPng) {
                                "--plot", "fit.png", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const nlohmann::json report = nlohmann::json::parse(outcome.out);
-  EXPECT_EQ(report["contours"]["segments"].size(), report["contours"]["levels"].size());
-  EXPECT_FALSE(report["contours"]["segments"][0].empty());
-  EXPECT_LE(report["contours"]["evaluations"], report["evaluations"]);
+  const json& contours = report["contours"];
+  EXPECT_EQ(contours["levels"].size(), 2U);
+  EXPECT_GT(contours["growth"].size(), 10U);
+  for (const char* name : {"x", "y"}) EXPECT_EQ(contours[name].size(), contours["growth"].size());
+  EXPECT_LE(contours["evaluations"], report["evaluations"]);
   EXPECT_EQ(report["curves"].size(), 1U);
   EXPECT_GT(report["curves"][0]["model"].size(), report["points"].size());
   EXPECT_EQ(report["brackets"].size(), 1U);

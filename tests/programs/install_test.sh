@@ -30,7 +30,7 @@ grep -oP '\]\(\K[^)#]+' "$prefix/share/doc/dolp/README.md" | grep -v '^https:' |
   [[ -e $prefix/share/doc/dolp/$link ]] || fail "README.md links to $link, which is not installed"
 done
 pages=$prefix/share
-words=$(bash -c 'source "$1"; COMP_WORDS=(dolp tab); COMP_CWORD=1; _dolp; echo "${COMPREPLY[*]}"
+words=$(PATH=$prefix/bin:$PATH bash -c 'source "$1"; COMP_WORDS=(dolp tab); COMP_CWORD=1; _dolp; echo "${COMPREPLY[*]}"
                  COMP_WORDS=(dolp eval --evaluator c); COMP_CWORD=3; _dolp; echo "${COMPREPLY[*]}"
                  COMP_WORDS=(dolp table --res); COMP_CWORD=2; _dolp; echo "${COMPREPLY[*]}"
                  COMP_WORDS=(dolp table --set surface.masking = v); COMP_CWORD=5; _dolp; echo "${COMPREPLY[*]}"
@@ -39,7 +39,7 @@ words=$(bash -c 'source "$1"; COMP_WORDS=(dolp tab); COMP_CWORD=1; _dolp; echo "
 [[ $words == $'table\ncpu\n--resume\nv-cavity\nsurface.wind_m_s=' ]] || fail "bash completes $words"
 zsh -n "$pages/zsh/vendor-completions/_dolp" || fail "zsh cannot read its completion"
 fish --no-execute "$pages/fish/vendor_completions.d/dolp.fish" || fail "fish cannot read its completion"
-completed=$(fish -c "source $pages/fish/vendor_completions.d/dolp.fish; complete -C 'dolp eval --evaluator c'")
+completed=$(PATH=$prefix/bin:$PATH fish -c "source $pages/fish/vendor_completions.d/dolp.fish; complete -C 'dolp eval --evaluator c'")
 [[ $completed == cpu* ]] || fail "fish completes $completed"
 
 # The library, from a project outside.

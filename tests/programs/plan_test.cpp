@@ -278,15 +278,12 @@ TEST_F(Plan, ShippedScenes_NameEachEffectOnceAndReadWell) {
   }
 }
 
-TEST_F(Plan, AllBounces_WorkOfTheirRowAndPipeline) {
+TEST_F(Plan, AllBounces_TakeMoreEvaluationsAndAPipelineOfTheirOwn) {
   const std::vector<std::string> single = {"--set", "surface.masking=v-cavity"};
   const std::vector<std::string> multiple = joined(single, {"--set", "surface.scattering=multiple"});
   const json all = plan(multiple);
   const json once = plan(single);
-  const json row = *std::ranges::find(all["rows"], "scattering", [](const json& r) { return r["name"]; });
-  const double work = all["evaluations"];
-  EXPECT_NEAR(row["work_share"], 1.0 - once["evaluations"].get<double>() / work, 1e-12);
-  EXPECT_GT(row["work_share"], 0.5);
+  EXPECT_GT(all["evaluations"].get<double>(), 2.0 * once["evaluations"].get<double>());
   EXPECT_EQ(all["pipelines"], json({"slopes, float: distribution cauchy, masking v-cavity, all bounces"}));
   EXPECT_EQ(once["pipelines"], json({"slopes, float: distribution cauchy, masking v-cavity"}));
 }

@@ -10,7 +10,7 @@
 
 #include "model/moments.hpp"
 #include "moments_only.hpp"
-#include "verify/stored_cases.hpp"
+#include "verify/qualification.hpp"
 
 namespace dolp {
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -109,6 +110,20 @@ class Window : public CommandLine {
     xdotool({"keyup", combination});
     frames();
   }
+  void type(const std::string& text) {
+    xdotool({"type", "--delay", "12", "--", text});
+    frames();
+  }
+  /// Holds Ctrl and clicks a slider.
+  void ctrl_click(const std::string& slider) {
+    xdotool({"keydown", "ctrl"});
+    frames();
+    click(app_->control_area(slider).at(0.1F, 0.5F));
+    xdotool({"keyup", "ctrl"});
+    app_->settle();
+  }
+  std::optional<double> number(const std::string& key) const { return app_->session().scene().number(key); }
+  std::optional<std::string> word(const std::string& key) const { return app_->session().scene().word(key); }
   /// True where a field has the ground of one whose text is refused.
   bool is_marked(const std::string& field) {
     frames();

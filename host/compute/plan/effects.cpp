@@ -283,13 +283,6 @@ EffectPlan plan_to_keep(const SceneValues& scene, const KeptEffects& kept) {
 
 EffectPlan keep_everything(const SceneValues& scene) { return plan_effects(scene, {}, true); }
 
-Needs needs_without(const SceneValues& scene, const EffectPlan& plan, Part part) {
-  const std::vector<EffectBounds> bounds = bounds_of(scene, {});
-  const KeptEffects kept = without(plan.kept, part);
-  return {kept.moments && !add_nothing(bounds, Part::kMoments, kept),
-          part != Part::kMoments && needs_beams(scene, bounds, kept)};
-}
-
 std::vector<Effect> effects_of(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan) {
   return {specular_row(scene, plan),
           diffuse_row(scene, plan),

@@ -57,15 +57,6 @@ EffectPlan with_sky(EffectPlan plan, const SceneValues& scene, const SceneEntrie
 /// True if a run gives the emissivities: with an emission, unless they need moments that are dropped.
 bool gives_emissivity(const SceneValues& scene, const EffectPlan& plan);
 
-/// Quantities that a run has to compute.
-struct Needs {
-  bool moments = false;
-  bool beams = false;
-};
-
-/// Quantities that the run would have to compute without one more part.
-Needs needs_without(const SceneValues& scene, const EffectPlan& plan, Part part);
-
 /// All effects, in the order of the scene file.
 std::vector<Effect> effects_of(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan);
 

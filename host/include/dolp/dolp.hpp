@@ -184,24 +184,11 @@ class DOLP_EXPORT Table {
   std::shared_ptr<const Impl> impl_;
 };
 
-/// A local minimum of a fit.
-struct FitMinimum {
-  std::vector<double> values;  ///< in the order of FitOptions::vary
-  double chi_square = 0.0;
-};
-
 /// A fit: the result for the best of the compared models.
-struct Fit {
+struct Fit : FitNumbers {
   Report report;             ///< parameters, intervals, correlation, minima, residuals
   bool has_minimum = false;  ///< true if any descent converged
   Scene scene;               ///< with what was compared and what was found; without a minimum the scene itself
-  std::vector<FitParameter> parameters = {};  ///< in the order of FitOptions::vary
-  double chi_square = 0.0;
-  std::size_t degrees_of_freedom = 0;
-  std::optional<double> p_value = {};          ///< with uncertainties and the loss "squares"
-  std::string fit_quality = {};                ///< "good", "doubtful" (p < 0.05), "bad" (p < 0.001); empty without p
-  std::vector<FitMinimum> minima = {};         ///< all that were found, the best first
-  std::vector<std::string> degeneracies = {};  ///< combinations that the data do not determine, in words
 };
 
 /// Computes. Device and kernels are made when they are first needed and kept as long as the object lives.

@@ -132,4 +132,21 @@ struct FitParameter {
   std::string why_no_error = {};  ///< why standard_error is none, in words
 };
 
+/// A local minimum of a fit.
+struct FitMinimum {
+  std::vector<double> values;  ///< in the order of FitOptions::vary
+  double chi_square = 0.0;
+};
+
+/// The numbers of a fit.
+struct FitNumbers {
+  std::vector<FitParameter> parameters = {};   ///< in the order of FitOptions::vary
+  double chi_square = 0.0;                     ///< sum over the squares of the residuals, or over their loss
+  std::size_t degrees_of_freedom = 0;          ///< points less parameters; with a model error the points
+  std::optional<double> p_value = {};          ///< with uncertainties and the loss "squares"
+  std::string fit_quality = {};                ///< "good", "doubtful" (p < 0.05), "bad" (p < 0.001); empty without p
+  std::vector<FitMinimum> minima = {};         ///< all that were found, the best first
+  std::vector<std::string> degeneracies = {};  ///< combinations that the data do not determine, in words
+};
+
 }  // namespace dolp

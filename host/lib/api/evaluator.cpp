@@ -3,12 +3,11 @@
 #include <atomic>
 #include <chrono>
 
-#include "api/evaluator_impl.hpp"
-#include "api/reports.hpp"
-#include "api/results.hpp"
-#include "api/scene_impl.hpp"
-#include "api/table_impl.hpp"
+#include "api/impl.hpp"
 #include "base/stopwatch.hpp"
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "reference/reference_evaluator.hpp"
 #include "report/run_report.hpp"
 #include "run/mueller_run.hpp"
 #include "run/scene_run.hpp"
@@ -26,6 +25,23 @@ std::vector<Attribute> all_attributes(const SceneValues& scene, const TableLayou
 }
 
 }  // namespace
+
+std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, bool needs_double) {
+  const bool is_vulkan = wanted.evaluator == "vulkan";
+  if (!is_vulkan && wanted.evaluator != "cpu" && wanted.evaluator != "reference") {
+    throw InputError("evaluator " + wanted.evaluator + ": is not one of vulkan, cpu, reference");
+  }
+  if (!is_vulkan && !wanted.device.empty()) {
+    throw InputError("device " + wanted.device + ": needs the evaluator vulkan, and it is " + wanted.evaluator);
+  }
+  if (wanted.evaluator == "reference") return std::make_unique<ReferenceEvaluator>();
+  if (!is_vulkan) return std::make_unique<CpuEvaluator>();
+  VulkanOptions options;
+  options.device = wanted.device;
+  options.needs_double = needs_double;
+  if (wanted.is_interactive) options.max_tile_invocations = 2'048;  // some milliseconds on two cores
+  return std::make_unique<VulkanEvaluator>(options);
+}
 
 void check_no_fork() {
   static std::atomic<pid_t> first_user = 0;
@@ -54,14 +70,13 @@ Evaluator::Impl& Evaluator::impl() {
 }
 
 Table Evaluator::table(const Scene& scene, const RunOptions& of_call) {
-  return impl().exclusively(of_call, [&](const RunOptions& options) {
-    const SceneValues& own = scene.impl().scene;
-    Run run(own, grid_entries(own), options, impl_->maker(own));
+  return impl().exclusively(scene, of_call, [&](const SceneValues& values, const RunOptions& options) {
+    Run run(values, grid_entries(values), options, impl_->maker(values));
     CollectedResults results(run.entries());
     const RunOutcome outcome = run.compute(results);
-    TableLayout layout = table_layout(own, outcome.plan, run.entries().axes());
-    layout.head.attributes.push_back({kIdentity, identity_of(own, impl_->options.evaluator, options.keep_all)});
-    layout.head.attributes = all_attributes(own, layout, outcome, options.history);
+    TableLayout layout = table_layout(values, outcome.plan, run.entries().axes());
+    layout.head.attributes.push_back({kIdentity, identity_of(values, impl_->options.evaluator, options.keep_all)});
+    layout.head.attributes = all_attributes(values, layout, outcome, options.history);
     TableValues table = table_part(layout, run.entries(), results.take());
     static_cast<TableHead&>(table) = std::move(layout.head);
     return Table(std::make_shared<const Table::Impl>(std::move(table), "table"));
@@ -70,10 +85,9 @@ Table Evaluator::table(const Scene& scene, const RunOptions& of_call) {
 
 void Evaluator::table_parts(const Scene& scene, const std::function<void(const Table&)>& take,
                             const RunOptions& of_call) {
-  impl().exclusively(of_call, [&](const RunOptions& options) {
-    const SceneValues& own = scene.impl().scene;
-    Run run(own, grid_entries(own), options, impl_->maker(own));
-    const TableLayout layout = table_layout(own, run.plan(), run.entries().axes());
+  impl().exclusively(scene, of_call, [&](const SceneValues& values, const RunOptions& options) {
+    Run run(values, grid_entries(values), options, impl_->maker(values));
+    const TableLayout layout = table_layout(values, run.plan(), run.entries().axes());
     const std::function<void(const Table&)> guarded = impl_->guard_reentry(take);
     CallbackSink parts([&](const SceneEntries& part, const std::vector<PointResult>& results) {
       TableValues table = table_part(layout, part, results);
@@ -85,14 +99,14 @@ void Evaluator::table_parts(const Scene& scene, const std::function<void(const T
 }
 
 Results Evaluator::evaluate(const Scene& scene, const std::vector<Column>& points, const RunOptions& of_call) {
-  return impl().exclusively(of_call, [&](const RunOptions& options) {
-    const SceneValues& own = scene.impl().scene;
-    Run run(own, point_entries(own, points_of_columns(points, PointsKind::kDirections)), options, impl_->maker(own));
+  return impl().exclusively(scene, of_call, [&](const SceneValues& values, const RunOptions& options) {
+    Run run(values, point_entries(values, points_of_columns(points, PointsKind::kDirections)), options,
+            impl_->maker(values));
     CollectedResults collected(run.entries());
     const RunOutcome outcome = run.compute(collected);
-    TableLayout layout = table_layout(own, outcome.plan, run.entries().axes());
-    layout.head.attributes = all_attributes(own, layout, outcome, options.history);
-    Results results = results_of(collected.take(), quantities_of(own), layout.head);
+    TableLayout layout = table_layout(values, outcome.plan, run.entries().axes());
+    layout.head.attributes = all_attributes(values, layout, outcome, options.history);
+    Results results = results_of(collected.take(), quantities_of(values), layout.head);
     results.integrand_evaluations = outcome.evaluation.evaluations;
     return results;
   });
@@ -100,11 +114,10 @@ Results Evaluator::evaluate(const Scene& scene, const std::vector<Column>& point
 
 std::vector<MuellerMatrix> Evaluator::mueller(const Scene& scene, const std::vector<Column>& points,
                                               const RunOptions& of_call) {
-  return impl().exclusively(of_call, [&](const RunOptions& options) {
-    const SceneValues& own = scene.impl().scene;
-    const auto geometries = mueller_points(own, points_of_columns(points, PointsKind::kGeometries));
+  return impl().exclusively(scene, of_call, [&](const SceneValues& values, const RunOptions& options) {
+    const auto geometries = mueller_points(values, points_of_columns(points, PointsKind::kGeometries));
     report_start(options.progress, geometries.size());
-    return evaluate_mueller(own, geometries, *impl_->begin(own), options.progress);
+    return evaluate_mueller(values, geometries, *impl_->begin(values), options.progress);
   });
 }
 

@@ -1,20 +1,45 @@
+// Plans, lists, and checks of tables and devices.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+
+#include <dolp/number_range.hpp>
 #include <dolp/status.hpp>
-#include "api/reports.hpp"
-#include "api/results.hpp"
-#include "api/scene_impl.hpp"
+#include "api/impl.hpp"
+#include "base/stopwatch.hpp"
 #include "base/text.hpp"
 #include "base/version.hpp"
+#include "device/devices.hpp"
+#include "model/choices.hpp"
 #include "plan/effects.hpp"
-#include "report/plan_report.hpp"
+#include "report/run_report.hpp"
+#include "report/verify_report.hpp"
 #include "run/estimates.hpp"
 #include "run/scene_run.hpp"
+#include "run/table_scene.hpp"
 #include "scene/embedded_data.hpp"
 #include "scene/material_data.hpp"
+#include "table/table_reader.hpp"
 
 namespace dolp {
 namespace {
+
+/// The precisions to examine. `left_out` says why one is missing that auto would include.
+std::vector<Precision> precisions_of(const DeviceCheckOptions& options, std::string& left_out) {
+  const std::optional<Precision> wanted = named<Precision>(options.precision);
+  if (!wanted) throw InputError("precision " + one_line(options.precision) + ": must be auto, float or double");
+  if (*wanted != Precision::kAuto) return {*wanted};
+  if (options.evaluator == "cpu") return {Precision::kFloat, Precision::kDouble};
+  const DeviceList list = list_devices();
+  if (list.devices.empty()) throw DeviceError(list.why_empty);
+  const Device& device = list.devices[choose_device(list.devices, options.device, false)];
+  if (device.has_double) return {Precision::kFloat, Precision::kDouble};
+  left_out = "double is left out: " + device.name + " has no double precision (shaderFloat64)";
+  return {Precision::kFloat};
+}
 
 BuiltInMaterial facts_of(const Material& material) {
   const Spectrum range = known_range(material);
@@ -28,15 +53,15 @@ std::string commit() { return program_commit(); }
 std::string citation() { return fmt::format("{}commit: \"{}\"\n", embedded_citation_cff(), commit()); }
 
 Report plan(const Scene& scene, const std::string& device, bool keep_all) {
-  const SceneValues& own = scene.impl().scene;
-  return public_report(plan_report(plan_of(own, device, plan_effects(own, grid_entries(own), keep_all))));
+  const SceneValues& values = scene.impl().scene;
+  return public_report(plan_report(values, device, plan_effects(values, grid_entries(values), keep_all)));
 }
 
 std::vector<Effect> effects(const Scene& scene, const std::vector<Column>& points, bool keep_all) {
-  const SceneValues& own = scene.impl().scene;
-  const SceneEntries entries = point_entries(own, points_of_columns(points, PointsKind::kDirections));
-  std::vector<Effect> all = effects_of(own, entries, plan_effects(own, entries, keep_all));
-  add_influences(all, own, entries);
+  const SceneValues& values = scene.impl().scene;
+  const SceneEntries entries = point_entries(values, points_of_columns(points, PointsKind::kDirections));
+  std::vector<Effect> all = effects_of(values, entries, plan_effects(values, entries, keep_all));
+  add_influences(all, values, entries);
   return all;
 }
 
@@ -47,5 +72,51 @@ std::vector<BuiltInMaterial> materials() {
 }
 
 BuiltInMaterial material(const std::string& name) { return facts_of(named_material(name, one_line(name) + ": ")); }
+
+Report verify(const std::filesystem::path& path, const TableCheckOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::string name = path.string();
+  check_may_hold_scene(name);
+  const TableReader reader(path);
+  const SceneValues scene =
+      table_scene(reader.head(), name, options.named_files ? NamedData::kOfFiles : NamedData::kOfTable);
+  TableReport report;
+  report.path = name;
+  report.title = scene.title;
+  report.options = options;
+  TableSample sample;
+  sample.positions = sample_positions(reader.head().size(), report.options);
+  sample.table = reader.read_entries(sample.positions, options.progress);
+  const bool is_response = !sample.table.beta_deg.empty();
+  report.check = (is_response ? check_responses : check_table)(sample, scene, name, options.progress);
+  report.wall_s = seconds_since(start);
+  return public_report(table_report(report), report.check.passed());
+}
+
+Report verify_device(const DeviceCheckOptions& options) {
+  if (!kToleranceRange.contains(options.tolerance)) {
+    throw InputError(fmt::format("tolerance {:g}: must be a number in {}", options.tolerance, kToleranceRange.text()));
+  }
+  report_start(options.progress, 1);
+  HardCaseReport report;
+  report.tolerance = options.tolerance;
+  const std::vector<StoredCase> cases = hard_cases();
+  report.cases = cases.size();
+  for (const Precision precision : precisions_of(options, report.left_out)) {
+    const std::unique_ptr<ModelEvaluator> evaluator =
+        make_evaluator({options.evaluator, options.device}, precision == Precision::kDouble);
+    PrecisionReport& of_precision = report.precisions.emplace_back();
+    of_precision.outcomes = qualify(cases, *evaluator, {report.tolerance, precision}, options.progress);
+    of_precision.evaluation = evaluator->report();
+  }
+  return public_report(hard_case_report(report, options.all), report.failures() == 0);
+}
+
+Report device_report() {
+  const ReportBuilder report = device_report(list_devices());
+  const bool is_any_usable =
+      std::ranges::any_of(report.json()["devices"], [](const auto& d) { return d["usable"] == true; });
+  return public_report(report, is_any_usable);
+}
 
 }  // namespace dolp

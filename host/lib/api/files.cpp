@@ -8,9 +8,7 @@
 
 #include <dolp/number_range.hpp>
 #include <dolp/status.hpp>
-#include "api/evaluator_impl.hpp"
-#include "api/reports.hpp"
-#include "api/scene_impl.hpp"
+#include "api/impl.hpp"
 #include "base/atomic_file.hpp"
 #include "base/number_text.hpp"
 #include "base/stopwatch.hpp"
@@ -99,40 +97,38 @@ void check_output_is_no_input(const std::filesystem::path& output, const std::ve
 
 Report Evaluator::write_table(const Scene& scene, const std::filesystem::path& path, const RunOptions& of_call,
                               const Shard& shard) {
-  return impl().exclusively(of_call, [&](const RunOptions& options) {
-    const SceneValues& own = scene.impl().scene;
-    const SceneEntries entries = shard_entries(own, shard);
+  return impl().exclusively(scene, of_call, [&](const SceneValues& values, const RunOptions& options) {
+    const SceneEntries entries = shard_entries(values, shard);
     const TableJob job{shard_path(path, shard), shard, options, impl_->options.evaluator};
-    check_output_is_no_input(job.path, files_of(own));
+    check_output_is_no_input(job.path, files_of(values));
     check_output_path(job.path);
-    if (!shard.is_none() && is_there(own, job)) {
+    if (!shard.is_none() && is_there(values, job)) {
       ReportBuilder report;
-      report.line("{}", key("title", own.title));
+      report.line("{}", key("title", values.title));
       report.row("kept", "{}: the whole shard is there already", key("output", job.path.string()));
       return public_report(report, true, job.path);
     }
-    const RunOutcome run = dolp::write_table(own, job, impl_->maker(own));
-    const std::optional<ScatteringGap> gap = scattering_gap(own, entries, run.plan);
-    return public_report(run_report(own, run, gap, grid_text(entries.axes()), job.path.string()),
+    const RunOutcome run = dolp::write_table(values, job, impl_->maker(values));
+    const std::optional<ScatteringGap> gap = scattering_gap(values, entries, run.plan);
+    return public_report(run_report(values, run, gap, grid_text(entries.axes()), job.path.string()),
                          run.summary.meets_tolerance(), job.path);
   });
 }
 
 Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& points_path,
                                const std::filesystem::path& path, const RunOptions& of_call) {
-  return impl().exclusively(of_call, [&](const RunOptions& options) {
-    const SceneValues& own = scene.impl().scene;
-    const Points points = load_points(points_path, PointsKind::kDirections, files_of(own), path);
-    SceneEntries entries = point_entries(own, points);
+  return impl().exclusively(scene, of_call, [&](const SceneValues& values, const RunOptions& options) {
+    const Points points = load_points(points_path, PointsKind::kDirections, files_of(values), path);
+    SceneEntries entries = point_entries(values, points);
     check_writable(path);
-    Run run(own, std::move(entries), options, impl_->maker(own));
-    ResultCsv csv = csv_of(path, points, quantities_of(own));
+    Run run(values, std::move(entries), options, impl_->maker(values));
+    ResultCsv csv = csv_of(path, points, quantities_of(values));
     CallbackSink rows([&](const SceneEntries&, const std::vector<PointResult>& results) { csv.append(results); });
     RunOutcome outcome = run.compute(rows);
-    const std::optional<ScatteringGap> gap = scattering_gap(own, run.entries(), outcome.plan);
+    const std::optional<ScatteringGap> gap = scattering_gap(values, run.entries(), outcome.plan);
     csv.commit();
     outcome.wall_s = run.wall_s();
-    ReportBuilder report = run_report(own, outcome, gap, fmt::format("{} points", points.size()), path.string());
+    ReportBuilder report = run_report(values, outcome, gap, fmt::format("{} points", points.size()), path.string());
     add_left_out(report, points);
     Report result = public_report(report, outcome.summary.meets_tolerance(), path);
     add_remarks(result, points);
@@ -142,36 +138,35 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
 
 Report Evaluator::write_mueller(const Scene& scene, const std::filesystem::path& points_path,
                                 const std::filesystem::path& path, const RunOptions& of_call) {
-  return impl().exclusively(of_call, [&](const RunOptions& options) {
+  return impl().exclusively(scene, of_call, [&](const SceneValues& values, const RunOptions& options) {
     const Clock::time_point start = Clock::now();
-    const SceneValues& own = scene.impl().scene;
-    const Points points = load_points(points_path, PointsKind::kGeometries, files_of(own), path);
-    const std::vector<MuellerPoint> geometries = mueller_points(own, points);
+    const Points points = load_points(points_path, PointsKind::kGeometries, files_of(values), path);
+    const std::vector<MuellerPoint> geometries = mueller_points(values, points);
     check_writable(path);
     report_start(options.progress, points.size());
-    ModelEvaluator* const evaluator = impl_->begin(own);
-    const std::vector<MuellerMatrix> results = evaluate_mueller(own, geometries, *evaluator, options.progress);
+    ModelEvaluator* const evaluator = impl_->begin(values);
+    const std::vector<MuellerMatrix> results = evaluate_mueller(values, geometries, *evaluator, options.progress);
     write_text_atomically(path, mueller_csv(points, results));
 
     const bool is_float = impl_->options.evaluator != "reference" &&
-                          mueller_precision(own.accuracy, evaluator->has_double()) == Precision::kFloat;
+                          mueller_precision(values.accuracy, evaluator->has_double()) == Precision::kFloat;
     const double accuracy = is_float ? kScatteringErrorFloat : kScatteringErrorDouble;
     const bool lacks_double = is_float && !evaluator->has_double();
     const auto nans = std::ranges::count_if(results, [](const MuellerMatrix& f) { return std::isnan(f[0]); });
     ReportBuilder report;
-    report.line("{}", key("title", own.title));
+    report.line("{}", key("title", values.title));
     report.row("entries", "{} geometries", key("entries", results.size()));
     add_evaluation(report, evaluator->report(), seconds_since(start));
     report.row("error", "<= {:g} of m00; tolerance {:g}", key("worst_error_estimate", accuracy),
-               key("tolerance", own.accuracy.tolerance));
-    report.row_if(accuracy > own.accuracy.tolerance, "warning",
+               key("tolerance", values.accuracy.tolerance));
+    report.row_if(accuracy > values.accuracy.tolerance, "warning",
                   "the tolerance is not met: {} precision gives {:g} of m00{}", is_float ? "float" : "double", accuracy,
                   lacks_double ? ", and the device has no double precision" : "");
     report.row_if(nans > 0, "nan", "{} of {} geometries: f is not finite there, or takes over 1000 bounces",
                   key("without_value", nans), results.size());
     add_left_out(report, points);
     report.row("written", "{}", key("output", path.string()));
-    return public_report(report, accuracy <= own.accuracy.tolerance, path);
+    return public_report(report, accuracy <= values.accuracy.tolerance, path);
   });
 }
 
@@ -189,10 +184,19 @@ Report write_lookup(const std::filesystem::path& table_path, const std::filesyst
   csv.append(results);
   csv.commit();
 
-  const std::size_t missed = count_status(results, kToleranceNotMet);
-  const std::size_t rho_missed = count_status(results, kRhoToleranceNotMet);
-  const std::size_t inaccurate = count_status(results, kModelInaccurate);
-  const std::optional<double> worst = worst_of(results, Quantity::kErrorEstimate, kNoDolpPromised);
+  const auto count = [&](std::uint32_t bit) {
+    return std::ranges::count_if(results, [bit](const PointResult& one) { return (one.status & bit) != 0; });
+  };
+  const auto worst_of = [&](Quantity error) {
+    std::optional<double> worst;
+    for (const PointResult& one : results) {
+      if (promises_dolp(one.status)) worst = std::max(worst.value_or(0.0), one[error]);
+    }
+    return worst;
+  };
+  const auto missed = count(kToleranceNotMet), rho_missed = count(kRhoToleranceNotMet);
+  const auto inaccurate = count(kModelInaccurate);
+  const std::optional<double> worst = worst_of(Quantity::kErrorEstimate);
   ReportBuilder report;
   report.line("{}", key("table", table_path.string()));
   report.row("points", "{}", key("points", results.size()));
@@ -208,7 +212,7 @@ Report write_lookup(const std::filesystem::path& table_path, const std::filesyst
   add_left_out(report, points);
   report.row("written", "{}", key("output", path.string()));
   report.value("worst_error_estimate", worst);
-  report.value("worst_rho_error_estimate", worst_of(results, Quantity::kRhoErrorEstimate, kNoDolpPromised));
+  report.value("worst_rho_error_estimate", worst_of(Quantity::kRhoErrorEstimate));
   report.value("wall_s", seconds_since(start));
   return public_report(report, missed + rho_missed == 0, path);
 }

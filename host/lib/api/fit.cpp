@@ -12,18 +12,15 @@
 
 #include <dolp/fit.hpp>
 #include <dolp/status.hpp>
-#include "api/evaluator_impl.hpp"
-#include "api/reports.hpp"
-#include "api/scene_impl.hpp"
+#include "api/impl.hpp"
 #include "base/atomic_file.hpp"
+#include "base/python_picture.hpp"
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
 #include "fit/residuals.hpp"
-#include "report/fit_picture.hpp"
 #include "report/fit_report.hpp"
 #include "report/run_report.hpp"
 #include "run/scene_run.hpp"
-#include "scene/points.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/scene_reader.hpp"
 #include "scene/scene_writer.hpp"
@@ -37,12 +34,12 @@ using Json = ReportBuilder::Json;
 void check_loss(Loss loss, ModelError error, const std::vector<MeasuredData>& data) {
   if (loss != Loss::kSquares && error != ModelError::kNone) {
     throw InputError(
-        fmt::format("loss {}: cannot be combined with a model error, whose intervals are those of the loss squares",
+        fmt::format("loss {}: cannot be combined with a model error, whose intervals need the loss squares",
                     loss_names()[static_cast<std::size_t>(loss)]));
   }
   for (const MeasuredData& one : data) {
     if (loss == Loss::kSquares || one.has_uncertainties) continue;
-    throw InputError(fmt::format("loss {}: {} needs the column \"uncertainty\", which says what lies off",
+    throw InputError(fmt::format("loss {}: {} needs the column \"uncertainty\", against which residuals are weighed",
                                  loss_names()[static_cast<std::size_t>(loss)], one.name));
   }
 }
@@ -89,10 +86,8 @@ struct Best {
   SceneValues scene;  ///< with the compared settings
 
   Eigen::VectorXd values() const {
-    const std::vector<FitParameter>& found = result.value().parameters;
-    Eigen::VectorXd values(static_cast<Eigen::Index>(found.size()));
-    for (Eigen::Index j = 0; j < values.size(); ++j) values[j] = found[static_cast<std::size_t>(j)].value;
-    return values;
+    return Eigen::Map<const Eigen::VectorXd>(result.value().minima.front().values.data(),
+                                             static_cast<Eigen::Index>(result->parameters.size()));
   }
   /// The compared settings, with the fitted values.
   Settings settings() const {
@@ -102,7 +97,7 @@ struct Best {
   }
 };
 
-/// Refuses what Matplotlib would not draw, or would draw in another format than the name says.
+/// Refuses a name whose suffix is no format of a picture.
 void check_plot(const std::filesystem::path& path) {
   const std::string suffix = lower_case(path.extension().string());
   if (path.empty() || suffix == ".png" || suffix == ".pdf" || suffix == ".svg") return;
@@ -124,7 +119,7 @@ void check_outputs(const FitOptions& options, const SceneValues& scene, const st
   }
 }
 
-/// Zeniths at which a picture draws curves: from the least to the largest of the data.
+/// Zeniths of the curves of a picture: from the least to the largest zenith of the data.
 std::vector<double> fine_zeniths(const MeasuredData& data) {
   constexpr int kSteps = 120;
   const auto [least, largest] = std::ranges::minmax(data.measurements, {}, &Measurement::theta_deg);
@@ -135,51 +130,57 @@ std::vector<double> fine_zeniths(const MeasuredData& data) {
   return zeniths;
 }
 
+/// The fitted model at the measurements of a data set; with the bracket, its value that is nearest to each of them.
+/// Empty where the scene has no bracket, or the set by itself does not take an end of a range.
+std::vector<double> model_values(const Best& best, MeasuredData data, const FitOptions& options, ModelError error,
+                                 ModelEvaluator& evaluator) {
+  const std::size_t count = data.measurements.size();
+  data.measurements.resize(std::max(count, options.vary.size()), data.measurements.front());  // as many as parameters
+  try {
+    const fit::Model model(best.scene, {data}, options.vary, error);
+    fit::Residuals residuals(model, best.result->tolerance, fit::Differences::kForward, evaluator, {});
+    const std::vector<fit::Prediction> found = model.predict({best.values()}, residuals.tolerance(), evaluator, {});
+    const Eigen::VectorXd values = residuals.observed(found.front().components);
+    return {values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count)};
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
 /// DOLP or Q/I at a zenith, and its bracket.
 struct Bracketed {
   double model, low, high;
 };
 
 /// The measured quantity of one data set at zeniths, with its bracket; empty where the scene has no bracket, other
-/// quantities were measured, or wavelengths are those of the measurements.
-std::vector<Bracketed> bracketed(const Scene& fitted, const MeasuredData& data, const std::vector<double>& theta_deg,
-                                 ModelEvaluator& evaluator) {
-  const Observable measured = data.measurements.front().observable;
-  if (measured != Observable::kDolp && measured != Observable::kQOverI) return {};
-  if (data.measurements.front().wavelength_um) return {};
-  const auto results_of = [&](const Setting& own) {
-    Settings settings = data.settings;
-    settings.push_back(own);
-    const SceneValues scene = with_settings(fitted.impl().scene, settings);
-    const Column zeniths{"theta_deg", theta_deg};
-    const Points points = points_of(std::span(&zeniths, 1), theta_deg.size(), PointsKind::kDirections);
-    return evaluate_scene(scene, point_entries(scene, points), evaluator, {});
-  };
+/// quantities were measured, or the measurements have wavelengths.
+std::vector<Bracketed> bracketed(const Best& best, MeasuredData data, const std::vector<double>& theta_deg,
+                                 const FitOptions& options, ModelEvaluator& evaluator) {
+  const Measurement first = data.measurements.front();
+  const bool is_dolp = first.observable == Observable::kDolp || first.observable == Observable::kQOverI;
+  if (!is_dolp || first.wavelength_um) return {};
+  data.has_uncertainties = true;
+  data.measurements.clear();
+  for (const double zenith : theta_deg) {
+    for (const double beyond_end : {-1.0, 1.0})
+      data.measurements.push_back({first.observable, zenith, beyond_end, 1.0, {}});
+  }
+  const std::vector<double> ends = model_values(best, data, options, ModelError::kBracket, evaluator);
+  const std::vector<double> model = model_values(best, data, options, ModelError::kNone, evaluator);
   std::vector<Bracketed> all;
-  try {
-    const bool is_direct = fitted.word("emission.model") == "direct";
-    const std::vector<PointResult> results = results_of({"emission.bracket", true});
-    const std::vector<PointResult> others =
-        measured == Observable::kDolp ? results : results_of({"emission.model", is_direct ? "moments" : "direct"});
-    for (std::size_t i = 0; i < results.size(); ++i) {
-      const PointResult& one = results[i];
-      const auto [low, high] = std::minmax({one[Quantity::kQOverI], others[i][Quantity::kQOverI]});
-      all.push_back(measured == Observable::kDolp
-                        ? Bracketed{one[Quantity::kDolp], one[Quantity::kDolpLow], one[Quantity::kDolpHigh]}
-                        : Bracketed{one[Quantity::kQOverI], low, high});
-    }
-  } catch (const InputError&) {  // a scene without a bracket
+  for (std::size_t i = 0; i < std::min(ends.size(), model.size()); i += 2) {
+    all.push_back({model[i], ends[i], ends[i + 1]});
   }
   return all;
 }
 
 /// The bracket of each data set over zenith, null where there is none.
-Json brackets(const Scene& fitted, const std::vector<MeasuredData>& sets, ModelEvaluator& evaluator) {
+Json brackets(const Best& best, const FitOptions& options, ModelEvaluator& evaluator) {
   Json all = Json::array();
-  for (const MeasuredData& data : sets) {
+  for (const MeasuredData& data : best.model->data()) {
     Json& one = all.emplace_back(nullptr);
     const std::vector<double> zeniths = fine_zeniths(data);
-    for (const Bracketed& at : bracketed(fitted, data, zeniths, evaluator)) {
+    for (const Bracketed& at : bracketed(best, data, zeniths, options, evaluator)) {
       one["low"].push_back(at.low);
       one["high"].push_back(at.high);
     }
@@ -188,36 +189,19 @@ Json brackets(const Scene& fitted, const std::vector<MeasuredData>& sets, ModelE
   return all;
 }
 
-/// The fitted model at the measurements of a data set. Errors: InputError where the set does not fit the ranges.
-std::vector<double> model_values(const Best& best, const MeasuredData& data, const FitOptions& options,
-                                 ModelEvaluator& evaluator) {
-  const fit::Model model(best.scene, {data}, options.vary);
-  const fit::Residuals residuals(model, best.result->tolerance, fit::Differences::kForward, evaluator, {});
-  const Eigen::VectorXd values =
-      residuals.observed(model.predict({best.values()}, best.result->tolerance, evaluator, {}).front().components);
-  return {values.begin(), values.end()};
-}
-
 /// The model over zenith, one curve for each data set, quantity and wavelength.
 Json curves(const Best& best, const FitOptions& options, ModelEvaluator& evaluator) {
   Json all = Json::array();
   for (const MeasuredData& data : best.model->data()) {
     std::map<std::pair<Observable, std::optional<double>>, Measurement> kinds;
     for (const Measurement& one : data.measurements) kinds.emplace(std::pair(one.observable, one.wavelength_um), one);
-    for (auto& [kind, measurement] : kinds) {
+    const std::vector<double> zeniths = fine_zeniths(data);
+    for (const auto& [kind, measurement] : kinds) {
       MeasuredData fine = data;
-      fine.measurements.clear();
-      const std::vector<double> zeniths = fine_zeniths(data);
-      for (const double zenith : zeniths) {
-        measurement.theta_deg = zenith;
-        fine.measurements.push_back(measurement);
-      }
-      std::vector<double> values;
-      try {
-        values = model_values(best, fine, options, evaluator);
-      } catch (const InputError&) {
-        continue;  // the set by itself does not take an end of a range
-      }
+      fine.measurements.assign(zeniths.size(), measurement);
+      for (std::size_t i = 0; i < zeniths.size(); ++i) fine.measurements[i].theta_deg = zeniths[i];
+      const std::vector<double> values = model_values(best, fine, options, ModelError::kNone, evaluator);
+      if (values.empty()) continue;
       all.push_back({{"data", data.name},
                      {"quantity", name_of(kind.first)},
                      {"wavelength_um", kind.second ? Json(*kind.second) : Json(nullptr)},
@@ -228,14 +212,13 @@ Json curves(const Best& best, const FitOptions& options, ModelEvaluator& evaluat
   return all;
 }
 
-/// How far the model itself may be off: the largest distance of the fit from an end of its bracket.
-void add_model_gap(ReportBuilder& report, const Scene& fitted, const std::vector<MeasuredData>& sets,
-                   ModelEvaluator& evaluator) {
+/// Adds how far the model itself may be off: the largest distance of the fit from an end of its bracket.
+void add_model_gap(ReportBuilder& report, const Best& best, const FitOptions& options, ModelEvaluator& evaluator) {
   std::optional<double> gap, share;
-  for (const MeasuredData& data : sets) {
+  for (const MeasuredData& data : best.model->data()) {
     std::vector<double> zeniths;
     for (const Measurement& one : data.measurements) zeniths.push_back(one.theta_deg);
-    const std::vector<Bracketed> results = bracketed(fitted, data, zeniths, evaluator);
+    const std::vector<Bracketed> results = bracketed(best, data, zeniths, options, evaluator);
     for (std::size_t i = 0; i < results.size(); ++i) {
       const auto& [model, low, high] = results[i];
       const double distance = std::max(high - model, model - low);
@@ -249,21 +232,6 @@ void add_model_gap(ReportBuilder& report, const Scene& fitted, const std::vector
                 kPoints * gap.value_or(0.0), share ? fmt::format(", {:.2g} uncertainties,", *share) : "");
   report.value("model_gap", gap);
   report.value("model_gap_in_uncertainties", share);
-}
-
-void add_numbers(Fit& found, const fit::FitResult& result) {
-  found.parameters = result.parameters;
-  found.chi_square = result.chi_square;
-  found.degrees_of_freedom = result.degrees_of_freedom;
-  found.p_value = result.p_value;
-  found.fit_quality = fit::fit_quality(result.p_value);
-  std::vector<double> best;
-  for (const FitParameter& one : result.parameters) best.push_back(one.value);
-  found.minima.push_back({std::move(best), result.chi_square});
-  for (const fit::OtherMinimum& one : result.minima) {
-    found.minima.push_back({{one.values.begin(), one.values.end()}, one.chi_square});
-  }
-  found.degeneracies = result.degeneracies;
 }
 
 /// Fits all combinations that the scene has, and gives the best; `models` gets all, the best first. `begin` gets the
@@ -300,14 +268,22 @@ Best best_of(std::vector<ComparedModel>& models, const SceneValues& scene, const
   return best;
 }
 
-void write_fitted(const std::filesystem::path& path, const Scene& fitted) {
-  write_text_atomically(path, fitted.toml(path.has_parent_path() ? path.parent_path() : "."));
+/// Adds contours, brackets and curves to the report, and draws the picture.
+void draw(ReportBuilder& report, const Best& best, const Scene& fitted, const FitOptions& options,
+          ModelEvaluator& evaluator) {
+  add_contours(report, *best.model, *best.result, fit::contours_of(*best.model, evaluator, *best.result, options));
+  const Spectrum& spectrum = fitted.impl().scene.spectrum;
+  report.value("spectrum_um", Json{spectrum.min_um, spectrum.max_um});
+  report.value("brackets", brackets(best, options, evaluator));
+  report.value("curves", curves(best, options, evaluator));
+  draw_with_python(kFitPictureScript, report.json_text(), options.plot.string());
+  report.row("picture", "{}", key("plot", options.plot.string()));
 }
 
 }  // namespace
 
 Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, const FitOptions& of_call) {
-  return impl().exclusively(of_call, [&](const FitOptions& options) {
+  return impl().exclusively(scene, of_call, [&](const SceneValues& own, const FitOptions& options) {
     const auto start = std::chrono::steady_clock::now();
     check_loss(options.loss, options.model_error, data);
     check_starts(options.starts);
@@ -315,13 +291,13 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     report_start(options.progress, 1);
     std::vector<ComparedModel> models;
     ModelEvaluator* evaluator = nullptr;
-    const Best best = best_of(models, scene.impl().scene, data, options, [&](const SceneValues& first) {
+    const Best best = best_of(models, own, data, options, [&](const SceneValues& first) {
       check_outputs(options, first, data);
       return evaluator = impl_->begin(first);
     });
 
     ReportBuilder report;
-    report.line("{}", key("title", scene.impl().scene.title));
+    report.line("{}", key("title", own.title));
     if (best.result) {
       report.row("data", "{} measured values of {} file{}", key("observations", best.model->observation_count()),
                  data.size(), data.size() == 1 ? "" : "s");
@@ -334,24 +310,18 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     report.row("starts", "{} descents, seed {}", key("starts", options.starts), key("seed", options.seed));
     report.value("loss", loss_names()[static_cast<std::size_t>(options.loss)]);
     const Scene fitted = best.result ? scene.with(best.settings()) : scene;
-    if (best.result) add_model_gap(report, fitted, data, *evaluator);
-    if (best.result && !options.output.empty()) write_fitted(options.output, fitted);
-    if (best.result && !options.plot.empty()) {
-      add_contours(report, *best.model, *best.result, fit::contours_of(*best.model, *evaluator, *best.result, options));
-      const Spectrum& spectrum = fitted.impl().scene.spectrum;
-      report.value("spectrum_um", Json{spectrum.min_um, spectrum.max_um});
-      report.value("brackets", brackets(fitted, data, *evaluator));
-      report.value("curves", curves(best, options, *evaluator));
-      draw_fit(report.json_text(), options.plot.string());
-      report.row("picture", "{}", key("plot", options.plot.string()));
+    if (best.result) add_model_gap(report, best, options, *evaluator);
+    if (best.result && !options.output.empty()) {
+      const std::filesystem::path folder = options.output.has_parent_path() ? options.output.parent_path() : ".";
+      write_text_atomically(options.output, fitted.toml(folder));
     }
+    if (best.result && !options.plot.empty()) draw(report, best, fitted, options, *evaluator);
     add_evaluation(report, evaluator->report(), seconds_since(start));
     report.value("integrand_evaluations", evaluator->report().evaluations);
-    if (!best.result) return Fit{public_report(report, false), false, scene};
+    if (!best.result) return Fit{{}, public_report(report, false), false, scene};
     if (!options.output.empty()) report.row("written", "{}", key("output", options.output.string()));
-    Fit found{public_report(report, (best.result->status & kAnyToleranceNotMet) == 0, options.output), true, fitted};
-    add_numbers(found, *best.result);
-    return found;
+    const bool is_good = (best.result->status & kAnyToleranceNotMet) == 0;
+    return Fit{*best.result, public_report(report, is_good, options.output), true, fitted};
   });
 }
 

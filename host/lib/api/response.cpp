@@ -4,10 +4,7 @@
 #include <algorithm>
 #include <span>
 
-#include "api/evaluator_impl.hpp"
-#include "api/reports.hpp"
-#include "api/scene_impl.hpp"
-#include "api/table_impl.hpp"
+#include "api/impl.hpp"
 #include "report/run_report.hpp"
 #include "run/response_run.hpp"
 #include "scene/scene_reader.hpp"
@@ -57,9 +54,9 @@ std::vector<Setting> surface_settings() {
 }
 
 Table Evaluator::response(const Scene& scene, const RunOptions& of_call) {
-  return impl().exclusively(of_call, [&](const RunOptions& options) {
-    const SceneValues own = surface_of(scene.impl().scene);
-    const TableLayout layout = response_layout(own);
+  return impl().exclusively(scene, of_call, [&](const SceneValues& whole, const RunOptions& options) {
+    const SceneValues values = surface_of(whole);
+    const TableLayout layout = response_layout(values);
     TableValues table;
     static_cast<TableHead&>(table) = layout.head;
     const auto take = [&](const TableValues& part, const PerAxis&) {
@@ -70,24 +67,24 @@ Table Evaluator::response(const Scene& scene, const RunOptions& of_call) {
       for (const ResponseVariable variable : layout.responses)
         append(table.responses[variable], part.responses[variable]);
     };
-    const ResponseOutcome run = run_responses(own, layout, options, *impl_->begin(own), take);
+    const ResponseOutcome run = run_responses(values, layout, options, *impl_->begin(values), take);
     table.attributes.insert(table.attributes.end(), run.attributes.begin(), run.attributes.end());
     return Table(std::make_shared<const Table::Impl>(std::move(table), "response table"));
   });
 }
 
 Report Evaluator::write_response(const Scene& scene, const std::filesystem::path& path, const RunOptions& of_call) {
-  return impl().exclusively(of_call, [&](const RunOptions& options) {
-    const SceneValues own = surface_of(scene.impl().scene);
-    check_output_is_no_input(path, files_of(scene.impl().scene));
-    const TableLayout layout = response_layout(own);
+  return impl().exclusively(scene, of_call, [&](const SceneValues& whole, const RunOptions& options) {
+    const SceneValues values = surface_of(whole);
+    check_output_is_no_input(path, files_of(whole));
+    const TableLayout layout = response_layout(values);
     if (path.extension() != ".nc") throw InputError(path.string() + ": the name of a response table must end in .nc");
     TableOutput output({.path = path, .layout = layout});
     const ResponseOutcome run =
-        run_responses(own, layout, options, *impl_->begin(own),
+        run_responses(values, layout, options, *impl_->begin(values),
                       [&](TableValues part, const PerAxis& first) { output.write(std::move(part), first, ""); });
     output.finish(run.attributes);
-    return public_report(response_report(own, layout.head, run, path.string()), run.missed == 0, path);
+    return public_report(response_report(values, layout.head, run, path.string()), run.missed == 0, path);
   });
 }
 

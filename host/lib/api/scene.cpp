@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "api/scene_impl.hpp"
+#include "api/impl.hpp"
 #include "base/text.hpp"
 #include "run/scene_remarks.hpp"
 #include "scene/embedded_data.hpp"

@@ -1,3 +1,4 @@
+// Tables in memory, and columns of points and results.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,13 +7,13 @@
 #include <string_view>
 #include <utility>
 
-#include "api/reports.hpp"
-#include "api/results.hpp"
-#include "api/table_impl.hpp"
+#include "api/impl.hpp"
+#include "base/number_text.hpp"
 #include "base/text.hpp"
 #include "run/lookup_run.hpp"
 #include "run/scene_run.hpp"
 #include "run/table_scene.hpp"
+#include "table/result_csv.hpp"
 #include "table/table_file.hpp"
 #include "table/values_hash.hpp"
 
@@ -71,8 +72,8 @@ void check_values(const TableValues& table, const std::string& name) {
   }
 }
 
-/// Refuses a table that lost an axis of its scene, which would be looked up with the scene's value, and one with values
-/// of an axis that were not computed: what another program put between entries has no error.
+/// Refuses a table that lost an axis of its scene, which would be looked up with the scene's value. Refuses values of
+/// an axis that were not computed: entries that another program put between others have no error.
 void check_computed(const TableHead& table, const SceneValues& scene, const std::string& name) {
   constexpr double kFloatRounding = 0x1p-23;  // of an axis that was stored in single precision
   for (const Axis axis : kAllAxes) {
@@ -142,5 +143,37 @@ Results Table::lookup(const std::vector<Column>& points, const Progress& progres
 }
 
 void Table::write(const std::filesystem::path& path) const { write_table(impl_->table, path); }
+
+Results results_of(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head) {
+  return {{columns_of(points, quantities)}, quantities, head.stokes_units, head.attributes};
+}
+
+std::string to_csv(const std::vector<Column>& points, const Results& results) {
+  const Quantities quantities = in_csv_order(results.given);
+  const std::size_t count = results.status.size();
+  const auto check = [&](const std::string& name, std::size_t size, bool may_be_one) {
+    if (size == count || (may_be_one && size == 1)) return;
+    throw InputError(fmt::format("{}: {} values for {} results", one_line(name), size, count));
+  };
+  for (const Column& column : points) check(column.name, column.values.size(), true);
+  for (const Quantity quantity : quantities) check(description_of(quantity).name, results[quantity].size(), false);
+  std::string header;
+  for (const Column& column : points) header += column.name + ',';
+  return header + result_header(quantities) + '\n' +
+         result_rows(results, count, quantities, [&](std::string& text, std::size_t row) {
+           for (const Column& column : points) {
+             append_number(text, column.values[column.values.size() == 1 ? 0 : row]);
+             text += ',';
+           }
+         });
+}
+
+Points points_of_columns(const std::vector<Column>& columns, PointsKind kind) {
+  std::size_t count = 1;
+  for (const Column& column : columns) {
+    if (column.values.size() != 1) count = column.values.size();
+  }
+  return points_of(columns, count, kind);
+}
 
 }  // namespace dolp

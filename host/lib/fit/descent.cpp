@@ -1,7 +1,7 @@
 #include "fit/descent.hpp"
 #include "fit/constants.hpp"
-#include "fit/principal_axes.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,7 +10,7 @@
 namespace dolp::fit {
 namespace {
 
-/// A robust loss and its derivative at a squared residual. Widths are those of 95 % efficiency for normal errors.
+/// A robust loss and its derivative at a squared residual. The widths give 95 % efficiency for normal errors.
 std::pair<double, double> loss_of(double square, Loss loss) {
   switch (loss) {
     case Loss::kSquares:
@@ -45,11 +45,11 @@ bool is_on_bound(double coordinate) {
 }
 
 /// `step`, which moves held coordinates, with steps of the others to the least sum of squares within the bounds.
-Eigen::VectorXd bounded_step(const Linearisation& where, Eigen::VectorXd step, const std::vector<std::size_t>& held,
+Eigen::VectorXd bounded_step(const Linearisation& where, Eigen::VectorXd step, const std::vector<Eigen::Index>& held,
                              double damping, const Eigen::VectorXd& weights) {
   std::vector<Eigen::Index> free;
   for (Eigen::Index j = 0; j < step.size(); ++j) {
-    if (std::ranges::find(held, static_cast<std::size_t>(j)) == held.end()) free.push_back(j);
+    if (std::ranges::find(held, j) == held.end()) free.push_back(j);
   }
   while (!free.empty()) {
     for (const Eigen::Index j : free) step[j] = 0.0;
@@ -84,9 +84,9 @@ Linearisation moved(const Linearisation& near, Linearisation to) {
 /// A descent on its way.
 struct Walk {
   Minimum* minimum;
-  bool is_stale;        ///< its derivatives are not those of its point
-  bool is_updated;      ///< its derivatives are those of another point, which followed the steps
-  double shrink = 2.0;  ///< of the radius, where the next step fails
+  bool is_stale;        ///< its derivatives belong to an earlier point
+  bool is_updated;      ///< its derivatives were updated from steps
+  double shrink = 2.0;  ///< divides the radius where the next step fails
   bool is_done = false;
   double promised = 0.0;
   Eigen::VectorXd point = {};
@@ -99,16 +99,16 @@ struct Walk {
     if (is_done) return;
     // A parameter leaves a bound when the others are done: where the model is even in it, as in k at 0, differences
     // promise much that is not there.
-    std::vector<std::size_t> held = minimum->held;
+    std::vector<Eigen::Index> held = minimum->held;
     for (Eigen::Index j = 0; j < where.at.size(); ++j) {
-      if (is_on_bound(where.at[j])) held.push_back(static_cast<std::size_t>(j));
+      if (is_on_bound(where.at[j])) held.push_back(j);
     }
     aim(options, held);
     if (is_done && held.size() > minimum->held.size()) aim(options, minimum->held);
     minimum->has_converged = is_done;
   }
 
-  void aim(const DescentOptions& options, const std::vector<std::size_t>& held) {
+  void aim(const DescentOptions& options, const std::vector<Eigen::Index>& held) {
     const Linearisation& where = minimum->where;
     const Eigen::VectorXd weights = loss_weights(where.residuals, options.loss).cwiseSqrt();
     const Eigen::VectorXd step =
@@ -116,11 +116,16 @@ struct Walk {
     point = (where.at + step).cwiseMax(0.0).cwiseMin(1.0);
     promised = weights.cwiseProduct(where.residuals).squaredNorm() -
                weights.cwiseProduct(where.residuals + where.jacobian * step).squaredNorm();
+    constexpr double kLeastStepLength = 1e-7;
     is_done = !(promised >= options.least_gain * options.scale) || step.norm() <= kLeastStepLength;
   }
 
-  /// Goes to a point that was tried, or takes a shorter step next time.
+  /// Goes to a point that was tried, or takes a shorter step next time. The rules of the radius are from Nielsen
+  /// (1999); Levenberg's damping is the scale over the radius. Marquardt's damping, by the derivatives, would allow
+  /// leaps along directions that the data hardly constrain.
   void judge(Linearisation tried, const DescentOptions& options) {
+    constexpr double kLeastRadius = 1e-8, kMostRadius = 1e8;
+    constexpr double kLeastDecrease = 1e-8;  // relative
     const double found = objective(tried.residuals, options.loss);
     const double ratio = (minimum->objective - found) / promised;
     if (!(ratio > kLeastRatio)) {
@@ -135,7 +140,7 @@ struct Walk {
     minimum->radius =
         std::min(kMostRadius, minimum->radius / std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * ratio - 1.0, 3)));
     shrink = 2.0;
-    is_updated = options.secant_below && ratio > kForetoldRatio && ratio < 1.0 / kForetoldRatio;
+    is_updated = options.secant_below && ratio > kPredictedRatio && ratio < 1.0 / kPredictedRatio;
     is_stale = !is_updated;
   }
 };
@@ -167,6 +172,17 @@ void finish(Residuals& residuals, std::vector<Walk>& walks, const DescentOptions
 
 }  // namespace
 
+Eigen::MatrixXd PrincipalAxes::inverse(double least_share) const {
+  const Eigen::VectorXd inverses =
+      values.unaryExpr([least = least_share * values[0]](double value) { return value > least ? 1.0 / value : 0.0; });
+  return directions * inverses.asDiagonal() * directions.transpose();
+}
+
+PrincipalAxes principal_axes(const Eigen::MatrixXd& symmetric) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(symmetric);
+  return {solver.eigenvalues().reverse().cwiseMax(0.0), solver.eigenvectors().rowwise().reverse()};
+}
+
 double objective(const Eigen::VectorXd& residuals, Loss loss) {
   if (!residuals.allFinite()) return std::numeric_limits<double>::infinity();
   double sum = 0.0;
@@ -179,8 +195,8 @@ Eigen::VectorXd loss_weights(const Eigen::VectorXd& residuals, Loss loss) {
 }
 
 bool is_straight(const Linearisation& from, const Linearisation& to, double scale) {
-  const Eigen::VectorXd foretold = from.residuals + from.jacobian * (to.at - from.at);
-  return (foretold - to.residuals).squaredNorm() < kBent * ((from.residuals - to.residuals).squaredNorm() + scale);
+  const Eigen::VectorXd predicted = from.residuals + from.jacobian * (to.at - from.at);
+  return (predicted - to.residuals).squaredNorm() < kBent * ((from.residuals - to.residuals).squaredNorm() + scale);
 }
 
 void descend(Residuals& residuals, std::vector<Minimum>& all, const DescentOptions& options) {
@@ -218,20 +234,17 @@ void descend(Residuals& residuals, std::vector<Minimum>& all, const DescentOptio
   refresh(residuals, walks, options);
 }
 
-std::pair<Eigen::VectorXd, double> foretell(const Neighbour& neighbour, double scale) {
+std::pair<Eigen::VectorXd, double> predict_step(const Neighbour& neighbour, double scale) {
   const Linearisation& near = neighbour.near->where;
   Eigen::VectorXd step = Eigen::VectorXd::Zero(near.at.size());
-  for (const std::size_t one : neighbour.held) {
-    const auto j = static_cast<Eigen::Index>(one);
-    step[j] = neighbour.to[j] - near.at[j];
-  }
+  for (const Eigen::Index j : neighbour.held) step[j] = neighbour.to[j] - near.at[j];
   if (near.jacobian.size() == 0) return {near.at + step, std::numeric_limits<double>::infinity()};
   step = bounded_step(near, step, neighbour.held, scale / kRadiusOfNeighbours,
                       Eigen::VectorXd::Ones(near.residuals.size()));
   // Where the model is even in a parameter, as in k at 0, a bound is a stationary point that no descent leaves. Others
   // than the held come half the way to it at most.
   for (Eigen::Index j = 0; j < step.size(); ++j) {
-    const bool is_held = std::ranges::find(neighbour.held, static_cast<std::size_t>(j)) != neighbour.held.end();
+    const bool is_held = std::ranges::find(neighbour.held, j) != neighbour.held.end();
     const double to = near.at[j] + step[j];
     if (!is_held && is_on_bound(to)) step[j] *= 0.5;
   }
@@ -240,14 +253,14 @@ std::pair<Eigen::VectorXd, double> foretell(const Neighbour& neighbour, double s
 
 std::vector<Minimum> follow(Residuals& residuals, const std::vector<Neighbour>& all, const DescentOptions& options) {
   std::vector<Eigen::VectorXd> points;
-  for (const Neighbour& one : all) points.push_back(foretell(one, options.scale).first);
+  for (const Neighbour& one : all) points.push_back(predict_step(one, options.scale).first);
   std::vector<Linearisation> found = residuals.at(points);
   std::vector<Minimum> minima;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Linearisation& near = all[i].near->where;
-    const bool is_foretold = near.jacobian.size() > 0 && is_straight(near, found[i], options.scale);
+    const bool is_predicted = near.jacobian.size() > 0 && is_straight(near, found[i], options.scale);
     Minimum& one = minima.emplace_back();
-    one.where = is_foretold ? moved(near, std::move(found[i])) : std::move(found[i]);
+    one.where = is_predicted ? moved(near, std::move(found[i])) : std::move(found[i]);
     one.where.steps = near.steps;
     one.held = all[i].held;
     one.radius = kRadiusOfNeighbours;

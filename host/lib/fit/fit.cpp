@@ -11,9 +11,10 @@
 #include <limits>
 #include <utility>
 
+#include <dolp/number_range.hpp>
+#include "base/numbers.hpp"
 #include "base/text.hpp"
 #include "fit/constants.hpp"
-#include "fit/principal_axes.hpp"
 #include "fit/profile.hpp"
 #include "fit/search.hpp"
 
@@ -25,7 +26,7 @@ constexpr double kLevel68 = 0.682689492137086;
 constexpr double kLevel95 = 0.95;
 
 double least_uncertainty(const Model& model) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = model.has_uncertainties() ? std::numeric_limits<double>::infinity() : kAssumedUncertainty;
   for (const MeasuredData& data : model.data()) {
     for (const Measurement& one : data.measurements) least = std::min(least, one.uncertainty.value_or(least));
   }
@@ -34,86 +35,77 @@ double least_uncertainty(const Model& model) {
 
 /// The tolerance of the model's values; at most the scene's own.
 double fine_tolerance(const Model& model) {
-  const double wanted =
-      model.has_uncertainties() ? kFineShare * least_uncertainty(model) : kToleranceWithoutUncertainties;
-  return std::min(model.scene().accuracy.tolerance, std::max(wanted, kLeastTolerance));
+  return std::min(model.scene().accuracy.tolerance,
+                  std::max(kFineShare * least_uncertainty(model), kToleranceRange.min));
 }
 
 /// The tolerance of the search.
 double coarse_tolerance(const Model& model) {
-  const double wanted =
-      model.has_uncertainties() ? kCoarseShare * least_uncertainty(model) : kCoarseToleranceWithoutUncertainties;
-  return std::max(fine_tolerance(model), std::min(wanted, kMostTolerance));
+  return std::max(fine_tolerance(model), std::min(kCoarseShare * least_uncertainty(model), kMostTolerance));
 }
 
 bool is_at_bound(double coordinate) { return coordinate < kAtBound || coordinate > 1.0 - kAtBound; }
 
-/// A direction of coordinates, the largest component 1, and the distance over which the data do not constrain it.
+/// A direction of coordinates, the largest component 1, along which the data do not constrain the parameters.
 struct Direction {
   Eigen::VectorXd along;
-  bool is_null = false;  ///< the data do not see it at all; else the whole range changes less than they can tell
+  bool is_null = false;  ///< no residual changes; else the whole range changes less than the data can tell
 };
 
 /// Covariance of the parameters, from the Jacobian at a minimum.
 struct Covariance {
-  Eigen::MatrixXd of_coordinates;     ///< infinite variance where a null direction points; NaN at a bound
-  std::vector<Direction> directions;  ///< that the data do not see
+  Eigen::MatrixXd of_coordinates;  ///< infinite variance where a null direction points; NaN at a bound
+  std::vector<Direction> unconstrained;
   std::size_t rank = 0;
 };
 
 Covariance covariance_of(const Minimum& minimum, Loss loss, double scale) {
-  const Eigen::VectorXd weights = loss_weights(minimum.where.residuals, loss).cwiseSqrt();
-  Eigen::MatrixXd jacobian = weights.asDiagonal() * minimum.where.jacobian;
+  constexpr double kNullShare = 1e-4;        // of the largest singular value: the data do not see the direction
+  constexpr double kLeastDeviations = 1e-3;  // a parameter whose range changes the residuals by less is not seen
+  Eigen::MatrixXd jacobian =
+      loss_weights(minimum.where.residuals, loss).cwiseSqrt().asDiagonal() * minimum.where.jacobian;
   const Eigen::Index count = jacobian.cols();
   Eigen::VectorXd norms = jacobian.colwise().norm();
-  Covariance result;
-  std::vector<bool> is_held;
-  const double largest_norm = norms.maxCoeff();
+  const double least_norm = std::max(kNullShare * kNullShare * norms.maxCoeff(), kLeastDeviations * std::sqrt(scale));
   for (Eigen::Index j = 0; j < count; ++j) {
-    is_held.push_back(is_at_bound(minimum.where.at[j]));
-    const bool is_seen = norms[j] > std::max(kNullShare * kNullShare * largest_norm, kUnseen * std::sqrt(scale));
-    jacobian.col(j) *= is_held.back() || !is_seen ? 0.0 : 1.0 / norms[j];
+    const bool is_seen = norms[j] > least_norm;
     if (!is_seen) norms[j] = 1.0;
+    jacobian.col(j) *= is_seen && !is_at_bound(minimum.where.at[j]) ? 1.0 / norms[j] : 0.0;
   }
   const PrincipalAxes axes = principal_axes(jacobian.transpose() * jacobian);
-  Eigen::MatrixXd& covariance = result.of_coordinates;
-  covariance = Eigen::MatrixXd::Zero(count, count);
+  Covariance result{Eigen::MatrixXd::Zero(count, count), {}, 0};
   for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::VectorXd right = axes.directions.col(i);
+    const Eigen::VectorXd axis = axes.directions.col(i);
     const double singular = std::sqrt(axes.values[i]);
-    const Eigen::VectorXd along = right.cwiseQuotient(norms);
+    const Eigen::VectorXd along = axis.cwiseQuotient(norms);
     const double length = along.cwiseAbs().maxCoeff();
     Eigen::Index first = 0;
-    right.cwiseAbs().maxCoeff(&first);
+    const double largest = axis.cwiseAbs().maxCoeff(&first);
     const bool is_null = singular <= kNullShare * std::sqrt(axes.values[0]);
-    if (is_null && is_held[static_cast<std::size_t>(first)]) continue;
-    if (is_null || singular < length * std::sqrt(scale)) result.directions.push_back({along / length, is_null});
+    if (is_null && is_at_bound(minimum.where.at[first])) continue;
+    if (is_null || singular < length * std::sqrt(scale)) result.unconstrained.push_back({along / length, is_null});
     if (is_null) {
-      const Eigen::VectorXd infinite =
-          (right.cwiseAbs().array() > kInDirection * right.cwiseAbs().maxCoeff())
-              .select(Eigen::VectorXd::Constant(count, std::numeric_limits<double>::infinity()),
-                      Eigen::VectorXd::Zero(count));
-      covariance.diagonal() += infinite;
+      for (Eigen::Index j = 0; j < count; ++j)
+        if (std::abs(axis[j]) > kInDirection * largest) result.of_coordinates(j, j) = kInfinity;
       continue;
     }
     ++result.rank;
-    covariance += scale / (singular * singular) * along * along.transpose();
+    result.of_coordinates += scale / (singular * singular) * along * along.transpose();
   }
   for (Eigen::Index j = 0; j < count; ++j) {
-    if (is_held[static_cast<std::size_t>(j)]) covariance.row(j).setConstant(kNaN), covariance.col(j).setConstant(kNaN);
+    if (!is_at_bound(minimum.where.at[j])) continue;
+    result.of_coordinates.row(j).setConstant(kNaN);
+    result.of_coordinates.col(j).setConstant(kNaN);
   }
   return result;
 }
 
+/// NaN where a variance is not finite.
 Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance) {
-  Eigen::MatrixXd correlation(covariance.rows(), covariance.cols());
-  for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
-    for (Eigen::Index j = 0; j < covariance.cols(); ++j) {
-      const double product = covariance(i, i) * covariance(j, j);
-      const bool is_known = std::isfinite(product) && product > 0.0;
-      correlation(i, j) = !is_known ? kNaN : i == j ? 1.0 : covariance(i, j) / std::sqrt(product);
-    }
-  }
+  const auto known = [](double variance) { return variance > 0.0 && std::isfinite(variance) ? variance : kNaN; };
+  const Eigen::VectorXd inverses = covariance.diagonal().unaryExpr(known).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd correlation = inverses.asDiagonal() * covariance * inverses.asDiagonal();
+  for (double& own : correlation.diagonal()) own = std::isnan(own) ? kNaN : 1.0;
   return correlation;
 }
 
@@ -129,15 +121,14 @@ std::string words_of(const Direction& direction, const std::vector<FitRange>& pa
   const std::string extent = direction.is_null ? "at all" : "within its range";
   if (rising.size() + falling.size() == 1)
     return fmt::format("the data do not determine {} {}", rising.front(), extent);
-  std::vector<std::string> all = rising;
-  all.insert(all.end(), falling.begin(), falling.end());
-  const std::string names = fmt::format("{}", fmt::join(all, " and "));
-  if (falling.empty()) return fmt::format("the data cannot tell {} apart: both may rise or fall together", names);
-  return fmt::format("the data cannot tell {} apart: {} may rise while {} {}", names, fmt::join(rising, " and "),
-                     fmt::join(falling, " and "), falling.size() == 1 ? "falls" : "fall");
+  const std::string up = fmt::format("{}", fmt::join(rising, " and "));
+  if (falling.empty()) return fmt::format("the data cannot tell {} apart: both may rise or fall together", up);
+  const std::string down = fmt::format("{}", fmt::join(falling, " and "));
+  return fmt::format("the data cannot tell {} and {} apart: {} may rise while {} {}", up, down, up, down,
+                     falling.size() == 1 ? "falls" : "fall");
 }
 
-/// The standard error of a value, or why it has none.
+/// Sets the standard error of a value, or why it has none.
 void set_error(FitParameter& fitted, const FitRange& range, double deviation, bool has_scale) {
   const double error = deviation * range.slope(fitted.value);
   if (fitted.is_at_bound) {
@@ -158,8 +149,8 @@ FitInterval interval_of(const FitRange& parameter, const std::vector<Stretch>& s
   interval.is_empty = stretches.empty();
   for (const Stretch& one : stretches) {
     std::optional<double> low, high;
-    if (one.low > kAtRange) low = parameter.at(one.low);
-    if (one.high < 1.0 - kAtRange) high = parameter.at(one.high);
+    if (one.low > kAtBound) low = parameter.at(one.low);
+    if (one.high < 1.0 - kAtBound) high = parameter.at(one.high);
     interval.pieces.emplace_back(low, high);
   }
   if (interval.is_empty) return interval;
@@ -180,6 +171,7 @@ class Fit {
         profile_(model, fine_tolerance(model), Differences::kForward, evaluator, poll_) {}
 
   std::optional<FitResult> run(double most_aic) {
+    constexpr int kMostRestarts = 4;  // where profiles lead to lower and lower minima
     SearchOptions search{options_.starts, options_.seed, options_.loss, model_.has_uncertainties(), guess_scale()};
     search.count = [this](std::size_t done, std::size_t total) { count(done, total); };
     if (options_.phase) options_.phase("descents of the search");
@@ -187,9 +179,13 @@ class Fit {
     if (minima_.empty()) return std::nullopt;
     for (int i = 0;; ++i) {
       const bool may_restart = i < kMostRestarts;
-      if (find_intervals(may_restart)) continue;
+      find_values();
+      if (has_scale() && options_.phase) options_.phase("sides of the intervals");
+      if (has_scale() && !find_intervals(result_.scale, may_restart, false)) continue;
       describe();
-      if (result_.aic > most_aic || !find_scaled(may_restart)) return std::move(result_);
+      const bool needs_scaled = result_.p_value.value_or(1.0) < kDoubtfulBelow && result_.aic <= most_aic;
+      if (!needs_scaled || find_intervals(result_.reduced_chi_square.value(), may_restart, true))
+        return std::move(result_);
     }
   }
 
@@ -207,14 +203,14 @@ class Fit {
   /// True where the growth of the objective has a scale to be measured with.
   bool has_scale() const { return model_.has_uncertainties() || freedom() > 0; }
 
-  /// 1, or the square of a hundredth of what was measured.
+  /// 1, or the square of a hundredth of the largest measured value.
   double guess_scale() const {
     if (model_.has_uncertainties()) return 1.0;
     double largest = 0.0;
     for (const MeasuredData& data : model_.data()) {
       for (const Measurement& one : data.measurements) largest = std::max(largest, std::abs(one.value));
     }
-    return std::pow(std::max(kGuessedShare * largest, fine_.tolerance()), 2);
+    return std::pow(std::max(0.01 * largest, fine_.tolerance()), 2);
   }
 
   /// 1, or the mean square of the residuals, which the model's own error bounds from below.
@@ -224,79 +220,67 @@ class Fit {
     return std::max(mean, fine_.tolerance() * fine_.tolerance());
   }
 
-  std::array<double, 2> rises() const {
+  /// The growth of the objective at the ends of an interval.
+  double rise_at(double level) const {
     if (model_.has_uncertainties()) {
-      const boost::math::chi_squared squares(model_.has_model_error() ? static_cast<double>(freedom()) : 1.0);
-      return {boost::math::quantile(squares, kLevel68), boost::math::quantile(squares, kLevel95)};
+      const double freedoms = model_.has_model_error() ? static_cast<double>(freedom()) : 1.0;
+      return boost::math::quantile(boost::math::chi_squared(freedoms), level);
     }
     const boost::math::students_t t(static_cast<double>(freedom()));
-    const double at_68 = boost::math::quantile(t, 0.5 * (1.0 + kLevel68));
-    const double at_95 = boost::math::quantile(t, 0.5 * (1.0 + kLevel95));
-    return {at_68 * at_68, at_95 * at_95};
+    return std::pow(boost::math::quantile(t, 0.5 * (1.0 + level)), 2);
   }
 
-  /// Inside a bracket no derivative tells parameters apart: it has no covariance.
-  Covariance find_covariance(const Minimum& best) const {
-    if (!model_.has_model_error()) return covariance_of(best, options_.loss, result_.scale);
-    const Eigen::Index count = best.where.at.size();
+  /// The covariance at the best minimum. Inside a bracket no derivative tells parameters apart: it has none.
+  Covariance find_covariance() const {
+    if (!model_.has_model_error()) return covariance_of(minima_.front(), options_.loss, result_.scale);
+    const Eigen::Index count = minima_.front().where.at.size();
     return {Eigen::MatrixXd::Constant(count, count, kNaN), {}, static_cast<std::size_t>(count)};
   }
 
-  void find_values(const Minimum& best) {
+  void find_values() {
+    const Minimum& best = minima_.front();
     result_ = {};
     result_.scale = find_scale(best);
-    covariance_ = find_covariance(best);
+    covariance_ = find_covariance();
     for (std::size_t j = 0; j < model_.parameters().size(); ++j) {
-      const FitRange& parameter = model_.parameters()[j];
+      const FitRange& range = model_.parameters()[j];
       const auto index = static_cast<Eigen::Index>(j);
       FitParameter& fitted = result_.parameters.emplace_back();
-      fitted.key = parameter.key;
-      fitted.value = parameter.at(best.where.at[index]);
+      fitted.key = range.key;
+      fitted.value = range.at(best.where.at[index]);
       fitted.is_at_bound = is_at_bound(best.where.at[index]);
-      set_error(fitted, parameter, std::sqrt(covariance_.of_coordinates(index, index)), has_scale());
+      set_error(fitted, range, std::sqrt(covariance_.of_coordinates(index, index)), has_scale());
       if (model_.has_model_error())
         fitted.why_no_error = "with a model error the value is one of many that fit as well";
     }
-    result_.seen = {best};
+    result_.valley_points = {best};
   }
 
-  /// The values and the intervals of all parameters. True where a profile led to a lower minimum, which then is the
-  /// best.
-  bool find_intervals(bool may_restart) {
-    find_values(minima_.front());
-    if (!has_scale()) return false;
-    if (options_.phase) options_.phase("sides of the intervals");
-    const std::optional<Profiles> profiles = find_profiles(result_.scale, may_restart);
-    if (!profiles) return true;
+  /// Finds the intervals of all parameters, or their scaled ones. False where a profile led to a lower minimum, which
+  /// then is the best.
+  bool find_intervals(double scale, bool may_restart, bool is_scaled) {
+    const std::optional<Profiles> profiles = find_profiles(scale, may_restart);
+    if (!profiles) return false;
     for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
-      result_.parameters[j].interval_68 = interval_of(model_.parameters()[j], profiles->stretches[j][0]);
-      result_.parameters[j].interval_95 = interval_of(model_.parameters()[j], profiles->stretches[j][1]);
+      FitParameter& one = result_.parameters[j];
+      (is_scaled ? one.scaled_68.emplace() : one.interval_68) =
+          interval_of(model_.parameters()[j], profiles->stretches[j][0]);
+      (is_scaled ? one.scaled_95.emplace() : one.interval_95) =
+          interval_of(model_.parameters()[j], profiles->stretches[j][1]);
     }
-    std::ranges::copy(profiles->seen, std::back_inserter(result_.seen));
-    return false;
-  }
-
-  /// The scaled intervals of a doubtful or bad fit. True as find_intervals.
-  bool find_scaled(bool may_restart) {
-    if (result_.p_value.value_or(1.0) >= kDoubtfulBelow) return false;
-    const std::optional<Profiles> profiles = find_profiles(result_.reduced_chi_square.value(), may_restart);
-    if (!profiles) return true;
-    for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
-      result_.parameters[j].scaled_68 = interval_of(model_.parameters()[j], profiles->stretches[j][0]);
-      result_.parameters[j].scaled_95 = interval_of(model_.parameters()[j], profiles->stretches[j][1]);
-    }
-    return false;
+    if (!is_scaled) std::ranges::copy(profiles->points, std::back_inserter(result_.valley_points));
+    return true;
   }
 
   /// The profiles around the best minimum, and around others that the data do not exclude; none where one of them led
   /// to a lower minimum, which then is the best.
   std::optional<Profiles> find_profiles(double scale, bool may_restart) {
-    const double from = model_.has_model_error() ? 0.0 : minima_.front().objective;
-    ProfileOptions options{rises(), from, scale, options_.loss, {}};
+    ProfileOptions options{{rise_at(kLevel68), rise_at(kLevel95)}, 0.0, scale, options_.loss, {}};
+    if (!model_.has_model_error()) options.from = minima_.front().objective;
     options.count = [this](std::size_t done, std::size_t total) { count(done, total); };
     std::vector<Minimum> near;
     for (const Minimum& one : minima_) {
-      if (one.objective < from + options.rises[1] * scale) near.push_back(one);
+      if (one.objective < options.from + options.rises[1] * scale) near.push_back(one);
     }
     if (near.empty())
       return Profiles{.stretches = std::vector<std::array<std::vector<Stretch>, 2>>(result_.parameters.size())};
@@ -307,12 +291,9 @@ class Fit {
 
   /// Descends from a point; true where that gives the new best minimum.
   bool take(const Minimum& lower) {
-    DescentOptions descent;
-    descent.loss = options_.loss;
-    descent.scale = result_.scale;
     std::vector<Minimum> bottoms(1);
     bottoms.front().where.at = lower.where.at;
-    descend(fine_, bottoms, descent);
+    descend(fine_, bottoms, {options_.loss, result_.scale});
     Minimum& bottom = bottoms.front();
     if (!bottom.has_converged || bottom.objective >= minima_.front().objective) return false;
     if (bottom.objective > minima_.front().objective - result_.scale) minima_.erase(minima_.begin());  // the same
@@ -326,15 +307,16 @@ class Fit {
     result_.correlation = correlation_of(covariance_.of_coordinates);
     result_.chi_square = best.objective;
     result_.degrees_of_freedom = freedom();
-    const auto freedoms = static_cast<double>(freedom());
     if (freedom() > 0) {
+      const auto freedoms = static_cast<double>(freedom());
       result_.reduced_chi_square = best.objective / freedoms;
-      if (model_.has_uncertainties() && options_.loss == Loss::kSquares) {
+      if (model_.has_uncertainties() && options_.loss == Loss::kSquares)
         result_.p_value = boost::math::gamma_q(0.5 * freedoms, 0.5 * best.objective);
-      }
     }
-    for (std::size_t i = 1; i < minima_.size(); ++i) {
-      result_.minima.push_back({fine_.values(minima_[i].where.at), minima_[i].objective});
+    result_.fit_quality = fit_quality(result_.p_value);
+    for (const Minimum& one : minima_) {
+      const Eigen::VectorXd values = fine_.values(one.where.at);
+      result_.minima.push_back({{values.begin(), values.end()}, one.objective});
     }
     result_.tolerance = fine_.tolerance();
     result_.status = prediction.status;
@@ -349,7 +331,7 @@ class Fit {
   /// A weakly constrained direction counts only where a profile confirms that a parameter in it is open.
   void name_degeneracies() {
     result_.determined = covariance_.rank;
-    for (const Direction& direction : covariance_.directions) {
+    for (const Direction& direction : covariance_.unconstrained) {
       bool is_open = direction.is_null;
       for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
         const FitInterval& interval = result_.parameters[j].interval_68;

@@ -6,11 +6,12 @@
 #include <array>
 #include <dolp/errors.hpp>
 #include <map>
+#include <ranges>
+#include <set>
 #include <string_view>
 #include <utility>
 
 #include "base/text.hpp"
-#include "fit/fit_range.hpp"
 #include "model/moments.hpp"
 #include "run/scene_run.hpp"
 #include "scene/scene_keys.hpp"
@@ -19,24 +20,22 @@
 namespace dolp::fit {
 namespace {
 
-// Each point of a list has its own, so that sets which differ in these alone share a call.
+// Each point of a list has its own values of these keys, so that sets which differ only in them share a call.
 constexpr std::array<std::string_view, 5> kPointKeys = {"surface.n", "surface.k", "surface.sigma", "surface.wind_m_s",
                                                         "surface.q"};
 
 bool is_point_key(const std::string& key) { return std::ranges::find(kPointKeys, key) != kPointKeys.end(); }
 
-Eigen::VectorXd values_of(const std::vector<FitRange>& parameters, double FitRange::*value) {
+/// A value for each parameter.
+template <class ValueOf>
+Eigen::VectorXd each(const std::vector<FitRange>& parameters, ValueOf value_of) {
   Eigen::VectorXd values(static_cast<Eigen::Index>(parameters.size()));
-  for (std::size_t j = 0; j < parameters.size(); ++j) values[static_cast<Eigen::Index>(j)] = parameters[j].*value;
+  std::ranges::transform(parameters, values.begin(), value_of);
   return values;
 }
 
 Eigen::VectorXd starts_of(const std::vector<FitRange>& parameters) {
-  Eigen::VectorXd values(static_cast<Eigen::Index>(parameters.size()));
-  for (std::size_t j = 0; j < parameters.size(); ++j) {
-    values[static_cast<Eigen::Index>(j)] = parameters[j].start.value_or(parameters[j].at(0.5));
-  }
-  return values;
+  return each(parameters, [](const FitRange& one) { return one.start.value_or(one.at(0.5)); });
 }
 
 /// The components of an observable at a point.
@@ -76,9 +75,13 @@ double nearest_between(const Eigen::RowVector2d& one, const Eigen::RowVector2d& 
   return std::clamp(measured.value, std::max({low, -high, 0.0}), std::max(-low, high));
 }
 
+bool is_polarisation(Observable observable) {
+  return observable == Observable::kDolp || observable == Observable::kQOverI;
+}
+
 double error_of(Observable observable, const PointResult& point) {
-  const bool is_dolp = observable == Observable::kDolp || observable == Observable::kQOverI;
-  return is_dolp ? point[Quantity::kErrorEstimate] : 2.0 * point[Quantity::kRhoErrorEstimate] * point[Quantity::kRhoI];
+  return is_polarisation(observable) ? point[Quantity::kErrorEstimate]
+                                     : 2.0 * point[Quantity::kRhoErrorEstimate] * point[Quantity::kRhoI];
 }
 
 }  // namespace
@@ -88,13 +91,11 @@ Model::Model(const SceneValues& scene, std::vector<MeasuredData> data, std::vect
     : data_(std::move(data)), parameters_(std::move(parameters)), error_(error) {
   for (const MeasuredData& one : data_) count_ += one.measurements.size();
   check();
-  for (const Eigen::VectorXd& ends :
-       {values_of(parameters_, &FitRange::low), values_of(parameters_, &FitRange::high)}) {
-    scene_of(scene, data_.front(), {}, ends);
-  }
+  scene_of(scene, data_.front(), {}, each(parameters_, &FitRange::low));
+  scene_of(scene, data_.front(), {}, each(parameters_, &FitRange::high));
   Eigen::Index first_row = 0;
   for (const MeasuredData& one : data_) {
-    add_groups(scene, one, first_row);
+    groups_.push_back(group_of(scene, one, first_row));
     first_row += static_cast<Eigen::Index>(one.measurements.size());
   }
 }
@@ -102,17 +103,13 @@ Model::Model(const SceneValues& scene, std::vector<MeasuredData> data, std::vect
 void Model::check() const {
   if (data_.empty()) throw InputError("fit: no data; at least one set is needed");
   if (parameters_.empty()) throw InputError("fit: nothing varies; at least one parameter is needed");
-  for (std::size_t j = 0; j < parameters_.size(); ++j) {
-    const std::string& key = parameters_[j].key;
-    check_range(parameters_[j], key);
-    if (std::ranges::find(parameters_.begin(), parameters_.begin() + static_cast<std::ptrdiff_t>(j), key,
-                          &FitRange::key) != parameters_.begin() + static_cast<std::ptrdiff_t>(j)) {
+  for (const auto& [key, low, high, start] : parameters_) {
+    check_range({key, low, high, start}, key);
+    if (std::ranges::count(parameters_, key, &FitRange::key) > 1)
       throw InputError(fmt::format("{}: varies twice", key));
-    }
     for (const MeasuredData& one : data_) {
-      if (std::ranges::find(one.settings, key, &Setting::key) != one.settings.end()) {
+      if (std::ranges::count(one.settings, key, &Setting::key) > 0)
         throw InputError(fmt::format("{}: {} is varied and cannot be fixed too", one.name, key));
-      }
     }
   }
   for (const MeasuredData& one : data_) {
@@ -148,45 +145,42 @@ SceneValues Model::scene_of(const SceneValues& scene, const MeasuredData& data, 
   return with_settings(scene, all);
 }
 
-void Model::add_groups(const SceneValues& scene, const MeasuredData& data, Eigen::Index first_row) {
+Model::Group Model::group_of(const SceneValues& scene, const MeasuredData& data, Eigen::Index first_row) const {
   Group group{.data = &data, .first_row = first_row};
+  std::set<double> wavelengths;
   for (const Measurement& one : data.measurements) {
-    if (one.wavelength_um) group.wavelength_um.push_back(*one.wavelength_um);
+    if (one.wavelength_um) wavelengths.insert(*one.wavelength_um);
   }
-  std::ranges::sort(group.wavelength_um);
-  const auto twice = std::ranges::unique(group.wavelength_um);
-  group.wavelength_um.erase(twice.begin(), twice.end());
-  if (group.wavelength_um.empty()) {
-    group.scene = scene_of(scene, data, {}, starts_of(parameters_));
-  } else {
-    const auto sets_spectrum = [](const Setting& one) { return one.key.starts_with("spectrum."); };
-    if (std::ranges::any_of(data.settings, sets_spectrum) || varies("spectrum.wavelength_um")) {
-      throw InputError(data.name + ": column \"wavelength_um\" and a spectrum key contradict each other");
-    }
-    for (const double at_um : {group.wavelength_um.back(), group.wavelength_um.front()}) {
-      const Setting own{"spectrum.wavelength_um", at_um,
-                        fmt::format("{}: wavelength_um = {}", data.name, format_number(at_um))};
-      group.scene = scene_of(scene, data, {own}, starts_of(parameters_));
-    }
-    const std::shared_ptr<const Material>& tabulated = group.scene.surface.material.tabulated;
-    for (const double at_um : group.wavelength_um)
-      group.indices.push_back(tabulated ? tabulated->at(at_um) : OpticalConstants{});
+  group.wavelength_um.assign(wavelengths.begin(), wavelengths.end());
+  if (wavelengths.empty()) group.scene = scene_of(scene, data, {}, starts_of(parameters_));
+  const auto sets_spectrum = [](const Setting& one) { return one.key.starts_with("spectrum."); };
+  if (!wavelengths.empty() && (std::ranges::any_of(data.settings, sets_spectrum) || varies("spectrum.wavelength_um"))) {
+    throw InputError(data.name + ": column \"wavelength_um\" and a spectrum key contradict each other");
   }
-  const Surface& surface = group.scene.surface;
-  const bool is_tabulated = group.scene.source && group.scene.source->kind == Source::Kind::kTabulated;
-  if (varies("spectrum.wavelength_um") && (!surface.material.is_constant() || is_tabulated)) {
-    throw InputError("spectrum.wavelength_um: to vary it needs n, k and a source that are constants of the scene");
+  // The scene must take all wavelengths, and has the shortest one.
+  for (const double at_um : group.wavelength_um | std::views::reverse) {
+    if (at_um != group.wavelength_um.back() && at_um != group.wavelength_um.front()) continue;
+    const Setting own{"spectrum.wavelength_um", at_um,
+                      fmt::format("{}: wavelength_um = {}", data.name, format_number(at_um))};
+    group.scene = scene_of(scene, data, {own}, starts_of(parameters_));
   }
-  if (data.zenith_column == "theta_i_deg" && group.scene.geometry.mode != Mode::kBistatic) {
-    throw InputError(data.name + ": column \"theta_i_deg\" needs geometry.mode = \"bistatic\"");
-  }
-  const bool is_emissivity = data.measurements.front().observable == Observable::kEmissivityS ||
-                             data.measurements.front().observable == Observable::kEmissivityP;
-  if (is_emissivity && !group.scene.emission) {
-    throw InputError(data.name + ": emissivities need the table [emission] in the scene");
-  }
+  const std::shared_ptr<const Material>& tabulated = group.scene.surface.material.tabulated;
+  for (const double at_um : group.wavelength_um)
+    group.indices.push_back(tabulated ? tabulated->at(at_um) : OpticalConstants{});
+  check_group(group);
   if (has_model_error()) group.other_end = other_end_of(group.scene);
-  groups_.push_back(std::move(group));
+  return group;
+}
+
+void Model::check_group(const Group& group) const {
+  const MeasuredData& data = *group.data;
+  const bool is_tabulated = group.scene.source && group.scene.source->kind == Source::Kind::kTabulated;
+  if (varies("spectrum.wavelength_um") && (!group.scene.surface.material.is_constant() || is_tabulated))
+    throw InputError("spectrum.wavelength_um: to vary it needs n, k and a source that are constants of the scene");
+  if (data.zenith_column == "theta_i_deg" && group.scene.geometry.mode != Mode::kBistatic)
+    throw InputError(data.name + ": column \"theta_i_deg\" needs geometry.mode = \"bistatic\"");
+  if (!is_polarisation(data.measurements.front().observable) && !group.scene.emission)
+    throw InputError(data.name + ": emissivities need the table [emission] in the scene");
 }
 
 bool Model::varies(const std::string& key) const {
@@ -214,8 +208,7 @@ std::vector<Prediction> Model::predict(const std::vector<Eigen::VectorXd>& value
 void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>& values, double tolerance,
                           ModelEvaluator& evaluator, const Progress& progress,
                           std::vector<Prediction>& predictions) const {
-  const std::vector<Measurement>& measurements = group.data->measurements;
-  // Sets that agree in all but the keys of points make one call.
+  // Sets that differ only in the keys of points make one call.
   std::map<std::vector<double>, std::vector<std::size_t>> calls;
   for (std::size_t set = 0; set < values.size(); ++set) {
     std::vector<double> common;
@@ -226,23 +219,9 @@ void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>
   }
   for (const auto& [common, sets] : calls) {
     std::vector<SceneEntry> points;
-    points.reserve(sets.size() * measurements.size());
-    SceneValues scene;
-    for (const std::size_t set : sets) {
-      scene = with(group.scene, values[set]);
-      const Surface& surface = scene.surface;
-      for (const Measurement& one : measurements) {
-        SceneEntry& point = points.emplace_back(SceneEntry{one.theta_deg, {surface.sigma, surface.q}, {}});
-        if (surface.material.is_constant()) point.index = surface.material.constant;
-        if (!one.wavelength_um) continue;
-        const auto place = std::ranges::lower_bound(group.wavelength_um, *one.wavelength_um);
-        point.variant = static_cast<std::uint32_t>(place - group.wavelength_um.begin());
-        if (!surface.material.tabulated) continue;
-        if (!varies("surface.n")) point.index->n = group.indices[point.variant].n;
-        if (!varies("surface.k")) point.index->k = group.indices[point.variant].k;
-      }
-    }
+    for (const std::size_t set : sets) add_points(points, group, with(group.scene, values[set]));
     const SceneEntries entries(std::move(points), variants_of(group.wavelength_um));
+    SceneValues scene = with(group.scene, values[sets.back()]);
     scene.accuracy.tolerance = tolerance;
     const std::vector<PointResult> results = evaluate_scene(scene, entries, evaluator, progress);
     std::vector<PointResult> others;
@@ -250,6 +229,7 @@ void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>
       scene.emission->model = *group.other_end;
       others = evaluate_scene(scene, entries, evaluator, progress);
     }
+    const std::vector<Measurement>& measurements = group.data->measurements;
     for (std::size_t i = 0; i < results.size(); ++i) {
       const std::size_t member = i % measurements.size();
       const Measurement& measured = measurements[member];
@@ -265,6 +245,20 @@ void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>
       error = std::max(error, error_of(measured.observable, others[i]));
       prediction.status |= others[i].status;
     }
+  }
+}
+
+void Model::add_points(std::vector<SceneEntry>& points, const Group& group, const SceneValues& scene) const {
+  const Surface& surface = scene.surface;
+  for (const Measurement& one : group.data->measurements) {
+    SceneEntry& point = points.emplace_back(SceneEntry{one.theta_deg, {surface.sigma, surface.q}, {}});
+    if (surface.material.is_constant()) point.index = surface.material.constant;
+    if (!one.wavelength_um) continue;
+    const auto position = std::ranges::lower_bound(group.wavelength_um, *one.wavelength_um);
+    point.variant = static_cast<std::uint32_t>(position - group.wavelength_um.begin());
+    if (!surface.material.tabulated) continue;
+    if (!varies("surface.n")) point.index->n = group.indices[point.variant].n;
+    if (!varies("surface.k")) point.index->k = group.indices[point.variant].k;
   }
 }
 

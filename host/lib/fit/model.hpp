@@ -14,10 +14,14 @@
 
 namespace dolp::fit {
 
+/// Refuses a range that the scene's key does not have. Errors: InputError that begins with `origin`: an unknown key or
+/// one that is no number, low >= high, a start outside of them, values out of the key's range.
+void check_range(const FitRange& range, const std::string& origin);
+
 /// The model's predictions of all observations, in their order.
 struct Prediction {
-  /// The observable in the first column; of DOLP the signed Q/I and U/I, whose length it is. With the model error of
-  /// the bracket the value between both ends that is nearest to the measured one, and 0.
+  /// The observable in the first column; for DOLP the signed Q/I and U/I, whose length it is. With the model error of
+  /// the bracket: the value between both ends that is nearest to the measured one, and 0.
   Eigen::MatrixX2d components;
   Eigen::VectorXd error;     ///< bound of the numerical error of the observable
   std::uint32_t status = 0;  ///< bits of any point
@@ -28,7 +32,7 @@ class Model {
  public:
   /// Errors: InputError, one line, where scene, data and parameters do not fit together: more parameters than
   /// observations, a key twice, a data set that fixes a varied key, data with and without uncertainties, a model error
-  /// of a scene without a bracket or of data without uncertainties, what the scene refuses at either end of the ranges.
+  /// without a bracket or without uncertainties, a value at an end of a range that the scene refuses.
   Model(const SceneValues& scene, std::vector<MeasuredData> data, std::vector<FitRange> parameters,
         ModelError error = ModelError::kNone);
 
@@ -55,16 +59,19 @@ class Model {
   /// The scene of one data set.
   struct Group {
     const MeasuredData* data = nullptr;
-    Eigen::Index first_row = 0;              ///< of the predictions
+    Eigen::Index first_row = 0;              ///< its first row in the predictions
     SceneValues scene;                       ///< at the shortest wavelength of the data, if these have any
-    std::optional<EmissionModel> other_end;  ///< of the bracket: the emission model there
-    std::vector<double> wavelength_um;       ///< of the data, ascending; empty: the scene's
-    std::vector<OpticalConstants> indices;   ///< of a material that depends on the wavelength, at each of these
+    std::optional<EmissionModel> other_end;  ///< emission model at the other end of the bracket
+    std::vector<double> wavelength_um;       ///< wavelengths of the data, ascending; empty: the scene's
+    std::vector<OpticalConstants> indices;   ///< n and k of a tabulated material at each of them
   };
 
   void check() const;
   bool varies(const std::string& key) const;
-  void add_groups(const SceneValues& scene, const MeasuredData& data, Eigen::Index first_row);
+  Group group_of(const SceneValues& scene, const MeasuredData& data, Eigen::Index first_row) const;
+  void check_group(const Group& group) const;
+  /// Adds the points of a group's measurements.
+  void add_points(std::vector<SceneEntry>& points, const Group& group, const SceneValues& scene) const;
   /// The scene of some data. Errors: InputError that says whose setting is refused.
   SceneValues scene_of(const SceneValues& scene, const MeasuredData& data, const std::vector<Setting>& own,
                        const Eigen::VectorXd& values) const;

@@ -2,19 +2,26 @@
 #include "fit/constants.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 namespace dolp::fit {
 namespace {
 
-/// The derivative at 0 of the line, or the parabola, through the values at 0 and at the offsets.
-Eigen::MatrixX2d derivative(const Eigen::MatrixX2d& at_0, const Prediction* beside,
-                            const std::vector<double>& offsets) {
-  const double a = offsets.front();
-  if (offsets.size() == 1) return (beside[0].components - at_0) / a;
-  const double b = offsets.back();
-  return (beside[0].components - at_0) * (b / (a * (b - a))) - (beside[1].components - at_0) * (a / (b * (b - a)));
+/// Offsets beside a coordinate that stay in [0, 1].
+std::array<double, 2> offsets_at(double at, double step) {
+  const double inward = at + step > 1.0 ? -step : step;
+  const bool has_both_sides = at - step >= 0.0 && at + step <= 1.0;
+  return {inward, has_both_sides ? -step : 2.0 * inward};
+}
+
+/// The derivative of the line through a point and the one beside it, or of the parabola through it and two of them.
+Eigen::MatrixX2d derivative(const Eigen::MatrixX2d& centre, const Prediction* beside, std::size_t count,
+                            const std::array<double, 2>& offsets) {
+  const auto [a, b] = offsets;
+  if (count == 1) return (beside[0].components - centre) / a;
+  return (beside[0].components - centre) * (b / (a * (b - a))) - (beside[1].components - centre) * (a / (b * (b - a)));
 }
 
 }  // namespace
@@ -74,56 +81,35 @@ std::vector<Linearisation> Residuals::at(const std::vector<Eigen::VectorXd>& poi
 }
 
 void Residuals::linearise(const std::vector<Linearisation*>& points) {
-  std::vector<std::vector<std::vector<double>>> offsets;  // of each point and parameter
+  const std::size_t count = differences_ == Differences::kCentral ? 2 : 1;  // of points beside, for each parameter
   std::vector<Eigen::VectorXd> beside;
   for (Linearisation* const point : points) {
-    offsets.push_back(offsets_of(*point));
-    for (std::size_t j = 0; j < offsets.back().size(); ++j) {
-      for (const double offset : offsets.back()[j]) {
-        beside.push_back(point->at);
-        beside.back()[static_cast<Eigen::Index>(j)] += offset;
-      }
+    if (point->steps.size() == 0) point->steps.setConstant(point->at.size(), kFirstStep);
+    for (std::size_t i = 0; i < count * static_cast<std::size_t>(point->at.size()); ++i) {
+      const auto j = static_cast<Eigen::Index>(i / count);
+      beside.push_back(point->at);
+      beside.back()[j] += offsets_at(point->at[j], point->steps[j])[i % count];
     }
   }
   const std::vector<Prediction> predictions = predict(beside);
   const Prediction* next = predictions.data();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    differentiate(*points[i], offsets[i], next);
-    for (const std::vector<double>& of_parameter : offsets[i]) next += of_parameter.size();
+  for (Linearisation* const point : points) {
+    point->jacobian.resize(measured_.size(), point->at.size());
+    for (Eigen::Index j = 0; j < point->at.size(); ++j, next += count) differentiate(*point, j, next, count);
   }
 }
 
-/// Offsets beside each coordinate that stay in [0, 1].
-std::vector<std::vector<double>> Residuals::offsets_of(Linearisation& point) const {
-  if (point.steps.size() == 0) point.steps = Eigen::VectorXd::Constant(point.at.size(), kFirstStep);
-  std::vector<std::vector<double>> offsets;
-  for (Eigen::Index j = 0; j < point.at.size(); ++j) {
-    const double at = point.at[j];
-    const double step = point.steps[j];
-    const double inward = at + step > 1.0 ? -step : step;
-    offsets.push_back({inward});
-    const bool has_both_sides = at - step >= 0.0 && at + step <= 1.0;
-    if (differences_ == Differences::kCentral) offsets.back().push_back(has_both_sides ? -step : 2.0 * inward);
-  }
-  return offsets;
-}
-
-void Residuals::differentiate(Linearisation& point, const std::vector<std::vector<double>>& offsets,
-                              const Prediction* beside) const {
+/// Sets a column of the Jacobian from the predictions beside a point, and the next step.
+void Residuals::differentiate(Linearisation& point, Eigen::Index j, const Prediction* beside, std::size_t count) const {
   const Eigen::MatrixX2d& centre = point.components;
-  point.jacobian.resize(measured_.size(), point.at.size());
-  for (Eigen::Index j = 0; j < point.at.size(); ++j) {
-    const std::vector<double>& own = offsets[static_cast<std::size_t>(j)];
-    const Eigen::MatrixX2d slopes = derivative(centre, beside, own);
-    for (Eigen::Index i = 0; i < slopes.rows(); ++i) {
-      // The length of (Q, U)/I has a kink where its components change sign; they have none.
-      const double length = is_length_[static_cast<std::size_t>(i)] ? centre.row(i).norm() : 0.0;
-      const double slope = length > 0.0 ? centre.row(i).dot(slopes.row(i)) / length : slopes(i, 0);
-      point.jacobian(i, j) = weights_[i] * slope;
-    }
-    point.steps[j] = next_step(point.steps[j], point, *beside);
-    beside += own.size();
+  const Eigen::MatrixX2d slopes = derivative(centre, beside, count, offsets_at(point.at[j], point.steps[j]));
+  for (Eigen::Index i = 0; i < slopes.rows(); ++i) {
+    // The length of (Q, U)/I has a kink where its components change sign; they have none.
+    const double length = is_length_[static_cast<std::size_t>(i)] ? centre.row(i).norm() : 0.0;
+    const double slope = length > 0.0 ? centre.row(i).dot(slopes.row(i)) / length : slopes(i, 0);
+    point.jacobian(i, j) = weights_[i] * slope;
   }
+  point.steps[j] = next_step(point.steps[j], point, *beside);
 }
 
 // A central difference with a step s has the error e/s of values that are wrong by e, and s^2 F/L^3 of a function of
@@ -133,7 +119,8 @@ double Residuals::next_step(double step, const Linearisation& point, const Predi
   const double change = (beside.components - point.components).cwiseAbs().maxCoeff();
   if (!std::isfinite(change) || change <= 0.0) return step;
   const double largest = point.components.cwiseAbs().maxCoeff();
-  const double error = std::clamp(beside.error.maxCoeff(), kLeastErrorShare * tolerance_, tolerance_);
+  // A smaller bound of the error is not believed.
+  const double error = std::clamp(beside.error.maxCoeff(), 1e-3 * tolerance_, tolerance_);
   const double balanced = std::cbrt(3.0 * error * largest * largest);
   const double seen = std::max(kSeenShare / weights_.maxCoeff(), kErrorsOfAChange * error);
   const double factor = std::clamp(std::min(balanced, seen) / change, 1.0 / kMostChangeOfStep, kMostChangeOfStep);

@@ -15,19 +15,19 @@ struct Linearisation {
   Eigen::VectorXd residuals = {};  ///< (model - measured) / uncertainty; without uncertainties model - measured. Empty
                                    ///< where they are not known, NaN where the model has no value
   Eigen::MatrixXd jacobian = {};   ///< observations x parameters; empty where it is not known
-  Eigen::MatrixX2d components = {};  ///< of the model's prediction
-  Eigen::VectorXd steps = {};        ///< of the next differences; empty: not known yet
+  Eigen::MatrixX2d components = {};  ///< components of the model's prediction
+  Eigen::VectorXd steps = {};        ///< steps of the next differences; empty: not known yet
 };
 
 enum class Differences {
   kForward,  ///< one more point for each parameter: enough to find the way
-  kCentral,  ///< two, on both sides inside of the range
+  kCentral,  ///< two more points for each parameter, on both sides inside of the range
 };
 
 /// The residuals as a function of the parameters' coordinates.
 class Residuals {
  public:
-  /// `tolerance`: of the model's values. The model and the evaluator outlive the object.
+  /// `tolerance`: tolerance of the model's values. The model and the evaluator outlive the object.
   Residuals(const Model& model, double tolerance, Differences differences, ModelEvaluator& evaluator,
             Progress progress);
 
@@ -48,9 +48,7 @@ class Residuals {
   const Eigen::VectorXd& weights() const { return weights_; }
 
  private:
-  std::vector<std::vector<double>> offsets_of(Linearisation& point) const;
-  void differentiate(Linearisation& point, const std::vector<std::vector<double>>& offsets,
-                     const Prediction* beside) const;
+  void differentiate(Linearisation& point, Eigen::Index j, const Prediction* beside, std::size_t count) const;
   double next_step(double step, const Linearisation& point, const Prediction& beside) const;
 
   const Model& model_;
@@ -59,7 +57,7 @@ class Residuals {
   ModelEvaluator& evaluator_;
   Progress progress_;
   Eigen::VectorXd measured_, weights_;
-  std::vector<bool> is_length_;  ///< of DOLP: the observable is the length of its components
+  std::vector<bool> is_length_;  ///< for DOLP: the observable is the length of its components
   std::size_t evaluations_ = 0;
 };
 

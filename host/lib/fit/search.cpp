@@ -1,13 +1,11 @@
 #include "fit/search.hpp"
 #include "fit/constants.hpp"
-#include "fit/principal_axes.hpp"
 
 #include <algorithm>
 #include <boost/random/sobol.hpp>
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numeric>
 #include <random>
 #include <span>
 #include <utility>
@@ -48,19 +46,20 @@ std::vector<Minimum> choose_starts(Residuals& residuals, const SearchOptions& op
     }
     points.insert(points.begin(), given);
   }
-  std::vector<Linearisation> found = residuals.at(points);
-  std::vector<double> objectives;
-  for (const Linearisation& one : found) objectives.push_back(objective(one.residuals, options.loss));
-  std::vector<std::size_t> order(points.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin() + (has_start ? 1 : 0), order.end(),
-                   [&](std::size_t a, std::size_t b) { return objectives[a] < objectives[b]; });
+  std::vector<Minimum> candidates;
+  for (Linearisation& one : residuals.at(points)) {
+    const double found = objective(one.residuals, options.loss);
+    candidates.push_back({.where = std::move(one), .objective = found});
+  }
+  std::ranges::stable_sort(std::span(candidates).subspan(has_start ? 1 : 0), {}, &Minimum::objective);
   const double apart = 0.5 * std::pow(static_cast<double>(points.size()), -1.0 / static_cast<double>(dimensions));
   std::vector<Minimum> starts;
-  for (const std::size_t i : order) {
-    const bool is_near = std::ranges::any_of(
-        starts, [&](const Minimum& one) { return (one.where.at - points[i]).lpNorm<Eigen::Infinity>() < apart; });
-    if (!is_near && std::isfinite(objectives[i])) starts.push_back({.where = found[i]});
+  for (Minimum& candidate : candidates) {
+    const auto is_near = [&](const Minimum& one) {
+      return (one.where.at - candidate.where.at).lpNorm<Eigen::Infinity>() < apart;
+    };
+    if (std::isfinite(candidate.objective) && std::ranges::none_of(starts, is_near))
+      starts.push_back({.where = std::move(candidate.where)});
     if (starts.size() == options.starts) break;
   }
   return starts;
@@ -78,6 +77,8 @@ Eigen::VectorXd on_floor(const Eigen::VectorXd& point, const Eigen::VectorXd& re
                          const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& line) {
   const Eigen::VectorXd along = line.normalized();
   const Eigen::MatrixXd across = jacobian - jacobian * along * along.transpose();
+  // The residuals do not change along axes of less. Far above the rounding of a normal matrix.
+  constexpr double kFlatShare = 1e-12;
   const PrincipalAxes axes = principal_axes(across.transpose() * across);
   const Eigen::VectorXd moved = point - axes.inverse(kFlatShare) * across.transpose() * residuals;
   return moved.cwiseMax(0.0).cwiseMin(1.0);
@@ -94,60 +95,43 @@ bool falls(double from, std::span<const Linearisation> points, Loss loss, double
   });
 }
 
-std::vector<Eigen::VectorXd> points_between(const Linearisation& from, const Minimum& to) {
+/// True where the objective falls from a point along the straight line to a minimum, or along the floor of the valley
+/// beside it, except for rises of less than one standard deviation.
+bool leads_down(Residuals& residuals, const Minimum& from, const Minimum& to, const SearchOptions& options) {
+  const double scale = scale_of(options, to);
+  const Eigen::VectorXd line = to.where.at - from.where.at;
+  if (line.squaredNorm() == 0.0) return true;
   std::vector<Eigen::VectorXd> points;
-  for (int i = 1; i < kPointsOfALine; ++i) {
-    points.push_back(from.at + (to.where.at - from.at) * (static_cast<double>(i) / kPointsOfALine));
-  }
-  return points;
-}
-
-/// True where the objective falls from a point along the straight line to one of several minima, or along the floor of
-/// the valley beside it, except for rises of less than one standard deviation.
-bool leads_down(Residuals& residuals, const Minimum& from, const std::vector<Minimum>& to,
-                const SearchOptions& options) {
-  const auto is_near = [&](const Minimum& one) { return is_straight(from.where, one.where, scale_of(options, one)); };
-  if (std::ranges::any_of(to, is_near)) return true;
-  std::vector<Eigen::VectorXd> points;
-  for (const Minimum& one : to) {
-    const std::vector<Eigen::VectorXd> between = points_between(from.where, one);
-    points.insert(points.end(), between.begin(), between.end());
-  }
-  constexpr auto kBetween = static_cast<std::size_t>(kPointsOfALine - 1);
-  const auto is_down = [&](const std::vector<Linearisation>& found) {
-    for (std::size_t i = 0; i < to.size(); ++i) {
-      const std::span line = std::span(found).subspan(i * kBetween, kBetween);
-      if (falls(from.objective, line, options.loss, scale_of(options, to[i]))) return true;
-    }
-    return false;
-  };
+  for (int i = 1; i < kPointsOfALine; ++i)
+    points.push_back(from.where.at + line * (static_cast<double>(i) / kPointsOfALine));
   const std::vector<Linearisation> found = residuals.at(points);
-  if (is_down(found)) return true;
+  if (falls(from.objective, found, options.loss, scale)) return true;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Minimum& one = to[i / kBetween];
-    const Eigen::VectorXd line = one.where.at - from.where.at;
-    if (line.squaredNorm() == 0.0) return true;
     if (!found[i].residuals.allFinite()) continue;
-    const double share = static_cast<double>(i % kBetween + 1) / kPointsOfALine;
-    points[i] =
-        on_floor(points[i], found[i].residuals, (1.0 - share) * from.where.jacobian + share * one.where.jacobian, line);
+    const double share = static_cast<double>(i + 1) / kPointsOfALine;
+    const Eigen::MatrixXd jacobian = (1.0 - share) * from.where.jacobian + share * to.where.jacobian;
+    points[i] = on_floor(points[i], found[i].residuals, jacobian, line);
   }
-  return is_down(residuals.at(points));
+  return falls(from.objective, residuals.at(points), options.loss, scale);
 }
 
-/// The minima, the lowest first, without those from which a path leads down to a lower one.
+/// The minima, the lowest first. A minimum from which a path leads down to a lower one is left out.
 std::vector<Minimum> distinct(std::vector<Minimum> all, Residuals& residuals, const SearchOptions& options) {
   std::erase_if(all, [](const Minimum& one) { return !std::isfinite(one.objective); });
   std::ranges::stable_sort(all, {}, &Minimum::objective);
   std::vector<Minimum> kept;
   for (Minimum& one : all) {
-    if (kept.empty() || !leads_down(residuals, one, kept, options)) kept.push_back(std::move(one));
+    const auto is_near = [&](const Minimum& lower) {
+      return is_straight(one.where, lower.where, scale_of(options, lower));
+    };
+    const auto is_above = [&](const Minimum& lower) { return leads_down(residuals, one, lower, options); };
+    if (std::ranges::none_of(kept, is_near) && std::ranges::none_of(kept, is_above)) kept.push_back(std::move(one));
   }
   return kept;
 }
 
-/// The lowest of descents from several points, all in rounds of a few steps. A descent that derivatives lead to a place
-/// where a lower one has been ends with its round: it would take the same path.
+/// The lowest of descents from several points, all in rounds of a few steps. A descent ends with its round if
+/// derivatives lead it to a point of a lower one: it would take the same path.
 std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> starts, const SearchOptions& options,
                                    const DescentOptions& descent) {
   std::vector<Minimum> arrived, passed;
@@ -174,25 +158,17 @@ std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> st
 }  // namespace
 
 std::vector<Minimum> find_minima(Residuals& coarse, Residuals& fine, const SearchOptions& options) {
-  DescentOptions round;
-  round.loss = options.loss;
-  round.scale = options.scale;
-  round.least_gain = kCoarseGain;
-  round.most_steps = kStepsOfARound;
-
+  const DescentOptions round{options.loss, options.scale, kStepsOfARound, kCoarseGain};
   std::vector<Minimum> far =
       distinct(descend_apart(coarse, choose_starts(coarse, options), options, round), coarse, options);
   if (far.empty()) return far;
-  DescentOptions last_steps;
-  last_steps.loss = options.loss;
-  last_steps.most_steps = kStepsToTheBottom;
-  last_steps.scale = std::max(scale_of(options, far.front()), fine.tolerance() * fine.tolerance());
+  const double scale = std::max(scale_of(options, far.front()), fine.tolerance() * fine.tolerance());
   const double most = far.front().objective + kFarAbove * scale_of(options, far.front());
   const auto end_of_near = std::ranges::find_if(far, [&](const Minimum& one) { return one.objective > most; });
   std::vector<Minimum> near;
   for (auto one = far.begin(); one != end_of_near; ++one) near.push_back({.where = {one->where.at}});
   far.erase(far.begin(), end_of_near);
-  descend(fine, near, last_steps);
+  descend(fine, near, {options.loss, scale, 100});
   std::vector<Minimum> minima = distinct(std::move(near), fine, options);
   std::ranges::move(far, std::back_inserter(minima));
   std::erase_if(minima, [](const Minimum& one) { return !one.has_converged; });

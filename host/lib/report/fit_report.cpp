@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <dolp/status.hpp>
 #include "base/text.hpp"
@@ -27,6 +28,13 @@ Json json_of(const std::optional<double>& value) { return value ? Json(*value) :
 
 Json json_of(const Eigen::VectorXd& values) { return std::vector<double>(values.begin(), values.end()); }
 
+/// Its rows.
+Json json_of(const Eigen::MatrixXd& matrix) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) rows.push_back(json_of(Eigen::VectorXd(matrix.row(i).transpose())));
+  return rows;
+}
+
 Json json_of(const FitInterval& interval) {
   return interval.is_empty ? Json(nullptr) : Json::array({json_of(interval.low), json_of(interval.high)});
 }
@@ -40,90 +48,69 @@ std::string text_of(const FitInterval& interval) {
                            : fmt::format("{} .. {}", text_of(interval.low, "open"), text_of(interval.high, "open"));
 }
 
+/// Both intervals of a parameter, with their names in JSON and in text.
+struct NamedInterval {
+  std::string key, name;
+  const FitInterval& interval;
+};
+std::vector<NamedInterval> intervals_of(const FitParameter& one) {
+  return {{"68", "68 %", one.interval_68}, {"95", "95 %", one.interval_95}};
+}
+
 Json parameter_json(const FitParameter& one) {
-  Json json = {{"key", one.key},
-               {"value", one.value},
-               {"standard_error", json_of(one.standard_error)},
-               {"interval_68", json_of(one.interval_68)},
-               {"interval_95", json_of(one.interval_95)},
-               {"at_bound", one.is_at_bound}};
+  Json json = {{"key", one.key}, {"value", one.value}, {"standard_error", json_of(one.standard_error)}};
+  for (const auto& [key, name, interval] : intervals_of(one)) json["interval_" + key] = json_of(interval);
+  json["at_bound"] = one.is_at_bound;
   if (!one.standard_error) json["why_no_error"] = one.why_no_error;
-  for (const auto& [name, interval] : {std::pair("pieces_68", &one.interval_68), {"pieces_95", &one.interval_95}}) {
-    if (interval->pieces.size() < 2) continue;
-    for (const auto& [low, high] : interval->pieces) json[name].push_back(Json::array({json_of(low), json_of(high)}));
+  for (const auto& [key, name, interval] : intervals_of(one)) {
+    if (interval.pieces.size() < 2) continue;
+    for (const auto& [low, high] : interval.pieces) json["pieces_" + key].push_back(json_of(FitInterval{low, high}));
   }
+  if (one.scaled_68) json.update({{"scaled_68", json_of(*one.scaled_68)}, {"scaled_95", json_of(*one.scaled_95)}});
   return json;
 }
 
-/// A line for each interval that has gaps.
-void add_pieces(ReportBuilder& report, const FitParameter& one) {
-  for (const auto& [name, interval] : {std::pair("68 %", &one.interval_68), {"95 %", &one.interval_95}}) {
-    if (interval->pieces.size() < 2) continue;
+/// Adds lines on a parameter that its row of the table has no room for.
+void add_remarks(ReportBuilder& report, const FitParameter& one, const FitResult& result) {
+  report.row_if(!one.standard_error, "no error", "{}: {}", one.key, one.why_no_error);
+  for (const auto& [key, name, interval] : intervals_of(one)) {
     std::vector<std::string> pieces;
-    for (const auto& [low, high] : interval->pieces) pieces.push_back(text_of(FitInterval{low, high}));
-    report.row("pieces", "{}: the {} interval has gaps: {}", one.key, name,
-               fmt::format("{}", fmt::join(pieces, " and ")));
+    for (const auto& [low, high] : interval.pieces) pieces.push_back(text_of(FitInterval{low, high}));
+    report.row_if(pieces.size() > 1, "pieces", "{}: the {} interval has gaps: {}", one.key, name,
+                  fmt::format("{}", fmt::join(pieces, " and ")));
   }
+  if (!one.scaled_68) return;
+  report.row("scaled", "{}: uncertainties {:.3g} times as large give 68 % {}, 95 % {}", one.key,
+             std::sqrt(result.reduced_chi_square.value()), text_of(*one.scaled_68), text_of(*one.scaled_95));
 }
 
-/// A line for each parameter that has no standard error, and one for those that hold at bounds of others alone.
-void add_missing_errors(ReportBuilder& report, const FitResult& result) {
-  std::vector<std::string> held;
-  bool has_errors = false;
-  for (const FitParameter& one : result.parameters) {
-    report.row_if(!one.standard_error, "no error", "{}: {}", one.key, one.why_no_error);
-    if (one.is_at_bound) held.push_back(one.key);
-    has_errors = has_errors || one.standard_error.has_value();
-  }
-  report.row_if(has_errors && !held.empty(), "errors", "hold with {} kept at the bound; the intervals do not assume it",
-                join(held));
-  report.value("errors_with_kept", held);
-}
-
-/// A line for each parameter, and one for each end of its range that lies before the data exclude a value.
-void add_parameters(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
+/// Adds a line for each parameter.
+void add_parameters(ReportBuilder& report, const FitResult& result) {
   Json list = Json::array();
+  std::size_t width = 9;
+  std::vector<std::string> held;
   for (const FitParameter& one : result.parameters) {
-    Json& json = list.emplace_back(parameter_json(one));
-    if (one.scaled_68) json.update({{"scaled_68", json_of(*one.scaled_68)}, {"scaled_95", json_of(*one.scaled_95)}});
+    list.push_back(parameter_json(one));
+    width = std::max(width, one.key.size());
+    if (one.is_at_bound) held.push_back(one.key);
   }
   report.value("parameters", list);
-  std::size_t width = 9;
-  for (const FitParameter& one : result.parameters) width = std::max(width, one.key.size());
   report.line("  {:<{}}  {:>11}  {:>11}  {:^25}  {:^25}", "parameter", width, "value", "std. error", "68 %", "95 %");
   for (const FitParameter& one : result.parameters) {
     report.line("  {:<{}}  {:>11.6g}  {:>11}  {:^25}  {:^25}{}", one.key, width, one.value,
                 one.standard_error ? fmt::format("{:.2g}", *one.standard_error) : "none", text_of(one.interval_68),
                 text_of(one.interval_95), one.is_at_bound ? "  at its bound" : "");
   }
-  add_missing_errors(report, result);
-  for (const FitParameter& one : result.parameters) {
-    add_pieces(report, one);
-    if (!one.scaled_68) continue;
-    report.row("scaled", "{}: uncertainties {:.3g} times as large give 68 % {}, 95 % {}", one.key,
-               std::sqrt(result.reduced_chi_square.value()), text_of(*one.scaled_68), text_of(*one.scaled_95));
-  }
-  const bool has_intervals = model.has_uncertainties() || result.degrees_of_freedom > 0;
-  for (std::size_t j = 0; has_intervals && j < result.parameters.size(); ++j) {
-    const FitParameter& one = result.parameters[j];
-    const FitRange& range = model.parameters()[j];
-    const auto is_open = [](const auto& low, const auto& high) { return !low || !high; };
-    if (one.interval_95.is_empty || !is_open(one.interval_95.low, one.interval_95.high)) continue;
-    const bool is_both = !one.interval_95.low && !one.interval_95.high;
-    report.row("open", "{}: the 95 % interval is not bounded {} within {:g}:{:g}", one.key,
-               is_both                ? "on either side"
-               : !one.interval_95.low ? "below"
-                                      : "above",
-               range.low, range.high);
-  }
+  for (const FitParameter& one : result.parameters) add_remarks(report, one, result);
+  const bool has_errors =
+      std::ranges::any_of(result.parameters, [](const FitParameter& one) { return one.standard_error.has_value(); });
+  report.row_if(has_errors && !held.empty(), "errors", "hold with {} kept at the bound; the intervals do not assume it",
+                join(held));
+  report.value("errors_with_kept", held);
 }
 
 void add_correlations(ReportBuilder& report, const FitResult& result) {
-  Json rows = Json::array();
-  for (Eigen::Index i = 0; i < result.correlation.rows(); ++i) {
-    rows.push_back(json_of(Eigen::VectorXd(result.correlation.row(i).transpose())));
-  }
-  report.value("correlation", rows);
+  report.value("correlation", json_of(result.correlation));
   for (Eigen::Index i = 0; i < result.correlation.rows(); ++i) {
     for (Eigen::Index j = 0; j < i; ++j) {
       const double one = result.correlation(i, j);
@@ -137,7 +124,7 @@ void add_correlations(ReportBuilder& report, const FitResult& result) {
 
 /// Adds the misfit of the model, and its measure.
 void add_misfit(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
-  const std::string quality = fit::fit_quality(result.p_value);
+  const std::string& quality = result.fit_quality;
   report.row("minimum", "chi_square {:.6g}, {} degrees of freedom{}{}", key("chi_square", result.chi_square),
              key("degrees_of_freedom", result.degrees_of_freedom),
              result.reduced_chi_square ? fmt::format(", reduced {:.4g}", *result.reduced_chi_square) : "",
@@ -161,7 +148,7 @@ void add_misfit(ReportBuilder& report, const fit::Model& model, const FitResult&
                 "as many parameters as points: no interval can be given");
 }
 
-/// Names what intervals with a model error leave open, and the model that leaves less.
+/// Adds the shares of the ranges that intervals with a model error leave, and names the model that leaves less.
 void add_model_error(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   if (!model.has_model_error()) return;
   const auto is_empty_95 = [](const auto& parameter) { return parameter.interval_95.is_empty; };
@@ -186,15 +173,11 @@ void add_model_error(ReportBuilder& report, const fit::Model& model, const FitRe
 
 void add_minima(ReportBuilder& report, const FitResult& result) {
   Json list = Json::array();
-  for (const fit::OtherMinimum& minimum : result.minima) {
-    Json values;
+  for (const FitMinimum& minimum : std::span(result.minima).subspan(1)) {
+    list.push_back({{"values", minimum.values}, {"chi_square", minimum.chi_square}});
     std::string text;
-    for (std::size_t j = 0; j < result.parameters.size(); ++j) {
-      const double value = minimum.values[static_cast<Eigen::Index>(j)];
-      values[result.parameters[j].key] = value;
-      text += fmt::format(", {} {:.6g}", result.parameters[j].key, value);
-    }
-    list.push_back({{"values", values}, {"chi_square", minimum.chi_square}});
+    for (std::size_t j = 0; j < minimum.values.size(); ++j)
+      text += fmt::format(", {} {:.6g}", result.parameters[j].key, minimum.values[j]);
     report.row("also", "a local minimum with chi_square {:.6g}{}", minimum.chi_square, text);
   }
   report.value("minima", list);
@@ -226,10 +209,12 @@ std::vector<std::string> settings_of(const ComparedModel& model) {
   return texts;
 }
 
-/// Why a picture has no contours, in a sentence; empty where it has some, or one number alone was fitted.
+std::string model_text(const ComparedModel& model) { return fmt::format("{}", fmt::join(settings_of(model), " ")); }
+
+/// Why a picture has no contours, in a sentence; empty where it has some, or where only one number was fitted.
 std::string why_no_contours(const FitResult& result, const std::optional<fit::Contours>& drawn) {
   if (result.parameters.size() < 2) return "";
-  if (drawn && std::ranges::all_of(drawn->segments, &std::vector<Eigen::Vector4d>::empty)) {
+  if (drawn && !(drawn->growth.array() > fit::kContourLevels.front()).any()) {
     return fmt::format(
         "none: within the ranges chi_square grows by less than {:.2f}, or its valley is longer than {} parameter sets "
         "reach",
@@ -282,13 +267,11 @@ void add_alike(ReportBuilder& report, const std::vector<ComparedModel>& models, 
   report.value("ranges", ranges);
 }
 
-std::string model_text(const ComparedModel& model) { return fmt::format("{}", fmt::join(settings_of(model), " ")); }
-
 }  // namespace
 
 void add_fit(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   add_misfit(report, model, result);
-  add_parameters(report, model, result);
+  add_parameters(report, result);
   add_model_error(report, model, result);
   add_correlations(report, result);
   for (const std::string& words : result.degeneracies) report.row("degenerate", "{}", words);
@@ -312,17 +295,14 @@ void add_contours(ReportBuilder& report, const fit::Model& model, const FitResul
   report.row_if(!reason.empty(), "contours", "{}", reason);
   if (!reason.empty()) report.value("no_contours", reason);
   if (!reason.empty() || !drawn) return;
-  const fit::Contours& contours = *drawn;
-  const auto [first, second] = contours.parameters;
-  Json lines = Json::array();
-  for (const auto& segments : contours.segments) {
-    Json& line = lines.emplace_back(Json::array());
-    for (const Eigen::Vector4d& one : segments) line.push_back({one[0], one[1], one[2], one[3]});
-  }
-  report.value("contours", Json{{"keys", {model.parameters()[first].key, model.parameters()[second].key}},
-                                {"levels", fit::kContourLevels},
-                                {"segments", lines},
-                                {"evaluations", contours.evaluations}});
+  report.value(
+      "contours",
+      Json{{"keys", {model.parameters()[drawn->parameters[0]].key, model.parameters()[drawn->parameters[1]].key}},
+           {"levels", fit::kContourLevels},
+           {"x", json_of(drawn->values[0])},
+           {"y", json_of(drawn->values[1])},
+           {"growth", json_of(drawn->growth)},
+           {"evaluations", drawn->evaluations}});
 }
 
 void add_comparison(ReportBuilder& report, const std::vector<ComparedModel>& models) {

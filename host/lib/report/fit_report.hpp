@@ -11,15 +11,18 @@
 
 namespace dolp {
 
+/// The text of host/tools/plot_fit.py, which draws the JSON of a report.
+extern const char* const kFitPictureScript;
+
 /// One of the models that are compared.
 struct ComparedModel {
-  std::vector<Setting> settings;         ///< that tell it from the others
+  std::vector<Setting> settings;         ///< settings that distinguish it from the others
   std::optional<fit::FitResult> result;  ///< none where no minimum was found
   std::string refusal;                   ///< why the scene does not have this combination; empty where it does
 };
 
-/// Adds the minimum, the parameters with their intervals, correlations, what the data cannot tell, other minima, and
-/// the list of the data.
+/// Adds the minimum, the parameters with their intervals, correlations, degeneracies, other minima, and the list of the
+/// data.
 void add_fit(ReportBuilder& report, const fit::Model& model, const fit::FitResult& result);
 
 /// Adds the growth of the objective around the minimum, or why it is not drawn.

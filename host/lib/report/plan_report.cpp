@@ -1,13 +1,115 @@
-#include "report/plan_report.hpp"
+#include "report/run_report.hpp"
 
 #include <algorithm>
+#include <dolp/errors.hpp>
+#include <optional>
 
 #include <dolp/status.hpp>
+#include "base/processor.hpp"
+#include "evaluate/kernel/slope_samples.hpp"
+#include "evaluate/vulkan/tiles.hpp"
 #include "model/choices.hpp"
+#include "plan/kernel_data.hpp"
 #include "run/estimates.hpp"
+#include "run/lookup_forecast.hpp"
+#include "run/prediction.hpp"
+#include "run/scene_run.hpp"
 
 namespace dolp {
 namespace {
+
+/// All information about a planned run that has not started.
+struct PlannedRun {
+  SceneValues scene;
+  EffectPlan plan;
+  std::vector<Effect> effects;
+  Looked looked;              ///< by the influences
+  double model_change = 0.0;  ///< estimated_model_change
+  RunPrediction run;
+  double rule_digits = 0.0;
+  int most_nodes = 0;                  ///< nodes of a piece of the slope axis or an arc of azimuth; 0 without moments
+  std::vector<std::string> pipelines;  ///< pipelines of the first attempt; empty if nothing is left for the evaluator
+  vulkan::DispatchCount dispatches;    ///< dispatches of the first attempt
+  std::vector<AxisForecast> lookup;    ///< forecasts for the axes of more than one value
+  std::string device;                  ///< its name; empty without one
+  std::string why_no_device;
+};
+
+/// The device that a run would use; without one, limits that every device keeps.
+Device device_of(const std::string& choice, const SceneValues& scene, PlannedRun& planned) {
+  const bool in_double = scene.accuracy.precision == Precision::kDouble;
+  const DeviceList list = list_devices();
+  try {
+    if (list.devices.empty()) throw DeviceError(list.why_empty);
+    const Device& device = list.devices[choose_device(list.devices, choice, in_double)];
+    planned.device = device.name;
+    return device;
+  } catch (const DeviceError& error) {
+    if (!choice.empty()) throw;
+    planned.why_no_device = error.what();
+    Device least = least_device();
+    least.has_double = true;
+    return least;
+  }
+}
+
+void add_dispatches(PlannedRun& planned, const vulkan::DispatchCount& of_request) {
+  planned.dispatches.dispatches += of_request.dispatches;
+  planned.dispatches.tile_invocations = std::max(planned.dispatches.tile_invocations, of_request.tile_invocations);
+  planned.dispatches.row_width = std::max(planned.dispatches.row_width, of_request.row_width);
+  planned.dispatches.rows += of_request.rows;
+  planned.dispatches.block_shapes = std::max(planned.dispatches.block_shapes, of_request.block_shapes);
+  planned.dispatches.device_bytes = std::max(planned.dispatches.device_bytes, of_request.device_bytes);
+}
+
+/// `more`: further properties that distinguish the pipeline.
+void add_pipeline(PlannedRun& planned, const char* kernel, Precision precision, const std::string& more = {}) {
+  const Surface& surface = planned.scene.surface;
+  const std::string text = fmt::format("{}, {}: distribution {}, masking {}{}", kernel, name_of(precision),
+                                       name_of(surface.distribution), name_of(surface.masking), more);
+  if (std::ranges::find(planned.pipelines, text) == planned.pipelines.end()) planned.pipelines.push_back(text);
+}
+
+void add_request(PlannedRun& planned, const MomentsRequest& request, const Device& device) {
+  add_dispatches(planned, count_dispatches(request, device));
+  const KernelData data = kernel_data(request);
+  planned.rule_digits = data.rule.digits;
+  planned.most_nodes = data.rule_order;
+  std::string more;
+  if (request.scattering == Scattering::kMultiple) more += ", all bounces";
+  if (request.wants_direct) more += ", direct emission";
+  add_pipeline(planned, has_slope_samples(request) ? "slopes" : "moments", request.precision, more);
+  if (data.needs_masking_table()) add_pipeline(planned, "masking_table", request.precision);
+}
+
+void add_request(PlannedRun& planned, const ScatteringRequest& request, const Device& device) {
+  add_dispatches(planned, count_dispatches(request, device));
+  add_pipeline(planned, "mueller", request.precision);
+}
+
+PlannedRun planned_run(const SceneValues& scene, const std::string& device, EffectPlan plan) {
+  PlannedRun planned;
+  planned.scene = scene;
+  const Device limits = device_of(device, scene, planned);
+  const std::size_t without_a_run = peak_resident_bytes();  // with the scene and the driver
+  const SceneEntries entries = grid_entries(scene);
+  planned.plan = std::move(plan);
+  planned.effects = effects_of(scene, entries, planned.plan);
+  planned.looked = add_influences(planned.effects, scene, entries);
+  planned.model_change = estimated_model_change(scene, entries);
+  planned.run = predict_run(scene, entries, planned.plan, limits.has_double,
+                            {[&](const MomentsRequest& request) { add_request(planned, request, limits); },
+                             [&](const ScatteringRequest& request) { add_request(planned, request, limits); }});
+  if (planned.dispatches.row_width > 1) {
+    // Counted entry by entry; a device evaluates the entries of a row together, with the nodes that the hardest needs.
+    planned.run.first_evaluations *=
+        static_cast<double>(planned.dispatches.rows) / static_cast<double>(planned.run.moments);
+    planned.run.is_exact = false;
+  }
+  planned.lookup = lookup_forecast(scene, planned.plan);
+  planned.run.host_bytes += static_cast<double>(without_a_run);
+  return planned;
+}
 
 constexpr int kLabelWidth = 11;
 
@@ -21,21 +123,14 @@ std::string influence_text(const Effect& row) {
   return points >= 10.0 ? fmt::format("{} {:.0f}", relation, points) : fmt::format("{} {:.2g}", relation, points);
 }
 
-std::string work_text(const Effect& row, double share) {
-  if (!row.part || row.state != EffectState::kKept) return "-";
-  return share == 0.0 ? "0 %" : fmt::format("{:.3g} %", kPoints * share);
-}
-
-ReportBuilder effect_report(const Effect& row, double share) {
+ReportBuilder effect_report(const Effect& row) {
   ReportBuilder report;
-  report.line("  {:<14} {:<11} {:>11} {:>7}  {}{}", key("name", row.name), state_text(row.state), influence_text(row),
-              work_text(row, share), key("reason", row.reason),
-              row.needs.empty() ? "" : fmt::format(" [{}]", row.needs));
+  report.line("  {:<14} {:<11} {:>11}  {}{}", key("name", row.name), state_text(row.state), influence_text(row),
+              key("reason", row.reason), row.needs.empty() ? "" : fmt::format(" [{}]", row.needs));
   report.values(
       {{"asked_for", row.state != EffectState::kAbsent}, {"state", name_of(row.state)}, {"needs", row.needs}});
   report.value("bound", row.bound);
   report.value("influence_estimate", row.influence);
-  report.value("work_share", share);
   return report;
 }
 
@@ -45,21 +140,16 @@ void add_model_change(ReportBuilder& report, double change) {
   report.value("model_change", change);
 }
 
-void add_effects(ReportBuilder& report, const PlanReport& plan) {
+void add_effects(ReportBuilder& report, const PlannedRun& plan) {
   report.value("effects", effects_json(plan.effects, plan.plan));
-  report.line("  {:<14} {:<11} {:>11} {:>7}  {}", "effect", "plan", "influence", "work", "why [what it takes]");
+  report.line("  {:<14} {:<11} {:>11}  {}", "effect", "plan", "influence", "why [what it takes]");
   std::vector<ReportBuilder> rows;
-  for (std::size_t i = 0; i < plan.effects.size(); ++i) {
-    rows.push_back(effect_report(plan.effects[i], plan.work_shares[i]));
-  }
+  for (const Effect& row : plan.effects) rows.push_back(effect_report(row));
   report.add("rows", rows);
   report.line(
       "  influence: change of (Q/I, U/I) without the effect, in points of DOLP (0.01): a bound of what is dropped, an "
       "estimate from {} of what is kept",
       plan.looked.text());
-  report.line(
-      "  work: share of the evaluations, f among them, that would go with the effect; those that share theirs have "
-      "none alone");
 }
 
 std::string dropped_text(const EffectPlan& plan, double tolerance) {
@@ -88,9 +178,8 @@ std::string how_counted(const RunPrediction& run) {
 }
 
 /// Adds the work of the first attempt and of the repeated ones; `is_idle`: there is none.
-void add_attempts(ReportBuilder& report, const PlanReport& plan, bool is_idle) {
+void add_attempts(ReportBuilder& report, const PlannedRun& plan, bool is_idle) {
   const RunPrediction& run = plan.run;
-  const vulkan::DispatchCount& dispatches = plan.dispatches;
   report.row_if(
       !is_idle, "attempts", "first: {} at tolerance {:g}, {} moments, {} values of f; {:.3g} % again, tighter",
       key("first_attempt/precision", name_of(run.first.precision)), key("first_attempt/tolerance", run.first.tolerance),
@@ -102,26 +191,20 @@ void add_attempts(ReportBuilder& report, const PlanReport& plan, bool is_idle) {
   report.row_if(run.moments > 0, "work", "{:.4g} integrand evaluations in the first attempt ({}), {:.2g} in others",
                 key("first_attempt/evaluations", run.first_evaluations), how_counted(run),
                 key("further_attempts/evaluations", run.again_evaluations));
-  report.row_if(run.moments > 0 && dispatches.row_width > 1, "sharing",
-                "entries that differ in q alone share their evaluations: {} groups of up to {}", dispatches.rows,
-                dispatches.row_width);
-  report.row_if(dispatches.slopes > 0, "sharing",
-                "all slope distributions share the sums over the azimuths: {} slopes of {} directions and indices",
-                dispatches.slopes, dispatches.rows);
   report.value("first_attempt/is_exact", run.is_exact);
   report.value("further_attempts/beams", run.again_beams);
   report.value("evaluations", run.first_evaluations + run.again_evaluations);
 }
 
-void add_kernels(ReportBuilder& report, const PlanReport& plan) {
+void add_kernels(ReportBuilder& report, const PlannedRun& plan) {
   const bool is_idle = plan.pipelines.empty();
   report.row_if(is_idle, "work", "no integrand evaluations: no device is used");
   for (const std::string& pipeline : plan.pipelines) report.row("pipeline", "{}", pipeline);
   report.value("pipelines", plan.pipelines);
   report.value("rule", nullptr);
-  if (plan.rule) {
+  if (plan.most_nodes > 0) {
     report.row("rule", "Gauss rules on smooth pieces, {:.3g} digits; at most {} nodes a piece",
-               key("rule/digits", plan.rule->digits), key("rule/most_nodes", plan.rule->most_nodes));
+               key("rule/digits", plan.rule_digits), key("rule/most_nodes", plan.most_nodes));
   }
   add_attempts(report, plan, is_idle);
   const bool has_device = !plan.device.empty();
@@ -135,7 +218,7 @@ void add_kernels(ReportBuilder& report, const PlanReport& plan) {
   report.value("device", has_device ? std::optional(plan.device) : std::nullopt);
 }
 
-void add_cost(ReportBuilder& report, const PlanReport& plan) {
+void add_cost(ReportBuilder& report, const PlannedRun& plan) {
   const RunPrediction& run = plan.run;
   report.row("memory", "{:.3g} MiB of the host, {:.3g} MiB of the device", run.host_bytes / kMebibyte,
              static_cast<double>(plan.dispatches.device_bytes) / kMebibyte);
@@ -152,7 +235,7 @@ std::string needed_text(const AxisForecast& axis) {
 }
 
 /// Adds the density of axes that lookups need.
-void add_lookup(ReportBuilder& report, const PlanReport& plan) {
+void add_lookup(ReportBuilder& report, const PlannedRun& plan) {
   std::vector<ReportBuilder> axes;
   for (const AxisForecast& axis : plan.lookup) {
     ReportBuilder& row = axes.emplace_back(kLabelWidth);
@@ -195,8 +278,8 @@ ReportBuilder::Json effects_json(const std::vector<Effect>& effects, const Effec
   return json;
 }
 
-ReportBuilder plan_report(const PlanReport& plan) {
-  const SceneValues& scene = plan.scene;
+ReportBuilder plan_report(const SceneValues& scene, const std::string& device, EffectPlan effects) {
+  const PlannedRun plan = planned_run(scene, device, std::move(effects));
   ReportBuilder report(kLabelWidth);
   report.line("{}", key("title", scene.title));
   report.row("scene", "{}, {} = {} entries, spectral samples: {}", name_of(scene.geometry.mode), grid_text(scene.grid),

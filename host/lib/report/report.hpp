@@ -15,7 +15,7 @@
 namespace dolp {
 
 inline constexpr double kMebibyte = 1048576.0;
-inline constexpr double kPoints = 100.0;  ///< of DOLP in 1
+inline constexpr double kPoints = 100.0;  ///< points of DOLP in 1
 inline constexpr double kPercent = 100.0;
 
 /// A value and its key in JSON: a path, whose parts are separated by slashes.
@@ -74,17 +74,30 @@ class ReportBuilder {
   /// Several such values.
   void values(const Json& object) { json_.update(object); }
 
-  /// A part: its lines follow, its values are those of the path.
-  void add(const char* path, const ReportBuilder& part);
+  /// Adds the lines of a part, without its values.
+  void show(const ReportBuilder& part) {
+    text_ += part.text_;
+    rows_.insert(rows_.end(), part.rows_.begin(), part.rows_.end());
+  }
 
-  /// A list of parts, which may be empty.
-  void add(const char* path, const std::vector<ReportBuilder>& parts);
+  /// Adds a part: its lines follow, and its values are at the path.
+  void add(const char* path, const ReportBuilder& part) {
+    show(part);
+    value(path, part.json_);
+  }
 
-  /// The lines of a part, without its values.
-  void show(const ReportBuilder& part);
+  /// Adds a list of parts, which may be empty.
+  void add(const char* path, const std::vector<ReportBuilder>& parts) {
+    Json list = Json::array();
+    for (const ReportBuilder& part : parts) {
+      show(part);
+      list.push_back(part.json_);
+    }
+    value(path, list);
+  }
 
   const Json& json() const { return json_; }
-  /// ASCII alone, so that a terminal shows it safely; names of files need not be UTF-8.
+  /// Only ASCII, so that a terminal shows it safely; names of files need not be UTF-8.
   std::string json_text() const { return json_.dump(2, ' ', true, Json::error_handler_t::replace); }
   const std::string& text() const { return text_; }
   /// The rows that are shown: label and text.

@@ -148,17 +148,4 @@ void add_evaluation(ReportBuilder& report, const EvaluationReport& e, double wal
   report.values({{"setup_s", e.setup_s}});
 }
 
-std::size_t count_status(const std::vector<PointResult>& results, std::uint32_t bit) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(results, [bit](const PointResult& r) { return (r.status & bit) != 0; }));
-}
-
-std::optional<double> worst_of(const std::vector<PointResult>& results, Quantity error, std::uint32_t refused) {
-  std::optional<double> worst;
-  for (const PointResult& r : results) {
-    if ((r.status & refused) == 0) worst = std::max(worst.value_or(0.0), r[error]);
-  }
-  return worst;
-}
-
 }  // namespace dolp

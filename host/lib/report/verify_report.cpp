@@ -1,11 +1,18 @@
 #include "report/verify_report.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include <dolp/errors.hpp>
 #include <dolp/status.hpp>
+#include "base/numbers.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "model/choices.hpp"
 
 namespace dolp {
@@ -13,28 +20,23 @@ namespace {
 
 constexpr std::size_t kMostFailureLines = 20;
 
-std::string place(const CheckedValue& value) {
-  std::string text;
-  if (value.wavelength_um) text += fmt::format("wavelength {:g}, ", *value.wavelength_um);
-  if (value.n) text += fmt::format("n {:g}, ", *value.n);
-  if (value.k) text += fmt::format("k {:g}, ", *value.k);
-  return text + fmt::format("theta {:g}, sigma {:g}, q {:g}", value.theta_deg, value.sigma, value.q);
+/// "theta 60, sigma 0.1, q 3.5".
+std::string position_text(const CheckedValue& value) {
+  std::vector<std::string> texts;
+  for (const auto& [axis, number] : value.position)
+    texts.push_back(fmt::format("{} {:g}", description_of(axis).name, number));
+  return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 ReportBuilder::Json value_json(const CheckedValue& value) {
-  ReportBuilder::Json json = {{"quantity", value.quantity},
-                              {"theta_deg", value.theta_deg},
-                              {"sigma", value.sigma},
-                              {"q", value.q},
-                              {"stored", value.stored},
-                              {"reference", value.reference},
-                              {"error", value.error()},
-                              {"stated", value.stated},
-                              {"reference_error", value.reference_error},
-                              {"complaint", value.complaint}};
-  if (value.wavelength_um) json["wavelength_um"] = *value.wavelength_um;
-  if (value.n) json["n"] = *value.n;
-  if (value.k) json["k"] = *value.k;
+  ReportBuilder::Json json = {{"quantity", value.quantity}};
+  for (const auto& [axis, number] : value.position) json[description_of(axis).column] = number;
+  json.update({{"stored", value.stored},
+               {"reference", value.reference},
+               {"error", value.error()},
+               {"stated", value.stated},
+               {"reference_error", value.reference_error},
+               {"complaint", value.complaint}});
   return json;
 }
 
@@ -42,7 +44,7 @@ ReportBuilder quantity_report(const QuantityCheck& check) {
   const CheckedValue& worst = check.worst;
   ReportBuilder report;
   report.row(check.name, "{} compared, worst: error {:.2e} of {:.2e} stated, at {}{}", key("compared", check.compared),
-             worst.error(), worst.stated, place(worst),
+             worst.error(), worst.stated, position_text(worst),
              check.unstated > 0 ? fmt::format("; nothing stated for {} of them", check.unstated) : "");
   report.values({{"name", check.name}, {"unstated", check.unstated}, {"worst", value_json(worst)}});
   return report;
@@ -53,7 +55,7 @@ void add_failures(ReportBuilder& report, const std::vector<CheckedValue>& failur
   for (const CheckedValue& value : failures) {
     report.row_if(list.size() < kMostFailureLines, "wrong",
                   "{} at {} {}: {:.10g} is stored, {:.10g} is right, error {:.2e}, stated {:.2e}", value.quantity,
-                  place(value), value.complaint, value.stored, value.reference, value.error(), value.stated);
+                  position_text(value), value.complaint, value.stored, value.reference, value.error(), value.stated);
     list.push_back(value_json(value));
   }
   report.row_if(list.size() > kMostFailureLines, "wrong", "and {} more", list.size() - kMostFailureLines);
@@ -68,22 +70,11 @@ std::string table_verdict(const TableCheck& check) {
   return fmt::format("failed: {} values of {} entries are wrong", check.failures.size(), check.checked);
 }
 
-/// The part of a case that is nearest to its bound.
-struct Worst {
-  const char* quantity;
-  ErrorCheck check;
-};
-Worst worst_of(const CaseOutcome& outcome) {
-  const bool is_rho = outcome.rho.ratio() >= outcome.dolp.ratio() || std::isinf(outcome.dolp.estimate);
-  return is_rho ? Worst{"rho", outcome.rho} : Worst{"dolp", outcome.dolp};
-}
-
-bool is_missed(const CaseOutcome& outcome) { return (outcome.status & kAnyToleranceNotMet) != 0; }
-
-ReportBuilder case_report(const StoredCase& stored, const CaseOutcome& outcome) {
-  const std::string verdict = !outcome.complaint.empty() ? "WRONG: " + outcome.complaint
-                              : is_missed(outcome)       ? "says it misses the tolerance"
-                                                         : "ok";
+ReportBuilder case_report(const CaseOutcome& outcome) {
+  const StoredCase& stored = outcome.stored;
+  const std::string verdict = !outcome.complaint.empty()   ? "WRONG: " + outcome.complaint
+                              : outcome.misses_tolerance() ? "says it misses the tolerance"
+                                                           : "ok";
   ReportBuilder report;
   report.line("    {:<31} rho {:.1e} of {:.1e}  dolp {:.1e} of {:.1e}  {}", key("case", stored.name),
               key("rho/error", outcome.rho.error), key("rho/estimate", outcome.rho.estimate),
@@ -105,36 +96,31 @@ ReportBuilder case_report(const StoredCase& stored, const CaseOutcome& outcome) 
 }
 
 /// A line for the cases of one distribution and masking.
-void add_group(ReportBuilder& report, const HardCaseReport& all_cases, const PrecisionReport& precision,
-               const std::vector<std::size_t>& positions) {
-  const auto outcome_at = [&](std::size_t i) -> const CaseOutcome& { return precision.outcomes[i]; };
-  const std::size_t worst =
-      *std::ranges::max_element(positions, {}, [&](std::size_t i) { return outcome_at(i).worst_ratio(); });
-  const auto missed = std::ranges::count_if(positions, [&](std::size_t i) { return is_missed(outcome_at(i)); });
-  const StoredCase& first = all_cases.cases[positions.front()];
-  const Worst part = worst_of(outcome_at(worst));
+void add_group(ReportBuilder& report, const char* precision, const std::vector<const CaseOutcome*>& group) {
+  const CaseOutcome& worst = **std::ranges::max_element(group, {}, &CaseOutcome::worst_ratio);
+  const bool is_rho = worst.rho.ratio() >= worst.dolp.ratio() || std::isinf(worst.dolp.estimate);
+  const ErrorCheck& check = is_rho ? worst.rho : worst.dolp;
   report.line("  {:<6} {:<8} {:<8} {} cases, {} say they miss; nearest to its estimate: {} of {}, {:.1e} of {:.1e}",
-              precision.evaluation.precision, name_of(first.distribution), name_of(first.masking), positions.size(),
-              missed, part.quantity, all_cases.cases[worst].name, part.check.error, part.check.estimate);
+              precision, name_of(worst.stored.distribution), name_of(worst.stored.masking), group.size(),
+              std::ranges::count_if(group, &CaseOutcome::misses_tolerance), is_rho ? "rho" : "dolp", worst.stored.name,
+              check.error, check.estimate);
 }
 
-ReportBuilder precision_report(const HardCaseReport& all_cases, const PrecisionReport& precision, bool shows_all) {
-  std::map<std::pair<Distribution, Masking>, std::vector<std::size_t>> groups;
-  std::vector<ReportBuilder> cases;
+ReportBuilder precision_report(const PrecisionReport& precision, bool shows_all) {
+  const EvaluationReport& e = precision.evaluation;
+  std::map<std::pair<Distribution, Masking>, std::vector<const CaseOutcome*>> groups;
   ReportBuilder::Json list = ReportBuilder::Json::array();
   for (const CaseOutcome& outcome : precision.outcomes) {
-    const StoredCase& stored = all_cases.cases[outcome.position];
-    groups[{stored.distribution, stored.masking}].push_back(outcome.position);
-    list.push_back(cases.emplace_back(case_report(stored, outcome)).json());
+    groups[{outcome.stored.distribution, outcome.stored.masking}].push_back(&outcome);
+    list.push_back(case_report(outcome).json());
   }
   ReportBuilder report;
-  for (const auto& [group, positions] : groups) {
-    add_group(report, all_cases, precision, positions);
-    for (const std::size_t i : positions) {
-      if (shows_all || !precision.outcomes[i].complaint.empty()) report.show(cases[i]);
+  for (const auto& [key, group] : groups) {
+    add_group(report, e.precision.c_str(), group);
+    for (const CaseOutcome* outcome : group) {
+      if (shows_all || !outcome->complaint.empty()) report.show(case_report(*outcome));
     }
   }
-  const EvaluationReport& e = precision.evaluation;
   report.values({{"precision", e.precision},
                  {"evaluator", e.evaluator},
                  {"device", e.device},
@@ -149,6 +135,86 @@ std::string hard_case_verdict(const HardCaseReport& report) {
   if (report.precisions.empty()) return "nothing was examined";
   return report.failures() == 0 ? "passed: every error is below its estimate, every miss is reported"
                                 : fmt::format("failed: {} cases are wrong", report.failures());
+}
+
+/// The requested tolerance: near the best that the arithmetic can reach.
+double tolerance_in(Precision precision) { return precision == Precision::kDouble ? 1e-9 : 1e-6; }
+
+/// The results of ordinary cases in one precision, or the reason why there are none.
+struct Quality {
+  Precision precision;
+  std::string why_not;
+  std::vector<CaseOutcome> outcomes = {};
+};
+
+Quality quality_in(const Device& device, std::size_t position, Precision precision) {
+  const bool in_double = precision == Precision::kDouble;
+  Quality quality{precision, device.usable ? "" : "the device is not usable"};
+  if (in_double && !device.has_double) quality.why_not = "the device has no double precision (shaderFloat64)";
+  if (!quality.why_not.empty()) return quality;
+  try {
+    VulkanOptions options;
+    options.device = std::to_string(position);
+    options.needs_double = in_double;
+    VulkanEvaluator evaluator(options);
+    quality.outcomes = qualify(ordinary_cases(), evaluator, {tolerance_in(precision), precision}, {});
+  } catch (const DeviceError& error) {
+    quality.why_not = error.what();
+  }
+  return quality;
+}
+
+ReportBuilder quality_report(const Quality& quality) {
+  ReportBuilder report;
+  if (quality.outcomes.empty()) {
+    report.line("   {:<6} not measured: {}", name_of(quality.precision), key("why_not", quality.why_not));
+    return report;
+  }
+  const auto error_of = [](const CaseOutcome& one) { return std::isnan(one.rho.error) ? kInfinity : one.rho.error; };
+  const CaseOutcome& worst = *std::ranges::max_element(quality.outcomes, {}, error_of);
+  const auto missed = std::ranges::count_if(quality.outcomes, &CaseOutcome::misses_tolerance);
+  const bool is_sound =
+      std::ranges::all_of(quality.outcomes, [](const CaseOutcome& one) { return one.complaint.empty(); });
+  report.line(
+      "   {:<6} true error of rho at most {:.1e} in {} ordinary cases; with tolerance {:g}, {} of them get status 2 or "
+      "16, because the stated bound, larger than the error, misses it{}",
+      name_of(quality.precision), key("worst_rho_error", worst.rho.error), key("cases", quality.outcomes.size()),
+      key("tolerance", tolerance_in(quality.precision)), key("missed_tolerance", missed),
+      is_sound ? "" : "; SOME ERRORS EXCEED THEIR ESTIMATES, see dolp verify --hard-cases");
+  const StoredCase& stored = worst.stored;
+  report.value("worst_case",
+               fmt::format("{} {} {}", name_of(stored.distribution), name_of(stored.masking), stored.name));
+  report.value("sound", is_sound);
+  return report;
+}
+
+ReportBuilder device_report(const Device& device, std::size_t position) {
+  const Quality in_float = quality_in(device, position, Precision::kFloat);
+  Device examined = device;  // its kernels may not compile or run, though the driver calls it usable
+  if (device.usable) examined.why_not = in_float.why_not;
+  examined.usable = examined.why_not.empty();
+  const Quality in_double = quality_in(examined, position, Precision::kDouble);
+  ReportBuilder report;
+  report.line("{}: {} ({})", key("index", position), key("name", device.name), type_name(device.type));
+  report.line("   {}, Vulkan {}", key("driver", device.driver), key("api_version", device.api_version));
+  report.line("   {}{}", examined.usable ? "usable" : "not usable: ", key("why_not", examined.why_not));
+  report.line(
+      "   double precision {}{}, storage buffer {:.0f} MiB, heap {:.0f} MiB, {} workgroups, subgroup {}, timestamps {}",
+      device.has_double ? "yes" : "no",
+      device.has_double ? "" : fmt::format(" (tolerances below {:g} are out of reach)", kLeastFloatTolerance),
+      static_cast<double>(device.max_storage_buffer_bytes) / kMebibyte,
+      static_cast<double>(device.memory_bytes) / kMebibyte, key("max_workgroups", device.max_workgroups),
+      key("subgroup_size", device.subgroup_size), device.timestamps ? "yes" : "no");
+  report.values({{"type", type_name(device.type)},
+                 {"usable", examined.usable},
+                 {"float64", device.has_double},
+                 {"max_storage_buffer_bytes", device.max_storage_buffer_bytes},
+                 {"heap_bytes", device.memory_bytes},
+                 {"timestamps", device.timestamps}});
+  for (const Quality& quality : {in_float, in_double}) {
+    report.add((std::string("quality/") + name_of(quality.precision)).c_str(), quality_report(quality));
+  }
+  return report;
 }
 
 }  // namespace
@@ -184,17 +250,26 @@ std::size_t HardCaseReport::failures() const {
 
 ReportBuilder hard_case_report(const HardCaseReport& cases, bool all) {
   ReportBuilder report(0);
-  report.line("{} hard cases, tolerance {:g}", key("cases", cases.cases.size()), key("tolerance", cases.tolerance));
+  report.line("{} hard cases, tolerance {:g}", key("cases", cases.cases), key("tolerance", cases.tolerance));
   std::vector<ReportBuilder> precisions;
   for (const PrecisionReport& precision : cases.precisions) {
     const EvaluationReport& e = precision.evaluation;
     if (precisions.empty()) report.row("device", "{}{}{}", e.device, e.driver.empty() ? "" : ", ", e.driver);
-    precisions.push_back(precision_report(cases, precision, all));
+    precisions.push_back(precision_report(precision, all));
   }
   report.add("precisions", precisions);
   if (!cases.left_out.empty()) report.line("  {}", cases.left_out);
   report.row("verdict", "{}", key("verdict", hard_case_verdict(cases)));
   report.values({{"left_out", cases.left_out}, {"failures", cases.failures()}, {"passed", cases.failures() == 0}});
+  return report;
+}
+
+ReportBuilder device_report(const DeviceList& list) {
+  std::vector<ReportBuilder> devices;
+  for (std::size_t i = 0; i < list.devices.size(); ++i) devices.push_back(device_report(list.devices[i], i));
+  ReportBuilder report;
+  report.add("devices", devices);
+  report.value("why_empty", list.why_empty);
   return report;
 }
 

@@ -1,9 +1,10 @@
-// Report of `dolp verify`: for people, and as JSON.
+// Reports of `dolp verify` and `dolp devices`.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "device/devices.hpp"
 #include "report/report.hpp"
 #include "verify/qualification.hpp"
 #include "verify/table_check.hpp"
@@ -30,12 +31,15 @@ struct PrecisionReport {
 /// A device that was examined.
 struct HardCaseReport {
   double tolerance = 0.0;
-  std::vector<StoredCase> cases;
+  std::size_t cases = 0;
   std::vector<PrecisionReport> precisions;
-  std::string left_out;  ///< why a precision is missing; empty when none is
+  std::string left_out;  ///< why a precision is missing; empty if all are there
   std::size_t failures() const;
 };
 /// One line for each precision, distribution and masking, and one for each case that fails; `all`: for every case.
 ReportBuilder hard_case_report(const HardCaseReport& cases, bool all);
+
+/// The limits of the devices, and the accuracy of each on a few ordinary cases in float and double.
+ReportBuilder device_report(const DeviceList& list);
 
 }  // namespace dolp

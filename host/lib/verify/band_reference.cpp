@@ -1,4 +1,4 @@
-#include "verify/band_reference.hpp"
+#include "verify/table_check.hpp"
 
 #include <algorithm>
 #include <array>
@@ -22,7 +22,7 @@ constexpr std::size_t kFirstIntervals = 4;
 constexpr std::size_t kMostIntervals = 32;  // of a point: 480 wavelengths
 constexpr double kQuadratureShare = 0.01;   // where a quadrature ends
 
-// Results of a wavelength that are integrated as they are, and those that have the weight of the mean reflectance.
+// Results of a wavelength that are integrated without a weight, and with the weight of the mean reflectance.
 constexpr std::array kIntegrated = {kStokesI, kStokesQ, kStokesU, kStokesV};
 constexpr std::array kMeans = {kRhoI, kRhoQ, kEmissivityS, kEmissivityP};
 
@@ -43,7 +43,7 @@ struct BandPiece {
 struct PointIntegral {
   SceneEntry entry;
   std::vector<BandPiece> intervals;
-  std::size_t first_new = 0;  ///< of the intervals without a value
+  std::size_t first_new = 0;  ///< first interval without a value
   PointResult last;           ///< at some wavelength
 };
 

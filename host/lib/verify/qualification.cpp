@@ -7,28 +7,63 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include <dolp/results.hpp>
 #include "base/numbers.hpp"
+#include "base/text.hpp"
 #include "model/choices.hpp"
 #include "reference/hemisphere.hpp"
 #include "run/scene_run.hpp"
+#include "scene/csv.hpp"
 
 namespace dolp {
 namespace {
 
+constexpr std::array<std::string_view, 17> kCaseColumns{
+    "distribution",  "masking", "theta_deg", "sigma",   "q",         "n",         "k",
+    "r_i",           "r_q",     "albedo",    "deficit", "r_i_error", "r_q_error", "albedo_error",
+    "deficit_error", "case",    "origin"};
+
+template <class Choice>
+Choice choice(const CsvReader& row, std::size_t column) {
+  const std::string_view word = row.cells()[column];
+  const std::optional<Choice> found = named<Choice>(word);
+  if (!found) {
+    row.fail(fmt::format("{} = {}: must be one of {}", kCaseColumns[column], one_line(word),
+                         fmt::join(Names<Choice>::kAll, ", ")));
+  }
+  return *found;
+}
+
+StoredCase parse_case(const CsvReader& row) {
+  const std::size_t cells = row.cells().size();
+  if (cells != kCaseColumns.size()) row.fail(fmt::format("{} cells, {} are expected", cells, kCaseColumns.size()));
+  const auto number = [&row](std::size_t column) { return row.number(column, kCaseColumns[column]); };
+  StoredCase stored;
+  stored.distribution = choice<Distribution>(row, 0);
+  stored.masking = choice<Masking>(row, 1);
+  stored.theta_deg = number(2);
+  stored.shape = {number(3), number(4)};
+  stored.index = {number(5), number(6)};
+  constexpr std::array kMoments{&Moments::r_i,          &Moments::r_q,          &Moments::albedo,
+                                &Moments::deficit,      &Moments::r_i_error,    &Moments::r_q_error,
+                                &Moments::albedo_error, &Moments::deficit_error};
+  for (std::size_t i = 0; i < kMoments.size(); ++i) stored.moments.*kMoments[i] = number(7 + i);
+  stored.name = row.cells()[15];
+  stored.origin = row.cells()[16];
+  return stored;
+}
+
 // Rounding of r / cos(theta) and of the quotients of stored values.
 constexpr double kQuotientRounding = 8.0 * std::numeric_limits<double>::epsilon();
-
-constexpr std::array kOrdinaryCases{"ordinary",    "sigma-1e-2",     "brewster",     "index-27-90",
-                                    "index-0.2-3", "split-lines-18", "almost-normal"};
 
 /// Expected rho and DOLP, from the stored moments of a case.
 struct Expected {
   double rho_i = 0.0;
   double rho_q = 0.0;
-  double rho_error = 0.0;  ///< of both, over rho_I
+  double rho_error = 0.0;  ///< error of both, over rho_I
   double dolp = 0.0;
   double dolp_error = 0.0;
   bool has_rho = true;
@@ -80,7 +115,7 @@ std::string complaint_about(const char* quantity, const ErrorCheck& check, bool 
 
 CaseOutcome outcome_of(const StoredCase& stored, const PointResult& result, double tolerance) {
   const Expected expected = expected_of(stored);
-  CaseOutcome outcome;
+  CaseOutcome outcome{.stored = stored};
   outcome.status = result.status;
   outcome.promises_dolp = promises_dolp(result.status);
   const bool meets_dolp = (result.status & kToleranceNotMet) == 0;
@@ -106,6 +141,21 @@ CaseOutcome outcome_of(const StoredCase& stored, const PointResult& result, doub
 }
 
 }  // namespace
+
+std::vector<StoredCase> parse_stored_cases(std::string_view text, const std::string& name) {
+  std::vector<StoredCase> cases;
+  CsvReader row(text, name);
+  const bool is_header = row.next() && std::ranges::equal(row.cells(), kCaseColumns);
+  if (!is_header) row.fail(fmt::format("the columns must be {}", fmt::join(kCaseColumns, ",")));
+  while (row.next()) cases.push_back(parse_case(row));
+  return cases;
+}
+
+std::vector<StoredCase> read_stored_cases(const std::string& path) {
+  return parse_stored_cases(read_text(path, path + ": "), path);
+}
+
+std::vector<StoredCase> hard_cases() { return parse_stored_cases(embedded_hard_cases_csv(), "hard_cases.csv"); }
 
 double ErrorCheck::ratio() const {
   if (std::isinf(estimate)) return 0.0;
@@ -148,29 +198,17 @@ std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, ModelEval
     for (std::size_t j = 0; j < positions.size(); ++j) {
       const std::size_t i = positions[j];
       outcomes[i] = outcome_of(cases[i], results[j], accuracy.tolerance);
-      outcomes[i].position = i;
     }
   }
   return outcomes;
 }
 
-DeviceQuality measure_quality(ModelEvaluator& evaluator, const Accuracy& accuracy) {
+std::vector<StoredCase> ordinary_cases() {
+  constexpr std::array kOrdinary{"ordinary",    "sigma-1e-2",     "brewster",     "index-27-90",
+                                 "index-0.2-3", "split-lines-18", "almost-normal"};
   std::vector<StoredCase> cases = hard_cases();
-  std::erase_if(cases,
-                [](const StoredCase& c) { return std::ranges::find(kOrdinaryCases, c.name) == kOrdinaryCases.end(); });
-  DeviceQuality quality;
-  quality.cases = cases.size();
-  quality.tolerance = accuracy.tolerance;
-  for (const CaseOutcome& outcome : qualify(cases, evaluator, accuracy, {})) {
-    const StoredCase& stored = cases[outcome.position];
-    quality.missed += (outcome.status & kAnyToleranceNotMet) != 0 ? 1 : 0;
-    quality.is_sound = quality.is_sound && outcome.complaint.empty();
-    // Written so that NaN is the worst, and stays it.
-    if (std::isnan(quality.worst_error) || outcome.rho.error <= quality.worst_error) continue;
-    quality.worst_error = outcome.rho.error;
-    quality.worst_case = fmt::format("{} {} {}", name_of(stored.distribution), name_of(stored.masking), stored.name);
-  }
-  return quality;
+  std::erase_if(cases, [&](const StoredCase& c) { return std::ranges::find(kOrdinary, c.name) == kOrdinary.end(); });
+  return cases;
 }
 
 }  // namespace dolp

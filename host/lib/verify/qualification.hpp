@@ -1,24 +1,53 @@
-// Compares an evaluator with stored reference moments, through the radiometry, as `dolp eval` computes them.
+// Stored reference moments, and how an evaluator compares with them, through the radiometry, as `dolp eval` computes.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <dolp/status.hpp>
 #include "model/evaluator.hpp"
+#include "model/moments.hpp"
 #include "scene/scene.hpp"
-#include "verify/stored_cases.hpp"
 
 namespace dolp {
 
-/// The error of one result beside what the result states about it.
+/// One point with its reference moments, k_s = 1, no diffuse part.
+struct StoredCase {
+  Distribution distribution = Distribution::kCauchy;
+  Masking masking = Masking::kIntegral;
+  double theta_deg = 0.0;
+  SlopeShape shape;
+  OpticalConstants index;
+  Moments moments;     ///< times cos(theta), with bounds of the reference's own errors
+  std::string name;    ///< name of the case; each distribution and masking has a case of that name
+  std::string origin;  ///< where the values come from
+};
+
+/// The file host/data/hard_cases.csv as it was when the program was built.
+std::string_view embedded_hard_cases_csv();
+
+/// The model's hard cases: ends of every range, coinciding split lines, indices that reflect nothing or everything; all
+/// maskings, both distributions.
+/// Accuracy: |d r_i| and |d r_q| at most 1.5e-13 r_i, for N = 1.0001, which reflects 3e-9, 3e-11 r_i
+///   (test HardCases_References_AreAsGoodAsStated).
+std::vector<StoredCase> hard_cases();
+
+/// Cases from the text of a file that dolp-reference-values wrote; lines that begin with # are left out.
+/// Errors: InputError that names file, line and column.
+std::vector<StoredCase> parse_stored_cases(std::string_view text, const std::string& name);
+
+/// Cases from a file of that form. Errors: InputError.
+std::vector<StoredCase> read_stored_cases(const std::string& path);
+
+/// The error of one result, and the bound that the result states.
 struct ErrorCheck {
   double error = 0.0;      ///< distance to the reference
   double estimate = 0.0;   ///< the stated bound; infinite where nothing is stated
   double reference = 0.0;  ///< bound of the reference's own error, in the same units
-  /// error / estimate, less what the reference may err itself: above 1 the estimate is wrong.
+  /// error / estimate, after subtracting the reference's own error: above 1 the estimate is wrong.
   double ratio() const;
   bool is_within_estimate() const { return ratio() <= 1.0; }
   /// True where the error certainly exceeds a tolerance.
@@ -27,39 +56,29 @@ struct ErrorCheck {
 
 /// The result of one case.
 struct CaseOutcome {
-  std::size_t position = 0;    ///< in the list of cases
+  StoredCase stored;
   ErrorCheck rho;              ///< max(|d rho_I|, |d rho_Q|) / rho_I
   ErrorCheck dolp;             ///< |d DOLP|
-  bool promises_dolp = false;  ///< whether the tolerance is promised for DOLP: status has none of the bits 1, 4, 8
+  bool promises_dolp = false;  ///< the tolerance is promised for DOLP: status has none of the bits 1, 4, 8
   std::uint32_t status = 0;
   std::string complaint;  ///< empty when the case is right: errors below estimates, tolerances met or status 2 or 16
   double worst_ratio() const;
+  bool misses_tolerance() const { return (status & kAnyToleranceNotMet) != 0; }  ///< and says so
 };
 
-/// The scene that cases of one distribution and masking are looked at in: a surface that only emits, at 300 K and
-/// 10.6 um, so that DOLP = |rho_Q| / (1 - rho_I).
+/// The scene of the cases of one distribution and masking: a surface that only emits, at 300 K and 10.6 um, so that
+/// DOLP = |rho_Q| / (1 - rho_I).
 SceneValues emission_scene(Distribution distribution, Masking masking, double tolerance);
 
 /// Evaluates all cases and compares each with its reference, in the order of `cases`.
 ///
-/// At 90 degrees rho has no finite value under masking none and `integral`; DOLP is compared with |r_Q / r_I| there.
+/// At 90 degrees, rho has no finite value with masking none and integral; DOLP is compared with |r_Q / r_I|.
 /// Domain: cases at 90 degrees are of those two maskings and have finite moments.
-/// Errors: those of evaluate_scene.
+/// Errors: errors of evaluate_scene.
 std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, ModelEvaluator& evaluator,
                                  const Accuracy& accuracy, const Progress& progress);
 
-/// Accuracy of an evaluator on a few ordinary cases of every distribution and masking.
-struct DeviceQuality {
-  std::size_t cases = 0;
-  std::size_t missed = 0;    ///< of them, those that say they miss the tolerance
-  double tolerance = 0.0;    ///< what was asked for
-  double worst_error = 0.0;  ///< max(|d rho_I|, |d rho_Q|) / rho_I
-  std::string worst_case;    ///< "cauchy integral sigma-1e-2"
-  bool is_sound = true;      ///< no error above its estimate, no tolerance missed silently
-};
-
-/// Measures an evaluator, for a list of devices; `dolp verify --hard-cases` is the thorough examination.
-/// Errors: those of evaluate_scene.
-DeviceQuality measure_quality(ModelEvaluator& evaluator, const Accuracy& accuracy);
+/// A few ordinary cases for each distribution and masking.
+std::vector<StoredCase> ordinary_cases();
 
 }  // namespace dolp

@@ -7,16 +7,18 @@
 #include <cmath>
 #include <dolp/errors.hpp>
 #include <random>
+#include <ranges>
 #include <set>
+#include <span>
 
 #include <dolp/number_range.hpp>
 #include <dolp/results.hpp>
 #include <dolp/status.hpp>
 #include "base/numbers.hpp"
 #include "reference/reference_evaluator.hpp"
+#include "run/response_run.hpp"
 #include "run/scene_run.hpp"
 #include "spectrum/spectral_rule.hpp"
-#include "verify/band_reference.hpp"
 
 namespace dolp {
 namespace {
@@ -47,14 +49,14 @@ constexpr std::array<Compared, 13> kCompared{{
     {Quantity::kEmissivityP, Bound::kEmissivity},
 }};
 
-/// Where files state no error of a quantity, the largest stated one times this is what it may err by, relative to what
-/// it is a sum of.
+/// Where files state no error of a quantity, its error may be the largest stated one times this, relative to the terms
+/// that it is a sum of.
 constexpr double kUnstatedOverStated = 10.0;
 
 /// What bounds depend on besides the entry.
 struct BoundTerms {
   double tolerance = 0.0;
-  double radiation = 0.0;  ///< sum of what the scene emits and reflects with rho = 1, in the units of Stokes I
+  double radiation = 0.0;  ///< emitted plus reflected radiation with rho = 1, in the units of Stokes I
 };
 
 BoundTerms bound_terms(const SceneModel& scene) {
@@ -110,10 +112,9 @@ std::string complaint_about(const CheckedValue& value, double allowed) {
   return {};
 }
 
-/// The estimates of an entry; a table without them states nothing.
+/// The estimate of an entry; a table without estimates states nothing.
 double estimate_at(const std::vector<double>& estimates, std::size_t i) {
-  if (estimates.empty()) return kInfinity;
-  return estimates[i];
+  return estimates.empty() ? kInfinity : estimates[i];
 }
 
 double allowed_error(Bound bound, std::uint32_t status, double tolerance, const PointResult& reference) {
@@ -129,17 +130,10 @@ void add(QuantityCheck& check, const CheckedValue& value) {
   if (check.compared == 1 || value.ratio() > check.worst.ratio()) check.worst = value;
 }
 
-CheckedValue compare(const TableValues& table, const Compared& compared, std::size_t i, const SceneEntry& entry,
-                     const PointResult& reference, const BoundTerms& terms) {
-  CheckedValue value;
-  value.quantity = description_of(compared.quantity).name;
-  value.theta_deg = entry.theta_deg;
-  value.sigma = entry.shape.sigma;
-  value.q = entry.shape.q;
-  const std::vector<double>& wavelengths = table.axes[Axis::kWavelength];
-  if (!wavelengths.empty()) value.wavelength_um = wavelengths[entry.variant];
-  if (!table.axes[Axis::kN].empty()) value.n = entry.index->n;
-  if (!table.axes[Axis::kK].empty()) value.k = entry.index->k;
+CheckedValue compare(const TableSample& sample, const Compared& compared, std::size_t i, const PointResult& reference,
+                     const BoundTerms& terms) {
+  const TableValues& table = sample.table;
+  CheckedValue value{description_of(compared.quantity).name, position_of(sample.positions[i], table.axes)};
   value.stored = table[compared.quantity][i];
   value.reference = reference[compared.quantity];
   const double dolp_estimate = estimate_at(table[Quantity::kErrorEstimate], i);
@@ -174,6 +168,19 @@ bool has_rho(const TableValues& table) {
   return table.has(Quantity::kRhoErrorEstimate) && (table.has(Quantity::kRhoI) || table.has(Quantity::kRhoQ));
 }
 
+/// A request for the sample's entries.
+MomentsRequest request_of(const TableSample& sample, const Surface& surface) {
+  MomentsRequest request = response_request(surface);
+  const OpticalConstants index = request.indices.front().index;
+  request.indices.clear();
+  const SceneEntries grid = SceneEntries::of_grid(sample.table.axes, index);
+  for (const std::size_t position : sample.positions) {
+    const SceneEntry entry = grid[position];
+    request.append({entry.theta_deg, entry.shape, index});
+  }
+  return request;
+}
+
 }  // namespace
 
 double CheckedValue::error() const { return std::abs(stored - reference); }
@@ -182,6 +189,17 @@ double CheckedValue::ratio() const {
   if (std::isnan(error())) return complaint.empty() ? 0.0 : kInfinity;
   if (error() == 0.0) return 0.0;
   return error() / (stated + reference_error);
+}
+
+std::vector<std::pair<Axis, double>> position_of(std::size_t entry, const Axes& axes) {
+  std::vector<std::pair<Axis, double>> position;
+  for (const Axis axis : kAllAxes | std::views::reverse) {
+    if (axes[axis].empty()) continue;
+    position.emplace_back(axis, axes[axis][entry % axes[axis].size()]);
+    entry /= axes[axis].size();
+  }
+  std::ranges::reverse(position);
+  return position;
 }
 
 std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckOptions& options) {
@@ -210,9 +228,7 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
                     name));
   }
   check_axes(table, scene, name);
-  std::vector<SceneEntry> entries;
   const SceneEntries grid = SceneEntries::of_grid(table.axes, scene.surface.material.constant);
-  for (const std::size_t position : sample.positions) entries.push_back(grid[position]);
   ReferenceEvaluator reference({.relative_tolerance = kReferenceTolerance});
   const SceneEntries chosen = grid.chosen(sample.positions);
   const std::vector<PointResult> results = scene.spectrum.is_band()
@@ -222,19 +238,55 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
   const std::vector<BoundTerms> terms = bound_terms(scene, table.axes[Axis::kWavelength]);
   TableCheck check;
   check.entries = table.size();
-  check.checked = entries.size();
+  check.checked = sample.positions.size();
   check.tolerance = scene.accuracy.tolerance;
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const std::uint32_t status = table.status.empty() ? 0 : table.status[i];
-    check.missed += (status & kAnyToleranceNotMet) != 0 ? 1 : 0;
-  }
+  for (const std::uint32_t status : table.status) check.missed += (status & kAnyToleranceNotMet) != 0 ? 1 : 0;
   for (const Compared& compared : kCompared) {
     if (!table.has(compared.quantity)) continue;
     QuantityCheck& of_quantity = check.quantities.emplace_back();
     of_quantity.name = description_of(compared.quantity).name;
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-      const CheckedValue value = compare(table, compared, i, entries[i], results[i], terms[entries[i].variant]);
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      const CheckedValue value = compare(sample, compared, i, results[i], terms[grid[sample.positions[i]].variant]);
       add(of_quantity, value);
+      if (!value.complaint.empty()) check.failures.push_back(value);
+    }
+  }
+  return check;
+}
+
+TableCheck check_responses(const TableSample& sample, const SceneValues& scene, const std::string& name,
+                           const Progress& progress) {
+  const TableValues& table = sample.table;
+  const std::vector<double>& stated = table.responses[ResponseVariable::kResponseError];
+  if (stated.empty()) throw InputError(name + ": has no response_error to check");
+  const MomentsRequest request = request_of(sample, scene.surface);
+  ReferenceEvaluator reference;
+  const EntryResponses right = responses_of(request, scene.accuracy, reference, progress);
+  const std::vector<double>& reference_error = right.responses[ResponseVariable::kResponseError];
+  TableCheck check;
+  check.entries = table.size();
+  check.checked = request.size();
+  check.tolerance = scene.accuracy.tolerance;
+  for (std::size_t i = 0; i < stated.size(); ++i) check.missed += stated[i] > check.tolerance * right.albedo[i] ? 1 : 0;
+  for (const ResponseVariable variable : kAllResponseVariables) {
+    const ResponseDescription& described = description_of(variable);
+    if (!described.has_beta || table.responses[variable].empty()) continue;
+    if (table.responses[variable].size() != right.responses[variable].size())
+      throw InputError(fmt::format("{}: {} is not at the local angles of this program", name, described.name));
+    const bool is_of_q = variable == ResponseVariable::kResponseQ || variable == ResponseVariable::kEmissionQ;
+    QuantityCheck& of_variable = check.quantities.emplace_back();
+    of_variable.name = described.name;
+    for (std::size_t i = 0; i < request.size(); ++i) {
+      if (std::isnan(stated[i]) && std::isnan(reference_error[i])) continue;  // there is no reflectance
+      const auto own = [&](const std::vector<double>& weights) {
+        return std::span(weights).subspan(i * table.beta_deg.size(), table.beta_deg.size());
+      };
+      CheckedValue value{described.name, position_of(sample.positions[i], table.axes)};
+      value.stored = response_distance(own(table.responses[variable]), own(right.responses[variable]), is_of_q);
+      value.stated = stated[i];
+      value.reference_error = reference_error[i];
+      if (!(value.stored <= stated[i] + reference_error[i])) value.complaint = "is too far from the reference";
+      if (of_variable.compared++ == 0 || value.ratio() > of_variable.worst.ratio()) of_variable.worst = value;
       if (!value.complaint.empty()) check.failures.push_back(value);
     }
   }

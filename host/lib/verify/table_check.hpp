@@ -1,13 +1,16 @@
-// Recomputes entries of a table with the independent reference and compares them with what the table states.
+// Recomputes entries of tables with the independent reference, and compares them with the values and errors stated.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <dolp/options.hpp>
-#include <optional>
+#include <dolp/results.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "model/evaluator.hpp"
+#include "model/scene_entry.hpp"
 #include "scene/scene.hpp"
 #include "table/table.hpp"
 
@@ -16,14 +19,11 @@ namespace dolp {
 /// One stored value beside the reference's.
 struct CheckedValue {
   std::string quantity;
-  double theta_deg = 0.0;
-  double sigma = 0.0;
-  double q = 0.0;
-  std::optional<double> wavelength_um, n, k;  ///< where the table has these axes
+  std::vector<std::pair<Axis, double>> position;  ///< the values of the table's axes
   double stored = 0.0;
   double reference = 0.0;
   double stated = 0.0;           ///< the table's bound of the error, in the units of the value
-  double reference_error = 0.0;  ///< the reference's own
+  double reference_error = 0.0;  ///< bound of the reference's own error
   std::string complaint;         ///< empty when it is right
   double error() const;
   /// error over the two bounds together; 0 where nothing is stated.
@@ -34,19 +34,22 @@ struct CheckedValue {
 struct QuantityCheck {
   std::string name;
   std::size_t compared = 0;
-  std::size_t unstated = 0;  ///< of them, those for which the table states no bound
-  CheckedValue worst;        ///< the one of the largest ratio
+  std::size_t unstated = 0;  ///< compared values for which the table states no bound
+  CheckedValue worst;        ///< the value of the largest ratio
 };
 
 struct TableCheck {
   std::size_t entries = 0;
   std::size_t checked = 0;
-  std::size_t missed = 0;  ///< of the checked, those that say they miss the tolerance (status 2 or 16)
+  std::size_t missed = 0;  ///< checked entries that say they miss the tolerance (status 2 or 16)
   double tolerance = 0.0;
   std::vector<QuantityCheck> quantities;
   std::vector<CheckedValue> failures;
   bool passed() const { return failures.empty(); }
 };
+
+/// The values of the axes at an entry of a table.
+std::vector<std::pair<Axis, double>> position_of(std::size_t entry, const Axes& axes);
 
 /// Positions of `samples` distinct entries out of `entries`, ascending; the same for the same seed everywhere.
 std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckOptions& options);
@@ -60,14 +63,29 @@ struct TableSample {
 /// Compares dolp, rho_i, rho_q and the Stokes parameters of the sample, as far as the table has them, with
 /// ReferenceEvaluator through the radiometry of the table's scene, over a band with integrate_band.
 ///
-/// A value is wrong if its error exceeds the stated bound plus the reference's own, if one of the two is no number and
-/// the other is, or if rho or DOLP misses the tolerance where status does not say so. The bounds: rho_error_estimate
-/// rho_I for rho, error_estimate for DOLP. What the latter implies for the Stokes parameters is error_estimate |I| for
-/// Q, U and V and error_estimate |I| / DOLP for I, which states nothing where DOLP vanishes.
+/// A value is wrong if its error exceeds the stated bound plus the reference's bound, if only one of both is a number,
+/// or if rho or DOLP misses the tolerance without the status for it. The bounds are rho_error_estimate rho_I for rho,
+/// error_estimate for DOLP, error_estimate |I| for Q, U and V, and error_estimate |I| / DOLP for I, which is infinite
+/// where DOLP vanishes.
 /// Not independent: closed forms of mirrors and limits, which come from the same code in every evaluator.
 /// Errors: InputError that begins with `name` for a table without anything to compare or with axes out of range;
 /// Cancelled when `progress` returns false.
 TableCheck check_table(const TableSample& sample, const SceneValues& scene, const std::string& name,
                        const Progress& progress);
+
+/// Compares all weights of a response table's sample with the weights of ReferenceEvaluator. They are wrong where they
+/// are farther apart, as response_distance measures it, than the table's response_error and the reference's own error
+/// together. Errors: InputError that begins with `name` for a table without response_error; Cancelled.
+TableCheck check_responses(const TableSample& sample, const SceneValues& scene, const std::string& name,
+                           const Progress& progress);
+
+/// Results of a scene with a band at some points, without the spectral rule.
+///
+/// Method: for each point an adaptive Gauss-Kronrod quadrature over the results at single wavelengths. It begins at the
+/// rows of the material, the source and the sky, and takes at most kMostIntervals; the rest of its error is in the
+/// estimates. Only results that are not an integral over the wavelength (the bracket, a limit at 90 degrees) come from
+/// the spectral rule.
+std::vector<PointResult> integrate_band(const SceneValues& scene, const SceneEntries& points, ModelEvaluator& evaluator,
+                                        const Progress& progress);
 
 }  // namespace dolp

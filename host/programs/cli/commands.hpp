@@ -1,50 +1,80 @@
-// The commands of the program; each returns the exit status of a run without an error (terminal/exit_status.hpp).
+// The command line, its values, and the commands. command_line.cpp says what each command and option does.
 #pragma once
 
-#include "cli/options.hpp"
+#include <CLI/App.hpp>
+#include <cstddef>
+#include <dolp/dolp.hpp>
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace dolp::cli {
 
-/// `dolp table SCENE -o FILE`: a lookup table over the scene's grid.
+/// The values of the command line. An empty text was not given.
+struct Options {
+  int (*run)(const Options&) = nullptr;  ///< the command; null where none was given
+  std::string command_line;              ///< for the table's history
+  std::string scene_path, points_path, table_path, output_path, measured_path, plot_path, screenshot_path;
+  std::vector<std::string> overrides;  ///< KEY=VALUE of --set
+  std::string tolerance, precision, device;
+  std::string evaluator = "vulkan";
+  bool json = false, quiet = false, strict = false, keep_all = false;
+  std::string shard;
+  std::vector<std::string> shards;
+  bool resume = false;
+  std::size_t samples = 64, seed = 1;
+  bool named_files = false, hard_cases = false, all = false;
+  std::vector<std::string> data, vary, compare;
+  std::size_t starts = 24;
+  std::string loss = "squares", model_error = "none";
+  std::size_t frames = 0;  ///< 0: until the window is closed
+  std::string panel;
+  std::string key, material, wavelength_um;
+  std::string completion;
+  std::vector<std::string> words;
+};
+
+/// Refuses to read two inputs from stdin. Errors: InputError.
+void check_one_stdin(const Options& options);
+
+/// All settings of the command line: --set first, then --tolerance and --precision. Errors: InputError.
+std::vector<Setting> all_settings(const Options& options);
+
+/// The allowed values of a scene key: "a number in [0, 10]".
+std::string allowed(const std::string& key);
+
+/// The scene with all_settings and then `more`, after a warning on stderr for each of its remarks.
+Scene load_scene(const Options& options, const std::vector<Setting>& more = {});
+
+/// The evaluator of --evaluator and --device. Errors: InputError for a device of an evaluator that has none.
+Evaluator evaluator_of(const Options& options);
+
+/// Prints a report as --json and --quiet ask for: to stdout, or to stderr when the results themselves go to stdout.
+void print(const Report& report, const Options& options);
+
+/// Prints a report and its remarks; returns the exit status that --strict asks for.
+int finish(const Report& report, const Options& options);
+
+/// The commands and their options, for parsing, help, completions and the manual page. Parsing fills `options`, which
+/// must outlive it.
+std::unique_ptr<CLI::App> command_line(Options& options);
+
+// Each command returns the exit status of a run without an error (terminal/exit_status.hpp).
 int run_table(const Options& options);
-
-/// `dolp response SCENE -o FILE`: a response table, which serves any material.
 int run_response(const Options& options);
-
-/// `dolp merge SHARD... -o FILE`: the shards of a table as one.
 int run_merge(const Options& options);
-
-/// `dolp eval SCENE --points IN -o OUT`: the same quantities at scattered points.
 int run_eval(const Options& options);
-
-/// `dolp mueller SCENE --points IN -o OUT`: the Mueller pBRDF at scattered geometries.
 int run_mueller(const Options& options);
-
-/// `dolp plan SCENE`: what a table of the scene would compute and leave out, and what it would cost.
 int run_plan(const Options& options);
-
-/// `dolp verify TABLE`: recomputes entries of a table with the independent reference; `dolp verify --hard-cases`:
-/// examines a device with the model's hard cases. kExitAccuracy if a stated error is too small or a tolerance missed
-/// silently.
+/// kExitAccuracy if a stated error is too small or a tolerance is missed without the status that says so.
 int run_verify(const Options& options);
-
-/// `dolp lookup TABLE --points IN -o OUT`: interpolates in a table, with the error of that.
 int run_lookup(const Options& options);
-
-/// `dolp fit SCENE --data FILE --vary KEY=LOW:HIGH`: numbers of the scene from measured data. kExitAccuracy if no
-/// minimum is found.
+/// kExitAccuracy if no minimum is found.
 int run_fit(const Options& options);
-
-/// `dolp explore [SCENE]`: the window.
 int run_explore(const Options& options);
-
-/// `dolp materials`: the built-in materials, their ranges of wavelength and their sources; with `NAME --at UM` n and k.
 int run_materials(const Options& options);
-
-/// `dolp keys [KEY]`: what the keys of a scene mean and may be.
 int run_keys(const Options& options);
-
-/// `dolp devices`: the Vulkan devices, and why each one is or is not usable.
 int run_devices(const Options& options);
+int run_completion(const Options& options);
 
 }  // namespace dolp::cli

@@ -1,26 +1,50 @@
-#include "cli/completion.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <string_view>
 #include <utility>
-#include <vector>
 
+#include <CLI/CLI.hpp>
+#include <cstdio>
 #include <dolp/dolp.hpp>
 
-#include "base/text.hpp"
+#include "cli/commands.hpp"
+#include "terminal/exit_status.hpp"
 
 namespace dolp::cli {
 namespace {
 
 using Words = std::vector<std::string>;
 
-bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
+// Each script asks the program for the words that complete a line: `dolp completion words -- WORD... :CURRENT`.
 
-std::vector<const CLI::Option*> named_options(const CLI::App& command) {
-  return command.get_options([](const CLI::Option* option) { return !option->get_positional(); });
+constexpr const char* kBash = R"script(# bash completion of dolp
+_dolp() {
+  local current=${COMP_WORDS[COMP_CWORD]} begin= at=$COMP_CWORD
+  [[ $current != = ]] || { current= at=$((COMP_CWORD - 1)) begin=${COMP_WORDS[COMP_CWORD - 1]}=; }
+  [[ ${COMP_WORDS[COMP_CWORD - 1]} != = ]] || { at=$((COMP_CWORD - 2)) begin=${COMP_WORDS[COMP_CWORD - 2]}=; }
+  mapfile -t COMPREPLY < <(dolp completion words -- "${COMP_WORDS[@]:1:at-1}" ":$begin$current" | cut -f1)
+  COMPREPLY=("${COMPREPLY[@]#"$begin"}")  # bash cuts KEY=WORD in three
+  [[ ${COMPREPLY[*]} != *= ]] || compopt -o nospace 2>/dev/null
 }
+complete -o default -F _dolp dolp
+)script";
+
+constexpr const char* kZsh = R"script(#compdef dolp
+local -a found=(${(f)"$(dolp completion words -- "${(@)words[2,CURRENT-1]}" ":$words[CURRENT]")"})
+found=(${${found//:/\\:}/$'\t'/:})
+if (($#found)); then
+  _describe dolp found
+else
+  _files
+fi
+)script";
+
+constexpr const char* kFish = R"script(# fish completion of dolp
+complete -c dolp -a '(dolp completion words -- (commandline -opc)[2..] :(commandline -ct))'
+)script";
+
+bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
 /// "--output", "-o".
 Words names_of(const CLI::Option& option) {
@@ -30,38 +54,31 @@ Words names_of(const CLI::Option& option) {
   return names;
 }
 
-/// "KEY=WORD" of the keys of a scene, "KEY=" of those that have no words.
-Words settings() {
+/// "KEY=WORD" for the keys of a scene that an option takes, or "KEY=".
+Words settings_for(const std::string& option) {
   Words all;
   for (const Key& key : dolp::keys()) {
     if (key.layer > 1) continue;  // as the first
-    if (key.words.empty()) all.push_back(key.key + '=');
-    for (const std::string& word : key.words) all.push_back(key.key + '=' + word);
+    if (option == "--vary" && key.type != Key::Type::kNumber) continue;
+    if (option == "--compare" && key.words.empty()) continue;
+    if (key.words.empty() || option == "--compare") {
+      all.push_back(key.key + '=');
+    } else {
+      for (const std::string& word : key.words) all.push_back(key.key + '=' + word);
+    }
   }
   return all;
 }
 
-/// "KEY=" of the keys that a fit can vary or compare.
-Words keys_of(bool (*is_wanted)(const Key&)) {
-  Words all;
-  for (const Key& key : dolp::keys()) {
-    if (is_wanted(key) && key.layer <= 1) all.push_back(key.key + '=');
-  }
-  return all;
-}
-
-/// The words that an option's value may be; none where it may be anything.
+/// The words that an option's value may be; empty where it may be anything.
 Words choices_of(const CLI::Option& option) {
   const std::string name = option.get_name();
-  if (name == "--set") return settings();
-  if (name == "--vary") return keys_of([](const Key& key) { return key.type == Key::Type::kNumber; });
-  if (name == "--compare") return keys_of([](const Key& key) { return !key.words.empty(); });
-  const std::string type = option.get_type_name();
+  if (name == "--set" || name == "--vary" || name == "--compare") return settings_for(name);
+  const std::string type = option.get_type_name();  // "TEXT:{vulkan,cpu}"
   const std::size_t open = type.find('{');
   const std::size_t close = type.find('}');
-  if (open == std::string::npos || close == std::string::npos) return {};
   Words words;
-  for (std::size_t from = open + 1; from < close;) {
+  for (std::size_t from = open + 1; open < close && from < close;) {
     const std::size_t to = std::min(type.find(',', from), close);
     words.push_back(type.substr(from, to - from));
     from = to + 1;
@@ -69,120 +86,34 @@ Words choices_of(const CLI::Option& option) {
   return words;
 }
 
+/// The words that complete a line, each with its description behind a tab. `line`: the words behind the program's
+/// name; the last one, behind a colon, is not complete.
+std::string completing_words(const CLI::App& app, const Words& line) {
+  const std::string current = line.empty() ? "" : line.back().substr(1);
+  std::string found;
+  const auto add = [&](const std::string& word, const std::string& description) {
+    if (word.starts_with(current)) found += fmt::format("{}\t{}\n", word, description);
+  };
+  const CLI::App* command = nullptr;
+  for (const CLI::App* one : app.get_subcommands({})) {
+    if (line.size() < 2) add(one->get_name(), one->get_description());
+    if (line.size() >= 2 && one->get_name() == line.front()) command = one;
+  }
+  if (command == nullptr) return found;
+  const CLI::Option* const previous = command->get_option_no_throw(line[line.size() - 2]);
+  if (previous != nullptr && takes_value(*previous)) {
+    for (const std::string& word : choices_of(*previous)) add(word, "");
+  } else if (current.starts_with('-')) {
+    for (const CLI::Option* option : command->get_options()) {
+      for (const std::string& name : names_of(*option)) add(name, option->get_description());
+    }
+  }
+  return found;
+}
+
 std::string replaced(std::string text, std::string_view what, std::string_view by) {
   for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
     text.replace(at, what.size(), by);
-  }
-  return text;
-}
-
-std::string bash_completion(const CLI::App& app) {
-  Words commands;
-  std::string options, values;
-  for (const CLI::App* command : app.get_subcommands({})) {
-    commands.push_back(command->get_name());
-    Words names;
-    for (const CLI::Option* option : named_options(*command)) {
-      const Words own = names_of(*option);
-      names.insert(names.end(), own.begin(), own.end());
-      const Words choices = choices_of(*option);
-      if (choices.empty()) continue;
-      for (const std::string& name : own) {
-        values += fmt::format("    {}:{}) words={} ;;\n", command->get_name(), name,
-                              shell_quoted(fmt::format("{}", fmt::join(choices, " "))));
-      }
-    }
-    options += fmt::format("    {}:-*) words={} ;;\n", command->get_name(),
-                           shell_quoted(fmt::format("{}", fmt::join(names, " "))));
-  }
-  return fmt::format(R"(# bash completion of dolp
-_dolp() {{
-  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD - 1]}} words= begin= at=COMP_CWORD
-  [[ $current != = ]] || {{ begin=$previous= current= at=COMP_CWORD-1; }}
-  [[ $previous != = ]] || {{ begin=${{COMP_WORDS[COMP_CWORD - 2]}}= at=COMP_CWORD-2; }}  # bash cuts KEY=WORD in three
-  [[ -z $begin ]] || previous=${{COMP_WORDS[at - 1]}}
-  if ((COMP_CWORD == 1)); then
-    mapfile -t COMPREPLY < <(compgen -W '{}' -- "$current")
-    return
-  fi
-  case ${{COMP_WORDS[1]}}:$previous in
-{}  esac
-  [[ -n $words ]] || case ${{COMP_WORDS[1]}}:$current in
-{}  esac
-  if [[ -n $words ]]; then
-    mapfile -t COMPREPLY < <(compgen -W "$words" -- "$begin$current")
-    COMPREPLY=("${{COMPREPLY[@]#"$begin"}}")
-    [[ ${{COMPREPLY[*]}} != *= ]] || compopt -o nospace 2>/dev/null
-  else
-    mapfile -t COMPREPLY < <(compgen -f -- "$current")
-  fi
-}}
-complete -o filenames -F _dolp dolp
-)",
-                     fmt::join(commands, " "), values, options);
-}
-
-std::string zsh_completion(const CLI::App& app) {
-  // Colons and brackets end a description.
-  const auto description = [](const std::string& text, std::string_view specials) {
-    std::string result;
-    for (const char c : text) {
-      if (specials.find(c) != std::string_view::npos) result += '\\';
-      result += c;
-    }
-    return result;
-  };
-  std::string commands, cases;
-  for (const CLI::App* command : app.get_subcommands({})) {
-    commands +=
-        fmt::format("  {}\n", shell_quoted(command->get_name() + ":" + description(command->get_description(), ":")));
-    std::string lines;
-    for (const CLI::Option* option : named_options(*command)) {
-      const Words choices = choices_of(*option);
-      const std::string value = !takes_value(*option) ? ""
-                                : choices.empty()     ? ":value:_files"
-                                                      : fmt::format(":value:({})", fmt::join(choices, " "));
-      for (const std::string& name : names_of(*option)) {
-        lines += " \\\n      " +
-                 shell_quoted(fmt::format("*{}[{}]{}", name, description(option->get_description(), "[]:\\"), value));
-      }
-    }
-    cases += fmt::format("  {})\n    _arguments{} \\\n      '*:file:_files'\n    ;;\n", command->get_name(), lines);
-  }
-  return fmt::format(R"(#compdef dolp
-local -a commands=(
-{})
-if ((CURRENT == 2)); then
-  _describe command commands
-  return
-fi
-local command=$words[2]
-shift words
-((CURRENT--))
-case $command in
-{}esac
-)",
-                     commands, cases);
-}
-
-std::string fish_completion(const CLI::App& app) {
-  std::string text = "# fish completion of dolp\n";
-  for (const CLI::App* command : app.get_subcommands({})) {
-    text += fmt::format("complete -c dolp -n __fish_use_subcommand -f -a {} -d {}\n", command->get_name(),
-                        shell_quoted(command->get_description()));
-  }
-  for (const CLI::App* command : app.get_subcommands({})) {
-    for (const CLI::Option* option : named_options(*command)) {
-      std::string names;
-      for (const std::string& name : option->get_lnames()) names += " -l " + name;
-      for (const std::string& name : option->get_snames()) names += " -s " + name;
-      const Words choices = choices_of(*option);
-      const std::string value = !takes_value(*option) ? ""
-                                : choices.empty()     ? " -r"
-                                                      : fmt::format(" -x -a '{}'", fmt::join(choices, " "));
-      text += fmt::format("complete -c dolp -n '__fish_seen_subcommand_from {}'{}{} -d {}\n", command->get_name(),
-                          names, value, shell_quoted(option->get_description()));
-    }
   }
   return text;
 }
@@ -261,18 +192,25 @@ std::string manual_page(const CLI::App& app) {
       ".TH DOLP 1 \"\" \"dolp {}\" \"User Commands\"\n.SH NAME\ndolp \\- infrared degree of linear polarisation of "
       "rough "
       "surfaces\n.SH SYNOPSIS\n.B dolp\n.I COMMAND\n[\\fIARGUMENTS\\fR]\n{}.SH COMMANDS\n{}"
-      ".SH EXIT STATUS\n0 done; 1 an accuracy was missed that was asked for; 2 bad input; 3 no usable device; 4 a file "
+      ".SH EXIT STATUS\n0 done; 1 an accuracy was missed that was asked for; 2 bad input; 3 no usable device; 4 a "
+      "file "
       "could not be read or written; 5 an internal error; 6 out of memory; 130 interrupted.\n{}",
       version(), kManualDescription, commands, kManualEnd);
 }
 
 }  // namespace
 
-std::string completion_text(const CLI::App& app, const std::string& form) {
-  if (form == "bash") return bash_completion(app);
-  if (form == "zsh") return zsh_completion(app);
-  if (form == "fish") return fish_completion(app);
-  return manual_page(app);
+int run_completion(const Options& options) {
+  Options unused;
+  const std::unique_ptr<CLI::App> app = command_line(unused);
+  const std::string& form = options.completion;
+  const std::string text = form == "bash"    ? kBash
+                           : form == "zsh"   ? kZsh
+                           : form == "fish"  ? kFish
+                           : form == "words" ? completing_words(*app, options.words)
+                                             : manual_page(*app);
+  std::fputs(text.c_str(), stdout);
+  return kExitDone;
 }
 
 }  // namespace dolp::cli

@@ -32,7 +32,7 @@ void add_key(Report& report, Json& list, const Key& key) {
                   {"default", key.fallback}});
 }
 
-/// The key of which at most half of the letters differ, with or without its table; empty for none.
+/// The nearest key if at most half of its letters differ, with or without its table; else empty.
 std::string near_key(const std::string& wanted, const std::vector<std::string>& names) {
   const auto distance = [&](const std::string& name) {
     return std::min(edit_distance(wanted, name), edit_distance(wanted, name.substr(name.find('.') + 1)));

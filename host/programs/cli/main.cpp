@@ -17,48 +17,13 @@
 #include <vector>
 
 #include "base/text.hpp"
-#include "cli/command_line.hpp"
 #include "cli/commands.hpp"
-#include "cli/completion.hpp"
 #include "device/result.hpp"
 #include "terminal/exit_status.hpp"
 #include "terminal/guarded.hpp"
 
 namespace dolp::cli {
 namespace {
-
-/// Refuses a device for an evaluator that has none.
-void check_device(const Options& options) {
-  if (options.device.empty() || options.evaluator == "vulkan") return;
-  throw InputError(
-      fmt::format("--device {}: needs --evaluator vulkan, and it is {}", options.device, options.evaluator));
-}
-
-/// Runs the command that the arguments name.
-int run(CLI::App& app, Options& options) {
-  if (app.get_subcommands().empty()) {
-    fmt::print("{}", app.help());
-    return kExitDone;
-  }
-  const auto given = [&app](const char* name) { return app.got_subcommand(name); };
-  if (given("table")) return run_table(options);
-  if (given("response")) return run_response(options);
-  if (given("merge")) return run_merge(options);
-  if (given("eval")) return run_eval(options);
-  if (given("mueller")) return run_mueller(options);
-  if (given("plan")) return run_plan(options);
-  if (given("explore")) return run_explore(options);
-  if (given("verify")) return run_verify(options);
-  if (given("lookup")) return run_lookup(options);
-  if (given("fit")) return run_fit(options);
-  if (given("materials")) return run_materials(options);
-  if (given("keys")) return run_keys(options);
-  if (given("completion")) {
-    std::fputs(completion_text(app, options.completion).c_str(), stdout);
-    return kExitDone;
-  }
-  return run_devices(options);
-}
 
 /// The option that was meant, or how to give a key of a scene as one; empty for other words.
 std::string option_hint(const CLI::App& command, const std::string& option) {
@@ -102,11 +67,11 @@ int parse_and_run(int argc, char** argv) {
   int status = kExitDone;
   try {
     app.parse(argc, argv);
-    check_device(options);
-    status = run(app, options);
+    if (options.run == nullptr) fmt::print("{}", app.help());
+    if (options.run != nullptr) status = options.run(options);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) return fail("dolp", kExitInput, usage_message(app, error));
-    app.exit(error);  // prints what --help and the like ask for
+    app.exit(error);  // prints the help, the version or the citation
   }
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw IoError("standard output: cannot write the report");
   return status;

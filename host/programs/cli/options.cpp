@@ -1,4 +1,4 @@
-#include "cli/options.hpp"
+#include "cli/commands.hpp"
 
 #include <fmt/format.h>
 
@@ -44,7 +44,13 @@ Scene load_scene(const Options& options, const std::vector<Setting>& more) {
   return scene;
 }
 
-Evaluator evaluator_of(const Options& options) { return Evaluator({options.evaluator, options.device}); }
+Evaluator evaluator_of(const Options& options) {
+  if (!options.device.empty() && options.evaluator != "vulkan") {
+    throw InputError(
+        fmt::format("--device {}: needs --evaluator vulkan, and it is {}", options.device, options.evaluator));
+  }
+  return Evaluator({options.evaluator, options.device});
+}
 
 void print(const Report& report, const Options& options) {
   std::FILE* const out = options.output_path == "-" ? stderr : stdout;

@@ -1,25 +1,11 @@
 #include "explore/background.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <exception>
-#include <utility>
 
 #include "base/stopwatch.hpp"
 
 namespace dolp::explore {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-Job with_tolerance(Job job) {
-  if (job.tolerance > job.scene.number("accuracy.tolerance")) {
-    job.scene = job.scene.with("accuracy.tolerance", job.tolerance);
-  }
-  return job;
-}
-
-}  // namespace
 
 void BackgroundTask::start(const Work& work) {
   if (is_running()) return;
@@ -114,9 +100,9 @@ bool Worker::is_idle() const {
   return (tasks_.empty() && running_.empty()) || is_ended(end_);
 }
 
-bool Worker::is_wanted(const std::string& key) const { return std::ranges::find(wanted_, key) != wanted_.end(); }
+bool Worker::is_wanted(const std::string& key) const { return std::ranges::count(wanted_, key) > 0; }
 
-bool Worker::goes_on(const Job& job) const {
+bool Worker::may_continue(const Job& job) const {
   const std::scoped_lock lock(mutex_);
   return !is_stopping_ && (job.is_brief || is_wanted(job.key));
 }
@@ -139,7 +125,7 @@ void Worker::run() {
     try {
       part = advance(*next);
     } catch (const Cancelled&) {
-      // The job was no longer wanted; perhaps it is wanted again by now.
+      // The job was no longer wanted when it stopped; by now it may be wanted again.
     }
     put_back(std::move(*next), std::move(part));
     on_news_();
@@ -150,33 +136,31 @@ void Worker::put_back(Task task, std::optional<JobPart> part) {
   const bool is_done = part && part->is_last;
   const std::scoped_lock lock(mutex_);
   running_.clear();
-  const bool goes_back = is_wanted(task.job.key);
-  if (part && (goes_back || task.job.is_brief)) {
+  const bool is_still_wanted = is_wanted(task.job.key);
+  if (part && (is_still_wanted || task.job.is_brief)) {
     news_.push_back(std::move(*part));
     arrived_.notify_all();
   }
-  if (!goes_back) return;
-  if (is_done) {
-    finished_.push_back(task.job.key);
-    return;
-  }
-  const auto rank = [this](const Task& of) { return std::ranges::find(wanted_, of.job.key); };
-  const auto place = std::ranges::find_if(tasks_, [&](const Task& other) { return rank(other) > rank(task); });
-  tasks_.insert(place, std::move(task));
+  if (!is_still_wanted) return;
+  if (is_done) return finished_.push_back(task.job.key);
+  const auto rank = [this](const Task& one) { return std::ranges::find(wanted_, one.job.key); };
+  const auto next = std::ranges::find_if(tasks_, [&](const Task& other) { return rank(other) > rank(task); });
+  tasks_.insert(next, std::move(task));
 }
 
 JobPart Worker::advance(Task& task) {
-  if (task.next == 0) task.job = with_tolerance(std::move(task.job));
-  const Job& job = task.job;
-  const PointList& list = job.parts[task.next];
-  const Clock::time_point start = Clock::now();
-  const Results results = evaluate_(
-      job.scene, list, {.keep_all = job.keep_all, .progress = [&](std::size_t, std::size_t) { return goes_on(job); }});
-  JobPart news{.key = job.key, .part = task.next, .scene = job.scene, .points = points_of(list, results)};
-  ++task.next;
+  Job& job = task.job;
+  if (job.tolerance > job.scene.number("accuracy.tolerance"))
+    job.scene = job.scene.with("accuracy.tolerance", job.tolerance);
+  const PointList& list = job.parts[task.next_part];
+  const auto start = std::chrono::steady_clock::now();
+  const Results results =
+      evaluate_(job.scene, list,
+                {.keep_all = job.keep_all, .progress = [&](std::size_t, std::size_t) { return may_continue(job); }});
+  JobPart news{.key = job.key, .part = task.next_part, .scene = job.scene, .points = points_of(list, results)};
   task.wall_s += seconds_since(start);
   task.evaluations += results.integrand_evaluations;
-  news.is_last = task.next == job.parts.size();
+  news.is_last = ++task.next_part == job.parts.size();
   if (!news.is_last) return news;
   news.wall_s = task.wall_s;
   news.evaluations = task.evaluations;

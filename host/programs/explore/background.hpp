@@ -4,21 +4,18 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <cstddef>
 #include <functional>
 #include <future>
 #include <mutex>
 #include <optional>
-#include <string>
 #include <thread>
 #include <utility>
-#include <vector>
 
 #include "explore/points.hpp"
 
 namespace dolp::explore {
 
-/// Runs `work` on a thread of its own. `result` gets what it returns or throws; then `on_end` is called from there.
+/// Runs `work` on a new thread, which calls `on_end` afterwards. `result` gets the value or the exception of `work`.
 template <class Result, class Work>
 std::jthread run_in_background(Work work, std::future<Result>& result, const std::function<void()>& on_end) {
   std::packaged_task<Result()> task(std::move(work));
@@ -35,33 +32,31 @@ bool is_ended(const std::future<Result>& result) {
   return !result.valid() || result.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
-/// One piece of work at a time that the user starts, watches and may cancel. All calls come from the window's thread.
+/// One piece of work at a time that the user starts, watches and may cancel. The window's thread makes all calls.
 class BackgroundTask {
  public:
-  /// The rest of the work, in the window's thread; returns what to tell the user. Throws as Work.
-  using Rest = std::function<std::string()>;
-  /// Runs on a thread of its own. Throws Cancelled when its Progress returns false.
-  using Work = std::function<Rest(const Progress&)>;
+  /// The end of the work, in the window's thread; returns the message for the user. Throws as Work.
+  using Ending = std::function<std::string()>;
+  /// Runs on its own thread. Throws Cancelled when its Progress returns false.
+  using Work = std::function<Ending(const Progress&)>;
   enum class State { kNone, kRunning, kDone, kFailed, kCancelled };
 
-  /// `on_change` is called from the thread, at each progress and at the end.
+  /// The thread calls `on_change` at each progress and at the end.
   explicit BackgroundTask(std::function<void()> on_change) : on_change_(std::move(on_change)) {}
-  BackgroundTask(const BackgroundTask&) = delete;
-  BackgroundTask& operator=(const BackgroundTask&) = delete;
   /// Cancels and waits.
   ~BackgroundTask() { cancel(); }
 
-  /// Does nothing while one runs.
+  /// Does nothing while work is running.
   void start(const Work& work);
   void cancel() { is_cancelled_ = true; }
-  /// Does the rest of work that has ended.
+  /// Calls the Ending of work that has ended.
   void finish();
 
   State state() const { return state_; }
   bool is_running() const { return state_ == State::kRunning; }
-  /// From 0 to 1.
+  /// From 0 to 1 within the phase.
   double progress() const { return progress_; }
-  /// The phase whose progress it is; empty where work has one phase. The work sets it, and progress begins anew.
+  /// The present phase; empty where work has one phase. The work sets it, and progress begins again from 0.
   std::string phase() const;
   void set_phase(const std::string& phase);
   /// The message, or the reason of a failure, in one line.
@@ -75,29 +70,28 @@ class BackgroundTask {
   std::string phase_;
   State state_ = State::kNone;
   std::string message_;
-  std::future<Rest> result_;
-  std::jthread thread_;  ///< last: it uses all of the above
+  std::future<Ending> result_;
+  std::jthread thread_;  ///< last: it uses all other members
 };
 
 /// Points of a scene that the window wants, computed as `dolp eval` computes them.
 struct Job {
-  std::string key;  ///< jobs with one key have one content
+  std::string key;  ///< jobs with the same key have the same content
   Scene scene;
-  /// The units of work, computed one after the other; a job of higher rank may come in between.
-  std::vector<PointList> parts;
-  double tolerance = 0.0;  ///< instead of the scene's, where that is less
+  std::vector<PointList> parts;  ///< computed one after the other; a more wanted job may come in between
+  double tolerance = 0.0;        ///< replaces a lower tolerance of the scene
   bool keep_all = false;
   bool wants_effects = false;
   bool is_brief = false;  ///< once begun it is finished, wanted or not
 };
 
-/// A part of a job's results.
+/// The results of one part of a job.
 struct JobPart {
   std::string key = {};
-  std::size_t part = 0;  ///< of the job
-  Scene scene;           ///< of the job, with its tolerance
+  std::size_t part = 0;  ///< position among the job's parts
+  Scene scene;           ///< the job's scene with the tolerance that was used
   std::vector<Point> points = {};
-  std::string csv = {};  ///< of this part with the columns of `dolp eval`, where the job wants effects
+  std::string csv = {};  ///< the points with the columns of `dolp eval`, where the job wants effects
   bool is_last = false;
   // Totals of the whole job, in the last part.
   std::vector<Effect> effects = {};
@@ -105,60 +99,58 @@ struct JobPart {
   double evaluations = 0.0;
 };
 
-/// Has the meaning of `evaluate`. Called from one thread.
+/// Has the meaning of explore::evaluate. One thread makes all calls.
 using Evaluate = std::function<Results(const Scene& scene, const PointList& list, const RunOptions& options)>;
 
-/// Computes the wanted jobs in order; a job that is no longer wanted stops within a tile of the device, unless brief.
+/// Computes the wanted jobs in order. A job that is no longer wanted stops within a tile of the device, unless brief.
 class Worker {
  public:
-  /// `on_news` is called from the worker's thread after each part and after a failure.
+  /// The worker's thread calls `on_news` after each part and after a failure.
   Worker(Evaluate evaluate, std::function<void()> on_news);
-  Worker(const Worker&) = delete;
-  Worker& operator=(const Worker&) = delete;
   ~Worker();
 
   /// Replaces the list of wanted jobs, the most wanted first. A running job continues if its key is still in the list.
   void want(std::vector<Job> jobs);
 
-  /// The results since the last call. Errors: rethrows what ended the worker, a DeviceError for instance.
+  /// The results since the last call. Errors: rethrows what ended the worker, for example a DeviceError.
   std::vector<JobPart> take_news();
 
-  /// Waits until there are results to take, at most this long.
+  /// Waits for results, at most this long.
   void await_news(std::chrono::duration<double> at_most);
 
-  /// True where all wanted jobs are done; their results may still wait to be taken.
+  /// True where all wanted jobs are done. Some results may not have been taken yet.
   bool is_idle() const;
 
  private:
   struct Task {
     Job job;
-    std::size_t next = 0;  ///< of its parts
+    std::size_t next_part = 0;
     double wall_s = 0.0;
     double evaluations = 0.0;
   };
 
   void run();
-  /// Waits for one; none at the end.
+  /// Waits for the next task; none when the worker is to stop.
   std::optional<Task> next_task();
   JobPart advance(Task& task);
-  /// Reports the finished part of a task; the rest of it goes back to its rank among the wanted jobs.
+  /// Reports the finished part of a task, and puts the rest of the task back to its rank among the wanted jobs.
   void put_back(Task task, std::optional<JobPart> part);
   bool is_wanted(const std::string& key) const;
-  bool goes_on(const Job& job) const;
+  bool may_continue(const Job& job) const;
 
   Evaluate evaluate_;
   std::function<void()> on_news_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::condition_variable arrived_;
-  std::vector<Task> tasks_;  ///< without the one under way
-  std::vector<std::string> wanted_;
-  std::vector<std::string> finished_;  ///< of those wanted
-  std::string running_;                ///< empty when none is
+  std::vector<Task> tasks_;            ///< all but the running one
+  std::vector<std::string> wanted_;    ///< keys
+  std::vector<std::string> finished_;  ///< wanted keys whose jobs are done
+  std::string running_;                ///< a key; empty while no job runs
   std::vector<JobPart> news_;
   bool is_stopping_ = false;
-  std::future<void> end_;  ///< with what ended the worker before it was told to
-  std::jthread thread_;    ///< last: it uses all of the above
+  std::future<void> end_;  ///< holds the exception that ended the worker
+  std::jthread thread_;    ///< last: it uses all other members
 };
 
 }  // namespace dolp::explore

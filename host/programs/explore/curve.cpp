@@ -5,10 +5,72 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text.hpp"
+#include "explore/parameters.hpp"
+
 namespace dolp::explore {
 namespace {
 
-constexpr std::size_t kStride = 10;  // of the points that the reference recomputes: five degrees
+constexpr std::size_t kStride = 10;  // the reference recomputes every tenth point: steps of five degrees
+
+double dolp_of(const Point& point) { return point[Quantity::kDolp]; }
+
+/// The largest DOLP that the point may have within its error bound.
+double most_of(const Point& point) { return dolp_of(point) + point[Quantity::kErrorEstimate]; }
+
+/// A part of a scene that can be removed.
+struct Removal {
+  const char* effect;
+  bool radiates;
+  const char* key;  ///< tells whether the scene has the effect
+  Setting change;   ///< removes it
+
+  bool is_in(const Scene& scene) const {
+    const bool is_number = described(key).type == Key::Type::kNumber;
+    if (!is_number) return scene.word(key) && *scene.word(key) != word_of(change.value);
+    const bool is_table = change.key.find('.') == std::string::npos;
+    return is_table ? scene.number(key).has_value() : scene.number(key) > 0.0;
+  }
+};
+
+const std::vector<Removal>& removals() {
+  static const std::vector<Removal> all = {
+      {"emission", true, "emission.temperature_K", {"emission", {}}},
+      {"source", true, "source.scale", {"source", {}}},
+      {"surroundings", true, "surroundings.temperature_K", {"surroundings", {}}},
+      {"surroundings", true, "surroundings.profile", {"surroundings", {}}},
+      {"path", false, "path.transmittance", {"path", {}}},
+      {"diffuse", false, "surface.diffuse", {"surface.diffuse", 0.0}},
+      {"specular", false, "surface.specular", {"surface.specular", 0.0}},
+      {"masking", false, "surface.masking", {"surface.masking", "none"}},
+      {"scattering", false, "surface.scattering", {"surface.scattering", "single"}},
+      {"roughness", false, "surface.sigma", {"surface.sigma", 0.0}},
+  };
+  return all;
+}
+
+/// The scene of `edits` without each effect that `scene` has.
+std::vector<WithoutEffect> without_each(const Scene& scene, const SceneEdits& edits) {
+  std::vector<WithoutEffect> without;
+  for (const Removal& removal : removals()) {
+    if (!removal.is_in(scene)) continue;
+    try {
+      without.push_back({removal.effect, removal.radiates, edits.scene().with({removal.change})});
+    } catch (const InputError&) {
+      // Nothing else radiates, the source is relative to the emission, or the emission needs the masking.
+    }
+  }
+  return without;
+}
+
+/// The good point with the largest DOLP; the end where no point is good.
+std::vector<Point>::const_iterator largest_of(const std::vector<Point>& points) {
+  const auto rank = [](const Point& point) {
+    return std::pair(point.is_good(), point.is_good() ? dolp_of(point) : 0.0);
+  };
+  const auto best = std::ranges::max_element(points, {}, rank);
+  return best == points.end() || best->is_good() ? best : points.end();
+}
 
 }  // namespace
 
@@ -34,9 +96,8 @@ std::optional<Job> Curve::wanted(Stage stage) const {
 bool Curve::take(const JobPart& news) {
   const bool is_fine = news.key == key_of(Stage::kFine);
   if (!is_fine && news.key != key_of(Stage::kCoarse)) return false;
-  if (!is_fine && is_finished()) return true;
-  shown_ = news;
   if (is_fine) finished_ = news;
+  if (is_fine || !is_finished()) shown_ = news;
   return true;
 }
 
@@ -49,8 +110,8 @@ bool Curve::take_earlier(const JobPart& news) {
 std::vector<Point> Curve::drawn() const {
   std::vector<Point> all = points();
   if (!peak_ || !is_finished()) return all;
-  const auto place = std::ranges::lower_bound(all, peak_->theta_deg, {}, &Point::theta_deg);
-  if (place == all.end() || place->theta_deg != peak_->theta_deg) all.insert(place, *peak_);
+  const auto next = std::ranges::lower_bound(all, peak_->theta_deg, {}, &Point::theta_deg);
+  if (next == all.end() || next->theta_deg != peak_->theta_deg) all.insert(next, *peak_);
   return all;
 }
 
@@ -75,14 +136,88 @@ std::string true_error(const Curve& curve, const Progress& progress) {
   const Point* worst = nullptr;
   double largest = -1.0;
   for (std::size_t i = 0; i < stated.size(); ++i) {
-    const double error = std::abs(stated[i][Quantity::kDolp] - truth[Quantity::kDolp][i]);
+    const double error = std::abs(dolp_of(stated[i]) - truth[Quantity::kDolp][i]);
     if (!stated[i].is_good() || !(error > largest)) continue;
     largest = error;
     worst = &stated[i];
   }
-  if (!worst) return "no direction whose DOLP means something";
+  if (!worst) return "no direction has a DOLP with a meaning";
   return fmt::format("{:.1e} at θ = {:g}°, bound {:.1e}; {} directions", largest, worst->theta_deg,
                      (*worst)[Quantity::kErrorEstimate], stated.size());
+}
+
+void Peak::follow(const Curve& curve, const SceneEdits& edits, double theta_max_deg) {
+  const std::string key = "up to " + format_number(theta_max_deg) + ' ' + curve.key();
+  if (key == key_) return;
+  key_ = key;
+  scene_ = curve.scene();
+  theta_deg_.clear();
+  answer_.reset();
+  without_.clear();
+  curve_ = curve.points();
+  std::erase_if(curve_, [&](const Point& point) { return point.theta_deg > theta_max_deg; });
+  const auto best = largest_of(curve_);
+  if (best == curve_.end()) return;
+  const double low = (best == curve_.begin() ? best : best - 1)->theta_deg;
+  const double high = (best + 1 == curve_.end() ? best : best + 1)->theta_deg;
+  theta_deg_ = zeniths(low, high, static_cast<std::size_t>(std::lround((high - low) / kStepDeg)) + 1);
+  without_ = without_each(scene_, edits);
+}
+
+std::vector<Job> Peak::wanted() const {
+  std::vector<Job> jobs;
+  if (theta_deg_.empty()) return jobs;
+  if (!answer_) {
+    jobs.push_back({.key = "peak " + key_, .scene = scene_, .parts = {points_at(scene_, theta_deg_)}});
+    return jobs;
+  }
+  for (const WithoutEffect& one : without_) {
+    if (one.result) continue;
+    jobs.push_back({.key = key_of(one), .scene = one.scene, .parts = {points_at(one.scene, {answer_->at.theta_deg})}});
+  }
+  return jobs;
+}
+
+bool Peak::take(const JobPart& news) {
+  if (news.key == "peak " + key_) {
+    answer_from(news.points);
+    return true;
+  }
+  const auto removed =
+      std::ranges::find_if(without_, [&](const WithoutEffect& one) { return news.key == key_of(one); });
+  if (removed == without_.end()) return false;
+  removed->result = news.points.front();
+  return true;
+}
+
+void Peak::answer_from(const std::vector<Point>& points) {
+  const auto best = largest_of(points);
+  if (best == points.end()) return theta_deg_.clear();
+  const double least = dolp_of(*best) - (*best)[Quantity::kErrorEstimate];
+  const auto may_be_largest = [&](const Point& point) { return point.is_good() && most_of(point) >= least; };
+  auto first = best;
+  auto last = best;
+  while (first != points.begin() && may_be_largest(*(first - 1))) --first;
+  while (last + 1 != points.end() && may_be_largest(*(last + 1))) ++last;
+  const bool is_at_end = best + 1 == points.end() || !(best + 1)->is_good();
+  answer_ = PeakAnswer{*best, first->theta_deg, last->theta_deg, rival(least), is_at_end};
+}
+
+std::optional<double> Peak::rival(double least) const {
+  for (const Point& point : curve_) {
+    const bool is_beside = point.theta_deg >= theta_deg_.front() && point.theta_deg <= theta_deg_.back();
+    if (!is_beside && point.is_good() && most_of(point) >= least) return point.theta_deg;
+  }
+  return std::nullopt;
+}
+
+bool Peak::is_complete() const {
+  return answer_ && std::ranges::all_of(without_, [](const WithoutEffect& one) { return one.result.has_value(); });
+}
+
+double Peak::contribution(const WithoutEffect& removed) const {
+  const Point& at = answer_->at;
+  return (at[Quantity::kStokesQ] - (*removed.result)[Quantity::kStokesQ]) / at[Quantity::kStokesI];
 }
 
 }  // namespace dolp::explore

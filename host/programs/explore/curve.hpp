@@ -1,12 +1,8 @@
-// One curve over theta, from the first coarse one to that at the scene's own tolerance.
+// One curve over theta, from the first coarse results to the finished ones, and its maximum.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "explore/background.hpp"
+#include "explore/scene_edits.hpp"
 
 namespace dolp::explore {
 
@@ -15,26 +11,24 @@ class Curve {
  public:
   enum class Stage { kCoarse, kFine };
 
-  /// Zeniths of the finished curve: 0 to 90 degrees by half a degree.
-  static constexpr std::size_t kFineCount = 181;
+  static constexpr std::size_t kFineCount = 181;  ///< zeniths from 0 to 90 degrees by half a degree
   static constexpr std::size_t kCoarseCount = 46;
   static constexpr double kCoarseTolerance = 1e-2;
 
-  /// `name`: begins the keys of its jobs.
+  /// The keys of the curve's jobs begin with `name`.
   explicit Curve(const Scene& scene, std::string name = "curve")
       : name_(std::move(name)), scene_(scene), shown_{.scene = scene}, finished_{.scene = scene} {}
 
-  /// Switches to the curve of `scene`. `key` identifies the scene's content. The curve on display stays, marked as
-  /// outdated, until newer points arrive.
+  /// Switches to the curve of `scene`, whose content `key` identifies. The curve on display stays, marked as outdated,
+  /// until newer points arrive.
   void follow(const std::string& key, const Scene& scene, bool keep_all);
 
-  /// The work still to be done, one stage at a time.
+  /// The job of a stage; none if it is done.
   std::optional<Job> wanted(Stage stage) const;
 
-  /// Takes what is this curve's; false for the rest.
+  /// Takes results of this curve; false for other results.
   bool take(const JobPart& news);
-  /// Takes a coarse curve that was begun before the scene changed, where what is shown is older still; false for the
-  /// rest.
+  /// Takes a coarse curve of an earlier scene, unless the curve on display is current; false for other results.
   bool take_earlier(const JobPart& news);
 
   const Scene& scene() const { return scene_; }
@@ -45,13 +39,13 @@ class Curve {
   // The points on display, and the scene that they were computed with.
   const Scene& shown_scene() const { return points().empty() ? scene_ : shown_.scene; }
   const std::vector<Point>& points() const { return shown_.points; }
-  /// The same with the maximum, which may lie between them; for drawing.
+  /// The points on display and the maximum, which may lie between them; for drawing.
   std::vector<Point> drawn() const;
   void set_peak(const Point& peak) { peak_ = peak; }
-  /// The last finished curve; without points before there is one.
+  /// The last finished curve; it has no points before the first one is finished.
   const JobPart& finished() const { return finished_; }
 
-  /// The largest stated error of DOLP where status promises one.
+  /// The largest error bound of DOLP among points whose status promises a bound.
   double worst_error() const;
 
  private:
@@ -65,12 +59,66 @@ class Curve {
   bool keep_all_ = false;
   JobPart shown_;
   JobPart finished_;
-  std::optional<Point> peak_;  ///< of the finished curve
+  std::optional<Point> peak_;  ///< the maximum of the finished curve
 };
 
-/// Compares every tenth point of a finished curve with the independent reference, everything kept. Returns the largest
+/// Compares every tenth point of a finished curve with the independent reference, all effects kept. Returns the largest
 /// error of DOLP beside its bound, in words.
 /// Errors: Cancelled when `progress` returns false.
 std::string true_error(const Curve& curve, const Progress& progress);
+
+/// The largest DOLP of a curve among entries that status calls good.
+struct PeakAnswer {
+  Point at;
+  // Between these zeniths DOLP could be the largest, all errors included.
+  double theta_low_deg = 0.0;
+  double theta_high_deg = 0.0;
+  std::optional<double> rival_deg;  ///< a zenith far from the peak at which DOLP could be the largest
+  bool is_at_end = false;           ///< the largest is beside entries that are not good, or at the end of the range
+};
+
+/// The peak without one effect.
+struct WithoutEffect {
+  std::string effect;  ///< as in Effect::name, or "roughness"
+  bool radiates;       ///< the effect is a term of the sum of radiances
+  Scene scene;
+  std::optional<Point> result = {};  ///< none until it is computed
+};
+
+/// Looks for the peak of a finished curve on a fine grid, then removes each effect there.
+class Peak {
+ public:
+  static constexpr double kStepDeg = 0.02;  ///< resolution in zenith
+
+  explicit Peak(const Scene& scene) : scene_(scene) {}
+
+  /// Switches to the peak of a finished curve up to a zenith; `edits` has the curve's scene.
+  void follow(const Curve& curve, const SceneEdits& edits, double theta_max_deg);
+
+  std::vector<Job> wanted() const;
+  bool take(const JobPart& news);
+
+  /// None until it is known, and where no entry is good.
+  const std::optional<PeakAnswer>& answer() const { return answer_; }
+  /// One for each effect that the scene has.
+  const std::vector<WithoutEffect>& without() const { return without_; }
+  /// True where the answer and the peak without each effect are known.
+  bool is_complete() const;
+
+  /// The part that one radiating effect adds to Q/I at the peak; exact, because Stokes parameters add up.
+  double contribution(const WithoutEffect& removed) const;
+
+ private:
+  std::optional<double> rival(double least) const;
+  void answer_from(const std::vector<Point>& points);
+  std::string key_of(const WithoutEffect& removed) const { return "without " + removed.effect + ' ' + key_; }
+
+  std::string key_;
+  Scene scene_;
+  std::vector<Point> curve_;
+  std::vector<double> theta_deg_;  ///< around the peak of the curve; empty when no entry is good
+  std::optional<PeakAnswer> answer_;
+  std::vector<WithoutEffect> without_;
+};
 
 }  // namespace dolp::explore

@@ -4,24 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "base/text.hpp"
 
 namespace dolp::explore {
 
 Plotted plotted(Observable observable) {
-  switch (observable) {
-    case Observable::kDolp:
-      return Plotted::kDolp;
-    case Observable::kQOverI:
-      return Plotted::kSignedDolp;
-    case Observable::kEmissivityS:
-      return Plotted::kEmissivityS;
-    case Observable::kEmissivityP:
-      return Plotted::kEmissivityP;
-  }
-  return Plotted::kDolp;
+  constexpr std::array kInOrder = {Plotted::kDolp, Plotted::kSignedDolp, Plotted::kEmissivityS, Plotted::kEmissivityP};
+  return kInOrder.at(static_cast<std::size_t>(observable));
 }
 
 MeasuredData read_measured(const std::string& path) {
@@ -71,26 +61,36 @@ std::vector<Measurement> Residuals::measured(Plotted quantity) const {
   return some;
 }
 
-std::vector<double> Residuals::residuals() const {
-  std::vector<double> residuals;
+std::vector<Measurement> Residuals::residuals(Plotted quantity) const {
+  std::vector<Measurement> residuals;
   if (!data_ || known_ != job_key()) return residuals;
   for (std::size_t i = 0; i < model_.size(); ++i) {
-    const Measurement& one = data_->measurements[i];
-    residuals.push_back(one.value - described(plotted(one.observable)).value(model_[i]));
+    Measurement one = data_->measurements[i];
+    one.value -= described(quantity).value(model_[i]);
+    if (plotted(one.observable) == quantity && std::isfinite(one.value)) residuals.push_back(one);
   }
   return residuals;
 }
 
-std::optional<double> Residuals::rms(Plotted quantity) const {
-  const std::vector<double> all = residuals();
+std::optional<double> rms_of(const std::vector<Measurement>& residuals) {
+  if (residuals.empty()) return std::nullopt;
   double sum = 0.0;
-  double count = 0.0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (plotted(data_->measurements[i].observable) != quantity || !std::isfinite(all[i])) continue;
-    sum += all[i] * all[i];
-    count += 1.0;
+  for (const Measurement& one : residuals) sum += one.value * one.value;
+  return std::sqrt(sum / static_cast<double>(residuals.size()));
+}
+
+FitRange fit_range(const FitMarks& marks, const Scene& scene, const Parameter& parameter, double value) {
+  constexpr double kLeastK = 1e-3;  // above 0, so that the search runs along the logarithm of k and finds small ones
+  const std::string& key = parameter.key->key;
+  const auto marked = marks.find(key);
+  if (marked != marks.end() && marked->second) {
+    FitRange typed = *marked->second;
+    typed.start = std::clamp(value, typed.low, typed.high);
+    return typed;
   }
-  return count > 0.0 ? std::optional(std::sqrt(sum / count)) : std::nullopt;
+  const Scale slider = range_in(scene, parameter);
+  const double low = key == "surface.k" ? kLeastK : std::min(slider.from, value);
+  return {key, low, std::max(slider.to, value), std::max(low, value)};
 }
 
 Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress,

@@ -1,27 +1,26 @@
-// Measured points beside the model, and the model's fit to them.
+// Measured points beside the model, and fits of the model to them.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
+#include <map>
 
 #include "explore/background.hpp"
+#include "explore/parameters.hpp"
 #include "explore/scene_edits.hpp"
 
 namespace dolp::explore {
 
-/// The shown quantity that was measured.
+/// The quantity that shows an observable.
 Plotted plotted(Observable observable);
 
 /// The measured points of a regular file: the window never waits for a pipe. Errors: InputError.
 MeasuredData read_measured(const std::string& path);
 
-/// The model at the measured points.
+/// Measured points, and the model there.
 class Residuals {
  public:
   explicit Residuals(const Scene& scene) : scene_(scene) {}
 
-  /// Errors: InputError for data with settings of their own.
+  /// Errors: InputError for data that have their own settings.
   void load(MeasuredData data);
   void clear() { data_.reset(); }
   void follow(const std::string& key, const Scene& scene);
@@ -32,10 +31,9 @@ class Residuals {
   const std::optional<MeasuredData>& data() const { return data_; }
   /// The measured points of a quantity.
   std::vector<Measurement> measured(Plotted quantity) const;
-  /// Measured minus model of each point, NaN where the model gives none; empty until it is known.
-  std::vector<double> residuals() const;
-  /// Root mean square of a quantity's residuals that are numbers; none without any.
-  std::optional<double> rms(Plotted quantity) const;
+  /// The measured points of a quantity with measured minus model as their values; without points at which the model
+  /// gives no value, and empty until the model is known.
+  std::vector<Measurement> residuals(Plotted quantity) const;
 
  private:
   std::string job_key() const;
@@ -44,11 +42,21 @@ class Residuals {
   std::size_t loads_ = 0;
   std::string key_;
   Scene scene_;
-  std::string known_;  ///< key of the job whose results are here
+  std::string known_;  ///< key of the job that gave the model
   std::vector<Point> model_;
 };
 
-/// Everything that a fit needs, so that it can run in a thread of its own.
+/// Root mean square of the values; none without any.
+std::optional<double> rms_of(const std::vector<Measurement>& residuals);
+
+/// Keys that vary in fits, with the ranges that were typed for them.
+using FitMarks = std::map<std::string, std::optional<FitRange>>;
+
+/// The range of a parameter in fits: the typed range, or the slider's as far as the scene takes it. The fit starts at
+/// `value`.
+FitRange fit_range(const FitMarks& marks, const Scene& scene, const Parameter& parameter, double value);
+
+/// Everything that a fit needs, so that it can run on its own thread.
 struct FitJob {
   SceneEdits edits;
   MeasuredData data;
@@ -56,14 +64,14 @@ struct FitJob {
 };
 
 /// Fits as `dolp fit` does. Errors: InputError where points, parameters and scene do not fit together and where no
-/// minimum was found; those of Evaluator::fit; Cancelled.
+/// minimum was found; other errors of Evaluator::fit; Cancelled.
 Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress,
             const std::function<void(const std::string&)>& phase = {});
 
-/// The position among a fit's minima of the one nearest to where the job started, by the coordinates of its ranges.
+/// The position of the minimum nearest to the start of the job, by the coordinates of its ranges.
 std::size_t nearest_minimum(const Fit& fit, const FitJob& job);
 
-/// The result of a fit, of which a minimum was chosen, in one line.
+/// The result of a fit with a chosen minimum, in one line.
 std::string fit_text(const Fit& fit, std::size_t chosen);
 
 /// "1.2 to 1.5"; an end that the range cuts off is "open".

@@ -4,40 +4,32 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <utility>
 
+#include "base/text.hpp"
 #include "explore/curve.hpp"
 #include "explore/parameters.hpp"
-#include "explore/points.hpp"
 
 namespace dolp::explore {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kSpecularAzimuth_deg = 180.0;  // from the source, on the side of the mirrored ray
+constexpr double kSpecularAzimuth_deg = 180.0;  // between the source and a mirror's reflection
 
 /// The wavelengths at which n and k are shown.
 std::pair<double, double> known_um(const Scene& scene) {
-  const auto own = spectrum_um(scene);
-  const std::optional<std::string> name = scene.word("surface.material");
-  if (name) {
-    for (const BuiltInMaterial& known : materials()) {
-      if (known.name == *name) return {known.from_um, known.to_um};
-    }
+  const auto spectrum = spectrum_um(scene);
+  for (const BuiltInMaterial& known : materials()) {
+    if (known.name == scene.word("surface.material")) return {known.from_um, known.to_um};
   }
-  return own.first < own.second ? own : std::pair{0.8 * own.first, 1.25 * own.second};
+  return spectrum.first < spectrum.second ? spectrum : std::pair{0.8 * spectrum.first, 1.25 * spectrum.second};
 }
 
 }  // namespace
 
 Panel panel_of(const std::string& name) {
-  std::string known;
-  for (const PanelDescription& of : kPanels) {
-    if (name == of.name) return of.panel;
-    known += (known.empty() ? "" : ", ") + std::string(of.name);
-  }
-  throw InputError("view " + name + ": is not one of " + known);
+  const auto found = std::ranges::find(kPanelNames, name);
+  if (found == kPanelNames.end())
+    throw InputError("view " + name + ": is not one of " + join({kPanelNames.begin(), kPanelNames.end()}));
+  return static_cast<Panel>(found - kPanelNames.begin());
 }
 
 std::vector<Setting> other_distribution(const Scene& scene) {
@@ -78,7 +70,7 @@ MaterialCurve material_curve(const Scene& scene, std::size_t count) {
       curve.n.push_back(n);
       curve.k.push_back(k);
     } catch (const InputError&) {
-      // A file of one's own ends within the range.
+      // The user's file ends within the range.
     }
   }
   return curve;
@@ -104,7 +96,8 @@ ScatteringCut scattering_cut(Evaluator& evaluator, const Scene& scene, double th
   return cut;
 }
 
-std::optional<Seen> seen_at(const std::vector<Point>& curve, double theta_deg, double azimuth_deg) {
+std::optional<ImagePolarisation> polarisation_at(const std::vector<Point>& curve, double theta_deg,
+                                                 double azimuth_deg) {
   const auto above = std::ranges::lower_bound(curve, theta_deg, {}, &Point::theta_deg);
   if (above == curve.end()) return std::nullopt;
   const auto below = above == curve.begin() ? above : std::prev(above);
@@ -113,21 +106,21 @@ std::optional<Seen> seen_at(const std::vector<Point>& curve, double theta_deg, d
   const double part = width > 0.0 ? (theta_deg - below->theta_deg) / width : 0.0;
   const double q_over_i = (1.0 - part) * below->values[Quantity::kQOverI] + part * above->values[Quantity::kQOverI];
   const double angle_deg = std::fmod(azimuth_deg + (q_over_i > 0.0 ? 90.0 : 0.0) + 360.0, 180.0);
-  return Seen{std::abs(q_over_i), angle_deg};
+  return ImagePolarisation{std::abs(q_over_i), angle_deg};
 }
 
-void Sky::follow(const std::string& key, const Scene& scene) {
+void SourceSky::follow(const std::string& key, const Scene& scene) {
   key_ = key;
   scene_ = scene;
 }
 
-std::string Sky::key_of(std::size_t azimuth) const { return fmt::format("sky {} {}", azimuth, key_); }
+std::string SourceSky::key_of(std::size_t azimuth) const { return fmt::format("sky {} {}", azimuth, key_); }
 
-std::vector<Job> Sky::wanted() const {
+std::vector<Job> SourceSky::wanted() const {
   std::vector<Job> jobs;
   if (!scene_ || !is_bistatic(*scene_)) return jobs;
   for (std::size_t i = 0; i < kAzimuths; ++i) {
-    if (known_[i] == key_of(i)) continue;
+    if (rings_[i].key == key_of(i)) continue;
     const Scene scene = scene_->with("geometry.relative_azimuth_deg", azimuth_deg(i));
     jobs.push_back({.key = key_of(i),
                     .scene = scene,
@@ -137,21 +130,18 @@ std::vector<Job> Sky::wanted() const {
   return jobs;
 }
 
-bool Sky::take(const JobPart& news) {
+bool SourceSky::take(const JobPart& news) {
   for (std::size_t i = 0; i < kAzimuths; ++i) {
     if (news.key != key_of(i)) continue;
-    rings_[i] = news.points;
-    known_[i] = news.key;
+    rings_[i] = {news.key, news.points};
     return true;
   }
   return false;
 }
 
-bool Sky::is_finished() const {
-  for (std::size_t i = 0; i < kAzimuths; ++i) {
-    if (known_[i] != key_of(i)) return false;
-  }
-  return true;
+bool SourceSky::is_finished() const {
+  std::size_t i = 0;
+  return std::ranges::all_of(rings_, [&](const Ring& ring) { return ring.key == key_of(i++); });
 }
 
 }  // namespace dolp::explore

@@ -1,9 +1,13 @@
 #include "explore/parameters.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <stdexcept>
 
+#include "base/text.hpp"
 #include "explore/points.hpp"
 
 namespace dolp::explore {
@@ -12,6 +16,42 @@ namespace {
 bool is_cauchy(const Scene& s) { return s.word("surface.distribution") == "cauchy"; }
 bool has_no_wind(const Scene& s) { return !has_wind(s); }
 bool is_diffuse(const Scene& s) { return s.number("surface.diffuse") > 0.0; }
+
+/// The words that describe a surface, in groups.
+std::vector<std::vector<std::string>> surface_words(const Scene& scene) {
+  const auto with_number = [&](const char* symbol, const char* key, const char* unit = "") {
+    return fmt::format("{} {:.4g}{}", symbol, scene.number(key).value(), unit);
+  };
+  std::vector<std::vector<std::string>> groups = {
+      {scene.word("surface.distribution").value(),
+       has_wind(scene) ? with_number("U", "surface.wind_m_s", " m/s") : with_number("σ", "surface.sigma")},
+      {scene.word("surface.masking").value()}};
+  if (is_cauchy(scene)) groups[0].push_back(with_number("q", "surface.q"));
+  if (scene.word("surface.scattering") == "multiple") groups.push_back({"all bounces"});
+  if (const auto material = scene.word("surface.material")) {
+    groups.push_back({*material});
+  } else if (const auto file = scene.word("surface.material_file")) {
+    groups.push_back({*file});
+  } else {
+    groups.push_back({with_number("n", "surface.n"), with_number("k", "surface.k")});
+  }
+  return groups;
+}
+
+/// The numbers and the sky of a scene that differ from another scene's: "T 300 K, clear-sky".
+std::string different_numbers(const Scene& scene, const Scene& other) {
+  std::vector<std::string> words;
+  for (const Parameter& parameter : parameters()) {
+    const std::optional<double> value = parameter.value(scene);
+    if (!value || value == parameter.value(other)) continue;
+    const std::string unit = unit_text(*parameter.key);
+    words.push_back(fmt::format("{} {:.4g}{}{}", parameter.symbol, *value, unit.empty() ? "" : " ", unit));
+  }
+  const std::string sky = scene.word("surroundings.profile").value_or("");
+  if (!sky.empty() && sky != other.word("surroundings.profile"))
+    words.push_back(std::filesystem::path(sky).stem().string());
+  return join(words);
+}
 
 }  // namespace
 
@@ -40,63 +80,56 @@ std::optional<std::size_t> Choice::word(const Scene& scene) const {
 }
 
 const std::vector<Parameter>& parameters() {
+  const auto key = [](const char* name) { return &described(name); };
   static const std::vector<Parameter> all = {
-      {&described("surface.n"), "n", {1.0, 40.0, true}, "N = n + ik"},
-      {&described("surface.k"), "k", {0.0, 100.0}, "N = n + ik, k ≥ 0 absorbs"},
-      {&described("surface.sigma"), "σ", {0.01, 2.0, true}, "m² = 2σ²; D(α) of eq. (8) or (1)", has_no_wind},
-      {&described("surface.wind_m_s"), "U", {0.0, 30.0}, "m² = 0.003 + 0.00512 U (Cox and Munk 1954), D(α) of eq. (1)"},
-      {&described("surface.q"),
-       "q",
-       {1.1, 20.0, true},
-       "D = (q−1)/(π m² cos⁴α) · (1 + tan²α/m²)^(−q), eq. (8)",
-       is_cauchy},
-      {&described("surface.specular"), "k_s", {0.0, 1.0}, "f_s = k_s D G M / (4 cos θi cos θr), eqs. (7), (15)"},
-      {&described("surface.diffuse"), "k_d", {0.0, 1.0}, "f_d = (k_d/π)(cos θi cos θr)^c, eq. (14)"},
-      {&described("surface.diffuse_exponent"),
-       "c",
-       {-0.95, 0.0},
-       "f_d = (k_d/π)(cos θi cos θr)^c, eq. (14)",
-       is_diffuse},
-      {&described("emission.temperature_K"), "T", {200.0, 400.0}, "emits (1 − ρ) B(λ, T), eq. (18)"},
-      {&described("source.irradiance"), "E0", {0.001, 1000.0, true}, "reflects E0 cos θ ρ, eq. (18)"},
-      {&described("source.relative_irradiance"), "e", {0.001, 10.0, true}, "e = E0/(π B(T)), eq. (18)"},
-      {&described("source.scale"), "scale", {0.01, 100.0, true}, "E0 → scale · E0"},
-      {&described("surroundings.temperature_K"), "T_surr", {0.0, 400.0}, "reflects B(λ, T_surr) ρ"},
-      {&described("path.transmittance"), "τ", {0.0, 1.0}, "I → τ I + L_path"},
-      {&described("path.temperature_K"), "T_path", {0.0, 400.0}, "L_path = (1 − τ) B(λ, T_path)"},
-      {&described("path.radiance"), "L_path", {0.001, 100.0, true}, "I → τ I + L_path"},
-      {&described("spectrum.wavelength_um"), "λ", {1.0, 20.0}, "B(λ, T), N(λ)"},
-      {&described("geometry.view_zenith_deg"), "θv", {0.0, 90.0}, "direction of the view, eq. (2)", is_bistatic},
-      {&described("geometry.relative_azimuth_deg"), "Δφ", {0.0, 360.0}, "cos 2β = ωi · ωr, eq. (2)", is_bistatic},
-      {&described("accuracy.tolerance"), "tolerance", {1e-9, 1e-2, true}, "|δDOLP|, |δρ|/ρ_I ≤ tolerance"},
+      {key("surface.n"), "n", {1.0, 40.0, true}, "N = n + ik"},
+      {key("surface.k"), "k", {0.0, 100.0}, "N = n + ik, k ≥ 0 absorbs"},
+      {key("surface.sigma"), "σ", {0.01, 2.0, true}, "m² = 2σ²; D(α) of eq. (8) or (1)", has_no_wind},
+      {key("surface.wind_m_s"), "U", {0.0, 30.0}, "m² = 0.003 + 0.00512 U (Cox and Munk 1954), D(α) of eq. (1)"},
+      {key("surface.q"), "q", {1.1, 20.0, true}, "D = (q−1)/(π m² cos⁴α) · (1 + tan²α/m²)^(−q), eq. (8)", is_cauchy},
+      {key("surface.specular"), "k_s", {0.0, 1.0}, "f_s = k_s D G M / (4 cos θi cos θr), eqs. (7), (15)"},
+      {key("surface.diffuse"), "k_d", {0.0, 1.0}, "f_d = (k_d/π)(cos θi cos θr)^c, eq. (14)"},
+      {key("surface.diffuse_exponent"), "c", {-0.95, 0.0}, "f_d = (k_d/π)(cos θi cos θr)^c, eq. (14)", is_diffuse},
+      {key("emission.temperature_K"), "T", {200.0, 400.0}, "emits (1 − ρ) B(λ, T), eq. (18)"},
+      {key("source.irradiance"), "E0", {0.001, 1000.0, true}, "reflects E0 cos θ ρ, eq. (18)"},
+      {key("source.relative_irradiance"), "e", {0.001, 10.0, true}, "e = E0/(π B(T)), eq. (18)"},
+      {key("source.scale"), "scale", {0.01, 100.0, true}, "E0 → scale · E0"},
+      {key("surroundings.temperature_K"), "T_surr", {0.0, 400.0}, "reflects B(λ, T_surr) ρ"},
+      {key("path.transmittance"), "τ", {0.0, 1.0}, "I → τ I + L_path"},
+      {key("path.temperature_K"), "T_path", {0.0, 400.0}, "L_path = (1 − τ) B(λ, T_path)"},
+      {key("path.radiance"), "L_path", {0.001, 100.0, true}, "I → τ I + L_path"},
+      {key("spectrum.wavelength_um"), "λ", {1.0, 20.0}, "B(λ, T), N(λ)"},
+      {key("geometry.view_zenith_deg"), "θv", {0.0, 90.0}, "direction of the view, eq. (2)", is_bistatic},
+      {key("geometry.relative_azimuth_deg"), "Δφ", {0.0, 360.0}, "cos 2β = ωi · ωr, eq. (2)", is_bistatic},
+      {key("accuracy.tolerance"), "tolerance", {1e-9, 1e-2, true}, "|δDOLP|, |δρ|/ρ_I ≤ tolerance"},
   };
   return all;
 }
 
 const std::vector<Choice>& choices() {
+  const auto key = [](const char* name) { return &described(name); };
   static const std::vector<Choice> all = {
-      {&described("surface.distribution"), "distribution", "D(α): eq. (8) cauchy, eq. (1) gaussian"},
-      {&described("surface.masking"), "masking", "G: eqs. (9)–(13) for integral"},
-      {&described("surface.scattering"), "scattering", "the first facet alone, or all bounces in V-grooves"},
-      {&described("emission.model"), "emissivity",
+      {key("surface.distribution"), "distribution", "D(α): eq. (8) cauchy, eq. (1) gaussian"},
+      {key("surface.masking"), "masking", "G: eqs. (9)–(13) for integral"},
+      {key("surface.scattering"), "scattering", "only the first facet, or all bounces in V-grooves"},
+      {key("emission.model"), "emissivity",
        "1 − ρ of the rough surface, 1 − R(θ) of the smooth one, or (1 − R) G of the facets in view"},
-      {&described("emission.bracket"), "bracket", "ε_I between the direct emission and 1 − ρ_I"},
-      {&described("geometry.mode"), "mode", "eq. (18) all around, or f of eq. (7) for one source and view"},
-      {&described("accuracy.precision"), "precision", "arithmetic of the device"},
+      {key("emission.bracket"), "bracket", "ε_I between the direct emission and 1 − ρ_I"},
+      {key("geometry.mode"), "mode", "eq. (18) all around, or f of eq. (7) for one source and view"},
+      {key("accuracy.precision"), "precision", "arithmetic of the device"},
   };
   return all;
 }
 
 const Parameter& parameter(const std::string& key) {
-  for (const Parameter& known : parameters()) {
-    if (known.key->key == key) return known;
-  }
-  throw std::logic_error("no parameter " + key);
+  const auto found = std::ranges::find(parameters(), key, [](const Parameter& known) { return known.key->key; });
+  if (found == parameters().end()) throw std::logic_error("no parameter " + key);
+  return *found;
 }
 
 Scale range_in(const Scene& scene, const Parameter& parameter) {
   constexpr Scale kSmithQ{1.6, 20.0, true};  // smith needs more than 1.5
-  const bool is_smith = scene.word("surface.masking") == "smith" && scene.word("surface.distribution") == "cauchy";
+  const bool is_smith = scene.word("surface.masking") == "smith" && is_cauchy(scene);
   return is_smith && parameter.key->key == "surface.q" ? kSmithQ : parameter.slider;
 }
 
@@ -113,5 +146,20 @@ std::string unit_text(const Key& key) {
 }
 
 bool is_bistatic(const Scene& scene) { return scene.word("geometry.mode") == "bistatic"; }
+
+std::string surface_name(const Scene& scene, const Scene* other) {
+  std::vector<std::string> common, parts;
+  if (other) {
+    for (const std::vector<std::string>& group : surface_words(*other))
+      common.insert(common.end(), group.begin(), group.end());
+  }
+  for (std::vector<std::string> words : surface_words(scene)) {
+    std::erase_if(words, [&](const std::string& word) { return std::ranges::count(common, word) > 0; });
+    if (!words.empty()) parts.push_back(fmt::format("{}", fmt::join(words, " ")));
+  }
+  if (!parts.empty()) return join(parts);
+  const std::string rest = other ? different_numbers(scene, *other) : "";
+  return rest.empty() ? "the same surface" : rest;
+}
 
 }  // namespace dolp::explore

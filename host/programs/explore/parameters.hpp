@@ -1,11 +1,7 @@
-// Descriptions of the window's controls: scene keys with symbol, scale and equation.
+// Descriptions of the window's controls, scene keys with symbol, scale and equation, and names of surfaces.
 #pragma once
 
-#include <cstddef>
 #include <dolp/dolp.hpp>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "explore/scale.hpp"
 
@@ -15,14 +11,14 @@ namespace dolp::explore {
 struct Parameter {
   const Key* key;
   const char* symbol;    ///< UTF-8
-  Scale slider;          ///< a part of the key's range; typing reaches all of it
+  Scale slider;          ///< a part of the key's range; you can type the rest
   const char* equation;  ///< UTF-8, with its number in the paper where it has one
-  /// True where the scene uses the parameter; null: used by every scene that has it.
+  /// True where the scene uses the parameter; null: every scene that has it uses it.
   bool (*is_used)(const Scene& scene) = nullptr;
 
-  /// The scene's value; none where the control is not shown.
+  /// The scene's value; none where the window hides the control.
   std::optional<double> value(const Scene& scene) const;
-  /// The position of a value on the slider, 0 to 1, and back, rounded to four digits.
+  /// The position of a value on the slider, from 0 to 1, and the value at a position, rounded to four digits.
   double slider_position(double value) const { return slider.position(slider.clamp(value)); }
   double slider_value(double position) const;
 };
@@ -33,30 +29,34 @@ struct Choice {
   const char* label;
   const char* equation;
 
-  /// Position in Key::words; none where the control is not shown.
+  /// Position in Key::words; none where the window hides the control.
   std::optional<std::size_t> word(const Scene& scene) const;
   bool is_flag() const { return key->words.front() == "false"; }
 };
 
-/// The key of this name, which must exist.
+/// The scene key of this name, which must exist.
 const Key& described(const std::string& key);
 
-/// All of them, in the order of the scene keys.
+/// All controls, in the order of the scene keys.
 const std::vector<Parameter>& parameters();
 const std::vector<Choice>& choices();
 
-/// The one with this key, which must exist.
+/// The parameter with this key, which must exist.
 const Parameter& parameter(const std::string& key);
 
-/// The range of a parameter's slider, without what the scene's masking excludes.
+/// The range of a parameter's slider, without the values that the scene's masking excludes.
 Scale range_in(const Scene& scene, const Parameter& parameter);
 
 /// The table of a dotted key: "surface" of "surface.sigma".
 std::string table_of(const std::string& key);
 
-/// The unit as a reader wants it: empty for 1, "°" for degree.
+/// The unit for readers: empty for 1, "°" for degree.
 std::string unit_text(const Key& key);
 
 bool is_bistatic(const Scene& scene);
+
+/// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1"; with `other` only the words that
+/// differ from it, or, where all of them are common, the other numbers that differ.
+std::string surface_name(const Scene& scene, const Scene* other = nullptr);
 
 }  // namespace dolp::explore

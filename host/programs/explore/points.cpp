@@ -1,44 +1,49 @@
 #include "explore/points.hpp"
 
 #include <cmath>
+
 #include <utility>
+#include "base/text.hpp"
 
 namespace dolp::explore {
 namespace {
 
-/// The scene with the grid of a list; axes that the scene's own has beside these keep the scene's value.
+/// The scene with a list as its grid. Other axes of the scene's grid get the scene's single value.
 Scene with_grid(const Scene& scene, const PointList& list) {
   std::vector<Setting> axes = {{"theta_deg", list.theta_deg}, {list.roughness(), list.sigma}, {"q", list.q}};
-  for (const auto& [axis, of] :
+  for (const auto& [axis, key] :
        {std::pair{"wavelength_um", "spectrum.wavelength_um"}, {"n", "surface.n"}, {"k", "surface.k"}}) {
-    if (!scene.numbers(std::string("grid.") + axis).empty()) axes.push_back({axis, scene.number(of).value()});
+    if (!scene.numbers(std::string("grid.") + axis).empty()) axes.push_back({axis, scene.number(key).value()});
   }
   return scene.with_grid(axes);
 }
 
+template <Quantity kQuantity>
+double value_of(const Point& point) {
+  return point[kQuantity];
+}
 double rho_s(const Point& point) { return point[Quantity::kRhoI] + point[Quantity::kRhoQ]; }
 double rho_p(const Point& point) { return point[Quantity::kRhoI] - point[Quantity::kRhoQ]; }
 
-/// That of the emission's model; a scene without emission has only Kirchhoff's.
-double emissivity(const Point& point, Quantity of_model, double rho) {
-  return std::isnan(point[of_model]) ? 1.0 - rho : point[of_model];
+/// The emissivity of the scene's emission model; without emission Kirchhoff's law gives it.
+template <Quantity kQuantity, auto rho>
+double emissivity(const Point& point) {
+  return std::isnan(point[kQuantity]) ? 1.0 - rho(point) : point[kQuantity];
 }
 
 }  // namespace
 
 const std::array<PlottedDescription, 7> kAllPlotted = {{
-    {Plotted::kDolp, "DOLP", "√(Q² + U²)/I, in percent", true, false,
-     [](const Point& point) { return point[Quantity::kDolp]; }},
+    {Plotted::kDolp, "DOLP", "√(Q² + U²)/I, in percent", true, false, value_of<Quantity::kDolp>},
     {Plotted::kSignedDolp, "Q/I", "positive: s polarised, negative: p; in percent", true, false,
-     [](const Point& point) { return point[Quantity::kQOverI]; }, true},
+     value_of<Quantity::kQOverI>, true},
     {Plotted::kRhoS, "ρ_s", "ρ_I + ρ_Q, eq. (16)", false, true, rho_s},
     {Plotted::kRhoP, "ρ_p", "ρ_I − ρ_Q, eq. (16)", false, true, rho_p},
-    {Plotted::kEmissivityS, "ε_s", "of the emission's model; without emission 1 − ρ_s (Kirchhoff)", false, true,
-     [](const Point& point) { return emissivity(point, Quantity::kEmissivityS, rho_s(point)); }},
-    {Plotted::kEmissivityP, "ε_p", "of the emission's model; without emission 1 − ρ_p (Kirchhoff)", false, true,
-     [](const Point& point) { return emissivity(point, Quantity::kEmissivityP, rho_p(point)); }},
-    {Plotted::kAlbedo, "albedo", "A(θ), ρ of perfectly reflecting facets", false, true,
-     [](const Point& point) { return point[Quantity::kAlbedo]; }},
+    {Plotted::kEmissivityS, "ε_s", "by the emission's model; without emission 1 − ρ_s (Kirchhoff)", false, true,
+     emissivity<Quantity::kEmissivityS, rho_s>},
+    {Plotted::kEmissivityP, "ε_p", "by the emission's model; without emission 1 − ρ_p (Kirchhoff)", false, true,
+     emissivity<Quantity::kEmissivityP, rho_p>},
+    {Plotted::kAlbedo, "albedo", "A(θ), ρ of perfectly reflecting facets", false, true, value_of<Quantity::kAlbedo>},
 }};
 
 std::size_t PointList::size() const { return is_grid ? theta_deg.size() * sigma.size() * q.size() : theta_deg.size(); }
@@ -46,8 +51,7 @@ std::size_t PointList::size() const { return is_grid ? theta_deg.size() * sigma.
 Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list, const RunOptions& options) {
   if (!list.is_grid) return evaluator.evaluate(scene, list.columns(), options);
   const Table table = evaluator.table(with_grid(scene, list), options);
-  const ResultColumns& columns = table.values();
-  return {columns, table.values().quantities(), table.values().stokes_units};
+  return {table.values(), table.values().quantities(), table.values().stokes_units};
 }
 
 std::vector<Column> PointList::columns() const {
@@ -95,17 +99,15 @@ std::vector<Point> points_of(const PointList& list, const Results& results) {
 }
 
 std::string status_text(std::uint32_t status) {
-  std::string text;
-  const auto add = [&](std::uint32_t bit, const char* meaning) {
-    if (status & bit) text += (text.empty() ? "" : ", ") + std::string(meaning);
-  };
-  add(kReflectanceOutsideZeroToOne, "ρ outside [0, 1]");
-  add(kToleranceNotMet, "tolerance missed");
-  add(kOutsideModelDomain, "outside the model's domain");
-  add(kIntensityNotPositive, "I ≤ 0");
-  add(kRhoToleranceNotMet, "tolerance of ρ missed");
-  add(kModelInaccurate, "single scattering changes I by over 5 %");
-  return text.empty() ? "good" : text;
+  constexpr std::array<const char*, kStatusBits.size()> kMeanings = {
+      "ρ outside [0, 1]",           "tolerance missed",
+      "outside the model's domain", "I ≤ 0",
+      "tolerance of ρ missed",      "single scattering changes I by over 5 %"};
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < kMeanings.size(); ++i) {
+    if (status & kStatusBits[i].mask) texts.push_back(kMeanings[i]);
+  }
+  return texts.empty() ? "good" : join(texts);
 }
 
 }  // namespace dolp::explore

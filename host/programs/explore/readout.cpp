@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/text.hpp"
-#include "explore/parameters.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -25,8 +24,7 @@ struct Part {
   double q_over_i;
 };
 
-/// Stokes parameters add up, so the remainder that no other part explains belongs to the emission where it cannot be
-/// removed alone.
+/// Stokes parameters add up, so the rest belongs to the emission where a scene without emission is impossible.
 std::vector<Part> radiating_parts(const Session& session) {
   const Peak& peak = session.peak();
   double rest = peak.answer()->at[Quantity::kQOverI];
@@ -57,20 +55,43 @@ bool has_q_over_i(const Point& point) { return point.is_good() && std::isfinite(
 
 }  // namespace
 
+const char* stale_text(bool is_stale) { return is_stale ? ", the scene before" : ""; }
+
+const char* remark(const Session& session, const Curve& curve) {
+  if (session.is_outdated(curve)) return stale_text(true);
+  return curve.points().empty() || (curve.is_finished() && !session.is_dragged()) ? "" : ", coarse";
+}
+
+std::string curve_name(const Session& session) {
+  return surface_name(session.curve().shown_scene()) + remark(session, session.curve());
+}
+
+std::string overlay_name(const Session& session) {
+  if (!session.overlay()) return {};
+  const Scene& shown = session.overlay()->shown_scene();
+  return fmt::format("{} σ {:.4g}, same D(0){}", shown.word("surface.distribution").value(),
+                     shown.number("surface.sigma").value(), remark(session, *session.overlay()));
+}
+
+std::string pin_name(const Session& session, const Pin& pin) {
+  if (!pin.name.empty()) return pin.name;
+  return surface_name(pin.curve.shown_scene(), &session.curve().shown_scene()) + stale_text(pin.curve.is_stale());
+}
+
 std::string peak_text(const Session& session) {
   const std::optional<PeakAnswer>& peak = session.peak().answer();
   if (!session.curve().is_finished() || !peak) return "Maximum: …";
   const Point& at = peak->at;
   const double error = at[Quantity::kErrorEstimate];
   if (at[Quantity::kDolp] <= error) return "Maximum: the DOLP is 0 everywhere, within its bound";
-  const char* of = is_bistatic(session.scene()) ? " of the source" : "";
+  const char* of_source = is_bistatic(session.scene()) ? " of the source" : "";
   std::string text = fmt::format("Maximum: DOLP {:.3f} % at θ = {:.2f}°{}, {} polarised. Numerical error ≤ {} points; ",
-                                 kPercent * at[Quantity::kDolp], at.theta_deg, of,
+                                 kPercent * at[Quantity::kDolp], at.theta_deg, of_source,
                                  at[Quantity::kQOverI] > 0.0 ? "s" : "p", points_text(error));
   if (peak->rival_deg) {
-    text += fmt::format("with it the maximum may as well be elsewhere, at {:g}° for instance.", *peak->rival_deg);
+    text += fmt::format("within it the maximum may also be elsewhere, for example at {:g}°.", *peak->rival_deg);
   } else if (peak->theta_low_deg == peak->theta_high_deg) {
-    text += fmt::format("the maximum is there to {:g}°.", Peak::kStepDeg);
+    text += fmt::format("θ is right within {:g}°.", Peak::kStepDeg);
   } else {
     text +=
         fmt::format("the maximum is surely between {:.2f}° and {:.2f}°.", peak->theta_low_deg, peak->theta_high_deg);
@@ -87,8 +108,7 @@ std::string cause_text(const Session& session) {
   const Peak& peak = session.peak();
   if (!session.curve().is_finished() || !peak.is_complete()) return "Cause: …";
   const double sum = peak.answer()->at[Quantity::kQOverI];
-  std::string with;
-  std::string against;
+  std::string with, against;
   for (const Part& part : radiating_parts(session)) {
     std::string& side = part.q_over_i * sum >= 0.0 ? with : against;
     side += fmt::format("{}{} {:+.2f}", side.empty() ? "" : ", ", part.name, kPercent * part.q_over_i);
@@ -105,7 +125,7 @@ std::string cursor_text(const Session& session) {
   const Scene& scene = session.curve().shown_scene();
   const bool has_q = scene.word("surface.distribution") == "cauchy";
   std::string text = fmt::format("Cursor{}: θ = {:.1f}°, {} = {:.4g}{}: DOLP {:.3f} % ± {}, Q/I {:+.3f} %",
-                                 session.remark(session.curve()), r.theta_deg, has_wind(scene) ? "U" : "σ", r.sigma,
+                                 remark(session, session.curve()), r.theta_deg, has_wind(scene) ? "U" : "σ", r.sigma,
                                  has_q ? fmt::format(", q = {:.4g}", r.q) : "", kPercent * r[Quantity::kDolp],
                                  points_text(r[Quantity::kErrorEstimate]), kPercent * r[Quantity::kQOverI]);
   if (r.has_bracket()) {

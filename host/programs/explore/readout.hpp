@@ -1,32 +1,42 @@
-// Text that the window shows.
+// Texts about a session: names, values, commands, and its plots as JSON.
 #pragma once
-
-#include <string>
-#include <vector>
 
 #include "explore/session.hpp"
 
 namespace dolp::explore {
 
+// ---- Names of curves. Each ends with its remark.
+/// Marks a curve that is not the finished one of its scene: ", coarse" or ", the scene before"; else empty.
+const char* remark(const Session& session, const Curve& curve);
+/// The surface of the curve on display.
+std::string curve_name(const Session& session);
+std::string overlay_name(const Session& session);
+/// The typed name of a pin, or the surface in the words that differ from the curve on display.
+std::string pin_name(const Session& session, const Pin& pin);
+/// ", the scene before" for outdated values.
+const char* stale_text(bool is_stale);
+
+// ---- Lines below the plots.
 /// The position of the curve's maximum of polarisation, and its uncertainty.
 std::string peak_text(const Session& session);
-
-/// The radiation that causes the polarisation there: parts of Q/I that add up.
+/// The radiation that causes the polarisation at the maximum: parts of Q/I that add up.
 std::string cause_text(const Session& session);
-
 /// The values under the cursor.
 std::string cursor_text(const Session& session);
-
-/// Q/I at the peak with all effects and without one, in percent: "-14.36 → -59.59 %"; empty where it is unknown.
+/// Q/I at the maximum with all effects and without one, in percent: "-14.36 → -59.59 %"; empty where it is unknown.
 std::string without_text(const Session& session, const std::string& effect);
-
-/// The same in a sentence; empty also where the model fails without the effect.
+/// Q/I with and without an effect in a sentence; empty also where the model fails without the effect.
 std::string without_words(const Session& session, const std::string& effect);
-
-/// The command that writes the table of a scene, for a shell.
-std::string table_command(const SceneEdits& edits);
-
 /// The cost of the finished curve, in three lines: time, work, error.
 std::vector<std::string> cost_lines(const Session& session);
+
+// ---- For other programs.
+/// The command that writes the table of a scene, for a shell.
+std::string table_command(const SceneEdits& edits);
+/// The text of host/tools/plot_view.py.
+extern const char* const kPlotScript;
+/// The visible curves between two axes, the measured points, and the map where it is shown, in JSON for the script.
+/// Units: as in the labels. Values that the model does not give are null.
+std::string plot_json(const Session& session, const Scale& x, const Scale& y);
 
 }  // namespace dolp::explore

@@ -9,7 +9,7 @@
 namespace dolp::explore {
 namespace {
 
-constexpr double kRounding = 1e-9;  // of a step: what an end may miss a tick by
+constexpr double kRounding = 1e-9;  // an end may miss a tick by this part of a step
 
 std::vector<double> linear_ticks(double low, double high, std::size_t most) {
   const double rough = (high - low) / static_cast<double>(most);
@@ -44,7 +44,7 @@ std::vector<double> log_ticks(double low, double high, std::size_t a_decade) {
 }  // namespace
 
 std::string Scale::refusal() const {
-  constexpr double kLeastSpan = 1e-9;  // of its ends: positions within a narrower range would be rounding
+  constexpr double kLeastSpan = 1e-9;  // relative to the ends: positions within a narrower range would be rounding
   if (!std::isfinite(to - from)) return "must be finite";
   if (!(from < to)) return "must be from < to";
   if (is_log && from <= 0.0) return "must be above 0 on a logarithmic axis";
@@ -54,8 +54,7 @@ std::string Scale::refusal() const {
 }
 
 double Scale::value(double position) const {
-  if (position <= 0.0) return from;
-  if (position >= 1.0) return to;
+  if (position == 1.0) return to;
   return is_log ? from * std::pow(to / from, position) : from + position * (to - from);
 }
 
@@ -65,16 +64,8 @@ double Scale::position(double value) const {
 
 double Scale::clamp(double value) const { return std::clamp(value, from, to); }
 
-Scale Scale::between(double first, double last) const {
-  const auto at = [this](double position) {
-    return is_log ? from * std::pow(to / from, position) : from + position * (to - from);
-  };
-  return {at(first), at(last), is_log};
-}
-
 Scale Scale::within(const Scale& all) const {
-  const double first = all.position(from);
-  const double last = all.position(to);
+  const double first = all.position(from), last = all.position(to);
   if (last - first >= 1.0) return all;
   const double shift = std::max(-first, 0.0) + std::min(1.0 - last, 0.0);
   return all.between(first + shift, last + shift);

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <iterator>
-#include <optional>
 #include <string_view>
 #include <variant>
 
+#include "base/text.hpp"
 #include "explore/parameters.hpp"
 
 namespace dolp::explore {
@@ -21,23 +22,22 @@ bool replaces(const Setting& change, const std::string& other) {
   return std::ranges::count(described(key).rivals, other) > 0;
 }
 
-/// Words of one key that exclude those of another, and the word that it takes when it gives way.
+/// Words of one key that exclude words of another key, and the word that the key takes when it gives way.
 struct Side {
   const char* key;
   std::vector<std::string_view> words;
   const char* instead;
 
-  bool excludes(std::string_view word) const { return std::ranges::find(words, word) != words.end(); }
+  bool excludes(std::string_view word) const { return std::ranges::count(words, word) > 0; }
 };
-using Conflict = std::array<Side, 2>;
 
 // The words that are taken instead exclude nothing, so that one conflict never leads to the next.
-const std::vector<Conflict>& conflicts() {
+const std::vector<std::array<Side, 2>>& conflicts() {
   const Side multiple{"surface.scattering", {"multiple"}, "single"};
   const Side direct{"emission.model", {"direct"}, "moments"};
   const Side bracket{"emission.bracket", {"true"}, "false"};
   const Side without_direct{"surface.masking", {"none", "integral"}, "v-cavity"};
-  static const std::vector<Conflict> all = {
+  static const std::vector<std::array<Side, 2>> all = {
       {multiple, {"surface.masking", {"none", "integral", "smith"}, "v-cavity"}},
       {direct, without_direct},
       {direct, multiple},
@@ -63,10 +63,12 @@ std::vector<Setting> all_choices(const Scene& scene) {
   return words;
 }
 
+constexpr const char* kSkyHeader = "zenith_deg,temperature_K";
+
 }  // namespace
 
 SceneEdits::SceneEdits(const Scene& opened)
-    : given_(opened.settings()), saved_(given_), changes_(opened.settings()), opened_(opened), scene_(opened) {}
+    : given_(opened.settings()), saved_(given_), changes_(given_), opened_(opened), scene_(opened) {}
 
 bool SceneEdits::is_same_file(const SceneEdits& other) const {
   return opened_.name() == other.opened_.name() && opened_.text() == other.opened_.text() && given_ == other.given_;
@@ -100,13 +102,9 @@ void SceneEdits::reset(const std::string& key) {
   become(std::move(all));
 }
 
-void SceneEdits::reset_all() { become(given_); }
-
 std::vector<Setting> SceneEdits::changes_without(const std::vector<std::string>& keys) const {
-  std::vector<Setting> left;
-  for (const Setting& change : changes_) {
-    if (std::ranges::find(keys, change.key) == keys.end()) left.push_back(change);
-  }
+  std::vector<Setting> left = changes_;
+  std::erase_if(left, [&](const Setting& change) { return std::ranges::count(keys, change.key) > 0; });
   return left;
 }
 
@@ -121,23 +119,57 @@ std::vector<Setting> choices_of(const Scene& scene, const std::string& table) {
   return words;
 }
 
-std::vector<Setting> asked_for(const Scene& scene, const std::vector<Setting>& chosen) {
+std::vector<Setting> needed_with(const Scene& scene, const std::vector<Setting>& chosen) {
   const std::vector<Setting> words = all_choices(scene);
-  std::vector<Setting> asked;
-  for (const Conflict& conflict : conflicts()) {
-    for (const bool is_second : {false, true}) {
-      const Side& own = conflict[is_second ? 1 : 0];
-      const Side& other = conflict[is_second ? 0 : 1];
-      const auto word = word_in(chosen, own.key);
-      if (!word || !own.excludes(*word) || word_in(chosen, other.key) || word_in(asked, other.key)) continue;
+  std::vector<Setting> needed;
+  for (const std::array<Side, 2>& conflict : conflicts()) {
+    for (const std::size_t i : {0U, 1U}) {
+      const Side& side = conflict[i];
+      const Side& other = conflict[1 - i];
+      const auto word = word_in(chosen, side.key);
+      if (!word || !side.excludes(*word) || word_in(chosen, other.key) || word_in(needed, other.key)) continue;
       const auto now = word_in(words, other.key);
-      if (now && other.excludes(*now)) asked.push_back({other.key, TomlText{other.instead}});
+      if (now && other.excludes(*now)) needed.push_back({other.key, TomlText{other.instead}});
     }
   }
-  // A wind gives Gaussian slopes; another distribution begins with its sigma.
+  // A wind gives Gaussian slopes; another distribution begins with their sigma.
   if (word_in(chosen, "surface.distribution") == "cauchy" && scene.number("surface.wind_m_s"))
-    asked.push_back({"surface.sigma", scene.number("surface.sigma").value()});
-  return asked;
+    needed.push_back({"surface.sigma", scene.number("surface.sigma").value()});
+  return needed;
+}
+
+std::string SkyPair::csv() const {
+  return std::string(kSkyHeader) + "\n0," + format_number(zenith_K) + "\n90," + format_number(horizon_K) + '\n';
+}
+
+std::optional<SkyPair> read_sky_pair(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::string header, zenith, horizon, more;
+  std::getline(file, header) && std::getline(file, zenith) && std::getline(file, horizon);
+  if (header != kSkyHeader || !zenith.starts_with("0,") || !horizon.starts_with("90,") || std::getline(file, more))
+    return std::nullopt;
+  const std::optional<double> zenith_K = parse_number(zenith.substr(2));
+  const std::optional<double> horizon_K = parse_number(horizon.substr(3));
+  return zenith_K && horizon_K ? std::optional(SkyPair{*zenith_K, *horizon_K}) : std::nullopt;
+}
+
+std::filesystem::path sky_file(const Scene& scene) {
+  const std::string name = scene.word("surroundings.profile").value_or("");
+  if (name.empty() || name == "clear-sky" || name == "overcast") return {};
+  return std::filesystem::path(scene.name()).parent_path() / name;
+}
+
+std::string SkyFiles::path(const SkyPair& sky) {
+  constexpr const char* kName = "dolp-skies";
+  try {
+    if (!folder_) folder_.emplace(kName);
+  } catch (const IoError&) {
+    return kName;
+  }
+  const std::filesystem::path file =
+      folder_->path() / ("sky_" + format_number(sky.zenith_K) + "_" + format_number(sky.horizon_K) + ".csv");
+  if (!std::filesystem::exists(file)) std::ofstream(file) << sky.csv();
+  return file.string();
 }
 
 }  // namespace dolp::explore

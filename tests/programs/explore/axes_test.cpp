@@ -1,10 +1,9 @@
-// Axes whose ends are typed, logarithmic ones, and the colours of the map.
+// Axes with typed ends, logarithmic axes, and the colours of the map.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "explore/session_file.hpp"
 #include "explore/window/style.hpp"
 #include "explore_support.hpp"
 #include "window_support.hpp"
@@ -12,13 +11,10 @@
 namespace dolp::explore {
 namespace {
 
-TEST(Scale, WithLog_BeginsAboveZero) {
+TEST(Scale, WithLogAndTicks_BeginAboveZero_AndAreRound) {
   EXPECT_EQ((Scale{0.0, 90.0}.with_log(true)), (Scale{0.5, 90.0, true}));
   EXPECT_EQ((Scale{2.0, 50.0}.with_log(true)), (Scale{2.0, 50.0, true}));
   EXPECT_EQ((Scale{2.0, 50.0, true}.with_log(false)), (Scale{2.0, 50.0}));
-}
-
-TEST(Scale, TicksOfAPartOfADecade_AreThoseOfALinearAxis) {
   EXPECT_EQ((Scale{8.0, 14.0, true}.ticks(5)), (std::vector<double>{8.0, 10.0, 12.0, 14.0}));
   EXPECT_EQ((Scale{1.0, 10.0, true}.ticks(5)), (std::vector<double>{1.0, 2.0, 5.0, 10.0}));
 }
@@ -43,7 +39,7 @@ TEST(Scale, RangesThatCannotBeDrawn_AreRefused_AndHaveFewTicks) {
   }
 }
 
-TEST(Colours, DivergingOnes_AreBlueWhiteAndRed) {
+TEST(Colours, Diverging_AreBlueWhiteAndRed) {
   for (const auto& [position, colour] : {std::pair{0.0, IM_COL32(5, 48, 97, 255)},
                                          {0.5, IM_COL32(247, 247, 247, 255)},
                                          {1.0, IM_COL32(103, 0, 31, 255)},
@@ -52,24 +48,19 @@ TEST(Colours, DivergingOnes_AreBlueWhiteAndRed) {
   }
 }
 
-struct RangeCase {
-  MapAxis axis;
-  Scale range;
-  bool is_refused;
-};
-
-TEST(ExploreSession, TypedRangeOfTheMap_IsWhatTheSceneTakes) {
+TEST(ExploreSession, TypedRangeOfTheMap_IsTakenIfTheSceneTakesIt) {
   Session session(paint({"surface.masking=smith"}));
-  for (const auto& [axis, range, is_refused] : {RangeCase{{Axis::kTheta}, {20.0, 70.0}, false},
-                                                {{Axis::kTheta}, {20.0, 95.0}, true},
-                                                {{Axis::kSigma}, {0.0, 0.3}, false},
-                                                {{Axis::kSigma}, {0.1, 11.0}, true},
-                                                {{Axis::kQ}, {2.0, 8.0, true}, false},
-                                                {{Axis::kQ}, {1.2, 8.0, true}, true}}) {
-    EXPECT_EQ(!session.refusal(axis, range).empty(), is_refused) << axis.label() << ' ' << range.from;
+  for (const auto& [map_axis, range, is_refused] : {std::tuple{Axis::kTheta, Scale{20.0, 70.0}, false},
+                                                    {Axis::kTheta, Scale{20.0, 95.0}, true},
+                                                    {Axis::kSigma, Scale{0.0, 0.3}, false},
+                                                    {Axis::kSigma, Scale{0.1, 11.0}, true},
+                                                    {Axis::kQ, Scale{2.0, 8.0, true}, false},
+                                                    {Axis::kQ, Scale{1.2, 8.0, true}, true}}) {
+    const MapAxis axis{map_axis};
+    EXPECT_EQ(!refusal(session.scene(), axis, range).empty(), is_refused) << axis.label() << ' ' << range.from;
     View view = session.view();
-    view.map_x = axis.axis;
-    view.map_y = axis.axis == Axis::kTheta ? Axis::kSigma : Axis::kTheta;
+    view.map_x = map_axis;
+    view.map_y = map_axis == Axis::kTheta ? Axis::kSigma : Axis::kTheta;
     view.map_ranges = {{axis.label(), range}};
     session.set_view(view);
     EXPECT_EQ(session.map().x().scale == range, !is_refused) << axis.label() << ' ' << range.from;
@@ -92,10 +83,14 @@ class Axes : public Window {
     xdotool({"click", "--repeat", "2", "--delay", "20", "1"});
     frames(2 * kFrames);
   }
-  void type(const std::string& text, const std::string& end) {
-    xdotool({"type", "--delay", "12", "--", text});
+  /// Types both ends of an axis; "" leaves an end as it is.
+  void type_ends(ImVec2 numbers, const std::string& from, const std::string& to) {
+    double_click(numbers);
+    if (!from.empty()) type(from);
+    xdotool({"key", "Tab"});  // a key that is held down goes on to further fields
     frames();
-    keys(end);
+    if (!to.empty()) type(to);
+    keys("Return");
     app_->settle();
     frames();
   }
@@ -109,89 +104,68 @@ class Axes : public Window {
   }
 };
 
-TEST_F(Axes, NumbersDoubleClicked_TakeTheEndsThatAreTyped) {
+TEST_F(Axes, NumbersDoubleClicked_TakeTypedEnds_AndCloseAfterARefusedEndIsTakenBack) {
   const explore::CurveView& curves = app_->curve_view();
   double_click(below(curves.area()));
-  type("20", "Tab");
-  type("70", "Return");
+  type("95");
+  keys("Return");
+  keys("Escape");
+  EXPECT_TRUE(curves.axis_editor().is_open());
+  keys("Escape");
+  EXPECT_FALSE(curves.axis_editor().is_open());
+  type_ends(below(curves.area()), "20", "70");
   EXPECT_EQ(curves.x(), (Scale{20.0, 70.0}));
-  double_click(below(curves.area()));
-  keys("Tab");
-  type("95", "Return");
+  type_ends(below(curves.area()), "", "95");
   EXPECT_EQ(curves.x(), (Scale{20.0, 70.0}));
-  double_click(beside(curves.area()));
-  type("1", "Tab");
-  type("4", "Return");
+  type_ends(beside(curves.area()), "1", "4");
   EXPECT_EQ(curves.y(), (Scale{1.0, 4.0}));
 }
 
 TEST_F(Axes, RangeOfTheMap_IsComputedAnew_AndARefusedEndGoesWithTheOther) {
   double_click(beside(app_->map_view().area()));
-  type("2.5", "Tab");  // above the other end
+  type("2.5");  // above the other end
+  xdotool({"key", "Tab"});
+  frames();
   EXPECT_NE(app_->session().map().y().scale.from, 2.5);
-  type("3", "Return");
+  type("3");
+  keys("Return");
+  app_->settle();
   EXPECT_EQ(app_->session().map().y().scale, (Scale{2.5, 3.0, true}));
   EXPECT_TRUE(app_->session().map().is_finished());
 }
 
-TEST_F(Axes, Fields_CloseWithEscape_WhichTakesBackWhatIsTypedFirst) {
-  const explore::AxisEditor& editor = app_->curve_view().axis_editor();
-  double_click(below(app_->curve_view().area()));
-  ASSERT_TRUE(editor.is_open());
-  type("95", "Return");
-  keys("Escape");
-  EXPECT_TRUE(editor.is_open());
-  keys("Escape");
-  EXPECT_FALSE(editor.is_open());
-}
-
-TEST_F(Axes, OfASavedSession_ComeBackWithIt) {
-  explore::View view = app_->session().view();
-  view.is_log = true;
-  app_->session().set_view(view);
-  view.curve_zoom = {Scale{20.0, 70.0}, Scale{1.0, 4.0, true}};
-  view.map_colours = Scale{0.01, 0.08, true};
-  app_->session().set_view(view);
-  explore::save_session(app_->session(), at("session.toml").string());
-  open({});
-  EXPECT_NE(app_->curve_view().x(), (Scale{20.0, 70.0}));
-  explore::open_file(app_->session(), at("session.toml").string());
-  app_->settle();
-  frames();
-  EXPECT_EQ(app_->curve_view().x(), (Scale{20.0, 70.0}));
-  EXPECT_EQ(app_->curve_view().y(), (Scale{1.0, 4.0, true}));
-  EXPECT_EQ(app_->map_view().colours(), (Scale{0.01, 0.08, true}));
-}
-
 TEST_F(Axes, LogarithmOfTheZenith_BeginsAtHalfADegree) {
-  const explore::CurveView& curves = app_->curve_view();
-  double_click(below(curves.area()));
-  click(curves.axis_editor().log_box().at(0.1F, 0.5F));
+  double_click(below(app_->curve_view().area()));
+  click(app_->control_area("logarithmic").at(0.1F, 0.5F));
   EXPECT_TRUE(app_->session().view().is_theta_log);
-  EXPECT_EQ(curves.x(), (Scale{0.5, 90.0, true}));
+  EXPECT_EQ(app_->curve_view().x(), (Scale{0.5, 90.0, true}));
 }
 
-TEST_F(Axes, Colours_AreTyped_AndStayWhileASliderIsDragged) {
+TEST_F(Axes, DragOfASlider_GivesCoarseCurves_AndHoldsZenithsAndColours_WhichCanBeTyped) {
   const explore::MapView& map = app_->map_view();
-  explore::View view = app_->session().view();
-  view.quantity = explore::Plotted::kSignedDolp;
-  app_->session().set_view(view);
+  const explore::Session& session = app_->session();
+  app_->session().set_view(&explore::View::quantity, explore::Plotted::kSignedDolp);
   app_->settle();
-  const Scale before = map.colours();
-  EXPECT_EQ(before.from, -before.to);
+  const Scale colours = map.colours(), zeniths = app_->curve_view().x();
+  EXPECT_EQ(colours.from, -colours.to);
   const Area area = app_->control_area("surface.n");
   move_to(area.at(0.3F, 0.5F));
   press("mousedown");
-  move_to(area.at(0.5F, 0.5F));
-  app_->settle();
-  EXPECT_EQ(map.colours(), before);
+  for (const float part : {0.4F, 0.5F}) {
+    move_to(area.at(part, 0.5F));
+    app_->settle();
+    EXPECT_TRUE(session.is_dragged());
+    EXPECT_EQ(session.curve().points().size(), explore::Curve::kCoarseCount);
+    EXPECT_TRUE(explore::curve_name(session).ends_with(", coarse"));
+    EXPECT_EQ(app_->curve_view().x(), zeniths);
+    EXPECT_EQ(map.colours(), colours);
+  }
   press("mouseup");
   app_->settle();
-  EXPECT_NE(map.colours(), before);
+  EXPECT_TRUE(session.curve().is_finished());
+  EXPECT_NE(map.colours(), colours);
   const ImVec2 right = map.area().at(1.0F, 0.5F);
-  double_click({right.x + 3.0F * ImGui::GetTextLineHeight(), right.y});
-  type("-8", "Tab");
-  type("8", "Return");
+  type_ends({right.x + 3.0F * ImGui::GetTextLineHeight(), right.y}, "-8", "8");
   EXPECT_EQ(map.colours(), (Scale{-0.08, 0.08}));
 }
 

@@ -1,8 +1,8 @@
-// Fits in the window: the minimum that is chosen, the others, and what is said of them.
+// Fits in the window: the chosen minimum, the other ones, and the words about them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <tuple>
 
 #include "explore_support.hpp"
 #include "temporary_file.hpp"
@@ -11,83 +11,68 @@
 namespace dolp::explore {
 namespace {
 
-struct NearestCase {
-  double n, k;  ///< where the fit begins
-  std::size_t nearest;
-};
-
-TEST(NearestMinimum, IsThatByTheCoordinatesOfTheRanges) {
-  Fit fit{{}, true, paint().scene()};
+TEST(NearestMinimum, IsNearestByTheCoordinatesOfTheRanges) {
+  Fit fit{{}, {}, true, paint().scene()};
   fit.minima = {{{1.5, 2.37}, 4.0}, {{1.5, 0.22}, 5.0}, {{9.0, 0.22}, 80.0}};
   for (const auto& [n, k, nearest] :
-       {NearestCase{1.5, 0.1, 1}, {1.5, 0.7, 1}, {1.5, 0.8, 0}, {1.4, 40.0, 0}, {8.0, 0.1, 2}}) {
+       {std::tuple{1.5, 0.1, 1U}, {1.5, 0.7, 1U}, {1.5, 0.8, 0U}, {1.4, 40.0, 0U}, {8.0, 0.1, 2U}}) {
     FitJob job{paint(), {}, {}};
     job.vary = {{"surface.n", 1.0, 40.0, n}, {"surface.k", 0.001, 100.0, k}};
     EXPECT_EQ(nearest_minimum(fit, job), nearest) << n << ' ' << k;
   }
 }
 
+/// A session with two measured points.
+struct MeasuredSession : Session {
+  explicit MeasuredSession(const std::vector<std::string>& settings = {}) : Session(paint(settings)) {
+    load_measured(TemporaryFile(".csv", "theta_deg,dolp\n60,0.05\n70,0.06\n").path());
+  }
+  double value(const std::string& key) const { return scene().number(key).value(); }
+};
+
 TEST(ExploreSession, Minimum_IsVisitedInTheSceneThatWasFitted) {
-  Session session(paint());
-  const TemporaryFile file(".csv", "theta_deg,dolp\n60,0.05\n70,0.06\n");
-  session.load_measured(file.path());
+  MeasuredSession session;
   session.mark("surface.k", true);
   const FitJob job = session.fit_job().value();
-  Fit fit{{}, true, job.edits.scene(), {{.key = "surface.k", .value = 2.0}}};
+  Fit fit{{.parameters = {{.key = "surface.k", .value = 2.0}}}, {}, true, job.edits.scene()};
   fit.minima = {{{2.0}, 4.0}, {{0.2}, 5.0}};
   EXPECT_EQ(session.take_fit(fit, job), 1U);
   EXPECT_EQ(session.view().panel, Panel::kFit);
-  EXPECT_EQ(session.scene().number("surface.k"), 0.2);
+  EXPECT_EQ(session.value("surface.k"), 0.2);
   EXPECT_EQ(session.minimum(), 1U);
   EXPECT_NE(fit_text(fit, 1).find("of 2 minima the nearest to the start, the lowest has χ² 4"), std::string::npos);
   session.set("surface.sigma", 0.4);
   EXPECT_FALSE(session.minimum());
   session.hold(false);
   session.visit_minimum(0);
-  EXPECT_EQ(session.scene().number("surface.sigma"), 0.15);
-  EXPECT_EQ(session.scene().number("surface.k"), 2.0);
+  EXPECT_EQ(session.value("surface.sigma"), 0.15);
+  EXPECT_EQ(session.value("surface.k"), 2.0);
   EXPECT_EQ(session.minimum(), 0U);
   session.undo();
-  EXPECT_EQ(session.scene().number("surface.sigma"), 0.4);
+  EXPECT_EQ(session.value("surface.sigma"), 0.4);
 }
 
-TEST(ExploreSession, Fit_OfK_RunsAlongItsLogarithm_FromZeroToo) {
-  for (const double k : {0.0, 0.22, 200.0}) {
-    Session session(paint());
-    const TemporaryFile file(".csv", "theta_deg,dolp\n60,0.05\n70,0.06\n");
-    session.load_measured(file.path());
-    session.set("surface.k", k);
-    session.mark("surface.k", true);
+TEST(ExploreSession, RangeOfAFit_IsTheSlidersAsFarAsTheSceneTakesIt_OrTyped) {
+  // k runs along its logarithm, from 0 too; q of smith masking begins above 1.5.
+  for (const auto& [key, value, low, high, start] : {std::tuple{"surface.k", 0.0, 0.001, 100.0, 0.001},
+                                                     {"surface.k", 0.22, 0.001, 100.0, 0.22},
+                                                     {"surface.k", 200.0, 0.001, 200.0, 200.0},
+                                                     {"surface.q", 1.55, 1.55, 20.0, 1.55},
+                                                     {"surface.q", 3.0, 1.6, 20.0, 3.0}}) {
+    MeasuredSession session({"surface.masking=smith"});
+    session.set(key, value);
+    session.mark(key, true);
     const FitRange range = session.fit_job().value().vary.front();
+    EXPECT_EQ(std::tuple(range.low, range.high, *range.start), std::tuple(low, high, start)) << key << ' ' << value;
     EXPECT_TRUE(range.is_logarithmic());
-    EXPECT_EQ(range.low, 0.001);
-    EXPECT_EQ(range.high, std::max(k, 100.0));
-    EXPECT_EQ(range.start, std::max(k, 0.001));
+    EXPECT_NO_THROW(session.scene().with(key, range.low));
   }
-}
-
-TEST(ExploreSession, Fit_OfQ_WithSmithMasking_RunsOverWhatItTakes) {
-  for (const double q : {1.55, 3.0}) {
-    Session session(paint({"surface.masking=smith"}));
-    session.set("surface.q", q);
-    const TemporaryFile file(".csv", "theta_deg,dolp\n60,0.05\n70,0.06\n");
-    session.load_measured(file.path());
-    session.mark("surface.q", true);
-    const FitRange range = session.fit_job().value().vary.front();
-    EXPECT_EQ(range.low, std::min(q, 1.6));
-    EXPECT_NO_THROW(session.scene().with("surface.q", range.low));
-  }
-}
-
-TEST(ExploreSession, Fit_OverARangeThatWasTyped_BeginsInIt) {
-  Session session(paint());
-  const TemporaryFile file(".csv", "theta_deg,dolp\n60,0.05\n70,0.06\n");
-  session.load_measured(file.path());
+  MeasuredSession session;
   session.set("surface.n", 1.5);
   EXPECT_EQ(session.set_fit_range("surface.n", "1.6", "3"), "");
   EXPECT_EQ(session.set_fit_range("surface.n", "3", "2"), "vary surface.n=3:2: LOW must be below HIGH");
   const FitRange range = session.fit_job().value().vary.front();
-  EXPECT_EQ(std::tuple(range.low, range.high, range.start), std::tuple(1.6, 3.0, std::optional(1.6)));
+  EXPECT_EQ(std::tuple(range.low, range.high, *range.start), std::tuple(1.6, 3.0, 1.6));
   session.mark("surface.n", false);
   EXPECT_FALSE(session.fit_job());
 }
@@ -125,25 +110,27 @@ class FitWindow : public Window {
     app_->settle();
     frames();
   }
-  double number(const std::string& key) const { return app_->session().scene().number(key).value(); }
 };
 
-TEST_F(FitWindow, MarkedSlider_IsMovedAndShowsTheInterval) {
+TEST_F(FitWindow, MarkedSlider_IsMoved_AndTheResultIsSaidUntilTheSceneChanges) {
   measure("surface.sigma=0.3");
   click_control("vary surface.sigma");
   ASSERT_TRUE(app_->session().varies("surface.sigma"));
   fit();
-  EXPECT_NEAR(number("surface.sigma"), 0.3, 2e-3);
+  EXPECT_NEAR(*number("surface.sigma"), 0.3, 2e-3);
   ASSERT_NE(app_->session().fitted("surface.sigma"), nullptr);
   EXPECT_LT(*app_->session().fitted("surface.sigma")->interval_68.low, 0.3);
+  EXPECT_NE(app_->session().message().text.find("χ²"), std::string::npos) << app_->session().message().text;
+  click_control("emission.bracket");
+  EXPECT_EQ(app_->session().message().text, "");
 }
 
-TEST_F(FitWindow, RangeTypedBelowASlider_IsThatOfTheFit) {
+TEST_F(FitWindow, RangeTypedBelowASlider_BoundsTheFit) {
   measure("surface.n=1.7");
   click_control("vary surface.n");
   for (const auto& [field, text] : {std::pair("field fit surface.n 0", "1.2"), {"field fit surface.n 1", "1.6"}}) {
     click_control(field);
-    xdotool({"type", text});
+    type(text);
     keys("Return");
   }
   fit();
@@ -154,25 +141,24 @@ TEST_F(FitWindow, NearestMinimum_IsChosen_AndAClickVisitsTheLowest) {
   measure("surface.k=0.22");
   click_control("vary surface.k");
   fit();
-  EXPECT_NEAR(number("surface.k"), 0.22, 0.02);
+  EXPECT_NEAR(*number("surface.k"), 0.22, 0.02);
   const std::vector<FitMinimum> minima = app_->session().last_fit()->minima;
   ASSERT_GE(minima.size(), 2U);
   const double other = minima[1].values[0];
   app_->session().set("surface.k", 1.02 * other);
   fit();
-  EXPECT_NEAR(number("surface.k"), other, 0.01 * other);
+  EXPECT_NEAR(*number("surface.k"), other, 0.01 * other);
   ASSERT_NE(app_->session().minimum(), 0U);
   click_control("minimum 1");
   app_->settle();
-  EXPECT_NEAR(number("surface.k"), 0.22, 0.02);
+  EXPECT_NEAR(*number("surface.k"), 0.22, 0.02);
   EXPECT_EQ(app_->session().minimum(), 0U);
 }
 
 TEST_F(FitWindow, CancelClicked_EndsTheFitAndLeavesTheScene) {
   measure("surface.k=0.22");
-  for (const char* key : {"surface.n", "surface.k", "surface.sigma", "surface.q"}) {
+  for (const char* key : {"surface.n", "surface.k", "surface.sigma", "surface.q"})
     click_control(std::string("vary ") + key);
-  }
   const float top = app_->control_area("surface.n").min.y;
   keys("ctrl+f");
   EXPECT_EQ(app_->control_area("surface.n").min.y, top);
@@ -183,15 +169,6 @@ TEST_F(FitWindow, CancelClicked_EndsTheFitAndLeavesTheScene) {
   EXPECT_FALSE(app_->session().edits().is_changed());
   EXPECT_EQ(app_->session().message().text, "cancelled");
   EXPECT_EQ(app_->control_area("surface.n").min.y, top);
-}
-
-TEST_F(FitWindow, Result_IsSaidUntilTheSceneChanges) {
-  measure("surface.sigma=0.3");
-  click_control("vary surface.sigma");
-  fit();
-  EXPECT_NE(app_->session().message().text.find("χ²"), std::string::npos) << app_->session().message().text;
-  click_control("emission.bracket");
-  EXPECT_EQ(app_->session().message().text, "");
 }
 
 }  // namespace

@@ -19,8 +19,6 @@ namespace {
 
 const std::string kHostDir = DOLP_HOST_DIR;
 
-// ---- Edits ---------------------------------------------------------------------------------------------------------
-
 TEST(Parameters, EndsOfEverySlider_AreAccepted) {
   for (const Parameter& p : parameters()) {
     for (const double end : {p.slider.from, p.slider.to}) {
@@ -79,14 +77,14 @@ const std::vector<EditCase> kEditCases = {
     {{"surface.masking=smith", "emission.bracket=true"},
      {"surface.scattering=multiple"},
      {"surface.masking=v-cavity", "emission.bracket=false"},
-     "With surface.scattering = multiple goes surface.masking = v-cavity, emission.bracket = false"},
+     "surface.scattering = multiple also sets surface.masking = v-cavity, emission.bracket = false"},
     {{"surface.masking=smith"}, {"surface.scattering=multiple", "surface.sigma=0.2"}, {"surface.sigma=0.2"}},
     {{}, {"surface.scattering=multiple;surface.masking=smith"}, {"surface.masking=v-cavity"}, "scattering", true},
     {{"emission.model=direct"},
      {"emission=none", "surface.masking=integral", "reset emission"},
      {"emission.model=direct", "surface.masking=v-cavity"},
-     "With emission = as opened goes surface.masking = v-cavity"},
-    // A wind stands in the place of sigma; slopes of another distribution begin with its sigma.
+     "emission = as opened also sets surface.masking = v-cavity"},
+    // A wind replaces sigma; slopes of another distribution begin with its sigma.
     {{"surface.distribution=gaussian", "surface.wind_m_s=8"}, {"surface.wind_m_s=12"}, {"surface.wind_m_s=12"}},
     {{"surface.distribution=gaussian", "surface.wind_m_s=10"},
      {"surface.distribution=cauchy"},
@@ -124,8 +122,6 @@ TEST(Edits, EachKind_GivesTheValuesAndTheMessage) {
   }
 }
 
-// ---- Choices that exclude one another ------------------------------------------------------------------------------
-
 bool is_accepted(const SceneEdits& edits, const Changes& changes) {
   try {
     edits.scene().with(changes);
@@ -138,13 +134,12 @@ bool is_accepted(const SceneEdits& edits, const Changes& changes) {
 /// Every combination of the words of some choices that the scene reader accepts.
 std::vector<Changes> accepted_combinations(const std::vector<std::string>& keys) {
   std::vector<Changes> all = {{}};
-  for (const Choice& choice : choices()) {
-    if (std::ranges::find(keys, choice.key->key) == keys.end()) continue;
+  for (const std::string& key : keys) {
     std::vector<Changes> longer;
     for (const Changes& begun : all) {
-      for (const std::string& word : choice.key->words) {
+      for (const std::string& word : described(key).words) {
         longer.push_back(begun);
-        longer.back().push_back({choice.key->key, TomlText{word}});
+        longer.back().push_back({key, TomlText{word}});
       }
     }
     all = std::move(longer);
@@ -153,7 +148,7 @@ std::vector<Changes> accepted_combinations(const std::vector<std::string>& keys)
   return all;
 }
 
-TEST(Conflicts, EveryChoiceInEveryScene_IsTakenWithTheLeastThatItAsksFor) {
+TEST(Conflicts, EveryChoiceInEveryScene_IsTakenWithTheLeastThatItNeeds) {
   const std::vector<Changes> combinations = accepted_combinations(
       {"surface.masking", "surface.scattering", "emission.model", "emission.bracket", "geometry.mode"});
   EXPECT_EQ(combinations.size(), 28U);
@@ -163,10 +158,10 @@ TEST(Conflicts, EveryChoiceInEveryScene_IsTakenWithTheLeastThatItAsksFor) {
     for (const Choice& choice : choices()) {
       for (const std::string& word : choice.key->words) {
         const Setting chosen = {choice.key->key, TomlText{word}};
-        Changes asked = asked_for(edits.scene(), {chosen});
-        EXPECT_EQ(asked.empty(), is_accepted(edits, {chosen})) << chosen.key << " = " << word;
-        asked.push_back(chosen);
-        EXPECT_TRUE(is_accepted(edits, asked)) << chosen.key << " = " << word;
+        Changes needed = needed_with(edits.scene(), {chosen});
+        EXPECT_EQ(needed.empty(), is_accepted(edits, {chosen})) << chosen.key << " = " << word;
+        needed.push_back(chosen);
+        EXPECT_TRUE(is_accepted(edits, needed)) << chosen.key << " = " << word;
       }
     }
   }
@@ -188,7 +183,8 @@ TEST(SceneToml, ShippedScenesWithChanges_ReadBackAsTheSameScene) {
 }
 
 TEST(SceneToml, NamedFiles_AreFoundFromTheNewFolder) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "dolp-scene-toml";
+  const TemporaryFolder temporary;
+  const std::filesystem::path& folder = temporary.path();
   std::filesystem::create_directories(folder / "scenes");
   std::filesystem::create_directories(folder / "saved");
   std::ofstream(folder / "scenes" / "paint.csv") << "wavelength_um,n,k\n8,1.5,0.1\n14,1.6,0.2\n";
@@ -196,26 +192,22 @@ TEST(SceneToml, NamedFiles_AreFoundFromTheNewFolder) {
   const Scene scene = Scene::from_text(kPaint, {{"surface.material_file", "paint.csv"}}, path);
   const Scene again = Scene::from_text(scene.toml(folder / "saved"), {}, (folder / "saved" / "s.toml").string());
   EXPECT_EQ(again.refractive_index(10.0), scene.refractive_index(10.0));
-  std::filesystem::remove_all(folder);
 }
 
-// ---- Worker --------------------------------------------------------------------------------------------------------
-
-/// Waits in each call until it is let go, and notes what it was asked for.
+/// An evaluator whose calls wait until it is opened.
 class SlowEvaluator {
  public:
   Evaluate evaluate() {
     return [this](const Scene& scene, const PointList& list, const RunOptions& options) {
       std::unique_lock lock(mutex_);
-      ++calls;
+      ++calls_;
       changed_.notify_all();
       while (!is_open_) {
         changed_.wait_for(lock, std::chrono::milliseconds(1));
-        if (!options.progress(0, 1)) {
-          ++cancelled;
-          changed_.notify_all();
-          throw Cancelled("no file was written");
-        }
+        if (options.progress(0, 1)) continue;
+        ++cancelled;
+        changed_.notify_all();
+        throw Cancelled("no file was written");
       }
       return explore::evaluate(cpu_, scene, list, options);
     };
@@ -225,21 +217,18 @@ class SlowEvaluator {
     is_open_ = true;
     changed_.notify_all();
   }
-  void wait_for_call() {
+  /// Waits until a call has begun, or has been cancelled.
+  void wait_for(bool is_cancelled) {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return calls > 0; });
+    changed_.wait(lock, [&] { return (is_cancelled ? cancelled : calls_) > 0; });
   }
-  void wait_for_cancel() {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return cancelled > 0; });
-  }
-  int calls = 0;
   int cancelled = 0;
 
  private:
   Evaluator cpu_{EvaluatorOptions{.evaluator = "cpu"}};
   std::mutex mutex_;
   std::condition_variable changed_;
+  int calls_ = 0;
   bool is_open_ = false;
 };
 
@@ -253,29 +242,24 @@ std::vector<JobPart> finish(Worker& worker) {
   return worker.take_news();
 }
 
-struct WorkerCase {
-  bool is_brief;
-  std::vector<std::string> next;      ///< wanted while the job "first" is under way
-  std::vector<std::string> expected;  ///< what is computed, in order
-  int cancelled;
-};
-
-TEST(ExploreWorker, JobUnderWay_EndsWhenItIsNoLongerWantedUnlessItIsBrief) {
-  for (const auto& [is_brief, next, expected, cancelled] : {WorkerCase{false, {"new"}, {"new"}, 1},
-                                                            {false, {"new", "first"}, {"first", "new"}, 0},
-                                                            {true, {"new"}, {"first", "new"}, 0},
-                                                            {false, {}, {}, 1}}) {
+TEST(ExploreWorker, RunningJob_EndsWhenItIsNoLongerWantedUnlessItIsBrief) {
+  using Keys = std::vector<std::string>;
+  // The keys that are wanted while the job "first" runs, and the keys of the results in order.
+  for (const auto& [is_brief, next, expected, cancelled] : {std::tuple{false, Keys{"new"}, Keys{"new"}, 1},
+                                                            {false, Keys{"new", "first"}, Keys{"first", "new"}, 0},
+                                                            {true, Keys{"new"}, Keys{"first", "new"}, 0},
+                                                            {false, Keys{}, Keys{}, 1}}) {
     SlowEvaluator evaluator;
     Worker worker(evaluator.evaluate(), [] {});
     Job first = job_of("first");
     first.is_brief = is_brief;
     worker.want({first});
-    evaluator.wait_for_call();
+    evaluator.wait_for(false);
     std::vector<Job> jobs;
     for (const std::string& key : next) jobs.push_back(job_of(key));
     worker.want(std::move(jobs));
-    if (cancelled > 0) evaluator.wait_for_cancel();
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // time to give up what shall go on
+    if (cancelled > 0) evaluator.wait_for(true);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // a wrong cancellation would come now
     evaluator.open();
     std::vector<std::string> keys;
     for (const JobPart& part : finish(worker)) keys.push_back(part.key);
@@ -292,7 +276,7 @@ TEST(ExploreWorker, Parts_ComeInOrderAtTheWiderTolerance_AJobOfHigherRankBetween
     job.tolerance = wanted;
     job.parts = {points_at(job.scene, {10.0, 20.0, 30.0}), points_at(job.scene, {40.0})};
     worker.want({job});
-    evaluator.wait_for_call();
+    evaluator.wait_for(false);
     worker.want({job_of("urgent"), job});
     evaluator.open();
     const std::vector<JobPart> news = finish(worker);
@@ -316,25 +300,21 @@ TEST(ExploreWorker, LostDevice_IsThrownToWhoAsksForNews) {
   EXPECT_THROW(worker.take_news(), DeviceError);
 }
 
-// ---- Measured points, true error -----------------------------------------------------------------------------------
-
-TEST(Measured, DataWithSettingsOfTheirOwn_AreRefused) {
-  Residuals residuals(paint().scene());
-  EXPECT_THROW(residuals.load(MeasuredData::from_csv("theta_deg,dolp\n60,0.1\n", "data", {{"surface.n", 2.0}})),
-               InputError);
-}
-
-TEST(Measured, DataAndScenesProbablyMeantOtherwise_AreSaidOnceInTheMessage) {
-  const TemporaryFile radians("r.csv", "theta_deg,dolp\n0.5,0.01\n1.2,0.1\n");
+TEST(Measured, DataAndScenesWithDoubtfulUnits_AreRemarkedOnOnce_AndDataWithSettingsAreRefused) {
   Session session(paint({"emission.temperature_K=25"}));
+  const auto says = [&](const char* end) {
+    return session.message().text.ends_with(end) && !session.message().is_error;
+  };
   EXPECT_NE(session.message().text.find("25 K is cold"), std::string::npos) << session.message().text;
-  session.load_measured(radians.path());
-  EXPECT_TRUE(session.message().text.ends_with("is it in radians?")) << session.message().text;
+  session.load_measured(TemporaryFile("r.csv", "theta_deg,dolp\n0.5,0.01\n1.2,0.1\n").path());
+  EXPECT_TRUE(says("is it in radians?")) << session.message().text;
   session.set("surface.sigma", 0.2);
   EXPECT_EQ(session.message().text, "");
   session.set("emission.temperature_K", 20.0);
-  EXPECT_TRUE(session.message().text.ends_with("20 K is cold; were degrees Celsius meant?")) << session.message().text;
-  EXPECT_FALSE(session.message().is_error);
+  EXPECT_TRUE(says("20 K is cold; were degrees Celsius meant?")) << session.message().text;
+  Residuals residuals(paint().scene());
+  EXPECT_THROW(residuals.load(MeasuredData::from_csv("theta_deg,dolp\n60,0.1\n", "data", {{"surface.n", 2.0}})),
+               InputError);
 }
 
 TEST(Measured, Emissivities_AreThoseThatAFitCompares) {
@@ -352,29 +332,23 @@ TEST(Measured, Emissivities_AreThoseThatAFitCompares) {
 
 TEST(Measured, Residuals_AreMeasuredMinusModelAtTheMeasuredPoints) {
   Driver driver(paint());
-  const std::string path = (std::filesystem::temp_directory_path() / "dolp-measured.csv").string();
-  for (const bool is_signed : {false, true}) {
-    std::ofstream(path) << (is_signed ? "theta_deg,q_over_i\n" : "theta_deg,dolp\n") << "33.3,0.05\n61.7,0.06\n";
-    driver.session.load_measured(path);
+  for (const auto& [column, plotted, quantity] :
+       {std::tuple{"dolp", Plotted::kDolp, Quantity::kDolp}, {"q_over_i", Plotted::kSignedDolp, Quantity::kQOverI}}) {
+    const TemporaryFile file(".csv", std::string("theta_deg,") + column + "\n33.3,0.05\n61.7,0.06\n");
+    driver.session.load_measured(file.path());
     driver.settle();
     const Scene& scene = driver.session.scene();
     const std::vector<Point> model = truth(scene, points_at(scene, {33.3, 61.7}));
-    const auto value = [&](std::size_t i) {
-      return is_signed ? model[i][Quantity::kQOverI] : model[i][Quantity::kDolp];
-    };
-    const std::vector<double> residuals = driver.session.residuals().residuals();
+    const std::vector<Measurement> residuals = driver.session.residuals().residuals(plotted);
     ASSERT_EQ(residuals.size(), 2U);
-    EXPECT_EQ(residuals[0], 0.05 - value(0));
-    EXPECT_EQ(residuals[1], 0.06 - value(1));
-    const Plotted quantity = is_signed ? Plotted::kSignedDolp : Plotted::kDolp;
-    EXPECT_DOUBLE_EQ(*driver.session.residuals().rms(quantity),
-                     std::sqrt((residuals[0] * residuals[0] + residuals[1] * residuals[1]) / 2.0));
-    EXPECT_FALSE(driver.session.residuals().rms(Plotted::kAlbedo));
+    EXPECT_EQ(residuals[0].value, 0.05 - model[0][quantity]);
+    EXPECT_EQ(residuals[1].value, 0.06 - model[1][quantity]);
+    EXPECT_DOUBLE_EQ(*rms_of(residuals), std::hypot(residuals[0].value, residuals[1].value) / std::sqrt(2.0));
+    EXPECT_FALSE(rms_of(driver.session.residuals().residuals(Plotted::kAlbedo)));
   }
-  std::filesystem::remove(path);
 }
 
-TEST(BackgroundTask, Phase_IsNamedAndCountsAnew_AndCancellingIsSaid) {
+TEST(BackgroundTask, Phase_HasANameAndItsOwnProgress_AndCancellingIsSaid) {
   std::mutex mutex;
   std::condition_variable changed;
   int changes = 0;
@@ -383,7 +357,7 @@ TEST(BackgroundTask, Phase_IsNamedAndCountsAnew_AndCancellingIsSaid) {
     ++changes;
     changed.notify_all();
   });
-  task.start([&task](const Progress& progress) -> BackgroundTask::Rest {
+  task.start([&task](const Progress& progress) -> BackgroundTask::Ending {
     static_cast<void>(progress(3, 4));
     task.set_phase("intervals");
     while (progress(1, 4)) std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "base/text.hpp"
-#include "explore/sky_pair.hpp"
-#include "explore/window/actions.hpp"
+#include "explore/files.hpp"
+#include "explore/scene_edits.hpp"
 #include "explore_support.hpp"
 #include "temporary_file.hpp"
 #include "window_support.hpp"
@@ -14,44 +14,38 @@ namespace {
 
 constexpr SkyPair kDusk{231.5, 279.0};
 
-TEST(SkyPair, FilesOfTwoRowsAlone_AreRead) {
-  struct Case {
-    std::string csv;
-    std::optional<SkyPair> sky;
-  };
-  for (const auto& [csv, sky] : {Case{kDusk.csv(), kDusk},
-                                 {"zenith_deg,temperature_K\n0,220\n45,250\n90,285\n", std::nullopt},
-                                 {"zenith_deg,temperature_K\n0,220\n80,285\n", std::nullopt},
-                                 {"zenith_deg,radiance\n0,2\n90,8\n", std::nullopt},
-                                 {"wavelength_um,zenith_deg,temperature_K\n8,0,220\n8,90,285\n", std::nullopt}}) {
+TEST(SkyPair, OnlyFilesOfTwoRows_AreRead) {
+  const std::optional<SkyPair> none;
+  for (const auto& [csv, sky] : {std::pair{kDusk.csv(), std::optional(kDusk)},
+                                 {"zenith_deg,temperature_K\n0,220\n45,250\n90,285\n", none},
+                                 {"zenith_deg,temperature_K\n0,220\n80,285\n", none},
+                                 {"zenith_deg,radiance\n0,2\n90,8\n", none},
+                                 {"wavelength_um,zenith_deg,temperature_K\n8,0,220\n8,90,285\n", none}}) {
     EXPECT_EQ(read_sky_pair(TemporaryFile("sky.csv", csv).path()), sky) << csv;
   }
 }
 
-TEST(SkyPair, Scene_WithIt_IsThatOfItsCsv) {
+TEST(SkyPair, SceneOfTheWindow_HasTheResultsOfItsCsv) {
   Driver driver(paint());
   driver.session.set("surroundings.profile", driver.session.skies().path(kDusk));
   driver.settle();
   const TemporaryFile file("sky.csv", "zenith_deg,temperature_K\n0,231.5\n90,279\n");
   const Scene scene = paint({"surroundings.profile=" + file.path()}).scene();
   expect_same(driver.session.curve().points(), truth(scene, driver.session.curve().points()));
-  EXPECT_NE(driver.session.scene().toml(), paint().scene().toml());
   driver.session.undo();
   EXPECT_EQ(driver.session.scene().number("surroundings.temperature_K"), 240.0);
 }
 
-TEST(SkyPair, SavedScene_HasItsSkyBesideIt_AndReadsBackAsTheSame) {
+TEST(SkyPair, SavedScene_HasItsSkyBesideIt_AndReadsBackWithIt) {
   const TemporaryFolder folder;
   std::filesystem::create_directories(folder.path() / "scenes");
   std::filesystem::create_directories(folder.path() / "saved");
   const std::string opened = (folder.path() / "scenes" / "paint.toml").string();
   const std::string saved = (folder.path() / "saved" / "dusk.toml").string();
   Session session(SceneEdits(Scene::from_text(kPaint, {}, opened)));
-  Actions actions(session, "", "", {}, [] {});
   session.set("surroundings.profile", session.skies().path(kDusk));
   EXPECT_TRUE(session.has_own_sky());
-  actions.save_scene(saved);
-  EXPECT_FALSE(session.message().is_error) << session.message().text;
+  save_scene(session, saved);
   EXPECT_FALSE(session.has_own_sky() || session.edits().is_changed());
   EXPECT_EQ(read_file(folder.path() / "saved" / "dusk_sky.csv"), kDusk.csv());
   EXPECT_NE(read_file(saved).find("profile = 'dusk_sky.csv'"), std::string::npos) << read_file(saved);
@@ -69,13 +63,23 @@ namespace {
 using namespace dolp;
 using namespace dolp::explore_test;
 
-TEST_F(Window, SkyEditor_GivesASkyBetweenTwoTemperatures_WhichTheSavedSceneKeeps) {
+/// Chooses an entry of the list of skies, whose places are in heights of the closed list.
+class Skies : public Window {
+ protected:
+  void choose(float place) {
+    click_control("sky");
+    click(app_->control_area("sky").at(0.5F, place));
+    app_->settle();
+    frames();
+  }
+  std::optional<explore::SkyPair> sky() const {
+    return explore::read_sky_pair(explore::sky_file(app_->session().scene()));
+  }
+};
+
+TEST_F(Skies, Editor_MakesASkyBetweenTwoTemperatures_WhichTheSavedSceneKeeps) {
   const explore::Session& session = app_->session();
-  const auto sky = [&] { return explore::read_sky_pair(explore::sky_file(session.scene())); };
-  click_control("sky");
-  click(app_->control_area("sky").at(0.5F, 4.3F));  // the fourth of the list
-  app_->settle();
-  frames();
+  choose(4.3F);  // the fourth of the list
   ASSERT_EQ(sky(), explore::SkyPair());
   drag_slider("sky zenith", kPartOfSlider);
   frames();
@@ -85,7 +89,7 @@ TEST_F(Window, SkyEditor_GivesASkyBetweenTwoTemperatures_WhichTheSavedSceneKeeps
   for (const auto& [typed, is_good] : {std::pair{"-3", false}, {"288.5", true}}) {
     click_control("field sky horizon");
     keys("ctrl+a");
-    xdotool({"type", "--delay", "12", "--", typed});
+    type(typed);
     keys("Return");
     EXPECT_EQ(is_marked("field sky horizon"), !is_good);
     EXPECT_EQ(*sky(), (explore::SkyPair{zenith_K, is_good ? 288.5 : explore::SkyPair().horizon_K}));
@@ -99,43 +103,25 @@ TEST_F(Window, SkyEditor_GivesASkyBetweenTwoTemperatures_WhichTheSavedSceneKeeps
   EXPECT_EQ(dolp({"plan", "scene_scene.toml"}).status, 0);
   keys("ctrl+shift+c");
   EXPECT_TRUE(session.message().text.starts_with("copied")) << session.message().text;
-  xdotool({"keydown", "ctrl"});
-  frames();
-  click(app_->control_area("sky zenith").at(0.1F, 0.5F));
-  xdotool({"keyup", "ctrl"});
-  frames();
-  EXPECT_EQ(session.scene().number("surroundings.temperature_K"), 240.0);
+  ctrl_click("sky zenith");
+  EXPECT_EQ(number("surroundings.temperature_K"), 240.0);
 }
 
-TEST_F(Window, SkyList_FileOfTheSceneAsOpened_StaysAmongTheChoices) {
+TEST_F(Skies, List_OffersUniformAndBuiltInSkies_AndTheFileOfTheSceneAsOpened) {
+  for (const auto& [place, name] : {std::pair{2.5F, "clear-sky"}, {3.4F, "overcast"}, {1.6F, ""}}) {
+    choose(place);
+    EXPECT_EQ(word("surroundings.profile").value_or(""), name);
+  }
+  EXPECT_EQ(number("surroundings.temperature_K"), 240.0);  // as opened
   put("sky.csv", "zenith_deg,temperature_K\n0,220\n70,240\n90,285\n");
   open({{"surroundings.profile", "sky.csv"}});
-  const auto profile = [&] { return app_->session().scene().word("surroundings.profile"); };
-  for (const auto& [place, expected] : {std::pair{3.4F, "overcast"}, {5.2F, "sky.csv"}}) {
-    click_control("sky");
-    click(app_->control_area("sky").at(0.5F, place));
-    app_->settle();
-    frames();
-    EXPECT_EQ(profile(), expected);
+  for (const auto& [place, name] : {std::pair{3.4F, "overcast"}, {5.2F, "sky.csv"}}) {
+    choose(place);
+    EXPECT_EQ(word("surroundings.profile"), name);
   }
   keys("ctrl+s");
   keys("Return");
   EXPECT_NE(content("scene_scene.toml").find("profile = 'sky.csv'"), std::string::npos) << content("scene_scene.toml");
-}
-
-TEST_F(Window, SkyList_UniformAndBuiltInOnes_AreAWordEach) {
-  struct Case {
-    float place;
-    std::string setting;
-  };
-  for (const auto& [place, setting] : {Case{2.5F, "clear-sky"}, {3.4F, "overcast"}, {1.6F, ""}}) {
-    click_control("sky");
-    click(app_->control_area("sky").at(0.5F, place));
-    app_->settle();
-    frames();
-    EXPECT_EQ(app_->session().scene().word("surroundings.profile").value_or(""), setting);
-  }
-  EXPECT_EQ(app_->session().scene().number("surroundings.temperature_K"), 240.0);  // of the scene as opened
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Files by the hands of the window's user: opened, saved, gone back to.
+// Files that the window's user opens, saves and goes back to.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -21,14 +21,26 @@ class WindowFiles : public Window {
     put("folder/other.toml", other);
     put("folder/notes.txt", "");
   }
-  void type(const std::string& text) {
-    xdotool({"type", "--delay", "12", "--", text});
+  /// Presses a shortcut, types a path, or accepts the suggested one.
+  void answer(const std::string& shortcut, const std::string& path = "") {
+    keys(shortcut);
+    if (!path.empty()) type(path);
+    keys("Return");
+    app_->settle();
+  }
+  /// Opens a file from the list of the dialog: the first click chooses, the second opens.
+  void open_listed(const std::string& folder, const std::string& file) {
+    keys("ctrl+o");
     frames();
+    if (!folder.empty()) click_control(folder);
+    click_control(file);
+    click_control(file);
+    app_->settle();
   }
   std::string title() const { return app_->session().scene().title(); }
 };
 
-TEST_F(WindowFiles, OpenDialog_FolderAndFileClicked_ShowsTheScene_AndUndoGoesBack) {
+TEST_F(WindowFiles, SceneOfTheList_IsOpened_IsUndone_AndIsAmongTheRecentOnes) {
   drag_slider("surface.sigma", kPartOfSlider);
   keys("ctrl+o");
   frames();
@@ -40,22 +52,24 @@ TEST_F(WindowFiles, OpenDialog_FolderAndFileClicked_ShowsTheScene_AndUndoGoesBac
   click_control("other.toml");
   app_->settle();
   EXPECT_EQ(title(), "Other");
-  EXPECT_EQ(app_->session().scene().number("surface.sigma"), 0.15);
+  EXPECT_EQ(number("surface.sigma"), 0.15);
   EXPECT_NE(content("config/dolp/window.toml").find("folder/other.toml"), std::string::npos);
   keys("ctrl+z");
   EXPECT_EQ(title(), "Painted");
-  EXPECT_NE(app_->session().scene().number("surface.sigma"), 0.15);
+  EXPECT_NE(number("surface.sigma"), 0.15);
+  click_control("menu File");
+  click_control("recent");
+  click_control("recent " + at("folder/other.toml").string());
+  EXPECT_EQ(title(), "Other");
 }
 
-TEST_F(WindowFiles, OpenDialog_UpAndByKeyboard_OpensAPath) {
+TEST_F(WindowFiles, OpenDialog_TakesAPathByKeyboard_AndRefusesAMissingOne) {
   keys("ctrl+o");
   click_control("folder/");
   click_control("../");
   EXPECT_NO_THROW(app_->control_area("scene.toml"));
   keys("Escape");
-  keys("ctrl+o");
-  type("folder/missing.toml");
-  keys("Return");
+  answer("ctrl+o", "folder/missing.toml");
   EXPECT_EQ(title(), "Painted");
   type("folder");
   keys("Return");
@@ -64,69 +78,29 @@ TEST_F(WindowFiles, OpenDialog_UpAndByKeyboard_OpensAPath) {
   keys("Return");
   app_->settle();
   EXPECT_EQ(title(), "Other");
-}
-
-TEST_F(WindowFiles, SceneWithoutAFolder_ListsTheCurrentOne) {
+  // A scene without a folder lists the working folder.
   app_->session().go_to(explore::SceneEdits(Scene::from_text(kEdited, {}, "built-in")));
   keys("ctrl+o");
   EXPECT_NO_THROW(app_->control_area("../"));
   keys("Escape");
-  keys("ctrl+s");
-  keys("Escape");
   EXPECT_FALSE(app_->session().message().is_error);
 }
 
-TEST_F(WindowFiles, RecentScene_ChosenInTheMenu_IsOpened) {
-  keys("ctrl+o");
-  click_control("folder/");
-  click_control("other.toml");
-  click_control("other.toml");
-  keys("ctrl+z");
-  ASSERT_EQ(title(), "Painted");
-  click_control("menu File");
-  click_control("recent");
-  click_control("recent " + at("folder/other.toml").string());
-  EXPECT_EQ(title(), "Other");
-}
-
-TEST_F(WindowFiles, SaveDialogs_BeginBesideTheScene_ThenWhereItWasSaved) {
-  keys("ctrl+o");
-  click_control("folder/");
-  click_control("other.toml");
-  click_control("other.toml");
-  app_->settle();
-  keys("ctrl+e");
-  keys("Return");
-  frames();
+TEST_F(WindowFiles, SaveDialogs_BeginBesideTheScene_ThenInTheLastFolder) {
+  open_listed("folder/", "other.toml");
+  answer("ctrl+e");
   EXPECT_FALSE(content("folder/other_curve.csv").empty());
-  keys("ctrl+e");
-  type(at("chosen.csv").string());
-  keys("Return");
-  keys("ctrl+s");
-  keys("Return");
+  answer("ctrl+e", at("chosen.csv").string());
+  answer("ctrl+s");
   EXPECT_FALSE(content("other_scene.toml").empty());
 }
 
 TEST_F(WindowFiles, BadScene_IsOneLine_AndTheSceneStays) {
   put("bad.toml", "[surface]\nsigma = -1\n");
-  keys("ctrl+o");
-  click_control("bad.toml");
-  click_control("bad.toml");
+  open_listed("", "bad.toml");
   EXPECT_EQ(title(), "Painted");
   EXPECT_TRUE(app_->session().message().is_error);
   EXPECT_NE(app_->session().message().text.find("bad.toml"), std::string::npos);
-}
-
-TEST_F(WindowFiles, Changed_EndsWithSaving) {
-  drag_slider("surface.sigma", kPartOfSlider);
-  EXPECT_TRUE(app_->session().edits().is_changed());
-  keys("ctrl+s");
-  keys("Return");
-  EXPECT_FALSE(app_->session().edits().is_changed());
-  EXPECT_EQ(Scene::from_file(at("scene_scene.toml")).number("surface.sigma"),
-            app_->session().scene().number("surface.sigma"));
-  keys("ctrl+z");
-  EXPECT_TRUE(app_->session().edits().is_changed());
 }
 
 TEST_F(WindowFiles, Plots_SavedByShortcut_AreLinesAndTextOfWhatIsShown) {
@@ -135,9 +109,7 @@ TEST_F(WindowFiles, Plots_SavedByShortcut_AreLinesAndTextOfWhatIsShown) {
   keys("ctrl+p");
   drag_slider("surface.sigma", kPartOfSlider);
   const auto save = [&](const std::string& name) {
-    keys("ctrl+shift+e");
-    type(at(name).string());
-    keys("Return");
+    answer("ctrl+shift+e", at(name).string());
     const auto is_drawing = [&] { return app_->session().message().text.starts_with("drawing"); };
     for (int i = 0; i < 3000 && is_drawing(); ++i) {
       app_->frame();
@@ -148,7 +120,7 @@ TEST_F(WindowFiles, Plots_SavedByShortcut_AreLinesAndTextOfWhatIsShown) {
   EXPECT_EQ(save("plot.svg").text, "saved " + at("plot.svg").string());
   const std::string svg = content("plot.svg");
   for (const std::string& text :
-       {std::string("Painted"), explore::curve_name(app_->session()), app_->session().overlay_name(),
+       {std::string("Painted"), explore::curve_name(app_->session()), overlay_name(app_->session()),
         explore::surface_name(app_->session().pins()[0].curve.shown_scene()), std::string("measured"),
         std::string("DOLP [%]"), std::string("zenith θ [°]")}) {
     EXPECT_NE(svg.find(text), std::string::npos) << text;
@@ -159,41 +131,37 @@ TEST_F(WindowFiles, Plots_SavedByShortcut_AreLinesAndTextOfWhatIsShown) {
   EXPECT_TRUE(save("missing/plot.svg").is_error);
 }
 
-TEST_F(WindowFiles, Snapshot_Clicked_GivesTheStateBack) {
+TEST_F(WindowFiles, Snapshot_Clicked_RestoresTheState_AndTakesATypedName) {
+  keys("ctrl+p");
   keys("ctrl+b");
   drag_slider("surface.sigma", kPartOfSlider);
   click_control("snapshot 0");
   app_->settle();
-  EXPECT_EQ(app_->session().scene().number("surface.sigma"), 0.15);
+  EXPECT_EQ(number("surface.sigma"), 0.15);
   keys("ctrl+z");
-  EXPECT_NE(app_->session().scene().number("surface.sigma"), 0.15);
-}
-
-TEST_F(WindowFiles, Snapshot_RightClicked_TakesTheNameThatIsTyped) {
-  keys("ctrl+p");
-  keys("ctrl+b");
+  EXPECT_NE(number("surface.sigma"), 0.15);
   move_to(app_->control_area("snapshot 0").at(0.5F, 0.5F));
   xdotool({"click", "3"});
   frames();
-  xdotool({"type", "dry"});
-  frames();
+  type("dry");
   EXPECT_TRUE(app_->session().snapshots()[0].name.ends_with("dry")) << app_->session().snapshots()[0].name;
   EXPECT_EQ(app_->session().pins()[0].name, "");
 }
 
-TEST_F(WindowFiles, Session_SavedByShortcut_IsOpenedAsItWas) {
+TEST_F(WindowFiles, SceneAndSession_SavedByShortcut_AreOpenedAsTheyWere) {
   keys("ctrl+p");
   drag_slider("surface.sigma", kPartOfSlider);
-  const auto sigma = app_->session().scene().number("surface.sigma");
-  keys("ctrl+shift+s");
-  keys("Return");
+  const auto sigma = number("surface.sigma");
+  EXPECT_TRUE(app_->session().edits().is_changed());
+  answer("ctrl+s");
+  EXPECT_FALSE(app_->session().edits().is_changed());
+  EXPECT_EQ(Scene::from_file(at("scene_scene.toml")).number("surface.sigma"), sigma);
+  answer("ctrl+shift+s");
   keys("ctrl+r");
-  app_->session().remove_pin(0);
-  keys("ctrl+o");
-  click_control("scene_session.toml");
-  click_control("scene_session.toml");
-  app_->settle();
-  EXPECT_EQ(app_->session().scene().number("surface.sigma"), sigma);
+  EXPECT_TRUE(app_->session().edits().is_changed());
+  app_->session().pins().pop_front();
+  open_listed("", "scene_session.toml");
+  EXPECT_EQ(number("surface.sigma"), sigma);
   ASSERT_EQ(app_->session().pins().size(), 1U);
   EXPECT_TRUE(app_->session().pins()[0].curve.is_finished());
 }

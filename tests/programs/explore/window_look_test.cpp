@@ -1,4 +1,4 @@
-// The window's look: theme, scale, small windows, notes, and how all of it closes.
+// The window's look: theme, scale, small windows, notes, and closing.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -34,25 +34,20 @@ TEST_F(WindowLook, LightTheme_ChosenInTheMenu_IsKept) {
   frames();
   EXPECT_GT(brightness(), 200.0);
   EXPECT_NE(content("config/dolp/window.toml").find("light = true"), std::string::npos);
-  TearDown();
-  explore::AppOptions options;
-  options.preferences = at("config/dolp/window.toml");
-  app_ = std::make_unique<App>(explore::SceneEdits(Scene::from_text(kEdited)), options);
+  open({});
   frames();
   EXPECT_GT(brightness(), 200.0);
 }
 
 TEST_F(WindowLook, MarkOfAMaximumAtTheEnd_IsWhole) {
-  explore::View view = app_->session().view();
-  view.theta_max_deg = 60.0;
-  app_->session().set_view(view);
+  app_->session().set_view(&explore::View::theta_max_deg, 60.0);
   app_->settle();
   frames();
   ASSERT_GT(app_->session().peak().answer().value().at.theta_deg, 59.9);
   const auto column = [&](float right) {
     return pixels({{plot().max.x + right, plot().min.y}, {plot().max.x + right + 1.0F, plot().max.y}});
   };
-  EXPECT_TRUE(column(3.0F) != column(7.0F));  // the mark alone is drawn beside the plot
+  EXPECT_TRUE(column(3.0F) != column(7.0F));  // only the mark is drawn beside the plot
 }
 
 TEST_F(WindowLook, Lines_BreakAtSpacesAlone) {

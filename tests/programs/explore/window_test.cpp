@@ -8,9 +8,9 @@
 #include <thread>
 
 #include "cli_support.hpp"
+#include "explore/files.hpp"
 #include "explore/parameters.hpp"
 #include "explore/readout.hpp"
-#include "explore/session_file.hpp"
 #include "explore/window/app.hpp"
 #include "explore/window/style.hpp"
 #include "table/table_file.hpp"
@@ -24,12 +24,12 @@ using namespace dolp::explore_test;
 using explore::App;
 using explore::Area;
 
-TEST_F(Window, Slider_Dragged_PlottedValuesChangeAndEqualEval) {
+TEST_F(Window, Slider_Dragged_PlottedValuesChangeAndEqualEval_AndCtrlClickTakesItBack) {
   const explore::Session& session = app_->session();
   const std::vector<explore::Point> before = session.curve().points();
   drag_slider("surface.sigma", kPartOfSlider);
   const double wanted = 0.01 * std::pow(200.0, kPartOfSlider);
-  EXPECT_NEAR(*session.scene().number("surface.sigma"), wanted, kGrab * wanted);
+  EXPECT_NEAR(*number("surface.sigma"), wanted, kGrab * wanted);
   ASSERT_TRUE(session.curve().is_finished());
   const std::vector<explore::Point>& after = session.curve().points();
   const Columns truth = evaluated();
@@ -43,37 +43,22 @@ TEST_F(Window, Slider_Dragged_PlottedValuesChangeAndEqualEval) {
     EXPECT_EQ(after[i][Quantity::kErrorEstimate], truth.at("error_estimate")[i]) << i;
   }
   EXPECT_GT(changed, after.size() / 2);
+  ctrl_click("surface.sigma");
+  EXPECT_EQ(number("surface.sigma"), 0.15);
+  EXPECT_FALSE(session.edits().is_changed());
 }
 
-TEST_F(Window, Slider_CtrlClicked_GivesTheValueAsOpened) {
-  drag_slider("surface.sigma", kPartOfSlider);
-  ASSERT_NE(app_->session().scene().number("surface.sigma"), 0.15);
-  xdotool({"keydown", "ctrl"});
-  frames();
-  click(app_->control_area("surface.sigma").at(0.1F, 0.5F));
-  xdotool({"keyup", "ctrl"});
-  app_->settle();
-  EXPECT_EQ(app_->session().scene().number("surface.sigma"), 0.15);
-  EXPECT_FALSE(app_->session().edits().is_changed());
-}
-
-TEST_F(Window, BracketBox_Clicked_GivesTheCurveABand) {
+TEST_F(Window, BracketBox_GivesTheCurveABand_AndAnotherMaskingSwitchesItOff) {
   click_control("emission.bracket");
   app_->settle();
-  EXPECT_EQ(app_->session().scene().word("emission.bracket"), "true");
   EXPECT_TRUE(app_->session().curve().points()[120].has_bracket());
   EXPECT_EQ(app_->session().edits().changes(), (std::vector<Setting>{{"emission.bracket", true}}));
-}
-
-TEST_F(Window, MaskingList_OtherWord_SwitchesTheBracketOff) {
-  click_control("emission.bracket");
   click_control("surface.masking");
-  // The first word of the list below, "none".
-  click(app_->control_area("surface.masking").at(0.5F, 1.6F));
+  click(app_->control_area("surface.masking").at(0.5F, 1.6F));  // "none", the first word of the list
   app_->settle();
-  EXPECT_EQ(app_->session().scene().word("surface.masking"), "none");
-  EXPECT_EQ(app_->session().scene().word("emission.bracket"), "false");
-  EXPECT_NE(app_->session().message().text.find("goes emission.bracket = false"), std::string::npos);
+  EXPECT_EQ(word("surface.masking"), "none");
+  EXPECT_EQ(word("emission.bracket"), "false");
+  EXPECT_NE(app_->session().message().text.find("also sets emission.bracket = false"), std::string::npos);
 }
 
 TEST_F(Window, Curve_WheelAndRightButton_ZoomAndShift_ADoubleClickShowsAll) {
@@ -105,18 +90,17 @@ TEST_F(Window, Curve_WheelAndRightButton_ZoomAndShift_ADoubleClickShowsAll) {
 
 TEST_F(Window, ChangesUndone_OneDragAtATime_AndBroughtBack) {
   drag_slider("surface.sigma", kPartOfSlider);
-  const double sigma = *app_->session().scene().number("surface.sigma");
+  const auto sigma = number("surface.sigma");
   click_control("emission.bracket");
   keys("ctrl+z");
-  EXPECT_EQ(app_->session().scene().word("emission.bracket"), "false");
-  EXPECT_EQ(app_->session().scene().number("surface.sigma"), sigma);
+  EXPECT_EQ(word("emission.bracket"), "false");
+  EXPECT_EQ(number("surface.sigma"), sigma);
   keys("ctrl+z");
-  EXPECT_EQ(app_->session().scene().number("surface.sigma"), 0.15);
-  EXPECT_FALSE(app_->session().edits().is_changed());
+  EXPECT_EQ(number("surface.sigma"), 0.15);
   keys("ctrl+z");
   EXPECT_EQ(app_->session().message().text, "nothing to undo");
   keys("ctrl+shift+z");
-  EXPECT_EQ(app_->session().scene().number("surface.sigma"), sigma);
+  EXPECT_EQ(number("surface.sigma"), sigma);
   keys("ctrl+shift+c");
   EXPECT_EQ(ImGui::GetClipboardText(), explore::table_command(app_->session().edits()));
 }
@@ -126,38 +110,26 @@ TEST_F(Window, Legend_PinClicked_HidesIt) {
   drag_slider("surface.sigma", kPartOfSlider);
   const Area area = app_->curve_view().area();
   const float line = ImGui::GetTextLineHeight();
-  // Above the plot, with what differs alone; each entry of this scene has a line of its own or shares the first.
-  ASSERT_TRUE(app_->session().pins()[0].is_visible);
-  bool is_hidden = false;
-  for (float x = area.min.x; x < area.max.x && !is_hidden; x += 3.0F * line) {
-    for (float y = area.min.y - 5.0F * line; y < area.min.y - 2.0F * line && !is_hidden; y += 0.8F * line) {
+  // The pin's entry is somewhere in the two lines above the plot.
+  const auto is_visible = [&] { return app_->session().pins()[0].is_visible; };
+  ASSERT_TRUE(is_visible());
+  for (float x = area.min.x; x < area.max.x && is_visible(); x += 3.0F * line) {
+    for (float y = area.min.y - 5.0F * line; y < area.min.y - 2.0F * line && is_visible(); y += 0.8F * line)
       click({x, y});
-      is_hidden = !app_->session().pins()[0].is_visible;
-    }
   }
-  EXPECT_TRUE(is_hidden);
+  EXPECT_FALSE(is_visible());
 }
 
-TEST_F(Window, Curve_Clicked_MovesTheCursor) {
-  const double before = app_->session().theta_deg();
-  // The middle of the curve's plot in the layout at its first size.
-  click({700.0F, 300.0F});
-  EXPECT_NE(app_->session().theta_deg(), before);
-}
-
-TEST_F(Window, Map_Clicked_CurveFollowsTheCursor) {
-  // The middle of the map in the layout at its first size.
-  click({1150.0F, 300.0F});
-  app_->settle();
+TEST_F(Window, CurveAndMapClicked_MoveTheCursor_AndTheCurveFollowsTheMap) {
   const explore::Session& session = app_->session();
-  EXPECT_NE(session.scene().number("surface.sigma"), 0.15);
-  EXPECT_EQ(session.curve().points()[0].sigma, session.scene().number("surface.sigma"));
+  const double before = session.theta_deg();
+  click(app_->curve_view().area().at(0.5F, 0.5F));
+  EXPECT_NE(session.theta_deg(), before);
+  click(app_->map_view().area().at(0.5F, 0.5F));
+  app_->settle();
+  EXPECT_NE(number("surface.sigma"), 0.15);
+  EXPECT_EQ(session.curve().points()[0].sigma, number("surface.sigma"));
   EXPECT_TRUE(session.map().is_finished());
-}
-
-TEST_F(Window, Shortcuts_PinAndQuit_Work) {
-  keys("ctrl+p");
-  EXPECT_EQ(app_->session().pins().size(), 1U);
   xdotool({"key", "ctrl+q"});
   bool is_open = true;
   for (int i = 0; i < kFrames && is_open; ++i) is_open = app_->frame();
@@ -232,47 +204,40 @@ TEST_F(Window, List_OpensAndClosesOnTheScreenWithoutTheMouseMoving) {
   EXPECT_EQ(closed_again, closed);
 }
 
-TEST_F(Window, KeysThatComeAndGoBetweenTwoFrames_AllCount) {
+TEST_F(Window, EventsBetweenTwoFrames_AllCount) {
   click_control("field surface.sigma");
   xdotool({"key", "--delay", "12", "0", "period", "2", "Tab", "4", "Return"});
   frames();
-  EXPECT_EQ(app_->session().scene().number("surface.sigma"), 0.2);
-  EXPECT_EQ(app_->session().scene().number("surface.q"), 4.0);
+  EXPECT_EQ(number("surface.sigma"), 0.2);
+  EXPECT_EQ(number("surface.q"), 4.0);
   xdotool({"key", "--delay", "12", "ctrl+p", "ctrl+p"});
   frames();
   EXPECT_EQ(app_->session().pins().size(), 2U);
-}
-
-TEST_F(Window, MouseThatClicksAndMovesOnBetweenTwoFrames_ClicksWhereItWas) {
+  // A mouse that moves on at once clicks where it was.
   const ImVec2 box = app_->control_area("emission.bracket").at(0.5F, 0.5F);
   xdotool({"mousemove", "--window", window_, std::to_string(std::lround(box.x)), std::to_string(std::lround(box.y)),
            "click", "1", "mousemove", "--window", window_, "700", "300"});
   frames();
-  EXPECT_EQ(app_->session().scene().word("emission.bracket"), "true");
+  EXPECT_EQ(word("emission.bracket"), "true");
 }
 
 TEST_F(Window, TypedNumber_IsTakenWhereverTypingEnds_AndStaysWhereItIsRefused) {
   const std::function<void()> ends[] = {[&] { keys("Return"); }, [&] { keys("Tab"); },
-                                        [&] {
-                                          click({700.0F, 300.0F});
-                                        },
+                                        [&] { click(app_->curve_view().area().at(0.5F, 0.5F)); },
                                         [&] {
                                           xdotool({"windowfocus", root_window()});
-                                          frames();
                                         }};
-  const auto sigma = [&] { return app_->session().scene().number("surface.sigma"); };
   double wanted = 0.2;
   for (const auto& end : ends) {
     for (const bool is_good : {true, false}) {
-      const double before = *sigma();
+      const auto before = number("surface.sigma");
       focus();
       click_control("field surface.sigma");
-      const std::string typed = is_good ? fmt::format("{}", wanted) : "-3";
-      xdotool({"type", "--delay", "12", "--", typed});
-      frames();
-      EXPECT_EQ(sigma(), before);
+      type(is_good ? fmt::format("{}", wanted) : "-3");
+      EXPECT_EQ(number("surface.sigma"), before);
       end();
-      EXPECT_EQ(sigma(), is_good ? wanted : before) << typed;
+      frames();
+      EXPECT_EQ(number("surface.sigma"), is_good ? wanted : before);
       EXPECT_EQ(is_marked("field surface.sigma"), !is_good);
       EXPECT_EQ(app_->session().message().is_error, !is_good);
       if (is_good) continue;
@@ -280,7 +245,7 @@ TEST_F(Window, TypedNumber_IsTakenWhereverTypingEnds_AndStaysWhereItIsRefused) {
       keys("Escape");
       EXPECT_FALSE(is_marked("field surface.sigma"));
       EXPECT_EQ(app_->session().message().text, "");
-      EXPECT_EQ(sigma(), before);
+      EXPECT_EQ(number("surface.sigma"), before);
     }
     wanted += 0.125;
   }
@@ -300,47 +265,35 @@ TEST_F(Window, EndsOfABand_OfWhichOneWasRefused_AreTakenTogether) {
 /// The area of the curve in a window that opens on a display.
 Area plot_on(const std::string& size, const std::string& dots_per_inch) {
   const VirtualDisplay display(size);
-  const std::vector<std::string> xprop = {"xprop", "-root", "-f", "RESOURCE_MANAGER", "8s", "-set", "RESOURCE_MANAGER"};
-  Command scale{.arguments = xprop, .folder = "/"};
-  scale.arguments.push_back("Xft.dpi: " + dots_per_inch);
-  EXPECT_EQ(run(scale).status, 0);
+  EXPECT_EQ(run({.arguments = {"xprop", "-root", "-f", "RESOURCE_MANAGER", "8s", "-set", "RESOURCE_MANAGER",
+                               "Xft.dpi: " + dots_per_inch},
+                 .folder = "/"})
+                .status,
+            0);
   App app(explore::SceneEdits(Scene::from_text(kEdited)), {});
   for (int i = 0; i < kFrames; ++i) app.frame();
   return app.curve_view().area();
 }
 
-TEST(WindowScale, OnALargeDisplayAt200Percent_PlotIsTwiceAsLarge) {
+TEST(WindowScale, Display_At200Percent_DoublesThePlot_OrLeavesItAFifthOfTheHeight) {
   const Area single = plot_on("1440x900", "96");
   const Area twice = plot_on("2880x1800", "192");
   const float height = single.height();
   EXPECT_GT(height, 300.0F);
   EXPECT_NEAR(twice.height(), 2.0F * height, 0.05F * height);
   EXPECT_NEAR(twice.width(), 2.0F * single.width(), 0.05F * height);
+  EXPECT_GT(plot_on("1440x900", "192").height(), 0.2F * 900.0F);
 }
 
-TEST(WindowScale, OnASmallDisplayAt200Percent_PlotKeepsAFifthOfTheHeight) {
-  const Area plot = plot_on("1440x900", "192");
-  EXPECT_GT(plot.height(), 0.2F * 900.0F);
-}
-
-bool is_ascii(const std::string& text) {
-  return std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 128; });
-}
-
-TEST(WindowText, WithoutAGreekFont_AllIsSaidInAscii) {
+TEST(WindowText, WithoutAGreekFont_IsAscii) {
   EXPECT_EQ(explore::ascii("θ ≤ 90°"), "theta <= 90 deg");
-  for (const explore::Parameter& parameter : explore::parameters()) {
-    for (const std::string& text :
-         {std::string(parameter.symbol), std::string(parameter.equation), explore::unit_text(*parameter.key)}) {
-      EXPECT_TRUE(is_ascii(explore::ascii(text))) << text;
-    }
-  }
-  for (const explore::Choice& choice : explore::choices()) {
-    EXPECT_TRUE(is_ascii(explore::ascii(choice.equation))) << choice.equation;
-  }
-  for (const explore::PlottedDescription& quantity : explore::kAllPlotted) {
-    EXPECT_TRUE(is_ascii(explore::ascii(std::string(quantity.name) + quantity.meaning))) << quantity.name;
-  }
+  std::string all;
+  for (const explore::Parameter& one : explore::parameters())
+    all += one.symbol + std::string(one.equation) + explore::unit_text(*one.key);
+  for (const explore::Choice& one : explore::choices()) all += one.equation;
+  for (const explore::PlottedDescription& one : explore::kAllPlotted) all += std::string(one.name) + one.meaning;
+  const std::string plain = explore::ascii(all);
+  EXPECT_TRUE(std::ranges::all_of(plain, [](char c) { return static_cast<unsigned char>(c) < 128; })) << plain;
 }
 
 class ExploreCommand : public CommandLine {
@@ -348,38 +301,31 @@ class ExploreCommand : public CommandLine {
   VirtualDisplay display_;
 };
 
-TEST_F(ExploreCommand, FramesAndScreenshot_WritesAPictureAndTheTimes) {
-  const Outcome outcome = dolp({"explore", "--frames", "5", "--screenshot", "shot.png"});
+TEST_F(ExploreCommand, FramesAndScreenshot_WriteAPictureAndTheTimes_AlsoOfASession) {
+  explore::Session session(explore::SceneEdits(Scene::from_file(at("scene.toml"))));
+  session.pin();
+  save_session(session, at("session.toml").string());
+  const Outcome outcome =
+      dolp({"explore", "session.toml", "--set", "surface.sigma=0.2", "--frames", "5", "--screenshot", "shot.png"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("frames     5 frames"), std::string::npos) << outcome.out;
   EXPECT_TRUE(content("shot.png").starts_with("\x89PNG"));
   EXPECT_GT(content("shot.png").size(), 50'000U);
-}
-
-TEST_F(ExploreCommand, Session_OpensWithItsView_AndABadOneIsOneLine) {
-  explore::Session session(explore::SceneEdits(Scene::from_file(at("scene.toml"))));
-  session.pin();
-  save_session(session, at("session.toml").string());
-  const std::vector<std::string> options = {"--frames", "5", "--screenshot", "shot.png"};
-  const Outcome outcome = dolp(joined({"explore", "session.toml", "--set", "surface.sigma=0.2"}, options));
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(dolp({"explore", "--frames", "1"}).status, 0);
   expect_refused(dolp({"explore", "session.toml", "--frames", "1", "--set", "surface.sigma=-1"}), "surface.sigma");
   put("session.toml", "dolp_session = 1\n");
   expect_refused(dolp({"explore", "session.toml", "--frames", "1"}), "session.toml: scene.file is missing");
 }
 
-TEST_F(ExploreCommand, WrongArguments_AreInputErrors) {
+TEST_F(ExploreCommand, WrongArguments_AreInputErrors_AndAnUnknownDeviceIsADeviceError) {
   EXPECT_EQ(dolp({"explore", "scene.toml", "--screenshot", "shot.png"}).status, 2);
   EXPECT_EQ(dolp({"explore", "missing.toml", "--frames", "1"}).status, 2);
   EXPECT_EQ(dolp({"explore", "scene.toml", "--frames", "1", "--set", "surface.sigma=-1"}).status, 2);
+  EXPECT_EQ(dolp({"explore", "--frames", "1", "--device", "no such device"}).status, 3);
   put("measured.csv", "theta_deg,dolp\n60,two\n");
   const Outcome outcome = dolp({"explore", "scene.toml", "--frames", "1", "--measured", "measured.csv"});
   EXPECT_EQ(outcome.status, 2);
   EXPECT_EQ(outcome.err, "dolp: measured.csv:2: dolp = two: not a number; must be a number in [-1, 1]\n");
-}
-
-TEST_F(ExploreCommand, NoDeviceOfThatName_IsADeviceError) {
-  EXPECT_EQ(dolp({"explore", "--frames", "1", "--device", "no such device"}).status, 3);
 }
 
 TEST_F(CommandLine, Explore_WithoutDisplay_SaysSoInOneLine) {

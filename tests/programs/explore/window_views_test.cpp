@@ -1,4 +1,4 @@
-// Views beside the map, and what is shown while a slider is dragged.
+// The views beside the map, and the window while a slider is dragged.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -44,7 +44,7 @@ TEST(ExplorePanels, SlopeDensity_IsNormalised_AndTheOtherOneHasTheSameD0) {
   }
 }
 
-TEST(ExplorePanels, MaterialCurve_IsThatOfTheScene_FromEndToEnd) {
+TEST(ExplorePanels, MaterialCurve_HasTheScenesIndex_FromEndToEnd) {
   const Scene water = paint().scene().with({{"surface.material", "water 25C"}});
   const explore::MaterialCurve curve = explore::material_curve(water, 50);
   ASSERT_EQ(curve.n.size(), 50U);
@@ -52,9 +52,9 @@ TEST(ExplorePanels, MaterialCurve_IsThatOfTheScene_FromEndToEnd) {
     EXPECT_EQ((std::pair{curve.n[i], curve.k[i]}), water.refractive_index(curve.wavelength_um[i]));
   }
   const auto known = materials();
-  const auto of = std::ranges::find(known, "water 25C", &BuiltInMaterial::name);
-  EXPECT_EQ(curve.wavelength_um.front(), of->from_um);
-  EXPECT_EQ(curve.wavelength_um.back(), of->to_um);
+  const auto water_25 = std::ranges::find(known, "water 25C", &BuiltInMaterial::name);
+  EXPECT_EQ(curve.wavelength_um.front(), water_25->from_um);
+  EXPECT_EQ(curve.wavelength_um.back(), water_25->to_um);
   EXPECT_EQ(explore::material_curve(paint().scene(), 5).n, std::vector<double>(5, 1.5));
 }
 
@@ -78,35 +78,33 @@ TEST(ExplorePanels, SphereOfASurface_ShowsPAlongTheTiltAndSAcross) {
   explore::Driver driver(paint());
   const std::vector<explore::Point>& curve = driver.session.curve().points();
   ASSERT_LT(curve[120][Quantity::kQOverI], 0.0);
-  const std::optional<explore::Seen> seen = explore::seen_at(curve, 60.0, 30.0);
-  ASSERT_TRUE(seen);
-  EXPECT_DOUBLE_EQ(seen->dolp, -curve[120][Quantity::kQOverI]);
-  EXPECT_NEAR(seen->angle_deg, 30.0, 1e-9);
-  EXPECT_NEAR(explore::seen_at(curve, 60.0, -150.0)->angle_deg, 30.0, 1e-9);
+  const std::optional<explore::ImagePolarisation> plate = explore::polarisation_at(curve, 60.0, 30.0);
+  ASSERT_TRUE(plate);
+  EXPECT_DOUBLE_EQ(plate->dolp, -curve[120][Quantity::kQOverI]);
+  EXPECT_NEAR(plate->angle_deg, 30.0, 1e-9);
+  EXPECT_NEAR(explore::polarisation_at(curve, 60.0, -150.0)->angle_deg, 30.0, 1e-9);
   std::vector<explore::Point> s_polarised = curve;
   for (explore::Point& point : s_polarised) point.values[Quantity::kQOverI] *= -1.0;
-  EXPECT_NEAR(explore::seen_at(s_polarised, 60.0, 30.0)->angle_deg, 120.0, 1e-9);
-  const double between = explore::seen_at(curve, 60.25, 0.0)->dolp;
+  EXPECT_NEAR(explore::polarisation_at(s_polarised, 60.0, 30.0)->angle_deg, 120.0, 1e-9);
+  const double between = explore::polarisation_at(curve, 60.25, 0.0)->dolp;
   EXPECT_NEAR(between, -0.5 * (curve[120][Quantity::kQOverI] + curve[121][Quantity::kQOverI]), 1e-12);
 }
 
 TEST(ExplorePanels, Sky_OfABistaticScene_IsComputedWhileItIsShown) {
   explore::Driver driver(paint({"geometry.mode=\"bistatic\"", "source.preset=\"sun\"", "geometry.view_zenith_deg=60"}));
   explore::Session& session = driver.session;
-  EXPECT_FALSE(session.sky().is_finished());
-  explore::View view = session.view();
-  view.panel = explore::Panel::kSky;
-  session.set_view(view);
+  EXPECT_FALSE(session.source_sky().is_finished());
+  session.set_view(&explore::View::panel, explore::Panel::kSky);
   driver.settle();
-  ASSERT_TRUE(session.sky().is_finished());
+  ASSERT_TRUE(session.source_sky().is_finished());
   const std::size_t azimuth = 12;
-  const Scene scene = session.scene().with({{"geometry.relative_azimuth_deg", explore::Sky::azimuth_deg(azimuth)},
+  const Scene scene = session.scene().with({{"geometry.relative_azimuth_deg", explore::SourceSky::azimuth_deg(azimuth)},
                                             {"accuracy.tolerance", explore::Curve::kCoarseTolerance}});
-  explore::expect_same(session.sky().at(azimuth), explore::truth(scene, session.sky().at(azimuth)));
+  explore::expect_same(session.source_sky().at(azimuth), explore::truth(scene, session.source_sky().at(azimuth)));
   session.set("geometry.relative_azimuth_deg", 77.0);
-  EXPECT_TRUE(session.sky().is_finished());
+  EXPECT_TRUE(session.source_sky().is_finished());
   session.set("surface.sigma", 0.3);
-  EXPECT_FALSE(session.sky().is_finished());
+  EXPECT_FALSE(session.source_sky().is_finished());
 }
 
 TEST_F(Window, Panels_ClickedOneByOne_AreDrawn_AndTheMapIsComputedWhileItIsShown) {
@@ -115,13 +113,12 @@ TEST_F(Window, Panels_ClickedOneByOne_AreDrawn_AndTheMapIsComputedWhileItIsShown
     return display_.pixels(static_cast<std::size_t>(map.min.x), static_cast<std::size_t>(map.max.y) + 8, 300, 200);
   };
   std::vector<std::string> seen = {below()};
-  for (const explore::PanelDescription& of : explore::kPanels) {
-    if (of.panel == explore::Panel::kMap) continue;
-    click_control(std::string("panel ") + of.name);
-    EXPECT_EQ(app_->session().view().panel, of.panel);
+  for (std::size_t i = 1; i < explore::kPanelNames.size(); ++i) {
+    click_control(std::string("panel ") + explore::kPanelNames[i]);
+    EXPECT_EQ(app_->session().view().panel, static_cast<explore::Panel>(i));
     app_->settle();
     frames();
-    EXPECT_EQ(std::ranges::count(seen, below()), 0) << of.name;
+    EXPECT_EQ(std::ranges::count(seen, below()), 0) << explore::kPanelNames[i];
     seen.push_back(below());
   }
   const std::size_t version = app_->session().map().version();
@@ -140,7 +137,7 @@ TEST_F(Window, SceneWithAWind_HasItsSliderAndItsAxis_InsteadOfSigma) {
   EXPECT_THROW(app_->control_area("surface.sigma"), std::out_of_range);
   drag_slider("surface.wind_m_s", kPartOfSlider);
   const explore::Session& session = app_->session();
-  const double wind = *session.scene().number("surface.wind_m_s");
+  const double wind = *number("surface.wind_m_s");
   EXPECT_NEAR(wind, 30.0 * static_cast<double>(kPartOfSlider), 30.0 * kGrab);
   ASSERT_TRUE(session.curve().is_finished());
   const Columns truth = evaluated();
@@ -149,30 +146,10 @@ TEST_F(Window, SceneWithAWind_HasItsSliderAndItsAxis_InsteadOfSigma) {
   }
   EXPECT_EQ(session.map().y().label(), std::string("U [m/s]"));
   EXPECT_NE(explore::cursor_text(session).find("U = "), std::string::npos);
-  click({1150.0F, 300.0F});  // the middle of the map
+  click(app_->map_view().area().at(0.5F, 0.5F));
   app_->settle();
   EXPECT_NE(session.scene().number("surface.wind_m_s"), wind);
   EXPECT_EQ(session.curve().points()[0].sigma, session.scene().number("surface.wind_m_s"));
-}
-
-TEST_F(Window, Slider_WhileItIsDragged_MovesACoarseCurve_AndTheAxisOfZenithsHolds) {
-  const Area area = app_->control_area("surface.sigma");
-  const explore::Session& session = app_->session();
-  const explore::Scale x = app_->curve_view().x();
-  move_to(area.at(0.3F, 0.5F));
-  press("mousedown");
-  for (const float part : {0.4F, 0.5F, 0.6F}) {
-    move_to(area.at(part, 0.5F));
-    app_->settle();
-    EXPECT_TRUE(session.is_dragged());
-    EXPECT_EQ(session.curve().points().size(), explore::Curve::kCoarseCount);
-    EXPECT_EQ(session.curve().points()[0].sigma, session.scene().number("surface.sigma"));
-    EXPECT_TRUE(explore::curve_name(session).ends_with(", coarse"));
-    EXPECT_EQ(app_->curve_view().x(), x);
-  }
-  press("mouseup");
-  app_->settle();
-  EXPECT_TRUE(session.curve().is_finished());
 }
 
 }  // namespace

@@ -2,19 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-#include <utility>
-
 #include "base/atomic_file.hpp"
 #include "base/python_picture.hpp"
 #include "base/stopwatch.hpp"
-#include "explore/plot_data.hpp"
-#include "explore/session_file.hpp"
+#include "explore/readout.hpp"
 
 namespace dolp::explore {
 namespace {
 
-constexpr auto kFading = std::chrono::milliseconds(300);  // of a dialog that was closed
+constexpr auto kFading = std::chrono::milliseconds(300);  // a closed dialog fades for so long
 
 }  // namespace
 
@@ -32,8 +28,8 @@ Actions::Actions(Session& session, const std::string& device, std::string comman
     preferences_.load(preferences);
     const std::string file = session_.scene().name();
     std::error_code unknown;
-    if (!std::filesystem::exists(file, unknown)) return;  // a text that is built in
-    prefer([&](Preferences& of) { of.remember(file); });
+    if (!std::filesystem::exists(file, unknown)) return;  // a built-in text
+    prefer([&](Preferences& kept) { kept.remember(file); });
   } catch (const std::exception& error) {
     session_.tell(error.what(), true);
   }
@@ -61,37 +57,15 @@ void Actions::prefer(const std::function<void(Preferences&)>& change) {
   preferences_.save();
 }
 
-void Actions::save_session(const std::string& path) {
-  attempt("saved " + path, [&] { explore::save_session(session_, path); });
-}
-
-void Actions::save_scene(const std::string& path) {
-  attempt("saved " + path, [&] {
-    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-    session_.keep_sky(path);
-    write_text_atomically(path, session_.scene().toml(folder.empty() ? "." : folder));
-    session_.note_saved();
-  });
-}
-
-void Actions::save_curve(const std::string& path) {
-  attempt("saved " + path, [&] {
-    if (!session_.curve().is_finished()) throw InputError("the curve is not finished yet");
-    write_text_atomically(path, session_.curve().finished().csv);
-  });
-}
-
 void Actions::save_picture(const std::string& path) {
-  attempt("saved " + path, [&] {
-    check_writable(path);
-    picture_path_ = path;
-    picture_time_ = Clock::now() + kFading;
-  });
+  check_writable(path);
+  picture_path_ = path;
+  picture_time_ = Clock::now() + kFading;
 }
 
 void Actions::save_plot(const std::string& path, const Scale& x, const Scale& y) {
   session_.tell("drawing " + path);
-  plot_.start([path, json = plot_json(session_, x, y)](const Progress&) -> BackgroundTask::Rest {
+  plot_.start([path, json = plot_json(session_, x, y)](const Progress&) -> BackgroundTask::Ending {
     check_writable(path);
     draw_with_python(kPlotScript, json, path);
     return [text = "saved " + path] { return text; };
@@ -99,7 +73,7 @@ void Actions::save_plot(const std::string& path, const Scale& x, const Scale& y)
 }
 
 void Actions::export_table(const std::string& path) {
-  table_.start([this, path, scene = session_.scene()](const Progress& progress) -> BackgroundTask::Rest {
+  table_.start([this, path, scene = session_.scene()](const Progress& progress) -> BackgroundTask::Ending {
     const Clock::time_point start = Clock::now();
     table_evaluator_.write_table(scene, path, {.progress = progress, .history = command_line_});
     return [text = fmt::format("{}: written in {:.2f} s", path, seconds_since(start))] { return text; };
@@ -109,7 +83,7 @@ void Actions::export_table(const std::string& path) {
 void Actions::find_true_error() {
   if (!session_.curve().is_finished()) return;
   true_error_key_ = session_.curve().key();
-  true_error_.start([curve = session_.curve()](const Progress& progress) -> BackgroundTask::Rest {
+  true_error_.start([curve = session_.curve()](const Progress& progress) -> BackgroundTask::Ending {
     return [text = true_error(curve, progress)] { return text; };
   });
 }
@@ -121,11 +95,10 @@ bool Actions::is_true_error_old() const {
 void Actions::fit() {
   const std::optional<FitJob> job = session_.fit_job();
   if (!job) {
-    session_.tell("a fit needs measured points, and parameters that are marked to vary", true);
-    return;
+    return session_.tell("a fit needs measured points, and parameters that are marked to vary", true);
   }
   if (!fit_.is_running()) session_.tell("");
-  fit_.start([this, job = *job](const Progress& progress) -> BackgroundTask::Rest {
+  fit_.start([this, job = *job](const Progress& progress) -> BackgroundTask::Ending {
     const auto phase = [this](const std::string& name) { fit_.set_phase(name); };
     return [this, job, fit = run_fit(job, fit_evaluator_, progress, phase)] {
       return fit_text(fit, session_.take_fit(fit, job));

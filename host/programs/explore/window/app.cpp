@@ -8,21 +8,13 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <dolp/errors.hpp>
-#include <filesystem>
-#include <thread>
 
 #include "base/atomic_file.hpp"
 #include "base/stopwatch.hpp"
-#include "device/context.hpp"
 #include "device/result.hpp"
-#include "explore/session_file.hpp"
-#include "explore/window/actions.hpp"
-#include "explore/window/input.hpp"
 #include "explore/window/presenter.hpp"
 #include "explore/window/ui.hpp"
 
@@ -33,16 +25,16 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kWidth = 1440;
 constexpr int kHeight = 900;
-// Below it texts of the controls are cut.
+// A smaller window cuts texts of the controls.
 constexpr int kLeastWidth = 800;
 constexpr int kLeastHeight = 560;
-constexpr double kBlink_s = 0.3;  // of a text cursor
-// Chosen: of a frame of 33 ms, half of which is drawing. Twice as much makes slow scenes' frames long, half of it lets
+constexpr double kBlink_s = 0.3;  // period of a text cursor
+// Chosen for frames of 33 ms, half of which is drawing. With twice as much, slow scenes have long frames; with half,
 // curves of a band lag behind the slider.
 constexpr double kCatchUp_s = 0.03;
-// Frames after an event: ImGui shows some answers, a list that opens for one, only frames later.
+// ImGui shows some answers to an event, for example an open list, only frames later.
 constexpr std::size_t kFramesAfterEvent = 4;
-constexpr std::size_t kFramesAfterNews = 2;  // of the worker: tables take the width of their text a frame later
+constexpr std::size_t kFramesAfterNews = 2;  // after results: tables take the width of their text a frame later
 
 std::string glfw_error() {
   const char* text = nullptr;
@@ -54,6 +46,9 @@ bool is_set(const char* variable) {
   const char* value = std::getenv(variable);
   return value != nullptr && *value != '\0';
 }
+
+/// Lengths of the window at a scale, in whole pixels.
+int scaled_length(int length, float scale) { return static_cast<int>(std::lround(scale * static_cast<float>(length))); }
 
 /// GLFW, started and ended once.
 struct Library {
@@ -83,34 +78,28 @@ using UniqueWindow = std::unique_ptr<GLFWwindow, DestroyWindow>;
 /// Opens a window as large as its content at the display's scale, or as the display.
 UniqueWindow open_window() {
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
-  int x = 0;
-  int y = 0;
-  int width = kWidth;
-  int height = kHeight;
+  int x = 0, y = 0, width = kWidth, height = kHeight;
   float scale = 1.0F;
   if (GLFWmonitor* monitor = glfwGetPrimaryMonitor()) {
     glfwGetMonitorWorkarea(monitor, &x, &y, &width, &height);
     glfwGetMonitorContentScale(monitor, &scale, nullptr);
   }
-  const auto scaled = [scale](int length) { return static_cast<int>(std::lround(scale * static_cast<float>(length))); };
-  UniqueWindow window(glfwCreateWindow(std::min(scaled(kWidth), width), std::min(scaled(kHeight), height),
-                                       "dolp explore", nullptr, nullptr));
+  UniqueWindow window(glfwCreateWindow(std::min(scaled_length(kWidth, scale), width),
+                                       std::min(scaled_length(kHeight, scale), height), "dolp explore", nullptr,
+                                       nullptr));
   if (!window) throw DeviceError("the window cannot be opened: " + glfw_error());
   return window;
 }
 
-vulkan::Presentation presentation() {
+/// A device that can show a window.
+vulkan::Context make_context(const std::string& device) {
   std::uint32_t count = 0;
   const char** names = glfwGetRequiredInstanceExtensions(&count);
   if (!names) throw DeviceError("no Vulkan driver was found that can show a window: " + glfw_error());
   const auto can_present = [](VkInstance instance, VkPhysicalDevice physical, std::uint32_t family) {
     return glfwGetPhysicalDevicePresentationSupport(instance, physical, family) == GLFW_TRUE;
   };
-  return {{names, names + count}, can_present};
-}
-
-vulkan::Context make_context(const std::string& device) {
-  const vulkan::Presentation wanted = presentation();
+  const vulkan::Presentation wanted{{names, names + count}, can_present};
   return vulkan::Context({.device = device}, &wanted);
 }
 
@@ -121,15 +110,14 @@ VkSurfaceKHR make_surface(VkInstance instance, GLFWwindow* window) {
 }
 
 VkExtent2D size_of(GLFWwindow* window) {
-  int width = 0;
-  int height = 0;
+  int width = 0, height = 0;
   glfwGetFramebufferSize(window, &width, &height);
   return {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
 }
 
-/// Dear ImGui with the window's fonts and its input.
+/// Dear ImGui with the window's theme and font.
 struct Gui {
-  explicit Gui(GLFWwindow* of) : window(of) {
+  explicit Gui(GLFWwindow* shown_window) : window(shown_window) {
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
@@ -144,7 +132,7 @@ struct Gui {
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
 
-  /// Takes theme and scale. True where the font has changed.
+  /// Applies theme and scale. True where the font has changed.
   bool follow(const Preferences& wanted) {
     if (wanted.is_light != is_light()) set_theme(wanted.is_light);
     float display = 1.0F;
@@ -152,14 +140,13 @@ struct Gui {
     const float wanted_scale = display * static_cast<float>(wanted.zoom());
     if (wanted_scale == scale) return false;
     scale = wanted_scale;
-    const bool is_light_now = is_light();
     ImGui::GetStyle() = ImGuiStyle();
-    set_theme(is_light_now);
+    set_theme(wanted.is_light);
     ImGui::GetStyle().ScaleAllSizes(scale);
     ImGui::GetIO().Fonts->Clear();
     load_font(kFontPixels * scale);
-    const auto scaled = [&](int length) { return static_cast<int>(std::lround(scale * static_cast<float>(length))); };
-    glfwSetWindowSizeLimits(window, scaled(kLeastWidth), scaled(kLeastHeight), GLFW_DONT_CARE, GLFW_DONT_CARE);
+    glfwSetWindowSizeLimits(window, scaled_length(kLeastWidth, scale), scaled_length(kLeastHeight, scale),
+                            GLFW_DONT_CARE, GLFW_DONT_CARE);
     return true;
   }
 
@@ -167,20 +154,12 @@ struct Gui {
   float scale = 0.0F;
 };
 
-double median_of(std::vector<double> values) {
-  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-  return values[values.size() / 2];
-}
-
-std::string times_text(const std::vector<double>& times_s) {
+/// Count, median and worst of durations of frames.
+std::string times_text(std::vector<double> times_s) {
   if (times_s.empty()) return "none";
-  return fmt::format("{} frames, median {:.1f} ms, worst {:.1f} ms", times_s.size(), 1e3 * median_of(times_s),
-                     1e3 * *std::ranges::max_element(times_s));
-}
-
-/// Two lines: count, median and worst, of all frames and of those while something was computed.
-std::string summary_of(const FrameTimes& times) {
-  return fmt::format("frames     {}\ncomputing  {}\n", times_text(times.all_s), times_text(times.busy_s));
+  std::ranges::sort(times_s);
+  return fmt::format("{} frames, median {:.1f} ms, worst {:.1f} ms", times_s.size(), 1e3 * times_s[times_s.size() / 2],
+                     1e3 * times_s.back());
 }
 
 }  // namespace
@@ -213,7 +192,7 @@ struct App::Impl {
     worker.want(std::move(jobs));
   }
 
-  /// Waits a moment for the coarse curve of a scene that the mouse moves, so that both move in the same frame.
+  /// Waits a moment for the coarse curve in a drag, so that slider and curve move in the same frame.
   void catch_up() {
     if (input.has_more() || !session.is_dragged()) return;
     const Clock::time_point start = Clock::now();
@@ -225,7 +204,7 @@ struct App::Impl {
     exchange();
   }
 
-  /// Draws a frame for each event, and shows the last.
+  /// Draws a frame for each event, and shows the last one.
   void draw() {
     if (gui.follow(actions.preferences())) presenter.restart_imgui();
     for (;;) {
@@ -237,11 +216,10 @@ struct App::Impl {
     }
     ImGui::Render();
     const std::string path = actions.due_picture();
-    Picture picture;
-    presenter.draw(ImGui::GetDrawData(), size_of(window.get()), path.empty() ? nullptr : &picture);
-    if (picture.width > 0) {
+    const std::string png = presenter.draw(ImGui::GetDrawData(), size_of(window.get()), !path.empty());
+    if (!png.empty()) {
       actions.set_picture({});
-      write_png(picture, path);
+      write_text_atomically(path, png);
     }
     context.check_validation();
   }
@@ -261,7 +239,7 @@ struct App::Impl {
   Input input;
   Presenter presenter;
   Evaluator evaluator;
-  std::atomic<bool> is_catching_up = false;  ///< takes news without being woken up
+  std::atomic<bool> is_catching_up = false;  ///< then no event is needed to wake the window
   Worker worker;
   Actions actions;
   Ui ui;
@@ -273,15 +251,10 @@ App::App(SceneEdits edits, const AppOptions& options) : impl_(std::make_unique<I
 App::~App() = default;
 
 Session& App::session() { return impl_->session; }
-
-Area App::control_area(const std::string& key) const { return impl_->ui.area(key); }
-
+Area App::control_area(const std::string& name) const { return impl_->input.areas().at(name); }
 const CurveView& App::curve_view() const { return impl_->ui.curves(); }
-
 const MapView& App::map_view() const { return impl_->ui.map(); }
-
 bool App::is_idle() const { return impl_->is_idle(); }
-
 void App::save_picture(const std::string& path) { impl_->actions.set_picture(path); }
 
 bool App::frame() {
@@ -304,7 +277,7 @@ bool App::answer(const AfterFrame& after_frame) {
     if (after_frame) after_frame(seconds_since(start));
     if (!is_open) return false;
     const bool has_news = impl_->input.take_news() || impl_->actions.has_picture_to_save();
-    if (impl_->session.is_dragged()) return true;  // one frame for each move: the processor is for the curves
+    if (impl_->session.is_dragged()) return true;  // one frame for each move leaves the processor to the curves
     left = has_news ? kFramesAfterEvent : left - 1;
   }
   return true;
@@ -319,7 +292,7 @@ void App::reopen() { glfwSetWindowShouldClose(impl_->window.get(), GLFW_FALSE); 
 
 void App::run(const AfterFrame& after_frame) {
   while (answer(after_frame)) {
-    // A note appears when the mouse has rested, a little more than a frame later at most.
+    // A note appears a little after the mouse has rested for its delay.
     constexpr double kNote_s = static_cast<double>(kTooltipDelay_s) + 0.05;
     if (ImGui::GetIO().WantTextInput) {
       glfwWaitEventsTimeout(kBlink_s);
@@ -331,12 +304,12 @@ void App::run(const AfterFrame& after_frame) {
   }
 }
 
-FrameTimes App::run_frames(std::size_t count, const std::string& screenshot_path) {
-  FrameTimes times;
+std::string App::run_frames(std::size_t count, const std::string& screenshot_path) {
+  std::vector<double> all_s, computing_s;  // from one frame's start to the next; those with a busy worker
   const bool wants_picture = !screenshot_path.empty();
   Clock::time_point start = Clock::now();
   for (std::size_t left = count; left > 0; --left) {
-    // The last frames show what is finished, in a layout that has settled.
+    // The last frames show finished results, in a layout that has settled.
     if (wants_picture && left <= kFramesAfterEvent) {
       impl_->wait_for_results();
       start = Clock::now();
@@ -344,46 +317,40 @@ FrameTimes App::run_frames(std::size_t count, const std::string& screenshot_path
     if (wants_picture && left == 1) save_picture(screenshot_path);
     const bool was_computing = !impl_->worker.is_idle();
     const bool is_open = frame();
-    const Clock::time_point end = Clock::now();
-    times.all_s.push_back(std::chrono::duration<double>(end - start).count());
-    if (was_computing) times.busy_s.push_back(times.all_s.back());
-    start = end;
+    all_s.push_back(seconds_since(start));
+    start = Clock::now();
+    if (was_computing) computing_s.push_back(all_s.back());
     if (!is_open) break;
   }
-  return times;
+  return fmt::format("frames     {}\ncomputing  {}\n", times_text(all_s), times_text(computing_s));
 }
 
 void run_program(const Scene& scene, const ProgramOptions& options) {
-  if (!options.screenshot_path.empty() && options.frames == 0) {
-    throw InputError("--screenshot needs --frames N beside it: the picture is of the last frame");
+  if (!options.screenshot_path.empty()) {
+    if (options.frames == 0)
+      throw InputError("--screenshot needs --frames N beside it: the picture shows the last frame");
+    check_writable(options.screenshot_path);
   }
-  if (!options.screenshot_path.empty()) check_writable(options.screenshot_path);
-  // Pictures for manuals and measurements show what everyone sees.
+  // Pictures for manuals and measurements do not depend on the user's preferences.
   const std::filesystem::path preferences = options.frames == 0 ? Preferences::default_path() : "";
   App app(SceneEdits(scene), {options.device, options.command_line, preferences});
+  Session& session = app.session();
   const auto check = [&] {
-    if (app.session().message().is_error) throw InputError(app.session().message().text);
+    if (session.message().is_error) throw InputError(session.message().text);
   };
   if (!options.session_path.empty()) {
-    open_file(app.session(), options.session_path);
+    open_file(session, options.session_path);
     check();
-    app.session().set(options.settings);
+    session.set(options.settings);
     check();
   }
-  if (!options.panel.empty()) {
-    View view = app.session().view();
-    view.panel = panel_of(options.panel);
-    app.session().set_view(view);
-  }
+  if (!options.panel.empty()) session.set_view(&View::panel, panel_of(options.panel));
   if (!options.measured_path.empty()) {
-    app.session().load_measured(options.measured_path);
+    session.load_measured(options.measured_path);
     check();
   }
-  if (options.frames == 0) {
-    app.run();
-  } else {
-    fmt::print("{}", summary_of(app.run_frames(options.frames, options.screenshot_path)));
-  }
+  if (options.frames == 0) return app.run();
+  fmt::print("{}", app.run_frames(options.frames, options.screenshot_path));
 }
 
 }  // namespace dolp::explore

@@ -1,16 +1,9 @@
 // The window as a program: display, device, threads and the loop of frames.
 #pragma once
 
-#include <cstddef>
-#include <filesystem>
-#include <functional>
 #include <memory>
-#include <string>
-#include <vector>
 
-#include "explore/scene_edits.hpp"
-#include "explore/session.hpp"
-#include "explore/window/plot.hpp"
+#include "explore/readout.hpp"
 #include "explore/window/views.hpp"
 
 namespace dolp::explore {
@@ -18,13 +11,7 @@ namespace dolp::explore {
 struct AppOptions {
   std::string device;                      ///< its position or a part of its name
   std::string command_line;                ///< for the history of tables
-  std::filesystem::path preferences = {};  ///< their file; empty: none are kept
-};
-
-/// Durations of frames.
-struct FrameTimes {
-  std::vector<double> all_s;   ///< from one frame's start to the next
-  std::vector<double> busy_s;  ///< those in which the worker had something to do
+  std::filesystem::path preferences = {};  ///< file of the preferences; empty: none are kept
 };
 
 class App {
@@ -33,20 +20,19 @@ class App {
 
   /// Opens the window. Errors: DeviceError without a display, or without a device that can show a window on it.
   App(SceneEdits edits, const AppOptions& options);
-  App(const App&) = delete;
-  App& operator=(const App&) = delete;
   ~App();
 
   Session& session();
-  /// The last drawn area of a control by its scene key. Errors: std::out_of_range when it was not drawn.
-  Area control_area(const std::string& key) const;
+  /// The area of a named item in the last frame. Errors: std::out_of_range where it was not drawn.
+  Area control_area(const std::string& name) const;
   const CurveView& curve_view() const;
   const MapView& map_view() const;
 
   /// Takes input and news, and draws one frame. False when the user has closed the window.
   /// Errors: DeviceError when the device is lost or the validation layer complains.
   bool frame();
-  /// Handles the pending events and those that arrive meanwhile, and draws the result. False as for `frame`.
+  /// Handles the pending events and those that arrive meanwhile, and draws the result. False when the user has closed
+  /// the window.
   bool answer(const AfterFrame& after_frame = {});
   /// Ends `run`. May be called from any thread.
   void close();
@@ -54,9 +40,9 @@ class App {
   void reopen();
   /// Draws until the window is closed; nothing is drawn between events. `after_frame` gets the duration of each frame.
   void run(const AfterFrame& after_frame = {});
-  /// Draws this many frames one after the other; with a path for a picture, which shows the last frame, the last ones
-  /// wait until everything wanted is computed.
-  FrameTimes run_frames(std::size_t count, const std::string& screenshot_path);
+  /// Draws this many frames and returns a summary of their durations, in all and while something was computed. With a
+  /// path for a picture of the last frame, the last frames wait until all results are there.
+  std::string run_frames(std::size_t count, const std::string& screenshot_path);
 
   /// True where nothing is left to compute, and all results are in the session.
   bool is_idle() const;
@@ -74,15 +60,15 @@ struct ProgramOptions {
   std::string device;                  ///< its position or a part of its name
   std::string command_line;            ///< for the history of tables
   std::string measured_path;           ///< CSV of measured points; empty: none
-  std::size_t frames = 0;              ///< draw so many and end; 0: until the window is closed
+  std::size_t frames = 0;              ///< number of frames to draw; 0: until the window is closed
   std::string screenshot_path;         ///< PNG of the last frame; empty: none
-  std::string panel = {};              ///< that is shown first; empty: the map
-  std::string session_path = {};       ///< a session that takes the place of the scene; empty: none
+  std::string panel = {};              ///< name of the first panel; empty: the map
+  std::string session_path = {};       ///< a session that replaces the scene; empty: none
   std::vector<Setting> settings = {};  ///< changes of the session
 };
 
-/// Shows the window. Prints how long frames took, where their number is given.
-/// Errors: those of the public header; DeviceError, IoError.
+/// Shows the window. With a number of frames, prints their durations.
+/// Errors: as in the public header; DeviceError, IoError.
 void run_program(const Scene& scene, const ProgramOptions& options);
 
 }  // namespace dolp::explore

@@ -21,11 +21,11 @@ void set_mouse(ImVec2 position, const std::array<bool, 5>& buttons) {
   std::ranges::copy(buttons, io.MouseDown);
 }
 #else
-// The backend takes Ctrl, Shift and Alt as they are by now, some events later.
+// The backend takes the present state of Ctrl, Shift and Alt, some events later.
 void set_modifiers(int key, int action, int modifiers) {
   if (key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER) {  // on X11 the modifiers are those before the event
-    const int own = 1 << (key - GLFW_KEY_LEFT_SHIFT) % 4;
-    modifiers = action == GLFW_RELEASE ? modifiers & ~own : modifiers | own;
+    const int modifier = 1 << (key - GLFW_KEY_LEFT_SHIFT) % 4;
+    modifiers = action == GLFW_RELEASE ? modifiers & ~modifier : modifiers | modifier;
   }
   ImGuiIO& io = ImGui::GetIO();
   io.AddKeyEvent(ImGuiMod_Ctrl, (modifiers & GLFW_MOD_CONTROL) != 0);
@@ -43,10 +43,10 @@ void set_mouse(ImVec2 position, const std::array<bool, 5>& buttons) {
 
 }  // namespace
 
-Input& Input::of(GLFWwindow* window) { return *static_cast<Input*>(glfwGetWindowUserPointer(window)); }
+Input& Input::input_of(GLFWwindow* window) { return *static_cast<Input*>(glfwGetWindowUserPointer(window)); }
 
 void Input::push(GLFWwindow* window, std::function<void()> apply, bool is_motion) {
-  Input& input = of(window);
+  Input& input = input_of(window);
   input.has_news_ = true;
   input.last_event_ = Clock::now();
   if (is_motion && input.has_more() && input.events_.back().is_motion) input.events_.pop_back();
@@ -64,26 +64,23 @@ Input::Input(GLFWwindow* window, std::function<void(const std::string&)> on_drop
     push(w, [=] {
       ImGui_ImplGlfw_KeyCallback(w, key, scancode, action, modifiers);
       set_modifiers(key, action, modifiers);
-      if (action == GLFW_PRESS) of(w).pressed_key_ = key;
+      if (action == GLFW_PRESS) input_of(w).pressed_key_ = key;
     });
   });
   glfwSetCharCallback(window,
-                      [](GLFWwindow* w, unsigned letter) { push(w, [=] { ImGui_ImplGlfw_CharCallback(w, letter); }); });
+                      [](GLFWwindow* w, unsigned sign) { push(w, [=] { ImGui_ImplGlfw_CharCallback(w, sign); }); });
   glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int) {
-    push(w, [=] { of(w).buttons_.at(static_cast<std::size_t>(std::min(button, 4))) = action == GLFW_PRESS; });
+    push(w, [=] { input_of(w).buttons_.at(static_cast<std::size_t>(std::min(button, 4))) = action == GLFW_PRESS; });
   });
   glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
+    const ImVec2 at{static_cast<float>(x), static_cast<float>(y)};
     push(
-        w,
-        [=] {
-          of(w).mouse_ = {static_cast<float>(x), static_cast<float>(y)};
-        },
-        true);
+        w, [=] { input_of(w).mouse_ = at; }, true);
   });
   glfwSetScrollCallback(
       window, [](GLFWwindow* w, double x, double y) { push(w, [=] { ImGui_ImplGlfw_ScrollCallback(w, x, y); }); });
-  glfwSetCursorEnterCallback(window,
-                             [](GLFWwindow* w, int entered) { push(w, [=] { of(w).is_inside_ = entered != 0; }); });
+  glfwSetCursorEnterCallback(
+      window, [](GLFWwindow* w, int entered) { push(w, [=] { input_of(w).is_inside_ = entered != 0; }); });
   glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int focused) {
     push(w, [=] {
       ImGui_ImplGlfw_WindowFocusCallback(w, focused);
@@ -91,20 +88,21 @@ Input::Input(GLFWwindow* window, std::function<void(const std::string&)> on_drop
     });
   });
   glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
-    for (int i = 0; i < count; ++i) push(w, [w, path = std::string(paths[i])] { of(w).on_drop_(path); });
+    for (int i = 0; i < count; ++i) push(w, [w, path = std::string(paths[i])] { input_of(w).on_drop_(path); });
   });
-  glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).has_news_ = true; });
-  glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w).has_news_ = true; });
+  glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { input_of(w).has_news_ = true; });
+  glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { input_of(w).has_news_ = true; });
 }
 
 void Input::begin_frame() {
   pressed_key_ = GLFW_KEY_UNKNOWN;
+  areas_.clear();
   if (has_more()) {
     events_.front().apply();
     events_.pop_front();
   }
   ImGui_ImplGlfw_NewFrame();
-  // ImGui's backend takes the mouse as it is by now, some events later. A drag may lead out of the window.
+  // ImGui's backend takes the present state of the mouse, some events later. A drag may lead out of the window.
   constexpr float kNowhere = std::numeric_limits<float>::lowest();
   const bool is_seen = is_inside_ || glfwGetWindowAttrib(window_, GLFW_FOCUSED) != 0;
   set_mouse(is_seen ? mouse_ : ImVec2(kNowhere, kNowhere), buttons_);
@@ -112,5 +110,10 @@ void Input::begin_frame() {
 }
 
 bool is_pressed(int key) { return static_cast<const Input*>(ImGui::GetIO().UserData)->pressed_key() == key; }
+void name_item(const std::string& name) { name_area(name, {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()}); }
+
+void name_area(const std::string& name, const Area& area) {
+  static_cast<Input*>(ImGui::GetIO().UserData)->areas()[name] = area;
+}
 
 }  // namespace dolp::explore

@@ -1,4 +1,4 @@
-// Events of mouse and keyboard, which ImGui gets one by one.
+// Events of mouse and keyboard, which ImGui gets one by one, and where the named items are.
 #pragma once
 
 #include <imgui.h>
@@ -7,6 +7,7 @@
 #include <chrono>
 #include <deque>
 #include <functional>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -14,11 +15,21 @@ struct GLFWwindow;
 
 namespace dolp::explore {
 
+/// A rectangle in pixels of the window, y downwards.
+struct Area {
+  ImVec2 min, max;
+
+  float width() const { return max.x - min.x; }
+  float height() const { return max.y - min.y; }
+  /// The point at fractions of width and height from the upper left corner.
+  ImVec2 at(float x, float y) const { return {min.x + x * width(), min.y + y * height()}; }
+};
+
 /// Queues the events of a window. ImGui looks at the state of keys and buttons once a frame, and misses those that go
-/// down and up between two: it has a frame for each event, not all of which are shown.
+/// down and up between two frames. So each event gets its own frame; the window shows only some of these frames.
 class Input {
  public:
-  /// Becomes the window's user pointer. `on_drop` gets the path of a file that is dropped on the window.
+  /// Becomes the window's user pointer. `on_drop` gets the path of each file that is dropped on the window.
   Input(GLFWwindow* window, std::function<void(const std::string&)> on_drop);
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
@@ -26,12 +37,14 @@ class Input {
   /// Begins a frame of ImGui with the next event, if there is one.
   void begin_frame();
   bool has_more() const { return !events_.empty(); }
-  /// The key of GLFW that goes down in this frame.
+  /// GLFW's number of the key that goes down in this frame.
   int pressed_key() const { return pressed_key_; }
   /// True where there was anything to show since the last call.
   bool take_news() { return std::exchange(has_news_, false); }
   /// Time since the last event.
   double rest_s() const { return std::chrono::duration<double>(Clock::now() - last_event_).count(); }
+  /// The items of this frame that have a name, for hands that move the mouse there.
+  std::map<std::string, Area>& areas() { return areas_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -39,7 +52,7 @@ class Input {
     std::function<void()> apply;
     bool is_motion;
   };
-  static Input& of(GLFWwindow* window);
+  static Input& input_of(GLFWwindow* window);
   static void push(GLFWwindow* window, std::function<void()> apply, bool is_motion = false);
 
   GLFWwindow* window_;
@@ -47,15 +60,20 @@ class Input {
   std::deque<Event> events_;
   bool has_news_ = false;
   Clock::time_point last_event_;
-  // As the events so far say.
+  std::map<std::string, Area> areas_;
+  // The state after the events so far.
   int pressed_key_ = 0;
   bool is_inside_ = false;
   ImVec2 mouse_;
   std::array<bool, 5> buttons_{};
 };
 
-/// True in the frame in which this key of GLFW goes down. ImGui's own codes of keys depend on its version: up to 1.86
-/// they are GLFW's, and ImGui::IsKeyPressed(ImGuiKey_Escape) asks for another key.
+/// True in the frame in which this key of GLFW goes down. ImGui's codes of keys depend on its version: up to 1.86 they
+/// are GLFW's, and ImGui::IsKeyPressed(ImGuiKey_Escape) asks for another key.
 bool is_pressed(int key);
+
+/// Names the area of the item that was drawn last, or another area.
+void name_item(const std::string& name);
+void name_area(const std::string& name, const Area& area);
 
 }  // namespace dolp::explore

@@ -5,18 +5,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "explore/readout.hpp"
+
 namespace dolp::explore {
 namespace {
 
 // Few enough that neighbours share a colour and are drawn as one, more than the eye tells apart.
 constexpr double kColourSteps = 96.0;
-constexpr double kMostContrast = 1e3;  // of a logarithmic colour scale
+constexpr double kMostContrast = 1e3;  // largest value over least value of a logarithmic colour scale
 constexpr std::size_t kMostLines = 7;
 constexpr ImU32 kLightLine = IM_COL32(255, 255, 255, 190);  // over the colours of a map, in both themes
 constexpr ImU32 kDarkLine = IM_COL32(0, 0, 0, 170);         // over the white of diverging colours
-constexpr float kBarRoom = 5.4F;                            // right of the map, in lines of text
+constexpr float kBarRoom = 5.4F;                            // width right of the map, in lines of text
 
-PlotAxis axis_of(const MapAxis& axis) { return {axis.label(), axis.scale}; }
+Scale times(const Scale& range, double factor) { return {factor * range.from, factor * range.to, range.is_log}; }
 
 std::string title_of(const Session& session) {
   const HeatMap& map = session.map();
@@ -45,20 +47,17 @@ double MapView::colour_position(double value) const {
   return colour_scale_.position(value);
 }
 
-Scale MapView::colour_range(const Session& session) const {
-  if (described(quantity_).is_signed) {
+Scale MapView::colour_range() const {
+  if (quantity().is_signed) {
     const double largest = std::max(std::abs(field_.min), std::abs(field_.max));
     return {-largest, largest};
   }
-  // Only what is positive throughout, but for a few smallest values, has a logarithm.
-  const bool is_log = session.view().is_log;
-  const double low = is_log && field_.max > 0.0 ? std::max(field_.min, field_.max / kMostContrast) : field_.min;
-  return {low, field_.max, is_log && low > 0.0};
+  // A logarithmic scale leaves out the smallest values, and needs a positive rest.
+  const double low = is_log_ && field_.max > 0.0 ? std::max(field_.min, field_.max / kMostContrast) : field_.min;
+  return {low, field_.max, is_log_ && low > 0.0};
 }
 
-ImU32 MapView::colour(double position) const {
-  return described(quantity_).is_signed ? diverging(position) : viridis(position);
-}
+ImU32 MapView::colour(double position) const { return quantity().is_signed ? diverging(position) : viridis(position); }
 
 void MapView::update(const Session& session) {
   const Plotted quantity = session.view().quantity;
@@ -72,7 +71,7 @@ void MapView::update(const Session& session) {
   field_ = session.map().field(quantity);
   // While a slider is dragged the colours keep their values, so that the map is what changes.
   const bool is_held = session.is_dragged() && is_same && colour_scale_.from < colour_scale_.to;
-  if (!is_held) colour_scale_ = typed_colours_.value_or(colour_range(session));
+  if (!is_held) colour_scale_ = typed_colours_.value_or(colour_range());
   colours_.clear();
   for (std::size_t i = 0; i < field_.values.size(); ++i) {
     const double position = colour_position(field_.values[i]);
@@ -81,9 +80,9 @@ void MapView::update(const Session& session) {
   runs_ = runs_along(true);
   std::vector<Run> upwards = runs_along(false);
   if (upwards.size() < runs_.size()) runs_ = std::move(upwards);
-  lines_.clear();
+  contours_.clear();
   if (field_.min >= field_.max || colour_scale_.from >= colour_scale_.to) return;
-  for (const double level : colour_scale_.ticks(kMostLines)) lines_.push_back({level, contour(field_, level)});
+  for (const double level : colour_scale_.ticks(kMostLines)) contours_.push_back({level, contour(field_, level)});
 }
 
 std::vector<MapView::Run> MapView::runs_along(bool rows) const {
@@ -116,48 +115,41 @@ void MapView::draw_cells(const Plot& plot) const {
   }
 }
 
-void MapView::draw_lines(const Plot& plot, double scale) const {
-  const ImU32 line_colour = described(quantity_).is_signed ? kDarkLine : kLightLine;
-  for (const Line& line : lines_) {
-    for (const Segment& s : line.segments) {
+void MapView::draw_contours(const Plot& plot) const {
+  const ImU32 line_colour = quantity().is_signed ? kDarkLine : kLightLine;
+  for (const Contour& contour : contours_) {
+    for (const Segment& s : contour.segments) {
       plot.list()->AddLine(plot.at_position(s.x0, s.y0), plot.at_position(s.x1, s.y1), line_colour, scaled(1.0F));
     }
   }
   std::vector<ImVec2> labels;
-  for (const Line& line : lines_) {
-    if (line.segments.empty()) continue;
-    // Puts the label at the point of the line that is farthest from the edges.
+  for (const Contour& contour : contours_) {
+    if (contour.segments.empty()) continue;
+    // The label is at the point that is farthest from the edges.
     const auto room = [](const Segment& s) { return std::min({s.x0, 1.0 - s.x0, s.y0, 1.0 - s.y0}); };
-    const Segment& inner = *std::ranges::max_element(line.segments, {}, room);
+    const Segment& inner = *std::ranges::max_element(contour.segments, {}, room);
     const ImVec2 at = plot.at_position(inner.x0, inner.y0);
     const float apart = 1.5F * ImGui::GetTextLineHeight();
     const auto is_near = [&](ImVec2 other) { return std::hypot(at.x - other.x, at.y - other.y) < apart; };
     if (std::ranges::any_of(labels, is_near)) continue;
     labels.push_back(at);
-    draw_label(plot.list(), at, {0.5F, 0.5F}, kTextColour, tick_text(scale * line.level));
+    draw_label(plot.list(), at, {0.5F, 0.5F}, kTextColour, tick_text(quantity().scale() * contour.level));
   }
 }
 
-void MapView::draw_bar(const Plot& plot, const PlottedDescription& quantity) const {
+void MapView::draw_bar(const Plot& plot) const {
   if (!(field_.min <= field_.max)) return;
-  constexpr int kSteps = 64;
-  const float line = ImGui::GetTextLineHeight();
-  const float left = plot.max().x + 0.9F * line;
-  const float right = left + 0.9F * line;
-  const float height = plot.area().height();
-  for (int i = 0; i < kSteps; ++i) {
-    const auto y = [&](int step) { return plot.max().y - height * static_cast<float>(step) / kSteps; };
-    plot.list()->AddRectFilled({left, y(i + 1)}, {right, y(i)}, colour((i + 0.5) / kSteps));
-  }
-  plot.list()->AddRect({left, plot.min().y}, {right, plot.max().y}, kDimColour);
+  const float line = ImGui::GetTextLineHeight(), left = plot.max().x + 0.9F * line;
+  const Area bar{{left, plot.min().y}, {left + 0.9F * line, plot.max().y}};
+  draw_colours(plot.list(), bar, true, [this](double position) { return colour(position); });
+  plot.list()->AddRect(bar.min, bar.max, kDimColour);
   if (!(colour_scale_.from < colour_scale_.to)) return;
-  const double scale = quantity.scale();
-  const auto most = static_cast<std::size_t>(std::max(2.0F, height / (2.2F * line)));
-  const Scale shown{scale * colour_scale_.from, scale * colour_scale_.to, colour_scale_.is_log};
-  for (const double tick : shown.ticks(most)) {
-    const float y = plot.max().y - static_cast<float>(colour_position(tick / scale)) * height;
-    plot.list()->AddLine({right, y}, {right + 0.25F * line, y}, kDimColour);
-    draw_text(plot.list(), {right + 0.4F * line, y}, {0.0F, 0.5F}, kDimColour, tick_text(tick));
+  const double scale = quantity().scale();
+  const auto most = static_cast<std::size_t>(std::max(2.0F, bar.height() / (2.2F * line)));
+  for (const double tick : times(colour_scale_, scale).ticks(most)) {
+    const float y = bar.at(0.0F, 1.0F - static_cast<float>(colour_position(tick / scale))).y;
+    plot.list()->AddLine({bar.max.x, y}, {bar.max.x + 0.25F * line, y}, kDimColour);
+    draw_text(plot.list(), {bar.max.x + 0.4F * line, y}, {0.0F, 0.5F}, kDimColour, tick_text(tick));
   }
 }
 
@@ -165,7 +157,7 @@ void MapView::edit_axes(Session& session, const Plot& plot) {
   View view = session.view();
   for (const auto& [axis, numbers] :
        {std::pair{session.map().x(), plot.x_numbers()}, {session.map().y(), plot.y_numbers()}}) {
-    const auto check = [&](const Scale& range) { return session.refusal(axis, range); };
+    const auto check = [&](const Scale& range) { return refusal(session.scene(), axis, range); };
     const auto change = axis_editor_.draw(axis.label(), numbers, axis.scale, check);
     if (!change) continue;
     const bool is_automatic = !change->range && change->is_log == axis.scale.is_log;
@@ -173,34 +165,32 @@ void MapView::edit_axes(Session& session, const Plot& plot) {
     if (!is_automatic) view.map_ranges[axis.label()] = change->range.value_or(axis.scale.with_log(change->is_log));
     session.set_view(view);
   }
-  const PlottedDescription& quantity = described(quantity_);
   const float line = ImGui::GetTextLineHeight();
   const Area numbers{{plot.max().x + 0.5F * line, plot.min().y}, {plot.max().x + kBarRoom * line, plot.max().y}};
-  const auto times = [](const Scale& range, double by) { return Scale{by * range.from, by * range.to, range.is_log}; };
-  const auto take_all = [](const Scale&) { return std::string(); };
-  const auto change =
-      axis_editor_.draw("colours: " + quantity.label(), numbers, times(colour_scale_, quantity.scale()), take_all);
+  const auto change = axis_editor_.draw("colours: " + quantity().label(), numbers,
+                                        times(colour_scale_, quantity().scale()), [](const Scale&) { return ""; });
   if (!change) return;
   view.map_colours.reset();
-  if (change->range) view.map_colours = times(*change->range, 1.0 / quantity.scale());
-  if (!quantity.is_signed) view.is_log = change->is_log;
+  if (change->range) view.map_colours = times(*change->range, 1.0 / quantity().scale());
+  if (!quantity().is_signed) view.is_log = change->is_log;
   session.set_view(view);
 }
 
 void MapView::draw(Session& session, ImVec2 size) {
   update(session);
-  const PlottedDescription& quantity = described(session.view().quantity);
+  const HeatMap& map = session.map();
   const float line = ImGui::GetTextLineHeight();
-  const Plot plot("map", size, axis_of(session.map().x()), axis_of(session.map().y()), kBarRoom * line, false);
+  const Plot plot("map", size, {map.x().label(), map.x().scale}, {map.y().label(), map.y().scale}, kBarRoom * line,
+                  false);
   if (plot.is_dragged()) session.set_map_cursor(plot.mouse_x(), plot.mouse_y());
   draw_text(plot.list(), {plot.max().x, plot.min().y - 0.6F * line}, {1.0F, 1.0F}, kTextColour, title_of(session));
   plot.clip();
   draw_cells(plot);
-  draw_lines(plot, quantity.scale());
-  if (session.map().is_stale() && !session.is_dragged()) plot.list()->AddRectFilled(plot.min(), plot.max(), kStaleVeil);
+  draw_contours(plot);
+  if (map.is_stale() && !session.is_dragged()) plot.list()->AddRectFilled(plot.min(), plot.max(), kStaleVeil);
   draw_map_cursor(session, plot);
   plot.unclip();
-  draw_bar(plot, quantity);
+  draw_bar(plot);
   area_ = plot.area();
   edit_axes(session, plot);
 }

@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
-#include <optional>
+#include <ranges>
 
+#include "explore/readout.hpp"
 #include "explore/window/views.hpp"
 
 namespace dolp::explore {
@@ -16,40 +15,41 @@ constexpr std::size_t kMaterialCount = 240;
 constexpr std::size_t kCutCount = 181;
 constexpr float kLineWidth = 2.0F;
 
-/// A line through the values at positions; it breaks where there is none.
-void draw_values(const Plot& plot, const std::vector<double>& xs, const std::vector<double>& ys,
-                 const CurveStyle& style) {
-  std::vector<ImVec2> line;
-  const auto finish = [&] {
-    draw_line(plot.list(), line, style, kLineWidth);
-    line.clear();
-  };
-  for (std::size_t i = 0; i < xs.size(); ++i) {
-    if (!std::isfinite(ys[i]) || (plot.y().is_log && ys[i] <= 0.0)) {
-      finish();
-    } else {
-      line.push_back(plot.at(xs[i], ys[i]));
+/// The values of a line over positions that all lines of a plot share.
+struct NamedLine {
+  std::string name;
+  CurveStyle style;
+  std::vector<double> values;
+};
+
+/// A range from 0, or from `least` where it is logarithmic, with room for names above the largest value.
+Scale values_range(const std::vector<NamedLine>& lines, double largest_part, double least, bool is_log) {
+  double largest = 0.0;
+  for (const NamedLine& line : lines) {
+    for (const double value : line.values) {
+      if (std::isfinite(value)) largest = std::max(largest, value);
     }
   }
-  finish();
+  if (!(largest > 0.0)) largest = 1.0;
+  return {is_log ? std::max(least, largest_part * largest) : 0.0, (is_log ? 2.0 : 1.15) * largest, is_log};
 }
 
-/// A name in a curve's style, in the upper right corner of a plot.
-void draw_name(const Plot& plot, std::size_t row, const CurveStyle& style, const std::string& name) {
-  const float line = ImGui::GetTextLineHeight();
-  const float y = plot.min().y + (0.8F + 1.3F * static_cast<float>(row)) * line;
-  const float right = plot.max().x - 0.6F * line;
-  draw_label(plot.list(), {right, y}, {1.0F, 0.5F}, kTextColour, name);
-  const float end = right - ImGui::CalcTextSize(shown(name).c_str()).x - 0.6F * line;
-  draw_line(plot.list(), {{end - 2.0F * line, y}, {end, y}}, style, kLineWidth);
-}
-
-double largest_of(const std::vector<double>& values) {
-  double largest = 0.0;
-  for (const double value : values) {
-    if (std::isfinite(value)) largest = std::max(largest, value);
+/// Draws lines, with gaps where they have no value, and their names in the upper right corner.
+void draw_lines(const Plot& plot, const std::vector<double>& xs, const std::vector<NamedLine>& lines) {
+  for (const NamedLine& line : std::views::reverse(lines)) {  // the first lies over the others
+    std::vector<ImVec2> points;
+    for (std::size_t i = 0; i < xs.size(); ++i)
+      points.push_back(plot.can_show(xs[i], line.values[i]) ? plot.at(xs[i], line.values[i]) : kGap);
+    draw_line(plot.list(), points, line.style, kLineWidth);
   }
-  return largest > 0.0 ? largest : 1.0;
+  const float height = ImGui::GetTextLineHeight(), right = plot.max().x - 0.6F * height;
+  float y = plot.min().y + 0.8F * height;
+  for (const NamedLine& line : lines) {
+    draw_label(plot.list(), {right, y}, {1.0F, 0.5F}, kTextColour, line.name);
+    const float end = right - ImGui::CalcTextSize(shown(line.name).c_str()).x - 0.6F * height;
+    draw_line(plot.list(), {{end - 2.0F * height, y}, {end, y}}, line.style, kLineWidth);
+    y += 1.3F * height;
+  }
 }
 
 std::string distribution_name(const Scene& scene) {
@@ -60,7 +60,7 @@ std::string distribution_name(const Scene& scene) {
 
 void draw_reason(const std::string& reason) { coloured_text(kDimColour, reason); }
 
-/// The element of a matrix, and the largest magnitude of it in a cut.
+/// The largest magnitude of an element in a cut.
 double largest_magnitude(const ScatteringCut& cut, std::size_t element) {
   double largest = 0.0;
   for (const MuellerMatrix& matrix : cut.matrices) {
@@ -69,52 +69,190 @@ double largest_magnitude(const ScatteringCut& cut, std::size_t element) {
   return largest;
 }
 
-/// Rings of equal magnitude and rays of equal zenith around the middle of the surface.
-void draw_polar_grid(ImDrawList* list, ImVec2 middle, float radius, const Scale& magnitude) {
+/// A half circle above the middle of a surface.
+struct HalfCircle {
+  ImVec2 middle;
+  float radius;
+
+  /// The point at a part of the radius and an angle from the normal, positive to the right.
+  ImVec2 at(double part, double angle_deg) const {
+    const double angle = angle_deg * kDegree;
+    return {middle.x + radius * static_cast<float>(part * std::sin(angle)),
+            middle.y - radius * static_cast<float>(part * std::cos(angle))};
+  }
+};
+
+/// Rings of equal magnitude and rays of equal zenith.
+void draw_polar_grid(ImDrawList* list, const HalfCircle& circle, const Scale& magnitude) {
   for (const double tick : magnitude.ticks(4)) {
-    const float of_tick = radius * static_cast<float>(magnitude.position(tick));
-    list->PathArcTo(middle, of_tick, std::numbers::pi_v<float>, 2.0F * std::numbers::pi_v<float>);
+    const double part = magnitude.position(tick);
+    list->PathArcTo(circle.middle, circle.radius * static_cast<float>(part), std::numbers::pi_v<float>,
+                    2.0F * std::numbers::pi_v<float>);
     list->PathStroke(kGridColour, ImDrawFlags_None, 1.0F);
-    draw_label(list, {middle.x, middle.y - of_tick}, {0.5F, 0.5F}, kDimColour, tick_text(tick));
+    draw_label(list, circle.at(part, 0.0), {0.5F, 0.5F}, kDimColour, tick_text(tick));
   }
   for (int degrees = -90; degrees <= 90; degrees += 30) {
-    const float angle = static_cast<float>(degrees) * std::numbers::pi_v<float> / 180.0F;
-    const ImVec2 end{middle.x + radius * std::sin(angle), middle.y - radius * std::cos(angle)};
-    list->AddLine(middle, end, kGridColour);
-    const ImVec2 at{middle.x + 1.07F * radius * std::sin(angle), middle.y - 1.07F * radius * std::cos(angle)};
-    draw_text(list, at, {0.5F, 0.5F}, kDimColour, fmt::format("{}°", std::abs(degrees)));
+    list->AddLine(circle.middle, circle.at(1.0, degrees), kGridColour);
+    draw_text(list, circle.at(1.07, degrees), {0.5F, 0.5F}, kDimColour, fmt::format("{}°", std::abs(degrees)));
   }
 }
 
-/// The lobe of an element: positive parts full, negative ones dashed.
-void draw_lobe(ImDrawList* list, ImVec2 middle, float radius, const ScatteringCut& cut, std::size_t element,
+/// The lobe of an element: positive parts full, negative parts dashed.
+void draw_lobe(ImDrawList* list, const HalfCircle& circle, const ScatteringCut& cut, std::size_t element,
                double largest) {
   for (const bool is_negative : {false, true}) {
-    const CurveStyle style = is_negative ? overlay_style() : current_style();
     std::vector<ImVec2> line;
     for (std::size_t i = 0; i < cut.matrices.size(); ++i) {
       const double value = cut.matrices[i][element];
-      if (!std::isfinite(value) || (value < 0.0) != is_negative) {
-        draw_line(list, line, style, kLineWidth);
-        line.clear();
-        continue;
-      }
-      const float length = radius * static_cast<float>(std::abs(value) / largest);
-      const float angle = static_cast<float>(cut.theta_r_deg[i]) * std::numbers::pi_v<float> / 180.0F;
-      line.push_back({middle.x + length * std::sin(angle), middle.y - length * std::cos(angle)});
+      const bool is_shown = std::isfinite(value) && (value < 0.0) == is_negative;
+      line.push_back(is_shown ? circle.at(std::abs(value) / largest, cut.theta_r_deg[i]) : kGap);
     }
-    draw_line(list, line, style, kLineWidth);
+    draw_line(list, line, is_negative ? overlay_style() : current_style(), kLineWidth);
   }
 }
 
-/// Where the light comes from.
-void draw_incidence(ImDrawList* list, ImVec2 middle, float radius, double theta_i_deg) {
-  const float angle = -static_cast<float>(theta_i_deg) * std::numbers::pi_v<float> / 180.0F;
-  const auto at = [&](float part) {
-    return ImVec2{middle.x + part * radius * std::sin(angle), middle.y - part * radius * std::cos(angle)};
+constexpr int kCells = 56;  // cells across a sphere, each a few pixels large
+
+/// A colour of the angle of polarisation, the same at 0 and 180 degrees.
+ImU32 angle_colour(double angle_deg) {
+  float r = 0.0F, g = 0.0F, b = 0.0F;
+  ImGui::ColorConvertHSVtoRGB(static_cast<float>(angle_deg / 180.0), 0.65F, 0.95F, r, g, b);
+  return ImGui::ColorConvertFloat4ToU32({r, g, b, 1.0F});
+}
+
+/// The colours of an image, which shows DOLP or the angle of polarisation.
+struct Colours {
+  Scale dolp;  ///< range from the darkest colour to the lightest
+  bool is_angle = false;
+
+  ImU32 colour(const std::optional<ImagePolarisation>& polarisation) const {
+    if (!polarisation) return kBadColour;
+    return is_angle ? angle_colour(polarisation->angle_deg) : viridis(dolp.position(polarisation->dolp));
+  }
+};
+
+/// The range of DOLP from 0, or from the least value.
+Scale dolp_range(const std::vector<Point>& points, double theta_max_deg, bool from_least) {
+  constexpr double kLeastRange = 1e-6;
+  Scale range{1.0, 0.0};
+  for (const Point& point : points) {
+    if (!point.is_good() || point.theta_deg > theta_max_deg) continue;
+    range = {std::min(range.from, point[Quantity::kDolp]), std::max(range.to, point[Quantity::kDolp])};
+  }
+  if (!from_least || range.to < range.from) range.from = 0.0;
+  return {range.from, std::max(range.to, range.from + kLeastRange)};
+}
+
+void draw_sphere(const Session& session, ImVec2 middle, float radius, const Colours& colours) {
+  ImDrawList* const list = ImGui::GetWindowDrawList();
+  const float cell = 2.0F * radius / kCells;
+  for (int row = 0; row < kCells; ++row) {
+    for (int column = 0; column < kCells; ++column) {
+      const float x = (static_cast<float>(column) + 0.5F) * cell - radius;
+      const float y = radius - (static_cast<float>(row) + 0.5F) * cell;
+      const double sine = static_cast<double>(std::hypot(x, y) / radius);
+      if (sine >= 1.0) continue;
+      const double azimuth_deg = std::atan2(static_cast<double>(y), static_cast<double>(x)) / kDegree;
+      const ImVec2 corner{middle.x + x - 0.5F * cell, middle.y - y - 0.5F * cell};
+      list->AddRectFilled(
+          corner, {corner.x + cell, corner.y + cell},
+          colours.colour(polarisation_at(session.curve().points(), std::asin(sine) / kDegree, azimuth_deg)));
+    }
+  }
+}
+
+/// A square plate as seen from afar, with a line along its polarisation.
+void draw_plate(const Session& session, ImVec2 middle, float radius, double azimuth_deg, const Colours& colours) {
+  const std::optional<ImagePolarisation> polarisation =
+      polarisation_at(session.curve().points(), session.theta_deg(), azimuth_deg);
+  const double azimuth = azimuth_deg * kDegree;
+  const double shortened = std::max(0.02, std::cos(session.theta_deg() * kDegree));
+  const auto at = [&](double along, double across) {
+    // The side along the tilt is shortened.
+    const double x = along * shortened * std::cos(azimuth) - across * std::sin(azimuth);
+    const double y = along * shortened * std::sin(azimuth) + across * std::cos(azimuth);
+    return ImVec2{middle.x + radius * static_cast<float>(x), middle.y - radius * static_cast<float>(y)};
   };
-  list->AddLine(at(1.0F), at(0.0F), kCursorColour, scaled(1.0F));
-  list->AddCircleFilled(at(1.0F), scaled(4.0F), kCursorColour);
+  constexpr double kHalf = 0.75;
+  ImDrawList* const list = ImGui::GetWindowDrawList();
+  list->AddQuadFilled(at(-kHalf, -kHalf), at(kHalf, -kHalf), at(kHalf, kHalf), at(-kHalf, kHalf),
+                      colours.colour(polarisation));
+  list->AddQuad(at(-kHalf, -kHalf), at(kHalf, -kHalf), at(kHalf, kHalf), at(-kHalf, kHalf), kDimColour);
+  if (!polarisation) return;
+  const auto angle = static_cast<float>(polarisation->angle_deg * kDegree);
+  const ImVec2 half{0.4F * radius * std::cos(angle), -0.4F * radius * std::sin(angle)};
+  list->AddLine({middle.x - half.x, middle.y - half.y}, {middle.x + half.x, middle.y + half.y}, kTextColour,
+                scaled(2.0F));
+}
+
+/// A bar of the colours with its ends in words.
+void draw_bar(ImVec2 corner, float width, const Colours& colours) {
+  const float line = ImGui::GetTextLineHeight();
+  ImDrawList* const list = ImGui::GetWindowDrawList();
+  const Area bar{corner, {corner.x + width, corner.y + 0.6F * line}};
+  draw_colours(list, bar, false, [&](double part) {
+    return colours.colour(ImagePolarisation{colours.dolp.value(part), 180.0 * part});
+  });
+  const auto end_text = [&](double dolp, const char* angle) {
+    return colours.is_angle ? angle : fmt::format("{:.3g} %", 100.0 * dolp);
+  };
+  const float below = corner.y + 0.7F * line;
+  draw_text(list, {bar.min.x, below}, {0.0F, 0.0F}, kDimColour, end_text(colours.dolp.from, "0°"));
+  draw_text(list, {bar.max.x, below}, {1.0F, 0.0F}, kDimColour, end_text(colours.dolp.to, "180°"));
+  draw_text(list, {corner.x + 0.5F * width, below}, {0.5F, 0.0F}, kTextColour, colours.is_angle ? "angle" : "DOLP");
+}
+
+/// A sky as a disc: the zenith in the middle, azimuth 0, the side of the view, on the right.
+struct SkyDisc {
+  ImVec2 middle;
+  float radius;
+
+  ImVec2 operator()(double zenith_deg, double azimuth_deg) const {
+    const auto length = radius * static_cast<float>(zenith_deg / 90.0);
+    const auto angle = static_cast<float>(azimuth_deg * kDegree);
+    return {middle.x + length * std::cos(angle), middle.y - length * std::sin(angle)};
+  }
+};
+
+void draw_rings(const SourceSky& sky, const SkyDisc& at, const Colours& colours) {
+  ImDrawList* const list = ImGui::GetWindowDrawList();
+  // Smooth edges would show as seams.
+  const ImDrawListFlags flags = std::exchange(list->Flags, ImDrawListFlags_None);
+  const double half_deg = 0.5 * SourceSky::azimuth_deg(1);
+  for (std::size_t i = 0; i < SourceSky::kAzimuths; ++i) {
+    const std::vector<Point>& ring = sky.at(i);
+    for (std::size_t j = 0; j + 1 < ring.size(); ++j) {
+      const ImU32 colour = ring[j].is_good() ? viridis(colours.dolp.position(ring[j][Quantity::kDolp])) : kBadColour;
+      const double inner = ring[j].theta_deg, outer = ring[j + 1].theta_deg;
+      for (const double side : {1.0, -1.0}) {
+        const double from = side * (SourceSky::azimuth_deg(i) - half_deg);
+        const double to = side * (SourceSky::azimuth_deg(i) + half_deg);
+        list->AddQuadFilled(at(inner, from), at(outer, from), at(outer, to), at(inner, to), colour);
+      }
+    }
+  }
+  list->Flags = flags;
+}
+
+/// Circles of zeniths; a ring for the scene's source, a square for its view.
+void draw_sky_marks(const Scene& scene, double source_zenith_deg, const SkyDisc& at) {
+  ImDrawList* const list = ImGui::GetWindowDrawList();
+  for (const double zenith_deg : {30.0, 60.0, 90.0}) {
+    list->AddCircle(at.middle, at.radius * static_cast<float>(zenith_deg / 90.0), kGridColour, 96);
+  }
+  draw_text(list, at(95.0, 0.0), {0.0F, 0.5F}, kDimColour, "0°");
+  draw_text(list, at(95.0, 90.0), {0.5F, 1.0F}, kDimColour, "90°");
+  draw_text(list, at(95.0, 180.0), {1.0F, 0.5F}, kDimColour, "180°");
+  const double azimuth_deg = scene.number("geometry.relative_azimuth_deg").value();
+  list->AddCircle(at(source_zenith_deg, azimuth_deg), scaled(5.0F), kTextColour, 0, scaled(2.0F));
+  list->AddCircle(at(scene.number("geometry.view_zenith_deg").value(), 0.0), scaled(5.0F), kTextColour, 4,
+                  scaled(2.0F));
+}
+
+std::vector<Point> all_points(const SourceSky& sky) {
+  std::vector<Point> all;
+  for (std::size_t i = 0; i < SourceSky::kAzimuths; ++i) all.insert(all.end(), sky.at(i).begin(), sky.at(i).end());
+  return all;
 }
 
 }  // namespace
@@ -126,48 +264,38 @@ void draw_slopes(const Session& session, ImVec2 size) {
   try {
     other = scene.with(other_distribution(scene));
   } catch (const InputError&) {
-    // Its sigma or q is outside the model.
+    // Its sigma or q is outside the model: the plot has one line.
   }
-  // As far as the steepest thousandth of the density reaches.
   const std::vector<double> all_deg = zeniths(0.0, 89.5, kSlopeCount);
-  const auto densities = [&](const Scene& of) {
+  const auto densities = [&](const Scene& one) {
     std::vector<double> values;
-    for (const double alpha_deg : all_deg) {
-      const double cosine = std::cos(alpha_deg * std::numbers::pi / 180.0);
-      values.push_back(slope_density(of, alpha_deg) * cosine);
-    }
+    for (const double alpha_deg : all_deg)
+      values.push_back(slope_density(one, alpha_deg) * std::cos(alpha_deg * kDegree));
     return values;
   };
-  const std::vector<double> own = densities(scene);
-  const double most = largest_of(own);
-  const bool is_log = session.view().is_log;
-  const Plot plot("slopes", size, {"angle of the facets α [°]", {0.0, 90.0}},
-                  {"D(α) cos α [1/sr]", {is_log ? 1e-6 * most : 0.0, is_log ? 2.0 * most : 1.15 * most, is_log}});
+  std::vector<NamedLine> lines = {{distribution_name(scene), current_style(), densities(scene)}};
+  const Scale range = values_range(lines, 1e-6, 0.0, session.view().is_log);
+  if (other) lines.push_back({distribution_name(*other) + ", same D(0)", overlay_style(), densities(*other)});
+  const Plot plot("slopes", size, {"angle of the facets α [°]", {0.0, 90.0}}, {"D(α) cos α [1/sr]", range});
   plot.clip();
-  if (other) draw_values(plot, all_deg, densities(*other), overlay_style());
-  draw_values(plot, all_deg, own, current_style());
-  draw_name(plot, 0, current_style(), distribution_name(scene));
-  if (other) draw_name(plot, 1, overlay_style(), distribution_name(*other) + ", same D(0)");
+  draw_lines(plot, all_deg, lines);
   plot.unclip();
 }
 
 void draw_material(const Session& session, ImVec2 size) {
   const MaterialCurve curve = material_curve(session.scene(), kMaterialCount);
-  if (curve.wavelength_um.size() < 2) return draw_reason("n and k are known at one wavelength alone.");
-  const double most = std::max(largest_of(curve.n), largest_of(curve.k));
-  const bool is_log = session.view().is_log;
+  if (curve.wavelength_um.size() < 2) return draw_reason("n and k are known at only one wavelength.");
+  const std::vector<NamedLine> lines = {{"n", current_style(), curve.n}, {"k", overlay_style(), curve.k}};
   const Scale wavelengths{curve.wavelength_um.front(), curve.wavelength_um.back(), true};
   const Plot plot("material", size, {"wavelength λ [µm]", wavelengths},
-                  {"n, k", {is_log ? 1e-4 : 0.0, is_log ? 2.0 * most : 1.15 * most, is_log}});
+                  {"n, k", values_range(lines, 0.0, 1e-4, session.view().is_log)});
   plot.clip();
   const auto [from_um, to_um] = spectrum_um(session.scene());
-  const ImVec2 low = plot.at_position(plot.x().position(from_um), 1.0);
-  const ImVec2 high = plot.at_position(plot.x().position(to_um), 0.0);
-  plot.list()->AddRectFilled(low, {std::max(high.x, low.x + 1.5F), high.y}, band_colour(current_style()));
-  draw_values(plot, curve.wavelength_um, curve.n, current_style());
-  draw_values(plot, curve.wavelength_um, curve.k, overlay_style());
-  draw_name(plot, 0, current_style(), "n");
-  draw_name(plot, 1, overlay_style(), "k");
+  const float from = plot.at_position(plot.x().position(from_um), 0.0).x;
+  const float to = plot.at_position(plot.x().position(to_um), 0.0).x;
+  plot.list()->AddRectFilled({from, plot.min().y}, {std::max(to, from + 1.5F), plot.max().y},
+                             band_colour(current_style()));
+  draw_lines(plot, curve.wavelength_um, lines);
   plot.unclip();
 }
 
@@ -198,26 +326,81 @@ void ScatteringView::draw(Session& session, ImVec2 size) {
     *position = static_cast<std::size_t>(value);
     ImGui::SameLine();
   }
-  if (view.mueller_row != session.view().mueller_row || view.mueller_column != session.view().mueller_column)
-    session.set_view(view);
+  if (view != session.view()) session.set_view(view);
   ImGui::NewLine();
   if (!reason_.empty()) return draw_reason(reason_);
-  const std::size_t element = 4 * session.view().mueller_row + session.view().mueller_column;
+  const std::size_t element = 4 * view.mueller_row + view.mueller_column;
   const double largest = largest_magnitude(cut_, element);
-  coloured_text(kDimColour, fmt::format("f{}{} [1/sr] at {:.4g} µm, light from {:.1f}° on the left; full: positive, "
-                                        "dashed: negative",
-                                        session.view().mueller_row, session.view().mueller_column, cut_.wavelength_um,
-                                        session.theta_deg()));
+  coloured_text(kDimColour,
+                fmt::format("f{}{} [1/sr] at {:.4g} µm, light from {:.1f}° on the left; full: positive, "
+                            "dashed: negative",
+                            view.mueller_row, view.mueller_column, cut_.wavelength_um, session.theta_deg()));
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const float line = ImGui::GetTextLineHeight();
   const float height = size.y - (ImGui::GetCursorPosY() - top) - 2.0F * line;
   const float radius = std::max(line, std::min(0.5F * size.x - 2.5F * line, height - 1.5F * line));
-  const ImVec2 middle{corner.x + 0.5F * size.x, corner.y + 1.5F * line + radius};
+  const HalfCircle circle{{corner.x + 0.5F * size.x, corner.y + 1.5F * line + radius}, radius};
   ImDrawList* const list = ImGui::GetWindowDrawList();
   if (!(largest > 0.0)) return draw_reason("0 in all of these directions");
-  draw_polar_grid(list, middle, radius, {0.0, largest});
-  draw_lobe(list, middle, radius, cut_, element, largest);
-  draw_incidence(list, middle, radius, session.theta_deg());
+  draw_polar_grid(list, circle, {0.0, largest});
+  draw_lobe(list, circle, cut_, element, largest);
+  // The source.
+  const ImVec2 source = circle.at(1.0, -session.theta_deg());
+  list->AddLine(source, circle.middle, kCursorColour, scaled(1.0F));
+  list->AddCircleFilled(source, scaled(4.0F), kCursorColour);
+}
+
+void ShapeView::draw(Session& session, ImVec2 size) {
+  if (is_bistatic(session.scene())) {
+    return coloured_text(kDimColour, "Bistatic mode has only one direction of view: see the view sky.");
+  }
+  const float line = ImGui::GetTextLineHeight();
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  ImGui::InvisibleButton("shapes", {std::max(size.x, 1.0F), std::max(size.y, 1.0F)});
+  const float radius = std::max(line, std::min(0.25F * size.x - 0.8F * line, 0.25F * (size.y - 4.5F * line)));
+  const float high = corner.y + 1.4F * line + radius;
+  const float low = high + 2.0F * radius + 0.3F * line;
+  const ImVec2 plate{corner.x + 0.25F * size.x, low};
+  if (ImGui::IsItemActive()) {
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const bool is_left = mouse.x < corner.x + 0.5F * size.x;
+    const auto x = static_cast<double>(mouse.x - plate.x - (is_left ? 0.0F : 0.5F * size.x));
+    const auto y = static_cast<double>(plate.y - mouse.y);
+    azimuth_deg_ = std::atan2(y, x) / kDegree;
+    session.set_theta(std::asin(std::min(1.0, std::hypot(x, y) / static_cast<double>(radius))) / kDegree);
+  }
+  ImDrawList* const list = ImGui::GetWindowDrawList();
+  draw_text(list, corner, {0.0F, 0.0F}, kTextColour,
+            fmt::format("sphere, and a plate tilted by {:.1f}° (drag){}", session.theta_deg(),
+                        remark(session, session.curve())));
+  for (const bool is_angle : {false, true}) {
+    const Colours colours{dolp_range(session.curve().points(), session.view().theta_max_deg, false), is_angle};
+    const float x = plate.x + (is_angle ? 0.5F * size.x : 0.0F);
+    draw_sphere(session, {x, high}, radius, colours);
+    draw_plate(session, {x, low}, radius, azimuth_deg_, colours);
+    draw_bar({x - radius, low + radius + 0.3F * line}, 2.0F * radius, colours);
+  }
+}
+
+void draw_sky(const Session& session, ImVec2 size) {
+  if (!is_bistatic(session.scene())) {
+    return coloured_text(kDimColour, "This sky shows directions of a source: choose the mode bistatic.");
+  }
+  const SourceSky& sky = session.source_sky();
+  const Colours colours{dolp_range(all_points(sky), 90.0, true)};
+  const float line = ImGui::GetTextLineHeight();
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const float radius = std::max(line, std::min(0.5F * size.x - 2.0F * line, 0.5F * (size.y - 5.5F * line)));
+  const ImVec2 middle{corner.x + 0.5F * size.x, corner.y + 2.8F * line + radius};
+  ImDrawList* const list = ImGui::GetWindowDrawList();
+  draw_text(
+      list, corner, {0.0F, 0.0F}, kTextColour,
+      fmt::format("DOLP over the source's direction, view at {:.4g}°{}",
+                  session.scene().number("geometry.view_zenith_deg").value(), sky.is_finished() ? "" : ", refining"));
+  const SkyDisc at{middle, radius};
+  draw_rings(sky, at, colours);
+  draw_sky_marks(session.scene(), session.theta_deg(), at);
+  draw_bar({middle.x - radius, middle.y + radius + 0.5F * line}, 2.0F * radius, colours);
 }
 
 }  // namespace dolp::explore

@@ -6,9 +6,31 @@
 namespace dolp::explore {
 namespace {
 
-/// Ticks with this many pixels between them, or more.
+/// Ticks with at least `spacing` pixels between them.
 std::vector<double> ticks_of(const Scale& scale, float pixels, float spacing) {
   return scale.ticks(static_cast<std::size_t>(std::max(3.0F, pixels / spacing)));
+}
+
+/// A line without gaps.
+void draw_piece(ImDrawList* list, const std::vector<ImVec2>& points, const CurveStyle& style, float width) {
+  if (style.dash == 0.0F && points.size() > 1)
+    return list->AddPolyline(points.data(), static_cast<int>(points.size()), style.colour, ImDrawFlags_None, width);
+  const float dash = scaled(style.dash), period = scaled(style.dash + style.gap);
+  float done = 0.0F;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const ImVec2 a = points[i], b = points[i + 1];
+    const float length = std::hypot(b.x - a.x, b.y - a.y);
+    const auto point = [&](float at) {
+      return ImVec2{a.x + (b.x - a.x) * at / length, a.y + (b.y - a.y) * at / length};
+    };
+    for (float at = 0.0F; at < length;) {
+      const float phase = std::fmod(done + at, period);
+      const float next = std::min(length, at + std::max(0.01F, (phase < dash ? dash : period) - phase));
+      if (phase < dash) list->AddLine(point(at), point(next), style.colour, width);
+      at = next;
+    }
+    done += length;
+  }
 }
 
 }  // namespace
@@ -29,30 +51,21 @@ void draw_label(ImDrawList* list, ImVec2 at, ImVec2 anchor, ImU32 colour, const 
 }
 
 void draw_line(ImDrawList* list, const std::vector<ImVec2>& points, const CurveStyle& style, float width) {
-  if (points.size() < 2) return;
-  width = scaled(width);
-  if (style.dash == 0.0F) {
-    list->AddPolyline(points.data(), static_cast<int>(points.size()), style.colour, ImDrawFlags_None, width);
-    return;
+  const auto is_gap = [](ImVec2 point) { return std::isnan(point.x); };
+  for (auto first = points.begin(); first != points.end();) {
+    const auto last = std::find_if(first, points.end(), is_gap);
+    draw_piece(list, {first, last}, style, scaled(width));
+    first = std::find_if_not(last, points.end(), is_gap);
   }
-  const float period = scaled(style.dash + style.gap);
-  float done = 0.0F;
-  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const ImVec2 a = points[i];
-    const ImVec2 b = points[i + 1];
-    const float length = std::hypot(b.x - a.x, b.y - a.y);
-    if (!(length > 0.0F)) continue;
-    const auto point = [&](float at) {
-      return ImVec2{a.x + (b.x - a.x) * at / length, a.y + (b.y - a.y) * at / length};
-    };
-    for (float at = 0.0F; at < length;) {
-      const float phase = std::fmod(done + at, period);
-      const bool is_dash = phase < scaled(style.dash);
-      const float next = std::min(length, at + std::max(0.01F, (is_dash ? scaled(style.dash) : period) - phase));
-      if (is_dash) list->AddLine(point(at), point(next), style.colour, width);
-      at = next;
-    }
-    done += length;
+}
+
+void draw_colours(ImDrawList* list, const Area& bar, bool is_upright, const std::function<ImU32(double)>& colour_at) {
+  constexpr int kSteps = 64;
+  for (int i = 0; i < kSteps; ++i) {
+    const float from = static_cast<float>(i) / kSteps, to = static_cast<float>(i + 1) / kSteps;
+    const ImVec2 low = is_upright ? bar.at(0.0F, 1.0F - to) : bar.at(from, 0.0F);
+    const ImVec2 high = is_upright ? bar.at(1.0F, 1.0F - from) : bar.at(to, 1.0F);
+    list->AddRectFilled(low, high, colour_at((i + 0.5) / kSteps));
   }
 }
 
@@ -88,12 +101,8 @@ Area Plot::y_numbers() const {
   return {{min().x - 3.5F * line, min().y - 0.5F * line}, {min().x - 0.1F * line, max().y + 0.5F * line}};
 }
 
-bool Plot::has_place(double x_value, double y_value) const {
+bool Plot::can_show(double x_value, double y_value) const {
   return std::isfinite(y_value) && (!x().is_log || x_value > 0.0) && (!y().is_log || y_value > 0.0);
-}
-
-ImVec2 Plot::at_position(double x, double y) const {
-  return area_.at(static_cast<float>(x), 1.0F - static_cast<float>(y));
 }
 
 double Plot::mouse_x() const {
@@ -106,7 +115,7 @@ double Plot::mouse_y() const {
 
 void Plot::follow_mouse(Zoom& zoom, const Scale& all_x) const {
   constexpr float kPerNotch = 1.25F;
-  constexpr double kLeastPart = 1e-4;  // of the axis that is there without a zoom
+  constexpr double kLeastPart = 1e-4;  // shortest axis, relative to the axis without a zoom
   const ImGuiIO& io = ImGui::GetIO();
   if (is_hovered_ && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) zoom = {};
   if (is_shifted_ && (io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F)) {
@@ -150,7 +159,7 @@ void Plot::draw_y_axis(bool has_grid) const {
     list_->AddLine({min().x - 0.25F * line, at}, {min().x, at}, kDimColour);
     draw_text(list_, {min().x - 0.4F * line, at}, {1.0F, 0.5F}, kDimColour, tick_text(tick));
   }
-  // Above the axis, where it needs no turned text.
+  // Above the axis, where the label needs no turned text.
   draw_text(list_, {min().x - 2.6F * line, min().y - 0.6F * line}, {0.0F, 1.0F}, kTextColour, y_.label);
 }
 

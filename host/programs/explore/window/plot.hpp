@@ -1,26 +1,13 @@
 // Axes, curves and maps from ImGui's draw lists.
 #pragma once
 
-#include <imgui.h>
-
-#include <optional>
-#include <string>
-#include <vector>
+#include <limits>
 
 #include "explore/scale.hpp"
+#include "explore/window/input.hpp"
 #include "explore/window/style.hpp"
 
 namespace dolp::explore {
-
-/// A rectangle in pixels of the window, y downwards.
-struct Area {
-  ImVec2 min, max;
-
-  float width() const { return max.x - min.x; }
-  float height() const { return max.y - min.y; }
-  /// At fractions of width and height, from the upper left corner.
-  ImVec2 at(float x, float y) const { return {min.x + x * width(), min.y + y * height()}; }
-};
 
 /// One axis of a plot.
 struct PlotAxis {
@@ -31,7 +18,7 @@ struct PlotAxis {
 /// A rectangle of the screen with two axes.
 class Plot {
  public:
-  /// Takes `size` of the current ImGui window from its cursor on, margins for marks and labels included, and draws
+  /// Takes `size` of the current ImGui window from its cursor, margins for ticks and labels included, and draws
   /// background, grid and axes. `right` leaves room at the right side.
   Plot(const char* id, ImVec2 size, PlotAxis x, PlotAxis y, float right = 0.0F, bool has_grid = true);
 
@@ -44,18 +31,18 @@ class Plot {
   // The numbers beside the axes.
   Area x_numbers() const;
   Area y_numbers() const;
-  /// True where a point has a place along both axes.
-  bool has_place(double x_value, double y_value) const;
+  /// True where both axes can show a point: it is finite, and positive along logarithmic axes.
+  bool can_show(double x_value, double y_value) const;
 
   ImVec2 at(double x_value, double y_value) const { return at_position(x().position(x_value), y().position(y_value)); }
-  ImVec2 at_position(double x, double y) const;
+  ImVec2 at_position(double x, double y) const { return area_.at(static_cast<float>(x), 1.0F - static_cast<float>(y)); }
   /// True while the left button, which was pressed inside, is held down.
   bool is_dragged() const { return is_dragged_; }
   bool is_hovered() const { return is_hovered_; }
-  /// Follows the mouse of this frame: the wheel magnifies about its place (with Shift along x alone, with Alt along y),
-  /// the right button shifts, a double click shows all again. `all_x`: the longest axis there may be.
+  /// Follows the mouse of this frame: the wheel magnifies about the mouse (with Shift only along x, with Alt only along
+  /// y), the right button shifts, a double click shows all again. `all_x` bounds the x axis.
   void follow_mouse(Zoom& zoom, const Scale& all_x) const;
-  /// The position of the mouse, from 0 to 1 along both axes; outside of the plot that of the nearest point.
+  /// The position of the mouse, or of the nearest point in the plot, from 0 to 1 along both axes.
   double mouse_x() const;
   double mouse_y() const;
 
@@ -74,13 +61,17 @@ class Plot {
   bool is_hovered_ = false;
 };
 
-/// A line through points, dashed where the style says so; its width and dashes are scaled().
+/// A line through points in a style; its width and dashes are scaled(). It breaks at points that are kGap.
+inline const ImVec2 kGap{std::numeric_limits<float>::quiet_NaN(), 0.0F};
 void draw_line(ImDrawList* list, const std::vector<ImVec2>& points, const CurveStyle& style, float width);
 
-/// Text with its anchor at a fraction of its own size: (0.5, 0) is centred below `at`.
+/// Text whose point at a fraction of its size, `anchor`, is `at`: (0.5, 0) is centred below `at`.
 void draw_text(ImDrawList* list, ImVec2 at, ImVec2 anchor, ImU32 colour, const std::string& text);
 
-/// The same on a dark ground, for what lies over curves.
+/// Text on a ground that hides curves behind it.
 void draw_label(ImDrawList* list, ImVec2 at, ImVec2 anchor, ImU32 colour, const std::string& text);
+
+/// A bar of colours for positions from 0 to 1, upwards or to the right.
+void draw_colours(ImDrawList* list, const Area& bar, bool is_upright, const std::function<ImU32(double)>& colour_at);
 
 }  // namespace dolp::explore

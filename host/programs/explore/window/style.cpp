@@ -23,7 +23,7 @@ constexpr std::array kRedBlue = {Rgb{5, 48, 97},     Rgb{33, 102, 172},  Rgb{67,
                                  Rgb{209, 229, 240}, Rgb{247, 247, 247}, Rgb{253, 219, 199}, Rgb{244, 165, 130},
                                  Rgb{214, 96, 77},   Rgb{178, 24, 43},   Rgb{103, 0, 31}};
 
-// On white the light ones are darker.
+// The light theme has darker colours where the dark theme has light ones.
 constexpr Themed kOrange{IM_COL32(230, 159, 0, 255), IM_COL32(196, 124, 0, 255)};
 constexpr Themed kSkyBlue{IM_COL32(86, 180, 233, 255), IM_COL32(0, 114, 178, 255)};
 constexpr Themed kGreen{IM_COL32(0, 158, 115, 255), IM_COL32(0, 134, 98, 255)};
@@ -50,14 +50,13 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 42> kNames =
     {"ν", "nu"},    {"‖", "|"},     {"▲", "^"},   {"•", "*"},   {"“", "\""},     {"”", "\""},     {"Ω", "Omega"},
 }};
 
-/// The colour at 0 to 1 between equal steps.
+/// The colour at a position from 0 to 1; linear between equal steps.
 ImU32 colour_at(std::span<const Rgb> colours, double position) {
-  const double place = std::clamp(position, 0.0, 1.0) * static_cast<double>(colours.size() - 1);
-  const auto below = std::min(static_cast<std::size_t>(place), colours.size() - 2);
-  const double part = place - static_cast<double>(below);
+  const double steps = std::clamp(position, 0.0, 1.0) * static_cast<double>(colours.size() - 1);
+  const auto below = std::min(static_cast<std::size_t>(steps), colours.size() - 2);
+  const double part = steps - static_cast<double>(below);
   const auto mixed = [&](int Rgb::*channel) {
-    const double a = colours[below].*channel;
-    const double b = colours[below + 1].*channel;
+    const double a = colours[below].*channel, b = colours[below + 1].*channel;
     return static_cast<int>(std::lround(a + part * (b - a)));
   };
   return IM_COL32(mixed(&Rgb::r), mixed(&Rgb::g), mixed(&Rgb::b), 255);
@@ -65,28 +64,17 @@ ImU32 colour_at(std::span<const Rgb> colours, double position) {
 
 }  // namespace
 
-bool is_light() {
-  const ImVec4 ground = ImGui::GetStyleColorVec4(ImGuiCol_WindowBg);
-  return ground.y > 0.5F;
-}
+bool is_light() { return ImGui::GetStyleColorVec4(ImGuiCol_WindowBg).y > 0.5F; }
 
 void set_theme(bool light) {
-  if (light) {
-    ImGui::StyleColorsLight();
-    ImGui::GetStyle().FrameBorderSize = 1.0F;
-  } else {
-    ImGui::StyleColorsDark();
-    ImGui::GetStyle().FrameBorderSize = 0.0F;
-  }
+  light ? ImGui::StyleColorsLight() : ImGui::StyleColorsDark();
+  ImGui::GetStyle().FrameBorderSize = light ? 1.0F : 0.0F;
   for (const ImGuiCol ground : {ImGuiCol_PopupBg, ImGuiCol_WindowBg}) ImGui::GetStyle().Colors[ground].w = 1.0F;
 }
 
 ImU32 viridis(double position) { return colour_at(kViridis, position); }
-
 ImU32 diverging(double position) { return colour_at(kRedBlue, position); }
-
 CurveStyle current_style() { return {kSkyBlue, 0.0F, 0.0F}; }
-
 CurveStyle overlay_style() { return {kOrange, 9.0F, 5.0F}; }
 
 CurveStyle pin_style(std::size_t pin) {
@@ -96,15 +84,8 @@ CurveStyle pin_style(std::size_t pin) {
   return kStyles[pin % kStyles.size()];
 }
 
-CurveStyle stale(const CurveStyle& style) {
-  constexpr ImU32 kAlpha = 96;
-  return {with_alpha(style.colour, kAlpha), style.dash, style.gap};
-}
-
-ImU32 band_colour(const CurveStyle& style) {
-  constexpr ImU32 kPart = 4;  // of the curve's own
-  return with_alpha(style.colour, (style.colour >> IM_COL32_A_SHIFT) / kPart);
-}
+CurveStyle stale(const CurveStyle& style) { return {with_alpha(style.colour, 96), style.dash, style.gap}; }
+ImU32 band_colour(const CurveStyle& style) { return with_alpha(style.colour, (style.colour >> IM_COL32_A_SHIFT) / 4); }
 
 void load_font(float pixels) {
   ImGuiIO& io = ImGui::GetIO();
@@ -122,17 +103,10 @@ float scaled(float pixels) { return pixels * ImGui::GetFontSize() / kFontPixels;
 std::string ascii(std::string_view text) {
   std::string plain;
   while (!text.empty()) {
-    bool found = false;
-    for (const auto& [sign, name] : kNames) {
-      if (!text.starts_with(sign)) continue;
-      plain += name;
-      text.remove_prefix(sign.size());
-      found = true;
-      break;
-    }
-    if (found) continue;
-    plain += text.front();
-    text.remove_prefix(1);
+    const auto named = std::ranges::find_if(kNames, [&](const auto& sign) { return text.starts_with(sign.first); });
+    const bool is_named = named != kNames.end();
+    plain += is_named ? named->second : text.substr(0, 1);
+    text.remove_prefix(is_named ? named->first.size() : 1);
   }
   return plain;
 }
@@ -141,7 +115,7 @@ std::string shown(std::string_view text) { return has_greek() ? std::string(text
 
 std::string in_lines(std::string text, float width) {
   constexpr std::size_t kNone = std::string::npos;
-  std::size_t line = 0;  // where it begins
+  std::size_t line = 0;  // start of the line
   std::size_t space = kNone;
   for (std::size_t i = 0; i <= text.size(); ++i) {
     const bool is_end = i == text.size() || text[i] == '\n';
@@ -175,8 +149,7 @@ void tooltip(const std::string& text) {
   // Beside the panel or above the item, so that the values below it stay in sight.
   const float width = 28.0F * ImGui::GetFontSize();
   const float gap = ImGui::GetStyle().ItemSpacing.x;
-  const ImVec2 first = ImGui::GetItemRectMin();
-  const ImVec2 last = ImGui::GetItemRectMax();
+  const ImVec2 first = ImGui::GetItemRectMin(), last = ImGui::GetItemRectMax();
   const float right = ImGui::GetWindowPos().x + ImGui::GetWindowWidth() + gap;
   if (right + width < io.DisplaySize.x) {
     const bool is_low = first.y > 0.5F * io.DisplaySize.y;

@@ -15,35 +15,35 @@ void set_theme(bool light);
 /// A colour in the dark theme and in the light one.
 struct Themed {
   ImU32 dark, light;
-  // NOLINTNEXTLINE(google-explicit-constructor): it is used as a colour
+  // NOLINTNEXTLINE(google-explicit-constructor): for ImGui it is a colour
   operator ImU32() const { return is_light() ? light : dark; }
 };
 
-/// The map "viridis" at 0 to 1, dark to light; colours outside are those of the ends.
+/// The colour map "viridis" from dark at 0 to light at 1; outside it has the colours of the ends.
 /// Source: S. van der Walt, N. Smith, viridis of Matplotlib (CC0), at seventeen equal steps, linear in between.
 ImU32 viridis(double position);
 
-/// The map "RdBu" from blue at 0 over white at 0.5 to red at 1, for values of both signs.
+/// The colour map "RdBu" from blue at 0 over white at 0.5 to red at 1, for values of both signs.
 /// Source: C. Brewer, ColorBrewer (Apache License 2.0), linear between its eleven colours.
 ImU32 diverging(double position);
 
-/// Style of a curve: colour is never the only distinction.
+/// The style of a curve: colour is never the only distinction.
 struct CurveStyle {
   ImU32 colour;
-  float dash;  ///< length of dashes in pixels, 0 for a full line
+  float dash;  ///< length of dashes in pixels; 0 for a full line
   float gap;
 };
 
-/// The current curve, the overlaid one, and pins by their number.
+/// The styles of the current curve, the overlay, and pins by their number.
 /// Source: M. Okabe, K. Ito, Color Universal Design (2008).
 CurveStyle current_style();
 CurveStyle overlay_style();
 CurveStyle pin_style(std::size_t pin);
 
-/// The style of the same curve when it belongs to an earlier scene.
+/// The style of a curve that belongs to an earlier scene.
 CurveStyle stale(const CurveStyle& style);
 
-/// The fill colour of the band around a curve of that style.
+/// The fill colour of the band around a curve in a style.
 ImU32 band_colour(const CurveStyle& style);
 
 inline constexpr Themed kTextColour{IM_COL32(225, 228, 232, 255), IM_COL32(24, 26, 30, 255)};
@@ -56,30 +56,30 @@ inline constexpr Themed kLabelGround{IM_COL32(20, 21, 24, 215), IM_COL32(255, 25
 inline constexpr Themed kBadColour{IM_COL32(110, 112, 116, 255), IM_COL32(150, 152, 156, 255)};
 /// Messages.
 inline constexpr Themed kErrorColour{IM_COL32(255, 150, 110, 255), IM_COL32(178, 40, 0, 255)};
-/// Ground of a field whose text is refused.
+/// Ground of a field with refused text.
 inline constexpr Themed kRefusedColour{IM_COL32(110, 48, 34, 255), IM_COL32(255, 200, 186, 255)};
 /// Over a stale map.
 inline constexpr Themed kStaleVeil{IM_COL32(20, 21, 24, 150), IM_COL32(255, 255, 255, 150)};
-/// The interval of a fit.
+/// Intervals of a fit.
 inline constexpr Themed kIntervalColour{IM_COL32(90, 205, 130, 255), IM_COL32(0, 130, 60, 255)};
 inline constexpr Themed kHeadingColour{IM_COL32(230, 179, 0, 255), IM_COL32(148, 98, 0, 255)};
 inline constexpr Themed kCursorColour{IM_COL32(255, 255, 255, 200), IM_COL32(40, 40, 40, 200)};
 
-/// Loads DejaVu Sans at `pixels`, or, where it is not installed, keeps ImGui's own font, which has ASCII alone.
-/// An ImGui context must be there.
+/// Loads DejaVu Sans at `pixels`, or, where it is not installed, ImGui's font, which has only ASCII. Needs an ImGui
+/// context.
 void load_font(float pixels);
-inline constexpr float kFontPixels = 15.0F;  ///< its usual size
+inline constexpr float kFontPixels = 15.0F;  ///< usual size of the font
 
-/// A length that is this many pixels at the usual size of text: it grows with the text.
+/// A length of this many pixels at the usual size of text; it grows with the text.
 float scaled(float pixels);
 
 /// A UTF-8 text as the font can show it: Greek letters and signs by name without DejaVu Sans.
 std::string shown(std::string_view text);
 
-/// The same text in ASCII.
+/// A UTF-8 text in ASCII.
 std::string ascii(std::string_view text);
 
-/// A text with its lines broken at spaces alone, so that numbers and paths stay whole where a line has room for them.
+/// A text with its lines broken only at spaces, so that numbers and paths stay whole where a line has room for them.
 std::string in_lines(std::string text, float width);
 
 /// Text in a colour at ImGui's cursor, wrapped at the edge of the window.

@@ -1,6 +1,7 @@
-#include "explore/plot_data.hpp"
-
+// The plots of the window as JSON for a picture of lines and text.
 #include <nlohmann/json.hpp>
+
+#include "explore/readout.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -11,44 +12,39 @@ json axis_json(const std::string& label, const Scale& scale) {
   return {{"label", label}, {"from", scale.from}, {"to", scale.to}, {"is_log", scale.is_log}};
 }
 
-/// `style`: "curve", "overlay", or the number of a pin's colour.
+/// `style`: "curve", "overlay", or the position of a pin's colour.
 json curve_json(const Curve& curve, const std::string& name, const json& style, Plotted quantity) {
-  const PlottedDescription& of = described(quantity);
+  const PlottedDescription& description = described(quantity);
   json theta = json::array(), values = json::array(), good = json::array(), low = json::array(), high = json::array();
   for (const Point& point : curve.drawn()) {
     theta.push_back(point.theta_deg);
-    values.push_back(of.scale() * of.value(point));
+    values.push_back(description.scale() * description.value(point));
     good.push_back(point.is_good());
     const bool has_band = quantity == Plotted::kDolp && style == "curve" && point.is_good() && point.has_bracket();
-    low.push_back(has_band ? json(of.scale() * point[Quantity::kDolpLow]) : json());
-    high.push_back(has_band ? json(of.scale() * point[Quantity::kDolpHigh]) : json());
+    low.push_back(has_band ? json(description.scale() * point[Quantity::kDolpLow]) : json());
+    high.push_back(has_band ? json(description.scale() * point[Quantity::kDolpHigh]) : json());
   }
   return {{"name", name}, {"style", style}, {"theta_deg", theta}, {"values", values},
           {"good", good}, {"low", low},     {"high", high}};
 }
 
 json map_json(const Session& session) {
-  const PlottedDescription& of = described(session.view().quantity);
-  const MapField field = session.map().field(of.quantity);
+  const PlottedDescription& description = described(session.view().quantity);
+  const MapField field = session.map().field(description.quantity);
   if (session.view().panel != Panel::kMap || field.count == 0) return {};
-  json rows = json::array();
-  for (std::size_t row = 0; row < field.count; ++row) {
-    json values = json::array();
-    for (std::size_t i = row * field.count; i < (row + 1) * field.count; ++i) {
-      values.push_back(field.is_good[i] ? json(of.scale() * field.values[i]) : json());
-    }
-    rows.push_back(std::move(values));
-  }
-  json colours;  // none that were typed
+  json rows(field.count, json::array());
+  for (std::size_t i = 0; i < field.values.size(); ++i)
+    rows[i / field.count].push_back(field.is_good[i] ? json(description.scale() * field.values[i]) : json());
+  json colours;  // null unless they were typed
   if (const auto& typed = session.view().map_colours) {
-    colours = {{"from", of.scale() * typed->from}, {"to", of.scale() * typed->to}};
+    colours = {{"from", description.scale() * typed->from}, {"to", description.scale() * typed->to}};
   }
   const auto axis = [](const MapAxis& one) { return axis_json(one.label(), one.scale); };
   return {{"x", axis(session.map().x())},
           {"y", axis(session.map().y())},
-          {"label", of.label()},
+          {"label", description.label()},
           {"is_log", session.view().is_log},
-          {"is_signed", of.is_signed},
+          {"is_signed", description.is_signed},
           {"colours", colours},
           {"rows", rows}};
 }
@@ -58,12 +54,12 @@ json map_json(const Session& session) {
 std::string plot_json(const Session& session, const Scale& x, const Scale& y) {
   const Plotted quantity = session.view().quantity;
   json curves = json::array();
-  if (session.overlay()) curves.push_back(curve_json(*session.overlay(), session.overlay_name(), "overlay", quantity));
+  if (session.overlay()) curves.push_back(curve_json(*session.overlay(), overlay_name(session), "overlay", quantity));
   for (const Pin& pin : session.pins()) {
     if (!pin.is_visible) continue;
     const Scene& scene = pin.curve.shown_scene();
     std::string name = pin.name.empty() ? surface_name(scene) : pin.name;
-    if (name == surface_name(session.curve().shown_scene())) name += ", " + pin_name(pin, session);
+    if (name == surface_name(session.curve().shown_scene())) name += ", " + pin_name(session, pin);
     curves.push_back(curve_json(pin.curve, name, pin.colour, quantity));
   }
   curves.push_back(curve_json(session.curve(), curve_name(session), "curve", quantity));

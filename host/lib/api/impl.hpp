@@ -1,21 +1,62 @@
-// Implementation of the public evaluator.
+// Implementations of the public classes, and functions that several calls of the public header use.
 #pragma once
 
 #include <unistd.h>
 #include <dolp/dolp.hpp>
 
 #include <atomic>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "model/evaluator.hpp"
+#include "report/report.hpp"
 #include "run/scene_run.hpp"
+#include "scene/points.hpp"
 #include "scene/scene.hpp"
+#include "table/table.hpp"
+#include "table/table_lookup.hpp"
 
 namespace dolp {
+
+struct Scene::Impl {
+  SceneValues scene;
+};
+
+struct Table::Impl {
+  Impl(TableValues own, std::string own_name) : table(std::move(own)), name(std::move(own_name)) {}
+  /// Made at the first request. Errors: errors of table_scene and TableLookup.
+  const TableLookup& lookup() const;
+
+  const TableValues table;
+  const std::string name;  ///< for messages
+
+  mutable std::once_flag is_made;
+  mutable std::optional<SceneValues> scene;  ///< the table's scene; given, as `between`, from the first lookup
+  mutable std::optional<TableLookup> between;
+};
+
+/// `output`: the file that was written.
+Report public_report(const ReportBuilder& report, bool is_good = true, const std::filesystem::path& output = {});
+
+/// The files that a scene is read from.
+std::vector<std::string> files_of(const SceneValues& scene);
+
+/// Refuses an output that would overwrite an input. "-" is stdin and stdout. Errors: InputError.
+void check_output_is_no_input(const std::filesystem::path& output, const std::vector<std::string>& inputs);
+
+/// `head`: the head of the table that a run over the points would write, or of the table that was read.
+Results results_of(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head);
+
+/// Points of columns, as many as the columns that have not one value for all; one where there is none.
+/// Errors: InputError for a column that is unknown, has another length, or has a value out of range.
+Points points_of_columns(const std::vector<Column>& columns, PointsKind kind);
 
 /// Refuses Vulkan in a process that was forked from one that has used it: drivers keep threads and locks that a fork
 /// does not copy, so that calls would wait without end.
@@ -44,10 +85,10 @@ struct Evaluator::Impl {
     return [this, &scene] { return begin(scene); };
   }
 
-  /// Calls `body` while no other thread uses the evaluators, with the options of the call; a device that failed is not
-  /// used again. Errors: InputError for a call from a callback of another.
+  /// Calls `body` with the scene and the options of the call while no other thread uses the evaluators; a device that
+  /// failed is not used again. Errors: InputError for a call from a callback of another.
   template <class Options, class Body>
-  auto exclusively(Options of_call, const Body& body) {
+  auto exclusively(const Scene& scene, Options of_call, const Body& body) {
     if (in_callback == std::this_thread::get_id())
       throw InputError("an Evaluator cannot be called from its own callback; another Evaluator can");
     if (options.evaluator == "vulkan") check_no_fork();
@@ -55,7 +96,7 @@ struct Evaluator::Impl {
     of_call.progress = guard_reentry(of_call.progress);
     if constexpr (requires { of_call.phase; }) of_call.phase = guard_reentry(of_call.phase);
     try {
-      return body(of_call);
+      return body(scene.impl().scene, of_call);
     } catch (const DeviceError&) {
       evaluator.reset();
       throw;

@@ -39,8 +39,8 @@ using Absorption = std::function<FresnelCoefficients(double cos_beta)>;
 // The facets of one surface, seen from one direction. `is_response`: errors are relative to cos(theta).
 class Facets {
  public:
-  Facets(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
-         Absorption absorption, bool is_response)
+  Facets(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants, Absorption absorption,
+         bool is_response)
       : axis_(slopes),
         masking_(masking),
         theta_rad_(theta_deg * pi / 180.0),

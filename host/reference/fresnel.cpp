@@ -30,7 +30,9 @@ FresnelCoefficients measured_coefficients(const MeasuredReflectance& measured, d
   while (i + 1 < measured.beta_deg.size() && measured.beta_deg[i] < beta_deg) ++i;
   const double before = measured.beta_deg[i - 1];
   const double after = measured.beta_deg[i];
-  const auto between = [&](double a, double b) { return (a * (after - beta_deg) + b * (beta_deg - before)) / (after - before); };
+  const auto between = [&](double a, double b) {
+    return (a * (after - beta_deg) + b * (beta_deg - before)) / (after - before);
+  };
   double r_s = between(measured.r_s[i - 1], measured.r_s[i]);
   double r_p = between(measured.r_p[i - 1], measured.r_p[i]);
   if (i == 1) {

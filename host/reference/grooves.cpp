@@ -272,8 +272,8 @@ Moments Surveyor::moments() {
 
 }  // namespace
 
-GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zenith& view,
-                            const FacetOptics& constants, const SkyFunction* sky) {
+GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zenith& view, const FacetOptics& constants,
+                            const SkyFunction* sky) {
   const SlopePoint point{t, sin_chi, cos_chi};
   const Groove<double> groove = groove_of(t);
   const Vector3 omega = toward_view(point, view);

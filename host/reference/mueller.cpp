@@ -188,8 +188,8 @@ Number along(const RealVector<Number>& a, const std::array<Number, 3>& e) {
 
 // f^(k) cos(theta_i) cos(theta_r) of the beams that meet A of one groove plane first, `Number` being complex.
 template <class Number>
-ReferenceMueller bounces_in_plane(const reference::Slopes& slopes, const FacetOptics& constants,
-                                  const BeamFrame& in, const BeamFrame& out, const GroovePlane& plane, int bounces) {
+ReferenceMueller bounces_in_plane(const reference::Slopes& slopes, const FacetOptics& constants, const BeamFrame& in,
+                                  const BeamFrame& out, const GroovePlane& plane, int bounces) {
   using Part = typename Number::value_type;
   const Real gamma = plane.gamma(bounces);
   if (gamma <= 0 || 2 * gamma >= boost::math::constants::pi<Real>()) return {};

@@ -162,6 +162,7 @@ std::vector<Key> listed_keys() {
 std::vector<std::string> companions_of(const std::string& key) {
   if (key == "source.scale") return {"source.irradiance=1"};
   if (is_wind(key)) return {"surface.distribution=gaussian"};
+  if (key.starts_with("surface.coating.1.material")) return {"surface.coating=[{thickness_um=1}]"};
   if (is_of_layer(key)) return {"surface.coating=[{n=1.5,thickness_um=1}]"};
   return {};
 }
@@ -211,7 +212,8 @@ TEST(Scene_EveryKey, CanBeWrittenInTheFile) {
     // Dotted keys at the top make a scene whose parts can be left out one by one.
     std::string text = "accuracy.tolerance = 1e-5\n";
     if (key == "accuracy.tolerance") text.clear();
-    const bool gives_optics = key == "surface.n" || key.starts_with("surface.material") || key == "surface.reflectance_file";
+    const bool gives_optics =
+        key == "surface.n" || key.starts_with("surface.material") || key == "surface.reflectance_file";
     if (!gives_optics) text += "surface.n = 1.5\n";
     if (is_wind(key)) text += "surface.distribution = \"gaussian\"\n";
     if (key != "surface.sigma" && !is_wind(key)) text += "surface.sigma = 0.3\n";

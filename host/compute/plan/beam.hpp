@@ -17,9 +17,9 @@ struct Beam {
 
 /// Makes the beams of a request, which must outlive the object. Pure.
 ///
-/// The geometry, D and the reflection of the facet are computed here and not by the kernel: near the normal and the retro
-/// direction, far down the slope distribution and near the critical angle their rounding in a float would be amplified
-/// beyond 1e-5 of m00. D is handed over without its power of two, so that no float over- or underflows.
+/// The geometry, D and the reflection of the facet are computed here and not by the kernel: near the normal and the
+/// retro direction, far down the slope distribution and near the critical angle their rounding in a float would be
+/// amplified beyond 1e-5 of m00. D is handed over without its power of two, so that no float over- or underflows.
 class BeamPlan {
  public:
   explicit BeamPlan(const ScatteringRequest& request);

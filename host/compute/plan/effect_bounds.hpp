@@ -18,8 +18,8 @@ KeptEffects without(KeptEffects kept, Part part);
 /// Ranges of the parameters of some entries.
 struct EntriesExtent {
   std::vector<double> theta_deg;
-  SlopeShape roughest;                    ///< the largest sigma and the smallest q
-  SlopeShape smoothest;                   ///< the smallest sigma and the largest q
+  SlopeShape roughest;               ///< the largest sigma and the smallest q
+  SlopeShape smoothest;              ///< the smallest sigma and the largest q
   std::vector<FacetOptics> indices;  ///< of the entries' own
 };
 

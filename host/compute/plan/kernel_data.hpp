@@ -72,7 +72,8 @@ struct KernelData {
   std::vector<kernel::IndexNode> indices;
   std::vector<std::uint32_t> index_variant;  ///< of each index of a grid, over the first of its variants of directions
   std::vector<std::uint32_t> shape_of;       ///< of each point
-  std::vector<std::array<double, 2>> rule_nodes;  ///< and behind them the cells of the sky and of tables of reflectances
+  std::vector<std::array<double, 2>>
+      rule_nodes;  ///< and behind them the cells of the sky and of tables of reflectances
   SkyTable sky;
   std::optional<Response> response;  ///< the columns; none: they are the functions of the sky
 

@@ -15,7 +15,7 @@ constexpr std::size_t kFewestCells = 64;
 constexpr std::size_t kMostCells = 4096;
 constexpr double kShareOfTolerance = 0.02;
 constexpr double kLeastLevel = 1e-3;  // of what surfaces reflect or absorb
-constexpr double kSafety = 2.0;  // of errors that are seen at places inside of the cells
+constexpr double kSafety = 2.0;       // of errors that are seen at places inside of the cells
 
 /// R_s, 1 - R_s and (R_s - R_p) / sin^2 at v = sqrt(cos(beta)).
 using Values = std::array<double, 3>;
@@ -29,8 +29,7 @@ Values values_at(const FacetOptics& optics, double v) {
 
 /// Coefficients of the cubic through values at 0, 1/3, 2/3 and 1.
 std::array<double, 4> cubic_through(double a, double b, double c, double d) {
-  return {a, -5.5 * a + 9.0 * b - 4.5 * c + d, 9.0 * a - 22.5 * b + 18.0 * c - 4.5 * d,
-          13.5 * (b - c) + 4.5 * (d - a)};
+  return {a, -5.5 * a + 9.0 * b - 4.5 * c + d, 9.0 * a - 22.5 * b + 18.0 * c - 4.5 * d, 13.5 * (b - c) + 4.5 * (d - a)};
 }
 
 double at(const std::array<double, 4>& cubic, double x) {

@@ -19,9 +19,8 @@ struct ReflectanceCurve {
   std::complex<double> pole;
 };
 
-/// As many cells as bring the error to a share of the tolerance, which is relative to the reflectance or the absorptance
-/// at normal incidence, whichever is less, or as many as there may be.
-/// Domain: optics that are not bare.
+/// As many cells as bring the error to a share of the tolerance, which is relative to the reflectance or the
+/// absorptance at normal incidence, whichever is less, or as many as there may be. Domain: optics that are not bare.
 ReflectanceCurve reflectance_curve(const FacetOptics& optics, double tolerance);
 
 }  // namespace dolp

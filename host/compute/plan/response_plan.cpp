@@ -274,8 +274,7 @@ ResponsePlan plan_of_points(const MomentsRequest& request) {
   std::vector<FacetOptics> indices;
   for (std::size_t i = 0; i < request.size(); ++i) {
     MomentsPoint point = request[i];
-    const auto [source, is_new_index] =
-        numbers.try_emplace(point.index, static_cast<std::uint32_t>(indices.size()));
+    const auto [source, is_new_index] = numbers.try_emplace(point.index, static_cast<std::uint32_t>(indices.size()));
     if (is_new_index) indices.push_back(point.index);
     const auto [pass, is_new] = passes.try_emplace({point.theta_deg, point.shape.sigma, point.shape.q},
                                                    static_cast<std::uint32_t>(reference.size()));

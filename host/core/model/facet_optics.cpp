@@ -21,7 +21,9 @@ Wave wave_in(const OpticalConstants& index, double cosine) {
 }
 
 // Much faster than operator/, which guards against overflow that does not occur here.
-std::complex<double> quotient(std::complex<double> a, std::complex<double> b) { return a * std::conj(b) / std::norm(b); }
+std::complex<double> quotient(std::complex<double> a, std::complex<double> b) {
+  return a * std::conj(b) / std::norm(b);
+}
 
 ReflectedAmplitudes interface_amplitudes(const Wave& above, const Wave& below) {
   const std::complex<double> p_above = below.square * above.q;
@@ -39,8 +41,10 @@ ReflectedAmplitudes film_amplitudes(const FacetOptics& optics, double cosine) {
   ReflectedAmplitudes r = interface_amplitudes(waves[waves.size() - 2], waves.back());
   for (std::size_t j = optics.films.size(); j-- > 0;) {
     const ReflectedAmplitudes own = interface_amplitudes(waves[j], waves[j + 1]);
-    const std::complex<double> turn = std::exp(std::complex<double>(0.0, 2.0 * kTwoPi * optics.films[j].thickness) * waves[j + 1].q);
-    r = {quotient(own.s + r.s * turn, 1.0 + own.s * r.s * turn), quotient(own.p + r.p * turn, 1.0 + own.p * r.p * turn)};
+    const std::complex<double> turn =
+        std::exp(std::complex<double>(0.0, 2.0 * kTwoPi * optics.films[j].thickness) * waves[j + 1].q);
+    r = {quotient(own.s + r.s * turn, 1.0 + own.s * r.s * turn),
+         quotient(own.p + r.p * turn, 1.0 + own.p * r.p * turn)};
   }
   return r;
 }

@@ -50,7 +50,8 @@ void append_film_rules(std::vector<ColumnRule>& rules, const std::vector<std::st
       {{"n", FilmValue::Part::kN}, {"k", FilmValue::Part::kK}, {"thickness_um", FilmValue::Part::kThickness}}};
   for (const std::string& name : names) {
     const SceneKey* const key = find_scene_key(name);
-    if (!key || key->description.layer == 0 || std::ranges::find(rules, name, &ColumnRule::name) != rules.end()) continue;
+    if (!key || key->description.layer == 0 || std::ranges::find(rules, name, &ColumnRule::name) != rules.end())
+      continue;
     const auto part = std::ranges::find(kParts, name.substr(name.rfind('.') + 1), &Part::name);
     if (part == kParts.end()) continue;
     rules.push_back({name, key->description.range, FilmColumn{key->description.layer - 1, part->part}});
@@ -157,7 +158,8 @@ std::vector<FilmValue> Points::films_at(std::size_t row) const {
 
 Points points_of(std::span<const Column> columns, std::size_t count, PointsKind kind) {
   std::vector<std::string> names;
-  std::ranges::transform(columns, std::back_inserter(names), [](const Column& column) { return std::string(column.name); });
+  std::ranges::transform(columns, std::back_inserter(names),
+                         [](const Column& column) { return std::string(column.name); });
   const std::vector<ColumnRule> rules = column_rules(kind, names);
   Points points;
   points.name = "points";

@@ -63,8 +63,8 @@ MeasuredReflectance measured_in(std::span<const ReflectanceRow> rows, const std:
   if (!expected_deg.empty() && measured.beta_deg != expected_deg)
     fail(rows.front(), "each wavelength must have the same beta_deg");
   if (std::abs(measured.r_s.front() - measured.r_p.front()) > kLargestSplitAtNormal)
-    fail(rows.front(), fmt::format("r_s = {} and r_p = {} must agree at beta_deg = 0", measured.r_s.front(),
-                                   measured.r_p.front()));
+    fail(rows.front(),
+         fmt::format("r_s = {} and r_p = {} must agree at beta_deg = 0", measured.r_s.front(), measured.r_p.front()));
   measured.r_s.front() = measured.r_p.front() = 0.5 * (measured.r_s.front() + measured.r_p.front());
   return measured;
 }
@@ -80,9 +80,8 @@ ReflectanceTable parse_reflectances(const std::string& text, const std::string& 
   const std::vector<ReflectanceRow> rows = read_rows(reader);
   ReflectanceTable table;
   for (auto first = rows.begin(); first != rows.end();) {
-    const auto last = std::find_if(first, rows.end(), [&](const auto& row) {
-      return row.wavelength_um != first->wavelength_um;
-    });
+    const auto last =
+        std::find_if(first, rows.end(), [&](const auto& row) { return row.wavelength_um != first->wavelength_um; });
     const std::vector<double> expected = table.measured.empty() ? std::vector<double>{} : table.measured[0]->beta_deg;
     table.measured.push_back(std::make_shared<const MeasuredReflectance>(measured_in({first, last}, expected, name)));
     if (first->wavelength_um > 0.0) table.wavelength_um.push_back(first->wavelength_um);

@@ -56,7 +56,7 @@ struct ReflectanceTable {
 
 struct Surface {
   Material material;
-  std::vector<Layer> coating;  ///< from the outside in
+  std::vector<Layer> coating;                                     ///< from the outside in
   std::shared_ptr<const ReflectanceTable> reflectance = nullptr;  ///< instead of material and coating
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;

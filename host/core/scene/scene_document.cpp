@@ -191,8 +191,8 @@ toml::table& SceneDocument::create_table(const std::vector<std::string_view>& pa
     if (list) {
       const std::size_t position = list_position(part);
       if (position > list->size()) {
-        throw InputError(fmt::format("{}: {} has {} layers, and the next is {}", origin, key, list->size(),
-                                     list->size() + 1));
+        throw InputError(
+            fmt::format("{}: {} has {} layers, and the next is {}", origin, key, list->size(), list->size() + 1));
       }
       key += '.' + std::string(part);
       if (position == list->size()) {

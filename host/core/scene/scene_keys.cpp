@@ -33,8 +33,8 @@ std::optional<KeyValue> value_at(const std::vector<double>* at) {
 // In all of these `place` gives the address of the key's value in a Scene.
 
 template <class Place>
-SceneKey number(const std::string& key, const char* unit, const NumberRange& range, const char* fallback, const char* meaning,
-                Place place) {
+SceneKey number(const std::string& key, const char* unit, const NumberRange& range, const char* fallback,
+                const char* meaning, Place place) {
   return {{key, Type::kNumber, unit, range, {}, fallback, meaning},
           [place](SceneValues& s, const KeyValue& v) { *place(s) = v.number; },
           [place](const SceneValues& s) { return value_at(place(s)); }};
@@ -42,8 +42,8 @@ SceneKey number(const std::string& key, const char* unit, const NumberRange& ran
 
 /// One of several keys for one thing: its place is there once it was set.
 template <class Place, class Set>
-SceneKey number(const std::string& key, const char* unit, const NumberRange& range, const char* fallback, const char* meaning,
-                Place place, Set set) {
+SceneKey number(const std::string& key, const char* unit, const NumberRange& range, const char* fallback,
+                const char* meaning, Place place, Set set) {
   return {{key, Type::kNumber, unit, range, {}, fallback, meaning}, set, [place](const SceneValues& s) {
             return value_at(place(s));
           }};
@@ -346,15 +346,15 @@ const std::vector<SceneKey>& scene_key_table() {
 const std::vector<KeyChoice>& key_choices() {
   static const std::vector<KeyChoice> choices = [] {
     std::vector<KeyChoice> all = {
-      {"surface",
-       {{"surface.n", "surface.k"}, {"surface.material"}, {"surface.material_file"}, {"surface.reflectance_file"}},
-       true,
-       "grid.n"},
-      {"surface", {{"surface.sigma", "grid.sigma"}, {"surface.wind_m_s", "grid.wind_m_s"}}, true, {}, true},
-      {"source", {{"source.irradiance"}, {"source.relative_irradiance"}, {"source.preset"}, {"source.file"}}},
-      {"surroundings", {{"surroundings.temperature_K"}, {"surroundings.profile"}}},
-      {"path", {{"path.temperature_K"}, {"path.radiance"}}, false},
-      {"spectrum", {{"spectrum.wavelength_um"}, {"spectrum.band_um"}}, true, "grid.wavelength_um"},
+        {"surface",
+         {{"surface.n", "surface.k"}, {"surface.material"}, {"surface.material_file"}, {"surface.reflectance_file"}},
+         true,
+         "grid.n"},
+        {"surface", {{"surface.sigma", "grid.sigma"}, {"surface.wind_m_s", "grid.wind_m_s"}}, true, {}, true},
+        {"source", {{"source.irradiance"}, {"source.relative_irradiance"}, {"source.preset"}, {"source.file"}}},
+        {"surroundings", {{"surroundings.temperature_K"}, {"surroundings.profile"}}},
+        {"path", {{"path.temperature_K"}, {"path.radiance"}}, false},
+        {"spectrum", {{"spectrum.wavelength_um"}, {"spectrum.band_um"}}, true, "grid.wavelength_um"},
     };
     for (std::size_t layer = 1; layer <= kMostLayers; ++layer) {
       const std::string table = fmt::format("surface.coating.{}", layer);

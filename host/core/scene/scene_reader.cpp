@@ -40,9 +40,9 @@ std::string key_hint(const std::string& key) {
 /// The keys of a coating, a list of tables.
 void append_layer_keys(const SceneDocument& document, const std::string& coating, const toml::node& node,
                        std::vector<std::string>& keys) {
-  const std::string allowed =
-      fmt::format("must be a list of at most {} tables, from the outside in: [{{ material = \"...\", thickness_um = 0.5 }}]",
-                  kMostLayers);
+  const std::string allowed = fmt::format(
+      "must be a list of at most {} tables, from the outside in: [{{ material = \"...\", thickness_um = 0.5 }}]",
+      kMostLayers);
   const toml::array* layers = node.as_array();
   if (!layers || layers->size() > kMostLayers) document.fail(coating, allowed);
   for (std::size_t i = 0; i < layers->size(); ++i) {
@@ -404,8 +404,8 @@ void check_radiation(const SceneValues& scene, const SceneDocument& document) {
 /// Applies a setting. Errors: InputError, also where it takes a key away that no scene has.
 void apply(SceneDocument& document, const Setting& setting) {
   const std::vector<std::string> tables = scene_tables();
-  const bool is_known = find_scene_key(setting.key) || is_coating(setting.key) ||
-                        std::ranges::find(tables, setting.key) != tables.end();
+  const bool is_known =
+      find_scene_key(setting.key) || is_coating(setting.key) || std::ranges::find(tables, setting.key) != tables.end();
   if (is_removal(setting) && !is_known) {
     throw InputError(
         fmt::format("{}: unknown key; the nearest known key is {}", one_line(setting.key), key_hint(setting.key)));

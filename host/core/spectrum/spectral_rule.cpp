@@ -1,6 +1,6 @@
 #include "spectrum/spectral_rule.hpp"
-#include "model/kept_effects.hpp"
 #include "model/facet_optics.hpp"
+#include "model/kept_effects.hpp"
 
 #include <algorithm>
 #include <array>

@@ -96,17 +96,18 @@ std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points&
   const bool has_own_index = points[Axis::kN] && points[Axis::kK];
   const bool needs_one_wavelength = !surface.coating.empty() || (!surface.material.is_constant() && !has_own_index);
   if (scene.spectrum.is_band() && needs_one_wavelength) {
-    throw InputError(fmt::format(
-        "{}: spectrum.band_um: the Mueller matrix is that of one wavelength and {} depends on it; give "
-        "spectrum.wavelength_um{}",
-        scene.path_name,
-        surface.coating.empty() ? fmt::format("the material \"{}\"", surface.material.name) : "a coating",
-        surface.coating.empty() ? ", or columns n and k" : ""));
+    throw InputError(
+        fmt::format("{}: spectrum.band_um: the Mueller matrix is that of one wavelength and {} depends on it; give "
+                    "spectrum.wavelength_um{}",
+                    scene.path_name,
+                    surface.coating.empty() ? fmt::format("the material \"{}\"", surface.material.name) : "a coating",
+                    surface.coating.empty() ? ", or columns n and k" : ""));
   }
   if (surface.reflectance) {
-    throw InputError(fmt::format("{}: surface.reflectance_file: the Mueller matrix needs phases, which reflectances lack; "
-                                 "give n and k, or a material and a coating",
-                                 scene.path_name));
+    throw InputError(
+        fmt::format("{}: surface.reflectance_file: the Mueller matrix needs phases, which reflectances lack; "
+                    "give n and k, or a material and a coating",
+                    scene.path_name));
   }
   check_films(scene, points);
   const double at_um = scene.spectrum.min_um;

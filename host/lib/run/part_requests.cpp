@@ -56,7 +56,8 @@ Scattered beam_without_evaluator(const SceneValues& scene, double theta_deg) {
   return {.i = glare, .q = glare};
 }
 
-std::vector<FacetOptics> with_index(const std::vector<FacetOptics>& samples, const std::optional<OpticalConstants>& index) {
+std::vector<FacetOptics> with_index(const std::vector<FacetOptics>& samples,
+                                    const std::optional<OpticalConstants>& index) {
   if (!index) return samples;
   if (samples.front().is_bare()) return {*index};
   std::vector<FacetOptics> own = samples;

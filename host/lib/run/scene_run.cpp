@@ -83,8 +83,7 @@ class MemberResults {
       indices_[j] = context_.spectra.indices[entry.variant][j];
       indices_[j].index = *entry.index;
     }
-    const std::span<const FacetOptics> indices =
-        entry.index ? indices_ : context_.spectra.indices[entry.variant];
+    const std::span<const FacetOptics> indices = entry.index ? indices_ : context_.spectra.indices[entry.variant];
     const std::span<const Moments> moments = moments_of(member, entry, direction, indices);
     const Radiometry& radiometry = context_.spectra.radiometries[entry.variant];
     if (context_.scene.geometry.mode != Mode::kBistatic) return radiometry.point(direction, moments, indices);

@@ -52,7 +52,8 @@ std::string coating_text(const Surface& surface, bool has_wavelength_axis) {
     };
     add("n", material.n, material.constant.n);
     add("k", material.k, material.constant.k);
-    if (material.n.formula.number != 0) text += fmt::format("{},formula,,{}\n", i + 1, formula_text(material.n.formula));
+    if (material.n.formula.number != 0)
+      text += fmt::format("{},formula,,{}\n", i + 1, formula_text(material.n.formula));
   }
   return text;
 }

@@ -9,7 +9,8 @@
 
 namespace dolp {
 
-/// n and k of the films of a coating: CSV of layer, quantity (n, k or formula), wavelength_um, value. Empty without one.
+/// n and k of the films of a coating: CSV of layer, quantity (n, k or formula), wavelength_um, value. Empty without
+/// one.
 std::string coating_text(const Surface& surface, bool has_wavelength_axis);
 
 /// The materials of such a text, by layer. Errors: InputError that begins with `name`.

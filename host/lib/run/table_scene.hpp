@@ -25,7 +25,6 @@ void check_may_hold_scene(const std::string& path);
 /// Reads a table file that holds its scene. Errors: those of check_may_hold_scene and read_table.
 TableValues load_table(const std::string& path);
 
-
 /// The sources of the n, k and E0 that a scene names.
 enum class NamedData {
   kOfTable,  ///< the table alone; no file is opened

@@ -144,7 +144,8 @@ void integrate_new(const SceneValues& scene, std::vector<PointIntegral*>& points
   }
   SceneValues at_one = scene;
   at_one.spectrum = {wavelengths_um.front(), wavelengths_um.front()};
-  const std::vector<PointResult> results = evaluate_scene(at_one, {entries, variants_of(wavelengths_um)}, evaluator, progress);
+  const std::vector<PointResult> results =
+      evaluate_scene(at_one, {entries, variants_of(wavelengths_um)}, evaluator, progress);
   std::size_t next = 0;
   for (PointIntegral* point : points) {
     const double zenith_deg =

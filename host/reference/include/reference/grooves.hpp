@@ -36,7 +36,7 @@ struct GrooveLight {
 };
 
 /// Domain: t > 0; cos(theta) > 0; chi = 90 degrees - phi, with sin_chi = cos(phi).
-GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zenith& view,
-                            const FacetOptics& constants, const SkyFunction* sky = nullptr);
+GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zenith& view, const FacetOptics& constants,
+                            const SkyFunction* sky = nullptr);
 
 }  // namespace dolp::reference

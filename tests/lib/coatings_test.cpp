@@ -13,7 +13,9 @@
 #include "properties_support.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/reference_evaluator.hpp"
+#include "run/lookup_run.hpp"
 #include "run/scene_run.hpp"
+#include "run/scene_table.hpp"
 #include "scene/scene_reader.hpp"
 #include "scene/scene_writer.hpp"
 #include "temporary_file.hpp"
@@ -278,6 +280,21 @@ TEST(Coatings, ColumnsOfPoints_AreTheNumbersOfTheirFilms) {
   EXPECT_THROW(
       point_entries(scene, parse_points("theta_deg,surface.coating.2.n\n60,1.5\n", "p.csv", PointsKind::kDirections)),
       InputError);
+}
+
+TEST(Coatings, LookupWithColumnsOfFilms_IsRefused) {
+  const SceneValues scene = scene_with({"grid.theta_deg=[50,55,60,65]"});
+  CpuEvaluator evaluator;
+  const SceneEntries entries = grid_entries(scene);
+  const EffectPlan plan = plan_effects(scene, entries, false);
+  const TableValues table =
+      table_part(table_layout(scene, plan, scene.grid), entries, evaluate_scene(scene, entries, evaluator, {}));
+  const TableLookup lookup(table, scene, "t.nc");
+  const auto found = [&](const char* csv) {
+    return lookup_points(lookup, scene, parse_points(csv, "p.csv", PointsKind::kDirections), {});
+  };
+  EXPECT_EQ(found("theta_deg\n58\n").size(), 1U);
+  EXPECT_THROW(found("theta_deg,surface.coating.1.thickness_um\n58,0.5\n"), InputError);
 }
 
 TEST(Coatings, SceneWritten_ReadsTheSame) {

@@ -31,6 +31,8 @@ TEST(SceneRemarks, ProbablyMeantOtherwise_IsOneLineThatNamesKeyAndUnit) {
            {{"spectrum.wavelength_um=8000"}, "is in micrometres; were nanometres meant?"},
            {{"spectrum.band_um=[3000, 5000]"}, "is in micrometres; were nanometres meant?"},
            {{"grid.wavelength_um=[3000, 5000]"}, "is in micrometres; were nanometres meant?"},
+           {{"surface.coating=[{n=1.5,thickness_um=1}]", "surface.coating.1.thickness_um=500"},
+            "is in micrometres; were nanometres meant?"},
            {{"geometry.mode=bistatic"}, "without [source] nothing depends on theta, the zenith of the source"},
        }) {
     const std::vector<std::string> remarks = remarks_of(settings);

@@ -91,7 +91,7 @@ FacetReflection bare_reflection(const BeamAngles& angles, const BeamGeometry& ge
   return {r_s - m01, m01, r_s * (sin2 - c * w) * s_sum * std::conj(p_sum) / p_norm};
 }
 
-// Of measured reflectances, which have no phase, r_s* r_p is left out.
+// Measured reflectances have no phase: r_s* r_p is left out.
 FacetReflection covered_reflection(const BeamGeometry& geometry, const FacetOptics& optics) {
   const double c = std::max(geometry.node.cos_beta, kSmallestFacetCosine);
   const SmoothAbsorptance absorbed = smooth_absorptance(optics, c);

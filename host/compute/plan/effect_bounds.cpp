@@ -189,7 +189,7 @@ EffectBounds::EffectBounds(const SceneModel& scene, const EntriesExtent& extent)
   const bool diverges = c < 0.0 && moment_zenith_deg == 90.0;
   if (surface.diffuse > 0.0)
     most_diffuse_ = diverges ? kInfinity : 2.0 * surface.diffuse * std::pow(cosine, c) / (c + 2.0);
-  // R_s of a bare medium grows with the zenith; that of films need not.
+  // R_s of a bare medium grows with the zenith. R_s of films need not.
   if (surface.is_bare()) least_smooth_ = 0.5 * (1.0 - fresnel(indices, cosine).most_s);
   if (is_bistatic_ && total_.irradiance > 0.0) add_beams(extent, indices);
 }

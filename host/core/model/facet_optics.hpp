@@ -1,4 +1,4 @@
-// What a facet reflects with, at one wavelength.
+// Optics of a facet at one wavelength.
 #pragma once
 
 #include <compare>

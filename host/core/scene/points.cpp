@@ -82,6 +82,17 @@ std::vector<CsvColumn> csv_columns(const std::vector<ColumnRule>& rules) {
   return columns;
 }
 
+/// End of the first line that is no comment.
+std::size_t end_of_header(std::string_view text) {
+  std::size_t begin = 0;
+  for (;;) {
+    const std::size_t end = text.find('\n', begin);
+    const std::string_view line = trim(text.substr(begin, end - begin));
+    if (end == std::string_view::npos || (!line.empty() && line.front() != '#')) return std::min(end, text.size());
+    begin = end + 1;
+  }
+}
+
 /// Errors: InputError that begins with the place of the points.
 const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_view name, const Points& points) {
   const auto found = std::ranges::find(rules, name, &ColumnRule::name);
@@ -190,7 +201,8 @@ Points parse_points(const std::string& text, const std::string& path_name, Point
   points.name = input_name(path_name);
   CsvReader row(text, points.name, {.has_blank_lines = false});
   std::vector<std::string> names;
-  if (CsvReader header = row; header.next()) names.assign(header.cells().begin(), header.cells().end());
+  CsvReader header(std::string_view(text).substr(0, end_of_header(text)), points.name);
+  if (header.next()) names.assign(header.cells().begin(), header.cells().end());
   const std::vector<ColumnRule> rules = column_rules(kind, names);
   const CsvColumns columns = CsvColumns::first_of(row, csv_columns(rules), results);
   points.header_line = row.line_number();

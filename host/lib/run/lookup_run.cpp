@@ -77,6 +77,13 @@ std::vector<TableLookup::Point> coordinates(const TableLookup& lookup, const Sce
   return result;
 }
 
+/// Refuses numbers of films, which a table has no axis of.
+void check_no_films(const Points& points) {
+  if (points.films.empty()) return;
+  throw InputError(fmt::format("{}: column of layer {}: the table is of one coating; dolp eval computes other ones",
+                               points.where(), points.films.begin()->first.first + 1));
+}
+
 /// Refuses another index or wavelength than the table's, where it has no axis of these.
 void check_index(const TableLookup& lookup, const SceneValues& scene, const Points& points) {
   const Material& material = scene.surface.material;
@@ -102,6 +109,7 @@ std::vector<PointResult> lookup_points(const TableLookup& lookup, const SceneVal
                                        const Progress& progress) {
   check_shapes(scene, points);
   check_index(lookup, scene, points);
+  check_no_films(points);
   const std::vector<TableLookup::Point> at = coordinates(lookup, scene, points);
   std::vector<PointResult> results(points.size());
   parallel_for(

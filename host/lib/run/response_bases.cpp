@@ -29,9 +29,10 @@ std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const Scene
   const auto add = [&](const FacetOptics& index) { indices.insert(index); };
   for (const SceneEntry& entry : entries.all()) {
     shapes.insert({moment_zenith_deg(scene, entry.theta_deg), entry.shape.sigma, entry.shape.q});
-    const std::vector<FacetOptics> own = with_index(spectral[entry.variant], entry.index);
-    std::ranges::for_each(own, add);
-    points += own.size();
+    const std::vector<FacetOptics>& samples = spectral[entry.variant];
+    if (entry.index) std::ranges::for_each(with_index(samples, entry.index), add);
+    if (!entry.index) std::ranges::for_each(samples, add);
+    points += entry.index && samples.front().is_bare() ? 1 : samples.size();
   }
   if (shapes.size() * indices.size() > kMostOfPoints * points) return {};
   return {indices.begin(), indices.end()};

@@ -17,6 +17,7 @@ namespace {
 
 // Colder than this are few surfaces, and warmer than -213 degrees Celsius all.
 constexpr double kLikelyCelsius_K = 60.0;
+constexpr double kLikelyNanometresOfFilm = 100.0;
 constexpr double kHotSky = 2.0;  // times the temperature of the surface
 // Neighbouring rows leave a gap from this ratio of their wavelengths, whatever the file's spacing, and never below the
 // other one. In between, from ten times the file's usual spacing on a logarithmic scale.
@@ -64,7 +65,7 @@ class Remarks {
  public:
   explicit Remarks(const SceneValues& scene) : scene_(scene) {}
 
-  void add(const char* key, const std::string& what) { lines_.push_back(scene_.document->prefix(key) + what); }
+  void add(const std::string& key, const std::string& what) { lines_.push_back(scene_.document->prefix(key) + what); }
 
   void add_wavelengths() {
     const bool has_grid = !scene_.grid[Axis::kWavelength].empty();
@@ -92,17 +93,13 @@ class Remarks {
   }
 
   void add_files() {
-    if (!scene_.names.material_file.empty()) {
-      const char* const key = "surface.material_file";
-      const Material& used = scene_.surface.material;
-      const Material& material = used.tabulated ? *used.tabulated : used;
-      if (material.k.wavelength_um.empty() && !material.n.wavelength_um.empty())
-        add(key, "the file has no k, so that k = 0");
-      if (material.least_k < 0.0)
-        add(key, fmt::format("k is down to {} in the file; below 0 it counts as 0", material.least_k));
-      const std::optional<Interval> gap = bridged_gap(material.n, used_um(scene_));
-      add_gap(key, gap);
-      if (const auto k_gap = bridged_gap(material.k, used_um(scene_)); k_gap != gap) add_gap(key, k_gap);
+    if (!scene_.names.material_file.empty()) add_material("surface.material_file", scene_.surface.material);
+    for (std::size_t i = 0; i < scene_.surface.coating.size(); ++i) {
+      const Layer& layer = scene_.surface.coating[i];
+      const std::string key = fmt::format("surface.coating.{}.", i + 1);
+      if (!scene_.names.coating[i].material_file.empty()) add_material(key + "material_file", layer.material);
+      if (layer.thickness_um >= kLikelyNanometresOfFilm)
+        add(key + "thickness_um", "is in micrometres; were nanometres meant?");
     }
     if (!scene_.names.source_file.empty()) add_gap("source.file", bridged_gap(scene_.source->table, used_um(scene_)));
   }
@@ -119,7 +116,18 @@ class Remarks {
     return scene_.names.profile.empty() ? "surroundings.temperature_K" : "surroundings.profile";
   }
 
-  void add_gap(const char* key, const std::optional<Interval>& gap) {
+  void add_material(const std::string& key, const Material& used) {
+    const Material& material = used.tabulated ? *used.tabulated : used;
+    if (material.k.wavelength_um.empty() && !material.n.wavelength_um.empty())
+      add(key, "the file has no k, so that k = 0");
+    if (material.least_k < 0.0)
+      add(key, fmt::format("k is down to {} in the file; below 0 it counts as 0", material.least_k));
+    const std::optional<Interval> gap = bridged_gap(material.n, used_um(scene_));
+    add_gap(key, gap);
+    if (const auto k_gap = bridged_gap(material.k, used_um(scene_)); k_gap != gap) add_gap(key, k_gap);
+  }
+
+  void add_gap(const std::string& key, const std::optional<Interval>& gap) {
     if (gap)
       add(key, fmt::format("the file has no row between {} and {} um; a straight line bridges the gap", gap->first,
                            gap->second));

@@ -9,7 +9,14 @@ namespace dolp {
 
 Axes axes_of(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q,
              std::vector<double> wavelength_um, std::vector<double> n, std::vector<double> k) {
-  return {std::move(wavelength_um), std::move(n), std::move(k), std::move(theta_deg), std::move(sigma), std::move(q)};
+  Axes axes;
+  axes[Axis::kWavelength] = std::move(wavelength_um);
+  axes[Axis::kN] = std::move(n);
+  axes[Axis::kK] = std::move(k);
+  axes[Axis::kTheta] = std::move(theta_deg);
+  axes[Axis::kSigma] = std::move(sigma);
+  axes[Axis::kQ] = std::move(q);
+  return axes;
 }
 
 Axes part_of(const Axes& axes, const PerAxis& first, const PerAxis& count) {

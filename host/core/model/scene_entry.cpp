@@ -34,15 +34,31 @@ SceneEntries with_own_variants(std::vector<SceneEntry> points, const std::vector
   return {std::move(points), std::move(own)};
 }
 
-// A direction of all wavelengths and indices stays together as long as possible, so that shared work is done once.
-constexpr std::array kCuttingOrder = {Axis::kTheta, Axis::kWavelength, Axis::kN, Axis::kK, Axis::kSigma, Axis::kQ};
+// A direction of all materials, wavelengths and indices stays together as long as possible, so that shared work is done
+// once.
+constexpr std::array kCuttingOrder = {Axis::kTheta, Axis::kMaterial,    Axis::kBand,  Axis::kWavelength, Axis::kN,
+                                      Axis::kK,     Axis::kTemperature, Axis::kSigma, Axis::kQ};
+static_assert(kCuttingOrder.size() == kAxisCount);
 
 }  // namespace
 
-std::vector<SceneVariant> variants_of(const std::vector<double>& wavelength_um) {
-  std::vector<SceneVariant> variants;
-  for (const double at_um : wavelength_um) variants.push_back({at_um});
-  if (variants.empty()) variants.emplace_back();
+void set_value(SceneVariant& variant, Axis axis, double value) {
+  if (axis == Axis::kMaterial) variant.material = static_cast<std::uint32_t>(value);
+  if (axis == Axis::kBand) variant.band = static_cast<std::uint32_t>(value);
+  if (axis == Axis::kWavelength) variant.wavelength_um = value;
+  if (axis == Axis::kTemperature) variant.temperature_K = value;
+}
+
+std::vector<SceneVariant> variants_of(const Axes& axes) {
+  std::vector<SceneVariant> variants = {{}};
+  for (const Axis axis : kVariantAxes) {
+    if (axes[axis].empty()) continue;
+    std::vector<SceneVariant> product;
+    for (const SceneVariant& variant : variants) {
+      for (const double value : axes[axis]) set_value(product.emplace_back(variant), axis, value);
+    }
+    variants = std::move(product);
+  }
   return variants;
 }
 
@@ -53,7 +69,7 @@ SceneEntries SceneEntries::of_grid(Axes axes, const OpticalConstants& index) {
   for (const Axis axis : kAllAxes) {
     if (description_of(axis).is_required && axes[axis].empty()) entries.counts_ = {};
   }
-  entries.variants_ = variants_of(axes[Axis::kWavelength]);
+  entries.variants_ = variants_of(axes);
   entries.whole_ = entries.counts_;
   entries.whole_axes_ = std::make_shared<const Axes>(axes);
   entries.axes_ = std::move(axes);
@@ -63,6 +79,12 @@ SceneEntries SceneEntries::of_grid(Axes axes, const OpticalConstants& index) {
 
 SceneEntries SceneEntries::grid(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q) {
   return of_grid(axes_of(std::move(theta_deg), std::move(sigma), std::move(q)), {});
+}
+
+std::size_t SceneEntries::variant_at(const PerAxis& place) const {
+  std::size_t variant = 0;
+  for (const Axis axis : kVariantAxes) variant = variant * counts_[axis] + place[axis];
+  return variant;
 }
 
 OpticalConstants SceneEntries::index_at(const PerAxis& place) const {
@@ -77,7 +99,7 @@ SceneEntry SceneEntries::operator[](std::size_t entry) const {
   result.theta_deg = theta_deg()[at[Axis::kTheta]];
   result.shape = {sigma()[at[Axis::kSigma]], q()[at[Axis::kQ]]};
   if (has_own_index()) result.index = index_at(at);
-  result.variant = static_cast<std::uint32_t>(at[Axis::kWavelength]);
+  result.variant = static_cast<std::uint32_t>(variant_at(at));
   return result;
 }
 
@@ -90,7 +112,7 @@ SceneEntries SceneEntries::part(const PerAxis& first, const PerAxis& count) cons
   part.whole_axes_ = whole_axes_;
   for (const Axis axis : kAllAxes) part.first_[axis] = first_[axis] + first[axis];
   part.axes_ = part_of(axes_, first, count);
-  part.variants_ = variants_of(part.axes_[Axis::kWavelength]);
+  part.variants_ = variants_of(part.axes_);
   return part;
 }
 

@@ -1,6 +1,7 @@
 // The entries of a scene: a grid or scattered points.
 #pragma once
 
+#include <array>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
@@ -38,13 +39,21 @@ struct FilmValue {
 
 /// What else entries change in the scene. Neighbours mostly share it, and it has a radiometry of its own.
 struct SceneVariant {
-  std::optional<double> wavelength_um;  ///< none: the scene's spectrum
+  std::optional<double> wavelength_um = {};               ///< without one: the scene's spectrum
+  std::optional<std::uint32_t> material = {}, band = {};  ///< positions among those of the scene
+  std::optional<double> temperature_K = {};               ///< of the surface
   std::vector<FilmValue> films = {};
   friend auto operator<=>(const SceneVariant&, const SceneVariant&) = default;
 };
 
-/// A variant for each wavelength; of none, the scene as it is.
-std::vector<SceneVariant> variants_of(const std::vector<double>& wavelength_um);
+/// The axes that make variants, in the order of tables: all entries of a variant follow each other there.
+inline constexpr std::array kVariantAxes = {Axis::kMaterial, Axis::kBand, Axis::kWavelength, Axis::kTemperature};
+
+/// Gives a variant the value of an axis.
+void set_value(SceneVariant& variant, Axis axis, double value);
+
+/// The variants of a grid, in the order of its entries.
+std::vector<SceneVariant> variants_of(const Axes& axes);
 
 /// Neighbours of a part of a grid that are neighbours in the whole as well.
 struct GridRun {
@@ -72,7 +81,7 @@ class SceneEntries {
     return std::views::iota(std::size_t{0}, size()) |
            std::views::transform([this](std::size_t i) { return (*this)[i]; });
   }
-  /// At least one: of a grid one for each wavelength of its axis, of points those among them.
+  /// At least one. A grid has all combinations of kVariantAxes, a list those among its points.
   const std::vector<SceneVariant>& variants() const { return variants_; }
 
   // Of a grid.
@@ -82,9 +91,11 @@ class SceneEntries {
   const std::vector<double>& sigma() const { return axes_[Axis::kSigma]; }
   const std::vector<double>& q() const { return axes_[Axis::kQ]; }
   PerAxis place(std::size_t entry) const { return place_of(entry, counts_); }
-  /// Entries that differ in sigma and q alone.
+  /// Entries that differ only in sigma and q.
   std::size_t entries_per_direction() const { return sigma().size() * q().size(); }
   const OpticalConstants& index() const { return index_; }
+  /// The variant of an entry of a grid.
+  std::size_t variant_at(const PerAxis& place) const;
   bool has_own_index() const { return !axes_[Axis::kN].empty() || !axes_[Axis::kK].empty(); }
   /// The index of an entry, of a grid with an axis of n or k.
   OpticalConstants index_at(const PerAxis& place) const;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <dolp/errors.hpp>
 #include <iterator>
 #include <string_view>
@@ -68,7 +69,8 @@ std::vector<ColumnRule> column_rules(PointsKind kind, const std::vector<std::str
     rules.push_back({"delta_phi_deg", kAzimuthDegRange, &Points::delta_phi_deg});
   }
   for (const Axis axis : kColumnOrder) {
-    if (has_pairs && (axis == Axis::kTheta || axis == Axis::kWavelength)) continue;
+    const bool is_of_shape = axis == Axis::kSigma || axis == Axis::kQ || axis == Axis::kN || axis == Axis::kK;
+    if (has_pairs && !is_of_shape) continue;
     rules.push_back({description_of(axis).column, description_of(axis).range, axis});
   }
   rules.push_back({kWind.column, kWind.range, Axis::kSigma, true});
@@ -145,7 +147,14 @@ void parse_row(const CsvReader& row, const CsvColumns& columns, const std::vecto
   for (std::size_t cell = 0; cell < columns.cells().size(); ++cell) {
     if (!columns.cells()[cell]) continue;
     const ColumnRule& rule = rules[*columns.cells()[cell]];
-    rule.of(points)->push_back(rule.value(columns.number_at(row, cell)));
+    if (const Axis* const axis = std::get_if<Axis>(&rule.column); axis && description_of(*axis).has_labels) {
+      std::vector<std::string>& labels = points.labels[*axis];
+      const auto known = std::ranges::find(labels, row.cells()[cell]);
+      rule.of(points)->push_back(static_cast<double>(known - labels.begin()));
+      if (known == labels.end()) labels.emplace_back(row.cells()[cell]);
+    } else {
+      rule.of(points)->push_back(rule.value(columns.number_at(row, cell)));
+    }
     own.push_back(row.cells()[cell]);
   }
   points.rows.push_back(fmt::format("{}", fmt::join(own, ",")));
@@ -161,10 +170,43 @@ std::string Points::where(std::size_t row) const {
   return header_line > 0 ? fmt::format("{}:{}", name, row_lines[row]) : fmt::format("{}[{}]", name, row);
 }
 
+std::string Points::text_at(Axis axis, std::size_t row) const {
+  const double value = (*coordinates[axis])[row];
+  return labels[axis].empty() ? format_number(value)
+                              : '"' + one_line(labels[axis][static_cast<std::size_t>(value)]) + '"';
+}
+
 std::vector<FilmValue> Points::films_at(std::size_t row) const {
   std::vector<FilmValue> values;
   for (const auto& [film, column] : films) values.push_back({film.first, film.second, (*column)[row]});
   return values;
+}
+
+std::vector<double> label_positions(const Points& points, Axis axis, const AxisLabels& known) {
+  const std::vector<std::string>& labels = known[axis];
+  const auto position_of = [&](double value) -> std::optional<double> {
+    const std::vector<std::string>& given = points.labels[axis];
+    if (given.empty())
+      return value < static_cast<double>(labels.size()) ? std::optional(std::floor(value)) : std::nullopt;
+    const std::string name = lower_case(given[static_cast<std::size_t>(value)]);
+    std::vector<double> found;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      if (lower_case(labels[i]) == name) return static_cast<double>(i);
+      if (lower_case(labels[i]).find(name) != std::string::npos) found.push_back(static_cast<double>(i));
+    }
+    return found.size() == 1 ? std::optional(found.front()) : std::nullopt;
+  };
+  std::vector<double> positions;
+  for (std::size_t row = 0; row < points.size(); ++row) {
+    const std::optional<double> position = position_of((*points[axis])[row]);
+    if (!position) {
+      throw InputError(fmt::format("{}: {} = {}: must be one of {}", points.where(row), description_of(axis).column,
+                                   points.text_at(axis, row),
+                                   labels.empty() ? "none: the grid has no such axis" : join(labels)));
+    }
+    positions.push_back(*position);
+  }
+  return positions;
 }
 
 Points points_of(std::span<const Column> columns, std::size_t count, PointsKind kind) {

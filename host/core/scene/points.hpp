@@ -30,6 +30,7 @@ struct Points {
   std::vector<std::string> left_out;  ///< columns of the file that are results
   using Column = std::optional<std::vector<double>>;
   AxisArray<Column> coordinates;
+  AxisLabels labels;  ///< of columns of a file that have texts: their values are positions in these
   /// Numbers of films, by layer (from 0) and part: columns called as the keys, "surface.coating.1.thickness_um".
   std::map<std::pair<std::size_t, FilmValue::Part>, Column> films;
   bool has_winds = false;                          ///< sigma was given as winds
@@ -39,6 +40,8 @@ struct Points {
   std::size_t size() const { return count; }
   Column& operator[](Axis axis) { return coordinates[axis]; }
   const Column& operator[](Axis axis) const { return coordinates[axis]; }
+  /// The value of a row as messages show it.
+  std::string text_at(Axis axis, std::size_t row) const;
   /// The numbers of films of a row.
   std::vector<FilmValue> films_at(std::size_t row) const;
   /// The beginning of a message about a row, "file:line" or "points[row]", and about the columns.
@@ -50,6 +53,10 @@ struct Points {
 inline double value_or(const Points::Column& column, std::size_t row, double fallback) {
   return column ? (*column)[row] : fallback;
 }
+
+/// The positions in `known` of the labels that a column has, of each point. Case does not matter, and a part of a
+/// label does where no other one has it. Errors: InputError with the known labels.
+std::vector<double> label_positions(const Points& points, Axis axis, const AxisLabels& known);
 
 /// Points in memory: `count` of them.
 /// Errors: InputError as for a file, and for a column of another length.

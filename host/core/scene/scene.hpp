@@ -146,12 +146,15 @@ struct SceneModel {
   Spectrum spectrum;
   Geometry geometry;
   Accuracy accuracy;
+  std::shared_ptr<const std::vector<Material>> materials = {};  ///< on the grid's axis of materials
+  std::vector<Spectrum> bands = {};                             ///< on the grid's axis of bands
 };
 
 struct SceneValues : SceneModel {
   std::string title;
   SceneNames names;
   Axes grid;                       ///< in the user's order; sigma and q fall back to [surface]
+  AxisLabels labels;               ///< of the grid's axes of materials and bands
   std::vector<double> wind_m_s;    ///< that give the grid's values of sigma; empty where the scene has sigma itself
   std::string path_name;           ///< as given on the command line, for messages
   std::string text;                ///< the file, verbatim

@@ -29,6 +29,9 @@ std::optional<KeyValue> value_at(const std::string* at) {
 std::optional<KeyValue> value_at(const std::vector<double>* at) {
   return at && !at->empty() ? std::optional(KeyValue{.numbers = *at}) : std::nullopt;
 }
+std::optional<KeyValue> value_at(const std::vector<std::string>* at) {
+  return at && !at->empty() ? std::optional(KeyValue{.names = *at}) : std::nullopt;
+}
 
 // In all of these `place` gives the address of the key's value in a Scene.
 
@@ -88,7 +91,9 @@ void append(std::vector<SceneKey>& keys, std::vector<SceneKey> more) {
   std::move(more.begin(), more.end(), std::back_inserter(keys));
 }
 
-bool has_own_index(const SceneValues& s) { return s.names.material.empty() && s.names.material_file.empty(); }
+bool has_own_index(const SceneValues& s) {
+  return s.names.material.empty() && s.names.material_file.empty() && s.labels[Axis::kMaterial].empty();
+}
 
 bool is_of_kind(const SceneValues& s, Source::Kind kind) { return s.source && s.source->kind == kind; }
 
@@ -303,6 +308,21 @@ std::vector<SceneKey> geometry_keys() {
                 "zenith theta: of the view (hemispherical) or of the source (bistatic)"),
       grid_axis(Axis::kSigma, "surface.sigma", "slope widths sigma of the table"),
       wind_axis(),
+      {{"grid.material", Type::kNames, "", {}, {}, "", "materials of the table instead of n and k: names, or \"all\""},
+       [](SceneValues& s, const KeyValue& v) { s.labels[Axis::kMaterial] = v.names; },
+       [](const SceneValues& s) { return value_at(&s.labels[Axis::kMaterial]); }},
+      {{"grid.band_um", Type::kPairs, "um", kWavelengthUmRange, {}, "", "bands of the table instead of a spectrum"},
+       [](SceneValues& s, const KeyValue& v) {
+         for (std::size_t i = 0; i < v.numbers.size(); i += 2) s.bands.push_back({v.numbers[i], v.numbers[i + 1]});
+       },
+       [](const SceneValues& s) {
+         std::vector<double> ends;
+         for (const Spectrum& band : s.bands) ends.insert(ends.end(), {band.min_um, band.max_um});
+         return value_at(&ends);
+       }},
+      grid_axis(
+          Axis::kTemperature, "",
+          "temperatures of the surface in the table; emission.temperature_K may then be absent, and is the first"),
       grid_axis(Axis::kQ, "surface.q", "tail exponents q of the table"),
       grid_axis(
           Axis::kWavelength, "",
@@ -349,12 +369,12 @@ const std::vector<KeyChoice>& key_choices() {
         {"surface",
          {{"surface.n", "surface.k"}, {"surface.material"}, {"surface.material_file"}, {"surface.reflectance_file"}},
          true,
-         "grid.n"},
+         {"grid.n", "grid.material"}},
         {"surface", {{"surface.sigma", "grid.sigma"}, {"surface.wind_m_s", "grid.wind_m_s"}}, true, {}, true},
         {"source", {{"source.irradiance"}, {"source.relative_irradiance"}, {"source.preset"}, {"source.file"}}},
         {"surroundings", {{"surroundings.temperature_K"}, {"surroundings.profile"}}},
         {"path", {{"path.temperature_K"}, {"path.radiance"}}, false},
-        {"spectrum", {{"spectrum.wavelength_um"}, {"spectrum.band_um"}}, true, "grid.wavelength_um"},
+        {"spectrum", {{"spectrum.wavelength_um"}, {"spectrum.band_um"}}, true, {"grid.wavelength_um", "grid.band_um"}},
     };
     for (std::size_t layer = 1; layer <= kMostLayers; ++layer) {
       const std::string table = fmt::format("surface.coating.{}", layer);
@@ -401,8 +421,28 @@ const SceneKey* find_scene_key(std::string_view key) {
   return nullptr;
 }
 
+const std::vector<AxisExclusion>& axis_exclusions() {
+  static const std::vector<AxisExclusion> exclusions = [] {
+    const std::vector<std::string> materials = {"surface.material", "surface.material_file",
+                                                "surface.reflectance_file"};
+    std::vector<std::string> indices = materials;
+    indices.insert(indices.end(), {"surface.n", "surface.k", "grid.n", "grid.k"});
+    return std::vector<AxisExclusion>{
+        {"grid.wavelength_um", {"spectrum.band_um"}},
+        {"grid.band_um", {"spectrum.wavelength_um", "spectrum.band_um", "grid.wavelength_um"}},
+        {"grid.n", materials},
+        {"grid.k", materials},
+        {"grid.material", indices}};
+  }();
+  return exclusions;
+}
+
 std::vector<std::string> keys_replaced_by(std::string_view key) {
   std::vector<std::string> replaced;
+  for (const auto& [axis, others] : axis_exclusions()) {
+    if (axis == key) replaced.insert(replaced.end(), others.begin(), others.end());
+    if (std::ranges::find(others, key) != others.end()) replaced.push_back(axis);
+  }
   for (const KeyChoice& choice : key_choices()) {
     const auto chooses = [&](const std::vector<std::string>& alternative) {
       return choice.does_each_choose ? std::ranges::find(alternative, key) != alternative.end()
@@ -463,6 +503,10 @@ std::string Key::allowed() const {
       return "a text";
     case Type::kPair:
       return "two ascending numbers in " + range.text();
+    case Type::kNames:
+      return "a text, or a list of texts";
+    case Type::kPairs:
+      return "a list of pairs of ascending numbers in " + range.text();
     case Type::kAxis:
       return "a number in " + range.text() + ", a list of them, or { from, to, count, spacing }";
   }

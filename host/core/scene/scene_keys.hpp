@@ -17,7 +17,8 @@ struct KeyValue {
   std::size_t word = 0;  ///< position in Key::words
   std::string text = {};
   bool is_set = false;               ///< flag
-  std::vector<double> numbers = {};  ///< pair, axis
+  std::vector<double> numbers = {};  ///< pair, axis; pairs one after the other
+  std::vector<std::string> names = {};
 };
 
 struct SceneKey {
@@ -31,10 +32,10 @@ struct SceneKey {
 struct KeyChoice {
   std::string table;
   std::vector<std::vector<std::string>> alternatives;
-  bool is_required = true;        ///< if the table is there, or must be
-  std::string substitute = {};    ///< a key that does instead
-  bool does_each_choose = false;  ///< any key of an alternative chooses it, alone or with the others
-  bool is_of_layer = false;       ///< of a layer of a coating, which a scene may lack
+  bool is_required = true;                    ///< if the table is there, or must be
+  std::vector<std::string> substitutes = {};  ///< keys of which one does instead
+  bool does_each_choose = false;              ///< any key of an alternative chooses it, alone or with the others
+  bool is_of_layer = false;                   ///< of a layer of a coating, which a scene may lack
 };
 
 inline constexpr std::size_t kMostLayers = 16;  ///< of a coating
@@ -43,7 +44,15 @@ const std::vector<SceneKey>& scene_key_table();
 const std::vector<KeyChoice>& key_choices();
 const SceneKey* find_scene_key(std::string_view key);
 
-/// The keys that a setting of `key` takes the place of: those of the other alternatives, where it chooses its own.
+/// An axis of the grid, and the keys that no scene has beside it.
+struct AxisExclusion {
+  std::string axis;
+  std::vector<std::string> others;
+};
+const std::vector<AxisExclusion>& axis_exclusions();
+
+/// The keys that a setting of `key` replaces: those of the other alternatives if it chooses its own, and those that no
+/// scene has beside it.
 std::vector<std::string> keys_replaced_by(std::string_view key);
 
 /// The tables in the order of the keys.

@@ -80,6 +80,13 @@ std::vector<std::string> document_keys(const SceneDocument& document) {
   return keys;
 }
 
+/// A key that does instead of an alternative, where the document has one.
+const std::string* substitute_key(const SceneDocument& document, const KeyChoice& choice) {
+  const auto found =
+      std::ranges::find_if(choice.substitutes, [&](const std::string& key) { return document.find(key); });
+  return found == choice.substitutes.end() ? nullptr : &*found;
+}
+
 /// The alternative that the document chooses; nullptr for none. Two are an error, and so is a companion without its
 /// key.
 const std::string* chosen_key(const SceneDocument& document, const KeyChoice& choice) {
@@ -88,8 +95,7 @@ const std::string* chosen_key(const SceneDocument& document, const KeyChoice& ch
     const auto found = std::ranges::find_if(alternative, [&](const std::string& key) { return document.find(key); });
     if (found == alternative.end()) continue;
     if (!choice.does_each_choose && !document.find(alternative.front())) {
-      if (choice.substitute.empty() || !document.find(choice.substitute))
-        document.fail(*found, "needs " + alternative.front() + " beside it");
+      if (!substitute_key(document, choice)) document.fail(*found, "needs " + alternative.front() + " beside it");
       continue;
     }
     if (chosen) document.fail(*found, "cannot be combined with " + *chosen);
@@ -100,8 +106,7 @@ const std::string* chosen_key(const SceneDocument& document, const KeyChoice& ch
 
 void check_choice(const SceneDocument& document, const KeyChoice& choice) {
   const bool is_present = document.find(choice.table) != nullptr;
-  const bool has_substitute = !choice.substitute.empty() && document.find(choice.substitute);
-  if (chosen_key(document, choice) || !choice.is_required || has_substitute) return;
+  if (chosen_key(document, choice) || !choice.is_required || substitute_key(document, choice)) return;
   if (!is_present && (is_effect_table(choice.table) || choice.is_of_layer)) return;
   std::vector<std::string> heads;
   for (const auto& alternative : choice.alternatives) heads.push_back(alternative.front());
@@ -135,6 +140,7 @@ void check_wind(const SceneValues& scene, const SceneDocument& document) {
 
 void check_required(const SceneDocument& document, const Key& known) {
   if (known.fallback != "required" || !known.rivals.empty() || document.find(known.key)) return;
+  if (known.key == "emission.temperature_K" && document.find("grid.temperature_K")) return;
   const std::string table = known.key.substr(0, known.key.rfind('.'));
   const bool may_lack = is_effect_table(table) || known.layer > 0;
   if (document.find(table) || !may_lack) document.fail(known.key, "missing; must be " + known.allowed());
@@ -219,6 +225,10 @@ Spectrum all_wavelengths(const SceneValues& scene) {
     all.min_um = std::min(all.min_um, wavelength_um);
     all.max_um = std::max(all.max_um, wavelength_um);
   }
+  for (const Spectrum& band : scene.bands) {
+    all.min_um = std::min(all.min_um, band.min_um);
+    all.max_um = std::max(all.max_um, band.max_um);
+  }
   return all;
 }
 
@@ -252,8 +262,52 @@ void load_material(SceneValues& scene, const SceneDocument& document, const std:
   check_axis(material);
 }
 
+/// The names of built-in materials that a grid's axis means, in full; "all" are those that cover the spectrum.
+std::vector<std::string> axis_names(const SceneValues& scene, const std::string& prefix) {
+  std::vector<std::string> names;
+  const std::vector<std::string>& given = scene.labels[Axis::kMaterial];
+  const bool is_all = given == std::vector<std::string>{"all"};
+  const Spectrum spectrum = all_wavelengths(scene);
+  for (const Material& material : is_all ? built_in_materials() : std::vector<Material>{}) {
+    const Spectrum range = known_range(material);
+    if (range.min_um <= spectrum.min_um && spectrum.max_um <= range.max_um) names.push_back(material.name);
+  }
+  for (const std::string& name : is_all ? std::vector<std::string>{} : given)
+    names.push_back(named_material(name, prefix + '"' + one_line(name) + "\": ").name);
+  for (auto name = names.begin(); name != names.end(); ++name) {
+    if (std::find(names.begin(), name, *name) != name) throw InputError(prefix + '"' + *name + "\" appears twice");
+  }
+  if (names.empty()) throw InputError(prefix + "no built-in material covers the spectrum");
+  return names;
+}
+
+/// Loads the materials of the grid's axis, of which the first is the scene's. `known` are those that a table has.
+void load_axis_materials(SceneValues& scene, const SceneDocument& document, const KnownData* known) {
+  if (!document.find("grid.material")) return;
+  const std::string prefix = document.prefix("grid.material");
+  std::vector<Material> materials;
+  if (known && !known->materials.empty()) {
+    for (const Material& material : known->materials)
+      materials.push_back(material.is_constant() ? material : fit_to_spectrum(material, scene.spectrum, prefix));
+  } else {
+    for (const std::string& name : axis_names(scene, prefix))
+      materials.push_back(find_material(name, scene.spectrum, prefix));
+  }
+  std::vector<std::string>& labels = scene.labels[Axis::kMaterial];
+  labels.clear();
+  for (const Material& material : materials) {
+    const Material& all = material.tabulated ? *material.tabulated : material;
+    if (!all.is_constant()) check_covers(all, all_wavelengths(scene), prefix);
+    scene.grid[Axis::kMaterial].push_back(static_cast<double>(labels.size()));
+    labels.push_back(material.name);
+  }
+  scene.surface.material = materials.front();
+  scene.materials = std::make_shared<const std::vector<Material>>(std::move(materials));
+}
+
 void load_materials(SceneValues& scene, const SceneDocument& document, const KnownData* known) {
   Surface& surface = scene.surface;
+  load_axis_materials(scene, document, known);
   load_material(scene, document, "surface", surface.material, scene.names.material, scene.names.material_file, known,
                 known && known->material ? &*known->material : nullptr);
   for (std::size_t i = 0; i < surface.coating.size(); ++i) {
@@ -321,24 +375,33 @@ void load_profile(SceneValues& scene, const SceneDocument& document, const std::
   scene.surroundings->profile = std::make_shared<const SkyProfile>(std::move(*profile));
 }
 
-/// Fills in quantities that the scene gives only as an axis: each takes the first value of its axis.
-void fill_from_grid(SceneValues& scene, const SceneDocument& document) {
-  const Axes& grid = scene.grid;
-  OpticalConstants& index = scene.surface.material.constant;
-  if (!grid[Axis::kWavelength].empty()) {
-    if (document.find("spectrum.band_um"))
-      document.fail(document.first_set({"grid.wavelength_um", "spectrum.band_um"}),
-                    "grid.wavelength_um and spectrum.band_um cannot be combined");
-    if (!document.find("spectrum.wavelength_um"))
-      scene.spectrum = {grid[Axis::kWavelength].front(), grid[Axis::kWavelength].front()};
-  }
-  for (const char* axis : {"grid.n", "grid.k"}) {
-    for (const char* material : {"surface.material", "surface.material_file", "surface.reflectance_file"}) {
-      if (document.find(axis) && document.find(material))
-        document.fail(document.first_set({axis, material}),
-                      fmt::format("{} and {} cannot be combined", axis, material));
+void check_axes(const SceneDocument& document) {
+  for (const auto& [axis, others] : axis_exclusions()) {
+    for (const std::string& other : others) {
+      if (document.find(axis) && document.find(other))
+        document.fail(document.first_set({axis, other}), fmt::format("{} and {} cannot be combined", axis, other));
     }
   }
+  if (document.find("grid.temperature_K"))
+    check_needs(document, "grid.temperature_K", {{document.find("emission") != nullptr, "the table [emission]"}});
+}
+
+/// Fills in quantities that the scene gives only as an axis: each takes the first value of its axis.
+void fill_from_grid(SceneValues& scene, const SceneDocument& document) {
+  Axes& grid = scene.grid;
+  OpticalConstants& index = scene.surface.material.constant;
+  check_axes(document);
+  if (!grid[Axis::kWavelength].empty() && !document.find("spectrum.wavelength_um"))
+    scene.spectrum = {grid[Axis::kWavelength].front(), grid[Axis::kWavelength].front()};
+  if (!scene.bands.empty()) scene.spectrum = scene.bands.front();
+  for (const Spectrum& band : scene.bands) {
+    std::vector<std::string>& labels = scene.labels[Axis::kBand];
+    grid[Axis::kBand].push_back(static_cast<double>(labels.size()));
+    labels.push_back(format_number(band.min_um) + '-' + format_number(band.max_um));
+    if (std::ranges::count(labels, labels.back()) > 1) document.fail("grid.band_um", labels.back() + " appears twice");
+  }
+  if (!grid[Axis::kTemperature].empty() && !document.find("emission.temperature_K"))
+    scene.emission->temperature_K = grid[Axis::kTemperature].front();
   if (!grid[Axis::kN].empty() && !document.find("surface.n")) index.n = grid[Axis::kN].front();
   if (!grid[Axis::kK].empty() && !document.find("surface.k")) index.k = grid[Axis::kK].front();
 }

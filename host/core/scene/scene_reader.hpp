@@ -24,6 +24,7 @@ SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& 
 struct KnownData {
   std::optional<Material> material = {};
   std::vector<std::optional<Material>> layers = {};  ///< of a coating
+  std::vector<Material> materials = {};              ///< of the axis of materials
   std::optional<ReflectanceTable> reflectance = {};
   std::optional<SpectralTable> irradiance = {};
   std::optional<SkyProfile> profile = {};

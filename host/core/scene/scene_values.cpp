@@ -123,6 +123,31 @@ std::vector<double> read_pair(const SceneDocument& document, const Key& descript
   return pair;
 }
 
+/// A list of pairs, one after the other; or one pair.
+std::vector<double> read_pairs(const SceneDocument& document, const Key& description, const toml::node& node) {
+  const toml::array* array = node.as_array();
+  if (!array || array->empty() || !array->front().is_array()) return read_pair(document, description, node);
+  std::vector<double> pairs;
+  for (const toml::node& element : *array) {
+    const std::vector<double> pair = read_pair(document, description, element);
+    pairs.insert(pairs.end(), pair.begin(), pair.end());
+  }
+  return pairs;
+}
+
+std::vector<std::string> read_names(const SceneDocument& document, const Key& description, const toml::node& node) {
+  if (node.is_string()) return {node.value_or(std::string())};
+  std::vector<std::string> names;
+  if (const toml::array* array = node.as_array()) {
+    for (const toml::node& element : *array) {
+      if (!element.is_string()) document.fail(description.key, "must be " + description.allowed());
+      names.push_back(element.value_or(std::string()));
+    }
+  }
+  if (names.empty()) document.fail(description.key, "must be " + description.allowed());
+  return names;
+}
+
 KeyValue read_word(const SceneDocument& document, const Key& description, const toml::node& node) {
   KeyValue value;
   value.text = node.value_or(std::string());
@@ -153,6 +178,12 @@ KeyValue read_value(const SceneDocument& document, const Key& description) {
       break;
     case Type::kPair:
       value.numbers = read_pair(document, description, node);
+      break;
+    case Type::kNames:
+      value.names = read_names(document, description, node);
+      break;
+    case Type::kPairs:
+      value.numbers = read_pairs(document, description, node);
       break;
     case Type::kAxis:
       value.numbers = read_axis(document, description, node);

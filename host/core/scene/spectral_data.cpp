@@ -144,7 +144,11 @@ SceneModel at_wavelength(const SceneModel& scene, double wavelength_um) {
 }
 
 SceneModel with_variant(const SceneModel& scene, const SceneVariant& variant) {
-  SceneModel own = variant.wavelength_um ? at_wavelength(scene, *variant.wavelength_um) : scene;
+  SceneModel own = scene;
+  if (variant.material) own.surface.material = scene.materials->at(*variant.material);
+  if (variant.band) own.spectrum = scene.bands.at(*variant.band);
+  if (variant.wavelength_um) own = at_wavelength(own, *variant.wavelength_um);
+  if (variant.temperature_K) own.emission->temperature_K = *variant.temperature_K;
   for (const FilmValue& film : variant.films) {
     Layer& layer = own.surface.coating.at(film.layer);
     if (film.part == FilmValue::Part::kN) layer.material.constant.n = film.value;

@@ -28,13 +28,19 @@ std::vector<Axis> present_axes(const Axes& axes) {
   return present;
 }
 
-/// Calls use(value) for the coordinates of an entry on the axes of the table.
+/// Calls use(axis, value) for the coordinates of an entry on the axes of the table.
 template <class Use>
 void each_coordinate(const Axes& axes, std::size_t position, const Use& use) {
   const PerAxis place = place_of(position, counts_of(axes));
   for (const Axis axis : kAllAxes) {
-    if (!axes[axis].empty()) use(axes[axis][place[axis]]);
+    if (!axes[axis].empty()) use(axis, axes[axis][place[axis]]);
   }
+}
+
+std::size_t longest_label(const TableHead& head, Axis axis) {
+  std::size_t longest = 1;
+  for (const std::string& label : head.labels[axis]) longest = std::max(longest, label.size());
+  return longest;
 }
 
 std::string value_text(const Attribute& attribute) {
@@ -62,10 +68,14 @@ std::string csv_header(const TableLayout& layout) {
   return text + result_header(layout.quantities, layout.has_status) + "\n";
 }
 
-std::string csv_rows(const TableValues& part, const Quantities& quantities) {
-  return result_rows(part, part.size(), quantities, [&](std::string& text, std::size_t position) {
-    each_coordinate(part.axes, position, [&](double value) {
-      append_number(text, value);
+std::string csv_rows(const TableValues& part, const TableLayout& layout) {
+  return result_rows(part, part.size(), layout.quantities, [&](std::string& text, std::size_t position) {
+    each_coordinate(part.axes, position, [&](Axis axis, double value) {
+      if (description_of(axis).has_labels) {
+        text += '"' + layout.head.label(axis, value) + '"';
+      } else {
+        append_number(text, value);
+      }
       text += ',';
     });
   });
@@ -77,7 +87,9 @@ std::string npy_header(const TableLayout& layout) {
   constexpr std::size_t kPreambleSize = 10;
   std::string fields, shape;
   for (const Axis axis : present_axes(layout.head.axes)) {
-    fields += fmt::format("('{}', '<f8'), ", description_of(axis).column);
+    const AxisDescription& described = description_of(axis);
+    const std::string type = described.has_labels ? fmt::format("S{}", longest_label(layout.head, axis)) : "<f8";
+    fields += fmt::format("('{}', '{}'), ", described.column, type);
     shape += fmt::format("{}{}", shape.empty() ? "" : ", ", layout.head.axes[axis].size());
   }
   for (const Quantity quantity : layout.quantities)
@@ -99,11 +111,16 @@ void append_bytes(std::string& bytes, Number value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-std::string npy_rows(const TableValues& part, const Quantities& quantities) {
+std::string npy_rows(const TableValues& part, const TableLayout& layout) {
   std::string bytes;
   for (std::size_t position = 0; position < part.size(); ++position) {
-    each_coordinate(part.axes, position, [&](double value) { append_bytes(bytes, value); });
-    for (const Quantity quantity : quantities) append_bytes(bytes, part[quantity][position]);
+    each_coordinate(part.axes, position, [&](Axis axis, double value) {
+      if (!description_of(axis).has_labels) return append_bytes(bytes, value);
+      std::string label = layout.head.label(axis, value);
+      label.resize(longest_label(layout.head, axis));
+      bytes += label;
+    });
+    for (const Quantity quantity : layout.quantities) append_bytes(bytes, part[quantity][position]);
     if (!part.status.empty()) append_bytes(bytes, part.status[position]);
   }
   return bytes;
@@ -129,7 +146,7 @@ std::string table_start(const TableLayout& layout, TableFormat format) {
 }
 
 std::string table_rows(const TableValues& part, const TableLayout& layout, TableFormat format) {
-  return format == TableFormat::kCsv ? csv_rows(part, layout.quantities) : npy_rows(part, layout.quantities);
+  return format == TableFormat::kCsv ? csv_rows(part, layout) : npy_rows(part, layout);
 }
 
 void write_table(const TableValues& table, const fs::path& path) {

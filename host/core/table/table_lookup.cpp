@@ -18,9 +18,10 @@ namespace {
 
 constexpr auto kTheta = static_cast<std::size_t>(Axis::kTheta);
 constexpr auto kQ = static_cast<std::size_t>(Axis::kQ);
-constexpr std::array<std::size_t, kAxisCount> kWindow = {4, 4, 4, 6, 6, 6};  // values of each axis
-constexpr std::size_t kMostRows = std::size_t{4} * 4 * 4 * 6 * 6;            // of values along q
-constexpr int kMostShift = 3;                                                // of a window away from unknown entries
+constexpr std::array<std::size_t, kAxisCount> kWindow = {2, 2, 4, 4, 4, 4, 6, 6, 6};  // values of each axis
+constexpr std::size_t kMostRows =
+    std::size_t{4} * 4 * 4 * 4 * 6 * 6;  // of values along q; a point is at one value of an axis with labels
+constexpr int kMostShift = 3;            // of a window away from unknown entries
 constexpr std::size_t kLeastValues = 4;  // of an axis: fewer give no reliable estimate
 // Tuned. Stated error over the change by one value more: where the window has a value to add on both sides, and
 // elsewhere. Of 581,000 bistatic lookups with half, this and double 147, 2 and 0 err by more than stated; the median of
@@ -62,8 +63,9 @@ std::vector<LookupAxis> axes_of(const TableValues& table, const std::string& nam
   std::vector<LookupAxis> axes;
   for (const Axis axis : kAllAxes) {
     const std::vector<double>& values = table.axes[axis];
+    const bool is_linear = axis == Axis::kTheta || description_of(axis).has_labels;
     axes.emplace_back(values.empty() ? std::vector<double>{1.0} : checked(values, description_of(axis).name, name),
-                      axis == Axis::kTheta ? LookupAxis::Scale::kLinear : LookupAxis::Scale::kLogarithm,
+                      is_linear ? LookupAxis::Scale::kLinear : LookupAxis::Scale::kLogarithm,
                       axis == Axis::kQ ? 1.0 : 0.0);
   }
   return axes;

@@ -15,8 +15,8 @@ namespace dolp {
 /// Reads a table between its entries.
 ///
 /// Method: tensor product of polynomials of degree five through the six values around the point, in theta, ln sigma and
-/// ln(q - 1), and of degree three through four values in the logarithm of wavelength, n and k, the axes that a table
-/// may lack; fewer where an axis has fewer. DOLP follows from the interpolated Stokes parameters, which stay smooth
+/// ln(q - 1), and of degree three through four values in the logarithm of wavelength, temperature, n and k, the axes
+/// that a table may lack; on axes with labels a point is at one of them; fewer where an axis has fewer. DOLP follows from the interpolated Stokes parameters, which stay smooth
 /// where it has a kink.
 /// Errors stated: the bounds of the entries read, each with the size of its weight, and the error of the
 /// interpolation along each axis: kInside or kAtEnds times the change that one value more makes on the lines through
@@ -30,6 +30,7 @@ class TableLookup {
   /// rho but no rho.
   TableLookup(const TableValues& table, const SceneModel& scene, const std::string& name);
 
+  const AxisLabels& labels() const { return table_.labels; }
   /// Null for an axis that the table lacks.
   const LookupAxis* axis(Axis axis) const;
   /// The quantities of every scene, and the optional ones that the table has.
@@ -42,7 +43,13 @@ class TableLookup {
   /// Domain: next to entries outside the model's domain the window moves away from them; between such entries the
   /// result is NaN with status 4.
   PointResult at(const Point& point) const;
-  PointResult at(double theta_deg, double sigma, double q) const { return at({0.0, 0.0, 0.0, theta_deg, sigma, q}); }
+  PointResult at(double theta_deg, double sigma, double q) const {
+    Point point{};
+    point[Axis::kTheta] = theta_deg;
+    point[Axis::kSigma] = sigma;
+    point[Axis::kQ] = q;
+    return at(point);
+  }
 
  private:
   struct Window;

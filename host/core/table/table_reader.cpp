@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <dolp/errors.hpp>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
@@ -126,6 +127,35 @@ std::vector<double> read_list(const Reader& reader, const std::string& name, std
   return values;
 }
 
+/// The labels of an axis: texts of one length as this program writes them, or of any as others do.
+std::vector<std::string> read_labels(const Reader& reader, const std::string& name, std::size_t most) {
+  const Hdf5Handle variable = reader.find(name);
+  if (!variable) return {};
+  const std::vector<hsize_t> shape = reader.shape_of(variable, name);
+  const Hdf5Handle type(H5Dget_type(variable.id()), H5Tclose);
+  reader.check(type ? 0 : -1, name);
+  if (!is_of_class(type.id(), H5T_STRING) || shape.size() != 1 || shape[0] > most)
+    reader.fail(name + ": is not a list of texts");
+  const std::size_t width = H5Tget_size(type.id());
+  reader.check_claim(name, shape[0] * width);
+  std::vector<std::string> labels;
+  if (H5Tis_variable_str(type.id()) > 0) {
+    std::vector<char*> texts(shape[0], nullptr);
+    const Hdf5Handle space(H5Dget_space(variable.id()), H5Sclose);
+    reader.read(variable, name, type.id(), texts.data());
+    for (const char* text : texts) labels.emplace_back(text ? text : "");
+    reader.check(H5Dvlen_reclaim(type.id(), space.id(), H5P_DEFAULT, texts.data()), name);
+  } else {
+    std::string text(shape[0] * width, '\0');
+    reader.read(variable, name, type.id(), text.data());
+    for (std::size_t i = 0; i < shape[0]; ++i) {
+      std::string& label = labels.emplace_back(text.substr(i * width, width));
+      label.erase(label.find_last_not_of('\0') + 1);
+    }
+  }
+  return labels;
+}
+
 /// The text of a fixed length that an attribute has, without the zero bytes that pad it.
 std::string fixed_text(const Reader& reader, const Hdf5Handle& attribute, const Hdf5Handle& type,
                        const std::string& name) {
@@ -208,8 +238,8 @@ std::vector<Attribute> read_attributes(const Reader& reader) {
 
 /// The texts that are variables because they are too long for attributes.
 void append_long_texts(const Reader& reader, std::vector<Attribute>& attributes) {
-  for (const char* name :
-       {"title", "history", "scene", "scene_path", "scene_overrides", "surroundings_profile", kSpectralData}) {
+  for (const char* name : {"title", "history", "scene", "scene_path", "scene_overrides", "surroundings_profile",
+                           "coating", "reflectance", "materials", kSpectralData}) {
     const Hdf5Handle variable = reader.find(name);
     if (!variable) continue;
     const Hdf5Handle type(H5Dget_type(variable.id()), H5Tclose);
@@ -240,7 +270,13 @@ struct TableReader::Impl {
     std::size_t most = kMostTableEntries;
     for (const Axis axis : kAllAxes) {
       std::vector<double>& values = head.axes[axis];
-      values = read_list(reader, description_of(axis).name, most);
+      if (description_of(axis).has_labels) {
+        head.labels[axis] = read_labels(reader, description_of(axis).name, most);
+        values.resize(head.labels[axis].size());
+        std::iota(values.begin(), values.end(), 0.0);
+      } else {
+        values = read_list(reader, description_of(axis).name, most);
+      }
       if (values.empty() && description_of(axis).is_required)
         reader.fail("is not a table of dolp (no axis theta, sigma or q)");
       most /= std::max<std::size_t>(values.size(), 1);

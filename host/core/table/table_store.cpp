@@ -104,12 +104,17 @@ class Writer {
   }
 
   void put_text(const Hdf5Handle& object, const char* name, const std::string& text) const {
-    const Hdf5Handle type = take(H5Tcopy(H5T_C_S1), H5Tclose);
-    check(H5Tset_size(type.id(), std::max<std::size_t>(text.size(), 1)));
-    check(H5Tset_strpad(type.id(), H5T_STR_NULLPAD));
-    check(H5Tset_cset(type.id(), H5T_CSET_UTF8));
+    const Hdf5Handle type = text_type(std::max<std::size_t>(text.size(), 1));
     put(object, name, type.id(), type.id(), take(H5Screate(text.empty() ? H5S_NULL : H5S_SCALAR), H5Sclose),
         text.empty() ? nullptr : text.data());
+  }
+  /// Texts of `width` bytes, or of any length.
+  Hdf5Handle text_type(std::size_t width) const {
+    Hdf5Handle type = take(H5Tcopy(H5T_C_S1), H5Tclose);
+    check(H5Tset_size(type.id(), width));
+    check(H5Tset_strpad(type.id(), H5T_STR_NULLPAD));
+    check(H5Tset_cset(type.id(), H5T_CSET_UTF8));
+    return type;
   }
   void put_number(const Hdf5Handle& object, const char* name, double value) const {
     const hsize_t one = 1;
@@ -134,8 +139,9 @@ class Writer {
     const Hdf5Handle creation = take(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     check(H5Pset_attr_creation_order(creation.id(), kOrdered));
     check(H5Pset_obj_track_times(creation.id(), false));
-    // Every variable is written whole; to fill it first would write it twice.
-    check(H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER));
+    // Every variable is written whole; to fill it first would write it twice. HDF5 insists on it for texts of any
+    // length.
+    if (H5Tis_variable_str(type) <= 0) check(H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER));
     check(H5Pset_alloc_time(creation.id(), allocation));
     if (fill) check(H5Pset_fill_value(creation.id(), type, fill));
     const Hdf5Handle space = take(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
@@ -204,7 +210,20 @@ void put_coordinate(const Writer& writer, const Hdf5Handle& variable, const Desc
   writer.write(variable, H5T_NATIVE_DOUBLE, values.data());
 }
 
-/// The coordinate variables, of an axis that the table lacks none.
+/// The coordinate of an axis with labels. Texts of one length crash the netCDF library.
+Hdf5Handle put_labels(const Writer& writer, const TableHead& head, Axis axis) {
+  const AxisDescription& described = description_of(axis);
+  std::vector<const char*> labels;
+  for (const double value : head.axes[axis]) labels.push_back(head.label(axis, value).c_str());
+  const Hdf5Handle type = writer.text_type(H5T_VARIABLE);
+  Hdf5Handle variable = writer.define(described.name, type.id(), {labels.size()}, nullptr);
+  writer.check(H5DSset_scale(variable.id(), described.name));
+  writer.put_text(variable, "long_name", described.long_name);
+  writer.write(variable, type.id(), labels.data());
+  return variable;
+}
+
+/// The coordinate variables; an axis that the table lacks has none.
 using AxisVariables = AxisArray<Hdf5Handle>;
 
 AxisVariables put_axes(const Writer& writer, const TableHead& head) {
@@ -213,6 +232,10 @@ AxisVariables put_axes(const Writer& writer, const TableHead& head) {
     const AxisDescription& described = description_of(axis);
     const std::vector<double>& values = head.axes[axis];
     if (values.empty()) continue;
+    if (described.has_labels) {
+      axes[axis] = put_labels(writer, head, axis);
+      continue;
+    }
     axes[axis] = writer.define(described.name, H5T_IEEE_F64LE, {values.size()}, nullptr);
     writer.check(H5DSset_scale(axes[axis].id(), described.name));
     put_coordinate(writer, axes[axis], described, values);
@@ -318,6 +341,9 @@ std::uint64_t most_bytes(const TableLayout& layout) {
       layout.quantities.size() + 1 + layout.responses.size() * std::max<std::size_t>(head.beta_deg.size(), 1);
   std::uint64_t numbers = head.wind_m_s.size() + head.beta_deg.size() + head.size() * of_entry;
   for (const std::vector<double>& values : head.axes) numbers += values.size();
+  for (const Axis axis : kAllAxes) {
+    for (const std::string& label : head.labels[axis]) numbers += label.size() * head.axes[axis].size();
+  }
   for (const TableCurve& described : kTableCurves) numbers += (head.*described.curve).used.size();
   return numbers * sizeof(double) + bytes_of(head.attributes) + spectral_data_of(head).size() + kMostOverhead;
 }

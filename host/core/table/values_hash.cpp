@@ -57,7 +57,12 @@ void add(ValueSums& sums, const ValueSums& of_part) {
 
 std::string values_hash(const TableHead& head, const Quantities& quantities, const ValueSums& sums) {
   std::uint64_t hash = kHashStart;
-  for (const std::vector<double>& values : head.axes) hash = hashed(hash, std::span(values));
+  for (const std::vector<double>& values : head.axes) {
+    if (!values.empty()) hash = hashed(hash, std::span(values));
+  }
+  for (const std::vector<std::string>& names : head.labels) {
+    for (const std::string& name : names) hash = hashed(hash, name);
+  }
   for (const std::vector<double>* values : {&head.wind_m_s, &head.beta_deg}) {
     if (!values->empty()) hash = hashed(hash, std::span(*values));
   }

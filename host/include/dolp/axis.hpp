@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <dolp/enum_array.hpp>
@@ -12,7 +13,7 @@
 namespace dolp {
 
 /// In the order of a table, the last one fastest.
-enum class Axis : std::uint8_t { kWavelength, kN, kK, kTheta, kSigma, kQ };
+enum class Axis : std::uint8_t { kMaterial, kBand, kWavelength, kTemperature, kN, kK, kTheta, kSigma, kQ };
 inline constexpr std::size_t kAxisCount = static_cast<std::size_t>(Axis::kQ) + 1;
 
 template <class Value>
@@ -26,11 +27,15 @@ struct AxisDescription {
   const char* units;
   const char* long_name;
   NumberRange range;
-  bool is_required;  ///< every table has it; the others are the scene's where a table lacks them
+  bool is_required;         ///< every table has it; the others are the scene's where a table lacks them
+  bool has_labels = false;  ///< its values are positions, from 0, in the list of labels that the scene and files have
 };
 
 inline constexpr std::array<AxisDescription, kAxisCount> kAxes = {{
+    {"material", "material", "1", "material of the surface", kLabelRange, false, true},
+    {"band", "band_um", "um", "band of wavelengths", kLabelRange, false, true},
     {"wavelength", "wavelength_um", "um", "wavelength", kWavelengthUmRange, false},
+    {"temperature", "temperature_K", "K", "temperature of the surface", kEmissionTemperatureRange, false},
     {"n", "n", "1", "refractive index n of the surface", kNRange, false},
     {"k", "k", "1", "refractive index k of the surface", kKRange, false},
     {"theta", "theta_deg", "degree", "zenith angle", kZenithDegRange, true},
@@ -47,11 +52,14 @@ inline constexpr AxisDescription kWind = {
     "wind_m_s", "wind_m_s", "m s-1", "wind speed that gives sigma (Cox and Munk 1954)", kWindRange, false};
 
 /// In the order in which messages list the columns of points.
-inline constexpr std::array<Axis, kAxisCount> kColumnOrder = {Axis::kTheta, Axis::kSigma, Axis::kQ,
-                                                              Axis::kN,     Axis::kK,     Axis::kWavelength};
+inline constexpr std::array<Axis, kAxisCount> kColumnOrder = {Axis::kTheta,    Axis::kSigma,       Axis::kQ,
+                                                              Axis::kN,        Axis::kK,           Axis::kWavelength,
+                                                              Axis::kMaterial, Axis::kTemperature, Axis::kBand};
 
 /// The values of each axis in any order, each once. A grid has one value at least of those that every table has.
 using Axes = AxisArray<std::vector<double>>;
+/// The names on axes that have labels; empty for the others. Materials by name, bands as "8-14".
+using AxisLabels = AxisArray<std::vector<std::string>>;
 /// A number of each axis: positions, or counts.
 using PerAxis = AxisArray<std::size_t>;
 

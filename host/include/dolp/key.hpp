@@ -25,11 +25,11 @@ struct DOLP_EXPORT NumberRange {
 
 /// A key of a scene.
 struct DOLP_EXPORT Key {
-  enum class Type { kNumber, kWord, kFlag, kText, kPair, kAxis };
+  enum class Type { kNumber, kWord, kFlag, kText, kPair, kAxis, kNames, kPairs };
   std::string key;  ///< dotted: "surface.sigma"
   Type type = Type::kNumber;
   std::string unit;                ///< "1" for numbers without one, empty for words and texts
-  NumberRange range;               ///< of a number and of each value of a pair or an axis
+  NumberRange range;               ///< of a number and of each value of pairs and axes
   std::vector<std::string> words;  ///< that a word may be
   std::string fallback;            ///< default as in a scene file; "required"; empty when the key is simply absent
   std::string meaning;             ///< one line, with the symbol

@@ -26,6 +26,8 @@ inline constexpr NumberRange kWavelengthUmRange{0.1, 1e4};
 inline constexpr double kLikelyNanometres = 1000.0;
 inline constexpr NumberRange kToleranceRange{1e-10, 1e-2};
 inline constexpr NumberRange kAxisCountRange{1.0, 1e6};
+/// Positions on an axis with labels.
+inline constexpr NumberRange kLabelRange{0.0, 1e6};
 
 /// The smith masking of the cauchy distribution needs a finite mean slope (shaders/physics/README.md, section 2).
 inline constexpr NumberRange kSmithCauchyQRange{1.5, 1e4, NumberRange::Ends::kOpenBelow};

@@ -33,7 +33,8 @@ struct Curve {
 
 /// All data of a table except its values.
 struct TableHead {
-  Axes axes;                     ///< in the user's order; wavelength, n and k only where the table has them
+  Axes axes;                     ///< in the user's order; the required ones, and others where the table has them
+  AxisLabels labels;             ///< all labels of the scene's axes, also in a part of a table
   std::vector<double> wind_m_s;  ///< that give the values of sigma; empty where the scene gives sigma itself
   std::vector<double> beta_deg;  ///< of a response table: local angles of incidence, ascending
   Curve index_n;                 ///< n, k and E0 that the table was computed with; empty where there is none
@@ -53,6 +54,8 @@ struct TableHead {
     for (const std::size_t count : counts()) size *= count;
     return size;
   }
+  /// The label of a value of an axis that has labels.
+  const std::string& label(Axis axis, double value) const { return labels[axis].at(static_cast<std::size_t>(value)); }
   /// Values that a response variable has of an entry.
   std::size_t width_of(ResponseVariable variable) const {
     return description_of(variable).has_beta ? beta_deg.size() : 1;

@@ -87,6 +87,7 @@ Report verify(const std::filesystem::path& path, const TableCheckOptions& option
   TableSample sample;
   sample.positions = sample_positions(reader.head().size(), report.options);
   sample.table = reader.read_entries(sample.positions, options.progress);
+  use_scene_labels(sample.table, scene, name);
   const bool is_response = !sample.table.beta_deg.empty();
   report.check = (is_response ? check_responses : check_table)(sample, scene, name, options.progress);
   report.wall_s = seconds_since(start);

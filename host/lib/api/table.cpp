@@ -26,6 +26,9 @@ void check_axes(const TableHead& table, const std::string& name) {
     if (described.is_required && table.axes[axis].empty())
       throw InputError(fmt::format("{}: the axis {} is missing", name, described.name));
     for (const double value : table.axes[axis]) {
+      if (described.has_labels && value >= static_cast<double>(table.labels[axis].size()))
+        throw InputError(fmt::format("{}: {}: {} values and {} labels", name, described.name, table.axes[axis].size(),
+                                     table.labels[axis].size()));
       if (described.range.contains(value)) continue;
       throw InputError(fmt::format("{}: {} = {}: out of range; must be a number in {}", name, described.name,
                                    format_number(value), described.range.text()));
@@ -72,6 +75,15 @@ void check_values(const TableValues& table, const std::string& name) {
   }
 }
 
+void check_labels(const TableHead& table, const SceneValues& scene, Axis axis, const std::string& name) {
+  for (const double value : table.axes[axis]) {
+    const std::string& label = table.label(axis, value);
+    if (std::ranges::find(scene.labels[axis], label) != scene.labels[axis].end()) continue;
+    throw InputError(fmt::format("{}: {} = \"{}\": is not among those that were computed: {}", name,
+                                 description_of(axis).name, one_line(label), join(scene.labels[axis])));
+  }
+}
+
 /// Refuses a table that lost an axis of its scene, which would be looked up with the scene's value. Refuses values of
 /// an axis that were not computed: entries that another program put between others have no error.
 void check_computed(const TableHead& table, const SceneValues& scene, const std::string& name) {
@@ -83,6 +95,10 @@ void check_computed(const TableHead& table, const SceneValues& scene, const std:
     if (table.axes[axis].empty()) {
       throw InputError(
           fmt::format("{}: the axis {} is missing, which its scene has; one value of it is enough", name, axis_name));
+    }
+    if (description_of(axis).has_labels) {
+      check_labels(table, scene, axis, name);
+      continue;
     }
     std::ranges::sort(computed);
     for (const double value : table.axes[axis]) {

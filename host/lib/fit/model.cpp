@@ -220,7 +220,7 @@ void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>
   for (const auto& [common, sets] : calls) {
     std::vector<SceneEntry> points;
     for (const std::size_t set : sets) add_points(points, group, with(group.scene, values[set]));
-    const SceneEntries entries(std::move(points), variants_of(group.wavelength_um));
+    const SceneEntries entries(std::move(points), variants_of(axes_of({}, {}, {}, group.wavelength_um)));
     SceneValues scene = with(group.scene, values[sets.back()]);
     scene.accuracy.tolerance = tolerance;
     const std::vector<PointResult> results = evaluate_scene(scene, entries, evaluator, progress);

@@ -23,14 +23,18 @@ constexpr std::size_t kMostFailureLines = 20;
 /// "theta 60, sigma 0.1, q 3.5".
 std::string position_text(const CheckedValue& value) {
   std::vector<std::string> texts;
-  for (const auto& [axis, number] : value.position)
-    texts.push_back(fmt::format("{} {:g}", description_of(axis).name, number));
+  for (const auto& [axis, number, label] : value.position)
+    texts.push_back(
+        fmt::format("{} {}", description_of(axis).name, label.empty() ? fmt::format("{:g}", number) : label));
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 ReportBuilder::Json value_json(const CheckedValue& value) {
   ReportBuilder::Json json = {{"quantity", value.quantity}};
-  for (const auto& [axis, number] : value.position) json[description_of(axis).column] = number;
+  for (const auto& [axis, number, label] : value.position) {
+    ReportBuilder::Json& own = json[description_of(axis).column];
+    label.empty() ? own = number : own = label;
+  }
   json.update({{"stored", value.stored},
                {"reference", value.reference},
                {"error", value.error()},

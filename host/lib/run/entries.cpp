@@ -35,6 +35,19 @@ void check_columns(const SceneValues& scene, const Points& points) {
   }
 }
 
+/// The axes of points that make variants, with a value for each point.
+std::vector<std::pair<Axis, std::vector<double>>> variant_columns(const SceneValues& scene, const Points& points) {
+  std::vector<std::pair<Axis, std::vector<double>>> columns;
+  for (const Axis axis : kVariantAxes) {
+    if (!points[axis] || points.size() == 0) continue;
+    if (axis == Axis::kTemperature && !scene.emission)
+      throw InputError(points.where() + ": column \"temperature_K\" needs [emission] in the scene");
+    columns.emplace_back(axis,
+                         description_of(axis).has_labels ? label_positions(points, axis, scene.labels) : *points[axis]);
+  }
+  return columns;
+}
+
 /// Refuses wavelengths beside a band, or where n, k or E0 are not known.
 void check_wavelengths(const SceneValues& scene, const Points& points) {
   if (scene.spectrum.is_band()) {
@@ -102,12 +115,12 @@ SceneEntries point_entries(const SceneValues& scene, const Points& points) {
   const Surface& surface = scene.surface;
   check_films(scene, points);
   const bool has_own_index = points[Axis::kN] || points[Axis::kK];
-  const bool has_wavelength = points[Axis::kWavelength] && points.size() > 0;
-  const bool has_variants = has_wavelength || !points.films.empty();
+  const auto columns = variant_columns(scene, points);
+  const bool has_variants = !columns.empty() || !points.films.empty();
   if (points[Axis::kTheta] && !points[Axis::kSigma] && !points[Axis::kQ] && !has_own_index && !has_variants) {
     return SceneEntries::grid(*points[Axis::kTheta], {surface.sigma}, {surface.q});
   }
-  if (has_wavelength) check_wavelengths(scene, points);
+  if (points[Axis::kWavelength] && points.size() > 0) check_wavelengths(scene, points);
   std::map<SceneVariant, std::uint32_t> variants;
   std::vector<SceneEntry> entries;
   entries.reserve(points.size());
@@ -120,7 +133,7 @@ SceneEntries point_entries(const SceneValues& scene, const Points& points) {
       entry.index =
           OpticalConstants{value_or(points[Axis::kN], row, index.n), value_or(points[Axis::kK], row, index.k)};
     SceneVariant variant{.films = points.films_at(row)};
-    if (has_wavelength) variant.wavelength_um = (*points[Axis::kWavelength])[row];
+    for (const auto& [axis, values] : columns) set_value(variant, axis, values[row]);
     entry.variant = variants.try_emplace(std::move(variant), static_cast<std::uint32_t>(variants.size())).first->second;
     entries.push_back(entry);
   }

@@ -24,7 +24,8 @@ constexpr std::size_t kDrawnPoints = 24;  // of a list
 
 /// Values of each axis of a grid that are looked at. What changes DOLP is largest at an end of sigma and of q.
 std::size_t most_values(Axis axis) {
-  if (axis == Axis::kTheta) return 8;
+  if (axis == Axis::kMaterial) return 64;
+  if (axis == Axis::kTheta || axis == Axis::kBand) return 8;
   return axis == Axis::kWavelength ? 3 : 2;
 }
 
@@ -58,24 +59,22 @@ SceneEntries spread_entries(const SceneEntries& entries) {
 /// A few entries of a scene, at a few wavelengths of its band.
 struct Sample {
   SceneValues scene;
-  SceneEntries entries;           ///< an entry is there once for each weight, side by side
-  std::vector<double> weight_um;  ///< of the wavelengths of a band; {1} without
+  SceneEntries entries;         ///< an entry is there once for each weight, side by side
+  std::vector<double> weights;  ///< of the wavelengths of a band; {1} without
 };
 
 Sample sample_of(const SceneValues& scene, const SceneEntries& entries) {
   Sample sample{scene, spread_entries(entries), {1.0}};
   sample.scene.accuracy = {.tolerance = kTolerance};
   if (sample.scene.emission) sample.scene.emission->has_bracket = false;
-  if (!scene.spectrum.is_band() || spectral_rule(scene).samples.size() <= kBandWavelengths) return sample;
+  if (spectral_samples(scene, entries) <= kBandWavelengths) return sample;
   using Rule = boost::math::quadrature::gauss<double, kBandWavelengths>;
-  const double middle = 0.5 * (scene.spectrum.min_um + scene.spectrum.max_um);
-  const double half = 0.5 * (scene.spectrum.max_um - scene.spectrum.min_um);
-  std::vector<double> wavelength_um;
-  sample.weight_um.clear();
+  std::vector<double> places;  // in a band from 0 to 1
+  sample.weights.clear();
   for (std::size_t i = 0; i < kBandWavelengths / 2; ++i) {
     for (const double sign : {-1.0, 1.0}) {
-      wavelength_um.push_back(middle + sign * half * Rule::abscissa()[i]);
-      sample.weight_um.push_back(half * Rule::weights()[i]);
+      places.push_back(0.5 + 0.5 * sign * Rule::abscissa()[i]);
+      sample.weights.push_back(Rule::weights()[i]);
     }
   }
   std::vector<SceneEntry> all;
@@ -88,22 +87,24 @@ Sample sample_of(const SceneValues& scene, const SceneEntries& entries) {
   }
   std::vector<SceneVariant> variants;
   for (const SceneVariant& variant : sample.entries.variants()) {
-    for (const double at_um : wavelength_um) variants.push_back({at_um, variant.films});
+    const Spectrum band = variant.band ? scene.bands[*variant.band] : scene.spectrum;
+    for (const double place : places)
+      variants.emplace_back(variant).wavelength_um = std::lerp(band.min_um, band.max_um, place);
   }
-  sample.scene.spectrum = {middle, middle};
+  sample.scene.spectrum.max_um = sample.scene.spectrum.min_um;
   sample.entries = {std::move(all), std::move(variants)};
   return sample;
 }
 
 /// The sums over a band of the results at its wavelengths.
-PointResult sum_of(std::span<const PointResult> results, std::span<const double> weight_um) {
+PointResult sum_of(std::span<const PointResult> results, std::span<const double> weights) {
   if (results.size() == 1) return results.front();
   PointResult sum;
   for (const Quantity stokes : {kStokesI, kStokesQ, kStokesU}) sum[stokes] = 0.0;
   double changed = 0.0;
   for (std::size_t j = 0; j < results.size(); ++j) {
-    for (const Quantity stokes : {kStokesI, kStokesQ, kStokesU}) sum[stokes] += weight_um[j] * results[j][stokes];
-    changed += weight_um[j] * results[j].model_change * std::abs(results[j][kStokesI]);
+    for (const Quantity stokes : {kStokesI, kStokesQ, kStokesU}) sum[stokes] += weights[j] * results[j][stokes];
+    changed += weights[j] * results[j].model_change * std::abs(results[j][kStokesI]);
     sum.status |= results[j].status;
   }
   sum.model_change = changed / std::abs(sum[kStokesI]);
@@ -115,9 +116,9 @@ std::vector<PointResult> results_of(const Sample& sample, const std::optional<Ef
   CpuEvaluator evaluator;
   const std::vector<PointResult> all = evaluate_scene(sample.scene, sample.entries, evaluator, {}, plan);
   std::vector<PointResult> sums;
-  const std::size_t count = sample.weight_um.size();
+  const std::size_t count = sample.weights.size();
   for (std::size_t i = 0; i < all.size(); i += count) {
-    sums.push_back(sum_of(std::span(all).subspan(i, count), sample.weight_um));
+    sums.push_back(sum_of(std::span(all).subspan(i, count), sample.weights));
   }
   return sums;
 }
@@ -146,7 +147,7 @@ bool has_gap(const SceneValues& scene, const EffectPlan& plan) {
 }
 
 Looked looked_at(const Sample& sample) {
-  return {sample.entries.size() / sample.weight_um.size(), sample.weight_um.size()};
+  return {sample.entries.size() / sample.weights.size(), sample.weights.size()};
 }
 
 }  // namespace

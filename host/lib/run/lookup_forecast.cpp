@@ -45,7 +45,7 @@ class Forecast {
   std::vector<AxisForecast> all() {
     std::vector<Axis> axes;
     for (const Axis axis : kAllAxes) {
-      if (grid_[axis].size() > 1) axes.push_back(axis);
+      if (grid_[axis].size() > 1 && !description_of(axis).has_labels) axes.push_back(axis);
     }
     std::vector<AxisForecast> forecasts;
     for (const Axis axis : axes) {

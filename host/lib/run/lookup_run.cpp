@@ -17,12 +17,13 @@ namespace {
 /// The coordinate that points without a column of it have.
 std::optional<double> value_of(const SceneValues& scene, Axis axis) {
   const Surface& surface = scene.surface;
-  const AxisArray<std::optional<double>> values = {scene.spectrum.min_um,
-                                                   surface.material.constant.n,
-                                                   surface.material.constant.k,
-                                                   std::nullopt,
-                                                   surface.sigma,
-                                                   surface.q};
+  AxisArray<std::optional<double>> values;
+  values[Axis::kWavelength] = scene.spectrum.min_um;
+  values[Axis::kN] = surface.material.constant.n;
+  values[Axis::kK] = surface.material.constant.k;
+  values[Axis::kSigma] = surface.sigma;
+  values[Axis::kQ] = surface.q;
+  if (scene.emission) values[Axis::kTemperature] = scene.emission->temperature_K;
   return values[axis];
 }
 
@@ -47,8 +48,10 @@ AxisWords words_of(Axis axis, const SceneValues& scene, const Points& points) {
 }
 
 /// The coordinate of each point: as given, or the only one that the table has, or that of its scene.
-std::vector<double> values_of(Axis number, const LookupAxis& axis, const SceneValues& scene, const Points& points) {
+std::vector<double> values_of(Axis number, const TableLookup& lookup, const SceneValues& scene, const Points& points) {
+  const LookupAxis& axis = *lookup.axis(number);
   const AxisWords words = words_of(number, scene, points);
+  if (description_of(number).has_labels && points[number]) return label_positions(points, number, lookup.labels());
   if (const auto& given = points[number]) {
     for (std::size_t row = 0; row < points.size(); ++row) {
       if (axis.contains((*given)[row])) continue;
@@ -59,8 +62,9 @@ std::vector<double> values_of(Axis number, const LookupAxis& axis, const SceneVa
   }
   const std::optional<double> value = axis.size() == 1 ? axis.min() : value_of(scene, number);
   if (!value || !axis.contains(*value)) {
-    throw InputError(
-        fmt::format("{}: column \"{}\" is missing, a number in {}", points.where(), words.name, words.range(axis)));
+    throw InputError(fmt::format("{}: column \"{}\" is missing, {}", points.where(), words.name,
+                                 description_of(number).has_labels ? "one of " + join(lookup.labels()[number])
+                                                                   : "a number in " + words.range(axis)));
   }
   return std::vector<double>(points.size(), *value);
 }
@@ -69,9 +73,8 @@ std::vector<double> values_of(Axis number, const LookupAxis& axis, const SceneVa
 std::vector<TableLookup::Point> coordinates(const TableLookup& lookup, const SceneValues& scene, const Points& points) {
   std::vector<TableLookup::Point> result(points.size());
   for (const Axis axis : kAllAxes) {
-    const LookupAxis* of_table = lookup.axis(axis);
-    if (of_table == nullptr) continue;
-    const std::vector<double> values = values_of(axis, *of_table, scene, points);
+    if (lookup.axis(axis) == nullptr) continue;
+    const std::vector<double> values = values_of(axis, lookup, scene, points);
     for (std::size_t row = 0; row < points.size(); ++row) result[row][axis] = values[row];
   }
   return result;
@@ -87,18 +90,19 @@ void check_no_films(const Points& points) {
 /// Refuses another index or wavelength than the table's, where it has no axis of these.
 void check_index(const TableLookup& lookup, const SceneValues& scene, const Points& points) {
   const Material& material = scene.surface.material;
-  for (const Axis axis : {Axis::kN, Axis::kK, Axis::kWavelength}) {
+  for (const Axis axis : {Axis::kMaterial, Axis::kBand, Axis::kN, Axis::kK, Axis::kWavelength, Axis::kTemperature}) {
     const auto& given = points[axis];
     if (!given || lookup.axis(axis)) continue;
     const char* const name = description_of(axis).column;
-    const double own = value_of(scene, axis).value();
+    const std::optional<double> own = value_of(scene, axis);
+    const bool is_dispersive = !material.is_constant() && (axis == Axis::kN || axis == Axis::kK);
     for (std::size_t row = 0; row < points.size(); ++row) {
-      if ((material.is_constant() || axis == Axis::kWavelength) && (*given)[row] == own) continue;
-      throw InputError(fmt::format("{}: {} = {}: the table is of {}; dolp eval computes other indices",
-                                   points.where(row), name, format_number((*given)[row]),
-                                   material.is_constant() || axis == Axis::kWavelength
-                                       ? fmt::format("{} = {}", name, format_number(own))
-                                       : "a material that depends on the wavelength"));
+      if (!is_dispersive && own && (*given)[row] == *own) continue;
+      throw InputError(fmt::format("{}: {} = {}: the table {}; dolp eval computes other values", points.where(row),
+                                   name, points.text_at(axis, row),
+                                   is_dispersive ? "is of a material that depends on the wavelength"
+                                   : own         ? fmt::format("is of {} = {}", name, format_number(*own))
+                                                 : "has no such axis"));
     }
   }
 }

@@ -91,10 +91,10 @@ PartRequests::PartRequests(const SceneValues& scene, const SpectralIndices& samp
 }
 
 std::size_t PartRequests::index_set(const SceneEntries& grid, const PerAxis& place) const {
-  if (!grid.has_own_index()) return place[Axis::kWavelength];
+  if (!grid.has_own_index()) return grid.variant_at(place);
   const PerAxis& counts = grid.counts();
-  const std::size_t wavelength = has_films() ? place[Axis::kWavelength] : 0;
-  return (wavelength * counts[Axis::kN] + place[Axis::kN]) * counts[Axis::kK] + place[Axis::kK];
+  const std::size_t variant = has_films() ? grid.variant_at(place) : 0;
+  return (variant * counts[Axis::kN] + place[Axis::kN]) * counts[Axis::kK] + place[Axis::kK];
 }
 
 std::vector<FacetOptics> PartRequests::samples_of(const SceneEntries& grid, std::size_t set) const {
@@ -111,8 +111,8 @@ void PartRequests::ask_grid(const Selection& selection) {
   const SceneEntries& grid = selection.part;
   const PerAxis& counts = grid.counts();
   const bool is_whole = selection.chosen.empty();
-  const std::size_t wavelengths = !grid.has_own_index() || has_films() ? counts[Axis::kWavelength] : 1;
-  const std::size_t sets = grid.has_own_index() ? wavelengths * counts[Axis::kN] * counts[Axis::kK] : wavelengths;
+  const std::size_t variants = !grid.has_own_index() || has_films() ? grid.variants().size() : 1;
+  const std::size_t sets = grid.has_own_index() ? variants * counts[Axis::kN] * counts[Axis::kK] : variants;
   std::vector<char> theta(grid.theta_deg().size(), 0), sigma(grid.sigma().size(), 0), q(grid.q().size(), 0);
   std::vector<char> set(sets, is_whole ? 1 : 0);
   for (const std::size_t i : selection.chosen) {

@@ -8,7 +8,7 @@
 #include "plan/moments_plan.hpp"
 #include "run/drawn_entries.hpp"
 #include "run/part_requests.hpp"
-#include "run/response_bases.hpp"
+#include "run/run_basis.hpp"
 #include "run/scene_run.hpp"
 #include "table/table.hpp"
 
@@ -25,8 +25,10 @@ SceneEntries entries_of_drawn_directions(const SceneEntries& grid, bool has_resp
   const std::size_t count = std::min(theta_deg.size(), kCountedDirections);
   for (std::size_t i = 0; i < count; ++i) drawn.push_back(theta_deg[(2 * i + 1) * theta_deg.size() / (2 * count)]);
   theta_deg = drawn;
-  for (const Axis axis : {Axis::kWavelength, Axis::kN, Axis::kK}) {
-    if (!axes[axis].empty() && !has_responses) axes[axis] = {axes[axis][axes[axis].size() / 2]};
+  for (const Axis axis : kAllAxes) {
+    if (axis >= Axis::kTheta || axes[axis].empty()) continue;
+    const bool is_whole = has_responses && axis != Axis::kTemperature;
+    if (!is_whole) axes[axis] = {axes[axis][axes[axis].size() / 2]};
   }
   return SceneEntries::of_grid(axes, grid.index());
 }
@@ -108,7 +110,7 @@ void count_work(RunPrediction& run, const SceneValues& scene, const SceneEntries
                                                    : drawn_entries(entries, kCountedEntries);
   const SceneEntries part = run_parts(drawn, run.spectral_samples).front();
   RefinementLevel level = run.first;
-  level.basis = ResponseBases(scene, part, plan).of(level);
+  level.basis = run_basis(scene, part, plan);
   CountingEvaluator counting(has_double, FirstLevel(scene, part, plan, level).kernel_requests());
   evaluate_scene(scene, part, counting, {}, plan);
   const Count& moments = counting.moments();
@@ -139,10 +141,10 @@ RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries,
                           bool has_double, const RequestVisitor& visit) {
   RunPrediction run;
   run.entries = entries.size();
-  run.spectral_samples = spectral_rule(scene).samples.size();
+  run.spectral_samples = spectral_samples(scene, entries);
   run.first = first_level(scene.accuracy, has_double);
   std::size_t largest = 0, columns_before = 0, given = 0;
-  run.first.basis = ResponseBases(scene, entries, plan).of(run.first);
+  run.first.basis = run_basis(scene, entries, plan);
   for (const SceneEntries& part : run_parts(entries, run.spectral_samples)) {
     const FirstLevel first(scene, part, plan, run.first);
     const std::size_t beams = first.requests.beams().entries.size();

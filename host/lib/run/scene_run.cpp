@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <dolp/errors.hpp>
 #include <map>
 #include <numeric>
@@ -17,7 +18,7 @@
 #include "plan/refinement.hpp"
 #include "run/closed_forms.hpp"
 #include "run/part_requests.hpp"
-#include "run/response_bases.hpp"
+#include "run/run_basis.hpp"
 #include "run/table_scene.hpp"
 
 namespace dolp {
@@ -48,10 +49,8 @@ struct RunContext {
   const EffectPlan& plan;
   const Spectra& spectra;
   ModelEvaluator* evaluator;
-  ResponseBases& bases;
+  std::shared_ptr<const ResponseBasis> basis;
   RunSummary& summary;  ///< of the run so far: the work of the host is added
-
-  std::size_t samples() const { return spectra.indices.front().size(); }  ///< of every entry
 };
 
 /// The evaluator's results for the requests of a part.
@@ -68,22 +67,21 @@ class MemberResults {
  public:
   MemberResults(const RunContext& context, const Selection& selection, const PartRequests& requests,
                 const EvaluatorResults& evaluated)
-      : context_(context),
-        selection_(selection),
-        requests_(requests),
-        evaluated_(evaluated),
-        moments_(context.samples()),
-        indices_(context.samples()),
-        beams_(context.samples()) {}
+      : context_(context), selection_(selection), requests_(requests), evaluated_(evaluated) {}
 
   PointResult operator()(std::size_t member) {
     const SceneEntry entry = selection_[member];
     const Direction direction = seen(entry);
-    for (std::size_t j = 0; entry.index && j < indices_.size(); ++j) {
-      indices_[j] = context_.spectra.indices[entry.variant][j];
-      indices_[j].index = *entry.index;
+    const std::vector<FacetOptics>& samples = context_.spectra.indices[entry.variant];
+    if (moments_.size() != samples.size()) {
+      moments_.assign(samples.size(), {});
+      beams_.resize(samples.size());
     }
-    const std::span<const FacetOptics> indices = entry.index ? indices_ : context_.spectra.indices[entry.variant];
+    if (entry.index) {
+      indices_ = samples;
+      for (FacetOptics& sample : indices_) sample.index = *entry.index;
+    }
+    const std::span<const FacetOptics> indices = entry.index ? indices_ : samples;
     const std::span<const Moments> moments = moments_of(member, entry, direction, indices);
     const Radiometry& radiometry = context_.spectra.radiometries[entry.variant];
     if (context_.scene.geometry.mode != Mode::kBistatic) return radiometry.point(direction, moments, indices);
@@ -199,6 +197,18 @@ bool would_improve(const RunContext& context, const RefinementLevel& level, cons
 /// Entries that wait for the same level are computed together.
 using EntriesByLevel = std::map<RefinementLevel, std::vector<std::size_t>>;
 
+/// The next level of a whole direction. Responses have more float noise than the moments of one index, and a pass of
+/// them serves all indices: so it is in double, and in whole decades, which many indices share.
+RefinementLevel level_of_direction(RefinementLevel next, const RunContext& context) {
+  next.may_interpolate = true;
+  if (!context.basis) return next;
+  const Accuracy& accuracy = context.scene.accuracy;
+  const double decades = std::log10(accuracy.tolerance / next.tolerance);
+  next.tolerance = accuracy.tolerance * std::pow(10.0, -std::ceil(decades - 0.1));
+  if (context.evaluator->has_double() && accuracy.precision != Precision::kFloat) next.precision = Precision::kDouble;
+  return next;
+}
+
 /// The next level of one direction whose `members` were computed at `last`: of all of it, between nodes again, where
 /// many miss the tolerance; else of each of these by itself. The choice for an entry depends on its direction alone.
 void queue_refinement(const RunContext& context, const SceneEntries& part, const RefinementLevel& last,
@@ -212,9 +222,7 @@ void queue_refinement(const RunContext& context, const SceneEntries& part, const
   if (last.may_interpolate && missed.size() * kWholeDirectionMissRatio > members.size()) {
     const auto middle = missed.begin() + static_cast<std::ptrdiff_t>(missed.size() / 2);
     std::nth_element(missed.begin(), middle, missed.end());
-    RefinementLevel next = middle->first;
-    next.may_interpolate = true;
-    std::vector<std::size_t>& all = by_level[next];
+    std::vector<std::size_t>& all = by_level[level_of_direction(middle->first, context)];
     all.insert(all.end(), members.begin(), members.end());
   } else {
     for (const auto& [next, member] : missed) by_level[next].push_back(member);
@@ -232,7 +240,7 @@ FirstResults first_results(const RunContext& context, const SceneEntries& part, 
   FirstResults first;
   first.level = first_level(context.scene.accuracy, context.evaluator->has_double());
   if (context.evaluator->computes_each_entry()) first.level.may_interpolate = false;
-  first.level.basis = context.bases.of(first.level);
+  if (first.level.may_interpolate) first.level.basis = context.basis;
   const PartRequests requests(context.scene, context.spectra.indices, context.plan, {part}, first.level);
   const MomentsPlan plan(requests.moments());
   first.results = results_of(context, {part}, requests, plan, progress);
@@ -268,7 +276,7 @@ void refine(const RunContext& context, const SceneEntries& part, FirstResults& f
     RefinementLevel level = by_level.begin()->first;
     const std::vector<std::size_t> members = std::move(by_level.begin()->second);
     by_level.erase(by_level.begin());
-    if (level.may_interpolate) level.basis = context.bases.of(level);
+    if (level.may_interpolate) level.basis = context.basis;
     const std::vector<PointResult> better = computed_at(context, {part, members}, level, is_wanted);
     for (std::size_t j = 0; j < members.size(); ++j) {
       if (is_better(better[j], results[members[j]])) results[members[j]] = better[j];
@@ -353,6 +361,19 @@ std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spe
   return entries.parts(std::max<std::size_t>(1, moments / spectral_samples));
 }
 
+std::size_t spectral_samples(const SceneValues& scene, const SceneEntries& entries) {
+  if (!scene.spectrum.is_band()) return 1;
+  std::size_t most = 0;
+  const SceneVariant* last = nullptr;
+  for (const SceneVariant& variant : entries.variants()) {
+    const bool is_new =
+        !last || variant.material != last->material || variant.band != last->band || variant.films != last->films;
+    if (is_new) most = std::max(most, spectral_rule(with_variant(scene, variant)).samples.size());
+    last = &variant;
+  }
+  return most;
+}
+
 void report_start(const Progress& progress, std::size_t total) {
   if (progress && !progress(0, total)) throw Cancelled();
 }
@@ -373,7 +394,7 @@ Run::Run(const SceneValues& scene, SceneEntries entries, const RunOptions& optio
   }
 }
 
-std::vector<SceneEntries> Run::parts() const { return run_parts(entries_, spectral_rule(scene_).samples.size()); }
+std::vector<SceneEntries> Run::parts() const { return run_parts(entries_, spectral_samples(scene_, entries_)); }
 
 RunOutcome Run::compute(Sink& sink) {
   outcome_.summary = run_scene(scene_, entries_, outcome_.plan, evaluator_, sink, progress_);
@@ -390,12 +411,12 @@ double Run::wall_s() const { return seconds_since(start_); }
 RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& given,
                      ModelEvaluator* evaluator, Sink& sink, const Progress& progress) {
   const EffectPlan plan = with_sky(given, scene, entries);
-  const std::size_t samples = spectral_rule(scene).samples.size();
+  const std::size_t samples = spectral_samples(scene, entries);
   const std::size_t whole = entries.is_grid() ? size_of(entries.whole()) : entries.size();
   std::vector<std::size_t> checked;
   if (entries.is_grid() && plan.kept.moments)
     checked = checked_positions(whole, checked_count(whole * samples), scene_seed(scene));
-  ResponseBases bases(scene, entries, plan);
+  const std::shared_ptr<const ResponseBasis> basis = evaluator ? run_basis(scene, entries, plan) : nullptr;
   RunSummary summary = sink.summary_of_done();
   const auto with_evaluation = [&] {
     RunSummary all = summary;
@@ -412,7 +433,7 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
       --left;
     } else {
       const Spectra spectra(scene, plan, part.variants());
-      const RunContext context{scene, plan, spectra, evaluator, bases, summary};
+      const RunContext context{scene, plan, spectra, evaluator, basis, summary};
       std::vector<PointResult> results = part_results(context, part, checked, summary.check, part_progress);
       summary.add(scene, part, results);
       sink.write(part, std::move(results), with_evaluation());

@@ -124,6 +124,9 @@ class Run {
 /// The parts that a run processes one by one.
 std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spectral_samples);
 
+/// The number of spectral samples of an entry; the largest, where entries differ in their band or material.
+std::size_t spectral_samples(const SceneValues& scene, const SceneEntries& entries);
+
 /// Calls `progress`, if there is one, with nothing done yet: all inputs are read. Errors: Cancelled.
 void report_start(const Progress& progress, std::size_t total);
 

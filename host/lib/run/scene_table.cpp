@@ -31,7 +31,9 @@ void fill_curves(TableHead& head, const SceneValues& scene) {
     if (tabulated.wavelength_um.empty()) return {one_um, {constant}, {}};
     return {tabulated.wavelength_um, tabulated.value, {}};
   };
-  if (head.axes[Axis::kN].empty() && head.axes[Axis::kK].empty() && !scene.surface.reflectance) {
+  const bool has_one_material =
+      head.axes[Axis::kN].empty() && head.axes[Axis::kK].empty() && head.axes[Axis::kMaterial].empty();
+  if (has_one_material && !scene.surface.reflectance) {
     const Material& material = recorded_material(head.axes, scene);
     head.index_n = curve_of(material.n, material.constant.n);
     head.index_k = curve_of(material.k, material.constant.k);
@@ -140,6 +142,7 @@ TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const
   TableLayout layout;
   TableHead& head = layout.head;
   head.axes = axes;
+  head.labels = scene.labels;
   if (axes[Axis::kSigma] == scene.grid[Axis::kSigma]) head.wind_m_s = scene.wind_m_s;
   head.stokes_units = stokes_units(scene);
   fill_curves(head, scene);
@@ -154,9 +157,11 @@ TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const
                      {"scene_hash", scene_hash(scene)},
                      {"tolerance", scene.accuracy.tolerance}};
   const Dispersion& formula = recorded_material(axes, scene).n.formula;
-  if (formula.number != 0) head.attributes.push_back({"index_n_formula", formula_text(formula)});
+  if (formula.number != 0 && !scene.materials) head.attributes.push_back({"index_n_formula", formula_text(formula)});
   const std::string coating = coating_text(scene.surface, !axes[Axis::kWavelength].empty());
   if (!coating.empty()) head.attributes.push_back({"coating", coating});
+  const std::string materials = axis_materials_text(scene, !axes[Axis::kWavelength].empty());
+  if (!materials.empty()) head.attributes.push_back({"materials", materials});
   const std::string reflectance = reflectance_text(scene.surface);
   if (!reflectance.empty()) head.attributes.push_back({"reflectance", reflectance});
   const std::string profile = profile_text(scene);
@@ -183,6 +188,7 @@ std::uint64_t data_hash(const SceneValues& scene) {
     add(material->k);
   }
   hash = hashed(hashed(hash, coating_text(scene.surface, true)), reflectance_text(scene.surface));
+  hash = hashed(hash, axis_materials_text(scene, true));
   if (scene.source) add(scene.source->table);
   if (scene.surroundings && scene.surroundings->profile) hash = hashed(hash, scene.surroundings->profile->hash());
   return hash;
@@ -199,6 +205,7 @@ std::string identity_of(const SceneValues& scene, const std::string& evaluator, 
 TableValues table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results) {
   TableValues table;
   table.axes = part.axes();
+  table.labels = layout.head.labels;
   static_cast<ResultColumns&>(table) = columns_of(results, layout.quantities);
   return table;
 }

@@ -8,12 +8,13 @@
 #include "base/text.hpp"
 #include "scene/csv.hpp"
 #include "scene/material_data.hpp"
-#include "scene/scene_keys.hpp"
 
 namespace dolp {
 namespace {
 
-enum Column : std::size_t { kLayer, kQuantity, kWavelength, kValue, kColumns };
+constexpr double kMostMaterials = 1e4;
+
+enum Column : std::size_t { kNumber, kQuantity, kWavelength, kValue, kColumns };
 
 }  // namespace
 
@@ -37,11 +38,12 @@ Dispersion parse_formula(const std::string& text, const std::string& where) {
   return formula;
 }
 
-std::string coating_text(const Surface& surface, bool has_wavelength_axis) {
-  if (surface.coating.empty()) return {};
-  std::string text = "layer,quantity,wavelength_um,value\n";
-  for (std::size_t i = 0; i < surface.coating.size(); ++i) {
-    const Material& used = surface.coating[i].material;
+std::string materials_text(const std::vector<const Material*>& materials, bool has_wavelength_axis) {
+  if (materials.empty()) return {};
+  std::string text = "number,quantity,wavelength_um,value\n";
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const Material& used = *materials[i];
+    if (!used.name.empty()) text += fmt::format("{},name,,\"{}\"\n", i + 1, one_line(used.name));
     const Material& material = has_wavelength_axis && used.tabulated ? *used.tabulated : used;
     const auto add = [&](const char* quantity, const SpectralTable& table, double constant) {
       if (table.wavelength_um.empty()) text += fmt::format("{},{},,{}\n", i + 1, quantity, format_number(constant));
@@ -58,18 +60,35 @@ std::string coating_text(const Surface& surface, bool has_wavelength_axis) {
   return text;
 }
 
-std::vector<std::optional<Material>> parse_coating(const std::string& text, const std::string& name) {
-  std::vector<std::optional<Material>> layers;
+std::string coating_text(const Surface& surface, bool has_wavelength_axis) {
+  std::vector<const Material*> films;
+  for (const Layer& layer : surface.coating) films.push_back(&layer.material);
+  return materials_text(films, has_wavelength_axis);
+}
+
+std::string axis_materials_text(const SceneModel& scene, bool has_wavelength_axis) {
+  std::vector<const Material*> materials;
+  for (std::size_t i = 0; scene.materials && i < scene.materials->size(); ++i)
+    materials.push_back(&(*scene.materials)[i]);
+  return materials_text(materials, has_wavelength_axis);
+}
+
+std::vector<std::optional<Material>> parse_materials(const std::string& text, const std::string& name) {
+  std::vector<std::optional<Material>> materials;
   CsvReader row(text, name);
   row.next();  // names
   while (row.next()) {
     if (row.cells().size() != kColumns) row.fail("4 columns are expected");
-    const double layer = row.number(kLayer, "layer");
-    if (!(layer >= 1.0 && layer <= static_cast<double>(kMostLayers))) row.fail("no such layer");
-    layers.resize(std::max(layers.size(), static_cast<std::size_t>(layer)));
-    std::optional<Material>& material = layers[static_cast<std::size_t>(layer) - 1];
+    const double number = row.number(kNumber, "number");
+    if (!(number >= 1.0 && number <= kMostMaterials)) row.fail("no such material");
+    materials.resize(std::max(materials.size(), static_cast<std::size_t>(number)));
+    std::optional<Material>& material = materials[static_cast<std::size_t>(number) - 1];
     if (!material) material.emplace();
     const std::string_view quantity = row.cells()[kQuantity];
+    if (quantity == "name") {
+      material->name = row.cells()[kValue];
+      continue;
+    }
     if (quantity == "formula") {
       material->n.formula = parse_formula(std::string(row.cells()[kValue]), row.where());
       continue;
@@ -83,7 +102,7 @@ std::vector<std::optional<Material>> parse_coating(const std::string& text, cons
                    quantity == "n" ? std::nullopt : std::optional(value), row.where());
     }
   }
-  return layers;
+  return materials;
 }
 
 std::string reflectance_text(const Surface& surface) {

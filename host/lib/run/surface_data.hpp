@@ -9,12 +9,16 @@
 
 namespace dolp {
 
-/// n and k of the films of a coating: CSV of layer, quantity (n, k or formula), wavelength_um, value. Empty without
-/// one.
-std::string coating_text(const Surface& surface, bool has_wavelength_axis);
+/// n and k of materials: CSV of number (from 1), quantity (name, n, k or formula), wavelength_um, value. Empty without
+/// materials.
+std::string materials_text(const std::vector<const Material*>& materials, bool has_wavelength_axis);
 
-/// The materials of such a text, by layer. Errors: InputError that begins with `name`.
-std::vector<std::optional<Material>> parse_coating(const std::string& text, const std::string& name);
+/// The same for the films of a coating, and for the grid's axis of materials.
+std::string coating_text(const Surface& surface, bool has_wavelength_axis);
+std::string axis_materials_text(const SceneModel& scene, bool has_wavelength_axis);
+
+/// The materials of such a text. Errors: InputError that begins with `name`.
+std::vector<std::optional<Material>> parse_materials(const std::string& text, const std::string& name);
 
 /// Measured reflectances: CSV as read_reflectance_file takes it. Empty without them.
 std::string reflectance_text(const Surface& surface);

@@ -62,7 +62,11 @@ KnownData known_data(const TableHead& table, const std::string& name) {
     known.irradiance = checked_table(table.irradiance, {"irradiance", 0.0, kNonNegativeRange}, where);
   }
   if (const std::string* coating = find_text(table, "coating"))
-    known.layers = parse_coating(*coating, name + ": attribute \"coating\"");
+    known.layers = parse_materials(*coating, name + ": attribute \"coating\"");
+  if (const std::string* materials = find_text(table, "materials")) {
+    for (std::optional<Material>& material : parse_materials(*materials, name + ": attribute \"materials\""))
+      known.materials.push_back(std::move(material).value_or(Material()));
+  }
   if (const std::string* reflectance = find_text(table, "reflectance"))
     known.reflectance = parse_reflectances(*reflectance, name + ": attribute \"reflectance\"");
   const std::string* profile = find_text(table, "surroundings_profile");
@@ -113,6 +117,22 @@ void check_may_hold_scene(const std::string& path) {
 TableValues load_table(const std::string& path) {
   check_may_hold_scene(path);
   return read_table(path);
+}
+
+void use_scene_labels(TableHead& table, const SceneValues& scene, const std::string& name) {
+  for (const Axis axis : kAllAxes) {
+    const std::vector<std::string>& known = scene.labels[axis];
+    for (double& value : table.axes[axis]) {
+      if (!description_of(axis).has_labels) break;
+      const std::string& label = table.label(axis, value);
+      const auto found = std::ranges::find(known, label);
+      if (found == known.end())
+        throw InputError(fmt::format("{}: {}: \"{}\" is not among those of its scene: {}", name,
+                                     description_of(axis).name, one_line(label), join(known)));
+      value = static_cast<double>(found - known.begin());
+    }
+    table.labels[axis] = known;
+  }
 }
 
 SceneValues table_scene(const TableHead& table, const std::string& name, NamedData named_data) {

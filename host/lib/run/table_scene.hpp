@@ -38,4 +38,8 @@ enum class NamedData {
 /// one that the reader refuses.
 SceneValues table_scene(const TableHead& table, const std::string& name, NamedData named_data = NamedData::kOfTable);
 
+/// Turns the table's values on axes with labels into the scene's positions, which a part of a table numbers otherwise.
+/// Errors: InputError that begins with `name` for a label that the scene lacks.
+void use_scene_labels(TableHead& table, const SceneValues& scene, const std::string& name);
+
 }  // namespace dolp

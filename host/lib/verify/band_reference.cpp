@@ -42,12 +42,14 @@ struct BandPiece {
 /// The quadrature of one point.
 struct PointIntegral {
   SceneEntry entry;
+  SceneVariant variant;        ///< without a wavelength
+  std::vector<double> breaks;  ///< of its spectrum, in um
   std::vector<BandPiece> intervals;
   std::size_t first_new = 0;  ///< first interval without a value
   PointResult last;           ///< at some wavelength
 };
 
-std::vector<double> band_breaks_um(const SceneValues& scene) {
+std::vector<double> band_breaks_um(const SceneModel& scene) {
   std::vector<double> breaks = {scene.spectrum.min_um, scene.spectrum.max_um};
   const auto add = [&](const std::vector<double>& rows_um) {
     for (const double at_um : rows_um)
@@ -60,8 +62,8 @@ std::vector<double> band_breaks_um(const SceneValues& scene) {
   return breaks;
 }
 
-double mean_weight_at(const SceneValues& scene, double wavelength_um, double cosine) {
-  const SpectralRule rule = spectral_rule(at_wavelength(scene, wavelength_um));
+double mean_weight_at(const SceneModel& scene, const SceneVariant& variant, double cosine) {
+  const SpectralRule rule = spectral_rule(with_variant(scene, variant));
   const SpectralSample& sample = rule.samples.front();
   if (sample.emitted != 0.0) return sample.emitted;
   const double incident = sample.irradiance * cosine + sample.surroundings;
@@ -111,14 +113,14 @@ double quadrature_error(const Integrals& value, const Integrals& error) {
 }
 
 /// Splits the worst interval, at a row in it if there is one.
-void split_worst(PointIntegral& point, const std::vector<double>& breaks) {
+void split_worst(PointIntegral& point) {
   const Integrals value = total_of(point.intervals, &BandPiece::value);
   const auto worst = std::ranges::max_element(
       point.intervals, {}, [&](const BandPiece& interval) { return quadrature_error(value, interval.error); });
   const BandPiece old = *worst;
   point.intervals.erase(worst);
-  const auto first = std::ranges::upper_bound(breaks, old.from_um);
-  const auto last = std::ranges::lower_bound(breaks, old.to_um);
+  const auto first = std::ranges::upper_bound(point.breaks, old.from_um);
+  const auto last = std::ranges::lower_bound(point.breaks, old.to_um);
   const double at_um = first < last ? *(first + (last - first) / 2) : 0.5 * (old.from_um + old.to_um);
   point.first_new = point.intervals.size();
   point.intervals.push_back({old.from_um, at_um});
@@ -130,22 +132,22 @@ void integrate_new(const SceneValues& scene, std::vector<PointIntegral*>& points
                    const Progress& progress) {
   static const std::vector<KronrodNode> kNodes = kronrod_nodes();
   std::vector<SceneEntry> entries;
-  std::vector<double> wavelengths_um;
+  std::vector<SceneVariant> variants;
   for (PointIntegral* point : points) {
     for (std::size_t i = point->first_new; i < point->intervals.size(); ++i) {
       const BandPiece& interval = point->intervals[i];
       for (const KronrodNode& node : kNodes) {
         entries.push_back(point->entry);
-        entries.back().variant = static_cast<std::uint32_t>(wavelengths_um.size());
-        wavelengths_um.push_back(std::midpoint(interval.from_um, interval.to_um) +
-                                 0.5 * node.place * (interval.to_um - interval.from_um));
+        entries.back().variant = static_cast<std::uint32_t>(variants.size());
+        variants.push_back(point->variant);
+        variants.back().wavelength_um =
+            std::midpoint(interval.from_um, interval.to_um) + 0.5 * node.place * (interval.to_um - interval.from_um);
       }
     }
   }
   SceneValues at_one = scene;
-  at_one.spectrum = {wavelengths_um.front(), wavelengths_um.front()};
-  const std::vector<PointResult> results =
-      evaluate_scene(at_one, {entries, variants_of(wavelengths_um)}, evaluator, progress);
+  at_one.spectrum.max_um = at_one.spectrum.min_um;
+  const std::vector<PointResult> results = evaluate_scene(at_one, {entries, variants}, evaluator, progress);
   std::size_t next = 0;
   for (PointIntegral* point : points) {
     const double zenith_deg =
@@ -156,7 +158,7 @@ void integrate_new(const SceneValues& scene, std::vector<PointIntegral*>& points
       Integrals gauss = Integrals::Zero();
       for (const KronrodNode& node : kNodes) {
         const Integrals value =
-            integrand(results[next], mean_weight_at(scene, wavelengths_um[next], cos_sin_deg(zenith_deg).cos));
+            integrand(results[next], mean_weight_at(scene, variants[next], cos_sin_deg(zenith_deg).cos));
         interval.value += half_um * node.kronrod * value;
         gauss += half_um * node.gauss * value;
         point->last = results[next++];
@@ -192,10 +194,14 @@ PointResult band_result(const PointIntegral& point) {
 
 std::vector<PointResult> integrate_band(const SceneValues& scene, const SceneEntries& points, ModelEvaluator& evaluator,
                                         const Progress& progress) {
-  const std::vector<double> breaks = band_breaks_um(scene);
+  std::vector<std::vector<double>> breaks_of;
+  for (const SceneVariant& variant : points.variants())
+    breaks_of.push_back(band_breaks_um(with_variant(scene, variant)));
   std::vector<PointIntegral> integrals;
   for (const SceneEntry& entry : points.all()) {
-    PointIntegral& point = integrals.emplace_back(PointIntegral{entry, {}, 0, {}});
+    const std::vector<double>& breaks = breaks_of[entry.variant];
+    PointIntegral& point =
+        integrals.emplace_back(PointIntegral{entry, points.variants()[entry.variant], breaks, {}, 0, {}});
     const std::size_t count = std::min(kFirstIntervals, breaks.size() - 1);
     for (std::size_t i = 0; i < count; ++i)
       point.intervals.push_back(
@@ -213,7 +219,7 @@ std::vector<PointResult> integrate_band(const SceneValues& scene, const SceneEnt
                                             total_of(point->intervals, &BandPiece::error));
       const bool is_finished =
           !(error > kQuadratureShare * scene.accuracy.tolerance) || point->intervals.size() >= kMostIntervals;
-      if (!is_finished) split_worst(*point, breaks);
+      if (!is_finished) split_worst(*point);
       return is_finished;
     });
   }

@@ -68,11 +68,10 @@ BoundTerms bound_terms(const SceneModel& scene) {
   return terms;
 }
 
-/// The terms at each wavelength of a table; one element without an axis of wavelengths.
-std::vector<BoundTerms> bound_terms(const SceneValues& scene, const std::vector<double>& wavelength_um) {
-  if (wavelength_um.empty()) return {bound_terms(scene)};
+/// The terms of each variant.
+std::vector<BoundTerms> bound_terms(const SceneValues& scene, const std::vector<SceneVariant>& variants) {
   std::vector<BoundTerms> terms;
-  for (const double at_um : wavelength_um) terms.push_back(bound_terms(at_wavelength(scene, at_um)));
+  for (const SceneVariant& variant : variants) terms.push_back(bound_terms(with_variant(scene, variant)));
   return terms;
 }
 
@@ -133,7 +132,7 @@ void add(QuantityCheck& check, const CheckedValue& value) {
 CheckedValue compare(const TableSample& sample, const Compared& compared, std::size_t i, const PointResult& reference,
                      const BoundTerms& terms) {
   const TableValues& table = sample.table;
-  CheckedValue value{description_of(compared.quantity).name, position_of(sample.positions[i], table.axes)};
+  CheckedValue value{description_of(compared.quantity).name, position_of(sample.positions[i], table)};
   value.stored = table[compared.quantity][i];
   value.reference = reference[compared.quantity];
   const double dolp_estimate = estimate_at(table[Quantity::kErrorEstimate], i);
@@ -191,12 +190,14 @@ double CheckedValue::ratio() const {
   return error() / (stated + reference_error);
 }
 
-std::vector<std::pair<Axis, double>> position_of(std::size_t entry, const Axes& axes) {
-  std::vector<std::pair<Axis, double>> position;
+std::vector<AxisValue> position_of(std::size_t entry, const TableHead& table) {
+  std::vector<AxisValue> position;
   for (const Axis axis : kAllAxes | std::views::reverse) {
-    if (axes[axis].empty()) continue;
-    position.emplace_back(axis, axes[axis][entry % axes[axis].size()]);
-    entry /= axes[axis].size();
+    const std::vector<double>& values = table.axes[axis];
+    if (values.empty()) continue;
+    const double value = values[entry % values.size()];
+    position.push_back({axis, value, description_of(axis).has_labels ? table.label(axis, value) : ""});
+    entry /= values.size();
   }
   std::ranges::reverse(position);
   return position;
@@ -235,7 +236,7 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
                                                ? integrate_band(scene, chosen, reference, progress)
                                                : evaluate_scene(scene, chosen, reference, progress);
 
-  const std::vector<BoundTerms> terms = bound_terms(scene, table.axes[Axis::kWavelength]);
+  const std::vector<BoundTerms> terms = bound_terms(scene, grid.variants());
   TableCheck check;
   check.entries = table.size();
   check.checked = sample.positions.size();
@@ -281,7 +282,7 @@ TableCheck check_responses(const TableSample& sample, const SceneValues& scene, 
       const auto own = [&](const std::vector<double>& weights) {
         return std::span(weights).subspan(i * table.beta_deg.size(), table.beta_deg.size());
       };
-      CheckedValue value{described.name, position_of(sample.positions[i], table.axes)};
+      CheckedValue value{described.name, position_of(sample.positions[i], table)};
       value.stored = response_distance(own(table.responses[variable]), own(right.responses[variable]), is_of_q);
       value.stated = stated[i];
       value.reference_error = reference_error[i];

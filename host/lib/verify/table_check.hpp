@@ -16,10 +16,17 @@
 
 namespace dolp {
 
+/// The value of an axis, with its label if the axis has labels.
+struct AxisValue {
+  Axis axis;
+  double value;
+  std::string label;
+};
+
 /// One stored value beside the reference's.
 struct CheckedValue {
   std::string quantity;
-  std::vector<std::pair<Axis, double>> position;  ///< the values of the table's axes
+  std::vector<AxisValue> position;  ///< on the table's axes
   double stored = 0.0;
   double reference = 0.0;
   double stated = 0.0;           ///< the table's bound of the error, in the units of the value
@@ -49,7 +56,7 @@ struct TableCheck {
 };
 
 /// The values of the axes at an entry of a table.
-std::vector<std::pair<Axis, double>> position_of(std::size_t entry, const Axes& axes);
+std::vector<AxisValue> position_of(std::size_t entry, const TableHead& table);
 
 /// Positions of `samples` distinct entries out of `entries`, ascending; the same for the same seed everywhere.
 std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckOptions& options);

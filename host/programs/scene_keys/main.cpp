@@ -21,6 +21,10 @@ std::string values(const Key& key) {
       return "text";
     case Key::Type::kPair:
       return "two of " + key.range.text();
+    case Key::Type::kNames:
+      return "texts";
+    case Key::Type::kPairs:
+      return "pairs in " + key.range.text();
     case Key::Type::kAxis:
       return "axis in " + key.range.text();
   }

@@ -1,4 +1,4 @@
-#include "run/response_bases.hpp"
+#include "run/run_basis.hpp"
 
 #include <algorithm>
 #include <set>
@@ -65,18 +65,14 @@ std::vector<FacetOptics> indices_of_grid(const SceneValues& scene, const SceneEn
 
 }  // namespace
 
-ResponseBases::ResponseBases(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan)
-    : passes_(response_passes(plan.needs_direct, plan.sky ? plan.sky->size() : 0)) {
+std::shared_ptr<const ResponseBasis> run_basis(const SceneValues& scene, const SceneEntries& entries,
+                                               const EffectPlan& plan) {
   const bool has_bounces = plan.kept.further_bounces && scene.surface.scattering == Scattering::kMultiple;
-  if (!plan.kept.moments || has_bounces) return;
-  indices_ = entries.is_grid() ? indices_of_grid(scene, entries) : indices_of_points(scene, entries);
-}
-
-std::shared_ptr<const ResponseBasis> ResponseBases::of(const RefinementLevel& level) {
-  if (!level.may_interpolate || indices_.empty()) return nullptr;
-  const auto [place, is_new] = of_tolerance_.try_emplace(level.tolerance);
-  if (is_new) place->second = ResponseBasis::of(indices_, level.tolerance, passes_);
-  return place->second;
+  if (!scene.accuracy.may_interpolate || !plan.kept.moments || has_bounces) return nullptr;
+  const std::vector<FacetOptics> indices =
+      entries.is_grid() ? indices_of_grid(scene, entries) : indices_of_points(scene, entries);
+  const std::size_t passes = response_passes(plan.needs_direct, plan.sky ? plan.sky->size() : 0);
+  return indices.empty() ? nullptr : ResponseBasis::of(indices, scene.accuracy.tolerance, passes);
 }
 
 }  // namespace dolp

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """Draws a lookup table: DOLP against theta for several sigma, and over theta and sigma where both have enough values.
 
-Usage: plot_table.py TABLE.nc OUT.png [--q Q] [--wavelength UM] [--n N] [--k K]
-Draws one value of each other axis: the one nearest to its option, by default to the value in the scene, else the middle one.
+Usage: plot_table.py TABLE.nc OUT.png [--q Q] [--wavelength UM] [--temperature K] [--n N] [--k K] [--material NAME] [--band FROM-TO]
+       plot_table.py TABLE.nc OUT.png --rank THETA ...   ranks the materials of a table by DOLP at this zenith
+Draws one value of each other axis: the one nearest to its option, by default to the value in the scene, else the middle one; of
+materials and bands the first.
 One of the curves has the sigma of the scene. A table with winds is drawn over wind instead of sigma. Entries with a status other
 than 0 are drawn faint in the curves and hatched grey in the map. Needs python3-netcdf4, python3-numpy and python3-matplotlib.
 Exit status: 0 done, 2 usage or a file that is not such a table, 4 the picture could not be written.
@@ -43,9 +45,10 @@ STATUS_MEANINGS = {
 RHO_TOLERANCE_NOT_MET = 16
 
 
-SYMBOLS = {"q": "q", "wavelength": "λ", "n": "n", "k": "k"}  # axes of which one value is drawn
-UNITS = {"wavelength": " µm"}
-KEYS = {"q": ("surface", "q"), "wavelength": ("spectrum", "wavelength_um"), "n": ("surface", "n"), "k": ("surface", "k"),
+SYMBOLS = {"q": "q", "wavelength": "λ", "temperature": "T", "n": "n", "k": "k"}  # axes of which one value is drawn
+NAMED = ("material", "band")  # the same, whose values are names
+UNITS = {"wavelength": " µm", "temperature": " K", "band": " µm"}
+KEYS = {"temperature": ("emission", "temperature_K"), "q": ("surface", "q"), "wavelength": ("spectrum", "wavelength_um"), "n": ("surface", "n"), "k": ("surface", "k"),
         "sigma": ("surface", "sigma"), "wind_m_s": ("surface", "wind_m_s")}  # where a scene has its own value of an axis
 
 
@@ -68,8 +71,9 @@ def scene_part(dataset, part):
 
 
 def spectrum_of(dataset):
-    """Wavelength or band of a table without an axis of wavelengths, in words."""
-    spectrum = scene_part(dataset, "spectrum") if "wavelength" not in dataset.variables else {}
+    """Wavelength or band of a table without an axis of either, in words."""
+    has_axis = "wavelength" in dataset.variables or "band" in dataset.variables
+    spectrum = {} if has_axis else scene_part(dataset, "spectrum")
     return "–".join(f"{end:g}" for end in np.ravel(list(spectrum.values()))) + " µm" if spectrum else ""
 
 
@@ -93,11 +97,21 @@ class NotATable(Exception):
     """The file is no table of dolp, or has no such axis."""
 
 
+def position_of(dataset, axis, name):
+    """Position of a name: in full, or the only one that has it as a part."""
+    names = [str(own) for own in dataset[axis][:]]
+    alike = [i for i, own in enumerate(names) if name.lower() in own.lower()]
+    same = [i for i in alike if names[i].lower() == name.lower()]
+    if len(same or alike) != 1:
+        raise NotATable(f"has no {axis} {name!r}; it has {', '.join(names)}")
+    return (same or alike)[0]
+
+
 class Slice:
     """One value of all axes but theta and sigma, which are ascending; DOLP in percent."""
 
     def __init__(self, dataset, wanted):
-        """`wanted`: a value of each axis in SYMBOLS, or None for the scene's own."""
+        """`wanted`: a value of each axis in SYMBOLS and NAMED, or None for the scene's own."""
         for name in ("theta", "sigma", "q", "dolp"):
             if name not in dataset.variables:
                 raise NotATable(f"has no variable {name}; a table with DOLP is expected")
@@ -105,13 +119,16 @@ class Slice:
         at = {}
         self.replaced = []
         for axis, value in wanted.items():
-            if axis in axes:
+            if axis in axes and axis in NAMED:
+                at[axis] = 0 if value is None else position_of(dataset, axis, value)
+            elif axis in axes:
                 along = np.asarray(dataset[axis][:])
                 at[axis] = index_in_scene(dataset, axis) if value is None else int(np.argmin(np.abs(along - value)))
                 if value is not None and not np.isclose(along[at[axis]], value):
                     self.replaced.append(f"has no {axis} = {value:g}; the nearest, {along[at[axis]]:g}, is drawn")
             elif value is not None:
                 raise NotATable(f"has no axis {axis}; its axes are {', '.join(axes)}")
+        self.at = at
         place = tuple(at.get(axis, slice(None)) for axis in axes)
         self.has_winds = "wind_m_s" in dataset.variables
         theta = np.asarray(dataset["theta"][:])
@@ -120,7 +137,8 @@ class Slice:
         rows, columns = np.argsort(theta), np.argsort(sigma)
         self.theta, self.sigma = theta[rows], sigma[columns]
         self.column_in_scene = int(np.flatnonzero(columns == index_in_scene(dataset, roughness))[0])
-        self.place = ", ".join(f"{SYMBOLS[axis]} = {dataset[axis][i]:g}{UNITS.get(axis, '')}" for axis, i in at.items())
+        self.place = ", ".join(f"{dataset[axis][i]}{UNITS.get(axis, '')}" if axis in NAMED else
+                               f"{SYMBOLS[axis]} = {dataset[axis][i]:g}{UNITS.get(axis, '')}" for axis, i in at.items())
 
         def values(name, fill):
             data = np.ma.filled(dataset[name][place], fill)
@@ -266,6 +284,36 @@ def draw(table, path):
     picture_file.save(figure, path)
 
 
+def draw_ranking(tables, theta, path):
+    """A bar for each material: DOLP with the scene's sigma, and a line over all values of sigma."""
+    first = next(iter(tables.values()))
+    row = int(np.argmin(np.abs(first.theta - theta)))
+    own = {name: table.dolp[row, table.column_in_scene] for name, table in tables.items()}
+    names = sorted(tables, key=lambda name: np.nan_to_num(own[name]))
+    figure, axes = plt.subplots(figsize=(7.5, 1.4 + 0.22 * len(names)), dpi=150, layout="constrained")
+    faint = [tables[name].status[row, tables[name].column_in_scene] != 0 for name in names]
+    bars = axes.barh(names, [own[name] for name in names], color=matplotlib.colormaps[COLOURS](0.45), height=0.7)
+    for bar, is_faint in zip(bars, faint):
+        bar.set_alpha(0.4 if is_faint else 1.0)
+    if first.sigma.size > 1:
+        ends = [(np.nanmin(tables[name].dolp[row]), np.nanmax(tables[name].dolp[row])) for name in names]
+        axes.hlines(names, *zip(*ends), color="0.25", linewidth=1.0,
+                    label=f"{first.name_of(first.sigma[0])} to {first.sigma[-1]:.3g}")
+    if any(faint):
+        axes.barh(names[:1], [0.0], color="0.5", alpha=0.4, label=r"status $\neq$ 0")
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(frameon=False, fontsize=9, loc="lower right")
+    place = ", ".join(part for part in first.place.split(", ") if part not in tables)
+    axes.set_xlabel(f"DOLP (%) at {first.theta[row]:g}° with {first.name_of(first.sigma[first.column_in_scene])}, {place}")
+    axes.set_xlim(left=0.0)
+    axes.margins(y=0.01)
+    axes.tick_params(axis="y", labelsize=8.5)
+    axes.grid(axis="x", alpha=0.25, linewidth=0.6)
+    axes.spines[["top", "right"]].set_visible(False)
+    figure.suptitle(first.title, fontsize=12)
+    picture_file.save(figure, path)
+
+
 def finite(text):
     """A number for argparse, which names it in its message."""
     number = float(text)
@@ -280,17 +328,28 @@ def main():
     parser.add_argument("picture")
     for axis, symbol in SYMBOLS.items():
         parser.add_argument(f"--{axis}", type=finite, help=f"draw the {symbol} nearest to it; default: the middle one")
+    for axis in NAMED:
+        parser.add_argument(f"--{axis}", help=f"draw this {axis}; default: the first")
+    parser.add_argument("--rank", type=finite, metavar="THETA", help="rank the materials at this zenith")
     arguments = parser.parse_args()
+    wanted = {axis: getattr(arguments, axis) for axis in (*SYMBOLS, *NAMED)}
     try:
         with netCDF4.Dataset(arguments.table) as dataset:
-            table = Slice(dataset, {axis: getattr(arguments, axis) for axis in SYMBOLS})
+            table = Slice(dataset, wanted)
+            if arguments.rank is not None and "material" not in table.at:
+                raise NotATable("has no axis of materials to rank; give grid.material in the scene")
+            names = [str(name) for name in dataset["material"][:]] if arguments.rank is not None else []
+            ranked = {name: Slice(dataset, {**wanted, "material": name}) for name in names}
     except (OSError, NotATable) as error:
         print(f"{arguments.table}: {error}", file=sys.stderr)
         return 2
     for text in table.replaced:
         print(f"{arguments.table}: {text}", file=sys.stderr)
     try:
-        draw(table, arguments.picture)
+        if ranked:
+            draw_ranking(ranked, arguments.rank, arguments.picture)
+        else:
+            draw(table, arguments.picture)
     except OSError as error:
         print(f"{arguments.picture}: {error}", file=sys.stderr)
         return 4

@@ -110,6 +110,8 @@ dolp::Value value_of(const std::string& key, const py::handle& value) {
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>();
   if (py::isinstance<py::float_>(value)) return value.cast<double>();
   if (py::isinstance<py::str>(value)) return bytes_of(value);
+  if (py::isinstance<py::list>(value) && py::len(value) > 0 && !py::isinstance<py::float_>(value[py::int_(0)]))
+    return dolp::TomlText{bytes_of(py::module_::import("json").attr("dumps")(value))};  // texts, or pairs of numbers
   if (!py::isinstance<py::dict>(value)) return value.cast<std::vector<double>>();
   const auto range = value.cast<std::map<std::string, py::object>>();
   for (const auto& [name, item] : range) {
@@ -177,7 +179,11 @@ py::object value_of_key(const dolp::Scene& scene, const std::string& key) {
   const auto known = std::ranges::find(dolp::keys(), key, &dolp::Key::key);
   const auto type = known == dolp::keys().end() ? dolp::Key::Type::kNumber : known->type;
   if (type == dolp::Key::Type::kNumber) return object(scene.number(key));
-  if (type == dolp::Key::Type::kAxis || type == dolp::Key::Type::kPair) {
+  if (type == dolp::Key::Type::kNames) {
+    const std::vector<std::string>& names = scene.labels()[dolp::Axis::kMaterial];
+    return names.empty() ? py::none() : py::object(py::cast(names));
+  }
+  if (type == dolp::Key::Type::kAxis || type == dolp::Key::Type::kPair || type == dolp::Key::Type::kPairs) {
     const std::vector<double> values = scene.numbers(key);
     return values.empty() ? py::none() : py::object(py::cast(values));
   }
@@ -248,8 +254,14 @@ py::tuple contents_of(const dolp::Table& table) {
   const dolp::TableValues& values = table.values();
   py::list axes, curves;
   for (const dolp::Axis axis : dolp::kAllAxes) {
-    if (!values.axes[axis].empty())
-      axes.append(py::make_tuple(dolp::description_of(axis).name, array_of(values.axes[axis])));
+    const char* const name = dolp::description_of(axis).name;
+    if (!values.labels[axis].empty()) {
+      py::list labels;
+      for (const double value : values.axes[axis]) labels.append(text_of(values.label(axis, value)));
+      axes.append(py::make_tuple(name, labels));
+    } else if (!values.axes[axis].empty()) {
+      axes.append(py::make_tuple(name, array_of(values.axes[axis])));
+    }
   }
   for (const dolp::TableCurve& known : dolp::kTableCurves) {
     const std::vector<double>& used = (values.*known.curve).used;
@@ -273,15 +285,35 @@ py::tuple responses_of(const dolp::TableValues& table) {
 
 std::vector<double> vector_of(const Array& values) { return {values.data(), values.data() + values.size()}; }
 
+/// The labels of each column of points that has labels, by its name.
+py::dict labels_of(const dolp::AxisLabels& labels) {
+  py::dict all;
+  for (const dolp::Axis axis : dolp::kAllAxes) {
+    if (!dolp::description_of(axis).has_labels) continue;
+    py::list own;
+    for (const std::string& label : labels[axis]) own.append(text_of(label));
+    all[dolp::description_of(axis).column] = own;
+  }
+  return all;
+}
+
 /// A table of the axes, curves, columns and attributes that are there, by name.
-dolp::Table table_of(const Columns& columns, const py::array_t<std::uint32_t, py::array::forcecast>& status,
+dolp::Table table_of(const Columns& columns, const std::map<std::string, std::vector<std::string>>& labels, const py::array_t<std::uint32_t, py::array::forcecast>& status,
                      const std::string& stokes_units, const py::dict& attributes, const std::string& name) {
   dolp::TableValues table;
   if (!stokes_units.empty()) table.stokes_units = stokes_units;
   const auto take = [&](const std::string& variable, std::vector<double>& values) {
     if (const auto found = columns.find(variable); found != columns.end()) values = vector_of(found->second);
   };
-  for (const dolp::Axis axis : dolp::kAllAxes) take(dolp::description_of(axis).name, table.axes[axis]);
+  for (const dolp::Axis axis : dolp::kAllAxes) {
+    const char* const axis_name = dolp::description_of(axis).name;
+    take(axis_name, table.axes[axis]);
+    const auto own = labels.find(axis_name);
+    for (std::size_t i = 0; own != labels.end() && i < own->second.size(); ++i) {
+      table.axes[axis].push_back(static_cast<double>(i));
+      table.labels[axis].push_back(own->second[i]);
+    }
+  }
   for (const dolp::Quantity quantity : dolp::kAllQuantities) take(dolp::description_of(quantity).name, table[quantity]);
   for (const dolp::TableCurve& known : dolp::kTableCurves) {
     dolp::Curve& curve = table.*known.curve;
@@ -333,6 +365,7 @@ PYBIND11_MODULE(_native, module) {
       .def("toml", [](const dolp::Scene& scene) { return text_of(scene.toml()); })
       .def("values", &values_of)
       .def("value", [](const dolp::Scene& scene, const py::str& key) { return value_of_key(scene, bytes_of(key)); })
+      .def("labels", [](const dolp::Scene& scene) { return labels_of(scene.labels()); })
       .def("refractive_index", &dolp::Scene::refractive_index)
       .def("__deepcopy__", [](const dolp::Scene& scene, const py::dict&) { return scene; })
       .def(py::pickle(
@@ -346,6 +379,7 @@ PYBIND11_MODULE(_native, module) {
   py::class_<dolp::Table>(module, "Table")
       .def_static("read", &dolp::Table::read)
       .def_static("of", &table_of)
+      .def("labels", [](const dolp::Table& table) { return labels_of(table.values().labels); })
       .def("lookup", [](const dolp::Table& table, const Columns& columns) {
         const std::vector<dolp::Column> points = views(columns);
         return parts_of(interruptible([&](const dolp::Progress& progress) { return table.lookup(points, progress); }));
@@ -451,6 +485,11 @@ PYBIND11_MODULE(_native, module) {
     }
     all.append(py::make_tuple(dolp::kWind.column, dolp::kWind.name, dolp::kWind.long_name, dolp::kWind.units));
     return all;
+  });
+  module.def("table_axes", [] {
+    std::vector<std::string> names;
+    for (const dolp::Axis axis : dolp::kAllAxes) names.emplace_back(dolp::description_of(axis).name);
+    return names;
   });
   module.def("status_bits", [] {
     py::list all;

@@ -130,7 +130,7 @@ TEST(SkyBasis, FewFunctions_StandForAllWavelengths) {
   SceneValues scene = parse(kMinimal + "[surroundings]\nprofile = \"clear-sky\"\n");
   std::vector<double> wavelengths;
   for (double um = 3.0; um <= 14.0; um += 0.5) wavelengths.push_back(um);
-  const std::shared_ptr<const SkyBasis> basis = sky_basis(scene, variants_of(wavelengths));
+  const std::shared_ptr<const SkyBasis> basis = sky_basis(scene, variants_of(axes_of({}, {}, {}, wavelengths)));
   ASSERT_TRUE(basis);
   EXPECT_LE(basis->size(), 2U);
   const SkySampler sampler(*scene.surroundings->profile);

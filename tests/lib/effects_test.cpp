@@ -100,7 +100,7 @@ theta_deg = [20, 60]
 // Each point belongs to one extent, and each wavelength has its own: the work is linear in both.
 TEST(ExtentsOf, PointsAtTheirWavelengths_AreEachInOne) {
   const SceneEntries points({{10.0, {0.1, 2.0}, {}, 1}, {20.0, {0.3, 3.0}, {}, 0}, {30.0, {0.2, 4.0}, {}, 1}},
-                            variants_of({8.0, 9.0}));
+                            variants_of(axes_of({}, {}, {}, {8.0, 9.0})));
   const std::vector<EntriesExtent> extents = extents_of(points);
   ASSERT_EQ(extents.size(), 2U);
   EXPECT_EQ(extents[0].theta_deg, std::vector<double>{20.0});

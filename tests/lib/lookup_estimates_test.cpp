@@ -109,7 +109,7 @@ std::vector<PointResult> exact_at(const SceneValues& scene, const std::vector<Ta
   }
   SceneValues exact = scene;
   exact.accuracy.tolerance = kExact;
-  return evaluate_scene(exact, {entries, variants_of(wavelengths)}, *make_evaluator(Evaluator::kDouble), {});
+  return evaluate_scene(exact, {entries, variants_of(axes_of({}, {}, {}, wavelengths))}, *make_evaluator(Evaluator::kDouble), {});
 }
 
 /// Totals over all points.

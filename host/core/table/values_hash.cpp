@@ -57,8 +57,10 @@ void add(ValueSums& sums, const ValueSums& of_part) {
 
 std::string values_hash(const TableHead& head, const Quantities& quantities, const ValueSums& sums) {
   std::uint64_t hash = kHashStart;
-  for (const std::vector<double>& values : head.axes) {
-    if (!values.empty()) hash = hashed(hash, std::span(values));
+  for (const Axis axis : kAllAxes) {
+    // The hash of a file without an axis that earlier files could not have is the hash that they have.
+    const bool is_absent = head.axes[axis].empty() && (description_of(axis).has_labels || axis == Axis::kTemperature);
+    if (!is_absent) hash = hashed(hash, std::span(head.axes[axis]));
   }
   for (const std::vector<std::string>& names : head.labels) {
     for (const std::string& name : names) hash = hashed(hash, name);

@@ -98,6 +98,8 @@ class DOLP_EXPORT Scene {
   std::optional<std::string> word(std::string_view key) const;
   /// Likewise of axes and pairs, empty where the scene has none.
   std::vector<double> numbers(std::string_view key) const;
+  /// The names on the grid's axes of materials and bands: columns of points have their positions.
+  const AxisLabels& labels() const;
   /// What the scene takes that was probably meant otherwise (Celsius, nanometres), and what it assumes because its
   /// files lack it (k, rows across its spectrum): one line each, empty for most scenes.
   std::vector<std::string> remarks() const;

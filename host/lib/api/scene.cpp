@@ -73,9 +73,11 @@ std::optional<std::string> Scene::word(std::string_view key) const {
 }
 
 std::vector<double> Scene::numbers(std::string_view key) const {
-  const std::optional<KeyValue> value = value_of(impl_->scene, key, {Type::kAxis, Type::kPair});
+  const std::optional<KeyValue> value = value_of(impl_->scene, key, {Type::kAxis, Type::kPair, Type::kPairs});
   return value ? value->numbers : std::vector<double>{};
 }
+
+const AxisLabels& Scene::labels() const { return impl_->scene.labels; }
 
 std::vector<std::string> Scene::remarks() const { return remarks_on(impl_->scene); }
 

@@ -48,7 +48,7 @@ constexpr CommandRow kCommands[] = {
     {"explore", run_explore, "the window: parameters, curves, map, effects and their price, live",
      "dolp explore\n  dolp explore scene.toml --measured measured.csv"},
     {"materials", run_materials, "built-in materials, their ranges and sources, or n and k of one",
-     "dolp materials\n  dolp materials iron --at 8:14:25 --json"},
+     "dolp materials\n  dolp materials --at 10.6\n  dolp materials iron --at 8:14:25 --json"},
     {"devices", run_devices, "Vulkan devices, and why each one is or is not usable",
      "dolp devices\n  dolp devices --device llvmpipe"},
     {"keys", run_keys, "the keys of a scene: meaning, unit, allowed values, default",
@@ -187,7 +187,6 @@ void add_conditions(CLI::App& verify, CLI::App& materials) {
     verify.get_option(of_device)->needs(verify.get_option("--hard-cases"));
   verify.get_option("--hard-cases")->excludes(verify.get_option("TABLE"));
   materials.get_option("NAME")->needs(materials.get_option("--at"));
-  materials.get_option("--at")->needs(materials.get_option("NAME"));
 }
 
 }  // namespace

@@ -93,6 +93,28 @@ int show_material(const Options& options) {
   return finish(report, options);
 }
 
+/// n and k of all materials that are known at a wavelength.
+int show_all_materials(const Options& options) {
+  const std::vector<double> wavelengths = wavelengths_of(options.wavelength_um);
+  if (wavelengths.size() != 1)
+    throw InputError(
+        fmt::format("--at {}: give one wavelength, or the name of a material", one_line(options.wavelength_um)));
+  const double at_um = wavelengths.front();
+  Report report;
+  Json list = Json::array();
+  for (const BuiltInMaterial& material : materials()) {
+    if (at_um < material.from_um || at_um > material.to_um) continue;
+    const Scene scene = Scene::from_text(
+        example_scene(), {{"surface.material", material.name}, {"spectrum.wavelength_um", at_um}}, "materials");
+    const auto [n, k] = scene.refractive_index(at_um);
+    report.text += fmt::format("{:<46}  n = {:<10.6g}  k = {:<10.6g}\n", material.name, n, k);
+    list.push_back({{"name", material.name}, {"n", n}, {"k", k}});
+  }
+  if (list.empty())
+    throw InputError(fmt::format("--at {}: no material is known there", one_line(options.wavelength_um)));
+  return finish_list(report, "materials", list, options);
+}
+
 }  // namespace
 
 int run_keys(const Options& options) {
@@ -116,6 +138,7 @@ int run_keys(const Options& options) {
 
 int run_materials(const Options& options) {
   if (!options.material.empty()) return show_material(options);
+  if (!options.wavelength_um.empty()) return show_all_materials(options);
   Report report;
   Json list = Json::array();
   for (const BuiltInMaterial& material : materials()) {

@@ -101,6 +101,11 @@ def axis_values(name: str, values: Any) -> list[float]:
     return np.atleast_1d(array).tolist()
 
 
+def label_values(values: Any) -> Any:
+    """The values of an axis of materials or of bands: a name or a list of names, a pair of wavelengths or a list."""
+    return values if isinstance(values, str) else np.asarray(values).tolist()
+
+
 def check_names(what: str, given: Iterable[str], known: list[str]) -> None:
     """Refuses a name that is none of those known, with the one that may have been meant."""
     for name in given:
@@ -151,5 +156,7 @@ def _value(key: str, value: Any) -> Any:
     if isinstance(value, Mapping):
         return {name: str(item) if name == "spacing" else whole_number(f"{key}.count", item) if name == "count"
                 else float(floats(f"{key}.{name}", item)) for name, item in value.items()}
+    if isinstance(value, (list, tuple)) and any(isinstance(item, (str, list, tuple)) for item in value):
+        return label_values(value)
     numbers = floats(key, value)
     return float(numbers) if numbers.ndim == 0 else axis_values(key, numbers)

@@ -27,8 +27,9 @@ def table_dataset(axes: list[tuple[str, np.ndarray]], winds: np.ndarray,
                    curves: list[tuple[str, str, str, np.ndarray]], parts: _native.Parts) -> xr.Dataset:
     """A table as xarray has it of its file."""
     known = dict(COORDINATES.values())
-    coordinates = {name: xr.Variable(name, values, known[name]) for name, values in axes}
-    shape = tuple(values.size for _, values in axes)
+    coordinates = {name: xr.Variable(name, np.asarray(values, object if isinstance(values, list) else None), known[name])
+                   for name, values in axes}
+    shape = tuple(len(values) for _, values in axes)
     variables = _variables(parts, tuple(name for name, _ in axes), shape, {"_FillValue": np.nan})
     if winds.size:
         coordinates["wind_m_s"] = xr.Variable("sigma", winds, known["wind_m_s"])
@@ -76,7 +77,7 @@ def native_table(table: xr.Dataset) -> _native.Table:
     overrides = [str(attributes.get("scene_overrides", "")), *_values_of_keys(table, str(attributes.pop(_COMPUTED, "")))]
     if any(overrides):
         attributes["scene_overrides"] = "\n".join(filter(None, overrides))
-    axes = [name for name in ("wavelength", "n", "k", "theta", "sigma", "q") if name in table.coords]
+    axes = [name for name in _native.table_axes() if name in table.coords]
     dims = [dim for axis in axes for dim in table[axis].dims]
     if any(table[axis].ndim > 1 for axis in axes) or len(set(dims)) < len(dims):
         raise InputError(f"Dataset: {', '.join(axes)} must each be along a dimension of its own, as in dolp.table")
@@ -89,6 +90,8 @@ def native_table(table: xr.Dataset) -> _native.Table:
         if set(variable.dims) != set(dims):
             raise InputError(f"Dataset: {name} is over {_text(variable.dims)}; must be over {_text(dims)}, as the axes are")
         columns[name] = floats(f"Dataset: {name}", variable.transpose(*dims).values).ravel()
+    labels = {axis: [str(label) for label in np.atleast_1d(table[axis].values)] for axis in axes
+              if table[axis].dtype.kind in "OU"}
     status = columns.pop("status", np.empty(0))
     wrong = status[~((status >= 0) & (status < 2**32) & (status == np.floor(status)))]
     if wrong.size:
@@ -96,7 +99,7 @@ def native_table(table: xr.Dataset) -> _native.Table:
                          "before it was masked or interpolated")
     stokes = next((table[name] for name in ("stokes_i", "stokes_q", "stokes_u", "stokes_v") if name in table), None)
     units = "" if stokes is None else str(stokes.attrs.get("units", ""))
-    return _native.Table.of(columns, status.astype(np.uint32), units, attributes, "Dataset")
+    return _native.Table.of(columns, labels, status.astype(np.uint32), units, attributes, "Dataset")
 
 
 def _values_of_keys(table: xr.Dataset, computed: str) -> list[str]:

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from . import _native
-from ._arguments import Array, check_names, encodable, floats, input_path
+from ._arguments import Array, check_names, encodable, floats, input_path, short
 from ._native import InputError
 
 # Of each column of points the name of its coordinate, which is that of table files, with its attributes.
@@ -30,10 +30,15 @@ class Frame(NamedTuple):
     coordinates: dict[Hashable, xr.Variable]
 
 
-def columns_of(points: Mapping[str, Array], has_keys: bool = False) -> tuple[Frame, dict[str, np.ndarray]]:
-    """Columns for the library, of one value where there is one for all, and their common shape with its coordinates."""
+def columns_of(points: Mapping[str, Array], labels: Mapping[str, list[str]] = {},
+               has_keys: bool = False) -> tuple[Frame, dict[str, np.ndarray]]:
+    """Columns for the library, of one value where there is one for all, and their common shape with its coordinates.
+
+    `labels`: of the columns that have labels, for which the library takes positions.
+    """
     check_names("points", [name for name in points if not (has_keys and "." in name)], list(COORDINATES))
-    points = _with_real_index(points)
+    points = {name: _positions(name, values, labels[name]) if name in labels else values
+              for name, values in _with_real_index(points).items()}
     if any(isinstance(values, xr.DataArray) for values in points.values()):
         arrays = {name: values.copy(data=floats(name, values)) if isinstance(values, xr.DataArray)
                   else xr.DataArray(floats(name, values)) for name, values in points.items()}
@@ -58,9 +63,28 @@ def columns_of(points: Mapping[str, Array], has_keys: bool = False) -> tuple[Fra
         else:
             along = dims if values.ndim > 0 else ()
             coordinates[name] = xr.Variable(along, np.broadcast_to(values, shape) if along else values, known)
+    for column in labels.keys() & points.keys():
+        at = coordinates[COORDINATES[column][0]]
+        at.data = np.array(labels[column], object)[at.values.astype(int)]
     columns = {name: np.broadcast_to(values, shape if values.ndim > 0 else ()).ravel()
                for name, values in points.items()}
     return Frame(shape, dims, coordinates), columns
+
+
+def _positions(name: str, values: Any, labels: list[str]) -> Any:
+    """The position of each label, given in full or as a part that no other one has."""
+    def position(value: Any) -> float:
+        wanted = str(value).casefold()
+        alike = [i for i, label in enumerate(labels) if wanted in label.casefold()]
+        same = [i for i in alike if labels[i].casefold() == wanted]
+        if len(same or alike) != 1:
+            known = f"one of {', '.join(labels)}" if labels else f"absent: there is no axis of {name}"
+            raise InputError(f"points: {name} = {short(value)}: must be {known}")
+        return float((same or alike)[0])
+
+    array = np.asarray(values, object)
+    positions = np.array([position(value) for value in array.ravel()]).reshape(array.shape)
+    return values.copy(data=positions) if isinstance(values, xr.DataArray) else positions
 
 
 def _dimensions(points: Mapping[str, np.ndarray],

@@ -11,11 +11,12 @@ import numpy as np
 import xarray as xr
 
 from . import _native
-from ._arguments import Array, Path, axis_values, check_names, device_name, flag, input_path, native_path, word
+from ._arguments import Array, Path, axis_values, check_names, label_values, device_name, flag, input_path, native_path, word
+from ._between import between_tables
 from ._datasets import concatenated, dataset_at, native_table, table_dataset
 from ._model_warning import warn_of_model
 from ._native import InputError
-from ._points import columns_of
+from ._points import KEY_ATTRIBUTES, columns_of
 from ._scene import Scene
 
 
@@ -23,10 +24,11 @@ def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all
           **axes: Array) -> xr.Dataset:
     """The table over the scene's grid: a Dataset that is what the file would hold.
 
-    `axes` (theta_deg, sigma or wind_m_s, q, wavelength_um, n, k) replace those of the scene. Winds are a second coordinate
+    `axes` (theta_deg, sigma or wind_m_s, q, wavelength_um or band_um, temperature_K, and n, k or material) replace those
+    of the scene: `dolp.table(scene, material=["gold (Ordal)", "iron"])`, or "all". Winds are a second coordinate
     along sigma: `t.swap_dims(sigma="wind_m_s")`. Each is a number or a list, and the table has all combinations of their
     values. Any other number of the scene can be an axis by its key, each of its values as a table of its own; `lookup`
-    takes one of these, as `t.sel({"emission.temperature_K": 280})`. Attributes that differ between them are left out.
+    reads between them, as `dolp.lookup(t, **{"path.transmittance": 0.85}, theta_deg=40)`. Attributes that differ between them are left out.
 
     >>> t = dolp.table(scene, theta_deg=[0, 60], sigma=[0.1, 0.2, 0.3])
     >>> dict(t.sizes)["theta"], dict(t.sizes)["sigma"], t.dolp.units, t.theta.units
@@ -82,10 +84,10 @@ def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_
     >>> dolp.evaluate(scene, theta_deg=40, **{"surroundings.temperature_K": [250, 290]}).dolp.round(4).values
     array([0.0179, 0.0043])
     """
-    frame, columns = columns_of(points, has_keys=True)
+    native, engine = native_scene(scene), native_evaluator(evaluator, device)
+    frame, columns = columns_of(points, native.labels(), has_keys=True)
     varied = {key: columns.pop(key) for key in [*columns] if "." in key}
     _check_varied("points", varied, columns)
-    native, engine = native_scene(scene), native_evaluator(evaluator, device)
 
     def run(own: _native.Scene, of_scene: dict[str, np.ndarray]) -> _native.Parts:
         return engine.evaluate(own, of_scene, flag("keep_all", keep_all))
@@ -110,14 +112,19 @@ def lookup(table: Path | xr.Dataset, **points: Array) -> xr.Dataset:
     >>> bool(abs(dolp.lookup(t.sel(sigma=0.2), theta_deg=33).dolp - dolp.evaluate(scene, theta_deg=33).dolp) < 1e-5)
     True
     """
-    frame, columns = columns_of(points)
     if isinstance(table, xr.Dataset):
-        return dataset_at(native_table(table).lookup(columns), frame)
-    if not isinstance(table, (str, bytes, os.PathLike)):
+        if key := next((name for name in points if name in KEY_ATTRIBUTES and name in table.dims), None):
+            return between_tables(table, key, points[key],
+                                  lambda part: lookup(part, **{name: points[name] for name in points if name != key}))
+        native = native_table(table)
+    elif isinstance(table, (str, bytes, os.PathLike)):
+        path = input_path("table", table)
+        known = os.stat(path)
+        native = _table_of(path, (known.st_ino, known.st_size, known.st_mtime_ns))
+    else:
         raise TypeError(f"table: must be a path or an xarray.Dataset, not {type(table).__name__}")
-    path = input_path("table", table)
-    known = os.stat(path)
-    return dataset_at(_table_of(path, (known.st_ino, known.st_size, known.st_mtime_ns)).lookup(columns), frame)
+    frame, columns = columns_of(points, native.labels())
+    return dataset_at(native.lookup(columns), frame)
 
 
 def mueller(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **points: Array) -> np.ndarray:
@@ -188,13 +195,15 @@ def with_axes(scene: Scene, axes: Mapping[str, Array]) -> _native.Scene:
     """The scene on other axes, by the names of their columns."""
     native = native_scene(scene)
     check_names("axes", axes, [column for column, *_ in _native.axes()])
-    return native.with_([(f"grid.{axis}", axis_values(axis, values)) for axis, values in axes.items()])
+    return native.with_([(f"grid.{axis}", label_values(values) if axis in native.labels() else axis_values(axis, values))
+                         for axis, values in axes.items()])
 
 
 def _check_varied(what: str, keys: Iterable[str], columns: Iterable[str]) -> None:
     """Refuses keys that vary what a column varies."""
     for key in keys:
-        if (column := key.partition(".")[2]) in columns:
+        table, _, column = key.partition(".")
+        if column in columns and table in ("surface", "spectrum", "emission"):
             raise InputError(f"{what}: {key} and {column} are the same")
 
 

@@ -93,7 +93,9 @@ TEST(Radiometry, IndicesOfThePoint_ReplaceThoseOfTheRule) {
   const Direction direction = direction_of(60.0);
   const Moments moments = moments_of({0.3, 0.1}, direction.cos_theta);
   const std::vector<FacetOptics> indices = {{3.0, 0.5}};
-  const PointResult replaced = Radiometry(scene).point(direction, std::vector<Moments>{moments}, indices);
+  const Radiometry radiometry(scene);
+  const PointResult replaced =
+      radiometry.point(direction, std::vector<Moments>{moments}, radiometry.optics_with(indices));
   const PointResult own = evaluate(scene, direction, moments);
   scene.surface.material.constant = indices[0].index;
   const PointResult other = evaluate(scene, direction, moments);

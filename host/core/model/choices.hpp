@@ -21,6 +21,7 @@ constexpr bool keeps_projected_area(Masking masking) {
 /// Number of bounces that the light is followed for: one, or all bounces in a V-groove.
 enum class Scattering : std::uint32_t { kSingle = 0, kMultiple = 1 };
 enum class EmissionModel { kMoments, kFresnel, kDirect };
+enum class DiffusePolarisation { kNone, kTransmission };
 enum class Mode { kHemispherical, kBistatic };
 enum class Precision { kAuto, kFloat, kDouble };
 
@@ -42,6 +43,10 @@ struct Names<Scattering> {
 template <>
 struct Names<EmissionModel> {
   static constexpr std::array kAll{"moments", "fresnel", "direct"};
+};
+template <>
+struct Names<DiffusePolarisation> {
+  static constexpr std::array kAll{"none", "transmission"};
 };
 template <>
 struct Names<Mode> {

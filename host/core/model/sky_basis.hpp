@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -26,9 +27,10 @@ class SkyNodes {
   /// Estimate of the largest distance between the polynomials through a function's values and the function.
   double error(const Eigen::VectorXd& values) const;
 
-  /// Weights of the values in the mean of a function, the integral over the zenith with (power + 2) cos^(power + 1)
-  /// sin: what a reflectance proportional to cos^power sees of it. Domain: power > -1.
-  Eigen::VectorXd mean_weights(double power) const;
+  /// Weights of the values in the mean of a function, the integral over the zenith with cos^(power + 1) sin, times
+  /// `factor` of the cosine if there is one: what a reflectance proportional to cos^power times the factor sees of it.
+  /// Domain: power > -1.
+  Eigen::VectorXd mean_weights(double power, const std::function<double(double)>& factor = {}) const;
 
  private:
   std::vector<double> ends_deg_;

@@ -95,8 +95,6 @@ bool is_known(const Moments& moments) {
   return !std::isnan(moments.r_i) && !std::isnan(moments.r_q) && !std::isnan(moments.deficit);
 }
 
-bool diffuse_diverges(const Surface& surface) { return surface.diffuse > 0.0 && surface.diffuse_exponent < 0.0; }
-
 // A specular part that stays below 2 as the cosine vanishes belongs to a mirror or to n = 1: it has a limit.
 bool reflectance_diverges(const Surface& surface, const Direction& direction, std::span<const Moments> moments) {
   if (direction.theta_deg != kRightAngle_deg) return false;
@@ -109,7 +107,7 @@ bool reflectance_diverges(const Surface& surface, const Direction& direction, st
 /// Equation: the terms of I and Q that grow fastest as cos(theta) -> 0, times a factor that makes them finite: D r,
 /// D being the surroundings without the emission that the moments subtract; with D = 0, pi B + E0 r_i and E0 r_q, and
 /// the path. The fresnel emission vanishes there.
-Stokes grazing_stokes(const SceneModel& scene, const SpectralRule& rule, std::span<const SkyFactor> sky,
+Stokes grazing_stokes(const SceneModel& scene, const SpectralRule& rule, std::span<const SkyWeights> sky,
                       std::span<const Moments> moments) {
   const Surface& surface = scene.surface;
   const bool fresnel = emission_model(scene) == EmissionModel::kFresnel;
@@ -121,7 +119,7 @@ Stokes grazing_stokes(const SceneModel& scene, const SpectralRule& rule, std::sp
     add_specular(leading, surface.specular * (fresnel ? sample.surroundings : sample.excess), moments[j]);
     add_specular(finite, surface.specular * sample.irradiance, moments[j]);
     finite.i += sample.emitted * emissivity;
-    if (!sky.empty()) add_specular_sky(leading, surface.specular, rule.relative_error, sky[j].weights, moments[j]);
+    if (!sky.empty()) add_specular_sky(leading, surface.specular, rule.relative_error, sky[j], moments[j]);
   }
   if (leading.i != 0.0 || leading.q != 0.0) return leading;
   add_path(finite, scene.path, rule.path_exitance);
@@ -134,7 +132,7 @@ bool is_isothermal(const SpectralRule& rule) {
 }
 
 /// Result at 90 degrees where rho diverges.
-PointResult grazing_limit(const SceneModel& scene, const SpectralRule& rule, std::span<const SkyFactor> sky,
+PointResult grazing_limit(const SceneModel& scene, const SpectralRule& rule, std::span<const SkyWeights> sky,
                           const Direction& direction, std::span<const Moments> moments) {
   const Surface& surface = scene.surface;
   PointResult result = outside_domain();
@@ -167,12 +165,26 @@ Radiometry::Radiometry(const SceneModel& scene, const KeptEffects& kept, double 
       dropped_(dropped),
       knows_rho_(kept.moments || scene.surface.specular == 0.0),
       rule_(spectral_rule(scene)),
-      kept_rule_(kept_rule(rule_, kept)),
-      indices_(rule_.indices()) {
+      kept_rule_(kept_rule(rule_, kept)) {
   if (!kept.moments) scene_.surface.specular = 0.0;
   if (!kept.diffuse) scene_.surface.diffuse = 0.0;
-  if (kept.surroundings && kept.profile)
-    sky_ = sky_factors(kept_rule_, (sky ? sky : sky_basis(scene, {{}})).get(), scene_.surface);
+  if (kept.surroundings && kept.profile) basis_ = sky ? sky : sky_basis(scene, {{}});
+  sky_ = sky_weights(kept_rule_, basis_.get());
+  optics_ = optics_with(rule_.indices());
+}
+
+Radiometry::Optics Radiometry::optics_with(std::vector<FacetOptics> facets) const {
+  Optics optics;
+  for (const FacetOptics& facet : facets) optics.diffuse.emplace_back(scene_.surface, facet);
+  for (std::size_t j = 0; scene_.surface.diffuse > 0.0 && j < sky_.size(); ++j) {
+    const std::vector<double>& sky = kept_rule_.samples[j].sky;
+    optics.diffuse_beyond_mean.push_back(
+        optics.diffuse[j]
+            .mean_weights(basis_->nodes())
+            .dot(Eigen::Map<const Eigen::VectorXd>(sky.data(), static_cast<Eigen::Index>(sky.size()))));
+  }
+  optics.facets = std::move(facets);
+  return optics;
 }
 
 PointResult Radiometry::finished(PointResult result) const {
@@ -186,22 +198,21 @@ PointResult Radiometry::finished(PointResult result) const {
 }
 
 PointResult Radiometry::point(const Direction& direction, std::span<const Moments> moments) const {
-  return point(direction, moments, indices_);
+  return point(direction, moments, optics_);
 }
 
 PointResult Radiometry::point(const Direction& direction, std::span<const Moments> moments,
-                              std::span<const FacetOptics> indices) const {
-  assert(moments.size() == rule_.samples.size() && indices.size() == moments.size());
+                              const Optics& optics) const {
+  assert(moments.size() == rule_.samples.size() && optics.facets.size() == moments.size());
   if (!std::ranges::all_of(moments, is_known)) return outside_domain();
   if (reflectance_diverges(scene_.surface, direction, moments)) {
     return finished(grazing_limit(scene_, kept_rule_, sky_, direction, moments));
   }
-  return finished(assemble(moments, direction.cos_theta, indices, direction.cos_theta, {}));
+  return finished(assemble(moments, direction.cos_theta, optics, direction.cos_theta, {}));
 }
 
 PointResult Radiometry::bistatic_point(const Direction& view, double cos_theta_i, std::span<const Moments> moments,
-                                       std::span<const FacetOptics> indices,
-                                       std::span<const Scattered> scattered) const {
+                                       const Optics& optics, std::span<const Scattered> scattered) const {
   assert(moments.size() == rule_.samples.size() && scattered.size() == moments.size());
   if (!std::ranges::all_of(moments, is_known)) return outside_domain();
   if (reflectance_diverges(scene_.surface, view, moments)) {
@@ -209,17 +220,21 @@ PointResult Radiometry::bistatic_point(const Direction& view, double cos_theta_i
     result.status |= kReflectanceOutsideZeroToOne;
     return result;
   }
-  return finished(assemble(moments, view.cos_theta, indices, cos_theta_i, scattered));
+  return finished(assemble(moments, view.cos_theta, optics, cos_theta_i, scattered));
 }
 
-PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_theta,
-                                 std::span<const FacetOptics> indices, double cos_theta_i,
-                                 std::span<const Scattered> scattered) const {
+PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_theta, const Optics& optics,
+                                 double cos_theta_i, std::span<const Scattered> scattered) const {
   const bool bistatic = scene_.geometry.mode == Mode::kBistatic;
   PointResult result;
   boost::container::small_vector<Reflectance, 1> own;  // most scenes have one sample, and many entries
-  for (const Moments& m : moments) {
-    own.push_back(reflectance(scene_.surface, m, cos_theta));
+  boost::container::small_vector<DiffuseSample, 1> diffuse;
+  boost::container::small_vector<DiffuseLight, 1> diffuse_beam;
+  for (std::size_t j = 0; j < moments.size(); ++j) {
+    diffuse.push_back(
+        {optics.diffuse[j].rho(cos_theta), optics.diffuse_beyond_mean.empty() ? 0.0 : optics.diffuse_beyond_mean[j]});
+    if (bistatic) diffuse_beam.push_back(optics.diffuse[j].beam(cos_theta_i, cos_theta));
+    own.push_back(reflectance(scene_.surface, moments[j], cos_theta, diffuse[j].rho));
     if (is_unphysical(own.back())) result.status |= kReflectanceOutsideZeroToOne;
   }
   const std::span<const Reflectance> reflectances(own.data(), own.size());
@@ -227,9 +242,10 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   const auto emissivities_of = [&](EmissionModel of) {
     boost::container::small_vector<Emissivity, 1> list;
     for (std::size_t j = 0; j < moments.size(); ++j) {
-      list.push_back(of == EmissionModel::kFresnel  ? fresnel_emissivity(indices[j], cos_theta)
-                     : of == EmissionModel::kDirect ? direct_emissivity(scene_.surface, moments[j], cos_theta)
-                                                    : kirchhoff_emissivity(own[j]));
+      list.push_back(of == EmissionModel::kFresnel ? fresnel_emissivity(optics.facets[j], cos_theta)
+                     : of == EmissionModel::kDirect
+                         ? direct_emissivity(scene_.surface, moments[j], cos_theta, diffuse[j].rho)
+                         : kirchhoff_emissivity(own[j]));
     }
     return list;
   };
@@ -237,12 +253,13 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   const std::span<const Emissivity> emissivities(list.data(), list.size());
   Stokes sum = stokes_sum(kept_rule_, reflectances, emissivities, model, cos_theta, !bistatic);
   Stokes sky;
-  add_sky(sky, scene_.surface, kept_rule_, sky_, moments, cos_theta);
+  add_sky(sky, scene_.surface, kept_rule_, sky_, {diffuse.data(), diffuse.size()}, moments, cos_theta);
   sum.i += sky.i;
   sum.q += sky.q;
   sum.i_error += sky.i_error;
   sum.q_error += sky.q_error;
-  if (bistatic) add_beam(sum, scene_.surface, beam_specular_, kept_rule_, scattered, cos_theta_i, cos_theta);
+  if (bistatic)
+    add_beam(sum, beam_specular_, kept_rule_, scattered, {diffuse_beam.data(), diffuse_beam.size()}, cos_theta);
   add_path(sum, scene_.path, kept_rule_.path_exitance);
   const double unit = bistatic ? 1.0 / pi : 1.0;  // an exitance, or the radiance that it is the integral of
   const MeanReflectance mean = mean_reflectance(rule_, reflectances, cos_theta);

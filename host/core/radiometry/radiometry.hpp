@@ -9,6 +9,7 @@
 #include "model/direction.hpp"
 #include "model/kept_effects.hpp"
 #include "model/moments.hpp"
+#include "radiometry/diffuse.hpp"
 #include "radiometry/scattered.hpp"
 #include "scene/scene.hpp"
 #include "spectrum/sky_factors.hpp"
@@ -42,20 +43,28 @@ class Radiometry {
   /// the limit.
   PointResult point(const Direction& direction, std::span<const Moments> moments) const;
 
-  /// The same with other indices than those of rule(), as scattered points with their own n or k have; only the fresnel
-  /// emission uses them.
-  PointResult point(const Direction& direction, std::span<const Moments> moments,
-                    std::span<const FacetOptics> indices) const;
+  /// Facets at each sample, and the diffuse reflection with them.
+  struct Optics {
+    std::vector<FacetOptics> facets;
+    std::vector<DiffuseReflection> diffuse;
+    std::vector<double> diffuse_beyond_mean;  ///< DiffuseSample::beyond_mean
+  };
+  Optics optics_with(std::vector<FacetOptics> facets) const;
+
+  /// The same with other facets than those of rule(), as entries with their own n or k have; only the fresnel emission
+  /// and a polarised diffuse part use them.
+  PointResult point(const Direction& direction, std::span<const Moments> moments, const Optics& optics) const;
 
   /// Bistatic result: `moments` and rho at the view direction, the source at theta_i.
   /// Shape: one Moments and one Scattered per sample of rule(), in its order.
   /// Domain: a view at 90 degrees as in `point`, but where rho diverges everything is NaN with status 1 | 4.
   PointResult bistatic_point(const Direction& view, double cos_theta_i, std::span<const Moments> moments,
-                             std::span<const FacetOptics> indices, std::span<const Scattered> scattered) const;
+                             const Optics& optics, std::span<const Scattered> scattered) const;
+  const Optics& optics() const { return optics_; }
 
  private:
-  PointResult assemble(std::span<const Moments> moments, double cos_theta, std::span<const FacetOptics> indices,
-                       double cos_theta_i, std::span<const Scattered> scattered) const;
+  PointResult assemble(std::span<const Moments> moments, double cos_theta, const Optics& optics, double cos_theta_i,
+                       std::span<const Scattered> scattered) const;
 
   PointResult finished(PointResult result) const;
 
@@ -65,9 +74,10 @@ class Radiometry {
   double dropped_;  ///< bound of the change of DOLP by dropped effects
   bool knows_rho_;
   SpectralRule rule_;
-  SpectralRule kept_rule_;  ///< without the factors that are not kept
-  std::vector<FacetOptics> indices_;
-  std::vector<SkyFactor> sky_;  ///< of each sample; empty without a profile
+  SpectralRule kept_rule_;                 ///< without the factors that are not kept
+  std::shared_ptr<const SkyBasis> basis_;  ///< of the sky, if it is kept
+  std::vector<SkyWeights> sky_;            ///< of each sample; empty without a profile
+  Optics optics_;                          ///< of the rule
 };
 
 }  // namespace dolp

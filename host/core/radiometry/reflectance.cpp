@@ -21,21 +21,14 @@ double mean_weight(const SpectralSample& sample, double total_emitted, double to
 
 }  // namespace
 
-double diffuse_reflectance(const Surface& surface, double cos_theta) {
-  if (surface.diffuse == 0.0) return 0.0;
-  const double c = surface.diffuse_exponent;
-  return 2.0 * surface.diffuse * std::pow(cos_theta, c) / (c + 2.0);
-}
-
 // 1 - rho comes from the absorbed part; the subtraction 1 - rho would lose the digits of a metal's emission.
-Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta) {
+Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta, const DiffuseLight& diffuse) {
   const double scale = surface.specular / cos_theta;
-  const double diffuse = diffuse_reflectance(surface, cos_theta);
-  const double absorbed_terms = (1.0 - surface.specular) + scale * std::abs(moments.deficit) + diffuse;
+  const double absorbed_terms = (1.0 - surface.specular) + scale * std::abs(moments.deficit) + diffuse.i;
   Reflectance r;
-  r.rho_i = scale * moments.r_i + diffuse;
-  r.rho_q = scale * moments.r_q;
-  r.absorbed = (1.0 - surface.specular) + scale * moments.deficit - diffuse;
+  r.rho_i = scale * moments.r_i + diffuse.i;
+  r.rho_q = scale * moments.r_q + diffuse.q;
+  r.absorbed = (1.0 - surface.specular) + scale * moments.deficit - diffuse.i;
   r.rho_i_error = scale * moments.r_i_error + kReflectanceRounding * std::abs(r.rho_i);
   r.rho_q_error = scale * moments.r_q_error + kReflectanceRounding * std::abs(r.rho_q);
   r.absorbed_error = scale * moments.deficit_error + kReflectanceRounding * absorbed_terms;
@@ -89,15 +82,15 @@ Emissivity fresnel_emissivity(const FacetOptics& index, double cos_theta) {
   return {.i = mean, .q = 0.5 * (absorptance.s - absorptance.p), .terms = mean};
 }
 
-Emissivity direct_emissivity(const Surface& surface, const Moments& moments, double cos_theta) {
+Emissivity direct_emissivity(const Surface& surface, const Moments& moments, double cos_theta,
+                             const DiffuseLight& diffuse) {
   const double scale = surface.specular / cos_theta;
   const double rest = 1.0 - surface.specular;
-  const double diffuse = diffuse_reflectance(surface, cos_theta);
-  return {.i = scale * moments.direct_i + rest - diffuse,
-          .q = scale * moments.direct_q,
+  return {.i = scale * moments.direct_i + rest - diffuse.i,
+          .q = scale * moments.direct_q - diffuse.q,
           .i_error = scale * moments.direct_i_error,
           .q_error = scale * moments.direct_q_error,
-          .terms = scale * std::abs(moments.direct_i) + rest + diffuse};
+          .terms = scale * std::abs(moments.direct_i) + rest + diffuse.i};
 }
 
 Emissivity kirchhoff_emissivity(const Reflectance& r) {

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "model/moments.hpp"
+#include "radiometry/diffuse.hpp"
 #include "scene/scene.hpp"
 #include "spectrum/spectral_rule.hpp"
 
@@ -36,10 +37,8 @@ struct MeanReflectance {
   double error = 0.0;  ///< of the worse of the two
 };
 
-/// The diffuse part of rho.
-double diffuse_reflectance(const Surface& surface, double cos_theta);
-
-Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta);
+/// `diffuse`: its part of rho.
+Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta, const DiffuseLight& diffuse);
 
 /// True if rho_s or rho_p is outside [0, 1] beyond doubt.
 bool is_unphysical(const Reflectance& r);
@@ -52,8 +51,9 @@ Emissivity fresnel_emissivity(const FacetOptics& index, double cos_theta);
 
 /// Emissivity of the facets, straight to the viewer.
 ///
-/// Equation: eps_I = k_s eps_I,direct + 1 - k_s - diffuse, eps_Q = k_s eps_Q,direct.
-Emissivity direct_emissivity(const Surface& surface, const Moments& moments, double cos_theta);
+/// Equation: eps_I = k_s eps_I,direct + 1 - k_s - diffuse_I, eps_Q = k_s eps_Q,direct - diffuse_Q.
+Emissivity direct_emissivity(const Surface& surface, const Moments& moments, double cos_theta,
+                             const DiffuseLight& diffuse);
 
 /// Emissivities 1 - rho of s and of p.
 Emissivity kirchhoff_emissivity(const Reflectance& r);

@@ -127,22 +127,24 @@ void add_specular_sky(Stokes& sum, double specular, double rounding, const SkyWe
   sum.q_error += std::abs(specular) * error;
 }
 
-void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std::span<const SkyFactor> factors,
-             std::span<const Moments> moments, double cos_theta) {
+void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std::span<const SkyWeights> weights,
+             std::span<const DiffuseSample> diffuse, std::span<const Moments> moments, double cos_theta) {
   const double rounding = kRadianceRounding + rule.relative_error;
-  const double diffuse = factors.empty() ? 0.0 : diffuse_reflectance(surface, cos_theta);
-  for (std::size_t j = 0; j < factors.size(); ++j) {
-    if (surface.specular > 0.0)
-      add_specular_sky(sum, surface.specular / cos_theta, rounding, factors[j].weights, moments[j]);
-    sum.i += diffuse * factors[j].diffuse;
-    sum.i_error += std::abs(diffuse) * (factors[j].weights.error + rounding * std::abs(factors[j].diffuse));
+  for (std::size_t j = 0; j < weights.size(); ++j) {
+    if (surface.specular > 0.0) add_specular_sky(sum, surface.specular / cos_theta, rounding, weights[j], moments[j]);
+    const DiffuseLight& rho = diffuse[j].rho;
+    const double error = weights[j].error + rounding * std::abs(diffuse[j].beyond_mean);
+    sum.i += rho.i * diffuse[j].beyond_mean;
+    sum.q += rho.q * diffuse[j].beyond_mean;
+    sum.i_error += std::abs(rho.i) * error;
+    sum.q_error += std::abs(rho.q) * error;
   }
-  if (factors.empty() || surface.specular == 0.0) return;
+  if (weights.empty() || surface.specular == 0.0) return;
   const auto error_of = [&](double ColumnMoments::*part) {
     return panel_error(rule, [&](std::size_t j, std::size_t m) {
       double term = 0.0;
       for (std::size_t k = 0; k < moments[m].columns.size(); ++k)
-        term += factors[j].weights.of[static_cast<Eigen::Index>(k)] * (moments[m].columns[k].*part);
+        term += weights[j].of[static_cast<Eigen::Index>(k)] * (moments[m].columns[k].*part);
       return surface.specular / cos_theta * term;
     });
   };
@@ -150,24 +152,21 @@ void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std:
   sum.q_error += error_of(&ColumnMoments::q);
 }
 
-void add_beam(Stokes& sum, const Surface& surface, double k_s, const SpectralRule& rule,
-              std::span<const Scattered> scattered, double cos_theta_i, double cos_theta_r) {
-  const double diffuse = surface.diffuse == 0.0
-                             ? 0.0
-                             : surface.diffuse * std::pow(cos_theta_i, surface.diffuse_exponent + 1.0) *
-                                   std::pow(cos_theta_r, surface.diffuse_exponent);
+void add_beam(Stokes& sum, double k_s, const SpectralRule& rule, std::span<const Scattered> scattered,
+              std::span<const DiffuseLight> diffuse, double cos_theta_r) {
   const double rounding = kRadianceRounding + rule.relative_error;
   for (std::size_t j = 0; j < scattered.size(); ++j) {
     if (rule.samples[j].irradiance == 0.0) continue;
     const double specular = pi * k_s * rule.samples[j].irradiance / cos_theta_r;
-    const double unpolarised = rule.samples[j].irradiance * diffuse;
+    const double diffuse_i = rule.samples[j].irradiance * diffuse[j].i;
+    const double diffuse_q = rule.samples[j].irradiance * diffuse[j].q;
     const double error = std::abs(specular) * (scattered[j].error + rounding * std::abs(scattered[j].i));
-    sum.i += specular * scattered[j].i + unpolarised;
-    sum.q += specular * scattered[j].q;
+    sum.i += specular * scattered[j].i + diffuse_i;
+    sum.q += specular * scattered[j].q + diffuse_q;
     sum.u += specular * scattered[j].u;
     sum.v += specular * scattered[j].v;
-    sum.i_error += error + rounding * std::abs(unpolarised);
-    sum.q_error += error;
+    sum.i_error += error + rounding * std::abs(diffuse_i);
+    sum.q_error += error + rounding * std::abs(diffuse_q);
     sum.u_error += error;
   }
   const auto error_of = [&](double Scattered::*part) {

@@ -46,19 +46,26 @@ Stokes stokes_sum(const SpectralRule& rule, std::span<const Reflectance> reflect
 /// Adds a specular term `net` * r, with cos(theta) in r.
 void add_specular(Stokes& sum, double net, const Moments& moments);
 
-/// Adds what a sky reflects beyond its mean; `factors` is empty without one.
+/// The diffuse part of rho in a sample, and what a sky adds for it to the mean of its exitance.
+struct DiffuseSample {
+  DiffuseLight rho;
+  double beyond_mean = 0.0;
+};
+
+/// Adds what a sky reflects beyond its mean; `weights` is empty without one.
 ///
-/// Equation: pi (S_I - mean(L) rho_I) = k_s / cos(theta) sum w_k r_I,k + rho_diffuse (mean_c(L) - mean(L)), Q likewise
-/// without the diffuse part: r_k are the moments with the functions of the basis, w_k the sample's weights.
-void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std::span<const SkyFactor> factors,
-             std::span<const Moments> moments, double cos_theta);
+/// Equation: pi (S - mean(L) rho) = k_s / cos(theta) sum w_k r_k + rho_diffuse (mean_diffuse(L) - mean(L)) in I and in
+/// Q: r_k are the moments with the functions of the basis, w_k the sample's weights.
+void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std::span<const SkyWeights> weights,
+             std::span<const DiffuseSample> diffuse, std::span<const Moments> moments, double cos_theta);
 
 /// Adds the specular part of the same, with cos(theta) in r.
 void add_specular_sky(Stokes& sum, double specular, double rounding, const SkyWeights& weights, const Moments& moments);
 
-/// Adds pi E0 cos(theta_i) f of the beam from the source, the factor pi as in the exitances of the sum.
-void add_beam(Stokes& sum, const Surface& surface, double k_s, const SpectralRule& rule,
-              std::span<const Scattered> scattered, double cos_theta_i, double cos_theta_r);
+/// Adds pi E0 cos(theta_i) f of the beam from the source, the factor pi as in the exitances of the sum. `diffuse`:
+/// pi cos(theta_i) f of the diffuse part.
+void add_beam(Stokes& sum, double k_s, const SpectralRule& rule, std::span<const Scattered> scattered,
+              std::span<const DiffuseLight> diffuse, double cos_theta_r);
 
 /// Applies a path: its transmittance multiplies the sums, its radiance is added.
 void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance);

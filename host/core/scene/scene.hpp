@@ -67,6 +67,7 @@ struct Surface {
   double specular = 1.0;           ///< k_s in [0, 1]
   double diffuse = 0.0;            ///< k_d in [0, 1]
   double diffuse_exponent = -0.5;  ///< c in (-1, 0]
+  DiffusePolarisation diffuse_polarisation = DiffusePolarisation::kNone;
   /// True if the masking needs the mean slope, which the distribution does not always have: kSmithCauchyQRange.
   bool needs_mean_slope() const { return masking == Masking::kSmith && distribution == Distribution::kCauchy; }
   bool is_bare() const { return coating.empty() && !reflectance; }

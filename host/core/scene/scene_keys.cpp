@@ -208,6 +208,10 @@ std::vector<SceneKey> surface_keys() {
       number("surface.diffuse_exponent", "1", kDiffuseExponentRange, "-0.5",
              "exponent c of the diffuse term (cos theta_i cos theta_r)^c",
              [](auto& s) { return &s.surface.diffuse_exponent; }),
+      choice(
+          "surface.diffuse_polarisation", Surface().diffuse_polarisation,
+          "none, or polarised by transmission through the smooth surface on the way out (paint; n and k without films)",
+          [](auto& s) { return &s.surface.diffuse_polarisation; }),
   };
 }
 

@@ -444,6 +444,9 @@ void check_scattering(const SceneValues& scene, const SceneDocument& document) {
                  {!is_direct, "emission.model = \"moments\" or \"fresnel\""},
                  {!emission.has_bracket, "emission.bracket = false"}});
   }
+  if (surface.diffuse_polarisation != DiffusePolarisation::kNone)
+    check_needs(document, "surface.diffuse_polarisation",
+                {{surface.is_bare(), "no surface.coating or surface.reflectance_file"}});
   const bool can_be_direct = keeps_projected_area(surface.masking);
   const char* const maskings = "surface.masking = \"smith\" or \"v-cavity\"";
   if (emission.has_bracket) {

@@ -51,17 +51,15 @@ std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, const std::ve
   return basis->size() > 0 ? basis : nullptr;
 }
 
-std::vector<SkyFactor> sky_factors(const SpectralRule& rule, const SkyBasis* basis, const Surface& surface) {
-  std::vector<SkyFactor> factors;
-  if (!basis || rule.samples.empty() || rule.samples.front().sky.empty()) return factors;
-  Eigen::VectorXd diffuse;
-  if (surface.diffuse > 0.0) diffuse = basis->nodes().mean_weights(surface.diffuse_exponent);
+std::vector<SkyWeights> sky_weights(const SpectralRule& rule, const SkyBasis* basis) {
+  std::vector<SkyWeights> weights;
+  if (!basis || rule.samples.empty() || rule.samples.front().sky.empty()) return weights;
   for (const SpectralSample& sample : rule.samples) {
     const Eigen::VectorXd sky = vector_of(sample.sky);
-    factors.push_back({basis->weights_of(sky), surface.diffuse > 0.0 ? diffuse.dot(sky) : 0.0});
-    factors.back().weights.error += basis->nodes().error(sky);
+    weights.push_back(basis->weights_of(sky));
+    weights.back().error += basis->nodes().error(sky);
   }
-  return factors;
+  return weights;
 }
 
 }  // namespace dolp

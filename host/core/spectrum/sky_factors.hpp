@@ -32,13 +32,8 @@ class SkySampler {
 /// list is empty. Null where it adds nothing.
 std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, const std::vector<SceneVariant>& variants);
 
-/// The part of a sample that the sky adds to its mean.
-struct SkyFactor {
-  SkyWeights weights;    ///< of the moments with the functions of a basis
-  double diffuse = 0.0;  ///< added to `surroundings` for the diffuse part of rho
-};
-
-/// Factors of the samples of a rule that have a sky; empty where none has.
-std::vector<SkyFactor> sky_factors(const SpectralRule& rule, const SkyBasis* basis, const Surface& surface);
+/// What the sky adds to its mean in each sample of a rule: weights of the moments with the functions of a basis. Empty
+/// where no sample has a sky.
+std::vector<SkyWeights> sky_weights(const SpectralRule& rule, const SkyBasis* basis);
 
 }  // namespace dolp

@@ -11,6 +11,7 @@
 
 #include "model/angles.hpp"
 #include "model/direction.hpp"
+#include "radiometry/diffuse.hpp"
 #include "run/scene_run.hpp"
 
 namespace dolp {
@@ -24,11 +25,10 @@ bool is_grazing(const BeamAngles& angles) { return angles.theta_i_deg == 90.0 ||
 bool is_undefined(const Surface& surface, const MuellerPoint& point) {
   const bool has_specular = surface.specular > 0.0;
   const bool has_limit = keeps_projected_area(surface.masking);
-  const bool diffuse_diverges = surface.diffuse > 0.0 && surface.diffuse_exponent < 0.0;
   const bool is_multiple = surface.scattering == Scattering::kMultiple;
   if (has_specular && (point.shape.sigma == 0.0 || is_multiple) && is_specular(point.angles)) return true;
   const bool specular_diverges = has_specular && point.shape.sigma > 0.0 && (!has_limit || !has_facet(point.angles));
-  return is_grazing(point.angles) && (specular_diverges || diffuse_diverges);
+  return is_grazing(point.angles) && (specular_diverges || diffuse_diverges(surface));
 }
 
 bool needs_evaluator(const Surface& surface, const MuellerPoint& point) {
@@ -57,10 +57,18 @@ ScatteringRequest request_for(const SceneValues& scene, std::span<const MuellerP
   return request;
 }
 
-double diffuse_brdf(const Surface& surface, const BeamAngles& angles) {
-  if (surface.diffuse == 0.0) return 0.0;
-  const double cosines = cos_sin_deg(angles.theta_i_deg).cos * cos_sin_deg(angles.theta_r_deg).cos;
-  return surface.diffuse / std::numbers::pi * std::pow(cosines, surface.diffuse_exponent);
+void add_diffuse(MuellerMatrix& f, const Surface& surface, const MuellerPoint& point) {
+  if (surface.diffuse == 0.0) return;
+  const double cos_i = cos_sin_deg(point.angles.theta_i_deg).cos;
+  const double cos_r = cos_sin_deg(point.angles.theta_r_deg).cos;
+  const DiffuseReflection diffuse(surface, point.index);
+  const DiffuseLight in = diffuse.transmitted(cos_i), out = diffuse.transmitted(cos_r);
+  if (out.i == 0.0 || in.i == 0.0) return;  // at 90 degrees
+  const double scale = surface.diffuse / std::numbers::pi * std::pow(cos_i * cos_r, surface.diffuse_exponent);
+  f[0] += scale * out.i * in.i;
+  f[1] += scale * out.i * in.q;
+  f[4] += scale * out.q * in.i;
+  f[5] += scale * out.q * in.q;
 }
 
 /// True where the error is not that of every pBRDF: more bounces count than are followed.
@@ -84,7 +92,7 @@ MuellerMatrix elements(const Surface& surface, const MuellerPoint& point, const 
     // + 0 takes the sign from a zero.
     for (std::size_t i = 0; i < f.size(); ++i) f[i] = surface.specular * specular->m[i] / cosines + 0.0;
   }
-  f[0] += diffuse_brdf(surface, point.angles);
+  add_diffuse(f, surface, point);
   return f;
 }
 

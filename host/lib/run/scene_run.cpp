@@ -77,16 +77,19 @@ class MemberResults {
       moments_.assign(samples.size(), {});
       beams_.resize(samples.size());
     }
-    if (entry.index) {
-      indices_ = samples;
-      for (FacetOptics& sample : indices_) sample.index = *entry.index;
-    }
-    const std::span<const FacetOptics> indices = entry.index ? indices_ : samples;
-    const std::span<const Moments> moments = moments_of(member, entry, direction, indices);
     const Radiometry& radiometry = context_.spectra.radiometries[entry.variant];
-    if (context_.scene.geometry.mode != Mode::kBistatic) return radiometry.point(direction, moments, indices);
+    if (entry.index && (entry.index != index_ || entry.variant != variant_)) {
+      std::vector<FacetOptics> facets = samples;
+      for (FacetOptics& facet : facets) facet.index = *entry.index;
+      own_optics_ = radiometry.optics_with(std::move(facets));
+      index_ = entry.index;
+      variant_ = entry.variant;
+    }
+    const Radiometry::Optics& optics = entry.index ? own_optics_ : radiometry.optics();
+    const std::span<const Moments> moments = moments_of(member, entry, direction, optics.facets);
+    if (context_.scene.geometry.mode != Mode::kBistatic) return radiometry.point(direction, moments, optics);
     fill_beams(member, entry);
-    return radiometry.bistatic_point(direction, cos_sin_deg(entry.theta_deg).cos, moments, indices, beams_);
+    return radiometry.bistatic_point(direction, cos_sin_deg(entry.theta_deg).cos, moments, optics, beams_);
   }
 
  private:
@@ -135,8 +138,10 @@ class MemberResults {
   const PartRequests& requests_;
   const EvaluatorResults& evaluated_;
   std::vector<Moments> moments_;
-  std::vector<FacetOptics> indices_;
   std::vector<Scattered> beams_;
+  std::optional<OpticalConstants> index_;  ///< that own_optics_ are for, with the variant
+  std::uint32_t variant_ = 0;
+  Radiometry::Optics own_optics_;
   Direction direction_;
   bool has_direction_ = false;
 };

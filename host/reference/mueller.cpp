@@ -10,7 +10,6 @@
 #include <limits>
 
 #include "reference/attenuation.hpp"
-#include "reference/film_stack.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/groove_beam.hpp"
 #include "reference/hemisphere.hpp"

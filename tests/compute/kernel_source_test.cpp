@@ -17,21 +17,9 @@
 #include <type_traits>
 #include <vector>
 
-namespace dolp::tested_float {
-using real = float;
-using real2 = glm::vec2;
-using real4 = glm::vec4;
-}  // namespace dolp::tested_float
-
 #define DOLP_KERNEL_NAMESPACE tested_float
 #include "evaluate/kernel/kernel_source.hpp"
 #undef DOLP_KERNEL_NAMESPACE
-
-namespace dolp::tested_double {
-using real = double;
-using real2 = glm::dvec2;
-using real4 = glm::dvec4;
-}  // namespace dolp::tested_double
 
 #define DOLP_KERNEL_NAMESPACE tested_double
 #define DOLP_DOUBLE

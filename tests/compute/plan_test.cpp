@@ -8,7 +8,6 @@
 #include "model/angles.hpp"
 #include "plan/kernel_data.hpp"
 #include "plan/rule.hpp"
-#include "plan/rule_nodes.hpp"
 
 namespace dolp {
 namespace {

@@ -15,7 +15,8 @@
 #include "device/instance.hpp"
 #include "device/result.hpp"
 #include "error_text.hpp"
-#include "evaluate/vulkan/moments_run.hpp"
+#include "evaluate/vulkan/command_stream.hpp"
+#include "evaluate/vulkan/kernels.hpp"
 #include "evaluate/vulkan/tiles.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 

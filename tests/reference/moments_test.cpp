@@ -230,7 +230,7 @@ TEST(ReferenceEvaluator, SeveralEntries_KeepTheOrderOfTheRequest) {
   request.append({10.0, {0.5, 3.0}, kSteel});
   request.append({70.0, {0.5, 3.0}, {27.0, 90.0}});
   request.append({10.0, {0.2, 2.0}, kSteel});
-  ReferenceEvaluator evaluator({.threads = 3});
+  ReferenceEvaluator evaluator;
   std::size_t told = 0;
   const std::vector<Moments> together = evaluator.evaluate(request, [&](std::size_t done, std::size_t total) {
     EXPECT_GT(done, told);

@@ -12,7 +12,7 @@
 #include "model/gamma_ratio.hpp"
 #include "model/scattering.hpp"
 #include "model/smooth_surface.hpp"
-#include "plan/geometry.hpp"
+#include "plan/beam.hpp"
 
 namespace dolp {
 namespace {

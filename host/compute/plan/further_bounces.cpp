@@ -1,5 +1,3 @@
-#include "plan/further_bounces.hpp"
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>

@@ -18,7 +18,6 @@
 #include "plan/constants.hpp"
 #include "plan/reflectance_curve.hpp"
 #include "plan/rule.hpp"
-#include "plan/rule_nodes.hpp"
 
 namespace dolp {
 namespace {

@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "model/moments.hpp"
@@ -19,6 +22,18 @@ namespace kernel {
 using real = double;
 #include "interface.glsl"  // NOLINT: one source for host and shaders
 }  // namespace kernel
+
+/// Converts the structure `From`, which holds only FromReal, to the same structure `To` of ToReal.
+template <class ToReal, class To, class FromReal, class From>
+To convert_reals(const From& from) {
+  constexpr std::size_t kCount = sizeof(From) / sizeof(FromReal);
+  static_assert(kCount * sizeof(FromReal) == sizeof(From) && kCount * sizeof(ToReal) == sizeof(To));
+  static_assert(std::is_trivially_copyable_v<From> && std::is_trivially_copyable_v<To>);
+  const auto numbers = std::bit_cast<std::array<FromReal, kCount>>(from);
+  std::array<ToReal, kCount> converted{};
+  for (std::size_t i = 0; i < kCount; ++i) converted[i] = static_cast<ToReal>(numbers[i]);
+  return std::bit_cast<To>(converted);
+}
 
 inline constexpr unsigned kRootAbove = 1;  ///< a square root just above a breakpoint
 inline constexpr unsigned kRootBelow = 2;  ///< just below

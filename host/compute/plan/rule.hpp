@@ -1,5 +1,8 @@
-// Numbers of nodes in the rules of the kernel for a tolerance.
+// The Gauss rules of the kernel: their nodes, and how many nodes a tolerance needs.
 #pragma once
+
+#include <array>
+#include <vector>
 
 #include "plan/kernel_data.hpp"
 
@@ -41,5 +44,16 @@ bool needs_line(Distribution distribution, Masking masking, const SlopeShape& sh
 /// log10 of the error by smith's cusp at theta_r = 0 in rules that do not split there, as a share of L; below -100
 /// where there is no cusp.
 double cusp_digits(Distribution distribution, Masking masking, const SlopeShape& shape, double digits);
+
+/// (abscissa, weight) of each node.
+using RuleNodes = std::vector<std::array<double, 2>>;
+
+/// Gauss-Legendre rule on [-1, 1] with ascending abscissae.
+/// Accuracy: 1e-15 (tests/compute/plan_test.cpp integrates polynomials of degree 2 * order - 1).
+RuleNodes gauss_legendre(int order);
+
+/// The sections of shaders/physics/quadrature.glsl, with the orders 1 to `largest_order` in each. Computed once; the
+/// reference stays valid.
+const RuleNodes& rule_nodes(int largest_order);
 
 }  // namespace dolp

@@ -4,15 +4,28 @@
 // distributions follow from a few Chebyshev nodes, computed to a tolerance of their own.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "model/choices.hpp"
 #include "model/moments.hpp"
-#include "plan/shape_axis.hpp"
 
 namespace dolp {
+
+/// Positions of the directions of a grid, in groups that have one parameter each: all of them, or the grazing ones
+/// apart.
+std::vector<std::vector<std::size_t>> split_grazing_directions(const MomentsRequest& request);
+
+/// Values of a parameter, and the nodes from which they are interpolated.
+struct ShapeAxis {
+  std::vector<double> nodes;     ///< the values themselves where interpolation gains nothing
+  Eigen::MatrixXd cardinal;      ///< values x nodes: weights of the moments at the nodes
+  Eigen::MatrixXd coefficients;  ///< nodes x nodes: from values to Chebyshev coefficients; empty without interpolation
+  bool is_interpolated() const { return coefficients.size() > 0; }
+};
 
 /// Plan for a grid. It follows from the request alone.
 struct ShapePlan {

@@ -60,11 +60,11 @@ void parallel_ranges(std::size_t count, std::size_t grain,
   loop.rethrow();
 }
 
-void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, const Progress& progress) {
-  constexpr std::size_t kBlock = 64;  // items between two reports of progress
+void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, const Progress& progress,
+                  std::size_t grain) {
   std::mutex mutex;
   std::size_t done = 0;
-  parallel_ranges(count, kBlock, [&](std::size_t first, std::size_t last) {
+  parallel_ranges(count, grain, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) body(i);
     const std::lock_guard lock(mutex);
     done += last - first;

@@ -22,38 +22,24 @@ DeviceTimeout::DeviceTimeout(const std::string& message) : DeviceError(message) 
 bool driver_is_busy() { return is_busy; }
 
 std::string result_name(VkResult result) {
-  switch (result) {
-    case VK_SUCCESS:
-      return "VK_SUCCESS";
-    case VK_TIMEOUT:
-      return "VK_TIMEOUT";
-    case VK_INCOMPLETE:
-      return "VK_INCOMPLETE";
-    case VK_ERROR_OUT_OF_HOST_MEMORY:
-      return "VK_ERROR_OUT_OF_HOST_MEMORY";
-    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
-      return "VK_ERROR_OUT_OF_DEVICE_MEMORY";
-    case VK_ERROR_INITIALIZATION_FAILED:
-      return "VK_ERROR_INITIALIZATION_FAILED";
-    case VK_ERROR_DEVICE_LOST:
-      return "VK_ERROR_DEVICE_LOST";
-    case VK_ERROR_MEMORY_MAP_FAILED:
-      return "VK_ERROR_MEMORY_MAP_FAILED";
-    case VK_ERROR_LAYER_NOT_PRESENT:
-      return "VK_ERROR_LAYER_NOT_PRESENT";
-    case VK_ERROR_EXTENSION_NOT_PRESENT:
-      return "VK_ERROR_EXTENSION_NOT_PRESENT";
-    case VK_ERROR_FEATURE_NOT_PRESENT:
-      return "VK_ERROR_FEATURE_NOT_PRESENT";
-    case VK_ERROR_INCOMPATIBLE_DRIVER:
-      return "VK_ERROR_INCOMPATIBLE_DRIVER";
-    case VK_ERROR_TOO_MANY_OBJECTS:
-      return "VK_ERROR_TOO_MANY_OBJECTS";
-    case VK_ERROR_OUT_OF_POOL_MEMORY:
-      return "VK_ERROR_OUT_OF_POOL_MEMORY";
-    default:
-      return "VkResult " + std::to_string(static_cast<int>(result));
-  }
+#define DOLP_NAMED(code) std::pair(code, #code)
+  constexpr std::array kNames = {DOLP_NAMED(VK_SUCCESS),
+                                 DOLP_NAMED(VK_TIMEOUT),
+                                 DOLP_NAMED(VK_INCOMPLETE),
+                                 DOLP_NAMED(VK_ERROR_OUT_OF_HOST_MEMORY),
+                                 DOLP_NAMED(VK_ERROR_OUT_OF_DEVICE_MEMORY),
+                                 DOLP_NAMED(VK_ERROR_INITIALIZATION_FAILED),
+                                 DOLP_NAMED(VK_ERROR_DEVICE_LOST),
+                                 DOLP_NAMED(VK_ERROR_MEMORY_MAP_FAILED),
+                                 DOLP_NAMED(VK_ERROR_LAYER_NOT_PRESENT),
+                                 DOLP_NAMED(VK_ERROR_EXTENSION_NOT_PRESENT),
+                                 DOLP_NAMED(VK_ERROR_FEATURE_NOT_PRESENT),
+                                 DOLP_NAMED(VK_ERROR_INCOMPATIBLE_DRIVER),
+                                 DOLP_NAMED(VK_ERROR_TOO_MANY_OBJECTS),
+                                 DOLP_NAMED(VK_ERROR_OUT_OF_POOL_MEMORY)};
+#undef DOLP_NAMED
+  const auto found = std::ranges::find(kNames, result, [](const auto& named) { return named.first; });
+  return found != kNames.end() ? found->second : "VkResult " + std::to_string(static_cast<int>(result));
 }
 
 bool lacks_addresses() {

@@ -5,18 +5,9 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <glm/vec2.hpp>
-#include <glm/vec4.hpp>
 
 #define DOLP_KERNEL_NAMESPACE sampling_kernel
 #define DOLP_DOUBLE
-
-namespace dolp::sampling_kernel {
-using real = double;
-using real2 = glm::dvec2;
-using real4 = glm::dvec4;
-}  // namespace dolp::sampling_kernel
-
 #include "evaluate/kernel/kernel_source.hpp"
 
 namespace dolp {

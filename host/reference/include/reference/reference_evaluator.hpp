@@ -15,8 +15,6 @@ struct ReferenceOptions {
   double relative_tolerance = 1e-9;
   /// Equal parts of each first panel of the quadratures: 2 recomputes with other nodes.
   int subdivisions = 1;
-  /// 0: as many as the machine has hardware threads.
-  unsigned threads = 0;
 };
 
 /// The independent reference: moments by nested adaptive Gauss-Kronrod quadrature in double, over zenith and azimuth of

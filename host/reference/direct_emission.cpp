@@ -34,7 +34,7 @@ using Emitted = Values<kCount>;
 /// Absorptances of facets, by the cosine of the local angle.
 using Absorption = std::function<FresnelCoefficients(double cos_beta)>;
 
-// The facets of one surface, seen from one direction. `is_response`: errors are relative to cos(theta).
+// The facets of one surface, visible from one direction. `is_response`: errors are relative to cos(theta).
 class Facets {
  public:
   Facets(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants, Absorption absorption,
@@ -92,8 +92,8 @@ class Facets {
     UnitLight light = unit_light(point, k);
     const double from_s = reflect(b, r, light.from_s);
     const double from_p = reflect(b, r, light.from_p);
-    const double seen = masking_ == Masking::kVCavity ? std::min(e, 2.0 * view_.cos) : e * smith_;
-    return {seen * 0.5 * (from_s + from_p), seen * 0.5 * (from_s - from_p)};
+    const double visible = masking_ == Masking::kVCavity ? std::min(e, 2.0 * view_.cos) : e * smith_;
+    return {visible * 0.5 * (from_s + from_p), visible * 0.5 * (from_s - from_p)};
   }
 
   // Mean of the facets at phi and phi + 180 degrees.

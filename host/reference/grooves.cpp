@@ -24,21 +24,21 @@ using Vector3 = Vector<double>;
 constexpr double kRounding = 256.0 * std::numeric_limits<double>::epsilon();
 // Light of less intensity is taken as absorbed.
 constexpr double kDark = 1e-24;
-// Largest number of bounces followed; the rest of the light may or may not leave the groove.
+// Most bounces that are followed; the rest of the light may or may not leave the groove.
 constexpr int kMostFollowed = 2000;
 constexpr double kSteepest = 1e15;
 constexpr double kSteeper = 1.5;
-// Steeper grooves than those of a slope t reflect less than t's, with some room for the steps between bounces.
+// Steeper grooves reflect less, apart from the steps between bounces, for which this leaves room.
 constexpr double kTailRoom = 2.0;
-constexpr double kTailShare = 0.01;  // of the tolerance
+constexpr double kTailShare = 0.01;  // share of the tolerance
 // Beams change their bounces over angles of the order of the groove's half-angle gamma.
 constexpr double kStepsPerGamma = 3.0;
-// Beyond the slope where this share of the integral is left bends are not looked for, nor in grooves steeper than
-// kSteepestBends, where they are many and small.
+// The search for bends ends at the slope where this share of the integral is left, and at kSteepestBends: in steeper
+// grooves bends are many and small.
 constexpr double kBendShare = 1e-2;
 constexpr double kSteepestBends = 10.0;
-// Bounces that an attempt may take, some two seconds. One that takes more is abandoned for a less ambitious one, but
-// for the last, which ends with what it has reached.
+// Bounces that an attempt may take, some two seconds. An attempt that takes more is abandoned for a less ambitious
+// attempt; the last attempt ends with what it has reached.
 constexpr double kMostBounces = 2e7;
 constexpr double kLessAmbitious = 100.0;
 constexpr double kLeastAmbition = 1e-5;
@@ -46,7 +46,7 @@ constexpr double kLeastAmbition = 1e-5;
 // for rounding.
 constexpr double kThinWeight = 0.02;
 constexpr double kNegligible = 1e-12;
-// In panels that still have bends the distance of two rules is of the size of the error and may be less by chance.
+// In panels that still have bends, the distance of two rules is about the error, and may be less by chance.
 constexpr double kBentErrors = 6.0;
 // Quantiles and azimuths of the first look at a surface.
 constexpr int kLookShares = 16;
@@ -238,7 +238,7 @@ class Surveyor {
     double bends;  ///< the slope beyond which bends are not looked for
     double all;    ///< the slope beyond which nothing is followed
   };
-  // Slopes beyond which the rest is negligible, or has too many bounces.
+  // Slopes beyond which the rest is negligible or has too many bounces.
   Ends ends(const GrooveValues& expected) {
     const double scale = std::min(expected[kReflected], expected[kAbsorbed]);
     Ends ends{kSteepestBends, kSteepest};

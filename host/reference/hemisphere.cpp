@@ -37,10 +37,10 @@ constexpr double kNearHorizon_rad = 1e-3;
 constexpr double kLayerGrowth = 10.0;
 // Errors of the nested integrals, relative to the one around them.
 constexpr double kInnerShare = 0.02;
-// Smallest relative error to which an azimuth integral can be refined: a Kronrod panel's own rounding is 1e-15 of its
+// Smallest relative error to which an azimuth integral can be refined: the rounding of a Kronrod panel is 1e-15 of its
 // magnitude.
 constexpr double kInnerFloor = 4e-15;
-// Integrals below this share of the albedo are not refined for: they are zero but for rounding.
+// Integrals below this share of the albedo are not refined: they are zero except for rounding.
 constexpr double kNegligible = 1e-12;
 
 // Absolute error of G, which is of order 1: below what the azimuth could take for structure, above rounding.
@@ -50,9 +50,6 @@ double masking_tolerance_for(const Refinement& refinement) {
 
 // Components of the integrals; after them K responses of the reflected part, and K of the polarised one.
 enum Component : std::size_t { kAlbedo, kReflected, kPolarised, kAbsorbed, kMomentCount };
-template <std::size_t K>
-using MomentValues = Values<kMomentCount + 2 * K>;
-
 template <std::size_t N>
 Values<N> moment_scales(const Values<N>& value) {
   const double floor = kNegligible * value[kAlbedo] + std::numeric_limits<double>::min();
@@ -60,29 +57,6 @@ Values<N> moment_scales(const Values<N>& value) {
   const double absorbed = std::max(kSmallAbsorbed * value[kAlbedo] + floor, value[kAbsorbed]);
   Values<N> scales{std::max(floor, value[kAlbedo]), reflected, reflected, absorbed};
   std::fill(scales.begin() + kMomentCount, scales.end(), scales[kAlbedo]);
-  return scales;
-}
-
-// The moments, and with a function of the sky, followed by the errors of their azimuth integrals, which are only
-// carried along.
-template <std::size_t K>
-inline constexpr std::size_t kSkyReflected = kMomentCount + 2 * K;
-template <std::size_t K>
-inline constexpr std::size_t kSkyPolarised = kSkyReflected<K> + 1;
-template <std::size_t K>
-inline constexpr std::size_t kZenithCount = kSkyReflected<K> + 2;
-template <std::size_t K>
-using BothValues = Values<2 * kZenithCount<K>>;
-
-template <std::size_t K>
-BothValues<K> both_scales(const BothValues<K>& value) {
-  BothValues<K> scales;
-  scales.fill(kInfinity);
-  MomentValues<K> moments;
-  std::copy_n(value.begin(), moments.size(), moments.begin());
-  moments = moment_scales(moments);
-  std::copy(moments.begin(), moments.end(), scales.begin());
-  scales[kSkyReflected<K>] = scales[kSkyPolarised<K>] = moments[kReflected];
   return scales;
 }
 
@@ -102,6 +76,15 @@ MuellerRow mueller_row(const FresnelCoefficients& r, double cos_eta, double sin_
 template <std::size_t K>
 class Hemisphere {
  public:
+  // The moments without and with a function of the sky, and then the errors of their azimuth integrals, which are only
+  // carried along.
+  static constexpr std::size_t kAzimuthCount = kMomentCount + 2 * K;
+  static constexpr std::size_t kSkyReflected = kAzimuthCount;
+  static constexpr std::size_t kSkyPolarised = kAzimuthCount + 1;
+  static constexpr std::size_t kZenithCount = kAzimuthCount + 2;
+  using AzimuthValues = Values<kAzimuthCount>;
+  using BothValues = Values<2 * kZenithCount>;
+
   Hemisphere(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
              const Refinement& refinement, const SkyFunction* sky, const Curves* curves = nullptr)
       : slopes_(slopes),
@@ -113,17 +96,17 @@ class Hemisphere {
         sky_(sky),
         curves_(curves) {}
 
-  Integral<2 * kZenithCount<K>> integrate_zenith() {
-    constexpr std::size_t kCount = 2 * kZenithCount<K>;
+  Integral<2 * kZenithCount> integrate_zenith() {
+    constexpr std::size_t kCount = 2 * kZenithCount;
     const Goal goal{.relative = refinement_.relative_tolerance, .subdivisions = refinement_.subdivisions};
     const Breaks breaks = zenith_breaks();
     if (fixed_.cos > 0.0) {
-      return integrate<kCount>([this](double u) { return row_values(u); }, breaks, goal, both_scales<K>);
+      return integrate<kCount>([this](double u) { return row_values(u); }, breaks, goal, both_scales);
     }
     // At theta = 90 degrees u runs up to 0, where the integrand is |u|^(2q - 4) for q < 2: integrated in log |u|, with
     // what lies beyond the gap added as that power.
     const auto in_log = [this](double x) {
-      BothValues<K> values = row_values(-std::exp(x));
+      BothValues values = row_values(-std::exp(x));
       for (double& value : values) value *= std::exp(x);
       return values;
     };
@@ -133,9 +116,9 @@ class Hemisphere {
       if (u < 0.0) log_breaks.add(std::log(-u));
     }
     for (const double x : {-40.0, -20.0, -10.0, -5.0, -2.0}) log_breaks.add(x);
-    Integral<kCount> result = integrate<kCount>(in_log, log_breaks, goal, both_scales<K>);
+    Integral<kCount> result = integrate<kCount>(in_log, log_breaks, goal, both_scales);
     const double power = slopes_.is_gaussian() ? 1.0 : std::min(1.0, 2.0 * slopes_.q() - 3.0);
-    const BothValues<K> at_gap = row_values(-kHorizonGap);
+    const BothValues at_gap = row_values(-kHorizonGap);
     for (std::size_t k = 0; k < result.value.size(); ++k) result.value[k] += kHorizonGap * at_gap[k] / power;
     return result;
   }
@@ -212,7 +195,7 @@ class Hemisphere {
   }
 
   // In v of tan(delta/4) = width sinh(v), width being where D has fallen off: 4 tan^2(delta/4) is about s2.
-  Integral<kMomentCount + 2 * K> integrate_azimuth(const Row& row) {
+  Integral<kAzimuthCount> integrate_azimuth(const Row& row) {
     const double t2 = row.t * row.t;
     const double scale2 =
         slopes_.width() * slopes_.width() + (slopes_.is_gaussian() ? 0.0 : t2 / std::max(1.0, slopes_.q()));
@@ -220,7 +203,7 @@ class Hemisphere {
     const double width = std::min(10.0, std::sqrt(width2));
     const auto in_v = [&](double v) {
       const double x = width * std::sinh(v);
-      MomentValues<K> values = integrand(row, 4.0 * std::atan(x));
+      AzimuthValues values = integrand(row, 4.0 * std::atan(x));
       for (double& value : values) value *= 4.0 * width * std::cosh(v) / (1.0 + x * x);
       evaluations_ += 1.0;
       return values;
@@ -228,12 +211,22 @@ class Hemisphere {
     const Goal goal{.relative = std::max(kInnerFloor, kInnerShare * refinement_.relative_tolerance),
                     .max_panels = 200,
                     .subdivisions = refinement_.subdivisions};
-    constexpr std::size_t kCount = kMomentCount + 2 * K;
-    return integrate<kCount>(in_v, azimuth_breaks(row, width), goal, moment_scales<kCount>);
+    return integrate<kAzimuthCount>(in_v, azimuth_breaks(row, width), goal, moment_scales<kAzimuthCount>);
+  }
+
+  static BothValues both_scales(const BothValues& value) {
+    BothValues scales;
+    scales.fill(kInfinity);
+    AzimuthValues moments;
+    std::copy_n(value.begin(), moments.size(), moments.begin());
+    moments = moment_scales(moments);
+    std::copy(moments.begin(), moments.end(), scales.begin());
+    scales[kSkyReflected] = scales[kSkyPolarised] = moments[kReflected];
+    return scales;
   }
 
   // The integrand in u: the azimuth integrals of one running zenith angle with their errors.
-  BothValues<K> row_values(double u) {
+  BothValues row_values(double u) {
     const double t = slopes_.width() * std::sinh(u);
     const double half_rad = std::atan(t);
     const double elevation_rad = fixed_.elevation_rad - 2.0 * half_rad;
@@ -244,21 +237,21 @@ class Hemisphere {
     const auto inner = integrate_azimuth(row);
     // Twice: delta runs over half of the azimuth.
     const double jacobian = 2.0 * running.sin * 2.0 * slopes_.width() * std::cosh(u) / (1.0 + t * t);
-    BothValues<K> both;
+    BothValues both;
     for (std::size_t k = 0; k < inner.value.size(); ++k) {
       both[k] = jacobian * inner.value[k];
-      both[kZenithCount<K> + k] = jacobian * inner.error[k];
+      both[kZenithCount + k] = jacobian * inner.error[k];
     }
     const double g = sky_ ? sky_->value(90.0 - elevation_rad * 180.0 / pi) : 0.0;
-    both[kSkyReflected<K>] = g * both[kReflected];
-    both[kSkyPolarised<K>] = g * both[kPolarised];
-    both[kZenithCount<K> + kSkyReflected<K>] = std::abs(g) * both[kZenithCount<K> + kReflected];
-    both[kZenithCount<K> + kSkyPolarised<K>] = std::abs(g) * both[kZenithCount<K> + kPolarised];
+    both[kSkyReflected] = g * both[kReflected];
+    both[kSkyPolarised] = g * both[kPolarised];
+    both[kZenithCount + kSkyReflected] = std::abs(g) * both[kZenithCount + kReflected];
+    both[kZenithCount + kSkyPolarised] = std::abs(g) * both[kZenithCount + kPolarised];
     return both;
   }
 
   // D G M / 4, the reduced form of cos(theta) f cos(theta_r), and the same with R = 1 and with 1 - R.
-  MomentValues<K> integrand(const Row& row, double delta) const {
+  AzimuthValues integrand(const Row& row, double delta) const {
     const double sin_half = std::sin(0.5 * delta);
     const double cos_half = std::cos(0.5 * delta);
     const double s2 = sin_half * sin_half;
@@ -281,7 +274,7 @@ class Hemisphere {
       m = mueller_row(r, cos_eta, sin_eta);
       cos_2eta = cos_eta * cos_eta - sin_eta * sin_eta;
     }
-    MomentValues<K> values{bare, bare * m.m00, bare * m.m01, bare * 0.5 * (r.absorbed_s + r.absorbed_p)};
+    AzimuthValues values{bare, bare * m.m00, bare * m.m01, bare * 0.5 * (r.absorbed_s + r.absorbed_p)};
     if constexpr (K > 0) {
       const std::array<double, kCurves> curves = (*curves_)(cos_beta);
       for (std::size_t k = 0; k < K; ++k) {
@@ -352,7 +345,8 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   if (theta_deg == 90.0 && is_unshadowed && !slopes.is_gaussian() && slopes.q() <= 1.5) {
     return divergent_moments(constants);
   }
-  Hemisphere<0> hemisphere(slopes, masking, theta_deg, constants, refinement, sky);
+  using SkyMoments = Hemisphere<0>;
+  SkyMoments hemisphere(slopes, masking, theta_deg, constants, refinement, sky);
   const auto integral = hemisphere.integrate_zenith();
   const double cos_theta = zenith_from_deg(theta_deg).cos;
   const auto error_at = [&](std::size_t k) {
@@ -374,8 +368,10 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   moments.deficit_error = is_split ? split_error : direct_error;
   moments.evaluations = hemisphere.evaluations();
   if (sky) {
-    const double sky_error = std::max(error_at(kSkyReflected<0>), error_at(kSkyPolarised<0>)) + amplitude_error;
-    moments.columns = {{integral.value[kSkyReflected<0>], integral.value[kSkyPolarised<0>], sky_error}};
+    const double sky_error =
+        std::max(error_at(SkyMoments::kSkyReflected), error_at(SkyMoments::kSkyPolarised)) + amplitude_error;
+    moments.columns = {
+        {integral.value[SkyMoments::kSkyReflected], integral.value[SkyMoments::kSkyPolarised], sky_error}};
   }
   return moments;
 }

@@ -64,7 +64,7 @@ void check(const MomentsRequest& request) {
   for (const double theta_deg : request.theta_deg) check_zenith(theta_deg);
   for (const double sigma : request.sigma) check_shape(request.distribution, request.masking, {.sigma = sigma});
   for (const double q : request.q) check_shape(request.distribution, request.masking, {.q = q});
-  for (const FacetOptics& index : request.indices) check_index(index);
+  for (const FacetOptics& index : request.optics) check_index(index);
 }
 
 void check(const ScatteringRequest& request) {
@@ -77,7 +77,7 @@ void check(const ScatteringRequest& request) {
     check_shape(request.distribution, request.masking, shape);
     require(shape.sigma > 0.0, "sigma must be above 0", shape.sigma);
   }
-  for (const FacetOptics& index : request.indices) check_index(index);
+  for (const FacetOptics& index : request.optics) check_index(index);
 }
 
 Moments mirror_of(const MomentsRequest& request, const MomentsPoint& point) {
@@ -150,7 +150,7 @@ ScatteringMatrix matrix_of(const ScatteringRequest& request, const ScatteringEnt
   surface.masking = request.masking;
   surface.sigma = shape.sigma;
   surface.q = shape.q;
-  const FacetOptics& index = request.indices.at(entry.index);
+  const FacetOptics& index = request.optics.at(entry.index);
   const auto [theta_i_deg, theta_r_deg, delta_phi_deg] = angles;
   const BouncesSum f =
       request.scattering == Scattering::kMultiple

@@ -244,7 +244,7 @@ double relative_error(double value, const Wide& exact) {
 template <class Source>
 kernel::IndexNode rounded_index(const OpticalConstants& index) {
   MomentsRequest request;
-  request.indices = {index};
+  request.optics = {index};
   return convert_reals<double, kernel::IndexNode, RealOf<Source>>(index_in<Source>(kernel_data(request).indices[0]));
 }
 

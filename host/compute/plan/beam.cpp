@@ -26,8 +26,8 @@ constexpr int kLargestOrder = 16;  // kInPlaneOrder of physics/in_plane.glsl
 // -ln of the share of the in-plane slopes that G may neglect: far below the rounding of a double.
 constexpr double kCutExponent = 45.0;
 
-// Smoother surfaces use the G of this sigma: the squares of their slopes overflow a float, and except for q < 1.1 the
-// shadows are the same.
+// Smoother surfaces use the G of this sigma: the squares of their slopes overflow a float, and their shadows are equal
+// except for q < 1.1.
 constexpr double kSmallestMaskingSigma = 1e-15;
 
 // Share of N^2 and sin^2(beta) below which their difference has lost digits that its square root needs.
@@ -90,7 +90,7 @@ FacetReflection bare_reflection(const BeamAngles& angles, const BeamGeometry& ge
   return {r_s - m01, m01, r_s * (sin2 - c * w) * s_sum * std::conj(p_sum) / p_norm};
 }
 
-// Measured reflectances have no phase: r_s* r_p is left out.
+// Measured reflectances have no phase, so r_s* r_p is 0.
 FacetReflection covered_reflection(const BeamGeometry& geometry, const FacetOptics& optics) {
   const double c = std::max(geometry.node.cos_beta, kSmallestFacetCosine);
   const SmoothAbsorptance absorbed = smooth_absorptance(optics, c);
@@ -201,7 +201,7 @@ Beam BeamPlan::operator()(const ScatteringEntry& entry) const {
   const BeamGeometry& geometry = geometries_[entry.angles];
   node.g = geometry.node;
   node.shape = data_.shapes[entry.shape];
-  const FacetOptics& optics = request_.indices[entry.index];
+  const FacetOptics& optics = request_.optics[entry.index];
   const FacetReflection facet = optics.is_bare()
                                     ? bare_reflection(request_.angles[entry.angles], geometry, optics.index)
                                     : covered_reflection(geometry, optics);

@@ -16,12 +16,12 @@ struct BeamGeometry {
 
 /// The facet between two beams, and the rotation angles of eq. (4), in double and without cancellation.
 ///
-/// Equation: eqs. (2)-(6) as |w_i + w_r|^2 = 4 cos^2(beta), |w_i - w_r|^2 = 4 sin^2(beta), and eta_i as the direction
-/// of (sin i cos r - cos i sin r cos(dphi), sin r sin(dphi)), eta_r likewise with i and r exchanged in the first.
-/// Conventions: delta_phi = 180 degrees is the specular side; eta turns s toward p and has the sign of
-/// sin(delta_phi).
-/// Domain: zeniths in [0, 90] degrees, not 90 both. In the retro direction, where eta is undefined, the limit
-/// eta_i = eta_r = 0; at theta_i = 0 the plane of incidence is that of azimuth 0, at theta_r = 0 that of delta_phi.
+/// Equation: eqs. (2)-(6) as |w_i + w_r|^2 = 4 cos^2(beta), |w_i - w_r|^2 = 4 sin^2(beta); eta_i is the direction of
+/// (sin i cos r - cos i sin r cos(dphi), sin r sin(dphi)), eta_r is the direction of (sin r cos i - cos r sin i
+/// cos(dphi), sin i sin(dphi)). Conventions: delta_phi = 180 degrees is the specular side; eta turns s toward p and has
+/// the sign of sin(delta_phi). Domain: zeniths in [0, 90] degrees, not 90 both. In the retro direction, where eta is
+/// undefined, the limit eta_i = eta_r = 0; at theta_i = 0 the plane of incidence has azimuth 0, at theta_r = 0 azimuth
+/// delta_phi.
 BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_phi_deg);
 
 /// Inputs of the kernel for one entry; the pBRDF is the kernel's result times 2^power.
@@ -32,16 +32,16 @@ struct Beam {
 
 /// Makes the beams of a request, which must outlive the object. Pure.
 ///
-/// The geometry, D and the reflection of the facet are computed here and not by the kernel: near the normal and the
-/// retro direction, far down the slope distribution and near the critical angle their rounding in a float would be
-/// amplified beyond 1e-5 of m00. D is handed over without its power of two, so that no float over- or underflows.
+/// The host computes the geometry, D and the reflection of the facet: near the normal and the retro direction, far down
+/// the slope distribution and near the critical angle their rounding in a float would exceed 1e-5 of m00. The kernel
+/// gets D without its power of two, so that no float over- or underflows.
 class BeamPlan {
  public:
   explicit BeamPlan(const ScatteringRequest& request);
   Beam operator()(const ScatteringEntry& entry) const;
 
-  /// The kernel's result with its power of two restored, its error bound, and the further bounces that the request asks
-  /// for; `unit_roundoff` is that of the kernel's precision.
+  /// The kernel's result with its power of two restored, its error bound, and with Scattering::kMultiple the further
+  /// bounces. `unit_roundoff` belongs to the kernel's precision.
   ScatteringMatrix matrix(const kernel::MuellerNode& node, const Beam& beam, const ScatteringEntry& entry,
                           double unit_roundoff) const;
 

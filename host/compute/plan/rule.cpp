@@ -66,7 +66,8 @@ double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double d
   return size - 2.0 * shape.q * per_node;
 }
 
-// The same for the line b = pi/2 of `integral`: of the share of the facets steeper than 45 degrees, |x|^(2q-1).
+// log10 of the remaining part of the line b = pi/2 of `integral`: the share of the facets steeper than 45 degrees goes
+// as |x|^(2q-1).
 double unsplit_line(Distribution distribution, const SlopeShape& shape, double digits) {
   if (distribution == Distribution::kGaussian) {
     return shape.sigma > (digits > kTightDigits ? kTightLineSigma : kLineSigma) ? 0.0 : kNone;

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "device/device.hpp"
-#include "device/handle.hpp"
+#include "device/result.hpp"
 
 namespace dolp::vulkan {
 

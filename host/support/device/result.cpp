@@ -43,7 +43,7 @@ std::string result_name(VkResult result) {
 }
 
 bool lacks_addresses() {
-  constexpr std::size_t kDriverBytes = 256U << 20U;  // of a driver with its compiler
+  constexpr std::size_t kDriverBytes = 256U << 20U;  // room for a driver with its compiler
   void* const room = ::mmap(nullptr, kDriverBytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (room == MAP_FAILED) return true;
   ::munmap(room, kDriverBytes);
@@ -61,7 +61,7 @@ bool lacks_threads() {
     threads.reserve(needed);
     while (threads.size() < needed) threads.emplace_back([ended] { ended.wait(); });
   } catch (const std::system_error&) {
-    // One that the system refused: the loop has ended.
+    // The system refused a thread; the loop has ended.
   } catch (...) {
     end.set_value();  // the threads are joined before `end` goes
     throw;

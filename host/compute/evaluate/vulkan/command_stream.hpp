@@ -8,7 +8,7 @@
 
 #include "device/buffer.hpp"
 #include "device/device.hpp"
-#include "device/handle.hpp"
+#include "device/result.hpp"
 
 namespace dolp::vulkan {
 

@@ -51,7 +51,7 @@ std::span<const std::uint32_t> module_of(const KernelVariant& variant, bool floa
 
 constexpr std::uint32_t kWordBytes = sizeof(std::uint32_t);
 
-/// Has the driver compile a variant of a module.
+/// Lets the driver compile a variant of a module.
 UniquePipeline compile(VkDevice device, VkPipelineLayout layout, std::uint32_t local_size,
                        std::span<const std::uint32_t> spirv, const KernelVariant& variant) {
   const VkShaderModuleCreateInfo module_info{
@@ -92,7 +92,7 @@ constexpr auto kInterruptInterval = std::chrono::milliseconds(20);
 constexpr double kDefaultCompilationLimitS = 120.0;
 constexpr const char* kCompilationLimit = "DOLP_COMPILATION_LIMIT_S";
 
-/// Seconds that a driver may take for a kernel. Errors: InputError for a wish that is no number above 0.
+/// Seconds that a driver may take for a kernel. Errors: InputError if the variable is not a number above 0.
 double compilation_limit_s() {
   const char* const wish = std::getenv(kCompilationLimit);
   if (wish == nullptr) return kDefaultCompilationLimitS;
@@ -212,7 +212,7 @@ VkPipeline Kernels::pipeline(const KernelVariant& variant) {
 
 UniquePipeline Kernels::create(std::span<const std::uint32_t> spirv, const KernelVariant& variant) const {
   const double limit_s = compilation_limit_s();
-  // A driver may compile for ever, and cannot be told to stop: it does so on a thread that can be left behind.
+  // A driver may compile without end, and nothing stops it: it compiles on a thread that can be left behind.
   std::packaged_task<UniquePipeline()> compilation(
       [device = device_.get(), layout = layout_.get(), local_size = local_size(), spirv, variant] {
         return compile(device, layout, local_size, spirv, variant);

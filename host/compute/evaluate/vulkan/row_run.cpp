@@ -22,7 +22,7 @@ class RowRun final : public Run<Moments> {
         data_(tiles_.data),
         rows_(tiles_.rows),
         thetas_(data_.thetas.size()),
-        indices_(request.indices.size()) {
+        indices_(request.optics.size()) {
     const Device& device = context_.device;
     const std::size_t invocations = tiles_.sizes.invocations;
     const std::size_t shapes = tiles_.sizes.shapes;

@@ -17,7 +17,7 @@ class SlopeRun final : public Run<Moments> {
         tiles_(request, context.description, options),
         data_(tiles_.data),
         thetas_(data_.thetas.size()),
-        indices_(request.indices.size()) {
+        indices_(request.optics.size()) {
     const std::size_t slopes = tiles_.slopes;
     theta_buffer_.emplace(input_buffer<kernel::ThetaNode>(std::min(slopes, data_.thetas.size())));
     index_buffer_.emplace(input_buffer<kernel::IndexNode>(std::min(slopes, data_.indices.size())));
@@ -100,7 +100,7 @@ class SlopeRun final : public Run<Moments> {
   SlopeTiles tiles_;
   const KernelData& data_;
   Renumbering thetas_, indices_;
-  std::vector<kernel::SlopeNode> nodes_;  ///< of a tile
+  std::vector<kernel::SlopeNode> nodes_;  ///< the slopes of a tile
   std::optional<InputBuffer> theta_buffer_, index_buffer_, slope_buffer_;
   std::optional<Buffer> azimuth_buffer_;
 };

@@ -23,7 +23,7 @@ constexpr std::uint32_t kSmallestTile = 64;
 void check_entries(const MomentsRequest& request) {
   const std::size_t size = request.size();
   const bool is_points = request.layout == MomentsRequest::Layout::kList;
-  const bool is_even = request.indices.size() == size && request.sigma.size() == size && request.q.size() == size;
+  const bool is_even = request.optics.size() == size && request.sigma.size() == size && request.q.size() == size;
   if (is_points && !(is_even && request.wanted.empty())) {
     throw InputError("the lists of a request for points differ in length, or it has a mask");
   }
@@ -40,10 +40,10 @@ void check_entries(const ScatteringRequest& request) {
   for (std::size_t i = 0; i < request.entries.size(); ++i) {
     const ScatteringEntry& entry = request.entries[i];
     if (entry.angles >= request.angles.size() || entry.shape >= request.shapes.size() ||
-        entry.index >= request.indices.size()) {
+        entry.index >= request.optics.size()) {
       throw InputError("entry " + std::to_string(i) + " of the request is outside its lists of " +
                        std::to_string(request.angles.size()) + " pairs of beams, " +
-                       std::to_string(request.shapes.size()) + " shapes and " + std::to_string(request.indices.size()) +
+                       std::to_string(request.shapes.size()) + " shapes and " + std::to_string(request.optics.size()) +
                        " indices");
     }
   }

@@ -1,9 +1,9 @@
 // Integrals over the slopes of the facets, for integrands that bend along unknown curves.
 //
-// A slope has the length t and the angle chi from the normal of the plane of incidence, sin(chi) = cos(phi). What faces
-// A at phi faces B at phi + 180 degrees, and left and right of the plane of incidence are alike, so that chi runs over
-// a quarter of a turn. The bends of the integrand are not computed but detected: its `regime`, a number that encodes
-// the history of the beams, changes there, and bisection finds the place.
+// A slope has the length t and the angle chi from the normal of the plane of incidence, sin(chi) = cos(phi). A facet
+// that faces A at phi faces B at phi + 180 degrees, and both sides of the plane of incidence are alike, so chi runs
+// over a quarter of a turn. The bends of the integrand are not computed but detected: its `regime`, a number that
+// encodes the history of the beams, changes there, and bisection finds the place.
 #pragma once
 
 #include <algorithm>
@@ -56,7 +56,7 @@ inline UnitLight unit_light(const SlopePoint& point, const Vector<double>& k) {
   return {{s[0], s[1], s[2]}, {p[0], p[1], p[2]}};
 }
 
-/// Reflects a wave of a beam; returns the absorbed part of it.
+/// Reflects a wave of a beam; returns its absorbed part.
 inline double reflect(const Bounce<double>& b, const FresnelCoefficients& r, Electric& e) {
   const Amplitudes<std::complex<double>> incident = components(b, e);
   e = reflected(b, incident, {r.r_s, r.r_p});
@@ -70,7 +70,7 @@ class SpecialAngles {
       : brewster_(1.0 / std::hypot(1.0, constants.index.n, constants.index.k)),
         critical_(constants.index.n < 1.0 ? std::sqrt(1.0 - constants.index.n * constants.index.n) : 0.0) {}
 
-  /// Code of the angles that cos(beta) is beyond: 0 to 3.
+  /// Code of the special angles below which cos(beta) lies: 0 to 3.
   std::uint64_t side(double cos_beta) const {
     return (cos_beta < brewster_ ? 1U : 0U) + (cos_beta < critical_ ? 2U : 0U);
   }
@@ -110,12 +110,12 @@ class RegimeScan {
 template <std::size_t N>
 struct SlopeTask {
   std::function<Values<N>(const SlopePoint&)> integrand;
-  std::function<Values<N>(const Values<N>&)> scales;  ///< of the integrals, for the goal
+  std::function<Values<N>(const Values<N>&)> scales;  ///< scales of the integrals, for the goal
   double steepest;                                    ///< upper end of t
   double bends_end;                                   ///< t up to which bends are looked for, at most the upper end
-  double thin_weight;                                 ///< rows of less weight per v may be as far off as those of it
-  std::function<double()> work;                       ///< done so far, in any unit
-  double most_work;                                   ///< beyond it no integral is refined
+  double thin_weight;            ///< rows of less weight per v need no smaller errors than rows of this weight
+  std::function<double()> work;  ///< done so far, in any unit
+  double most_work;              ///< beyond it no integral is refined
 };
 
 /// int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi of N functions; the errors of the inner integrals follow as N

@@ -11,24 +11,24 @@
 #define DOLP_BINDING_MOMENTS 5        // MomentsNode[]: one for each member of each task of the dispatch
 #define DOLP_BINDING_RULE 6           // RuleNode: one for all tasks
 #define DOLP_BINDING_RULE_NODES 7     // real2[]: see physics/quadrature.glsl
-#define DOLP_BINDING_MASKING_NODES 8  // the masking table once more, for whoever reads it
+#define DOLP_BINDING_MASKING_NODES 8  // the masking table again, to be read
 // slopes.comp reads directions, indices, rule and rule nodes, and in place of the tasks and the moments:
 #define DOLP_BINDING_SLOPES DOLP_BINDING_TASKS      // SlopeNode[]: one for each invocation
-#define DOLP_BINDING_AZIMUTHS DOLP_BINDING_MOMENTS  // AzimuthNode[]: likewise
+#define DOLP_BINDING_AZIMUTHS DOLP_BINDING_MOMENTS  // AzimuthNode[]: one for each invocation
 // mueller.comp reads the rule nodes, and in place of the first and the results of the moments:
 #define DOLP_BINDING_BEAMS DOLP_BINDING_THETAS      // BeamNode[]: one for each entry of the dispatch
-#define DOLP_BINDING_MUELLERS DOLP_BINDING_MOMENTS  // MuellerNode[]: likewise
+#define DOLP_BINDING_MUELLERS DOLP_BINDING_MOMENTS  // MuellerNode[]: one for each entry of the dispatch
 
 // ---- Specialization constants --------------------------------------------------------------------------------------
 #define DOLP_SPEC_LOCAL_SIZE 0
 #define DOLP_SPEC_DISTRIBUTION 1  // DOLP_CAUCHY | DOLP_GAUSSIAN
 #define DOLP_SPEC_MASKING 2       // DOLP_MASKING_*
-#define DOLP_SPEC_TOTAL_REFLECTION 3  // whether any index of the request has a critical_cos
-#define DOLP_SPEC_MULTIPLE 4          // whether rays are followed through all their bounces
-#define DOLP_SPEC_DIRECT 5            // whether the direct emission is wanted too
+#define DOLP_SPEC_TOTAL_REFLECTION 3  // true if any index of the request has a critical_cos
+#define DOLP_SPEC_MULTIPLE 4          // true if rays are followed through all their bounces
+#define DOLP_SPEC_DIRECT 5            // true if the direct emission is wanted
 #define DOLP_SPEC_COLUMN_COUNT 6      // number of columns, see physics/columns.glsl
 #define DOLP_SPEC_COLUMNS 7           // their kind, DOLP_COLUMNS_*
-#define DOLP_SPEC_CURVES 8            // whether reflectances are read from tables, for films and measurements
+#define DOLP_SPEC_CURVES 8            // true if reflectances are read from tables, for films and measurements
 
 #define DOLP_CAUCHY 0u
 #define DOLP_GAUSSIAN 1u
@@ -37,9 +37,9 @@
 #define DOLP_MASKING_INTEGRAL 2u
 #define DOLP_MASKING_SMITH 3u
 #define DOLP_COLUMNS_SKY 0u           // functions of a sky
-#define DOLP_COLUMNS_RESPONSE 1u      // responses of the light reflected,
-#define DOLP_COLUMNS_SKY_RESPONSE 2u  // of this light, weighted with a function of a sky,
-#define DOLP_COLUMNS_DIRECT 3u        // of the direct emission
+#define DOLP_COLUMNS_RESPONSE 1u      // responses of the reflected light
+#define DOLP_COLUMNS_SKY_RESPONSE 2u  // responses of the reflected light, weighted with a function of a sky
+#define DOLP_COLUMNS_DIRECT 3u        // responses of the direct emission
 
 // ---- Push constants: four uints, used by all entry points -----------------------------------------------------------
 // count: tasks of this dispatch (moments.comp), slopes (slopes.comp), entries (mueller.comp) or shapes bound
@@ -57,9 +57,9 @@
 #define DOLP_TASK_PIECE_SHIFT 5u     // number of the piece of the slope axis
 #define DOLP_TASK_PIECE_BITS 6u
 #define DOLP_TASK_ROOT_AT_START 11u   // bit: square root of the slope at the start of the piece
-#define DOLP_TASK_ROOT_AT_END 12u    // bit: the same at its end
+#define DOLP_TASK_ROOT_AT_END 12u    // bit: square root of the slope at the end of the piece
 #define DOLP_TASK_ROOT_BEFORE_START 13u // bit: a square root at the breakpoint before the piece, facing it
-#define DOLP_TASK_ROOT_AFTER_END 14u // bit: the same beyond its end
+#define DOLP_TASK_ROOT_AFTER_END 14u // bit: a square root at the breakpoint after the piece, facing it
 #define DOLP_TASK_SPLIT_LINE 15u     // bit: the direction is split at the line b = pi/2 of `integral` or smith's cusp
 #define DOLP_TASK_AZIMUTHS_SHIFT 16u // most azimuths of an arc, which bounds the iterations
 
@@ -69,25 +69,24 @@
 #endif
 #define DOLP_ROW_WIDTH 4         // the larger of the two values of DOLP_WIDTH
 #ifndef DOLP_MOST_COLUMNS
-#define DOLP_MOST_COLUMNS 0      // 0: kernels without
+#define DOLP_MOST_COLUMNS 0      // 0: kernels without columns
 #endif
-#define DOLP_COLUMNS 24          // the most of all kinds
-#define DOLP_SKY_FUNCTIONS 8     // the most of a sky: DOLP_MOST_COLUMNS of kernels for skies
-#define DOLP_MOST_SKY_CORNERS 24 // that split the azimuths
-#define DOLP_COLUMN_PARTS 4      // numbers of a column in the output of moments.comp: i and q of the coarser rule, and
-                                 // of the finer one
+#define DOLP_COLUMNS 24          // most columns of any kind
+#define DOLP_SKY_FUNCTIONS 8     // most functions of a sky: DOLP_MOST_COLUMNS of kernels for skies
+#define DOLP_MOST_SKY_CORNERS 24 // most corners that split the azimuths
+#define DOLP_COLUMN_PARTS 4      // numbers of a column in the output of moments.comp: i and q of the coarser and the finer rule
 #define DOLP_MAX_PIECES 63       // pieces of the slope axis for one direction
-#define DOLP_MAX_ARCS 13        // arcs of the azimuth for one slope, but for those of total reflection
-// Of V-grooves, see physics/groove.glsl
-#define DOLP_STEEPEST_SPLIT 20.0  // slope from which on no beam that ends splits the azimuths
+#define DOLP_MAX_ARCS 13        // arcs of the azimuth for one slope, without the arcs of total reflection
+// V-grooves, see physics/groove.glsl
+#define DOLP_STEEPEST_SPLIT 20.0  // beyond this slope no beam that ends splits the azimuths
 #define DOLP_MOST_SPLITS 8       // bounces at which a beam that ends may split the azimuths
-#define DOLP_MOST_BOUNCES 32      // each on its own; of more, 2, 4, 8 ... are taken as one
+#define DOLP_MOST_BOUNCES 32      // each computed by itself; of more bounces, 2, 4, 8 ... are taken as one
 #define DOLP_GROUPS_PER_DISTANCE 6 // bounces taken as one at once, over those before or after them
 #define DOLP_MOST_DOUBLINGS 12
 #define DOLP_LAST_BOUNCES (DOLP_MOST_BOUNCES << DOLP_MOST_DOUBLINGS)  // after more bounces no light is left
-#define DOLP_CURVE_NODES 6       // of a cell of a table of reflectances: a cubic of each of three quantities
+#define DOLP_CURVE_NODES 6       // rule nodes of a cell of a table of reflectances: a cubic for each of three quantities
 #define DOLP_MAX_ORDER 128       // largest Gauss order of the rule nodes
-#define DOLP_MASKING_OCTAVES 29  // of v = 1 + tau/scale
+#define DOLP_MASKING_OCTAVES 29  // octaves of v = 1 + tau/scale
 #define DOLP_MASKING_CELL_BITS_FLOAT 3   // 2^bits cells per octave
 #define DOLP_MASKING_CELL_BITS_DOUBLE 6
 #define DOLP_MASKING_NODES(CELL_BITS) ((DOLP_MASKING_OCTAVES << (CELL_BITS)) + 1)
@@ -100,13 +99,13 @@ struct RuleNode {
   real t_nodes;           // slope axis: nodes of a piece whatever its digits,
   real t_digits;          // digits that the size of its singularities asks for,
   real t_fall;            // and nodes for each e-fold by which the density falls over the piece
-  real phi_nodes;         // azimuth: likewise
-  real phi_digits;
-  real cluster_stretch;   // nodes for each digit from which on smith's cusp is worth a cluster
+  real phi_nodes;         // azimuth: nodes of an arc whatever its digits,
+  real phi_digits;        // and digits that the size of its singularities needs
+  real cluster_stretch;   // nodes per digit that make smith's cusp worth a cluster
   real split_bounces;     // all bounces: at how many of them a beam that ends splits the azimuths,
   real dimmest;           // and the share of a ray's light below which it is followed no further
   real cluster_below_q;   // below this q an arc clusters its nodes where the limit b of `integral` meets pi/2
-  real response_scale;    // of responses: 1 / c0,
+  real response_scale;    // for responses: 1 / c0,
   real response_norm;     // and 2 / asinh(1 / c0), both from the host
 };
 
@@ -122,22 +121,22 @@ struct ThetaNode {
 // One slope sample (host/compute/evaluate/kernel/slope_samples.hpp).
 struct SlopeNode {
   real t;
-  real digits;         // wanted of the sum over the azimuths
+  real digits;         // digits that the sum over the azimuths needs
   real theta;          // position of the direction
   real index;          // position of the index
-  real most_azimuths;  // of an arc
-  real is_coarse;      // of the coarser rule
+  real most_azimuths;  // most azimuths of an arc
+  real is_coarse;      // 1: the slope belongs to the coarser rule
 };
 
 // One slope distribution.
 struct ShapeNode {
   real m;              // sqrt(2) sigma
-  real q_minus_1;      // of the exponent q, which a float near 1 would blur; unused by the gaussian
-  real two_q_minus_3;  // likewise near 3/2, where smith masking ends
+  real q_minus_1;      // exponent q less 1, which a float q would blur near 1; unused by the gaussian
+  real two_q_minus_3;  // 2q less 3, which a float q would blur near 3/2, where smith masking ends
   real marginal_norm;  // p(0) of the in-plane marginal
   real scale;          // w of the map t = w sinh(X)
   real cut;            // slopes beyond it are left out
-  real table_scale;    // of the masking table: v = 1 + tau/table_scale
+  real table_scale;    // scale of the masking table: v = 1 + tau/table_scale
   real cusp_digits;    // log10 of the size of smith's cusp at theta_r = 0; below -100 without one
 };
 
@@ -172,7 +171,7 @@ struct GeometryNode {
 // facet and the density.
 struct BeamNode {
   GeometryNode g;
-  ShapeNode shape;  // its scale and cut are those of physics/in_plane.glsl
+  ShapeNode shape;  // with the scale and cut of physics/in_plane.glsl
   real density;     // D(alpha) / 4 [1/sr] over a power of two that the host keeps: in [1/2, 1), or 0
   // Mueller matrix of the facet in its own frame: [m00 m01 0 0; m01 m00 0 0; 0 0 cross_re -cross_im; 0 0 cross_im
   // cross_re], r_s* r_p = cross_re + i cross_im.
@@ -187,8 +186,8 @@ struct MuellerNode {
   real m[16];
 };
 
-#define DOLP_AZIMUTH_NUMBERS 8  // of an AzimuthNode
-#define DOLP_MOMENTS_NUMBERS 13  // of a MomentsNode
+#define DOLP_AZIMUTH_NUMBERS 8  // numbers of an AzimuthNode
+#define DOLP_MOMENTS_NUMBERS 13  // numbers of a MomentsNode
 
 // The moments of the facets of one slope, per unit of P(t) t dt: sums over half of the azimuths.
 struct AzimuthNode {
@@ -213,9 +212,9 @@ struct MomentsNode {
   real many;                 // the part of r_i of grooves in which rays bounce more often than DOLP_MOST_BOUNCES
   real direct_i;             // direct emission
   real direct_q;
-  real reflected_difference; // of r_i or r_q, whichever is larger
+  real reflected_difference; // the larger difference of r_i and r_q
   real albedo_difference;
   real deficit_difference;
-  real direct_difference;    // of direct_i or direct_q, whichever is larger
+  real direct_difference;    // the larger difference of direct_i and direct_q
   real evaluations;
 };

@@ -6,32 +6,21 @@
 
 namespace dolp::spirv {
 
-// NOLINTBEGIN(readability-identifier-naming): named as their files.
-extern const std::span<const std::uint32_t> moments_float;
-extern const std::span<const std::uint32_t> moments_double;
-extern const std::span<const std::uint32_t> moments_rows_float;
-extern const std::span<const std::uint32_t> moments_rows_double;
-extern const std::span<const std::uint32_t> moments_sky_float;
-extern const std::span<const std::uint32_t> moments_responses_float;
-extern const std::span<const std::uint32_t> moments_sky_double;
-extern const std::span<const std::uint32_t> moments_responses_double;
-extern const std::span<const std::uint32_t> moments_sky_rows_float;
-extern const std::span<const std::uint32_t> moments_responses_rows_float;
-extern const std::span<const std::uint32_t> moments_sky_rows_double;
-extern const std::span<const std::uint32_t> moments_responses_rows_double;
-extern const std::span<const std::uint32_t> slopes_float;
-extern const std::span<const std::uint32_t> slopes_double;
-extern const std::span<const std::uint32_t> slopes_sky_float;
-extern const std::span<const std::uint32_t> slopes_responses_float;
-extern const std::span<const std::uint32_t> slopes_sky_double;
-extern const std::span<const std::uint32_t> slopes_responses_double;
-extern const std::span<const std::uint32_t> masking_table_float;
-extern const std::span<const std::uint32_t> masking_table_double;
-extern const std::span<const std::uint32_t> mueller_float;
-extern const std::span<const std::uint32_t> mueller_double;
-// Of the benchmark, in bench/:
-extern const std::span<const std::uint32_t> product_rule_float;
-extern const std::span<const std::uint32_t> arithmetic_peak_float;
-// NOLINTEND(readability-identifier-naming)
+#define DOLP_ENTRY_POINT(name) extern const std::span<const std::uint32_t> name##_float, name##_double
+DOLP_ENTRY_POINT(moments);
+DOLP_ENTRY_POINT(moments_rows);
+DOLP_ENTRY_POINT(moments_sky);
+DOLP_ENTRY_POINT(moments_sky_rows);
+DOLP_ENTRY_POINT(moments_responses);
+DOLP_ENTRY_POINT(moments_responses_rows);
+DOLP_ENTRY_POINT(slopes);
+DOLP_ENTRY_POINT(slopes_sky);
+DOLP_ENTRY_POINT(slopes_responses);
+DOLP_ENTRY_POINT(masking_table);
+DOLP_ENTRY_POINT(mueller);
+// Entry points of bench/, which have no double.
+DOLP_ENTRY_POINT(product_rule);
+DOLP_ENTRY_POINT(arithmetic_peak);
+#undef DOLP_ENTRY_POINT
 
 }  // namespace dolp::spirv

@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "device/context.hpp"
 #include "device/device.hpp"
-#include "device/instance.hpp"
 #include "evaluate/vulkan/command_stream.hpp"
 
 namespace dolp::bench {

@@ -9,7 +9,7 @@
 
 #include "base/stopwatch.hpp"
 #include "device/buffer.hpp"
-#include "evaluate/vulkan/input_buffer.hpp"
+#include "evaluate/vulkan/command_stream.hpp"
 #include "evaluate/vulkan/kernels.hpp"
 #include "evaluate/vulkan/packing.hpp"
 #include "methods/bench_device.hpp"

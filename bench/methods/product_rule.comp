@@ -38,7 +38,7 @@ Bisector facet_between(real2 fixed_beam, real2 running, real cos_azimuth) {
   return facet;
 }
 
-real attenuation(Row row, real2 lower, Masked of_lower, Masked of_higher, Bisector facet, real cos_alpha) {
+real attenuation(Row row, real2 lower, MaskingTerms of_lower, MaskingTerms of_higher, Bisector facet, real cos_alpha) {
   if (kMasking == DOLP_MASKING_NONE) return real(1.0);
   if (kMasking == DOLP_MASKING_V_CAVITY) return min(real(1.0), real(2.0) * cos_alpha * lower.x / facet.cos_beta);
   if (kMasking == DOLP_MASKING_SMITH) return real(1.0) / (real(1.0) + of_lower.value[0] + of_higher.value[0]);
@@ -53,7 +53,7 @@ void main() {
   row.table[0] = entry.y * kMaskingNodes;
   real2 fixed_beam = thetas[entry.x];
   IndexNode index = indices[entry.z];
-  Masked of_fixed = masking_of_direction(row, fixed_beam.x, fixed_beam.y);
+  MaskingTerms of_fixed = masking_of_direction(row, fixed_beam.x, fixed_beam.y);
   int nodes = int(product[0].x);
   int first = int(entry.w & 65535u);
   int zeniths = int(entry.w >> 16);
@@ -63,11 +63,11 @@ void main() {
   for (int number = 0; number < zeniths; ++number) {
     real4 zenith = product[1 + first + number];
     real2 running = real2(zenith.x, zenith.y);
-    Masked of_running = masking_of_direction(row, running.x, running.y);
+    MaskingTerms of_running = masking_of_direction(row, running.x, running.y);
     bool is_lower = running.x < fixed_beam.x;
     real2 lower = is_lower ? running : fixed_beam;
-    Masked of_lower = of_fixed;
-    Masked of_higher = of_running;
+    MaskingTerms of_lower = of_fixed;
+    MaskingTerms of_higher = of_running;
     if (is_lower) {
       of_lower = of_running;
       of_higher = of_fixed;

@@ -61,7 +61,7 @@ MomentsRequest steel_request(Masking masking, const Axes& grid) {
   MomentsRequest request;
   request.masking = masking;
   request.theta_deg = grid[Axis::kTheta];
-  request.indices = {{kIndex, 0.0}};
+  request.optics = {{kIndex, 0.0}};
   request.sigma = grid[Axis::kSigma];
   request.q = grid[Axis::kQ];
   return request;

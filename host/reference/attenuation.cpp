@@ -80,7 +80,7 @@ Attenuation::Attenuation(const Slopes& slopes, Masking masking, const Zenith& a,
   if (masking == Masking::kSmith) {
     smith_ = std::min(a.cos, b.cos) > 0.0 ? 1.0 / (1.0 + smith_lambda(slopes, a) + smith_lambda(slopes, b)) : 0.0;
   }
-  // G_1 falls with the zenith angle, so that the smaller of the two is that of the lower direction.
+  // G_1 falls with the zenith angle, so the lower direction has the smaller G_1.
   if (masking == Masking::kIntegral) integral_.emplace(slopes, a.elevation_rad < b.elevation_rad ? a : b, tolerance);
 }
 

@@ -11,8 +11,6 @@
 #include "reference/attenuation.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/slope_plane.hpp"
-#include "reference/special_angles.hpp"
-#include "reference/unit_light.hpp"
 #include "reference/vectors.hpp"
 
 namespace dolp::reference {
@@ -36,12 +34,12 @@ using Emitted = Values<kCount>;
 /// Absorptances of facets, by the cosine of the local angle.
 using Absorption = std::function<FresnelCoefficients(double cos_beta)>;
 
-// The facets of one surface, seen from one direction. `is_response`: errors are relative to cos(theta).
+// The facets of one surface, visible from one direction. `is_response`: errors are relative to cos(theta).
 class Facets {
  public:
   Facets(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants, Absorption absorption,
          bool is_response)
-      : axis_(slopes),
+      : slopes_(slopes),
         masking_(masking),
         theta_rad_(theta_deg * pi / 180.0),
         view_(zenith_from_deg(theta_deg)),
@@ -50,7 +48,32 @@ class Facets {
         is_response_(is_response),
         smith_(masking == Masking::kSmith ? 1.0 / (1.0 + smith_lambda(slopes, view_)) : 1.0) {}
 
-  Moments emission(const Refinement& refinement);
+  Moments emission(const Refinement& refinement) {
+    const RegimeScan scan(view_, theta_rad_, {.halvings = kHalvings},
+                          [this](const SlopePoint& p) { return regime(p); });
+    const double steepest = end();
+    const SlopeTask<kCount> task{.integrand = [this](const SlopePoint& point) { return of_pair(point); },
+                                 .scales =
+                                     [this](const Emitted& value) {
+                                       return Emitted{scale(value), scale(value)};
+                                     },
+                                 .steepest = steepest,
+                                 .bends_end = steepest,
+                                 .thin_weight = 0.0,  // rows may grow with t
+                                 .work = [] { return 0.0; },
+                                 .most_work = 1.0};
+    const Integral<2 * kCount> integral = integrate_slopes_of<kCount>(task, slopes_, scan, refinement, {});
+    const Emitted beyond = tail(steepest, refinement);
+    const double rounding = (kRounding + 0.5 * refinement.relative_tolerance) * std::abs(beyond[kIntensity]) +
+                            kRounding * (is_response_ ? view_.cos : integral.value[kIntensity]) + kNoShare * view_.cos;
+    Moments m;
+    m.direct_i = integral.value[kIntensity] + beyond[kIntensity];
+    m.direct_q = integral.value[kPolarised] + beyond[kPolarised];
+    m.direct_i_error = integral.error[kIntensity] + integral.value[kCount + kIntensity] + rounding;
+    m.direct_q_error = integral.error[kPolarised] + integral.value[kCount + kPolarised] + rounding;
+    m.evaluations = evaluations_;
+    return m;
+  }
 
  private:
   // e, the facet's area across the view per area of its horizontal projection; `side` is 1 for A, -1 for B.
@@ -58,13 +81,64 @@ class Facets {
     return view_.cos + side * point.t * view_.sin * point.sin_chi;
   }
   double scale(const Emitted& value) const { return is_response_ ? view_.cos : value[kIntensity]; }
-  Emitted of_facet(const SlopePoint& point, double side) const;
-  Emitted of_pair(const SlopePoint& point);
-  std::uint64_t regime(const SlopePoint& point) const;
-  double end() const;
-  Emitted tail(double t, const Refinement& refinement);
+  Emitted of_facet(const SlopePoint& point, double side) const {
+    const double e = facing(point, side);
+    if (e <= 0.0) return {};
+    const double cos_alpha = 1.0 / std::sqrt(1.0 + point.t * point.t);
+    const Vector<double> normal{side * point.t * cos_alpha, 0.0, cos_alpha};
+    const Vector<double> k = scaled(-1.0, toward_view(point, view_));
+    const Bounce<double> b = bounce(k, normal, {0.0, 1.0, 0.0});
+    const FresnelCoefficients r = absorption_(e * cos_alpha);
+    UnitLight light = unit_light(point, k);
+    const double from_s = reflect(b, r, light.from_s);
+    const double from_p = reflect(b, r, light.from_p);
+    const double visible = masking_ == Masking::kVCavity ? std::min(e, 2.0 * view_.cos) : e * smith_;
+    return {visible * 0.5 * (from_s + from_p), visible * 0.5 * (from_s - from_p)};
+  }
 
-  SlopeAxis axis_;
+  // Mean of the facets at phi and phi + 180 degrees.
+  Emitted of_pair(const SlopePoint& point) {
+    evaluations_ += 1.0;
+    const Emitted a = of_facet(point, 1.0);
+    const Emitted b = of_facet(point, -1.0);
+    return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])};
+  }
+
+  std::uint64_t regime(const SlopePoint& point) const {
+    const double cos_alpha = 1.0 / std::sqrt(1.0 + point.t * point.t);
+    std::uint64_t number = 0;
+    for (const double side : {1.0, -1.0}) {
+      const double e = facing(point, side);
+      const bool is_masked = masking_ == Masking::kVCavity && e > 2.0 * view_.cos;
+      number = 16 * number + (e > 0.0 ? 8U + (is_masked ? 4U : 0U) + special_.side(e * cos_alpha) : 0U);
+    }
+    return number;
+  }
+
+  // The slope beyond which facets are vertical, or beyond which there are none.
+  double end() const {
+    const double vertical = kVertical * std::max(1.0, slopes_.width()) / std::max(view_.sin, kSmallestSine);
+    return std::min(vertical, slopes_.quantile(kNoShare));
+  }
+
+  // Emission of vertical facets: e G_1 grows with t under smith masking, and has a limit under v-cavity.
+  Emitted tail(double t, const Refinement& refinement) {
+    const double share = masking_ == Masking::kVCavity ? slopes_.share_above(t) : slopes_.length_above(t) / t;
+    if (share < kNoShare) return {};
+    Breaks breaks(0.0, 0.5 * pi);
+    const RegimeScan scan(view_, theta_rad_, {.halvings = kHalvings},
+                          [this](const SlopePoint& p) { return regime(p); });
+    for (const double chi : scan.chi_breaks(t)) breaks.add(chi);
+    const Integral<kCount> row = integrate<kCount>([&](double chi) { return of_pair(slope_point(t, chi)); }, breaks,
+                                                   {.relative = refinement.relative_tolerance},
+                                                   [this](const Emitted& value) {
+                                                     return Emitted{scale(value), scale(value)};
+                                                   });
+    const double factor = share * 2.0 * std::numbers::inv_pi;
+    return {factor * row.value[kIntensity], factor * row.value[kPolarised]};
+  }
+
+  const Slopes& slopes_;
   Masking masking_;
   double theta_rad_;
   Zenith view_;
@@ -74,88 +148,6 @@ class Facets {
   double smith_;
   double evaluations_ = 0.0;
 };
-
-Emitted Facets::of_facet(const SlopePoint& point, double side) const {
-  const double e = facing(point, side);
-  if (e <= 0.0) return {};
-  const double cos_alpha = 1.0 / std::sqrt(1.0 + point.t * point.t);
-  const Vector<double> normal{side * point.t * cos_alpha, 0.0, cos_alpha};
-  const Vector<double> k = scaled(-1.0, toward_view(point, view_));
-  const Bounce<double> b = bounce(k, normal, {0.0, 1.0, 0.0});
-  const FresnelCoefficients r = absorption_(e * cos_alpha);
-  UnitLight light = unit_light(point, k);
-  const double from_s = reflect(b, r, light.from_s);
-  const double from_p = reflect(b, r, light.from_p);
-  const double seen = masking_ == Masking::kVCavity ? std::min(e, 2.0 * view_.cos) : e * smith_;
-  return {seen * 0.5 * (from_s + from_p), seen * 0.5 * (from_s - from_p)};
-}
-
-// Mean of the facets at phi and phi + 180 degrees.
-Emitted Facets::of_pair(const SlopePoint& point) {
-  evaluations_ += 1.0;
-  const Emitted a = of_facet(point, 1.0);
-  const Emitted b = of_facet(point, -1.0);
-  return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])};
-}
-
-std::uint64_t Facets::regime(const SlopePoint& point) const {
-  const double cos_alpha = 1.0 / std::sqrt(1.0 + point.t * point.t);
-  std::uint64_t number = 0;
-  for (const double side : {1.0, -1.0}) {
-    const double e = facing(point, side);
-    const bool is_masked = masking_ == Masking::kVCavity && e > 2.0 * view_.cos;
-    number = 16 * number + (e > 0.0 ? 8U + (is_masked ? 4U : 0U) + special_.side(e * cos_alpha) : 0U);
-  }
-  return number;
-}
-
-// The slope beyond which facets are vertical, or beyond which there are none.
-double Facets::end() const {
-  const double vertical = kVertical * std::max(1.0, axis_.width()) / std::max(view_.sin, kSmallestSine);
-  return std::min(vertical, axis_.quantile(kNoShare));
-}
-
-// Emission of vertical facets: e G_1 grows with t under smith masking, and has a limit under v-cavity.
-Emitted Facets::tail(double t, const Refinement& refinement) {
-  const double share = masking_ == Masking::kVCavity ? axis_.share_above(t) : axis_.length_above(t) / t;
-  if (share < kNoShare) return {};
-  Breaks breaks(0.0, 0.5 * pi);
-  const RegimeScan scan(view_, theta_rad_, {.halvings = kHalvings}, [this](const SlopePoint& p) { return regime(p); });
-  for (const double chi : scan.chi_breaks(t)) breaks.add(chi);
-  const Integral<kCount> row = integrate<kCount>([&](double chi) { return of_pair(slope_point(t, chi)); }, breaks,
-                                                 {.relative = refinement.relative_tolerance},
-                                                 [this](const Emitted& value) {
-                                                   return Emitted{scale(value), scale(value)};
-                                                 });
-  const double factor = share * 2.0 * std::numbers::inv_pi;
-  return {factor * row.value[kIntensity], factor * row.value[kPolarised]};
-}
-
-Moments Facets::emission(const Refinement& refinement) {
-  const RegimeScan scan(view_, theta_rad_, {.halvings = kHalvings}, [this](const SlopePoint& p) { return regime(p); });
-  const double steepest = end();
-  const SlopeTask<kCount> task{.integrand = [this](const SlopePoint& point) { return of_pair(point); },
-                               .scales =
-                                   [this](const Emitted& value) {
-                                     return Emitted{scale(value), scale(value)};
-                                   },
-                               .steepest = steepest,
-                               .bends_end = steepest,
-                               .thin_weight = 0.0,  // rows may grow with t
-                               .work = [] { return 0.0; },
-                               .most_work = 1.0};
-  const Integral<2 * kCount> integral = integrate_slopes_of<kCount>(task, axis_, scan, refinement, {});
-  const Emitted beyond = tail(steepest, refinement);
-  const double rounding = (kRounding + 0.5 * refinement.relative_tolerance) * std::abs(beyond[kIntensity]) +
-                          kRounding * (is_response_ ? view_.cos : integral.value[kIntensity]) + kNoShare * view_.cos;
-  Moments m;
-  m.direct_i = integral.value[kIntensity] + beyond[kIntensity];
-  m.direct_q = integral.value[kPolarised] + beyond[kPolarised];
-  m.direct_i_error = integral.error[kIntensity] + integral.value[kCount + kIntensity] + rounding;
-  m.direct_q_error = integral.error[kPolarised] + integral.value[kCount + kPolarised] + rounding;
-  m.evaluations = evaluations_;
-  return m;
-}
 
 }  // namespace
 

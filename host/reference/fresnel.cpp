@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "reference/film_stack.hpp"
-
 namespace dolp::reference {
 namespace {
 

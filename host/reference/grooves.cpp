@@ -12,8 +12,6 @@
 #include "reference/fresnel.hpp"
 #include "reference/groove_beam.hpp"
 #include "reference/slope_plane.hpp"
-#include "reference/special_angles.hpp"
-#include "reference/unit_light.hpp"
 
 namespace dolp::reference {
 
@@ -26,21 +24,21 @@ using Vector3 = Vector<double>;
 constexpr double kRounding = 256.0 * std::numeric_limits<double>::epsilon();
 // Light of less intensity is taken as absorbed.
 constexpr double kDark = 1e-24;
-// Largest number of bounces followed; the rest of the light may or may not leave the groove.
+// Most bounces that are followed; the rest of the light may or may not leave the groove.
 constexpr int kMostFollowed = 2000;
 constexpr double kSteepest = 1e15;
 constexpr double kSteeper = 1.5;
-// Steeper grooves than those of a slope t reflect less than t's, with some room for the steps between bounces.
+// Steeper grooves reflect less, apart from the steps between bounces, for which this leaves room.
 constexpr double kTailRoom = 2.0;
-constexpr double kTailShare = 0.01;  // of the tolerance
+constexpr double kTailShare = 0.01;  // share of the tolerance
 // Beams change their bounces over angles of the order of the groove's half-angle gamma.
 constexpr double kStepsPerGamma = 3.0;
-// Beyond the slope where this share of the integral is left bends are not looked for, nor in grooves steeper than
-// kSteepestBends, where they are many and small.
+// The search for bends ends at the slope where this share of the integral is left, and at kSteepestBends: in steeper
+// grooves bends are many and small.
 constexpr double kBendShare = 1e-2;
 constexpr double kSteepestBends = 10.0;
-// Bounces that an attempt may take, some two seconds. One that takes more is abandoned for a less ambitious one, but
-// for the last, which ends with what it has reached.
+// Bounces that an attempt may take, some two seconds. An attempt that takes more is abandoned for a less ambitious
+// attempt; the last attempt ends with what it has reached.
 constexpr double kMostBounces = 2e7;
 constexpr double kLessAmbitious = 100.0;
 constexpr double kLeastAmbition = 1e-5;
@@ -48,7 +46,7 @@ constexpr double kLeastAmbition = 1e-5;
 // for rounding.
 constexpr double kThinWeight = 0.02;
 constexpr double kNegligible = 1e-12;
-// In panels that still have bends the distance of two rules is of the size of the error and may be less by chance.
+// In panels that still have bends, the distance of two rules is about the error, and may be less by chance.
 constexpr double kBentErrors = 6.0;
 // Quantiles and azimuths of the first look at a surface.
 constexpr int kLookShares = 16;
@@ -146,7 +144,7 @@ class Surveyor {
  public:
   Surveyor(const Slopes& slopes, double theta_deg, const FacetOptics& constants, const Refinement& refinement,
            const SkyFunction* sky, bool may_abandon)
-      : axis_(slopes),
+      : slopes_(slopes),
         theta_rad_(theta_deg * pi / 180.0),
         view_(zenith_from_deg(theta_deg)),
         constants_(constants),
@@ -155,7 +153,56 @@ class Surveyor {
         may_abandon_(may_abandon) {}
 
   /// Undefined where the attempt is abandoned.
-  Moments moments();
+  Moments moments() {
+    const GrooveValues expected = look_at_all();
+    const auto [bends_end, end] = ends(expected);
+    const SpecialAngles special(constants_);
+    const RegimeScan scan(view_, theta_rad_, {.per_gamma = kStepsPerGamma}, [&](const SlopePoint& point) {
+      if (is_abandoned()) return std::uint64_t{0};
+      const Vector3 omega = toward_view(point, view_);
+      return history(point, omega, Facet::kA, special, sky_) * 3 + history(point, omega, Facet::kB, special, sky_);
+    });
+    const SlopeTask<kCount> task{.integrand = [this](const SlopePoint& point) { return at(point); },
+                                 .scales = scales_of,
+                                 .steepest = end,
+                                 .bends_end = std::min(bends_end, end),
+                                 .thin_weight = kThinWeight,
+                                 .work = [this] { return bounces_; },
+                                 .most_work = kMostBounces};
+    const Integral<2 * kCount> integral = integrate_slopes_of<kCount>(
+        task, slopes_, scan, {refinement_.relative_tolerance / kBentErrors, refinement_.subdivisions}, expected);
+
+    // Beyond the end: reflected between 0 and kTailRoom times what the share of slope `end` does.
+    const double share = slopes_.share_above(end);
+    const double tail_weight = share * view_.cos;
+    const GrooveValues at_end = look(end);
+    const double tail_most = std::min(tail_weight, kTailRoom * share * at_end[kReflected]);
+    const double half_lost = 0.5 * (integral.value[kLost] + integral.value[kCount + kLost]);
+    const double unknown = 0.5 * tail_most + half_lost;
+    const auto error_of = [&](std::size_t k) {
+      const bool is_signed = k == kPolarised || k == kSkyReflected || k == kSkyPolarised;
+      const double magnitude = is_signed ? integral.value[kReflected] : integral.value[k];
+      return kBentErrors * (integral.error[k] + integral.value[kCount + k]) + kRounding * magnitude;
+    };
+    Moments m;
+    m.albedo = integral.value[kAlbedo] + tail_weight;
+    m.r_i = integral.value[kReflected] + 0.5 * tail_most - half_lost;
+    m.r_q = integral.value[kPolarised];
+    m.deficit = integral.value[kAbsorbed] + (tail_weight - 0.5 * tail_most) + half_lost;
+    m.albedo_error = error_of(kAlbedo) + kRounding * tail_weight;
+    // Amplitudes carry an absolute error, which shows in their squares where they are small: N near 1.
+    const double amplitude_error = kRounding * (std::sqrt(m.r_i * m.albedo) + kRounding * m.albedo);
+    m.r_i_error = error_of(kReflected) + unknown + amplitude_error;
+    m.r_q_error = std::max(error_of(kPolarised), error_of(kReflected)) + 2.0 * unknown + amplitude_error;
+    m.deficit_error = error_of(kAbsorbed) + unknown + kRounding * tail_weight;
+    if (sky_) {
+      const double sky_error = std::max(error_of(kSkyReflected), error_of(kSkyPolarised));
+      m.columns = {{integral.value[kSkyReflected], integral.value[kSkyPolarised],
+                    std::max(sky_error, m.r_i_error) + 2.0 * unknown + tail_most + half_lost}};
+    }
+    return m;
+  }
+
   bool is_abandoned() const { return may_abandon_ && bounces_ > kMostBounces; }
   double evaluations() const { return evaluations_; }
 
@@ -176,15 +223,37 @@ class Surveyor {
     }
     return mean;
   }
-  GrooveValues look_at_all();
+  GrooveValues look_at_all() {
+    GrooveValues mean{};
+    for (int i = 0; i < kLookShares; ++i) {
+      const double t = std::min(kLookSteepest, slopes_.quantile((i + 0.5) / kLookShares));
+      const GrooveValues value = look(t);
+      for (std::size_t k = 0; k < kCount; ++k) mean[k] += value[k] / kLookShares;
+    }
+    return mean;
+  }
+
   /// Slopes beyond which less work is done.
   struct Ends {
     double bends;  ///< the slope beyond which bends are not looked for
     double all;    ///< the slope beyond which nothing is followed
   };
-  Ends ends(const GrooveValues& expected);
+  // Slopes beyond which the rest is negligible or has too many bounces.
+  Ends ends(const GrooveValues& expected) {
+    const double scale = std::min(expected[kReflected], expected[kAbsorbed]);
+    Ends ends{kSteepestBends, kSteepest};
+    for (double t = 2.0 * slopes_.width(); t < kSteepest; t *= kSteeper) {
+      const GrooveValues light = look(t);
+      const double beyond = kTailRoom * slopes_.share_above(t) * light[kReflected];
+      const bool is_followed = light[kLost] < 0.5 * light[kReflected];
+      if (beyond < kBendShare * scale) ends.bends = std::min(ends.bends, t);
+      ends.all = t;
+      if (!is_followed || beyond < kTailShare * refinement_.relative_tolerance * scale) break;
+    }
+    return ends;
+  }
 
-  SlopeAxis axis_;
+  const Slopes& slopes_;
   double theta_rad_;
   Zenith view_;
   FacetOptics constants_;
@@ -194,81 +263,6 @@ class Surveyor {
   double bounces_ = 0.0;
   double evaluations_ = 0.0;
 };
-
-GrooveValues Surveyor::look_at_all() {
-  GrooveValues mean{};
-  for (int i = 0; i < kLookShares; ++i) {
-    const double t = std::min(kLookSteepest, axis_.quantile((i + 0.5) / kLookShares));
-    const GrooveValues value = look(t);
-    for (std::size_t k = 0; k < kCount; ++k) mean[k] += value[k] / kLookShares;
-  }
-  return mean;
-}
-
-// Slopes beyond which the rest is negligible, or has too many bounces.
-Surveyor::Ends Surveyor::ends(const GrooveValues& expected) {
-  const double scale = std::min(expected[kReflected], expected[kAbsorbed]);
-  Ends ends{kSteepestBends, kSteepest};
-  for (double t = 2.0 * axis_.width(); t < kSteepest; t *= kSteeper) {
-    const GrooveValues light = look(t);
-    const double beyond = kTailRoom * axis_.share_above(t) * light[kReflected];
-    const bool is_followed = light[kLost] < 0.5 * light[kReflected];
-    if (beyond < kBendShare * scale) ends.bends = std::min(ends.bends, t);
-    ends.all = t;
-    if (!is_followed || beyond < kTailShare * refinement_.relative_tolerance * scale) break;
-  }
-  return ends;
-}
-
-Moments Surveyor::moments() {
-  const GrooveValues expected = look_at_all();
-  const auto [bends_end, end] = ends(expected);
-  const SpecialAngles special(constants_);
-  const RegimeScan scan(view_, theta_rad_, {.per_gamma = kStepsPerGamma}, [&](const SlopePoint& point) {
-    if (is_abandoned()) return std::uint64_t{0};
-    const Vector3 omega = toward_view(point, view_);
-    return history(point, omega, Facet::kA, special, sky_) * 3 + history(point, omega, Facet::kB, special, sky_);
-  });
-  const SlopeTask<kCount> task{.integrand = [this](const SlopePoint& point) { return at(point); },
-                               .scales = scales_of,
-                               .steepest = end,
-                               .bends_end = std::min(bends_end, end),
-                               .thin_weight = kThinWeight,
-                               .work = [this] { return bounces_; },
-                               .most_work = kMostBounces};
-  const Integral<2 * kCount> integral = integrate_slopes_of<kCount>(
-      task, axis_, scan, {refinement_.relative_tolerance / kBentErrors, refinement_.subdivisions}, expected);
-
-  // Beyond the end: reflected between 0 and kTailRoom times what the share of slope `end` does.
-  const double share = axis_.share_above(end);
-  const double tail_weight = share * view_.cos;
-  const GrooveValues at_end = look(end);
-  const double tail_most = std::min(tail_weight, kTailRoom * share * at_end[kReflected]);
-  const double half_lost = 0.5 * (integral.value[kLost] + integral.value[kCount + kLost]);
-  const double unknown = 0.5 * tail_most + half_lost;
-  const auto error_of = [&](std::size_t k) {
-    const bool is_signed = k == kPolarised || k == kSkyReflected || k == kSkyPolarised;
-    const double magnitude = is_signed ? integral.value[kReflected] : integral.value[k];
-    return kBentErrors * (integral.error[k] + integral.value[kCount + k]) + kRounding * magnitude;
-  };
-  Moments m;
-  m.albedo = integral.value[kAlbedo] + tail_weight;
-  m.r_i = integral.value[kReflected] + 0.5 * tail_most - half_lost;
-  m.r_q = integral.value[kPolarised];
-  m.deficit = integral.value[kAbsorbed] + (tail_weight - 0.5 * tail_most) + half_lost;
-  m.albedo_error = error_of(kAlbedo) + kRounding * tail_weight;
-  // Amplitudes carry an absolute error, which shows in their squares where they are small: N near 1.
-  const double amplitude_error = kRounding * (std::sqrt(m.r_i * m.albedo) + kRounding * m.albedo);
-  m.r_i_error = error_of(kReflected) + unknown + amplitude_error;
-  m.r_q_error = std::max(error_of(kPolarised), error_of(kReflected)) + 2.0 * unknown + amplitude_error;
-  m.deficit_error = error_of(kAbsorbed) + unknown + kRounding * tail_weight;
-  if (sky_) {
-    const double sky_error = std::max(error_of(kSkyReflected), error_of(kSkyPolarised));
-    m.columns = {{integral.value[kSkyReflected], integral.value[kSkyPolarised],
-                  std::max(sky_error, m.r_i_error) + 2.0 * unknown + tail_most + half_lost}};
-  }
-  return m;
-}
 
 }  // namespace
 

@@ -37,10 +37,10 @@ constexpr double kNearHorizon_rad = 1e-3;
 constexpr double kLayerGrowth = 10.0;
 // Errors of the nested integrals, relative to the one around them.
 constexpr double kInnerShare = 0.02;
-// Smallest relative error to which an azimuth integral can be refined: a Kronrod panel's own rounding is 1e-15 of its
+// Smallest relative error to which an azimuth integral can be refined: the rounding of a Kronrod panel is 1e-15 of its
 // magnitude.
 constexpr double kInnerFloor = 4e-15;
-// Integrals below this share of the albedo are not refined for: they are zero but for rounding.
+// Integrals below this share of the albedo are not refined: they are zero except for rounding.
 constexpr double kNegligible = 1e-12;
 
 // Absolute error of G, which is of order 1: below what the azimuth could take for structure, above rounding.
@@ -50,9 +50,6 @@ double masking_tolerance_for(const Refinement& refinement) {
 
 // Components of the integrals; after them K responses of the reflected part, and K of the polarised one.
 enum Component : std::size_t { kAlbedo, kReflected, kPolarised, kAbsorbed, kMomentCount };
-template <std::size_t K>
-using MomentValues = Values<kMomentCount + 2 * K>;
-
 template <std::size_t N>
 Values<N> moment_scales(const Values<N>& value) {
   const double floor = kNegligible * value[kAlbedo] + std::numeric_limits<double>::min();
@@ -60,29 +57,6 @@ Values<N> moment_scales(const Values<N>& value) {
   const double absorbed = std::max(kSmallAbsorbed * value[kAlbedo] + floor, value[kAbsorbed]);
   Values<N> scales{std::max(floor, value[kAlbedo]), reflected, reflected, absorbed};
   std::fill(scales.begin() + kMomentCount, scales.end(), scales[kAlbedo]);
-  return scales;
-}
-
-// The moments, and with a function of the sky, followed by the errors of their azimuth integrals, which are only
-// carried along.
-template <std::size_t K>
-inline constexpr std::size_t kSkyReflected = kMomentCount + 2 * K;
-template <std::size_t K>
-inline constexpr std::size_t kSkyPolarised = kSkyReflected<K> + 1;
-template <std::size_t K>
-inline constexpr std::size_t kZenithCount = kSkyReflected<K> + 2;
-template <std::size_t K>
-using BothValues = Values<2 * kZenithCount<K>>;
-
-template <std::size_t K>
-BothValues<K> both_scales(const BothValues<K>& value) {
-  BothValues<K> scales;
-  scales.fill(kInfinity);
-  MomentValues<K> moments;
-  std::copy_n(value.begin(), moments.size(), moments.begin());
-  moments = moment_scales(moments);
-  std::copy(moments.begin(), moments.end(), scales.begin());
-  scales[kSkyReflected<K>] = scales[kSkyPolarised<K>] = moments[kReflected];
   return scales;
 }
 
@@ -102,6 +76,15 @@ MuellerRow mueller_row(const FresnelCoefficients& r, double cos_eta, double sin_
 template <std::size_t K>
 class Hemisphere {
  public:
+  // The moments without and with a function of the sky, and then the errors of their azimuth integrals, which are only
+  // carried along.
+  static constexpr std::size_t kAzimuthCount = kMomentCount + 2 * K;
+  static constexpr std::size_t kSkyReflected = kAzimuthCount;
+  static constexpr std::size_t kSkyPolarised = kAzimuthCount + 1;
+  static constexpr std::size_t kZenithCount = kAzimuthCount + 2;
+  using AzimuthValues = Values<kAzimuthCount>;
+  using BothValues = Values<2 * kZenithCount>;
+
   Hemisphere(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
              const Refinement& refinement, const SkyFunction* sky, const Curves* curves = nullptr)
       : slopes_(slopes),
@@ -113,7 +96,33 @@ class Hemisphere {
         sky_(sky),
         curves_(curves) {}
 
-  Integral<2 * kZenithCount<K>> integrate_zenith();
+  Integral<2 * kZenithCount> integrate_zenith() {
+    constexpr std::size_t kCount = 2 * kZenithCount;
+    const Goal goal{.relative = refinement_.relative_tolerance, .subdivisions = refinement_.subdivisions};
+    const Breaks breaks = zenith_breaks();
+    if (fixed_.cos > 0.0) {
+      return integrate<kCount>([this](double u) { return row_values(u); }, breaks, goal, both_scales);
+    }
+    // At theta = 90 degrees u runs up to 0, where the integrand is |u|^(2q - 4) for q < 2: integrated in log |u|, with
+    // what lies beyond the gap added as that power.
+    const auto in_log = [this](double x) {
+      BothValues values = row_values(-std::exp(x));
+      for (double& value : values) value *= std::exp(x);
+      return values;
+    };
+    const std::vector<double> points = breaks.sorted();
+    Breaks log_breaks(std::log(kHorizonGap), std::log(-points.front()));
+    for (const double u : points) {
+      if (u < 0.0) log_breaks.add(std::log(-u));
+    }
+    for (const double x : {-40.0, -20.0, -10.0, -5.0, -2.0}) log_breaks.add(x);
+    Integral<kCount> result = integrate<kCount>(in_log, log_breaks, goal, both_scales);
+    const double power = slopes_.is_gaussian() ? 1.0 : std::min(1.0, 2.0 * slopes_.q() - 3.0);
+    const BothValues at_gap = row_values(-kHorizonGap);
+    for (std::size_t k = 0; k < result.value.size(); ++k) result.value[k] += kHorizonGap * at_gap[k] / power;
+    return result;
+  }
+
   double evaluations() const { return evaluations_; }
 
  private:
@@ -125,12 +134,163 @@ class Hemisphere {
     Zenith running;
     Attenuation attenuation;
   };
-  Breaks zenith_breaks() const;
-  Breaks azimuth_breaks(const Row& row, double width) const;
-  Integral<kMomentCount + 2 * K> integrate_azimuth(const Row& row);
-  BothValues<K> row_values(double u);
-  MomentValues<K> integrand(const Row& row, double delta) const;
-  std::vector<double> special_beta_rad() const;
+  // Break points in u of tan((theta_r - theta)/2) = width sinh(u): the specular direction, and where the break points
+  // of the azimuth enter or leave at Delta_phi = 180 or 0 degrees.
+  Breaks zenith_breaks() const {
+    const double width = slopes_.width();
+    Breaks breaks(std::asinh(-std::tan(0.5 * theta_rad_) / width),
+                  std::asinh(std::tan(0.5 * fixed_.elevation_rad) / width));
+    for (const double u : {-4.0, -1.5, 0.0, 1.5, 4.0}) breaks.add(u);
+    if (fixed_.cos > 0.0 && fixed_.elevation_rad < kNearHorizon_rad) {
+      for (double t = std::tan(0.5 * fixed_.elevation_rad); t < width; t *= kLayerGrowth) {
+        breaks.add(std::asinh(-t / width));
+      }
+    }
+    std::vector<double> angles;
+    for (const double beta : special_beta_rad()) {
+      for (const double angle : {2.0 * beta - theta_rad_, theta_rad_ - 2.0 * beta, theta_rad_ + 2.0 * beta}) {
+        angles.push_back(angle);
+      }
+    }
+    if (masking_ == Masking::kVCavity || masking_ == Masking::kIntegral) {
+      for (const double angle :
+           {(pi - theta_rad_) / 3.0, (pi + theta_rad_) / 3.0, pi - 3.0 * theta_rad_, 3.0 * theta_rad_ - pi}) {
+        angles.push_back(angle);
+      }
+    }
+    if (sky_) {
+      for (const double corner_deg : sky_->corners_deg) angles.push_back(corner_deg * pi / 180.0);
+    }
+    for (const double angle : angles) {
+      if (angle > 0.0 && angle < 0.5 * pi) breaks.add(std::asinh(std::tan(0.5 * (angle - theta_rad_)) / width));
+    }
+    return breaks;
+  }
+
+  // Break points in s2, at the special angles of beta and where the masking bends:
+  //   v-cavity: (cos theta + cos theta_r) min(cos theta, cos theta_r) = cos^2 beta
+  //   integral: alpha = 2 max(theta, theta_r) - pi/2, above which b = pi/2
+  Breaks azimuth_breaks(const Row& row, double width) const {
+    Breaks breaks(0.0, std::asinh(1.0 / width));
+    const auto add_s2 = [&](double s2) {
+      if (s2 > 0.0 && s2 < 1.0) breaks.add(std::asinh(std::tan(0.5 * std::asin(std::sqrt(s2))) / width));
+    };
+    if (row.sin_sin > 0.0) {
+      for (const double beta : special_beta_rad()) {
+        add_s2((std::cos(beta) * std::cos(beta) - row.cos2_mean) / row.sin_sin);
+      }
+      const double lower_cos = std::min(fixed_.cos, row.running.cos);
+      if (masking_ == Masking::kVCavity) {
+        add_s2(((fixed_.cos + row.running.cos) * lower_cos - row.cos2_mean) / row.sin_sin);
+      }
+      const double lower_elevation = std::min(fixed_.elevation_rad, row.running.elevation_rad);
+      if (masking_ == Masking::kIntegral && lower_elevation < 0.25 * pi) {
+        const double tan_alpha = 1.0 / std::tan(2.0 * lower_elevation);
+        add_s2((tan_alpha * tan_alpha - row.t * row.t) * row.cos2_mean / (row.sin_sin * (1.0 + row.t * row.t)));
+      }
+    }
+    breaks.add(1.5);
+    breaks.add(4.0);
+    return breaks;
+  }
+
+  // In v of tan(delta/4) = width sinh(v), width being where D has fallen off: 4 tan^2(delta/4) is about s2.
+  Integral<kAzimuthCount> integrate_azimuth(const Row& row) {
+    const double t2 = row.t * row.t;
+    const double scale2 =
+        slopes_.width() * slopes_.width() + (slopes_.is_gaussian() ? 0.0 : t2 / std::max(1.0, slopes_.q()));
+    const double width2 = 0.25 * scale2 * row.cos2_mean / ((1.0 + t2) * std::max(row.sin_sin, 1e-300));
+    const double width = std::min(10.0, std::sqrt(width2));
+    const auto in_v = [&](double v) {
+      const double x = width * std::sinh(v);
+      AzimuthValues values = integrand(row, 4.0 * std::atan(x));
+      for (double& value : values) value *= 4.0 * width * std::cosh(v) / (1.0 + x * x);
+      evaluations_ += 1.0;
+      return values;
+    };
+    const Goal goal{.relative = std::max(kInnerFloor, kInnerShare * refinement_.relative_tolerance),
+                    .max_panels = 200,
+                    .subdivisions = refinement_.subdivisions};
+    return integrate<kAzimuthCount>(in_v, azimuth_breaks(row, width), goal, moment_scales<kAzimuthCount>);
+  }
+
+  static BothValues both_scales(const BothValues& value) {
+    BothValues scales;
+    scales.fill(kInfinity);
+    AzimuthValues moments;
+    std::copy_n(value.begin(), moments.size(), moments.begin());
+    moments = moment_scales(moments);
+    std::copy(moments.begin(), moments.end(), scales.begin());
+    scales[kSkyReflected] = scales[kSkyPolarised] = moments[kReflected];
+    return scales;
+  }
+
+  // The integrand in u: the azimuth integrals of one running zenith angle with their errors.
+  BothValues row_values(double u) {
+    const double t = slopes_.width() * std::sinh(u);
+    const double half_rad = std::atan(t);
+    const double elevation_rad = fixed_.elevation_rad - 2.0 * half_rad;
+    const Zenith running{elevation_rad, std::sin(elevation_rad), std::sin(theta_rad_ + 2.0 * half_rad)};
+    const double cos_mean = std::sin(fixed_.elevation_rad - half_rad);
+    const Row row{t, cos_mean * cos_mean, fixed_.sin * running.sin, running,
+                  Attenuation(slopes_, masking_, fixed_, running, masking_tolerance_for(refinement_))};
+    const auto inner = integrate_azimuth(row);
+    // Twice: delta runs over half of the azimuth.
+    const double jacobian = 2.0 * running.sin * 2.0 * slopes_.width() * std::cosh(u) / (1.0 + t * t);
+    BothValues both;
+    for (std::size_t k = 0; k < inner.value.size(); ++k) {
+      both[k] = jacobian * inner.value[k];
+      both[kZenithCount + k] = jacobian * inner.error[k];
+    }
+    const double g = sky_ ? sky_->value(90.0 - elevation_rad * 180.0 / pi) : 0.0;
+    both[kSkyReflected] = g * both[kReflected];
+    both[kSkyPolarised] = g * both[kPolarised];
+    both[kZenithCount + kSkyReflected] = std::abs(g) * both[kZenithCount + kReflected];
+    both[kZenithCount + kSkyPolarised] = std::abs(g) * both[kZenithCount + kPolarised];
+    return both;
+  }
+
+  // D G M / 4, the reduced form of cos(theta) f cos(theta_r), and the same with R = 1 and with 1 - R.
+  AzimuthValues integrand(const Row& row, double delta) const {
+    const double sin_half = std::sin(0.5 * delta);
+    const double cos_half = std::cos(0.5 * delta);
+    const double s2 = sin_half * sin_half;
+    const double cos2_beta = row.cos2_mean + row.sin_sin * s2;
+    const double sin2_beta = row.t * row.t / (1.0 + row.t * row.t) + row.sin_sin * cos_half * cos_half;
+    const double tan2_alpha = row.t * row.t + (1.0 + row.t * row.t) * row.sin_sin * s2 / row.cos2_mean;
+    const double bare = 0.25 * slopes_.facet_density(tan2_alpha) * row.attenuation(tan2_alpha, cos2_beta);
+
+    const double cos_beta = std::sqrt(cos2_beta);
+    const FresnelCoefficients r = fresnel(constants_, cos_beta);
+    // h is (omega_i + omega_r) / (2 cos beta); its parts across and along the plane of omega_i and z, over sin beta.
+    // The retro direction, beta = 0, has no eta and no polarisation: r_p = -r_s.
+    const double sin_2beta = 2.0 * std::sqrt(cos2_beta * sin2_beta);
+    MuellerRow m{0.5 * (std::norm(r.r_s) + std::norm(r.r_p)), 0.0};
+    double cos_2eta = 1.0;
+    if (sin_2beta > 0.0) {
+      const double sin_eta = row.running.sin * std::sin(delta) / sin_2beta;
+      const double cos_eta =
+          (row.running.cos * fixed_.sin + row.running.sin * fixed_.cos * std::cos(delta)) / sin_2beta;
+      m = mueller_row(r, cos_eta, sin_eta);
+      cos_2eta = cos_eta * cos_eta - sin_eta * sin_eta;
+    }
+    AzimuthValues values{bare, bare * m.m00, bare * m.m01, bare * 0.5 * (r.absorbed_s + r.absorbed_p)};
+    if constexpr (K > 0) {
+      const std::array<double, kCurves> curves = (*curves_)(cos_beta);
+      for (std::size_t k = 0; k < K; ++k) {
+        values[kMomentCount + k] = bare * curves[k];
+        values[kMomentCount + K + k] = bare * curves[k] * sin2_beta * cos_2eta;
+      }
+    }
+    return values;
+  }
+
+  // Angles beta where the Fresnel coefficients bend: total reflection, and the (pseudo-)Brewster angle.
+  std::vector<double> special_beta_rad() const {
+    std::vector<double> angles{std::atan(std::hypot(constants_.index.n, constants_.index.k))};
+    if (constants_.index.n < 1.0) angles.push_back(std::asin(constants_.index.n));
+    return angles;
+  }
 
   const Slopes& slopes_;
   Masking masking_;
@@ -142,187 +302,6 @@ class Hemisphere {
   const Curves* curves_;
   double evaluations_ = 0.0;
 };
-
-// D G M / 4, the reduced form of cos(theta) f cos(theta_r), and the same with R = 1 and with 1 - R.
-template <std::size_t K>
-MomentValues<K> Hemisphere<K>::integrand(const Row& row, double delta) const {
-  const double sin_half = std::sin(0.5 * delta);
-  const double cos_half = std::cos(0.5 * delta);
-  const double s2 = sin_half * sin_half;
-  const double cos2_beta = row.cos2_mean + row.sin_sin * s2;
-  const double sin2_beta = row.t * row.t / (1.0 + row.t * row.t) + row.sin_sin * cos_half * cos_half;
-  const double tan2_alpha = row.t * row.t + (1.0 + row.t * row.t) * row.sin_sin * s2 / row.cos2_mean;
-  const double bare = 0.25 * slopes_.facet_density(tan2_alpha) * row.attenuation(tan2_alpha, cos2_beta);
-
-  const double cos_beta = std::sqrt(cos2_beta);
-  const FresnelCoefficients r = fresnel(constants_, cos_beta);
-  // h is (omega_i + omega_r) / (2 cos beta); its parts across and along the plane of omega_i and z, over sin beta. The
-  // retro direction, beta = 0, has no eta and no polarisation: r_p = -r_s.
-  const double sin_2beta = 2.0 * std::sqrt(cos2_beta * sin2_beta);
-  MuellerRow m{0.5 * (std::norm(r.r_s) + std::norm(r.r_p)), 0.0};
-  double cos_2eta = 1.0;
-  if (sin_2beta > 0.0) {
-    const double sin_eta = row.running.sin * std::sin(delta) / sin_2beta;
-    const double cos_eta = (row.running.cos * fixed_.sin + row.running.sin * fixed_.cos * std::cos(delta)) / sin_2beta;
-    m = mueller_row(r, cos_eta, sin_eta);
-    cos_2eta = cos_eta * cos_eta - sin_eta * sin_eta;
-  }
-  MomentValues<K> values{bare, bare * m.m00, bare * m.m01, bare * 0.5 * (r.absorbed_s + r.absorbed_p)};
-  if constexpr (K > 0) {
-    const std::array<double, kCurves> curves = (*curves_)(cos_beta);
-    for (std::size_t k = 0; k < K; ++k) {
-      values[kMomentCount + k] = bare * curves[k];
-      values[kMomentCount + K + k] = bare * curves[k] * sin2_beta * cos_2eta;
-    }
-  }
-  return values;
-}
-
-// Angles beta where the Fresnel coefficients bend: total reflection, and the (pseudo-)Brewster angle.
-template <std::size_t K>
-std::vector<double> Hemisphere<K>::special_beta_rad() const {
-  std::vector<double> angles{std::atan(std::hypot(constants_.index.n, constants_.index.k))};
-  if (constants_.index.n < 1.0) angles.push_back(std::asin(constants_.index.n));
-  return angles;
-}
-
-// Break points in s2, at the special angles of beta and where the masking bends:
-//   v-cavity: (cos theta + cos theta_r) min(cos theta, cos theta_r) = cos^2 beta
-//   integral: alpha = 2 max(theta, theta_r) - pi/2, above which b = pi/2
-template <std::size_t K>
-Breaks Hemisphere<K>::azimuth_breaks(const Row& row, double width) const {
-  Breaks breaks(0.0, std::asinh(1.0 / width));
-  const auto add_s2 = [&](double s2) {
-    if (s2 > 0.0 && s2 < 1.0) breaks.add(std::asinh(std::tan(0.5 * std::asin(std::sqrt(s2))) / width));
-  };
-  if (row.sin_sin > 0.0) {
-    for (const double beta : special_beta_rad()) {
-      add_s2((std::cos(beta) * std::cos(beta) - row.cos2_mean) / row.sin_sin);
-    }
-    const double lower_cos = std::min(fixed_.cos, row.running.cos);
-    if (masking_ == Masking::kVCavity) {
-      add_s2(((fixed_.cos + row.running.cos) * lower_cos - row.cos2_mean) / row.sin_sin);
-    }
-    const double lower_elevation = std::min(fixed_.elevation_rad, row.running.elevation_rad);
-    if (masking_ == Masking::kIntegral && lower_elevation < 0.25 * pi) {
-      const double tan_alpha = 1.0 / std::tan(2.0 * lower_elevation);
-      add_s2((tan_alpha * tan_alpha - row.t * row.t) * row.cos2_mean / (row.sin_sin * (1.0 + row.t * row.t)));
-    }
-  }
-  breaks.add(1.5);
-  breaks.add(4.0);
-  return breaks;
-}
-
-// In v of tan(delta/4) = width sinh(v), width being where D has fallen off: 4 tan^2(delta/4) is about s2.
-template <std::size_t K>
-Integral<kMomentCount + 2 * K> Hemisphere<K>::integrate_azimuth(const Row& row) {
-  const double t2 = row.t * row.t;
-  const double scale2 =
-      slopes_.width() * slopes_.width() + (slopes_.is_gaussian() ? 0.0 : t2 / std::max(1.0, slopes_.q()));
-  const double width2 = 0.25 * scale2 * row.cos2_mean / ((1.0 + t2) * std::max(row.sin_sin, 1e-300));
-  const double width = std::min(10.0, std::sqrt(width2));
-  const auto in_v = [&](double v) {
-    const double x = width * std::sinh(v);
-    MomentValues<K> values = integrand(row, 4.0 * std::atan(x));
-    for (double& value : values) value *= 4.0 * width * std::cosh(v) / (1.0 + x * x);
-    evaluations_ += 1.0;
-    return values;
-  };
-  const Goal goal{.relative = std::max(kInnerFloor, kInnerShare * refinement_.relative_tolerance),
-                  .max_panels = 200,
-                  .subdivisions = refinement_.subdivisions};
-  constexpr std::size_t kCount = kMomentCount + 2 * K;
-  return integrate<kCount>(in_v, azimuth_breaks(row, width), goal, moment_scales<kCount>);
-}
-
-// Break points in u of tan((theta_r - theta)/2) = width sinh(u): the specular direction, and where the break points of
-// the azimuth enter or leave at Delta_phi = 180 or 0 degrees.
-template <std::size_t K>
-Breaks Hemisphere<K>::zenith_breaks() const {
-  const double width = slopes_.width();
-  Breaks breaks(std::asinh(-std::tan(0.5 * theta_rad_) / width),
-                std::asinh(std::tan(0.5 * fixed_.elevation_rad) / width));
-  for (const double u : {-4.0, -1.5, 0.0, 1.5, 4.0}) breaks.add(u);
-  if (fixed_.cos > 0.0 && fixed_.elevation_rad < kNearHorizon_rad) {
-    for (double t = std::tan(0.5 * fixed_.elevation_rad); t < width; t *= kLayerGrowth) {
-      breaks.add(std::asinh(-t / width));
-    }
-  }
-  std::vector<double> angles;
-  for (const double beta : special_beta_rad()) {
-    for (const double angle : {2.0 * beta - theta_rad_, theta_rad_ - 2.0 * beta, theta_rad_ + 2.0 * beta}) {
-      angles.push_back(angle);
-    }
-  }
-  if (masking_ == Masking::kVCavity || masking_ == Masking::kIntegral) {
-    for (const double angle :
-         {(pi - theta_rad_) / 3.0, (pi + theta_rad_) / 3.0, pi - 3.0 * theta_rad_, 3.0 * theta_rad_ - pi}) {
-      angles.push_back(angle);
-    }
-  }
-  if (sky_) {
-    for (const double corner_deg : sky_->corners_deg) angles.push_back(corner_deg * pi / 180.0);
-  }
-  for (const double angle : angles) {
-    if (angle > 0.0 && angle < 0.5 * pi) breaks.add(std::asinh(std::tan(0.5 * (angle - theta_rad_)) / width));
-  }
-  return breaks;
-}
-
-// The integrand in u: the azimuth integrals of one running zenith angle with their errors.
-template <std::size_t K>
-BothValues<K> Hemisphere<K>::row_values(double u) {
-  const double t = slopes_.width() * std::sinh(u);
-  const double half_rad = std::atan(t);
-  const double elevation_rad = fixed_.elevation_rad - 2.0 * half_rad;
-  const Zenith running{elevation_rad, std::sin(elevation_rad), std::sin(theta_rad_ + 2.0 * half_rad)};
-  const double cos_mean = std::sin(fixed_.elevation_rad - half_rad);
-  const Row row{t, cos_mean * cos_mean, fixed_.sin * running.sin, running,
-                Attenuation(slopes_, masking_, fixed_, running, masking_tolerance_for(refinement_))};
-  const auto inner = integrate_azimuth(row);
-  // Twice: delta runs over half of the azimuth.
-  const double jacobian = 2.0 * running.sin * 2.0 * slopes_.width() * std::cosh(u) / (1.0 + t * t);
-  BothValues<K> both;
-  for (std::size_t k = 0; k < inner.value.size(); ++k) {
-    both[k] = jacobian * inner.value[k];
-    both[kZenithCount<K> + k] = jacobian * inner.error[k];
-  }
-  const double g = sky_ ? sky_->value(90.0 - elevation_rad * 180.0 / pi) : 0.0;
-  both[kSkyReflected<K>] = g * both[kReflected];
-  both[kSkyPolarised<K>] = g * both[kPolarised];
-  both[kZenithCount<K> + kSkyReflected<K>] = std::abs(g) * both[kZenithCount<K> + kReflected];
-  both[kZenithCount<K> + kSkyPolarised<K>] = std::abs(g) * both[kZenithCount<K> + kPolarised];
-  return both;
-}
-
-template <std::size_t K>
-Integral<2 * kZenithCount<K>> Hemisphere<K>::integrate_zenith() {
-  constexpr std::size_t kCount = 2 * kZenithCount<K>;
-  const Goal goal{.relative = refinement_.relative_tolerance, .subdivisions = refinement_.subdivisions};
-  const Breaks breaks = zenith_breaks();
-  if (fixed_.cos > 0.0) {
-    return integrate<kCount>([this](double u) { return row_values(u); }, breaks, goal, both_scales<K>);
-  }
-  // At theta = 90 degrees u runs up to 0, where the integrand is |u|^(2q - 4) for q < 2: integrated in log |u|, with
-  // what lies beyond the gap added as that power.
-  const auto in_log = [this](double x) {
-    BothValues<K> values = row_values(-std::exp(x));
-    for (double& value : values) value *= std::exp(x);
-    return values;
-  };
-  const std::vector<double> points = breaks.sorted();
-  Breaks log_breaks(std::log(kHorizonGap), std::log(-points.front()));
-  for (const double u : points) {
-    if (u < 0.0) log_breaks.add(std::log(-u));
-  }
-  for (const double x : {-40.0, -20.0, -10.0, -5.0, -2.0}) log_breaks.add(x);
-  Integral<kCount> result = integrate<kCount>(in_log, log_breaks, goal, both_scales<K>);
-  const double power = slopes_.is_gaussian() ? 1.0 : std::min(1.0, 2.0 * slopes_.q() - 3.0);
-  const BothValues<K> at_gap = row_values(-kHorizonGap);
-  for (std::size_t k = 0; k < result.value.size(); ++k) result.value[k] += kHorizonGap * at_gap[k] / power;
-  return result;
-}
 
 // The amplitudes r_s and r_p carry an absolute error, which shows in their squares where they are small: N near 1.
 double amplitude_rounding(double reflected, double albedo) {
@@ -366,7 +345,8 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   if (theta_deg == 90.0 && is_unshadowed && !slopes.is_gaussian() && slopes.q() <= 1.5) {
     return divergent_moments(constants);
   }
-  Hemisphere<0> hemisphere(slopes, masking, theta_deg, constants, refinement, sky);
+  using SkyMoments = Hemisphere<0>;
+  SkyMoments hemisphere(slopes, masking, theta_deg, constants, refinement, sky);
   const auto integral = hemisphere.integrate_zenith();
   const double cos_theta = zenith_from_deg(theta_deg).cos;
   const auto error_at = [&](std::size_t k) {
@@ -388,8 +368,10 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   moments.deficit_error = is_split ? split_error : direct_error;
   moments.evaluations = hemisphere.evaluations();
   if (sky) {
-    const double sky_error = std::max(error_at(kSkyReflected<0>), error_at(kSkyPolarised<0>)) + amplitude_error;
-    moments.columns = {{integral.value[kSkyReflected<0>], integral.value[kSkyPolarised<0>], sky_error}};
+    const double sky_error =
+        std::max(error_at(SkyMoments::kSkyReflected), error_at(SkyMoments::kSkyPolarised)) + amplitude_error;
+    moments.columns = {
+        {integral.value[SkyMoments::kSkyReflected], integral.value[SkyMoments::kSkyPolarised], sky_error}};
   }
   return moments;
 }

@@ -10,7 +10,6 @@
 #include <limits>
 
 #include "reference/attenuation.hpp"
-#include "reference/film_stack.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/groove_beam.hpp"
 #include "reference/hemisphere.hpp"
@@ -148,7 +147,7 @@ void add(ReferenceMueller& total, const ReferenceMueller& term) {
 struct GroovePlane {
   Vector u, v;
   Real across;        ///< length of that horizontal part
-  Real psi_i, psi_r;  ///< of omega_i and omega_r, from z toward u
+  Real psi_i, psi_r;  ///< angles of omega_i and omega_r from z toward u
 
   GroovePlane(const BeamFrame& in, const BeamFrame& out, int sign) {
     const Vector horizontal{out.k[0] - in.k[0], out.k[1] - in.k[1], 0};

@@ -2,19 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <condition_variable>
 #include <cstddef>
 #include <dolp/errors.hpp>
-#include <exception>
-#include <functional>
-#include <mutex>
 #include <string>
-#include <thread>
 #include <utility>
 
+#include "base/parallel_ranges.hpp"
 #include "base/processor.hpp"
 #include "base/stopwatch.hpp"
 #include "model/sky_basis.hpp"
@@ -26,6 +21,8 @@
 namespace dolp {
 
 namespace {
+
+constexpr std::size_t kEntriesAtOnce = 1;  // an entry may take seconds
 
 void require(bool is_met, const std::string& what, double value) {
   if (!is_met) throw InputError("reference: " + what + ", but it is " + std::to_string(value));
@@ -67,7 +64,7 @@ void check(const MomentsRequest& request) {
   for (const double theta_deg : request.theta_deg) check_zenith(theta_deg);
   for (const double sigma : request.sigma) check_shape(request.distribution, request.masking, {.sigma = sigma});
   for (const double q : request.q) check_shape(request.distribution, request.masking, {.q = q});
-  for (const FacetOptics& index : request.indices) check_index(index);
+  for (const FacetOptics& index : request.optics) check_index(index);
 }
 
 void check(const ScatteringRequest& request) {
@@ -80,7 +77,7 @@ void check(const ScatteringRequest& request) {
     check_shape(request.distribution, request.masking, shape);
     require(shape.sigma > 0.0, "sigma must be above 0", shape.sigma);
   }
-  for (const FacetOptics& index : request.indices) check_index(index);
+  for (const FacetOptics& index : request.optics) check_index(index);
 }
 
 Moments mirror_of(const MomentsRequest& request, const MomentsPoint& point) {
@@ -153,7 +150,7 @@ ScatteringMatrix matrix_of(const ScatteringRequest& request, const ScatteringEnt
   surface.masking = request.masking;
   surface.sigma = shape.sigma;
   surface.q = shape.q;
-  const FacetOptics& index = request.indices.at(entry.index);
+  const FacetOptics& index = request.optics.at(entry.index);
   const auto [theta_i_deg, theta_r_deg, delta_phi_deg] = angles;
   const BouncesSum f =
       request.scattering == Scattering::kMultiple
@@ -171,75 +168,6 @@ double relative_tolerance(const ReferenceOptions& options, double requested) {
   return std::min(0.5 * requested, std::max(options.relative_tolerance, 0.01 * requested));
 }
 
-// Shares the entries between threads; the calling thread alone talks to `progress`.
-template <class Result>
-class ThreadPool {
- public:
-  ThreadPool(std::size_t entries, std::function<Result(std::size_t)> work_on)
-      : work_on_(std::move(work_on)), results_(entries) {}
-
-  std::vector<Result> run(unsigned threads, const Progress& progress) {
-    std::vector<std::jthread> workers;
-    for (unsigned i = 0; i < threads; ++i) workers.emplace_back([this] { work(); });
-    report_until_done(progress, threads);
-    workers.clear();
-    if (failure_) std::rethrow_exception(failure_);
-    return std::move(results_);
-  }
-
- private:
-  void work() {
-    try {
-      for (std::size_t i = next_++; i < results_.size() && !is_stopping_; i = next_++) {
-        results_[i] = work_on_(i);
-        const std::lock_guard lock(mutex_);
-        ++done_;
-        changed_.notify_one();
-      }
-    } catch (...) {
-      is_stopping_ = true;
-      const std::lock_guard lock(mutex_);
-      failure_ = std::current_exception();
-    }
-    const std::lock_guard lock(mutex_);
-    ++idle_;
-    changed_.notify_one();
-  }
-
-  void report_until_done(const Progress& progress, unsigned threads) {
-    std::unique_lock lock(mutex_);
-    for (std::size_t told = 0; idle_ < threads || told < done_;) {
-      changed_.wait(lock, [&] { return done_ > told || idle_ == threads; });
-      if (done_ == told) continue;
-      told = done_;
-      lock.unlock();
-      try {
-        if (progress && !is_stopping_ && !progress(told, results_.size())) throw Cancelled();
-        lock.lock();
-      } catch (...) {
-        is_stopping_ = true;
-        lock.lock();
-        failure_ = std::current_exception();
-      }
-    }
-  }
-
-  std::function<Result(std::size_t)> work_on_;
-  std::vector<Result> results_;
-  std::atomic<std::size_t> next_{0};
-  std::atomic<bool> is_stopping_{false};
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::size_t done_ = 0;
-  unsigned idle_ = 0;
-  std::exception_ptr failure_;
-};
-
-unsigned thread_count(const ReferenceOptions& options, std::size_t entries) {
-  const unsigned available = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
-  return static_cast<unsigned>(std::min<std::size_t>(available, entries));
-}
-
 }  // namespace
 
 void ReferenceEvaluator::note(double seconds) {
@@ -253,10 +181,11 @@ std::vector<Moments> ReferenceEvaluator::evaluate(const MomentsRequest& request,
   check(request);
   const auto start = std::chrono::steady_clock::now();
   const reference::Refinement refinement{relative_tolerance(options_, request.tolerance), options_.subdivisions};
-  ThreadPool<Moments> pool(request.size(), [&](std::size_t i) {
-    return request.is_wanted(i) ? moments_of(request, request[i], refinement) : Moments{};
-  });
-  std::vector<Moments> results = pool.run(thread_count(options_, request.size()), progress);
+  std::vector<Moments> results(request.size());
+  const auto compute = [&](std::size_t i) {
+    if (request.is_wanted(i)) results[i] = moments_of(request, request[i], refinement);
+  };
+  parallel_for(results.size(), compute, progress, kEntriesAtOnce);
   for (const Moments& moments : results) report_.evaluations += moments.evaluations;
   note(seconds_since(start));
   return results;
@@ -265,9 +194,9 @@ std::vector<Moments> ReferenceEvaluator::evaluate(const MomentsRequest& request,
 std::vector<ScatteringMatrix> ReferenceEvaluator::scatter(const ScatteringRequest& request, const Progress& progress) {
   check(request);
   const auto start = std::chrono::steady_clock::now();
-  ThreadPool<ScatteringMatrix> pool(request.entries.size(),
-                                    [&](std::size_t i) { return matrix_of(request, request.entries[i]); });
-  std::vector<ScatteringMatrix> results = pool.run(thread_count(options_, request.entries.size()), progress);
+  std::vector<ScatteringMatrix> results(request.entries.size());
+  const auto compute = [&](std::size_t i) { results[i] = matrix_of(request, request.entries[i]); };
+  parallel_for(results.size(), compute, progress, kEntriesAtOnce);
   note(seconds_since(start));
   return results;
 }

@@ -99,27 +99,4 @@ std::vector<double> RegimeScan::t_breaks(double width, double end) const {
   return found;
 }
 
-double SlopeAxis::density(double v) const {
-  const double slope = t(v);
-  const double inverse_cos2 = 1.0 + slope * slope;
-  const double plane = slopes_.facet_density(slope * slope) / (inverse_cos2 * inverse_cos2);
-  return 2.0 * pi * plane * slope * slopes_.width() * std::cosh(v);
-}
-
-double SlopeAxis::share_above(double t) const {
-  const double u = t / slopes_.m();
-  return slopes_.is_gaussian() ? std::exp(-u * u) : std::exp((1.0 - slopes_.q()) * std::log1p(u * u));
-}
-
-double SlopeAxis::length_above(double t) const {
-  if (slopes_.is_gaussian()) return 0.0;
-  return 2.0 * (slopes_.q() - 1.0) / (2.0 * slopes_.q() - 3.0) * t * share_above(t);
-}
-
-double SlopeAxis::quantile(double share) const {
-  const double log_share = -std::log(share);
-  const double u2 = slopes_.is_gaussian() ? log_share : std::expm1(std::min(500.0, log_share / (slopes_.q() - 1.0)));
-  return slopes_.m() * std::sqrt(u2);
-}
-
 }  // namespace dolp::reference

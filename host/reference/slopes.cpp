@@ -36,4 +36,27 @@ double Slopes::in_plane_tail(double slope) const {
   return in_plane_norm_ * m_ * std::pow(slope / m_, 2.0 - 2.0 * q_) / (2.0 * q_ - 2.0);
 }
 
+double Slopes::density_at(double v) const {
+  const double slope = at(v);
+  const double inverse_cos2 = 1.0 + slope * slope;
+  const double plane = facet_density(slope * slope) / (inverse_cos2 * inverse_cos2);
+  return 2.0 * pi * plane * slope * width_ * std::cosh(v);
+}
+
+double Slopes::share_above(double t) const {
+  const double u = t / m_;
+  return is_gaussian() ? std::exp(-u * u) : std::exp((1.0 - q_) * std::log1p(u * u));
+}
+
+double Slopes::length_above(double t) const {
+  if (is_gaussian()) return 0.0;
+  return 2.0 * (q_ - 1.0) / (2.0 * q_ - 3.0) * t * share_above(t);
+}
+
+double Slopes::quantile(double share) const {
+  const double log_share = -std::log(share);
+  const double u2 = is_gaussian() ? log_share : std::expm1(std::min(500.0, log_share / (q_ - 1.0)));
+  return m_ * std::sqrt(u2);
+}
+
 }  // namespace dolp::reference

@@ -40,9 +40,9 @@ struct Arc {
   real quarter;     // tan of a quarter of its length
   real origin;      // phi of its beginning; of the symmetry or singularity at one of its ends where its rule has one
   real span;        // length in phi
-  int section;      // of the rule nodes
+  int section;      // section of the rule nodes
   bool is_critical; // true if w vanishes at or beside its centre
-  real resolution;  // of the square root at its centre that absorption has smoothed, see place_on_arc; 0: it is sharp
+  real resolution;  // width of the square root at its centre that absorption has smoothed, see place_on_arc; 0: it is sharp
 };
 
 // The arc between two azimuths.
@@ -73,7 +73,7 @@ Arc make_arc(real2 from, real2 to) {
   return arc;
 }
 
-// The same arc with a square root, or another singularity, at its end or its beginning, if it has one.
+// The arc with a square root, or another singularity, at its end or its beginning, if `has_root`.
 Arc with_root(Arc arc, bool at_end, bool has_root) {
   real2 root = choose(at_end, arc.to, arc.from);
   arc.centre_cos = choose(has_root, cosine(root), arc.centre_cos);
@@ -120,7 +120,7 @@ Azimuth azimuth(Arc arc, real2 node) {
 // The azimuths, as half angles, that split [0, pi] into arcs on which the integrand is smooth, in ascending order; and
 // the critical one, anywhere among them.
 struct SplitLines {
-  real2 end[DOLP_MAX_ARCS];  // of each arc; the first begins at phi = 0
+  real2 end[DOLP_MAX_ARCS];  // end of each arc; the first begins at phi = 0
   int arcs;
   int leaving;     // number of arcs whose reflected ray leaves
   real2 horizon;   // theta_r = 90 degrees: beyond it the reflected ray does not leave
@@ -154,8 +154,8 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
     lines.leaving = 3;
   }
   if (kMasking == DOLP_MASKING_V_CAVITY) {
-    // G = 1 between 2 cos(alpha) cos(theta) = cos(beta) and the same with theta_r; the two lines meet at t = 1. The
-    // first is that of G1 of theta alone, which goes on below the horizon from t = sqrt(3) on.
+    // G = 1 between the lines 2 cos(alpha) cos(theta) = cos(beta) and 2 cos(alpha) cos(theta_r) = cos(beta), which meet
+    // at t = 1. The first is the line of G1 of theta, which continues below the horizon beyond t = sqrt(3).
     real2 shaded = line_at(c, st);
     real level = c * (real(3.0) * t * t - real(1.0)) / (real(3.0) - t * t);
     lines.end[0] = t < real(1.0) ? shaded : same_zenith;

@@ -4,12 +4,12 @@
 struct Slope {
   real t;
   real digits;        // wanted of the sum over the azimuths
-  Masked of_theta;
+  MaskingTerms masking_in;
   bool has_split_line;
   int most_azimuths;
   bool is_coarse;
   SkyPlace sky;
-  real weight[DOLP_WIDTH];  // of its columns, for each member of the row
+  real weight[DOLP_WIDTH];  // weight of its columns, for each member of the row
 };
 
 // A sum over azimuths, for each member of a row.
@@ -65,14 +65,14 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, S
       sums.columns[0] = add_columns(sums.columns[0], last, weight * light.last.x, weight * light.last.y);
     } else {
       Facet f = facet(theta, index, slope.t, at.x, at.sin_phi);
-      Masked of_ray = masking_of_ray(row, f.cos_r, sine_of_ray(theta, row, f, slope.t, at), slope.t, zone);
-      real seen = leaves ? at.weight : real(0.0);
+      MaskingTerms masking_out = masking_of_ray(row, f.cos_r, sine_of_ray(theta, row, f, slope.t, at), slope.t, zone);
+      real leaving = leaves ? at.weight : real(0.0);
       ColumnValues values = column_values(rule, slope.sky, f.cos_beta, f.cos_r);
       real2 per_projection = column_factors(slope, f);
       for (int g = 0; g < DOLP_WIDTH; ++g) {
-        Projection part = project(theta, f, zone, slope.of_theta.value[g], of_ray.value[g]);
-        sums.member[g] += seen * reflected(f, part);
-        real projection = seen * part.seen;
+        Projection part = project(theta, f, zone, slope.masking_in.value[g], masking_out.value[g]);
+        sums.member[g] += leaving * reflected(f, part);
+        real projection = leaving * part.visible;
         if (kColumns == DOLP_COLUMNS_DIRECT) projection = at.weight * seen_directly(theta, f);
         projection *= slope.weight[g];
         sums.columns[g] =
@@ -85,7 +85,7 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, S
   return sums;
 }
 
-// Where cos(theta_r), which falls from phi = 0 on, is that of a corner of the sky.
+// The azimuth at which cos(theta_r), which falls with phi, reaches a corner of the sky.
 real2 corner_line(ThetaNode theta, Slope slope, int corner) {
   real t = slope.t;
   real level = real(0.5) * (cos_of_corner(slope.sky, corner) + theta.c) * (real(1.0) + t * t) - theta.c;
@@ -167,12 +167,12 @@ struct SlopeResult {
   Columns columns;
 };
 
-// The same in the form that slopes.comp returns: its maskings do not depend on the shape.
+// The sums in the form that slopes.comp returns: its maskings do not depend on the shape.
 SlopeResult azimuths_of(RuleNode rule, ThetaNode theta, IndexNode index, SlopeNode own) {
   Slope slope;
   slope.t = own.t;
   slope.digits = own.digits;
-  slope.of_theta = unmasked();
+  slope.masking_in = unmasked();
   slope.has_split_line = false;
   slope.most_azimuths = int(own.most_azimuths);
   slope.is_coarse = own.is_coarse > real(0.5);

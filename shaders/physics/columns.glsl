@@ -1,19 +1,19 @@
-// Columns: more sums of the same facets, as many as the host asks for. They are of one kind, which kColumns names:
+// Columns: further sums over the facets. kColumnCount is their number, kColumns their kind:
 //
 //   sky        the moments with functions g of the zenith of the reflected ray, |g| <= 1: what a sky that changes with
 //              the zenith adds to its mean (README.md beside this file, section 11);
 //   responses  the moments with the Chebyshev polynomials of the local angle of incidence instead of the reflectances:
-//              the moments of every index are sums of them (section 8). They are of the reflected light, of this light times
-//              the first function of a sky, or of the direct emission.
+//              the moments of every index are sums of them (section 8). They describe the reflected light, the reflected
+//              light times the first function of a sky, or the direct emission.
 //
 // A function g is a table over u = sqrt(1 - cos(theta_r)) = sqrt(2) sin(theta_r / 2), in which corners at the zenith are
-// corners too: straight lines in cells of one width, (value at the start, change over the cell), behind the nodes of the
+// corners too: straight lines in cells of one width, (value at the start, change over the cell), after the nodes of the
 // rules. host/compute/plan/sky_table.cpp fills it.
 
 // The tables among the rule nodes: read once, because devices read push constants again in each turn of a loop.
 struct SkyPlace {
-  int cells;  // of a function
-  int start;  // of the first cell
+  int cells;  // cells of a function
+  int start;  // position of the first cell
   int corners;
 };
 
@@ -67,7 +67,7 @@ ColumnValues chebyshev_at(RuleNode rule, real cos_beta) {
   return values;
 }
 
-// Of a facet that reflects.
+// The functions at a facet that reflects.
 ColumnValues column_values(RuleNode rule, SkyPlace table, real cos_beta, real cos_r) {
   if (kColumns == DOLP_COLUMNS_SKY) return sky_at(table, cos_r);
   return chebyshev_at(rule, cos_beta);
@@ -93,7 +93,7 @@ Columns scaled_columns(Columns sums, real factor) {
   return sums;
 }
 
-// Of a slope.
+// Stores the columns of a slope.
 void store_azimuth_columns(Columns sums) {
   for (int k = 0; k < DOLP_MOST_COLUMNS; ++k) {
     if (k < int(kColumnCount)) {
@@ -103,7 +103,7 @@ void store_azimuth_columns(Columns sums) {
   }
 }
 
-// Of a member of a row, by one of the two rules of a piece.
+// Stores the columns of a member of a row, by one of the two rules of a piece.
 void store_columns(int member, bool is_coarse, Columns sums) {
   uint first = uint(member) * kColumnCount * DOLP_COLUMN_PARTS + (is_coarse ? 0u : 2u);
   for (int k = 0; k < DOLP_MOST_COLUMNS; ++k) {

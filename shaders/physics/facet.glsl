@@ -12,10 +12,10 @@
 // reflected: masked, absorbed, or sent below the horizon.
 
 struct Facet {
-  real e;         // projected area toward theta, over that of the facet's own base
+  real e;         // projected area toward theta over the area of the facet's base
   real cos_beta;
   real rotation;  // sin^2(beta) cos(2 eta)
-  real cos_r;     // of the reflected ray
+  real cos_r;     // cosine of the reflected ray's zenith
   real m00;
   real m01;
   real absorbed;  // 1 - m00
@@ -49,13 +49,13 @@ Facet facet(ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
 // The facet's projection as the part that masking leaves, e G, and the part that it hides, e (1 - G): each is computed
 // on its own, because either may be the difference of two nearly equal numbers.
 struct Projection {
-  real seen;
+  real visible;
   real hidden;
 };
 
 // Integrand per unit of azimuth.
 real4 reflected(Facet f, Projection part) {
-  return real4(part.seen * f.m00, part.seen * f.m01, part.seen, part.hidden + part.seen * f.absorbed);
+  return real4(part.visible * f.m00, part.visible * f.m01, part.visible, part.hidden + part.visible * f.absorbed);
 }
 
 // A facet's projection toward the viewer, masked for theta only.
@@ -64,8 +64,8 @@ real seen_directly(ThetaNode theta, Facet f) {
 }
 
 // Emission of a facet straight to the viewer per unit of azimuth, as (I, Q): e G1 (1 - M00) and -e G1 M01 with the
-// masking of theta alone; smith's masking, the same for all facets, is multiplied later.
+// masking of theta only; smith's masking, equal for all facets, is multiplied later.
 real2 emitted(ThetaNode theta, Facet f) {
-  real seen = seen_directly(theta, f);
-  return real2(seen * f.absorbed, -seen * f.m01);
+  real visible = seen_directly(theta, f);
+  return real2(visible * f.absorbed, -visible * f.m01);
 }

@@ -43,7 +43,7 @@ Fresnel fresnel(IndexNode index, real cos_beta) {
   return fresnel_of_sums(real2(index.n2m1_re, index.n2m1_im), cos_beta, w, s_sum, p_sum);
 }
 
-// The same from a table: cubics over sqrt(cos(beta)) in cells of one width, of R_s, 1 - R_s and the split
+// Reflectances from a table: cubics over sqrt(cos(beta)) in cells of one width, for R_s, 1 - R_s and the split
 // (host/compute/plan/reflectance_curve.cpp).
 Fresnel reflectance_at(IndexNode index, real cos_beta) {
   int cells = int(index.curve_cells);

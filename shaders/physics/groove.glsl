@@ -14,7 +14,7 @@
 // first or last, which may be grazing. The error of that is bounded in host/compute/plan/error_bounds.cpp.
 struct Fan {
   real2 turn;    // (cos, sin) of gamma times the bounces taken as one
-  real gamma;    // of a ray with many bounces, and what follows
+  real gamma;    // gamma and the next members serve rays with many bounces
   real left;     // bounces, (pi/2 - psi) / gamma of them at first
   real done;
   real slant;    // psi over gamma, no more than 1
@@ -154,7 +154,7 @@ GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index,
   real inverse_width = real(1.0) / max(width, real(1e-30));
   real rise = real(0.0);        // X_k - X_1
   real2 between = real2(u, c);  // a (sin, cos) of psi + 2 k gamma
-  real share = f.is_black ? real(0.0) : real(1.0);  // of the beam, that goes on
+  real share = f.is_black ? real(0.0) : real(1.0);  // share of the beam that goes on
   real absorbed = real(1.0) - share;
   // Rays of intensity 1 and of Q = 1 as the surface sees it.
   real4 natural = real4(share, real(0.0), real(0.0), real(0.0));

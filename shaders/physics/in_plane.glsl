@@ -7,7 +7,7 @@
 // farther. Far out p is a power law (cauchy), and the rest has a closed form. All terms are positive.
 
 #ifdef DOLP_DOUBLE
-CONST int kInPlaneOrder = 16;  // of a panel of length 1 in X at most
+CONST int kInPlaneOrder = 16;  // order of a panel of length 1 or less in X
 CONST real kPowerLawSlope = real(1e7);
 #else
 CONST int kInPlaneOrder = 8;
@@ -44,7 +44,7 @@ real in_plane_sum(ShapeNode shape, uint weight, real mu, real from, real to) {
   return sum * length * shape.scale;
 }
 
-// Integral over all slopes beyond `from`, which lies where p ~ tau^(1 - 2q); that of the gaussian is negligible.
+// Integral over all slopes beyond `from`, which lies where p ~ tau^(1 - 2q); the gaussian's is negligible.
 real power_law_sum(ShapeNode shape, uint weight, real mu, real from) {
   if (kDistribution == DOLP_GAUSSIAN) return real(0.0);
   real a = real(2.0) * shape.q_minus_1;

@@ -28,7 +28,7 @@ real masking_weight(real tau) {
   return (kMasking == DOLP_MASKING_SMITH) ? real(1.0) : real(1.0) / sqrt(real(1.0) + tau * tau);
 }
 
-// -p'/p, up to a factor that depends on the shape alone, and -g'/g.
+// -p'/p without a factor that depends only on the shape, and -g'/g.
 real marginal_decay(ShapeNode shape, real tau) {
   real u = tau / shape.m;
   if (kDistribution == DOLP_GAUSSIAN) return real(2.0) * u / shape.m;
@@ -88,7 +88,7 @@ real masking_height(TableCell cell, uint table) {
          (cell.e0 * cell.g0 * n0.w + cell.e1 * cell.g1 * n1.w);
 }
 
-// Places that 1 - G1(theta, alpha) of a direction and a facet slope t looks up, the same for all tables of one scale.
+// Places in the tables for 1 - G1(theta, alpha) of a direction and a facet slope t, equal for all tables of one scale.
 struct ShadowPlace {
   real kappa;
   bool is_limited;  // d > 0, with
@@ -123,7 +123,7 @@ struct LimitTerms {
   real l1;
   real c0;
   real c1;
-  real p0;  // of p, and of p times marginal_decay_factor
+  real p0;  // factors of p; decay0 and decay1 are factors of p times marginal_decay_factor
   real p1;
   real decay0;
   real decay1;

@@ -75,7 +75,7 @@ PieceSums no_slopes() {
   return sums;
 }
 
-PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task task, Piece piece, Masked of_theta,
+PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task task, Piece piece, MaskingTerms masking_in,
                      bool is_coarse) {
   ShapeNode shape = row.shape[0];
   PieceSums sums = no_slopes();
@@ -104,27 +104,27 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
     Slope slope;
     slope.t = t;
     slope.digits = digits_of_slope(rule, theta, all, piece.digits, order, t, kPi * largest_weight);
-    slope.of_theta = of_theta;
-    if (kMasking == DOLP_MASKING_INTEGRAL) slope.of_theta = shadows(row, of_theta, theta.c, theta.s, t);
+    slope.masking_in = masking_in;
+    if (kMasking == DOLP_MASKING_INTEGRAL) slope.masking_in = shadows(row, masking_in, theta.c, theta.s, t);
     slope.has_split_line = task.has_split_line;
     slope.most_azimuths = task.most_azimuths;
     slope.is_coarse = is_coarse;
     slope.sky = sky;
     for (int g = 0; g < DOLP_WIDTH; ++g) {
       slope.weight[g] = weight[g];
-      if (kColumns == DOLP_COLUMNS_DIRECT) slope.weight[g] *= smith_g1(of_theta.value[g]);
+      if (kColumns == DOLP_COLUMNS_DIRECT) slope.weight[g] *= smith_g1(masking_in.value[g]);
     }
     AzimuthSums azimuths = slope_sums(rule, theta, row, index, slope, sums.columns);
     for (int g = 0; g < DOLP_WIDTH; ++g) {
       sums.member[g] += weight[g] * azimuths.member[g];
       sums.columns[g] = azimuths.columns[g];
       sums.behind[g] += weight[g] * azimuths.behind;
-      if (kHasDirect) sums.direct[g] += weight[g] * smith_g1(of_theta.value[g]) * azimuths.direct;
+      if (kHasDirect) sums.direct[g] += weight[g] * smith_g1(masking_in.value[g]) * azimuths.direct;
       mass[g] += kPi * weight[g];
     }
     sums.evaluations += azimuths.evaluations;
   }
-  // Normalising by the known share of the facets cancels the error of the density alone.
+  // Normalising by the known share of the facets cancels the error of the density itself.
   for (int g = 0; g < DOLP_WIDTH; ++g) {
     real ratio = choose(mass[g] > real(0.0), piece.mass[g] / mass[g], real(1.0));
     sums.member[g] *= ratio;
@@ -144,13 +144,13 @@ struct RowMoments {
 RowMoments piece_moments(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task task) {
   real cut = row.shape[0].cut;
   Piece piece = make_piece(rule, theta, row, index, task);
-  Masked of_theta = masking_of_direction(row, theta.c, theta.s);
+  MaskingTerms masking_in = masking_of_direction(row, theta.c, theta.s);
   PieceSums coarse = no_slopes();
   PieceSums fine = no_slopes();
   int passes = min(task.members + 1, 2);  // 2, computed so that drivers do not unroll the loop
   for (int pass = 0; pass < passes; ++pass) {
     coarse = fine;
-    fine = piece_sums(rule, theta, row, index, task, piece, of_theta, pass == 0);
+    fine = piece_sums(rule, theta, row, index, task, piece, masking_in, pass == 0);
     for (int g = 0; g < DOLP_WIDTH; ++g) store_columns(g, pass == 0, fine.columns[g]);
   }
   real reached = min(task.last, cut);

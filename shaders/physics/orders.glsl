@@ -8,9 +8,9 @@
 CONST real kHalfLn10 = real(1.15129254649702284);
 CONST real kLn10 = real(2.30258509299404568402);
 CONST real kInverseLn10 = real(0.43429448190325182765);
-CONST real kWideResolution = real(0.1);   // of a root beside an arc, from which on it is a singularity like others
+CONST real kWideResolution = real(0.1);   // a root beside an arc with a larger resolution is a singularity like others
 CONST real kSharpResolution = real(1e-6);
-CONST real kMoreDigits = real(0.3);  // of the slope axis, for each digit beyond
+CONST real kMoreDigits = real(0.3);  // further digits on the slope axis for each digit beyond kPlainDigits
 CONST real kPlainDigits = real(7.0);
 CONST real kLeastWeight = real(1e-20);  // so that at 90 degrees all slopes weigh the same
 
@@ -65,7 +65,7 @@ real weight_of_slope(ThetaNode theta, real t) {
   return kMasking == DOLP_MASKING_V_CAVITY ? min(bare, max(real(2.0) * theta.c, kLeastWeight)) : bare;
 }
 
-// The same of all facets: those up to slope t1 send every ray up, those between t1 and t2 about half of them.
+// Contribution of all facets: facets up to slope t1 send every ray up, facets between t1 and t2 about half of them.
 real weight_of_shape(ThetaNode theta, ShapeNode shape) {
   real t1 = theta.c / (real(1.0) + theta.s);
   real t2 = (real(1.0) + theta.s) / max(theta.c, real(1e-15));
@@ -83,14 +83,14 @@ real digits_of_share(RuleNode rule, real share) {
   return max(rule.digits + kInverseLn10 * log_unit(min(share, real(1.0))), real(0.0));
 }
 
-// The same of the slopes in [a, b].
+// Digits required of the slopes in [a, b].
 real digits_of_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, real a, real b, real mass) {
   real typical = weight_of_slope(theta, clamp(shape.m, a, b));
   return digits_of_share(rule, mass * typical / weight_of_shape(theta, shape));
 }
 
-// The same of the azimuths at slope t, one of `order` slopes of a piece, that represents `mass` of the facets: fewer
-// than those of the piece where it carries less than its part. `all` is weight_of_shape.
+// Digits required of the azimuths at slope t, one of `order` slopes of a piece, that represents `mass` of the facets:
+// fewer than the piece's digits if it carries less than its part. `all` is weight_of_shape.
 real digits_of_slope(RuleNode rule, ThetaNode theta, real all, real digits, int order, real t, real mass) {
   return min(digits_of_share(rule, real(order) * mass * weight_of_slope(theta, t) / all), digits);
 }
@@ -117,7 +117,7 @@ real essential_nodes(ShapeNode shape, real digits) {
 // acosh(y) for y >= 1, 0 below: the real part of asinh(i y), whose imaginary part is pi/2 then.
 real real_part_of_asinh(real y) { return acosh_above_1(max(y - real(1.0), real(0.0))); }
 
-// The same from one of Fresnel's coefficients in the plane of incidence, cos(beta) = re + i im: at t = (cos(beta) - c)
+// Nodes per digit from one of Fresnel's coefficients in the plane of incidence, cos(beta) = re + i im: at t = (cos(beta) - c)
 // / s, as long as that is small.
 real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, real im) {
   real unit = max(theta.s, real(1e-6)) * shape.scale;
@@ -126,7 +126,7 @@ real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, 
   return piece_cost(piece, choose(x < real(0.0), -bent, bent), im / (unit * max(abs(x), real(1.0))));
 }
 
-// The same from Fresnel's branch point cos(beta) = b on a line where arcs end: the horizon, sec(alpha) = 2 b / c, or
+// Nodes per digit from Fresnel's branch point cos(beta) = b on a line where arcs end: the horizon, sec(alpha) = 2 b / c, or
 // theta_r = theta, sec(alpha) = b / c; `ratio` is the 2 or the 1. Total reflection has breakpoints at these slopes.
 real line_piece_cost(ThetaNode theta, ShapeNode shape, IndexNode index, Piece piece, real ratio) {
   real stretch = ratio / max(theta.c, real(1e-12));

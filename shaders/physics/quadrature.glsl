@@ -1,5 +1,5 @@
 // The nodes of the rules, one buffer of (abscissa, weight) in five sections; within a section the rule of order n
-// starts at n (n - 1) / 2. host/compute/plan/rule_nodes.cpp fills it.
+// starts at n (n - 1) / 2. host/compute/plan/rule.cpp fills it.
 //   gauss   Gauss-Legendre on [0, 1]
 //   centre  Gauss-Legendre on [-1, 1]                              an arc between two split lines
 //   half    the positive nodes of the rule of order 2n on [-1, 1]  an arc from phi = 0 or pi, even about that end

@@ -1,7 +1,7 @@
-// Entries that one invocation computes together: they differ in the exponent q alone and share nodes, facets and
+// Entries that one invocation computes together: they differ only in the exponent q and share nodes, facets and
 // reflection. The masking differs from member to member.
 
-// In ascending order of q. Scale, cut and cusp of the shapes are the same, those that the most demanding of them needs.
+// In ascending order of q. All shapes have the scale, cut and cusp that the most demanding shape needs.
 struct Row {
   ShapeNode shape[DOLP_WIDTH];
   uint table[DOLP_WIDTH];  // first node of its masking table
@@ -20,19 +20,19 @@ Row no_row() {
 
 // Masking of one direction, for each member: the shadow 1 - G1 of the facets of slope t (`integral`) or
 // Smith's L.
-struct Masked {
+struct MaskingTerms {
   real value[DOLP_WIDTH];
 };
 
-Masked unmasked() {
-  Masked masked;
+MaskingTerms unmasked() {
+  MaskingTerms masked;
   for (int g = 0; g < DOLP_WIDTH; ++g) masked.value[g] = real(0.0);
   return masked;
 }
 
 // The part independent of the slope: Smith's L, at 90 degrees a number so large that G is 0, and l of `integral`.
-Masked masking_of_direction(Row row, real cos_theta, real sin_theta) {
-  Masked heights = unmasked();
+MaskingTerms masking_of_direction(Row row, real cos_theta, real sin_theta) {
+  MaskingTerms heights = unmasked();
   if (kMasking == DOLP_MASKING_SMITH) {
     real mu = cos_theta / max(sin_theta, real(1e-30));
     TableCell cell = table_cell(row.shape[0], mu);
@@ -48,11 +48,11 @@ Masked masking_of_direction(Row row, real cos_theta, real sin_theta) {
 
 // The shadows of a direction on facets of slope t. Look-ups are done for every invocation: those that need none wait
 // for their neighbours anyway.
-Masked shadows(Row row, Masked heights, real cos_theta, real sin_theta, real t) {
+MaskingTerms shadows(Row row, MaskingTerms heights, real cos_theta, real sin_theta, real t) {
   ShadowPlace place = shadow_place(row.shape[0], cos_theta, sin_theta, t);
   TableCell cell = table_cell(row.shape[0], place.far);
   LimitTerms terms = limit_terms(row.shape[0], place, cell);
-  Masked masked;
+  MaskingTerms masked;
   for (int g = 0; g < DOLP_WIDTH; ++g) {
     real limited = limited_shadow(row.shape[g], terms, cell, row.table[g]);
     masked.value[g] = place.kappa * heights.value[g] + (place.is_limited ? limited : real(0.0));
@@ -61,9 +61,9 @@ Masked shadows(Row row, Masked heights, real cos_theta, real sin_theta, real t) 
 }
 
 // Masking of the reflected ray; on its first arcs `integral` uses theta instead.
-Masked masking_of_ray(Row row, real cos_r, real sin_r, real t, int zone) {
+MaskingTerms masking_of_ray(Row row, real cos_r, real sin_r, real t, int zone) {
   if (kMasking == DOLP_MASKING_SMITH) return masking_of_direction(row, cos_r, sin_r);
-  Masked masked = unmasked();
+  MaskingTerms masked = unmasked();
   if (kMasking == DOLP_MASKING_INTEGRAL && zone > 0) {
     masked = shadows(row, masking_of_direction(row, cos_r, sin_r), cos_r, sin_r, t);
   }
@@ -71,21 +71,21 @@ Masked masking_of_ray(Row row, real cos_r, real sin_r, real t, int zone) {
 }
 
 // The part of a facet's direct emission that smith's masking leaves, by its value for theta.
-real smith_g1(real of_theta) { return (kMasking == DOLP_MASKING_SMITH) ? real(1.0) / (real(1.0) + of_theta) : real(1.0); }
+real smith_g1(real masking_in) { return (kMasking == DOLP_MASKING_SMITH) ? real(1.0) / (real(1.0) + masking_in) : real(1.0); }
 
 // A facet's projection, by the masking of theta and of the reflected ray. `zone` numbers the arcs from phi = 0;
 // in the first, theta_r < theta, so that `integral` uses theta.
-Projection project(ThetaNode theta, Facet f, int zone, real of_theta, real of_ray) {
+Projection project(ThetaNode theta, Facet f, int zone, real masking_in, real masking_out) {
   if (kMasking == DOLP_MASKING_NONE) return Projection(f.e, real(0.0));
   if (kMasking == DOLP_MASKING_V_CAVITY) {
-    real seen = min(f.e, real(2.0) * min(theta.c, f.cos_r));
-    return Projection(seen, f.e - seen);
+    real visible = min(f.e, real(2.0) * min(theta.c, f.cos_r));
+    return Projection(visible, f.e - visible);
   }
   if (kMasking == DOLP_MASKING_SMITH) {
-    real lambdas = of_theta + of_ray;
+    real lambdas = masking_in + masking_out;
     real g = real(1.0) / (real(1.0) + lambdas);
     return Projection(f.e * g, f.e * (lambdas * g));
   }
-  real shadow = (zone > 0) ? of_ray : of_theta;
+  real shadow = (zone > 0) ? masking_out : masking_in;
   return Projection(f.e * (real(1.0) - shadow), f.e * shadow);
 }

@@ -3,7 +3,7 @@
 // P(t) = (q - 1) / (pi m^2) (1 + u^2)^-q (cauchy) or exp(-u^2) / (pi m^2) (gaussian): the integral of P t dt dphi over
 // the slope plane is 1, and P = D cos^4(alpha).
 
-// -ln of the share of the facets that are steeper than t is a factor of the shape times a function of u alone.
+// -ln of the share of the facets that are steeper than t is a factor of the shape times a function only of u.
 real common_exponent(real u) { return (kDistribution == DOLP_CAUCHY) ? log1p_square(u) : u * u; }
 real exponent_factor(ShapeNode shape) { return (kDistribution == DOLP_CAUCHY) ? shape.q_minus_1 : real(1.0); }
 real slope_tail_exponent(ShapeNode shape, real t) { return exponent_factor(shape) * common_exponent(t / shape.m); }
@@ -25,7 +25,7 @@ real marginal_density(ShapeNode shape, real tau) {
 }
 
 // True where smith's masking ends: the mean slope is about to diverge.
-CONST real kDivergingSlope = real(0.2);  // of 2q - 3
+CONST real kDivergingSlope = real(0.2);  // value of 2q - 3
 bool is_diverging(ShapeNode shape) {
   return kMasking == DOLP_MASKING_SMITH && kDistribution == DOLP_CAUCHY && shape.two_q_minus_3 < kDivergingSlope;
 }

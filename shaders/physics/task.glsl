@@ -49,9 +49,9 @@ struct Piece {
   bool root_at_a;
   bool root_at_b;
   real root_before;       // X of a root at the breakpoint before a that faces the piece; none: X at a
-  real root_after;        // the same beyond b
+  real root_after;        // X of a root at the breakpoint after b that faces the piece; none: X at b
   real mass[DOLP_WIDTH];  // share of the facets
-  real fall;              // of the share of facets beyond, from a to b, as a logarithm
+  real fall;              // logarithm of the fall, from a to b, of the share of steeper facets
   real digits;            // required by the most demanding member
   int order;
 };

@@ -129,7 +129,7 @@ TEST(BenchFormulas, AdaptiveCubature_TightTolerance_AgreesWithReferenceForBothDi
 // Reflectances beyond the critical angle, where the integrand has a square root that adaptive rules take long to find.
 TEST(BenchFormulas, AdaptiveCubature_TotalReflection_AgreesWithReference) {
   MomentsRequest request = neighbourhood(case_of("easy"), 1);
-  request.indices = {{0.8, 0.0}};
+  request.optics = {{0.8, 0.0}};
   EXPECT_LE(worst_error(*solver_of("hcubature"), request, 1e-6), 1e-5);
 }
 

@@ -68,7 +68,7 @@ double log_work(const MomentsRequest& all, double tolerance, const RuleModel& mo
   request.tolerance = tolerance;
   for (int level = 0; level < kMostLevels && !wanted.empty(); ++level) {
     request.theta_deg.clear();
-    request.indices.clear();
+    request.optics.clear();
     request.sigma.clear();
     request.q.clear();
     for (const std::uint32_t i : wanted) request.append(all[i]);

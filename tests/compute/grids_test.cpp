@@ -52,11 +52,11 @@ MomentsRequest random_grid(Random& random, const Model& model, Scattering scatte
   request.may_interpolate = sharing == Sharing::kShapes;
   // At 90 degrees the moments of none and integral may be infinite.
   request.theta_deg = {random.uniform(0.0, 89.9), random.chance(0.5) ? std::min(random.theta_deg(), 89.999) : 60.0};
-  request.indices = {random.index()};
-  if (sharing == Sharing::kSlopes) request.indices.push_back(random.index());
+  request.optics = {random.index()};
+  if (sharing == Sharing::kSlopes) request.optics.push_back(random.index());
   if (sharing == Sharing::kIndices) {
-    request.indices = many_indices(random);
-    request.basis = ResponseBasis::of(request.indices, request.tolerance, response_passes(request.wants_direct, 0));
+    request.optics = many_indices(random);
+    request.basis = ResponseBasis::of(request.optics, request.tolerance, response_passes(request.wants_direct, 0));
   }
   const bool is_dense = sharing == Sharing::kShapes;
   const double sigma = random.log_uniform(1e-3, 2.0);
@@ -142,7 +142,7 @@ TEST(SecondPass, SomeShapesOfAGrid_HeaviestTailIsNotLost) {
     MomentsRequest request;
     request.masking = masking;
     request.theta_deg = {60.0};
-    request.indices = {{1.5, 0.0}};
+    request.optics = {{1.5, 0.0}};
     request.sigma = {0.5, 0.55, 0.6};
     request.q = {1.2, 8.0};
     request.wanted = {0, 1, 1, 0, 0, 1};

@@ -13,7 +13,7 @@
 #include "calibrate/random_entries.hpp"
 #include "model/angles.hpp"
 #include "mueller_support.hpp"
-#include "plan/further_bounces.hpp"
+#include "plan/beam.hpp"
 #include "properties_support.hpp"
 #include "reference/reference_evaluator.hpp"
 #include "rough_metal.hpp"

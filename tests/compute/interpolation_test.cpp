@@ -50,7 +50,7 @@ MomentsRequest dense_request() {
   request.tolerance = 1e-4;
   request.precision = Precision::kDouble;
   request.theta_deg = {10.0, 40.0};
-  request.indices = {{1.5, 0.1}};
+  request.optics = {{1.5, 0.1}};
   request.sigma = spaced(0.05, 1.0, 48);
   request.q = spaced(1.75, 8.0, 40);
   return request;

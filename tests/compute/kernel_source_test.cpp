@@ -17,21 +17,9 @@
 #include <type_traits>
 #include <vector>
 
-namespace dolp::tested_float {
-using real = float;
-using real2 = glm::vec2;
-using real4 = glm::vec4;
-}  // namespace dolp::tested_float
-
 #define DOLP_KERNEL_NAMESPACE tested_float
 #include "evaluate/kernel/kernel_source.hpp"
 #undef DOLP_KERNEL_NAMESPACE
-
-namespace dolp::tested_double {
-using real = double;
-using real2 = glm::dvec2;
-using real4 = glm::dvec4;
-}  // namespace dolp::tested_double
 
 #define DOLP_KERNEL_NAMESPACE tested_double
 #define DOLP_DOUBLE
@@ -256,7 +244,7 @@ double relative_error(double value, const Wide& exact) {
 template <class Source>
 kernel::IndexNode rounded_index(const OpticalConstants& index) {
   MomentsRequest request;
-  request.indices = {index};
+  request.optics = {index};
   return convert_reals<double, kernel::IndexNode, RealOf<Source>>(index_in<Source>(kernel_data(request).indices[0]));
 }
 

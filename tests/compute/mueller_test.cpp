@@ -191,7 +191,7 @@ TEST(Mueller, HemisphericalSum_GivesTheMoments) {
   request.theta_deg = {50.0};
   request.sigma = {surface.shape.sigma};
   request.q = {surface.shape.q};
-  request.indices = {surface.index};
+  request.optics = {surface.index};
   const Moments moments = evaluator.evaluate(request, {}).front();
   double r_i = 0.0;
   double r_q = 0.0;

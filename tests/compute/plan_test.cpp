@@ -8,7 +8,6 @@
 #include "model/angles.hpp"
 #include "plan/kernel_data.hpp"
 #include "plan/rule.hpp"
-#include "plan/rule_nodes.hpp"
 
 namespace dolp {
 namespace {
@@ -44,9 +43,9 @@ TEST(Loops, HardDirectionsAndIndicesAtEveryTolerance_StayBelowTheDriversLimit) {
   request.sigma = {0.3, 1e-3, 5.0};
   request.q = {2.0, 1.6, 45.0};
   for (const bool total_reflection : {false, true}) {
-    request.indices = {{1.508, 0.0}, {27.0, 90.0}};
+    request.optics = {{1.508, 0.0}, {27.0, 90.0}};
     if (total_reflection) {
-      for (const double n : {0.999, 0.8, std::numbers::sqrt2 / 2.0, 0.5, 0.1}) request.indices.push_back({n, 0.0});
+      for (const double n : {0.999, 0.8, std::numbers::sqrt2 / 2.0, 0.5, 0.1}) request.optics.push_back({n, 0.0});
     }
     for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
       for (int masking = 0; masking <= 4; ++masking) {  // and all bounces

@@ -75,7 +75,7 @@ bool same(const Moments& a, const Moments& b) {
 MomentsRequest random_grid(const Model& model, Random& random) {
   MomentsRequest request = request_of(model, {}, 1e-3);
   for (int i = 0; i < 6; ++i) request.theta_deg.push_back(random.theta_deg());
-  for (int i = 0; i < 4; ++i) request.indices.push_back(random.index());
+  for (int i = 0; i < 4; ++i) request.optics.push_back(random.index());
   for (int i = 0; i < 3; ++i) {
     request.sigma.push_back(random.shape(model).sigma);
     request.q.push_back(random.shape(model).q);
@@ -109,12 +109,12 @@ struct Reordered {
 
 Reordered reordered(const MomentsRequest& request, Random& random) {
   const auto thetas = permutation(request.theta_deg.size(), random);
-  const auto indices = permutation(request.indices.size(), random);
+  const auto indices = permutation(request.optics.size(), random);
   const auto sigmas = permutation(request.sigma.size(), random);
   const auto qs = permutation(request.q.size(), random);
   Reordered other{request, {}};
   other.request.theta_deg = permuted(request.theta_deg, thetas);
-  other.request.indices = permuted(request.indices, indices);
+  other.request.optics = permuted(request.optics, indices);
   other.request.sigma = permuted(request.sigma, sigmas);
   other.request.q = permuted(request.q, qs);
   for (const std::size_t index : indices) {
@@ -157,7 +157,7 @@ TEST(CpuEvaluator, ManyShapes_HaveTheBitsOfEachByItself) {
   MomentsRequest request{.masking = Masking::kSmith,
                          .tolerance = 1e-2,
                          .theta_deg = {30.0, 70.0},
-                         .indices = {{1.5, 0.0}},
+                         .optics = {{1.5, 0.0}},
                          .sigma = {0.3},
                          .q = {}};
   for (std::size_t i = 0; i < kShapes; ++i) request.q.push_back(2.0 + 1e-4 * static_cast<double>(i));

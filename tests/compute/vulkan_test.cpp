@@ -11,11 +11,12 @@
 #include <dolp/errors.hpp>
 #include <random>
 
+#include "device/context.hpp"
 #include "device/devices.hpp"
-#include "device/instance.hpp"
 #include "device/result.hpp"
 #include "error_text.hpp"
-#include "evaluate/vulkan/moments_run.hpp"
+#include "evaluate/vulkan/command_stream.hpp"
+#include "evaluate/vulkan/kernels.hpp"
 #include "evaluate/vulkan/tiles.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 
@@ -45,7 +46,7 @@ MomentsRequest small_request(Distribution distribution, Masking masking) {
   request.theta_deg = {0.0, 17.0, 45.0, 60.0, 75.5, 89.0, 90.0};
   request.sigma = {0.05, 0.2, 0.445, 0.7, 1.1};
   request.q = {2.0, 1.6};
-  request.indices = {{1.508, 0.0}, {2.5, 3.0}};
+  request.optics = {{1.508, 0.0}, {2.5, 3.0}};
   std::printf("seed %u\n", kSeed);
   std::mt19937 random(kSeed);
   std::ranges::shuffle(request.theta_deg, random);

@@ -20,8 +20,7 @@
 #include <string>
 #include <vector>
 
-#include "base/number_text.hpp"
-#include "base/printable_text.hpp"
+#include "base/text.hpp"
 #include "error_text.hpp"
 #include "table/table_file.hpp"
 #include "table/table_output.hpp"

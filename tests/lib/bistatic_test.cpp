@@ -63,7 +63,7 @@ Radiance model_radiance(const SceneValues& scene, double theta_i_deg) {
   request.theta_deg = {scene.geometry.view_zenith_deg};
   request.sigma = {surface.sigma};
   request.q = {surface.q};
-  request.indices = {surface.material.constant};
+  request.optics = {surface.material.constant};
   const Moments moments = ReferenceEvaluator().evaluate(request, {}).front();
   const double cos_i = std::cos(theta_i_deg * std::numbers::pi / 180.0);
   const double cos_v = std::cos(scene.geometry.view_zenith_deg * std::numbers::pi / 180.0);

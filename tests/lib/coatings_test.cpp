@@ -141,7 +141,7 @@ TEST(Coatings, MuellerMatrices_AgreeWithTheReference) {
     for (std::uint32_t i = 0; i < 100; ++i) {
       request.angles.push_back({random.uniform(0.0, 85.0), random.uniform(0.0, 85.0), random.uniform(-180.0, 180.0)});
       request.shapes.push_back({random.uniform(0.1, 0.6), random.uniform(1.8, 5.0)});
-      request.indices.push_back(random_coating(random));
+      request.optics.push_back(random_coating(random));
       request.entries.push_back({i, i, i});
     }
     const std::vector<ScatteringMatrix> own = FixedPrecision(precision).scatter(request, {});
@@ -149,7 +149,7 @@ TEST(Coatings, MuellerMatrices_AgreeWithTheReference) {
     for (std::size_t i = 0; i < own.size(); ++i) {
       for (std::size_t j = 0; j < 16; ++j) {
         EXPECT_LE(std::abs(own[i].m[j] - right[i].m[j]), own[i].error + right[i].error)
-            << "element " << j << " of " << text_of(request.indices[i]);
+            << "element " << j << " of " << text_of(request.optics[i]);
       }
     }
   }

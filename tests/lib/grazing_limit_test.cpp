@@ -106,7 +106,7 @@ double quotient_before(Masking masking, const OpticalConstants& index, double q,
   request.theta_deg = {90.0 - short_deg};
   request.sigma = {0.3};
   request.q = {q};
-  request.indices = {index};
+  request.optics = {index};
   const Moments moments = CpuEvaluator().evaluate(request, {}).front();
   return moments.r_q / moments.r_i;
 }

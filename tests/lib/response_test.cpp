@@ -24,8 +24,8 @@ EntryResponses responses(const Model& model, const std::vector<Point>& points, d
   surface.distribution = model.distribution;
   surface.masking = model.masking;
   MomentsRequest request = response_request(surface);
-  const FacetOptics index = request.indices.front();
-  request.indices.clear();
+  const FacetOptics index = request.optics.front();
+  request.optics.clear();
   request.has_extra_splits = has_extra_splits;
   for (const Point& p : points) request.append({p.theta_deg, p.shape, index});
   return responses_of(request, {.tolerance = tolerance}, evaluator, {});

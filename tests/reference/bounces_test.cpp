@@ -134,7 +134,7 @@ TEST(ReferenceBounces, ScatterOfTheEvaluator_IsTheSum) {
   request.scattering = Scattering::kMultiple;
   request.angles = {kPairs[3]};
   request.shapes = {{0.4, 2.0}};
-  request.indices = {kMetal};
+  request.optics = {kMetal};
   request.entries = {{}};
   const ScatteringMatrix matrix = ReferenceEvaluator().scatter(request, {}).at(0);
   const ReferenceMueller f = reference_scattering(grooves(Distribution::kCauchy, 0.4, 2.0), kMetal, 60.0, 60.0, 0.0);

@@ -38,7 +38,7 @@ Moments moments(Distribution distribution, Masking masking, double theta_deg, Sl
   request.theta_deg = {theta_deg};
   request.sigma = {shape.sigma};
   request.q = {shape.q};
-  request.indices = {index};
+  request.optics = {index};
   return ReferenceEvaluator(options).evaluate(request, {}).at(0);
 }
 
@@ -230,7 +230,7 @@ TEST(ReferenceEvaluator, SeveralEntries_KeepTheOrderOfTheRequest) {
   request.append({10.0, {0.5, 3.0}, kSteel});
   request.append({70.0, {0.5, 3.0}, {27.0, 90.0}});
   request.append({10.0, {0.2, 2.0}, kSteel});
-  ReferenceEvaluator evaluator({.threads = 3});
+  ReferenceEvaluator evaluator;
   std::size_t told = 0;
   const std::vector<Moments> together = evaluator.evaluate(request, [&](std::size_t done, std::size_t total) {
     EXPECT_GT(done, told);
@@ -255,7 +255,7 @@ TEST(ReferenceEvaluator, SeveralEntries_KeepTheOrderOfTheRequest) {
 TEST(ReferenceEvaluator, ProgressReturnsFalse_ThrowsCancelled) {
   MomentsRequest request;
   request.theta_deg.assign(8, 10.0);
-  request.indices = {kSteel};
+  request.optics = {kSteel};
   request.sigma = {0.2};
   request.q = {2.0};
   EXPECT_THROW(ReferenceEvaluator().evaluate(request, [](std::size_t, std::size_t) { return false; }), Cancelled);

@@ -35,7 +35,7 @@ inline ScatteringRequest request_of(Distribution distribution, Masking masking,
     const auto i = static_cast<std::uint32_t>(request.entries.size());
     request.angles.push_back(point.angles);
     request.shapes.push_back(point.shape);
-    request.indices.push_back(point.index);
+    request.optics.push_back(point.index);
     request.entries.push_back({i, i, i});
   }
   return request;

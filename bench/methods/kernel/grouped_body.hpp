@@ -6,7 +6,7 @@
 #include <bit>
 
 #include "methods/kernel/grouped_kernel.hpp"
-#include "plan/convert_reals.hpp"
+#include "plan/kernel_data.hpp"
 
 #undef DOLP_WIDTH
 #define DOLP_WIDTH kWidth

@@ -55,9 +55,9 @@ class PlannedMoments {
       const std::size_t shapes = step.request.shapes();
       const std::size_t directions = plan_.directions();
       for (std::size_t i = 0; i < own.size(); ++i) {
-        const std::size_t of_theta = i / shapes;
-        const std::size_t index = of_theta / step.directions.size();
-        const std::size_t direction = step.directions[of_theta % step.directions.size()];
+        const std::size_t pair = i / shapes;
+        const std::size_t index = pair / step.directions.size();
+        const std::size_t direction = step.directions[pair % step.directions.size()];
         moments[(index * directions + direction) * shapes + i % shapes] = std::move(own[i]);
       }
     }

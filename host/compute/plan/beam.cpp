@@ -10,11 +10,10 @@
 #include <numbers>
 
 #include "base/numbers.hpp"
+#include "model/angles.hpp"
 #include "model/gamma_ratio.hpp"
 #include "model/smooth_surface.hpp"
-#include "plan/further_bounces.hpp"
-#include "plan/geometry.hpp"
-#include "plan/rule_nodes.hpp"
+#include "plan/rule.hpp"
 
 namespace dolp {
 namespace {
@@ -27,8 +26,8 @@ constexpr int kLargestOrder = 16;  // kInPlaneOrder of physics/in_plane.glsl
 // -ln of the share of the in-plane slopes that G may neglect: far below the rounding of a double.
 constexpr double kCutExponent = 45.0;
 
-// Smoother surfaces use the G of this sigma: the squares of their slopes overflow a float, and except for q < 1.1 the
-// shadows are the same.
+// Smoother surfaces use the G of this sigma: the squares of their slopes overflow a float, and their shadows are equal
+// except for q < 1.1.
 constexpr double kSmallestMaskingSigma = 1e-15;
 
 // Share of N^2 and sin^2(beta) below which their difference has lost digits that its square root needs.
@@ -91,7 +90,7 @@ FacetReflection bare_reflection(const BeamAngles& angles, const BeamGeometry& ge
   return {r_s - m01, m01, r_s * (sin2 - c * w) * s_sum * std::conj(p_sum) / p_norm};
 }
 
-// Measured reflectances have no phase: r_s* r_p is left out.
+// Measured reflectances have no phase, so r_s* r_p is 0.
 FacetReflection covered_reflection(const BeamGeometry& geometry, const FacetOptics& optics) {
   const double c = std::max(geometry.node.cos_beta, kSmallestFacetCosine);
   const SmoothAbsorptance absorbed = smooth_absorptance(optics, c);
@@ -110,7 +109,75 @@ KernelData model_data(const ScatteringRequest& request) {
   return data;
 }
 
+struct DoubleAngle {
+  double cos = 1.0;
+  double sin = 0.0;
+};
+
+// (cos 2 eta, sin 2 eta) of the direction (x, y); eta = 0 where it is undefined.
+DoubleAngle double_angle(double x, double y) {
+  const double length = std::max(std::abs(x), std::abs(y));
+  if (length == 0.0) return {};
+  const double u = x / length;  // squares of tiny angles would vanish
+  const double v = y / length;
+  return {(u - v) * (u + v) / (u * u + v * v), 2.0 * u * v / (u * u + v * v)};
+}
+
+// Cosine and sine of the mean of two zeniths; near 90 degrees their sum would lose digits of the elevations.
+CosSin mean_zenith(double theta_i_deg, double theta_r_deg) {
+  if (theta_i_deg + theta_r_deg <= 90.0) return cos_sin_deg(0.5 * (theta_i_deg + theta_r_deg));
+  const CosSin elevation = cos_sin_deg(0.5 * ((90.0 - theta_i_deg) + (90.0 - theta_r_deg)));
+  return {elevation.sin, elevation.cos};
+}
+
 }  // namespace
+
+BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_phi_deg) {
+  const CosSin i = cos_sin_deg(theta_i_deg);
+  const CosSin r = cos_sin_deg(theta_r_deg);
+  // In [-180, 180], without rounding: near the specular and the retro direction the half angle keeps all digits.
+  const double azimuth_deg = std::remainder(delta_phi_deg, 360.0);
+  const CosSin half = cos_sin_deg(0.5 * std::abs(azimuth_deg));
+  const CosSin mean = mean_zenith(theta_i_deg, theta_r_deg);
+  const CosSin difference = cos_sin_deg(0.5 * (theta_i_deg - theta_r_deg));
+  const double sin_difference = 2.0 * mean.cos * difference.sin;   // sin i - sin r
+  const double cos_difference = -2.0 * mean.sin * difference.sin;  // cos i - cos r
+  const double product = 4.0 * i.sin * r.sin;
+  const double flat_sum = sin_difference * sin_difference + product * half.cos * half.cos;
+  const double flat_difference = sin_difference * sin_difference + product * half.sin * half.sin;
+  const double height_sum = i.cos + r.cos;
+
+  BeamGeometry geometry;
+  kernel::GeometryNode& node = geometry.node;
+  node.c_i = i.cos;
+  node.s_i = i.sin;
+  node.c_r = r.cos;
+  node.s_r = r.sin;
+  node.slope = std::sqrt(flat_sum) / height_sum;
+  node.cos_beta = 0.5 * std::sqrt(height_sum * height_sum + flat_sum);
+  geometry.sin2_beta = 0.25 * (cos_difference * cos_difference + flat_difference);
+
+  // Uses the form of cos(dphi) = 1 - 2 sin^2(dphi/2) = 2 cos^2(dphi/2) - 1 with the smaller correction.
+  const bool forward = std::abs(half.cos) < std::abs(half.sin);
+  const double sin_sum = 2.0 * mean.sin * mean.cos;
+  const double sin_of_difference = 2.0 * difference.sin * difference.cos;
+  const double toward_i = forward ? sin_sum - 2.0 * i.cos * r.sin * half.cos * half.cos
+                                  : sin_of_difference + 2.0 * i.cos * r.sin * half.sin * half.sin;
+  const double toward_r = forward ? sin_sum - 2.0 * r.cos * i.sin * half.cos * half.cos
+                                  : -sin_of_difference + 2.0 * r.cos * i.sin * half.sin * half.sin;
+  const double sin_azimuth = std::copysign(2.0, azimuth_deg) * half.sin * half.cos;
+  const bool along_normal = i.sin == 0.0 && r.sin == 0.0;
+  const double cos_azimuth = (half.cos - half.sin) * (half.cos + half.sin);
+  // Both along the normal: eta_i is the angle between the planes of azimuth 0 and delta_phi, the limit from all sides.
+  const DoubleAngle eta_i =
+      along_normal ? double_angle(-cos_azimuth, sin_azimuth) : double_angle(toward_i, r.sin * sin_azimuth);
+  const DoubleAngle eta_r = double_angle(toward_r, i.sin * sin_azimuth);
+  node.cos_2eta_i = eta_i.cos;
+  node.sin_2eta_i = eta_i.sin;
+  node.cos_2eta_r = eta_r.cos;
+  node.sin_2eta_r = eta_r.sin;
+  return geometry;
+}
 
 double log_density(Distribution distribution, const SlopeShape& shape, double slope) {
   const double m = std::sqrt(2.0) * shape.sigma;
@@ -134,7 +201,7 @@ Beam BeamPlan::operator()(const ScatteringEntry& entry) const {
   const BeamGeometry& geometry = geometries_[entry.angles];
   node.g = geometry.node;
   node.shape = data_.shapes[entry.shape];
-  const FacetOptics& optics = request_.indices[entry.index];
+  const FacetOptics& optics = request_.optics[entry.index];
   const FacetReflection facet = optics.is_bare()
                                     ? bare_reflection(request_.angles[entry.angles], geometry, optics.index)
                                     : covered_reflection(geometry, optics);

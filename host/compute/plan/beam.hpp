@@ -4,10 +4,25 @@
 #include <vector>
 
 #include "model/scattering.hpp"
-#include "plan/geometry.hpp"
 #include "plan/kernel_data.hpp"
 
 namespace dolp {
+
+/// The facet between two beams.
+struct BeamGeometry {
+  kernel::GeometryNode node{};
+  double sin2_beta = 0.0;
+};
+
+/// The facet between two beams, and the rotation angles of eq. (4), in double and without cancellation.
+///
+/// Equation: eqs. (2)-(6) as |w_i + w_r|^2 = 4 cos^2(beta), |w_i - w_r|^2 = 4 sin^2(beta); eta_i is the direction of
+/// (sin i cos r - cos i sin r cos(dphi), sin r sin(dphi)), eta_r is the direction of (sin r cos i - cos r sin i
+/// cos(dphi), sin i sin(dphi)). Conventions: delta_phi = 180 degrees is the specular side; eta turns s toward p and has
+/// the sign of sin(delta_phi). Domain: zeniths in [0, 90] degrees, not 90 both. In the retro direction, where eta is
+/// undefined, the limit eta_i = eta_r = 0; at theta_i = 0 the plane of incidence has azimuth 0, at theta_r = 0 azimuth
+/// delta_phi.
+BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_phi_deg);
 
 /// Inputs of the kernel for one entry; the pBRDF is the kernel's result times 2^power.
 struct Beam {
@@ -17,16 +32,16 @@ struct Beam {
 
 /// Makes the beams of a request, which must outlive the object. Pure.
 ///
-/// The geometry, D and the reflection of the facet are computed here and not by the kernel: near the normal and the
-/// retro direction, far down the slope distribution and near the critical angle their rounding in a float would be
-/// amplified beyond 1e-5 of m00. D is handed over without its power of two, so that no float over- or underflows.
+/// The host computes the geometry, D and the reflection of the facet: near the normal and the retro direction, far down
+/// the slope distribution and near the critical angle their rounding in a float would exceed 1e-5 of m00. The kernel
+/// gets D without its power of two, so that no float over- or underflows.
 class BeamPlan {
  public:
   explicit BeamPlan(const ScatteringRequest& request);
   Beam operator()(const ScatteringEntry& entry) const;
 
-  /// The kernel's result with its power of two restored, its error bound, and the further bounces that the request asks
-  /// for; `unit_roundoff` is that of the kernel's precision.
+  /// The kernel's result with its power of two restored, its error bound, and with Scattering::kMultiple the further
+  /// bounces. `unit_roundoff` belongs to the kernel's precision.
   ScatteringMatrix matrix(const kernel::MuellerNode& node, const Beam& beam, const ScatteringEntry& entry,
                           double unit_roundoff) const;
 
@@ -38,6 +53,21 @@ class BeamPlan {
   KernelData data_;
   std::vector<BeamGeometry> geometries_;
 };
+
+/// Adds the beams of two and more bounces to f cos(theta_i) cos(theta_r) of the first.
+///
+/// Equation: the light that leaves after k bounces comes from the grooves whose horizontal direction u lies along h,
+/// the horizontal part of omega_i + omega_r, or against it, and whose gamma = pi/2 - alpha is
+/// (pi - psi_i - psi_r)/(2 k) for odd k, (pi - psi_i + psi_r)/(2 k) for even k, psi being the angle from z toward u
+/// across the groove;
+///   f^(k) cos(theta_i) cos(theta_r) = D sin(alpha) a ds_k M / (2 k |h|),
+/// a ds_k being the width of the beam of k bounces and M their Mueller matrix (shaders/physics/README.md, section 3).
+/// Domain: masking v-cavity. NaN where h = 0, where the beams mirror each other: there grooves of all azimuths reflect.
+/// Accuracy: `accuracy` of m00, and where more than 1,000 bounces count, next to |psi_i| = |psi_r| of strong
+/// reflectors, what may be left, in `error`.
+/// Returns the bounces computed, which are its cost.
+int add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, const ScatteringEntry& entry,
+                        double accuracy);
 
 /// ln(D / 4) at a slope.
 double log_density(Distribution distribution, const SlopeShape& shape, double slope);

@@ -16,17 +16,17 @@ namespace {
 using std::numbers::pi;
 
 constexpr unsigned kRoots = kRootAbove | kRootBelow;
-constexpr double kNoEnd = 1e30;  // a slope beyond every cut, in place of infinity
+constexpr double kNoEnd = 1e30;  // a finite slope beyond every cut
 
 constexpr double kCoincident = 1e-9;  // relative distance of breakpoints that differ only by rounding
 
-// Of breakpoints before the corners of a sky, and with them.
+// Most breakpoints of a direction with a sky.
 constexpr std::size_t kMostSkyBreakpoints = 60;
 
 // Slopes that only split the long way to the horizon of a grazing direction, where a heavy tail reaches far, into
 // pieces of ten units of X or so.
 constexpr std::array kPlainBreakpoints = {30.0, 3e5};
-constexpr std::array kSteepBreakpoints = {1e5, 3e8, 1e12};  // the same of grooves, which have no horizon
+constexpr std::array kSteepBreakpoints = {1e5, 3e8, 1e12};  // for grooves, which have no horizon
 
 double tan_deg(double angle_deg) {
   const CosSin a = cos_sin_deg(angle_deg);
@@ -160,7 +160,7 @@ void add_extra_splits(std::vector<Breakpoint>& points) {
 
 }  // namespace
 
-// Slopes from 0 on at which the set of smooth arcs changes: where a split line of the azimuth (arcs.glsl) meets
+// Slopes, starting with 0, at which the set of smooth arcs changes: where a split line of the azimuth (arcs.glsl) meets
 // phi = 0 or pi or another line. The horizon does at t1 = c / (1 + s) and t2 = (1 + s) / c, theta_r = theta at
 // tan(theta), the limit b = pi/2 at tan(30 -+ 2/3 theta) and, on theta_r = theta, at tan(2 theta - 90); the lines of
 // v-cavity at tan(30 -+ theta/3), cot(theta), 1 and tan(theta); smith's cusp is at tan(theta/2).

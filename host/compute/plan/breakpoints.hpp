@@ -8,7 +8,7 @@
 
 namespace dolp {
 
-/// Largest slope that is ever integrated: beyond it the squares of a float overflow.
+/// The largest slope of all integrals: beyond it the squares of a float overflow.
 inline constexpr double kLargestCut = 1e15;
 
 /// An end of pieces, with kRootAbove and kRootBelow.
@@ -18,13 +18,13 @@ struct Breakpoint {
   bool operator<(const Breakpoint& other) const { return slope < other.slope; }
 };
 
-/// Which lines a direction has, besides those of its masking.
+/// Lines of a direction besides the lines of its masking.
 struct DirectionVariant {
-  double critical_cos = 0.0;  ///< cos(beta) at which total reflection begins; 0 without
+  double critical_cos = 0.0;  ///< cos(beta) at which total reflection begins; 0: there is none
   bool has_line = false;      ///< b = pi/2 of `integral`, or smith's cusp
 };
 
-/// Ascending slopes from 0 on. `splits`: bounces in a groove at which a beam that ends splits the azimuths.
+/// Ascending slopes, starting with 0. `splits`: bounces in a groove at which a beam that ends splits the azimuths.
 std::vector<Breakpoint> breakpoints(double theta_deg, const MomentsRequest& request, const DirectionVariant& variant,
                                     const SkyTable& sky, int splits);
 

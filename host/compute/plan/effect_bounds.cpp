@@ -1,5 +1,3 @@
-#include "plan/effect_bounds.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,12 +10,13 @@
 #include "model/gamma_ratio.hpp"
 #include "model/scattering.hpp"
 #include "model/smooth_surface.hpp"
-#include "plan/geometry.hpp"
+#include "plan/beam.hpp"
+#include "plan/effects.hpp"
 
 namespace dolp {
 namespace {
 
-constexpr double kRounding = 1e-8;  // of the sums here, and of the band sums that they represent
+constexpr double kRounding = 1e-8;  // rounding of these sums, and of the band sums that they represent
 constexpr double kRoundingOfOne = 1e-13;
 constexpr double kSmallestCosine = 1e-300;  // safe as a divisor
 
@@ -118,7 +117,7 @@ EntriesExtent extent_of_grid(const SceneEntries& entries) {
   PerAxis place{};
   for (place[Axis::kN] = 0; place[Axis::kN] < entries.counts()[Axis::kN]; ++place[Axis::kN]) {
     for (place[Axis::kK] = 0; place[Axis::kK] < entries.counts()[Axis::kK]; ++place[Axis::kK]) {
-      extent.indices.push_back(entries.index_at(place));
+      extent.optics.push_back(entries.index_at(place));
     }
   }
   return extent;
@@ -135,7 +134,7 @@ std::vector<EntriesExtent> extents_of(const SceneEntries& entries) {
     extent.roughest = {std::max(extent.roughest.sigma, entry.shape.sigma), std::min(extent.roughest.q, entry.shape.q)};
     extent.smoothest = {std::min(extent.smoothest.sigma, entry.shape.sigma),
                         std::max(extent.smoothest.q, entry.shape.q)};
-    if (entry.index) extent.indices.push_back(*entry.index);
+    if (entry.index) extent.optics.push_back(*entry.index);
   }
   return extents;
 }
@@ -147,11 +146,11 @@ KeptEffects without(KeptEffects kept, Part part) {
   return kept;
 }
 
-/// Bounds of Stokes sums.
+/// Bounds of sums of Stokes parameters.
 struct EffectBounds::Sums {
   double least_i = 0.0;
-  double most_i = 0.0;   ///< of |I|; only for the contribution of a part
-  double most_qu = 0.0;  ///< of the length of (Q, U)
+  double most_i = 0.0;   ///< upper bound of |I|; only for the contribution of a part
+  double most_qu = 0.0;  ///< upper bound of the length of (Q, U)
   double most_polarisation = kInfinity;
 };
 
@@ -172,7 +171,7 @@ EffectBounds::EffectBounds(const SceneModel& scene, const EntriesExtent& extent)
   if (extent.theta_deg.empty()) return;
   std::vector<FacetOptics> indices = rule.indices();
   const std::vector<FacetOptics> samples = indices;
-  for (const FacetOptics& own : extent.indices) {
+  for (const FacetOptics& own : extent.optics) {
     for (FacetOptics sample : samples) {
       sample.index = own.index;
       indices.push_back(std::move(sample));
@@ -237,7 +236,7 @@ EffectBounds::Sums EffectBounds::sums(const KeptEffects& kept) const {
   const double most = most_rho(kept) + most_diffuse_;
   const double beam = is_bistatic_ && kept.source ? total_.irradiance : 0.0;
   const double coldest = total_.surroundings - (kept.profile ? sky_below_ : 0.0);
-  const bool takes = has_negative_ || !kept.surroundings || coldest < total_.emitted;
+  const bool can_reduce_intensity = has_negative_ || !kept.surroundings || coldest < total_.emitted;
   Sums sum;
   sum.most_qu = (gap + incident(kept)) * 0.5 * most_rho(kept);
   if (beam > 0.0) sum.most_qu += beam * most_beam_qu_;
@@ -245,7 +244,7 @@ EffectBounds::Sums EffectBounds::sums(const KeptEffects& kept) const {
   bool is_physical = !has_negative_;
   if (emits && model == EmissionModel::kMoments) {
     const bool is_unpolarised = gap == 0.0;
-    sum.least_i += total_.emitted - (takes && !is_unpolarised ? gap * most : 0.0);
+    sum.least_i += total_.emitted - (can_reduce_intensity && !is_unpolarised ? gap * most : 0.0);
     is_physical &= is_unpolarised || most <= 1.0;
   } else if (emits) {
     if (model == EmissionModel::kFresnel) sum.least_i += total_.emitted * least_smooth_;
@@ -264,6 +263,9 @@ EffectBounds::Sums EffectBounds::added_by(Part part, const KeptEffects& kept) co
   const double rho = most_rho(kept);
   const double all_rho = rho + most_diffuse_;
   const bool emits_directly = kept.emission && scene_.emission && scene_.emission->model == EmissionModel::kDirect;
+  const auto reflected = [&](double exitance) {
+    return Sums{.most_i = exitance * all_rho, .most_qu = exitance * 0.5 * rho};
+  };
   Sums sum;
   switch (part) {
     case Part::kFurtherBounces:
@@ -275,16 +277,14 @@ EffectBounds::Sums EffectBounds::added_by(Part part, const KeptEffects& kept) co
       sum.most_qu = 0.5 * sum.most_i;
       break;
     case Part::kSource:
-      sum.most_i = total_.irradiance * (is_bistatic_ ? most_beam_ : all_rho);
-      sum.most_qu = total_.irradiance * (is_bistatic_ ? most_beam_qu_ : 0.5 * rho);
+      sum = reflected(total_.irradiance);
+      if (is_bistatic_) sum = {.most_i = total_.irradiance * most_beam_, .most_qu = total_.irradiance * most_beam_qu_};
       break;
     case Part::kSurroundings:
-      sum.most_i = (total_.surroundings + (kept.profile ? sky_above_ : 0.0)) * all_rho;
-      sum.most_qu = (total_.surroundings + (kept.profile ? sky_above_ : 0.0)) * 0.5 * rho;
+      sum = reflected(total_.surroundings + (kept.profile ? sky_above_ : 0.0));
       break;
     case Part::kProfile:
-      sum.most_i = std::max(sky_above_, sky_below_) * all_rho;
-      sum.most_qu = std::max(sky_above_, sky_below_) * 0.5 * rho;
+      sum = reflected(std::max(sky_above_, sky_below_));
       break;
     case Part::kEmission:
       sum.most_i = total_.emitted * std::max(1.0, all_rho - 1.0);
@@ -302,7 +302,7 @@ EffectBounds::Sums EffectBounds::added_by(Part part, const KeptEffects& kept) co
 bool EffectBounds::adds_nothing(Part part, const KeptEffects& kept) const {
   const Surface& surface = scene_.surface;
   const bool emits_directly = kept.emission && scene_.emission && scene_.emission->model == EmissionModel::kDirect;
-  // The beam of a bistatic source has further bounces too, whatever the moments weigh.
+  // A bistatic beam also needs further bounces, even if the moments have zero weight.
   const bool has_beam = is_bistatic_ && kept.source && total_.irradiance > 0.0 && surface.specular > 0.0;
   switch (part) {
     case Part::kFurtherBounces:

@@ -29,7 +29,7 @@ bool add_nothing(const std::vector<EffectBounds>& bounds, Part part, const KeptE
   return std::ranges::all_of(bounds, [&](const EffectBounds& of_one) { return of_one.adds_nothing(part, kept); });
 }
 
-/// A part that matters in the whole scene is kept even where the parts that it acts on have been dropped.
+/// A part that matters in the whole scene is kept, even if the parts that it acts on have been dropped.
 double worst_bound(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
   double worst = 0.0;
   for (const EffectBounds& of_one : bounds) {
@@ -108,7 +108,7 @@ std::string why_no_moments(const SceneValues& scene, const KeptEffects& kept) {
 
 Effect absent(const char* name, std::string why) { return {name, EffectState::kAbsent, std::move(why)}; }
 
-/// A part as it stands in the plan; `row` says why it would be kept and what for.
+/// A part as the plan treats it; `row` has the reason and the needs of a kept part.
 Effect part_row(const SceneValues& scene, const EffectPlan& plan, Part part, Effect row) {
   row.part = part;
   const DroppedPart* dropped = find_dropped(plan, part);
@@ -147,7 +147,7 @@ Effect specular_row(const SceneValues& scene, const EffectPlan& plan) {
   return row;
 }
 
-/// A choice of the model; `reason` is that of a kept one.
+/// A choice of the model; `reason` is for a kept choice.
 Effect model_row(const SceneValues& scene, const EffectPlan& plan, const char* name, const std::string& choice,
                  const SceneEntries& entries, const char* reason = ", a choice of the model: never swapped") {
   const auto is_flat = [](const SceneEntry& entry) { return entry.shape.sigma == 0.0; };

@@ -71,7 +71,7 @@ double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const k
   return masking_bound(data.distribution, data.masking, theta, shape) * (theta.c * tail + theta.s * slopes);
 }
 
-// Bound of the error of G relative to the albedo: smith's, next to the normal, grows as its mean slope.
+// Bound of the error of G relative to the albedo. With smith it grows as the mean slope next to the normal.
 double masking_error(const KernelData& data, const MomentsEntry& entry, double unit_roundoff) {
   if (!data.needs_masking_table()) return 0.0;
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
@@ -84,7 +84,7 @@ double masking_error(const KernelData& data, const MomentsEntry& entry, double u
 
 // R_s, which falls with cos(beta) and bounds M00.
 double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
-  if (index.curve_cells > 0.0) return 1.0;  // of films it need not fall
+  if (index.curve_cells > 0.0) return 1.0;  // with films it need not fall
   const std::complex<double> w =
       std::sqrt(std::complex<double>(index.n2m1_re + cos_beta * cos_beta, std::max(index.n2m1_im, 0.0)));
   return std::min(1.0, std::norm((cos_beta - w) / (cos_beta + w)));
@@ -158,6 +158,87 @@ double response_rounding(std::size_t degree, double unit_roundoff) {
   return kResponseRoundings * unit_roundoff * static_cast<double>(1 + degree * degree);
 }
 
+/// Shares of the errors of an entry.
+struct Shares {
+  double cut = 0.0;            ///< albedo beyond the cut
+  double reflected_cut = 0.0;  ///< light that the facets beyond the cut reflect
+  double grooves = 0.0;        ///< error of bounces in grooves
+  double masking = 0.0;        ///< relative error of G
+  double rounding = 0.0;       ///< relative rounding error
+  double least = 0.0;          ///< smallest relative error
+  double pair = 1.0;           ///< error of the finer rule over the distance of two rules
+  // Two rules of few nodes may agree by chance. So no bound of a sum is below a share of the tolerance that its rules
+  // are made for, its rounding and the error of its masking.
+  double of_rule() const { return least + rounding; }
+  double of_masked() const { return of_rule() + masking; }
+};
+
+Shares shares_of(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
+                 double unit_roundoff) {
+  const kernel::ShapeNode& shape = data.shapes[entry.shape];
+  const kernel::ThetaNode& theta = data.thetas[entry.theta];
+  const kernel::IndexNode& index = data.indices[entry.index];
+  Shares shares;
+  shares.cut = cut_bound(data, theta, shape);
+  shares.masking = masking_error(data, entry, unit_roundoff);
+  shares.rounding = unit_roundoff * roundings(data, theta, shape, index);
+  shares.least = kLeastShareOfTolerance * data.tolerance;
+  shares.pair = pair_factor(data, index);
+  if (data.scattering == Scattering::kMultiple) {
+    shares.grooves =
+        many_bounces_bound(data, theta, index, shape, std::abs(node.many), shares.least * std::abs(node.r_i)) +
+        (kGrooveRoundings * unit_roundoff + data.rule.dimmest) * theta.c;
+  }
+  const bool is_negligible = shares.cut <= data.rule.dimmest * theta.c;
+  shares.reflected_cut = is_negligible ? shares.cut : shares.cut * steep_reflectance(data, index, theta, shape);
+  return shares;
+}
+
+void set_errors(Moments& moments, const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
+                const Shares& shares) {
+  const double r_i_scale = std::abs(node.r_i);  // a rule that does not converge can make it negative
+  const double deficit_scale = node.deficit + 2.0 * node.behind;
+  moments.r_i_error =
+      shares.pair * node.reflected_difference + shares.of_masked() * r_i_scale + shares.reflected_cut + shares.grooves;
+  moments.r_q_error = moments.r_i_error;
+  const double largest_difference =
+      std::max({node.reflected_difference, node.albedo_difference, node.deficit_difference});
+  moments.albedo_error = shares.pair * largest_difference + shares.of_masked() * std::abs(node.albedo) + shares.cut;
+  // Beyond the critical angle the absorbed part ends while r_i continues.
+  const bool is_critical = data.indices[entry.index].critical_cos > 0.0;
+  const double deficit_terms = std::max(std::abs(deficit_scale), is_critical ? std::abs(node.albedo) : 0.0);
+  const bool is_multiple = data.scattering == Scattering::kMultiple;
+  moments.deficit_error = shares.pair * node.deficit_difference + shares.of_rule() * deficit_terms +
+                          shares.masking * std::abs(node.albedo) +
+                          (is_multiple ? shares.reflected_cut + shares.grooves : shares.cut);
+}
+
+void add_curve_errors(Moments& moments, const kernel::MomentsNode& node, const kernel::ThetaNode& theta,
+                      const CurveError& error, double unit_roundoff) {
+  const double of_facet = 1.5 * (error.absolute + kCurveRoundings * unit_roundoff * error.per_roundoff);
+  for (double* const bound : {&moments.r_i_error, &moments.r_q_error, &moments.deficit_error})
+    *bound += of_facet * std::abs(node.albedo);
+  for (double* const bound : {&moments.direct_i_error, &moments.direct_q_error}) *bound += of_facet * theta.c;
+}
+
+/// Column `k` from its sums: i and q of the finer rule, and their differences from the coarser rule.
+ColumnMoments column_moments(std::span<const double> sums, std::size_t k, const kernel::MomentsNode& node,
+                             const KernelData& data, const kernel::ThetaNode& theta, const Shares& shares,
+                             double unit_roundoff) {
+  const double of_sky = data.sky.count > 0 ? sky_error(data, data.response ? 0 : k, unit_roundoff) : 0.0;
+  if (!data.response) {
+    const double error = shares.pair * sums[2] + (of_sky + shares.of_masked()) * std::abs(node.r_i);
+    return {sums[0], sums[1], error + shares.reflected_cut + shares.grooves};
+  }
+  const double largest = data.response->of == Response::Of::kDirect ? theta.c : std::abs(node.albedo);
+  return {.i = sums[0],
+          .q = sums[1],
+          .error = (shares.rounding + response_rounding(k, unit_roundoff) + of_sky) * largest + shares.cut,
+          .i_apart = shares.pair * sums[2],
+          .q_apart = shares.pair * sums[3],
+          .relative_error = shares.least + shares.masking};
+}
+
 }  // namespace
 
 bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin_theta) {
@@ -176,44 +257,16 @@ void take_complement(Moments& moments, double cosine) {
 
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
                             double unit_roundoff, std::span<const double> columns) {
-  const kernel::ShapeNode& shape = data.shapes[entry.shape];
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
-  const kernel::IndexNode& index = data.indices[entry.index];
-  const double cut = cut_bound(data, theta, shape);
-  const double masking = masking_error(data, entry, unit_roundoff);
-  const double rounding = unit_roundoff * roundings(data, theta, shape, index);
-  // Two rules of few nodes may agree by chance, so that no bound of a sum is below this share of the tolerance that its
-  // rules are made for, its rounding and the error of its masking.
-  const double least = kLeastShareOfTolerance * data.tolerance;
-  const double least_of_rule = least + rounding;
-  const double least_of_masked = least_of_rule + masking;
-  const bool is_multiple = data.scattering == Scattering::kMultiple;
-  double grooves = 0.0;
-  if (is_multiple) {
-    grooves = many_bounces_bound(data, theta, index, shape, std::abs(node.many), least * std::abs(node.r_i)) +
-              (kGrooveRoundings * unit_roundoff + data.rule.dimmest) * theta.c;
-  }
-  const double reflected_cut =
-      cut <= data.rule.dimmest * theta.c ? cut : cut * steep_reflectance(data, index, theta, shape);
+  const Shares shares = shares_of(node, data, entry, unit_roundoff);
   Moments moments;
   moments.r_i = node.r_i;
   moments.r_q = node.r_q;
   moments.albedo = node.albedo;
   moments.deficit = node.deficit;
-  const double pair = pair_factor(data, index);
-  const double r_i_scale = std::abs(node.r_i);  // a rule that does not converge can make it negative
-  const double deficit_scale = node.deficit + 2.0 * node.behind;
-  moments.r_i_error = pair * node.reflected_difference + least_of_masked * r_i_scale + reflected_cut + grooves;
-  moments.r_q_error = moments.r_i_error;
-  const double largest_difference =
-      std::max({node.reflected_difference, node.albedo_difference, node.deficit_difference});
-  moments.albedo_error = pair * largest_difference + least_of_masked * std::abs(node.albedo) + cut;
-  // Beyond the critical angle the absorbed part ends while r_i continues.
-  const double deficit_terms =
-      std::max(std::abs(deficit_scale), index.critical_cos > 0.0 ? std::abs(node.albedo) : 0.0);
-  moments.deficit_error = pair * node.deficit_difference + least_of_rule * deficit_terms +
-                          masking * std::abs(node.albedo) + (is_multiple ? reflected_cut + grooves : cut);
   moments.evaluations = node.evaluations;
+  set_errors(moments, node, data, entry, shares);
+  const bool is_multiple = data.scattering == Scattering::kMultiple;
   if (is_multiple) {
     moments.albedo = theta.c;
     moments.albedo_error = kCosineRounding * theta.c;
@@ -221,31 +274,13 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   if (data.has_direct) {
     moments.direct_i = node.direct_i;
     moments.direct_q = node.direct_q;
-    moments.direct_i_error = pair * node.direct_difference + least_of_masked * theta.c + cut;
+    moments.direct_i_error = shares.pair * node.direct_difference + shares.of_masked() * theta.c + shares.cut;
     moments.direct_q_error = moments.direct_i_error;
   }
-  if (data.has_curves) {
-    const CurveError& error = data.curve_errors[entry.index];
-    const double of_facet = 1.5 * (error.absolute + kCurveRoundings * unit_roundoff * error.per_roundoff);
-    for (double* const bound : {&moments.r_i_error, &moments.r_q_error, &moments.deficit_error})
-      *bound += of_facet * std::abs(node.albedo);
-    for (double* const bound : {&moments.direct_i_error, &moments.direct_q_error}) *bound += of_facet * theta.c;
-  }
+  if (data.has_curves) add_curve_errors(moments, node, theta, data.curve_errors[entry.index], unit_roundoff);
   for (std::size_t k = 0; k < data.column_count(); ++k) {
-    const auto part = columns.subspan(DOLP_COLUMN_PARTS * k, DOLP_COLUMN_PARTS);
-    const double of_sky = data.sky.count > 0 ? sky_error(data, data.response ? 0 : k, unit_roundoff) : 0.0;
-    if (data.response) {
-      const double largest = data.response->of == Response::Of::kDirect ? theta.c : std::abs(node.albedo);
-      moments.columns.push_back({.i = part[0],
-                                 .q = part[1],
-                                 .error = (rounding + response_rounding(k, unit_roundoff) + of_sky) * largest + cut,
-                                 .i_apart = pair * part[2],
-                                 .q_apart = pair * part[3],
-                                 .relative_error = least + masking});
-    } else {
-      const double error = pair * part[2] + (of_sky + least_of_masked) * r_i_scale;
-      moments.columns.push_back({part[0], part[1], error + reflected_cut + grooves});
-    }
+    const auto sums = columns.subspan(DOLP_COLUMN_PARTS * k, DOLP_COLUMN_PARTS);
+    moments.columns.push_back(column_moments(sums, k, node, data, theta, shares, unit_roundoff));
   }
   // A groove never absorbs less than 0.
   if (!is_multiple || moments.r_i < theta.c || moments.deficit_error <= moments.r_i_error)

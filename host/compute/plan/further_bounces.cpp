@@ -1,5 +1,3 @@
-#include "plan/further_bounces.hpp"
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -23,7 +21,7 @@ struct Across {
   double a = 0.0;      ///< length of the ray across the groove
   double psi_i = 0.0;  ///< zeniths there, toward u
   double psi_r = 0.0;
-  double along = 0.0;                              ///< of omega_i, along the groove
+  double along = 0.0;                              ///< component of omega_i along the groove
   Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< azimuths of the beams, across and along the groove
   Eigen::Vector2d to = Eigen::Vector2d::Zero();
   double cos_i = 1.0;
@@ -70,7 +68,7 @@ class Facet {
     return re >= 0.0 ? Complex(larger, smaller) : Complex(smaller, larger);
   }
 
-  double re_;  ///< of N^2 - 1
+  double re_;  ///< N^2 - 1
   double im_;
 };
 
@@ -116,24 +114,25 @@ double beam_width(const Across& at, double gamma, int bounces) {
 /// The beams of two and more bounces that meet one side of the groove first.
 struct FurtherBeams {
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
-  double rest = 0.0;  ///< of m00, by bounces that are not followed
-  int bounces = 0;    ///< computed, of all beams
+  double unfollowed = 0.0;  ///< bound of m00 by bounces that are not followed
+  int bounces = 0;          ///< bounces computed so far, summed over all beams
 };
 
-/// The light of the bounces beyond the last, over its own. That of k bounces goes as k^(2 - 2q) and less.
+/// The light of the bounces beyond the last over the light of the last. Light of k bounces falls as k^(2 - 2q) or
+/// faster.
 double beyond_last(const ScatteringRequest& request, const SlopeShape& shape, int bounces) {
   const bool is_cauchy = request.distribution == Distribution::kCauchy;
   return is_cauchy ? bounces / std::clamp(2.0 * shape.q - 3.0, kSlowestFall, 1.0) : bounces;
 }
 
-/// `accuracy` is that of m00, of which the first bounce has `first`.
+/// `accuracy` is relative to m00; `first` is the part of m00 by the first bounce.
 FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, const ScatteringEntry& entry, double h,
                            double first, double accuracy) {
   const SlopeShape& shape = request.shapes[entry.shape];
-  const Facet facet(request.indices[entry.index].index);
+  const Facet facet(request.optics[entry.index].index);
   const double least_gamma = 0.49 * std::abs(std::abs(at.psi_i) - std::abs(at.psi_r));
   FurtherBeams beams;
-  // Of even and odd bounces, which have laws of their own.
+  // Even and odd bounces follow different laws.
   std::array<double, 2> beyond = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (int k = 2; k <= kMostBouncesOfBeam; ++k) {
     const double gamma = (pi - at.psi_i + (k % 2 == 1 ? -at.psi_r : at.psi_r)) / (2.0 * k);
@@ -151,7 +150,7 @@ FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, c
     if (std::max(beyond[0], beyond[1]) < kNegligibleBounces * accuracy * (first + beams.sum(0, 0)))
       return {beams.sum, 0.0, beams.bounces};
   }
-  beams.rest = std::max(beyond[0], beyond[1]);
+  beams.unfollowed = std::max(beyond[0], beyond[1]);
   return beams;
 }
 
@@ -190,7 +189,7 @@ int add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, c
     at.along = i.sin * at.from.y();
     const FurtherBeams beams = further_beams(at, request, entry, h, f.m[0], accuracy);
     for (Eigen::Index j = 0; j < 16; ++j) f.m[static_cast<std::size_t>(j)] += beams.sum(j / 4, j % 4);
-    f.error += accuracy * beams.sum(0, 0) + beams.rest;
+    f.error += accuracy * beams.sum(0, 0) + beams.unfollowed;
     bounces += beams.bounces;
   }
   return bounces;

@@ -18,20 +18,19 @@
 #include "plan/constants.hpp"
 #include "plan/reflectance_curve.hpp"
 #include "plan/rule.hpp"
-#include "plan/rule_nodes.hpp"
 
 namespace dolp {
 namespace {
 
 using std::numbers::pi;
 
-constexpr double kSmallestPole = 1e-6;  // of |N^2 + 1| and |N^2 - 1|
+constexpr double kSmallestPole = 1e-6;  // lower bound for |N^2 + 1| and |N^2 - 1|
 
 /// Loop bounds of one piece, besides the orders of its rules.
 struct Loops {
-  double arcs = 1.0;     ///< of a slope
-  double turns = 0.0;    ///< all bounces: of an azimuth
-  double corners = 0.0;  ///< of a sky, that split the arcs
+  double arcs = 1.0;     ///< arcs of a slope
+  double turns = 0.0;    ///< turns of an azimuth, with all bounces
+  double corners = 0.0;  ///< corners of a sky that split the arcs
 };
 
 Loops single_loops(const KernelData& data) {
@@ -80,11 +79,11 @@ Loops loops_of(const KernelData& data, double critical, double start, double end
 // Loops of one invocation: below the 65,535 iterations at which lavapipe stops without notice.
 constexpr double kMostIterations = 64'000.0;
 constexpr double kMostArcs = 2.0 * DOLP_MAX_ARCS;
-constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // of a groove, to find its lines
+constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // turns that find the lines of a groove
 
-// Bound of the loop iterations of one invocation with everything at its most nodes: of one piece, two rules, slopes,
-// arcs and azimuths, or of one slope sample, arcs, azimuths and bounces. A bound for each entry
-// alone would not suffice, because invocations that run in lockstep wait for each other.
+// Bound of the loop iterations of one invocation with the most nodes everywhere. A piece has two rules, slopes, arcs
+// and azimuths; a slope sample has arcs, azimuths and bounces. Invocations that run in lockstep wait for each other, so
+// the bound holds for all entries.
 double iterations(const KernelData& data, const Loops& loops, double most_nodes) {
   const double arcs = loops.arcs + loops.corners;
   const double idle = data.sky.count == 0 ? 0.0 : 2.0 * loops.arcs * (1.0 + loops.corners);  // corners beyond an arc
@@ -171,7 +170,7 @@ FresnelSingularities singularities_of(const OpticalConstants& index) {
 
 kernel::IndexNode index_node(const FacetOptics& optics) {
   const OpticalConstants& index = optics.index;
-  // Films add none of these: their amplitudes are even in the wave number across them.
+  // Films add no singularities: their amplitudes are even in the wave number across them.
   const FresnelSingularities nearest = singularities_of(index);
   return {(index.n - 1.0) * (index.n + 1.0) - index.k * index.k,
           2.0 * index.n * index.k,
@@ -184,27 +183,27 @@ kernel::IndexNode index_node(const FacetOptics& optics) {
           0.0};
 }
 
-// Tables of the reflectances of all indices, and the nodes that the fringes of films take.
+// Adds tables of the reflectances of all indices, and the nodes that the fringes of films take.
 void add_curves(KernelData& data, const MomentsRequest& request) {
-  data.has_curves = std::ranges::any_of(request.indices, [](const FacetOptics& optics) { return !optics.is_bare(); });
+  data.has_curves = std::ranges::any_of(request.optics, [](const FacetOptics& optics) { return !optics.is_bare(); });
   if (!data.has_curves) return;
   double fringes = 0.0;
-  for (std::size_t i = 0; i < request.indices.size(); ++i) {
-    const ReflectanceCurve curve = reflectance_curve(request.indices[i], request.tolerance);
+  for (std::size_t i = 0; i < request.optics.size(); ++i) {
+    const ReflectanceCurve curve = reflectance_curve(request.optics[i], request.tolerance);
     data.indices[i].curve_start = static_cast<double>(data.rule_nodes.size());
     data.indices[i].curve_cells = static_cast<double>(curve.cells);
     data.indices[i].pole_re = curve.pole.real();
     data.indices[i].pole_im = curve.pole.imag();
     data.curve_errors.push_back({curve.error, curve.steepness});
     data.rule_nodes.insert(data.rule_nodes.end(), curve.nodes.begin(), curve.nodes.end());
-    fringes = std::max(fringes, fringe_count(request.indices[i]));
+    fringes = std::max(fringes, fringe_count(request.optics[i]));
   }
   data.rule.t_nodes += kNodesOfFringe * fringes;
   data.rule.phi_nodes += kNodesOfFringe * fringes;
 }
 
-// Every direction of a grid, for each of the lines of total reflection that its indices have, without and with the line
-// that some shapes need.
+// Adds every direction of a grid for each line of total reflection of its indices, without and with the line that some
+// shapes need.
 void add_grid_directions(KernelData& data, const MomentsRequest& request) {
   const bool any_line = std::ranges::find(data.needs_line, 1) != data.needs_line.end();
   const std::uint32_t lines = any_line ? 2 : 1;
@@ -307,7 +306,7 @@ KernelData kernel_data(const MomentsRequest& request, const RuleModel& model) {
   data.rule_nodes = rule_nodes(data.rule_order);
   const bool is_single = request.scattering == Scattering::kSingle;
   if (request.sky) data.sky = append_sky(*request.sky, request.tolerance, is_single, data.rule_nodes);
-  for (const FacetOptics& index : request.indices) data.indices.push_back(index_node(index));
+  for (const FacetOptics& index : request.optics) data.indices.push_back(index_node(index));
   add_curves(data, request);
   if (request.response) take_responses(data, *request.response);
   if (data.is_grid) {
@@ -341,9 +340,9 @@ MomentsEntry KernelData::operator[](std::size_t entry) const {
     return {point, shape_of[entry], point};
   }
   const auto shape = static_cast<std::uint32_t>(entry % shapes.size());
-  const std::size_t of_theta = entry / shapes.size();
-  const auto index = static_cast<std::uint32_t>(of_theta / directions);
-  return {theta_of(static_cast<std::uint32_t>(of_theta % directions), index, shape), shape, index};
+  const std::size_t pair = entry / shapes.size();
+  const auto index = static_cast<std::uint32_t>(pair / directions);
+  return {theta_of(static_cast<std::uint32_t>(pair % directions), index, shape), shape, index};
 }
 
 }  // namespace dolp

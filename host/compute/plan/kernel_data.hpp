@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "model/moments.hpp"
@@ -20,13 +23,25 @@ using real = double;
 #include "interface.glsl"  // NOLINT: one source for host and shaders
 }  // namespace kernel
 
+/// Converts a structure that holds only FromReal to its counterpart that holds only ToReal.
+template <class ToReal, class To, class FromReal, class From>
+To convert_reals(const From& from) {
+  constexpr std::size_t kCount = sizeof(From) / sizeof(FromReal);
+  static_assert(kCount * sizeof(FromReal) == sizeof(From) && kCount * sizeof(ToReal) == sizeof(To));
+  static_assert(std::is_trivially_copyable_v<From> && std::is_trivially_copyable_v<To>);
+  const auto numbers = std::bit_cast<std::array<FromReal, kCount>>(from);
+  std::array<ToReal, kCount> converted{};
+  for (std::size_t i = 0; i < kCount; ++i) converted[i] = static_cast<ToReal>(numbers[i]);
+  return std::bit_cast<To>(converted);
+}
+
 inline constexpr unsigned kRootAbove = 1;  ///< a square root just above a breakpoint
 inline constexpr unsigned kRootBelow = 2;  ///< just below
 
-/// The pieces of the slope axis of one direction, in addition to the data in ThetaNode.
+/// The pieces of the slope axis of one direction; ThetaNode has their ends.
 struct Pieces {
   std::uint32_t count = 0;
-  std::array<std::uint8_t, DOLP_MAX_PIECES + 3> roots{};  ///< of each end: bits kRootAbove, kRootBelow
+  std::array<std::uint8_t, DOLP_MAX_PIECES + 3> roots{};  ///< bits kRootAbove, kRootBelow of each end
   /// Most nodes of an arc for each piece; they bound the loop iterations.
   std::array<std::uint8_t, DOLP_MAX_PIECES + 1> most_nodes{};
   /// Lockstep class of each piece: pieces with equal numbers may run in lockstep within these bounds.
@@ -34,23 +49,23 @@ struct Pieces {
   bool has_split_line = false;  ///< b = pi/2 of `integral`, or smith's cusp
 };
 
-/// One entry as the kernel reads it: positions in three lists of KernelData.
+/// One entry for the kernel: positions in three lists of KernelData.
 struct MomentsEntry {
   std::uint32_t theta = 0;
   std::uint32_t shape = 0;
   std::uint32_t index = 0;
 };
 
-/// Errors of the table of an index, of any of its quantities.
+/// Bounds of the errors of all quantities in the table of an index.
 struct CurveError {
   double absolute = 0.0;
-  double per_roundoff = 0.0;  ///< of the precision
+  double per_roundoff = 0.0;  ///< error over the unit roundoff of the kernel's precision
 };
 
-/// Inputs of one run of the kernel. Of a grid `indices` and `shapes` (sigma x q, q fastest) match its axes and `thetas`
-/// has its directions first, then as often as necessary the variants of them all: for total reflection, whose split
-/// lines depend on the index, and for shapes that need one line more. Of points each has its own direction and index,
-/// and neighbours of one shape share it.
+/// Inputs of one run of the kernel. For a grid, `indices` and `shapes` (sigma x q, q fastest) match its axes; `thetas`
+/// has its directions, and then all of them again for each variant: for total reflection, whose split lines depend on
+/// the index, and for shapes that need one more line. Each point has its own direction and index; neighbouring points
+/// of one shape share it.
 struct KernelData {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
@@ -59,23 +74,22 @@ struct KernelData {
   double tolerance = 1e-4;
   kernel::RuleNode rule{};
   int rule_order = 1;                 ///< largest order of the rule nodes
-  bool has_total_reflection = false;  ///< of any index, sharp or nearly so
+  bool has_total_reflection = false;  ///< any index reflects totally, sharply or nearly so
   bool has_curves = false;            ///< the kernel reads the reflectances of all indices from tables
   /// Errors of these tables, for each index; empty without them.
   std::vector<CurveError> curve_errors;
   bool is_grid = false;
-  std::size_t directions = 0;  ///< of the request
+  std::size_t directions = 0;  ///< directions of the request
   std::vector<kernel::ThetaNode> thetas;
-  std::vector<Pieces> pieces;  ///< of each of `thetas`
+  std::vector<Pieces> pieces;  ///< one for each of `thetas`
   std::vector<kernel::ShapeNode> shapes;
-  std::vector<char> needs_line;  ///< of each shape
+  std::vector<char> needs_line;  ///< one flag for each shape
   std::vector<kernel::IndexNode> indices;
-  std::vector<std::uint32_t> index_variant;  ///< of each index of a grid, over the first of its variants of directions
-  std::vector<std::uint32_t> shape_of;       ///< of each point
-  std::vector<std::array<double, 2>>
-      rule_nodes;  ///< and behind them the cells of the sky and of tables of reflectances
+  std::vector<std::uint32_t> index_variant;       ///< first variant of the directions for each index of a grid
+  std::vector<std::uint32_t> shape_of;            ///< shape of each point
+  std::vector<std::array<double, 2>> rule_nodes;  ///< and then the cells of the sky and of tables of reflectances
   SkyTable sky;
-  std::optional<Response> response;  ///< the columns; none: they are the functions of the sky
+  std::optional<Response> response;  ///< kind of the columns; null: they are functions of the sky
 
   std::size_t column_count() const { return response ? response->count : sky.count; }
   bool needs_masking_table() const { return masking == Masking::kIntegral || masking == Masking::kSmith; }
@@ -95,8 +109,7 @@ struct KernelData {
 
 struct RuleModel;
 
-/// Splits, orders, nodes and constants for a request at its tolerance, by the rules of its masking or by other ones.
-/// Pure.
+/// Splits, orders, nodes and constants for a request at its tolerance, by the rules of its masking or by `model`. Pure.
 KernelData kernel_data(const MomentsRequest& request);
 KernelData kernel_data(const MomentsRequest& request, const RuleModel& model);
 
@@ -104,7 +117,7 @@ KernelData kernel_data(const MomentsRequest& request, const RuleModel& model);
 inline std::size_t column_sums(const KernelData& data) { return DOLP_COLUMN_PARTS * data.column_count(); }
 inline std::size_t column_azimuths(const KernelData& data) { return 2 * data.column_count(); }
 /// Adds the kernel's columns of a piece, DOLP_COLUMN_PARTS numbers each, to `sums`: i and q of the finer rule, and
-/// their differences from the coarser one. A sky has the larger difference without its sign.
+/// their differences from the coarser rule; for a sky, only the larger difference, without its sign.
 template <class Real>
 void add_columns(const KernelData& data, std::span<const Real> piece, std::span<double> sums) {
   for (std::size_t first = 0; first < piece.size(); first += DOLP_COLUMN_PARTS) {
@@ -135,16 +148,16 @@ double slope_with_bounces(double bounces);
 /// Adds the kernel's result for a piece to the sum over other pieces.
 void add_piece(kernel::MomentsNode& sum, const kernel::MomentsNode& piece);
 
-/// r_i + deficit = cos(theta): the more accurate of the two gives the other.
+/// r_i + deficit = cos(theta): computes the less accurate of the two from the other.
 void take_complement(Moments& moments, double cosine);
 
-/// Converts the kernel's result for one entry into moments with error bounds; `unit_roundoff` is that of the kernel's
+/// Converts the kernel's result for one entry into moments with error bounds; `unit_roundoff` belongs to the kernel's
 /// precision. `columns`: DOLP_COLUMN_PARTS sums for each column of the data.
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
                             double unit_roundoff, std::span<const double> columns = {});
 
-/// True if the masking table of a shape resolves the structure of G at a direction. Where the table is coarser than the
-/// slope distribution, it does not for directions whose cot(theta) lies within its first scale.
+/// True if the masking table of a shape resolves the structure of G at a direction. A table coarser than the slope
+/// distribution does not resolve directions whose cot(theta) lies within its first scale.
 bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin_theta);
 
 /// Upper bound of the loop iterations of one invocation, a piece of any entry of `data`: all its nested loops together.

@@ -7,12 +7,17 @@
 namespace dolp {
 namespace {
 
-constexpr std::size_t kColumnsAtOnce = 1U << 20U;  // of a step, for the memory that they take
+constexpr std::size_t kColumnsAtOnce = 1U << 20U;  // columns of a step, to limit its memory
+
+template <class List, class CountOf>
+std::size_t sum_over(const List& list, const CountOf& count_of) {
+  std::size_t sum = 0;
+  for (const auto& item : list) sum += count_of(item);
+  return sum;
+}
 
 std::size_t moments_of(const MomentsStep& step) {
-  std::size_t count = 0;
-  for (const MomentsRequest* request : step.kernel_requests()) count += request->wanted_count();
-  return count;
+  return sum_over(step.kernel_requests(), [](const MomentsRequest* request) { return request->wanted_count(); });
 }
 
 }  // namespace
@@ -64,22 +69,14 @@ void MomentsPlan::add(MomentsStep step) {
 }
 
 std::size_t MomentsPlan::saved_entries() const {
-  std::size_t count = 0;
-  for (const MomentsStep& step : steps_) count += step.saves_work() ? step.request.wanted_count() : 0;
-  return count;
+  return sum_over(steps_, [](const MomentsStep& step) { return step.saves_work() ? step.request.wanted_count() : 0; });
 }
 
 std::size_t MomentsPlan::nodes_of_saved() const {
-  std::size_t count = 0;
-  for (const MomentsStep& step : steps_) count += step.saves_work() ? moments_of(step) : 0;
-  return count;
+  return sum_over(steps_, [](const MomentsStep& step) { return step.saves_work() ? moments_of(step) : 0; });
 }
 
-std::size_t MomentsPlan::kernel_moments() const {
-  std::size_t count = 0;
-  for (const MomentsStep& step : steps_) count += moments_of(step);
-  return count;
-}
+std::size_t MomentsPlan::kernel_moments() const { return sum_over(steps_, moments_of); }
 
 std::vector<char> MomentsPlan::saving_directions() const {
   std::vector<char> saves(directions_, 0);

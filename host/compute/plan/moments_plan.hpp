@@ -35,11 +35,11 @@ class MomentsPlan {
   explicit MomentsPlan(const MomentsRequest& request);
 
   std::size_t size() const { return size_; }              ///< entries of the request
-  std::size_t directions() const { return directions_; }  ///< of a grid
+  std::size_t directions() const { return directions_; }  ///< directions of a grid; 0 for points
   std::span<const MomentsStep> steps() const { return steps_; }
   /// Wanted entries that are interpolated or combined instead of computed.
   std::size_t saved_entries() const;
-  /// Moments that the kernels compute for those.
+  /// Moments that the kernels compute for the saved entries.
   std::size_t nodes_of_saved() const;
   /// Moments that the kernels compute, of all steps.
   std::size_t kernel_moments() const;

@@ -14,11 +14,11 @@ namespace dolp {
 /// One way to compute the moments of an entry.
 struct RefinementLevel {
   Precision precision = Precision::kFloat;          ///< kFloat or kDouble
-  double tolerance = 1e-4;                          ///< of the rule: MomentsRequest::tolerance
+  double tolerance = 1e-4;                          ///< MomentsRequest::tolerance
   bool may_interpolate = false;                     ///< between slope distributions
   bool is_check = false;                            ///< by a rule of another kind
   std::shared_ptr<const ResponseBasis> basis = {};  ///< MomentsRequest::basis
-  /// In the order of their cost: float before double, wide tolerances before tight ones.
+  /// Orders by cost: float before double, wide tolerances before tight tolerances.
   friend bool operator<(const RefinementLevel& a, const RefinementLevel& b) {
     return std::tuple(a.precision, -a.tolerance, a.may_interpolate) <
            std::tuple(b.precision, -b.tolerance, b.may_interpolate);
@@ -29,12 +29,11 @@ struct RefinementLevel {
 /// rounding, unless the scene sets the precision.
 RefinementLevel first_level(const Accuracy& accuracy, bool has_double);
 
-/// The level that checks entries computed at `first`: a rule of another kind, for a hundredth of the tolerance.
+/// The level that checks entries computed at `first`: a rule of another kind, at a hundredth of the tolerance.
 RefinementLevel check_level(const RefinementLevel& first);
 
-/// The next level of an entry, tighter by as many half decades as the result misses the tolerance by, in double once
-/// float cannot do that; none when it meets the tolerance, or no tighter level exists. Depends on nothing but its
-/// arguments.
+/// The next level of an entry, tighter by as many half decades as the result misses the tolerance, in double if float
+/// cannot be that tight; none if the result meets the tolerance or no tighter level exists. Pure.
 std::optional<RefinementLevel> next_level(const RefinementLevel& last, const PointResult& result,
                                           const Accuracy& accuracy, bool has_double);
 

@@ -14,15 +14,15 @@ namespace {
 constexpr std::size_t kFewestCells = 64;
 constexpr std::size_t kMostCells = 4096;
 constexpr double kShareOfTolerance = 0.02;
-constexpr double kLeastLevel = 1e-3;  // of what surfaces reflect or absorb
-constexpr double kSafety = 2.0;       // of errors that are seen at places inside of the cells
+constexpr double kLeastLevel = 1e-3;  // smallest level for which the error is relative
+constexpr double kSafety = 2.0;       // bound over the errors at some places in the cells
 
 /// R_s, 1 - R_s and (R_s - R_p) / sin^2 at v = sqrt(cos(beta)).
 using Values = std::array<double, 3>;
 constexpr std::size_t kSplit = 2;
 
 Values values_at(const FacetOptics& optics, double v) {
-  constexpr double kLeastCosine = 1e-12;  // where films still reflect everything
+  constexpr double kLeastCosine = 1e-12;  // films still reflect everything there
   const SmoothAbsorptance absorbed = smooth_absorptance(optics, std::clamp(v * v, kLeastCosine, 1.0));
   return {1.0 - absorbed.s, absorbed.s, absorbed.split};
 }

@@ -9,7 +9,8 @@
 
 namespace dolp {
 
-/// Cubics over sqrt(cos(beta)) in cells of one width: DOLP_CURVE_NODES nodes of a rule for each (physics/fresnel.glsl).
+/// Cubics over sqrt(cos(beta)) in cells of one width. Each cell takes DOLP_CURVE_NODES rule nodes
+/// (physics/fresnel.glsl).
 struct ReflectanceCurve {
   std::vector<std::array<double, 2>> nodes;
   std::size_t cells = 0;
@@ -19,8 +20,8 @@ struct ReflectanceCurve {
   std::complex<double> pole;
 };
 
-/// As many cells as bring the error to a share of the tolerance, which is relative to the reflectance or the
-/// absorptance at normal incidence, whichever is less, or as many as there may be. Domain: optics that are not bare.
+/// Takes as many cells as bring the error to a share of the tolerance, up to a limit. The tolerance is relative to the
+/// reflectance or the absorptance at normal incidence, whichever is less. Domain: optics that are not bare.
 ReflectanceCurve reflectance_curve(const FacetOptics& optics, double tolerance);
 
 }  // namespace dolp

@@ -18,8 +18,8 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Wanted entries of a grid that has some of the request's indices: for each of these, flags of the request's indices
-/// that need it.
+/// Flags of the wanted entries of a grid with some of the request's indices. `needed_by` lists, for each index of the
+/// grid, the indices of the request that need it.
 std::vector<char> wanted_of(const MomentsRequest& request, const std::vector<std::vector<std::size_t>>& needed_by) {
   const std::size_t of_index = request.theta_deg.size() * request.shapes();
   std::vector<char> wanted;
@@ -34,7 +34,7 @@ std::vector<char> wanted_of(const MomentsRequest& request, const std::vector<std
 
 /// The responses of one pass at one direction: responses x shapes.
 struct Responses {
-  /// Zeros where nothing is wanted.
+  /// Unwanted entries are zero.
   Responses(std::span<const Moments> moments, std::size_t responses) : all(kParts) {
     const auto shapes = static_cast<Eigen::Index>(moments.size());
     for (RowMajor& part : all) part = RowMajor::Zero(static_cast<Eigen::Index>(responses), shapes);
@@ -53,10 +53,10 @@ struct Responses {
   }
   enum Part : std::uint8_t { kI, kQ, kIApart, kQApart, kError, kParts };
   std::vector<RowMajor> all;
-  std::vector<double> relative_error;  ///< of each shape
+  std::vector<double> relative_error;  ///< one value for each shape
 };
 
-/// The product, summed in one order: Eigen's follows from the sizes, so that parts of a grid would differ in the last
+/// The product, summed in one order. Eigen's order follows from the sizes, so parts of a grid would differ in the last
 /// bits.
 RowMajor product(const RowMajor& weights, const RowMajor& part) {
   RowMajor sums = RowMajor::Zero(weights.rows(), part.cols());
@@ -68,8 +68,8 @@ RowMajor product(const RowMajor& weights, const RowMajor& part) {
   return sums;
 }
 
-/// Sums over responses with one set of weights for each reached index: indices x shapes, and bounds of their errors but
-/// for what the weights leave out.
+/// Sums over responses with one set of weights for each reached index: indices x shapes. The bounds of their errors do
+/// not cover the part of a curve that the weights leave out.
 struct Sums {
   Sums(const Responses& responses, Responses::Part of, Responses::Part apart, const RowMajor& weights)
       : value(product(weights, responses.all[of])),
@@ -78,8 +78,8 @@ struct Sums {
     for (Eigen::Index shape = 0; shape < error.cols(); ++shape)
       error.col(shape) += responses.relative_error[static_cast<std::size_t>(shape)] * value.col(shape).cwiseAbs();
   }
-  /// The same of weights that are a difference of curves, which changes its sign: what is relative is so to its largest
-  /// value.
+  /// Sums with weights that are a difference of curves. It changes its sign, so relative errors are relative to its
+  /// largest value.
   static Sums of_difference(const Responses& responses, Responses::Part of, Responses::Part apart,
                             const RowMajor& weights) {
     Sums sums(responses, of, apart, weights);
@@ -94,7 +94,7 @@ struct Sums {
   RowMajor error;
 };
 
-/// Combines all reached indices, direction by direction.
+/// Combines the moments of all indices that have weights, direction by direction.
 class Combination {
  public:
   Combination(const MomentsRequest& request, const ResponsePlan& plan)
@@ -139,7 +139,7 @@ class Combination {
     const Responses all(reference, request_.basis->count());
     const Sums i(all, Responses::kI, Responses::kIApart, reflected_);
     const Sums q(all, Responses::kQ, Responses::kQApart, split_);
-    // The same from the reference: better where the curves are alike, or little is absorbed.
+    // Sums of the differences from the reference are better where the curves are alike or little is absorbed.
     const Sums more_absorbed = Sums::of_difference(all, Responses::kI, Responses::kIApart, absorbed_apart_);
     const Sums more_split = Sums::of_difference(all, Responses::kQ, Responses::kQApart, split_apart_);
     const ResponseWeights& of_reference = request_.basis->of_reference();
@@ -195,7 +195,7 @@ class Combination {
     const Sums q(all, Responses::kQ, Responses::kQApart, split_);
     for_all(pass.size(), moments, [&](Moments& sum, const ResponseWeights& own, auto index, auto shape) {
       const Moments& from = pass[static_cast<std::size_t>(shape)];
-      // The function of the sky changes its sign: what is relative is so to the light without it.
+      // The function of the sky changes its sign, so relative errors are relative to the light without it.
       const double relative = all.relative_error[static_cast<std::size_t>(shape)] * std::abs(sum.r_i);
       sum.columns.resize(function + 1);
       sum.columns[function] = {i.value(index, shape), q.value(index, shape),
@@ -207,7 +207,7 @@ class Combination {
   const MomentsRequest& request_;
   const std::vector<ResponsePlan::Source>& sources_;
   std::size_t passes_;
-  std::vector<std::size_t> reached_;  ///< of the request's indices
+  std::vector<std::size_t> reached_;  ///< positions of the indices that have weights
   RowMajor absorbed_, split_, absorbed_apart_, split_apart_, reflected_;
 };
 
@@ -261,7 +261,7 @@ MomentsRequest without_entries(const MomentsRequest& request) {
   MomentsRequest empty = request;
   empty.basis = nullptr;
   for (std::vector<double>* const axis : {&empty.theta_deg, &empty.sigma, &empty.q}) axis->clear();
-  empty.indices.clear();
+  empty.optics.clear();
   empty.wanted.clear();
   return empty;
 }
@@ -296,27 +296,27 @@ ResponsePlan plan_of_points(const MomentsRequest& request) {
 
 ResponsePlan plan_of_grid(const MomentsRequest& request) {
   ResponsePlan plan;
-  std::vector<ResponsePlan::Source> sources = sources_of(*request.basis, request.indices);
+  std::vector<ResponsePlan::Source> sources = sources_of(*request.basis, request.optics);
   MomentsRequest others = request;
   others.basis = nullptr;
-  others.indices.clear();
+  others.optics.clear();
   std::vector<std::size_t> reached;
   std::vector<std::vector<std::size_t>> beyond;
-  for (std::size_t i = 0; i < request.indices.size(); ++i) {
+  for (std::size_t i = 0; i < request.optics.size(); ++i) {
     if (sources[i].weights) {
       reached.push_back(i);
       continue;
     }
-    sources[i].other = others.indices.size();
-    others.indices.push_back(request.indices[i]);
+    sources[i].other = others.optics.size();
+    others.optics.push_back(request.optics[i]);
     beyond.push_back({i});
   }
   plan.sources = std::make_shared<const std::vector<ResponsePlan::Source>>(std::move(sources));
   others.wanted = wanted_of(request, beyond);
-  if (!others.indices.empty()) plan.others = std::move(others);
+  if (!others.optics.empty()) plan.others = std::move(others);
   if (reached.empty()) return plan;
   MomentsRequest reference = request;
-  reference.indices = {request.basis->reference()};
+  reference.optics = {request.basis->reference()};
   reference.wanted = wanted_of(request, {reached});
   add_passes(plan, request, std::move(reference));
   return plan;
@@ -357,7 +357,7 @@ std::vector<Moments> combined(const MomentsRequest& request, const ResponsePlan&
   const std::size_t directions = request.theta_deg.size();
   std::vector<Moments> moments(request.size());
   parallel_ranges(directions, 1, [&](std::size_t first, std::size_t last) {
-    std::vector<Moments> own(request.indices.size() * shapes);
+    std::vector<Moments> own(request.optics.size() * shapes);
     for (std::size_t theta = first; theta < last; ++theta) {
       std::vector<std::span<const Moments>> of_passes;
       for (const std::vector<Moments>& pass : passes)

@@ -18,34 +18,34 @@ namespace dolp {
 struct ResponsePlan {
   /// Source of the moments of one index.
   struct Source {
-    std::optional<ResponseWeights> weights;  ///< of the responses; none: the index is computed by itself,
-    std::size_t other = 0;                   ///< as this one of the indices of `others`
+    std::optional<ResponseWeights> weights;  ///< weights of the responses; null: the index is computed by itself,
+    std::size_t other = 0;                   ///< at this position in the indices of `others`
   };
-  /// Position of a point among the points of the passes, which all differ in direction or slope distribution, and among
-  /// the sources or, where that has no weights, among the points of `others`.
+  /// Positions of a point among the points of the passes, which all differ in direction or slope distribution, among
+  /// the sources, and among the points of `others` if its source has no weights.
   struct PointSource {
     std::uint32_t pass = 0;
     std::uint32_t source = 0;
     std::uint32_t other = 0;
   };
-  /// The request's directions and slope distributions at the reference index, with responses: of the light reflected,
-  /// then, as far as they are wanted, of the direct emission and of the light reflected with each function of the sky.
+  /// The request's directions and slope distributions at the reference index, with responses of the reflected light;
+  /// then, if they are wanted, of the direct emission, and of the reflected light with each function of the sky.
   std::vector<MomentsRequest> passes;
-  std::optional<MomentsRequest> others;                ///< the indices, or points, that are not reached
+  std::optional<MomentsRequest> others;                ///< the indices, or points, without weights
   std::shared_ptr<const std::vector<Source>> sources;  ///< one for each index of a grid, each different index of points
-  std::vector<PointSource> points;                     ///< of a request for points
+  std::vector<PointSource> points;                     ///< one for each point
 
   /// The plan of some directions of a grid.
   ResponsePlan of_directions(std::span<const std::size_t> directions) const;
 };
 
-/// Passes for what a request wants.
+/// Number of passes of a request.
 std::size_t response_passes(bool wants_direct, std::size_t sky_functions);
 
 /// The plan of a request that has a basis.
 ResponsePlan response_plan(const MomentsRequest& request);
 
-/// The moments of a request from those of the plan's passes and of its others.
+/// The moments of a request from the moments of the plan's passes and of its others.
 std::vector<Moments> combined(const MomentsRequest& request, const ResponsePlan& plan,
                               std::span<const std::vector<Moments>> passes, std::span<const Moments> others);
 

@@ -21,7 +21,7 @@ struct Chunk {
 
 /// A direction, an index and a chunk.
 struct Row {
-  std::uint32_t direction = 0;  ///< of the request
+  std::uint32_t direction = 0;  ///< position in the request's directions
   std::uint32_t index = 0;
   std::uint32_t chunk = 0;
   std::uint32_t used = 1;  ///< members that are wanted
@@ -30,25 +30,25 @@ struct Row {
 /// One invocation of the kernel.
 struct RowPiece {
   std::uint32_t row = 0;
-  std::uint32_t piece = 0;  ///< of the slope axis
+  std::uint32_t piece = 0;  ///< piece of the slope axis
 };
 
 /// The rows of a request that have a wanted entry.
 struct Rows {
   std::uint32_t width = 1;                ///< 1 or kRowWidth
-  std::vector<kernel::ShapeNode> shapes;  ///< ordered by chunk; scale, cut and cusp are those of the chunk
-  std::vector<std::uint32_t> shape_of;    ///< of each of `shapes` its position in the data
+  std::vector<kernel::ShapeNode> shapes;  ///< ordered by chunk, whose shapes share scale, cut and cusp
+  std::vector<std::uint32_t> shape_of;    ///< position in the data for each of `shapes`
   std::vector<Chunk> chunks;
   std::vector<Row> rows;  ///< ordered by chunk, index and direction
 
-  /// The direction of a row, as a position in the data's.
+  /// The position of a row's direction in the data's `thetas`.
   std::uint32_t theta_of(const KernelData& data, const Row& row) const {
     return data.theta_of(row.direction, row.index, shape_of[chunks[row.chunk].first]);
   }
 };
 
-/// Rows of kRowWidth members where most of these are used, else of one. The neighbours of an entry follow from the
-/// shapes alone, not from directions, indices and wanted entries.
+/// Rows of kRowWidth members if most members are used, else rows of one. The neighbours of an entry follow only from
+/// the shapes, not from directions, indices and wanted entries.
 Rows rows_of(const MomentsRequest& request, const KernelData& data);
 
 /// The invocations of rows first, first + 1, ...: neighbours differ only in the direction, so that their work is equal.

@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/special_functions/legendre.hpp>
 #include <cmath>
+#include <map>
+#include <mutex>
 #include <numbers>
+#include <utility>
 
 #include "base/numbers.hpp"
+#include "base/parallel_ranges.hpp"
 #include "model/gamma_ratio.hpp"
 #include "plan/constants.hpp"
 
@@ -61,7 +66,8 @@ double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double d
   return size - 2.0 * shape.q * per_node;
 }
 
-// The same for the line b = pi/2 of `integral`: of the share of the facets steeper than 45 degrees, |x|^(2q-1).
+// log10 of the remaining part of the line b = pi/2 of `integral`: the share of the facets steeper than 45 degrees goes
+// as |x|^(2q-1).
 double unsplit_line(Distribution distribution, const SlopeShape& shape, double digits) {
   if (distribution == Distribution::kGaussian) {
     return shape.sigma > (digits > kTightDigits ? kTightLineSigma : kLineSigma) ? 0.0 : kNone;
@@ -70,7 +76,72 @@ double unsplit_line(Distribution distribution, const SlopeShape& shape, double d
   return tail - 2.0 * shape.q * decades_per_node(shape, digits);
 }
 
+using Rules = std::map<int, RuleNodes>;  // by order
+
+// Adds the Gauss rules of the orders 1 to `largest_order`, and of twice these orders, on all cores.
+void add_gauss_rules(Rules& rules, int largest_order) {
+  std::vector<Rules::value_type*> missing;
+  for (int i = 1; i <= largest_order; ++i) {
+    for (const int order : {i, 2 * i}) {
+      const auto [found, is_new] = rules.try_emplace(order);
+      if (is_new) missing.push_back(&*found);
+    }
+  }
+  constexpr std::size_t kRulesAtOnce = 4;
+  parallel_for(
+      missing.size(), [&](std::size_t i) { missing[i]->second = gauss_legendre(missing[i]->first); }, {}, kRulesAtOnce);
+}
+
+RuleNodes make_rule_nodes(const Rules& gauss, int largest_order) {
+  std::array<RuleNodes, 5> sections;
+  auto& [unit, centre, half, circle, cluster] = sections;
+  for (int order = 1; order <= largest_order; ++order) {
+    const RuleNodes& rule = gauss.at(order);
+    for (const auto& [x, weight] : rule) {
+      const double v = 0.5 * (1.0 + x);
+      unit.push_back({v, 0.5 * weight});
+      cluster.push_back({v * v, v * weight});
+    }
+    centre.insert(centre.end(), rule.begin(), rule.end());
+    const RuleNodes& twice = gauss.at(2 * order);
+    half.insert(half.end(), twice.begin() + order, twice.end());
+    // Midpoints psi of [0, pi] as tau = tan(psi/4), the weight chosen so that 4 / (1 + tau^2) * weight = pi / order.
+    const double part = std::numbers::pi / order;
+    for (int i = 0; i < order; ++i) {
+      const double tau = std::tan(0.25 * part * (i + 0.5));
+      circle.push_back({tau, 0.25 * part * (1.0 + tau * tau)});
+    }
+  }
+  RuleNodes nodes;
+  for (const RuleNodes& section : sections) nodes.insert(nodes.end(), section.begin(), section.end());
+  return nodes;
+}
+
 }  // namespace
+
+RuleNodes gauss_legendre(int order) {
+  RuleNodes nodes;
+  for (const double x : boost::math::legendre_p_zeros<double>(order)) {  // the zeros >= 0
+    const double slope = boost::math::legendre_p_prime(order, x);
+    const double weight = 2.0 / ((1.0 - x) * (1.0 + x) * slope * slope);
+    nodes.push_back({x, weight});
+    if (x > 0.0) nodes.push_back({-x, weight});
+  }
+  std::ranges::sort(nodes);
+  return nodes;
+}
+
+const RuleNodes& rule_nodes(int largest_order) {
+  static std::mutex mutex;
+  static Rules gauss, known;
+  const std::lock_guard lock(mutex);
+  const auto [found, is_new] = known.try_emplace(largest_order);
+  if (is_new) {
+    add_gauss_rules(gauss, largest_order);
+    found->second = make_rule_nodes(gauss, largest_order);
+  }
+  return found->second;
+}
 
 const RuleModel& rule_model(Masking masking, Scattering scattering) {
   return scattering == Scattering::kMultiple ? kModels.back() : kModels[static_cast<std::size_t>(masking)];

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
+#include "model/chebyshev.hpp"
 #include "model/choices.hpp"
 #include "plan/constants.hpp"
 
@@ -11,15 +13,16 @@ namespace {
 
 using Values = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// One of the moments, or its bound, at the nodes: sigma x q.
-Values at_nodes(const ShapePlan& plan, std::span<const Moments> nodes, double Moments::*quantity) {
+/// value_of each node: sigma x q.
+template <class ValueOf>
+Values at_nodes(const ShapePlan& plan, std::span<const Moments> nodes, const ValueOf& value_of) {
   Values values(static_cast<Eigen::Index>(plan.sigma.nodes.size()), static_cast<Eigen::Index>(plan.q.nodes.size()));
-  for (Eigen::Index i = 0; i < values.size(); ++i) values.data()[i] = nodes[static_cast<std::size_t>(i)].*quantity;
+  for (Eigen::Index i = 0; i < values.size(); ++i) values.data()[i] = value_of(nodes[static_cast<std::size_t>(i)]);
   return values;
 }
 
-/// Error bounds of the interpolation of each column of `values`, given at the axis's nodes: the coefficients left out,
-/// if they go on falling as the last ones do.
+/// Error bounds of the interpolation of each column of `values` at the axis's nodes: the sum of the coefficients left
+/// out, if they continue to fall like the last coefficients.
 Eigen::RowVectorXd tails(const ShapeAxis& axis, const Values& values) {
   if (!axis.is_interpolated()) return Eigen::RowVectorXd::Zero(values.cols());
   const Eigen::MatrixXd sizes = (axis.coefficients.bottomRows(2 * kLastShapeCoefficients) * values).cwiseAbs();
@@ -33,29 +36,39 @@ Eigen::RowVectorXd tails(const ShapeAxis& axis, const Values& values) {
   return bounds;
 }
 
-void store(const Values& values, double Moments::*quantity, std::span<Moments> moments) {
-  for (std::size_t i = 0; i < moments.size(); ++i) moments[i].*quantity = values.data()[i];
-}
+/// Interpolates a quantity, with error bounds, from its values and bounds at the nodes.
+class Interpolation {
+ public:
+  explicit Interpolation(const ShapePlan& plan)
+      : plan_(plan), sigma_(plan.sigma.cardinal), q_(plan.q.cardinal.transpose()) {}
+  struct Result {
+    Values value;
+    Values error;
+  };
+  Result operator()(const Values& at, Values bound) const {
+    bound.rowwise() += tails(plan_.sigma, at);
+    bound.colwise() += tails(plan_.q, at.transpose()).transpose();
+    return {sigma_ * at * q_, sigma_.cwiseAbs() * bound * q_.cwiseAbs()};
+  }
 
-/// Column `k` of the moments, as these. Bounds lose their signs.
-void interpolate_column(const ShapePlan& plan, std::span<const Moments> nodes, std::size_t k,
-                        std::span<Moments> moments) {
-  const Values sigma = plan.sigma.cardinal;
-  const Values q = plan.q.cardinal.transpose();
+ private:
+  const ShapePlan& plan_;
+  Values sigma_;
+  Values q_;
+};
+
+/// Interpolates column `k` of the moments. Bounds lose their signs.
+void interpolate_column(const ShapePlan& plan, const Interpolation& interpolated, std::span<const Moments> nodes,
+                        std::size_t k, std::span<Moments> moments) {
   for (Moments& of_entry : moments) of_entry.columns.resize(k + 1);
   for (double ColumnMoments::*component : {&ColumnMoments::i, &ColumnMoments::q}) {
-    Values at(static_cast<Eigen::Index>(plan.sigma.nodes.size()), static_cast<Eigen::Index>(plan.q.nodes.size()));
-    Values bound(at.rows(), at.cols());
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const ColumnMoments& column = nodes[i].columns[k];
-      at.data()[i] = column.*component;
-      bound.data()[i] = column.error + std::max(std::abs(column.i_apart), std::abs(column.q_apart)) +
-                        column.relative_error * std::abs(column.*component);
-    }
-    bound.rowwise() += tails(plan.sigma, at);
-    bound.colwise() += tails(plan.q, at.transpose()).transpose();
-    const Values value = sigma * at * q;
-    const Values error = sigma.cwiseAbs() * bound * q.cwiseAbs();
+    const auto value_of = [&](const Moments& node) { return node.columns[k].*component; };
+    const auto bound_of = [&](const Moments& node) {
+      const ColumnMoments& column = node.columns[k];
+      return column.error + std::max(std::abs(column.i_apart), std::abs(column.q_apart)) +
+             column.relative_error * std::abs(column.*component);
+    };
+    const auto [value, error] = interpolated(at_nodes(plan, nodes, value_of), at_nodes(plan, nodes, bound_of));
     for (std::size_t i = 0; i < moments.size(); ++i) {
       moments[i].columns[k].*component = value.data()[i];
       moments[i].columns[k].error = std::max(moments[i].columns[k].error, error.data()[i]);
@@ -63,7 +76,7 @@ void interpolate_column(const ShapePlan& plan, std::span<const Moments> nodes, s
   }
 }
 
-/// True if for each direction and index all entries are wanted, or none.
+/// True if all entries of each direction and index are wanted, or no entry.
 bool wants_whole_directions(const MomentsRequest& request) {
   if (request.layout != MomentsRequest::Layout::kGrid) return false;
   const std::size_t shapes = request.shapes();
@@ -73,7 +86,83 @@ bool wants_whole_directions(const MomentsRequest& request) {
   return true;
 }
 
+/// The moments are analytic in ln(x - origin) within `strip` of the real axis, x being sigma or q.
+///
+/// For sigma: with the slope in units of m, sigma enters only P(u) = (1 + u^2)^-q, analytic where |Im ln m| < pi/2;
+/// toward there a power of q grows, so that a smaller strip is used. For q: P is analytic for Re q > 1; the mean
+/// slope, on which smith masking depends and, without shadows that bound it, the projection of the facets at grazing
+/// incidence, for Re q > 3/2 (shaders/physics/README.md, section 2). A polynomial of n nodes in the logarithm then is
+/// wrong by rho^-n, rho = exp(asinh(strip / half length)).
+struct ShapeParameter {
+  double origin = 0.0;
+  double strip = 1.0;
+};
+
+constexpr double kGrazing_deg = 89.9;
+
+bool is_grazing(double theta_deg) { return theta_deg > kGrazing_deg; }
+
+double nodes_needed(const ShapeParameter& parameter, double half_length, double digits) {
+  const double per_digit = std::log(10.0) / std::asinh(parameter.strip / half_length);
+  return std::max(std::ceil(kFirstShapeNodes + digits * per_digit), kLeastShapeNodes);
+}
+
+ShapeAxis without_interpolation(const std::vector<double>& values) {
+  const auto count = static_cast<Eigen::Index>(values.size());
+  return {values, Eigen::MatrixXd::Identity(count, count), {}};
+}
+
+ShapeParameter sigma_parameter(Distribution distribution) {
+  return {0.0, distribution == Distribution::kGaussian ? 0.78 : 1.15};
+}
+
+/// Domain: all of the request's directions are grazing, or none.
+ShapeParameter q_parameter(const MomentsRequest& request) {
+  const bool needs_mean_slope =
+      request.masking == Masking::kSmith ||
+      (!keeps_projected_area(request.masking) && std::ranges::all_of(request.theta_deg, is_grazing));
+  const bool has_mean_slope = request.distribution == Distribution::kCauchy && std::ranges::min(request.q) > 1.5;
+  return {needs_mean_slope && has_mean_slope ? 1.5 : 1.0, 1.45};
+}
+
+/// Nodes for `values`, all different, such that the interpolation keeps `digits` decimal digits.
+ShapeAxis shape_axis(const ShapeParameter& parameter, const std::vector<double>& values, double digits) {
+  const auto [least, largest] = std::minmax_element(values.begin(), values.end());
+  const double start = std::log(*least - parameter.origin);
+  const double end = std::log(*largest - parameter.origin);
+  const double half_length = 0.5 * (end - start);
+  if (half_length <= 0.0) return without_interpolation(values);
+  const double count = nodes_needed(parameter, half_length, digits);
+  if (!(count * kLeastAxisGain <= static_cast<double>(values.size()))) return without_interpolation(values);
+
+  ShapeAxis axis;
+  const auto nodes = static_cast<Eigen::Index>(count);
+  const std::vector<double> points = lobatto_points(nodes);
+  for (const double point : points) {
+    axis.nodes.push_back(parameter.origin + std::exp(0.5 * (start + end) + half_length * point));
+  }
+  axis.nodes.front() = *largest;
+  axis.nodes.back() = *least;
+  axis.cardinal.resize(static_cast<Eigen::Index>(values.size()), nodes);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double x = (std::log(values[i] - parameter.origin) - 0.5 * (start + end)) / half_length;
+    axis.cardinal.row(static_cast<Eigen::Index>(i)) = cardinal_values(points, std::clamp(x, -1.0, 1.0));
+  }
+  axis.coefficients = chebyshev_coefficients(nodes);
+  return axis;
+}
+
 }  // namespace
+
+std::vector<std::vector<std::size_t>> split_grazing_directions(const MomentsRequest& request) {
+  std::vector<std::vector<std::size_t>> groups(2);
+  for (std::size_t i = 0; i < request.theta_deg.size(); ++i) {
+    const bool is_apart = !keeps_projected_area(request.masking) && is_grazing(request.theta_deg[i]);
+    groups[is_apart ? 1 : 0].push_back(i);
+  }
+  std::erase_if(groups, [](const std::vector<std::size_t>& group) { return group.empty(); });
+  return groups;
+}
 
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
   if (!request.may_interpolate || request.size() == 0 || !wants_whole_directions(request)) return std::nullopt;
@@ -96,18 +185,18 @@ std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
 }
 
 void interpolate(const ShapePlan& plan, std::span<const Moments> nodes, std::span<Moments> moments) {
-  const Values sigma = plan.sigma.cardinal;
-  const Values q = plan.q.cardinal.transpose();
+  const Interpolation interpolated(plan);
   const std::size_t unwanted = plan.nodes.wants_direct ? 0 : kDirectMembers;
-  for (const auto& [value, error] : std::span(kMomentMembers).first(kMomentMembers.size() - unwanted)) {
-    const Values at = at_nodes(plan, nodes, value);
-    Values bound = at_nodes(plan, nodes, error);
-    bound.rowwise() += tails(plan.sigma, at);
-    bound.colwise() += tails(plan.q, at.transpose()).transpose();
-    store(sigma * at * q, value, moments);
-    store(sigma.cwiseAbs() * bound * q.cwiseAbs(), error, moments);
+  for (const auto& [member, member_error] : std::span(kMomentMembers).first(kMomentMembers.size() - unwanted)) {
+    const auto [value, error] =
+        interpolated(at_nodes(plan, nodes, std::mem_fn(member)), at_nodes(plan, nodes, std::mem_fn(member_error)));
+    for (std::size_t i = 0; i < moments.size(); ++i) {
+      moments[i].*member = value.data()[i];
+      moments[i].*member_error = error.data()[i];
+    }
   }
-  for (std::size_t k = 0; k < nodes.front().columns.size(); ++k) interpolate_column(plan, nodes, k, moments);
+  for (std::size_t k = 0; k < nodes.front().columns.size(); ++k)
+    interpolate_column(plan, interpolated, nodes, k, moments);
   double evaluations = 0.0;
   for (const Moments& node : nodes) evaluations += node.evaluations;
   for (Moments& of_entry : moments) of_entry.evaluations = evaluations / static_cast<double>(moments.size());

@@ -1,20 +1,33 @@
 // Selects the moments of a grid to compute; the others are interpolated between them.
 //
-// The moments of one direction and one index are analytic in ln(sigma) and ln(q - 1), so that those of many slope
+// The moments of one direction and one index are analytic in ln(sigma) and ln(q - 1). So the moments of many slope
 // distributions follow from a few Chebyshev nodes, computed to a tolerance of their own.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "model/choices.hpp"
 #include "model/moments.hpp"
-#include "plan/shape_axis.hpp"
 
 namespace dolp {
 
-/// Plan for a grid. It follows from the request alone.
+/// Positions of the directions of a grid in groups that have one parameter each: one group, or grazing directions in a
+/// second.
+std::vector<std::vector<std::size_t>> split_grazing_directions(const MomentsRequest& request);
+
+/// Values of a parameter, and the nodes from which they are interpolated.
+struct ShapeAxis {
+  std::vector<double> nodes;     ///< the values themselves where interpolation gains nothing
+  Eigen::MatrixXd cardinal;      ///< values x nodes: weights of the moments at the nodes
+  Eigen::MatrixXd coefficients;  ///< nodes x nodes: from values to Chebyshev coefficients; empty without interpolation
+  bool is_interpolated() const { return coefficients.size() > 0; }
+};
+
+/// Plan for a grid. It follows only from the request.
 struct ShapePlan {
   ShapeAxis sigma;
   ShapeAxis q;
@@ -23,13 +36,13 @@ struct ShapePlan {
   std::size_t nodes_of_a_direction() const { return sigma.nodes.size() * q.nodes.size(); }
 };
 
-/// The plan of a request whose directions have one parameter (split_grazing_directions), or none where every entry is
-/// computed by itself, as where only some entries of a direction and index are wanted.
+/// The plan of a request whose directions have one parameter (split_grazing_directions). Null if every entry is
+/// computed by itself, for instance because only some entries of a direction and index are wanted.
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request);
 
-/// The moments of one direction and index at the request's sigma x q, from those at its nodes. Bounds are those of the
-/// nodes, weighted with the interpolant's own weights, plus an interpolation error estimated
-/// from the last Chebyshev coefficients.
+/// Computes the moments of one direction and index at the request's sigma x q from the moments at the nodes. Bounds are
+/// the nodes' bounds, weighted with the interpolant's weights, plus an interpolation error estimated from the last
+/// Chebyshev coefficients.
 void interpolate(const ShapePlan& plan, std::span<const Moments> nodes, std::span<Moments> moments);
 
 }  // namespace dolp

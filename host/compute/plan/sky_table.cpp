@@ -21,45 +21,43 @@ double zenith_deg_at(double u) {
   return std::min(2.0 * std::asin(std::min(u * std::numbers::sqrt2 / 2.0, 1.0)) * 180.0 / std::numbers::pi, 90.0);
 }
 
-double place_of(double zenith_deg) {
-  return std::numbers::sqrt2 * std::sin(0.5 * zenith_deg * std::numbers::pi / 180.0);
-}
+double u_at(double zenith_deg) { return std::numbers::sqrt2 * std::sin(0.5 * zenith_deg * std::numbers::pi / 180.0); }
 
-Eigen::RowVectorXd at_place(const SkyBasis& basis, double u) { return basis.at(zenith_deg_at(u)); }
+Eigen::RowVectorXd values_at(const SkyBasis& basis, double u) { return basis.at(zenith_deg_at(u)); }
 
 /// Values of the functions at the ends of the cells. Shape: cells + 1 x functions.
 Eigen::MatrixXd at_ends(const SkyBasis& basis, std::uint32_t cells) {
   Eigen::MatrixXd ends(cells + 1, static_cast<Eigen::Index>(basis.size()));
-  for (std::uint32_t i = 0; i <= cells; ++i) ends.row(i) = at_place(basis, static_cast<double>(i) / cells);
+  for (std::uint32_t i = 0; i <= cells; ++i) ends.row(i) = values_at(basis, static_cast<double>(i) / cells);
   return ends;
 }
 
 /// Distances of the functions from straight lines through the ends of the cell at u.
 Eigen::RowVectorXd distances_at(const SkyBasis& basis, double u, double cells) {
-  const double place = std::clamp(u * cells, 0.0, cells);
-  const double cell = std::min(std::floor(place), cells - 1.0);
-  const double share = place - cell;
+  const double position = std::clamp(u * cells, 0.0, cells);
+  const double cell = std::min(std::floor(position), cells - 1.0);
+  const double share = position - cell;
   const Eigen::RowVectorXd line =
-      (1.0 - share) * at_place(basis, cell / cells) + share * at_place(basis, (cell + 1.0) / cells);
-  return (line - at_place(basis, u)).cwiseAbs();
+      (1.0 - share) * values_at(basis, cell / cells) + share * values_at(basis, (cell + 1.0) / cells);
+  return (line - values_at(basis, u)).cwiseAbs();
 }
 
-/// The largest of them at the corners,
+Eigen::RowVectorXd largest_distances(const SkyBasis& basis, const std::vector<double>& us, double cells) {
+  Eigen::RowVectorXd largest = Eigen::RowVectorXd::Zero(static_cast<Eigen::Index>(basis.size()));
+  for (const double u : us) largest = largest.cwiseMax(distances_at(basis, u, cells));
+  return largest;
+}
+
 Eigen::RowVectorXd corner_distances(const SkyBasis& basis, double cells) {
-  Eigen::RowVectorXd largest = Eigen::RowVectorXd::Zero(static_cast<Eigen::Index>(basis.size()));
-  for (const double end_deg : basis.nodes().ends_deg()) {
-    largest = largest.cwiseMax(distances_at(basis, place_of(end_deg), cells));
-  }
-  return largest;
+  std::vector<double> corners;
+  for (const double end_deg : basis.nodes().ends_deg()) corners.push_back(u_at(end_deg));
+  return largest_distances(basis, corners, cells);
 }
 
-/// and in the middle of all cells.
 Eigen::RowVectorXd middle_distances(const SkyBasis& basis, double cells) {
-  Eigen::RowVectorXd largest = Eigen::RowVectorXd::Zero(static_cast<Eigen::Index>(basis.size()));
-  for (double cell = 0.0; cell < cells; ++cell) {
-    largest = largest.cwiseMax(distances_at(basis, (cell + 0.5) / cells, cells));
-  }
-  return largest;
+  std::vector<double> middles;
+  for (double cell = 0.0; cell < cells; ++cell) middles.push_back((cell + 0.5) / cells);
+  return largest_distances(basis, middles, cells);
 }
 
 /// A corner, with the change of the slope in u of each function.
@@ -74,11 +72,11 @@ std::vector<Corner> corners_of(const SkyBasis& basis) {
   std::vector<Corner> corners;
   const std::vector<double>& ends_deg = basis.nodes().ends_deg();
   for (std::size_t i = 1; i + 1 < ends_deg.size(); ++i) {
-    const double u = place_of(ends_deg[i]);
-    const double step = kStep * std::min(u - place_of(ends_deg[i - 1]), place_of(ends_deg[i + 1]) - u);
-    const Eigen::RowVectorXd before = at_place(basis, u - step);
-    const Eigen::RowVectorXd after = at_place(basis, u + step);
-    const Eigen::RowVectorXd bend = (after - 2.0 * at_place(basis, u) + before) / step;
+    const double u = u_at(ends_deg[i]);
+    const double step = kStep * std::min(u - u_at(ends_deg[i - 1]), u_at(ends_deg[i + 1]) - u);
+    const Eigen::RowVectorXd before = values_at(basis, u - step);
+    const Eigen::RowVectorXd after = values_at(basis, u + step);
+    const Eigen::RowVectorXd bend = (after - 2.0 * values_at(basis, u) + before) / step;
     if (bend.cwiseAbs().maxCoeff() > kLeastBend) corners.push_back({ends_deg[i], bend});
   }
   std::ranges::sort(corners, std::ranges::greater(),

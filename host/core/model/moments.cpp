@@ -6,7 +6,7 @@ namespace dolp {
 
 std::size_t MomentsRequest::size() const {
   if (layout == Layout::kList) return theta_deg.size();
-  return theta_deg.size() * indices.size() * sigma.size() * q.size();
+  return theta_deg.size() * optics.size() * sigma.size() * q.size();
 }
 
 std::size_t MomentsRequest::wanted_count() const {
@@ -20,12 +20,12 @@ double MomentsRequest::finer_tolerance(double share) const {
 }
 
 MomentsPoint MomentsRequest::operator[](std::size_t entry) const {
-  if (layout == Layout::kList) return {theta_deg[entry], {sigma[entry], q[entry]}, indices[entry]};
+  if (layout == Layout::kList) return {theta_deg[entry], {sigma[entry], q[entry]}, optics[entry]};
   const std::size_t of_sigma = entry / q.size();
   const std::size_t of_theta = of_sigma / sigma.size();
   return {theta_deg[of_theta % theta_deg.size()],
           {sigma[of_sigma % sigma.size()], q[entry % q.size()]},
-          indices[of_theta / theta_deg.size()]};
+          optics[of_theta / theta_deg.size()]};
 }
 
 MomentsRequest MomentsRequest::of_directions(std::span<const std::size_t> directions) const {
@@ -33,7 +33,7 @@ MomentsRequest MomentsRequest::of_directions(std::span<const std::size_t> direct
   part.theta_deg.clear();
   part.wanted.clear();
   for (const std::size_t i : directions) part.theta_deg.push_back(theta_deg[i]);
-  for (std::size_t index = 0; !wanted.empty() && index < indices.size(); ++index) {
+  for (std::size_t index = 0; !wanted.empty() && index < optics.size(); ++index) {
     for (const std::size_t i : directions) {
       const auto first = wanted.begin() + static_cast<std::ptrdiff_t>((index * theta_deg.size() + i) * shapes());
       part.wanted.insert(part.wanted.end(), first, first + static_cast<std::ptrdiff_t>(shapes()));
@@ -47,7 +47,7 @@ void MomentsRequest::append(const MomentsPoint& point) {
   theta_deg.push_back(point.theta_deg);
   sigma.push_back(point.shape.sigma);
   q.push_back(point.shape.q);
-  indices.push_back(point.index);
+  optics.push_back(point.index);
 }
 
 }  // namespace dolp

@@ -44,7 +44,7 @@ struct Response {
   Of of = Of::kReflected;
 };
 
-/// The entries whose moments are wanted: the grid index x theta x sigma x q, q fastest, as in a table, or points, for
+/// The entries whose moments are wanted: the grid optics x theta x sigma x q, q fastest, as in a table, or points, for
 /// which the four lists have one value each. An entry is its position in that order.
 struct MomentsRequest {
   enum class Layout { kGrid, kList };
@@ -57,12 +57,12 @@ struct MomentsRequest {
   Precision precision = Precision::kAuto;       ///< kAuto: float
   bool may_interpolate = true;                  ///< between slope distributions, to the same tolerance
   bool has_extra_splits = false;                ///< a rule of another kind, to check others with
-  std::shared_ptr<const ResponseBasis> basis;   ///< to combine the moments of the indices from; null: none
+  std::shared_ptr<const ResponseBasis> basis;   ///< combines the moments of all optics; null: none
   std::shared_ptr<const SkyBasis> sky;          ///< Moments::columns are those with its functions; null: none
   std::optional<Response> response;             ///< Moments::columns are the responses
   Layout layout = Layout::kGrid;
   std::vector<double> theta_deg;
-  std::vector<FacetOptics> indices;  ///< bare, or with films
+  std::vector<FacetOptics> optics;  ///< bare facets, or facets with films
   std::vector<double> sigma;
   std::vector<double> q;
   std::vector<char> wanted;  ///< of each entry of a grid; empty: all. The moments of the others are undefined

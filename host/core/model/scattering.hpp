@@ -35,7 +35,7 @@ struct ScatteringEntry {
   std::uint32_t index = 0;
 };
 
-/// Lists of pairs of beams, slope shapes and refractive indices, and the combinations that are wanted.
+/// Lists of pairs of beams, slope shapes and facet optics, and the combinations that are wanted.
 /// Domain: zeniths in [0, 90] degrees, not 90 both; sigma > 0; cauchy q > 1, with smith masking q > 3/2.
 struct ScatteringRequest {
   Distribution distribution = Distribution::kCauchy;
@@ -44,7 +44,7 @@ struct ScatteringRequest {
   Precision precision = Precision::kAuto;       ///< kAuto: float
   std::vector<BeamAngles> angles;
   std::vector<SlopeShape> shapes;
-  std::vector<FacetOptics> indices;
+  std::vector<FacetOptics> optics;
   std::vector<ScatteringEntry> entries;
 };
 

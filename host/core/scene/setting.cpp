@@ -7,7 +7,6 @@
 
 #include <toml++/toml.h>
 
-#include "base/number_text.hpp"
 #include "base/text.hpp"
 #include "scene/scene_keys.hpp"
 

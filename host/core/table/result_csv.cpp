@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/number_text.hpp"
 #include "base/parallel_ranges.hpp"
+#include "base/text.hpp"
 #include "table/table.hpp"
 
 namespace dolp {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <dolp/errors.hpp>
 
-#include "base/number_text.hpp"
 #include "base/parallel_ranges.hpp"
 #include "base/text.hpp"
 #include "model/scene_entry.hpp"

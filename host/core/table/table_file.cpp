@@ -11,8 +11,7 @@
 #include <vector>
 
 #include "base/atomic_file.hpp"
-#include "base/number_text.hpp"
-#include "base/printable_text.hpp"
+#include "base/text.hpp"
 #include "table/result_csv.hpp"
 #include "table/table_store.hpp"
 

@@ -10,7 +10,6 @@
 #include <dolp/status.hpp>
 #include "api/impl.hpp"
 #include "base/atomic_file.hpp"
-#include "base/number_text.hpp"
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
 #include "report/run_report.hpp"

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "api/impl.hpp"
-#include "base/number_text.hpp"
 #include "base/text.hpp"
 #include "run/lookup_run.hpp"
 #include "run/scene_run.hpp"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/printable_text.hpp"
+#include "base/text.hpp"
 
 namespace dolp {
 

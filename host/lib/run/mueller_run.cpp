@@ -51,7 +51,7 @@ ScatteringRequest request_for(const SceneValues& scene, std::span<const MuellerP
     const auto position = static_cast<std::uint32_t>(request.entries.size());
     request.angles.push_back(used_angles(scene.surface, point.angles));
     request.shapes.push_back(point.shape);
-    request.indices.push_back(point.index);
+    request.optics.push_back(point.index);
     request.entries.push_back({position, position, position});
   }
   return request;

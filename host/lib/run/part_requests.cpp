@@ -160,8 +160,8 @@ void PartRequests::ask_indices(const SceneEntries& grid, const std::vector<char>
     if (is_used[set] == 0) continue;
     std::vector<FacetOptics> own = samples_of(grid, set);
     if (own != last) {
-      first = static_cast<std::uint32_t>(moments_.indices.size());
-      moments_.indices.insert(moments_.indices.end(), own.begin(), own.end());
+      first = static_cast<std::uint32_t>(moments_.optics.size());
+      moments_.optics.insert(moments_.optics.end(), own.begin(), own.end());
       last = std::move(own);
     }
     index_set_offset_[set] = first;
@@ -233,8 +233,8 @@ void PartRequests::ask_beams(const Selection& selection) {
   }
   std::vector<std::uint32_t> first_index;
   for (const std::vector<FacetOptics>& of_wavelength : samples_) {
-    first_index.push_back(static_cast<std::uint32_t>(beams_.indices.size()));
-    beams_.indices.insert(beams_.indices.end(), of_wavelength.begin(), of_wavelength.end());
+    first_index.push_back(static_cast<std::uint32_t>(beams_.optics.size()));
+    beams_.optics.insert(beams_.optics.end(), of_wavelength.begin(), of_wavelength.end());
   }
   first_beam_.reserve(selection.size());
   for (std::size_t i = 0; i < selection.size(); ++i) {
@@ -257,8 +257,8 @@ void PartRequests::ask_beams(const Selection& selection) {
       if (entry.index) {
         FacetOptics own = samples_[entry.variant][j];
         own.index = *entry.index;
-        if (beams_.indices.back() != own) beams_.indices.push_back(std::move(own));
-        wanted.index = static_cast<std::uint32_t>(beams_.indices.size() - 1);
+        if (beams_.optics.back() != own) beams_.optics.push_back(std::move(own));
+        wanted.index = static_cast<std::uint32_t>(beams_.optics.size() - 1);
       }
       beams_.entries.push_back(wanted);
     }

@@ -195,7 +195,7 @@ MomentsRequest response_request(const Surface& surface) {
   request.distribution = surface.distribution;
   request.masking = surface.masking;
   request.response = {.count = kBetaAngles, .c0 = kResponseC0, .bend = kResponseC0};
-  request.indices = {kUnusedIndex};
+  request.optics = {kUnusedIndex};
   return request;
 }
 

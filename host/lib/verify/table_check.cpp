@@ -170,8 +170,8 @@ bool has_rho(const TableValues& table) {
 /// A request for the sample's entries.
 MomentsRequest request_of(const TableSample& sample, const Surface& surface) {
   MomentsRequest request = response_request(surface);
-  const OpticalConstants index = request.indices.front().index;
-  request.indices.clear();
+  const OpticalConstants index = request.optics.front().index;
+  request.optics.clear();
   const SceneEntries grid = SceneEntries::of_grid(sample.table.axes, index);
   for (const std::size_t position : sample.positions) {
     const SceneEntry entry = grid[position];

@@ -11,7 +11,7 @@
 #include <new>
 #include <system_error>
 
-#include "base/printable_text.hpp"
+#include "base/text.hpp"
 
 namespace dolp {
 namespace {

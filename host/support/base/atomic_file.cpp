@@ -62,14 +62,20 @@ bool is_device_or_pipe(const fs::path& path) {
   return fs::is_character_file(status) || fs::is_fifo(status) || fs::is_block_file(status) || fs::is_socket(status);
 }
 
-void write_all(int descriptor, const fs::path& path, std::string_view content) {
+/// Writes all bytes with write(bytes, size), which returns the number of bytes that it wrote, or -1.
+template <class Write>
+void write_all(const fs::path& path, std::string_view content, const Write& write) {
   while (!content.empty()) {
     if (interrupted()) throw Cancelled();
-    const ssize_t written = ::write(descriptor, content.data(), std::min(content.size(), kBytesAtOnce));
+    const ssize_t written = write(content.data(), std::min(content.size(), kBytesAtOnce));
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail_errno(path, "cannot write");
     content.remove_prefix(static_cast<std::size_t>(written));
   }
+}
+
+void write_all(int descriptor, const fs::path& path, std::string_view content) {
+  write_all(path, content, [&](const char* bytes, std::size_t size) { return ::write(descriptor, bytes, size); });
 }
 
 void read_all(int descriptor, const fs::path& path, std::uint64_t offset, char* bytes, std::size_t size) {
@@ -88,7 +94,7 @@ fs::path temporary_name(const fs::path& target, int number) {
   return folder_of(target) / (".dolp-" + std::to_string(::getpid()) + "-" + std::to_string(number) + ".tmp");
 }
 
-/// Calls make(name) with names beside `target` until it returns something else than -1 with EEXIST.
+/// Calls make(name) with names beside `target` until it does not fail with EEXIST.
 template <class Make>
 std::pair<fs::path, int> with_new_name(const fs::path& target, const Make& make) {
   for (int i = 0; i < kMostNames; ++i) {
@@ -104,7 +110,7 @@ std::pair<fs::path, int> with_new_name(const fs::path& target, const Make& make)
 /// A file that has no name yet, or a temporary one, with the permissions that the target has or would get.
 struct NewFile {
   File file;
-  fs::path name;  ///< empty while there is none
+  fs::path name;  ///< empty: it has none
 };
 
 NewFile create_temporary(const fs::path& target) {
@@ -138,7 +144,7 @@ void sync_folder(const fs::path& folder, const fs::path& path) {
 
 }  // namespace
 
-// std::filesystem::canonical wants the target to exist; an output need not.
+// std::filesystem::canonical needs an existing target; an output need not exist.
 fs::path follow_links(fs::path path) {
   std::error_code error;
   for (int links = 0; fs::is_symlink(path, error); ++links) {
@@ -200,7 +206,7 @@ struct AtomicFile::Impl {
                }).first;
   }
 
-  /// All bytes to a device or pipe.
+  /// Writes all bytes to a device or pipe.
   void copy_to_target() const {
     File file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
     if (file.get() < 0 && interrupted()) throw Cancelled();
@@ -235,7 +241,7 @@ AtomicFile::AtomicFile(const fs::path& path, const fs::path& under_way) {
   const bool is_locked = ::flock(file.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
   struct stat found {};
   if (::fstat(file.get(), &found) != 0 || !S_ISREG(found.st_mode)) fail(under_way, "is not a regular file");
-  // A file without this name is one that its writer has just finished.
+  // If the file no longer has this name, its writer has just finished it.
   if (!is_locked || !has_name(found, under_way)) throw InputError(under_way.string() + ": another run writes it");
   if (found.st_nlink > 1) fail(under_way, "is a file that has other names too; remove it");
   keep_permissions(file, impl_->target);
@@ -249,17 +255,12 @@ AtomicFile::~AtomicFile() = default;
 const fs::path& AtomicFile::path() const { return impl_->path; }
 
 void AtomicFile::write_at(std::uint64_t offset, const void* bytes, std::size_t size) {
-  std::string_view content(static_cast<const char*>(bytes), size);
-  while (!content.empty()) {
-    if (interrupted()) throw Cancelled();
-    const ssize_t written = ::pwrite(impl_->descriptor(), content.data(), std::min(content.size(), kBytesAtOnce),
-                                     static_cast<off_t>(offset));
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail_errno(impl_->path, "cannot write");
-    content.remove_prefix(static_cast<std::size_t>(written));
-    offset += static_cast<std::uint64_t>(written);
+  write_all(impl_->path, {static_cast<const char*>(bytes), size}, [&](const char* next, std::size_t most) {
+    const ssize_t written = ::pwrite(impl_->descriptor(), next, most, static_cast<off_t>(offset));
+    if (written > 0) offset += static_cast<std::uint64_t>(written);
     impl_->size = std::max(impl_->size, offset);
-  }
+    return written;
+  });
 }
 
 void AtomicFile::append(std::string_view bytes) { write_at(impl_->size, bytes.data(), bytes.size()); }

@@ -10,25 +10,26 @@
 
 namespace dolp {
 
-/// The target of a path with symbolic links resolved; it need not exist. Errors: IoError for too many of them.
+/// The target of a path with symbolic links resolved; it need not exist. Errors: IoError for too many links.
 std::filesystem::path follow_links(std::filesystem::path path);
 
 /// Refuses an output path of any suffix, before anything is computed for it; "-" is standard output.
 ///
-/// Errors: IoError when it is a folder, a file that is read-only or a name that is too long, or its folder is missing
-/// or cannot be written to.
+/// Errors: IoError if the path is a folder, a read-only file or too long a name, or if its folder is missing or not
+/// writable.
 void check_writable(const std::filesystem::path& path);
 
-/// A file under way to `path`: written in any order, then synced and renamed. Until then it has no name where the file
-/// system allows that; else it is .dolp-*.tmp, which a process that is killed leaves. A symbolic link stays, its target
-/// is replaced; an existing file keeps its permissions. Into a device or pipe the bytes go when all are there.
+/// A file that becomes `path`: written in any order, then synced and renamed. Until then it has no name, or the name
+/// .dolp-*.tmp if the file system needs one; a killed process leaves it. A symbolic link stays and its target is
+/// replaced; an existing file keeps its permissions. A device or pipe gets the bytes when the file is complete.
 class AtomicFile {
  public:
-  /// Errors: those of check_writable; IoError when no file can be made.
+  /// Errors: the errors of check_writable(); IoError if no file can be made.
   explicit AtomicFile(const std::filesystem::path& path);
-  /// A file that has the name `under_way` until it is whole, and keeps it, with what was written, if it never is; one
-  /// that is there already is opened with its content. It is locked.
-  /// Errors: as above; IoError for a link, which could lead to any file; InputError when another process writes it.
+  /// A locked file that has the name `under_way` until it is complete, and keeps the name and its bytes if it never is.
+  /// Opens an existing file with its content.
+  /// Errors: the errors of check_writable(); IoError if no file can be made, and for a link, which could lead to any
+  /// file; InputError if another process writes it.
   AtomicFile(const std::filesystem::path& path, const std::filesystem::path& under_way);
   AtomicFile(AtomicFile&&) noexcept;
   AtomicFile& operator=(AtomicFile&&) noexcept;
@@ -39,11 +40,11 @@ class AtomicFile {
   void write_at(std::uint64_t offset, const void* bytes, std::size_t size);
   void append(std::string_view bytes);
   std::uint64_t size() const;
-  /// Errors: IoError, also for fewer bytes than asked for.
+  /// Errors: IoError, also if the file has fewer bytes.
   void read_at(std::uint64_t offset, void* bytes, std::size_t size) const;
   /// Sets the length; new bytes are zero. Errors: IoError.
   void resize(std::uint64_t size);
-  /// Makes the file `path`. Errors: IoError, Cancelled; `path` is as it was then.
+  /// Makes the file `path`. Errors: IoError, Cancelled; they leave `path` unchanged.
   void commit();
   /// Removes a file with a name.
   void discard();
@@ -54,7 +55,7 @@ class AtomicFile {
 };
 
 /// Writes text or bytes to standard output for "-", else as an AtomicFile.
-/// Errors: IoError, Cancelled when interrupted(); `path` is as it was.
+/// Errors: IoError, Cancelled if interrupted(); they leave `path` unchanged.
 void write_text_atomically(const std::filesystem::path& path, std::string_view content);
 
 }  // namespace dolp

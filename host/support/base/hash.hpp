@@ -1,4 +1,4 @@
-// FNV-1a, 64 bits: says whether two inputs are the same, nothing more.
+// FNV-1a, 64 bits: only tells whether two inputs are equal.
 #pragma once
 
 #include <bit>
@@ -10,7 +10,7 @@ namespace dolp {
 
 inline constexpr std::uint64_t kHashStart = 0xcbf29ce484222325U;
 
-/// The hash with a further word, with further bytes or numbers.
+/// Continues a hash with a word, with bytes or with numbers.
 constexpr std::uint64_t hashed(std::uint64_t hash, std::uint64_t word) { return (hash ^ word) * 0x100000001b3U; }
 constexpr std::uint64_t hashed(std::uint64_t hash, std::string_view bytes) {
   for (const char byte : bytes) hash = hashed(hash, std::uint64_t{static_cast<unsigned char>(byte)});

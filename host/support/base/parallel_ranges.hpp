@@ -1,5 +1,4 @@
-// A loop over independent items on all cores this process may use: std::thread, which the tables need no library
-// beyond.
+// Loops over independent items on all cores that this process may use.
 #pragma once
 
 #include <cstddef>
@@ -8,15 +7,16 @@
 
 namespace dolp {
 
-/// Calls body(first, last) for ranges of at most `grain` items that together cover [0, count) once, in any order. The
-/// ranges do not depend on the number of threads, so neither does a result that each item, or each range, has a place
-/// of its own for.
-/// Errors: the first exception of `body` stops the loop and is thrown from here.
+/// Calls body(first, last) for ranges of at most `grain` items, in any order. Together the ranges cover [0, count)
+/// once. They do not depend on the number of threads, so a result does not either if each item or range writes to a
+/// place of its own. Errors: the first exception of `body` stops the loop and is thrown from here.
 void parallel_ranges(std::size_t count, std::size_t grain,
                      const std::function<void(std::size_t first, std::size_t last)>& body);
 
-/// Calls body(i) once for each i < count, likewise; `progress` is called from one thread at a time.
-/// Errors: as above; a cancel by `progress` (Cancelled) stops the loop and is thrown from here.
-void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, const Progress& progress);
+/// Calls body(i) once for each i < count, in ranges of `grain` items, and `progress` after each range, from one thread
+/// at a time.
+/// Errors: the first exception of `body`, and Cancelled if `progress` returns false; either stops the loop.
+void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, const Progress& progress,
+                  std::size_t grain = 64);
 
 }  // namespace dolp

@@ -21,37 +21,29 @@ Buffer::Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, VkFormat
                                 .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
                                          VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
                                 .sharingMode = VK_SHARING_MODE_EXCLUSIVE};
-  VkBuffer buffer = VK_NULL_HANDLE;
-  check(vkCreateBuffer(device_, &info, nullptr, &buffer), "creating a buffer");
-  buffer_ = UniqueBuffer(device_, buffer);
+  buffer_ = created<UniqueBuffer>(device_, vkCreateBuffer, info, "creating a buffer");
 
   VkMemoryRequirements requirements{};
-  vkGetBufferMemoryRequirements(device_, buffer, &requirements);
+  vkGetBufferMemoryRequirements(device_, buffer_.get(), &requirements);
   const MemoryType type = device.memory_type(requirements.memoryTypeBits, use);
   memory_flags_ = type.flags;
   const VkMemoryAllocateInfo allocation{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
                                         .allocationSize = requirements.size,
                                         .memoryTypeIndex = type.index};
-  VkDeviceMemory memory = VK_NULL_HANDLE;
-  check(vkAllocateMemory(device_, &allocation, nullptr, &memory),
-        "allocating " + std::to_string(requirements.size) + " bytes");
-  memory_ = UniqueMemory(device_, memory);
-  check(vkBindBufferMemory(device_, buffer, memory, 0), "binding memory");
-  if (texels != VK_FORMAT_UNDEFINED) create_texels(texels);
+  memory_ = created<UniqueMemory>(device_, vkAllocateMemory, allocation,
+                                  "allocating " + std::to_string(requirements.size) + " bytes");
+  check(vkBindBufferMemory(device_, buffer_.get(), memory_.get(), 0), "binding memory");
+  if (texels != VK_FORMAT_UNDEFINED) {
+    const VkBufferViewCreateInfo view_info{.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                                           .buffer = buffer_.get(),
+                                           .format = texels,
+                                           .range = VK_WHOLE_SIZE};
+    texels_ = created<UniqueBufferView>(device_, vkCreateBufferView, view_info, "creating a view of a buffer");
+  }
   if (use == MemoryUse::kDeviceOnly) return;
   void* address = nullptr;
-  check(vkMapMemory(device_, memory, 0, VK_WHOLE_SIZE, 0, &address), "mapping memory");
+  check(vkMapMemory(device_, memory_.get(), 0, VK_WHOLE_SIZE, 0, &address), "mapping memory");
   mapped_ = static_cast<std::byte*>(address);
-}
-
-void Buffer::create_texels(VkFormat format) {
-  const VkBufferViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
-                                    .buffer = buffer_.get(),
-                                    .format = format,
-                                    .range = VK_WHOLE_SIZE};
-  VkBufferView view = VK_NULL_HANDLE;
-  check(vkCreateBufferView(device_, &info, nullptr, &view), "creating a view of a buffer");
-  texels_ = UniqueBufferView(device_, view);
 }
 
 VkMappedMemoryRange Buffer::range() const {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "device/device.hpp"
-#include "device/handle.hpp"
+#include "device/result.hpp"
 
 namespace dolp::vulkan {
 
@@ -25,7 +25,6 @@ class Buffer {
   void read(std::span<std::byte> bytes) const;
 
  private:
-  void create_texels(VkFormat format);
   VkMappedMemoryRange range() const;
   bool coherent() const { return (memory_flags_ & VK_MEMORY_PROPERTY_HOST_COHERENT_BIT) != 0; }
 

@@ -1,6 +1,7 @@
 #include "device/device.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <span>
 #include <string>
@@ -45,18 +46,9 @@ VkDeviceSize largest_device_heap(const VkPhysicalDeviceMemoryProperties& memory)
 
 dolp::Device::Type type_of(VkPhysicalDeviceType type) {
   using enum dolp::Device::Type;
-  switch (type) {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
-      return kDiscrete;
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
-      return kIntegrated;
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
-      return kVirtual;
-    case VK_PHYSICAL_DEVICE_TYPE_CPU:
-      return kCpu;
-    default:
-      return kOther;
-  }
+  constexpr std::array kTypes = {kOther, kIntegrated, kDiscrete, kVirtual, kCpu};  // by the numbers of Vulkan
+  const auto number = static_cast<std::size_t>(type);
+  return number < kTypes.size() ? kTypes[number] : kOther;
 }
 
 std::string version_text(std::uint32_t version) {

@@ -34,15 +34,15 @@ struct MemoryType {
 
 struct Presentation;
 
-/// The first queue family that computes, draws and can show images on the display; none if there is none.
+/// The first queue family that computes, draws and can show images on the display; null if there is none.
 std::optional<std::uint32_t> presenting_family(VkInstance instance, VkPhysicalDevice physical,
                                                const Presentation& presentation);
 
 /// A logical device with one queue.
 class Device {
  public:
-  /// `float64` asks for double precision in shaders, which the device must have. `window_family`: the family of a queue
-  /// that shall also draw and present; without it, one that computes is enough.
+  /// `float64` enables double precision in shaders, which the device must have. `window_family`: the family of a queue
+  /// that also draws and presents; without it, the queue only computes.
   Device(VkPhysicalDevice physical, bool float64, std::optional<std::uint32_t> window_family = {});
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -56,10 +56,10 @@ class Device {
   VkDeviceSize heap_bytes() const { return heap_bytes_; }
   /// Invocations of a workgroup.
   std::uint32_t local_size() const { return local_size_; }
-  /// Valid bits of the queue's timestamps; 0 when it has none.
+  /// Valid bits of the queue's timestamps; 0: it has none.
   std::uint32_t timestamp_bits() const { return timestamp_bits_; }
 
-  /// The best of the memory types in `allowed` (a bit mask) for a use. Errors: DeviceError when none will do.
+  /// The best of the memory types in `allowed` (a bit mask) for a use. Errors: DeviceError if none fits.
   MemoryType memory_type(std::uint32_t allowed, MemoryUse use) const;
 
  private:

@@ -1,22 +1,17 @@
 #include "device/devices.hpp"
 
 #include <algorithm>
-#include <cctype>
+#include <array>
 #include <charconv>
 #include <optional>
 
+#include "base/text.hpp"
+#include "device/context.hpp"
 #include "device/device.hpp"
-#include "device/instance.hpp"
 #include "device/result.hpp"
 
 namespace dolp {
 namespace {
-
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char character) { return static_cast<char>(std::tolower(character)); });
-  return text;
-}
 
 std::optional<std::size_t> position(const std::string& choice, std::size_t count) {
   std::size_t index = 0;
@@ -38,20 +33,8 @@ std::string listing(const std::vector<Device>& devices) {
 }  // namespace
 
 std::string type_name(Device::Type type) {
-  using enum Device::Type;
-  switch (type) {
-    case kDiscrete:
-      return "discrete GPU";
-    case kIntegrated:
-      return "integrated GPU";
-    case kVirtual:
-      return "virtual GPU";
-    case kCpu:
-      return "CPU";
-    case kOther:
-      break;
-  }
-  return "other";
+  constexpr std::array kNames = {"discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"};
+  return kNames[static_cast<std::size_t>(type)];
 }
 
 DeviceList list_devices() {
@@ -71,7 +54,7 @@ std::size_t choose_device(const std::vector<Device>& devices, const std::string&
     candidates.push_back(*index);
   } else {
     for (std::size_t i = 0; i < devices.size(); ++i) {
-      if (lower(devices[i].name).find(lower(choice)) != std::string::npos) candidates.push_back(i);
+      if (lower_case(devices[i].name).find(lower_case(choice)) != std::string::npos) candidates.push_back(i);
     }
   }
   if (candidates.empty()) throw DeviceError("no Vulkan device matches '" + choice + "'; " + listing(devices));

@@ -27,13 +27,13 @@ struct DeviceList {
   std::string why_empty;
 };
 
-/// Looks for Vulkan devices; never throws for the lack of them.
+/// Looks for Vulkan devices; never throws if there is none.
 DeviceList list_devices();
 
 /// The position of the device that `choice` means: empty is the default, digits are a position, anything else (and
 /// digits beyond the list) is a part of the name, in any case.
-/// The default is the first usable one (with double precision if `float64`) in the order discrete GPU, integrated GPU,
-/// virtual GPU, CPU, other; so is the pick among several devices that match a name.
+/// Among several devices, the choice is the first usable device (with double precision if `float64`) in the order
+/// discrete GPU, integrated GPU, virtual GPU, CPU, other.
 /// Errors: DeviceError that lists the devices when nothing matches, or names the features that the matching ones lack.
 std::size_t choose_device(const std::vector<Device>& devices, const std::string& choice, bool float64);
 

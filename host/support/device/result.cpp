@@ -22,42 +22,28 @@ DeviceTimeout::DeviceTimeout(const std::string& message) : DeviceError(message) 
 bool driver_is_busy() { return is_busy; }
 
 std::string result_name(VkResult result) {
-  switch (result) {
-    case VK_SUCCESS:
-      return "VK_SUCCESS";
-    case VK_TIMEOUT:
-      return "VK_TIMEOUT";
-    case VK_INCOMPLETE:
-      return "VK_INCOMPLETE";
-    case VK_ERROR_OUT_OF_HOST_MEMORY:
-      return "VK_ERROR_OUT_OF_HOST_MEMORY";
-    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
-      return "VK_ERROR_OUT_OF_DEVICE_MEMORY";
-    case VK_ERROR_INITIALIZATION_FAILED:
-      return "VK_ERROR_INITIALIZATION_FAILED";
-    case VK_ERROR_DEVICE_LOST:
-      return "VK_ERROR_DEVICE_LOST";
-    case VK_ERROR_MEMORY_MAP_FAILED:
-      return "VK_ERROR_MEMORY_MAP_FAILED";
-    case VK_ERROR_LAYER_NOT_PRESENT:
-      return "VK_ERROR_LAYER_NOT_PRESENT";
-    case VK_ERROR_EXTENSION_NOT_PRESENT:
-      return "VK_ERROR_EXTENSION_NOT_PRESENT";
-    case VK_ERROR_FEATURE_NOT_PRESENT:
-      return "VK_ERROR_FEATURE_NOT_PRESENT";
-    case VK_ERROR_INCOMPATIBLE_DRIVER:
-      return "VK_ERROR_INCOMPATIBLE_DRIVER";
-    case VK_ERROR_TOO_MANY_OBJECTS:
-      return "VK_ERROR_TOO_MANY_OBJECTS";
-    case VK_ERROR_OUT_OF_POOL_MEMORY:
-      return "VK_ERROR_OUT_OF_POOL_MEMORY";
-    default:
-      return "VkResult " + std::to_string(static_cast<int>(result));
-  }
+#define DOLP_NAMED(code) std::pair(code, #code)
+  constexpr std::array kNames = {DOLP_NAMED(VK_SUCCESS),
+                                 DOLP_NAMED(VK_TIMEOUT),
+                                 DOLP_NAMED(VK_INCOMPLETE),
+                                 DOLP_NAMED(VK_ERROR_OUT_OF_HOST_MEMORY),
+                                 DOLP_NAMED(VK_ERROR_OUT_OF_DEVICE_MEMORY),
+                                 DOLP_NAMED(VK_ERROR_INITIALIZATION_FAILED),
+                                 DOLP_NAMED(VK_ERROR_DEVICE_LOST),
+                                 DOLP_NAMED(VK_ERROR_MEMORY_MAP_FAILED),
+                                 DOLP_NAMED(VK_ERROR_LAYER_NOT_PRESENT),
+                                 DOLP_NAMED(VK_ERROR_EXTENSION_NOT_PRESENT),
+                                 DOLP_NAMED(VK_ERROR_FEATURE_NOT_PRESENT),
+                                 DOLP_NAMED(VK_ERROR_INCOMPATIBLE_DRIVER),
+                                 DOLP_NAMED(VK_ERROR_TOO_MANY_OBJECTS),
+                                 DOLP_NAMED(VK_ERROR_OUT_OF_POOL_MEMORY)};
+#undef DOLP_NAMED
+  const auto found = std::ranges::find(kNames, result, [](const auto& named) { return named.first; });
+  return found != kNames.end() ? found->second : "VkResult " + std::to_string(static_cast<int>(result));
 }
 
 bool lacks_addresses() {
-  constexpr std::size_t kDriverBytes = 256U << 20U;  // of a driver with its compiler
+  constexpr std::size_t kDriverBytes = 256U << 20U;  // room for a driver with its compiler
   void* const room = ::mmap(nullptr, kDriverBytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (room == MAP_FAILED) return true;
   ::munmap(room, kDriverBytes);
@@ -75,7 +61,7 @@ bool lacks_threads() {
     threads.reserve(needed);
     while (threads.size() < needed) threads.emplace_back([ended] { ended.wait(); });
   } catch (const std::system_error&) {
-    // One that the system refused: the loop has ended.
+    // The system refused a thread; the loop has ended.
   } catch (...) {
     end.set_value();  // the threads are joined before `end` goes
     throw;

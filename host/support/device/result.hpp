@@ -1,15 +1,16 @@
-// VkResult to DeviceError.
+// Results of Vulkan calls as exceptions, and unique ownership of what they create.
 #pragma once
 
 #include <vulkan/vulkan.h>
 
 #include <dolp/errors.hpp>
 #include <string>
+#include <utility>
 
 namespace dolp::vulkan {
 
 /// The driver did not finish a submission or a compilation in time, or before the user interrupted it. It still uses
-/// what it was given: none of the device's objects may be destroyed.
+/// its inputs, so no object of the device may be destroyed.
 struct DeviceTimeout : DeviceError {
   explicit DeviceTimeout(const std::string& message);
 };
@@ -18,7 +19,7 @@ struct DeviceTimeout : DeviceError {
 /// threads.
 bool driver_is_busy();
 
-/// The device is of no more use; another one, even of the same hardware, may be.
+/// The device is unusable. A new one may work, even on the same hardware.
 struct DeviceLost : DeviceError {
   using DeviceError::DeviceError;
 };
@@ -33,9 +34,51 @@ bool lacks_addresses();
 bool lacks_threads();
 
 /// Throws unless `result` is VK_SUCCESS; `action` is a gerund phrase.
-///
-/// Errors: DeviceLost; MemoryError when the device or its driver is out of memory; else DeviceError
-/// "Vulkan: ACTION failed: RESULT".
+/// Errors: DeviceLost; MemoryError if the device or its driver is out of memory; otherwise DeviceError "Vulkan: ACTION
+/// failed: RESULT".
 void check(VkResult result, const std::string& action);
+
+/// Owns `object` and destroys it with `kDestroy(device, object, nullptr)`.
+template <class T, auto kDestroy>
+class Handle {
+ public:
+  Handle() = default;
+  Handle(VkDevice device, T object) : device_(device), object_(object) {}
+  Handle(Handle&& other) noexcept : device_(other.device_), object_(std::exchange(other.object_, VK_NULL_HANDLE)) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(device_, other.device_);
+    std::swap(object_, other.object_);
+    return *this;
+  }
+  ~Handle() {
+    if (object_ != VK_NULL_HANDLE) kDestroy(device_, object_, nullptr);
+  }
+  T get() const { return object_; }
+
+ private:
+  VkDevice device_ = VK_NULL_HANDLE;
+  T object_ = VK_NULL_HANDLE;
+};
+
+/// The object that a create function of Vulkan makes; `action` is a gerund phrase. Errors: the errors of check().
+template <class Owner, class Info, class T>
+Owner created(VkDevice device, VkResult (*create)(VkDevice, const Info*, const VkAllocationCallbacks*, T*),
+              const Info& info, const std::string& action) {
+  T object = VK_NULL_HANDLE;
+  check(create(device, &info, nullptr, &object), action);
+  return Owner(device, object);
+}
+
+using UniqueBuffer = Handle<VkBuffer, vkDestroyBuffer>;
+using UniqueBufferView = Handle<VkBufferView, vkDestroyBufferView>;
+using UniqueMemory = Handle<VkDeviceMemory, vkFreeMemory>;
+using UniqueCommandPool = Handle<VkCommandPool, vkDestroyCommandPool>;
+using UniqueFence = Handle<VkFence, vkDestroyFence>;
+using UniqueQueryPool = Handle<VkQueryPool, vkDestroyQueryPool>;
+using UniqueShaderModule = Handle<VkShaderModule, vkDestroyShaderModule>;
+using UniquePipeline = Handle<VkPipeline, vkDestroyPipeline>;
+using UniquePipelineLayout = Handle<VkPipelineLayout, vkDestroyPipelineLayout>;
+using UniqueDescriptorSetLayout = Handle<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout>;
+using UniqueDescriptorPool = Handle<VkDescriptorPool, vkDestroyDescriptorPool>;
 
 }  // namespace dolp::vulkan

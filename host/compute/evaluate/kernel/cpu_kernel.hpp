@@ -15,8 +15,8 @@ class CpuKernel {
  public:
   virtual ~CpuKernel() = default;
 
-  /// Makes the masking tables of some shapes, in ascending order, in place of earlier ones. When the data needs tables,
-  /// `moments` takes entries of these shapes only.
+  /// Makes the masking tables of some shapes, in ascending order, and drops earlier ones. If the data needs tables,
+  /// `moments` takes only entries of these shapes.
   virtual void build_masking_tables(std::vector<std::uint32_t> shapes) = 0;
   /// Adds DOLP_COLUMN_PARTS sums for each column of the data to `columns`.
   virtual kernel::MomentsNode moments(const MomentsEntry& entry, std::span<double> columns) = 0;
@@ -24,8 +24,8 @@ class CpuKernel {
   /// The sums over the azimuths at a slope; `columns` gets the two sums of each column of the data.
   virtual kernel::AzimuthNode azimuths(const kernel::SlopeNode& slope, std::span<double> columns) = 0;
 
-  /// f cos(theta_i) cos(theta_r) for k_s = 1 over the beam's power of two, in 1/sr; of the data it needs the model and
-  /// the rule nodes.
+  /// f cos(theta_i) cos(theta_r) for k_s = 1 over the beam's power of two, in 1/sr. It needs only the model and the
+  /// rule nodes from the data.
   virtual kernel::MuellerNode mueller(const kernel::BeamNode& beam) = 0;
 };
 

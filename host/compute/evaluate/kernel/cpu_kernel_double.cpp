@@ -1,16 +1,6 @@
 #define DOLP_MOST_COLUMNS DOLP_COLUMNS
 #define DOLP_KERNEL_NAMESPACE kernel_double
 #define DOLP_DOUBLE
-
-#include <glm/vec2.hpp>
-#include <glm/vec4.hpp>
-
-namespace dolp::kernel_double {
-using real = double;
-using real2 = glm::dvec2;
-using real4 = glm::dvec4;
-}  // namespace dolp::kernel_double
-
 #include "evaluate/kernel/kernel_source.hpp"
 
 namespace dolp {

@@ -1,15 +1,5 @@
 #define DOLP_MOST_COLUMNS DOLP_COLUMNS
 #define DOLP_KERNEL_NAMESPACE kernel_float
-
-#include <glm/vec2.hpp>
-#include <glm/vec4.hpp>
-
-namespace dolp::kernel_float {
-using real = float;
-using real2 = glm::vec2;
-using real4 = glm::vec4;
-}  // namespace dolp::kernel_float
-
 #include "evaluate/kernel/kernel_source.hpp"
 
 namespace dolp {

@@ -1,20 +1,29 @@
-// Body of cpu_kernel_float.cpp and cpu_kernel_double.cpp, which define DOLP_KERNEL_NAMESPACE, real, real2 and real4
-// first.
+// The kernel source compiled as C++, in double if DOLP_DOUBLE is defined. The including file defines
+// DOLP_KERNEL_NAMESPACE, and DOLP_MOST_COLUMNS if it computes columns.
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "base/parallel_ranges.hpp"
 #include "evaluate/kernel/cpu_kernel.hpp"
-#include "plan/convert_reals.hpp"
 
 namespace dolp::DOLP_KERNEL_NAMESPACE {
+
+#ifdef DOLP_DOUBLE
+using real = double;
+#else
+using real = float;
+#endif
+using real2 = glm::vec<2, real>;
+using real4 = glm::vec<4, real>;
 
 using glm::abs;
 using glm::clamp;

@@ -5,18 +5,9 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <glm/vec2.hpp>
-#include <glm/vec4.hpp>
 
 #define DOLP_KERNEL_NAMESPACE sampling_kernel
 #define DOLP_DOUBLE
-
-namespace dolp::sampling_kernel {
-using real = double;
-using real2 = glm::dvec2;
-using real4 = glm::dvec4;
-}  // namespace dolp::sampling_kernel
-
 #include "evaluate/kernel/kernel_source.hpp"
 
 namespace dolp {
@@ -25,22 +16,19 @@ using sampling_kernel::KernelSource;
 
 namespace {
 
-// Numbers: thousands of evaluations of the table of plan/constants.hpp with half, it and double; none, then
-// v-cavity.
-
-// Chosen: 27.4, 24.0, 22.1; 54.2, 50.9, 49.2. Spacing of the ends of pieces, in e-folds of slope, for distributions of
-// many widths.
+// Spacing of the ends of pieces, in e-folds of slope, for distributions of many widths. Tuned. Thousand evaluations for
+// the grid of plan/constants.hpp at half, this and double: none 27.4, 24.0, 22.1; v-cavity 54.2, 50.9, 49.2.
 constexpr double kWidthStep = 1.3;
-// Chosen: 24.0 each; 51.0, 50.9, 50.9. Spacing of the widths, in e-folds, at which the number of nodes is determined.
-constexpr double kAskedStep = 0.4;
+// Spacing of the widths, in e-folds, at which the number of nodes is determined.
+constexpr double kNodeWidthStep = 0.4;
 
-// Chosen: no difference. -ln of a share of the facets that counts as zero.
+// -ln of a share of the facets that counts as zero.
 constexpr double kNoFacets = 80.0;
 
 // Requirements of one corner for the rule of a piece.
 struct SampleRequest {
   double all = 0.0;     // weight_of_shape of orders.glsl
-  double digits = 0.0;  // of the piece
+  double digits = 0.0;  // that the piece requires
 };
 
 // An end of a piece of the slope axis.
@@ -72,7 +60,7 @@ std::vector<kernel::ShapeNode> corners_of(const KernelData& data, std::span<cons
     lightest = std::max(lightest, shape.q_minus_1);
   }
   const double narrowest = corner.m, heaviest = corner.q_minus_1;
-  const double steps = std::ceil(std::log(widest / narrowest) / kAskedStep);
+  const double steps = std::ceil(std::log(widest / narrowest) / kNodeWidthStep);
   std::vector<kernel::ShapeNode> corners;
   for (double i = 0.0; i <= steps; ++i) {
     corner.m = i == 0.0 ? narrowest : narrowest * std::pow(widest / narrowest, i / steps);
@@ -192,7 +180,7 @@ struct SlopeSampling::Impl {
   }
 
   // Sum of a rule over a piece with `share` of the facets. Normalising by the known share cancels the error of the
-  // density alone and every common factor of the weights.
+  // density itself and every common factor of the weights.
   static kernel::AzimuthNode sum_of(std::uint32_t first, std::uint32_t count, const Eigen::ArrayXd& own, double share,
                                     std::span<const kernel::AzimuthNode> azimuths) {
     using Azimuths = Eigen::Matrix<double, sizeof(kernel::AzimuthNode) / sizeof(double), Eigen::Dynamic>;

@@ -1,6 +1,6 @@
-// Where masking does not depend on the slope distribution, the sums over the azimuths at a slope serve every
-// distribution: the slope samples of a direction and an index are these sums along the slope axis, and the moments of
-// each distribution are their integral with the distribution's own weights.
+// Slope samples. Without masking and with v-cavity masking, the sums over the azimuths at a slope do not depend on the
+// slope distribution. The slope samples of a direction and an index are these sums along the slope axis. Integrals over
+// them, with the weights of a distribution, are its moments.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ namespace dolp {
 /// True if the moments of a request are integrals over slope samples.
 bool has_slope_samples(const MomentsRequest& request);
 
-/// A direction of a request and an index, with the shapes of which moments are wanted: positions in KernelData.
+/// Positions in KernelData: a direction of a request, an index, and the shapes whose moments are wanted.
 struct SampledEntries {
   std::uint32_t direction = 0;
   std::uint32_t theta = 0;
@@ -30,23 +30,23 @@ struct SampledEntries {
 struct SampledSlope {
   double t = 0.0;
   double dt = 0.0;
-  double digits = 0.0;  ///< wanted of the sum over the azimuths
+  double digits = 0.0;  ///< digits that the sum over the azimuths needs
 };
 
-/// The two rules of a piece of the slope axis: slopes first ... first + fine - 1, then those of the coarser one.
+/// The two rules of a piece of the slope axis: `fine` slopes from `first`, then `coarse` slopes.
 struct SampledPiece {
   double start = 0.0;
   double end = 0.0;
   std::uint32_t first = 0;
   std::uint32_t fine = 0;
   std::uint32_t coarse = 0;
-  std::uint32_t direction_piece = 0;  ///< the piece of KernelData::pieces that it is in
+  std::uint32_t direction_piece = 0;  ///< the piece of KernelData::pieces that contains it
 };
 
-/// Slopes at which a direction and an index are sampled for all their shapes. They follow from the entries alone.
+/// Slopes at which a direction and an index are sampled for all their shapes. They follow only from the entries.
 struct SlopeSamples {
   SampledEntries entries;
-  double cut = 0.0;  ///< slopes beyond it are left out
+  double cut = 0.0;  ///< the largest slope
   std::vector<SampledPiece> pieces;
   std::vector<SampledSlope> slopes;
 };
@@ -71,11 +71,11 @@ class SlopeSampling {
   SlopeSamples plan(SampledEntries entries) const;
   /// Appends the kernel's input, slope by slope.
   void append(const SlopeSamples& samples, std::vector<kernel::SlopeNode>& nodes) const;
-  /// Puts the moments of their shapes at the places of their entries in the request; `azimuths` holds the
-  /// kernel's result for each of its slopes from `first` on, `unit_roundoff` is that of its precision.
+  /// Writes the moments of the shapes to the positions of their entries in the request. `azimuths` has the kernel's
+  /// results, for these samples from `first`; `unit_roundoff` belongs to the kernel's precision.
   void integrate(const SlopeSamples& samples, const SampledAzimuths& azimuths, std::size_t first, double unit_roundoff,
                  std::span<Moments> moments) const;
-  /// Plans, takes and integrates samples with the kernel source compiled for the CPU.
+  /// Plans, computes and integrates samples with the kernel source compiled for the CPU.
   void compute(SampledEntries entries, CpuKernel& kernel, double unit_roundoff, std::span<Moments> moments) const;
 
  private:

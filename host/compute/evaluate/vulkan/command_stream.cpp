@@ -10,7 +10,6 @@
 
 #include "base/interrupt.hpp"
 #include "base/stopwatch.hpp"
-#include "device/buffer.hpp"
 #include "device/result.hpp"
 #include "evaluate/vulkan/kernels.hpp"
 
@@ -38,35 +37,30 @@ BarrierScopes scopes_of(Barrier barrier) {
   return {kCompute, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_HOST_READ_BIT};
 }
 
+bool must_stage(const Device& device) {
+  constexpr std::uint32_t kAnyType = UINT32_MAX;
+  return !(device.memory_type(kAnyType, MemoryUse::kUpload).flags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+}
+
 }  // namespace
 
 CommandStream::CommandStream(const Device& device) : device_(device) {
   const VkCommandPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                           .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
                                           .queueFamilyIndex = device.queue_family()};
-  VkCommandPool pool = VK_NULL_HANDLE;
-  check(vkCreateCommandPool(device.get(), &pool_info, nullptr, &pool), "creating a command pool");
-  pool_ = UniqueCommandPool(device.get(), pool);
-
+  pool_ = created<UniqueCommandPool>(device.get(), vkCreateCommandPool, pool_info, "creating a command pool");
   const VkCommandBufferAllocateInfo commands_info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                                  .commandPool = pool,
+                                                  .commandPool = pool_.get(),
                                                   .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                                   .commandBufferCount = 1};
   check(vkAllocateCommandBuffers(device.get(), &commands_info, &commands_), "allocating a command buffer");
 
   const VkFenceCreateInfo fence_info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-  VkFence fence = VK_NULL_HANDLE;
-  check(vkCreateFence(device.get(), &fence_info, nullptr, &fence), "creating a fence");
-  fence_ = UniqueFence(device.get(), fence);
-  if (device.timestamp_bits() > 0) create_timestamps();
-}
-
-void CommandStream::create_timestamps() {
-  const VkQueryPoolCreateInfo info{
+  fence_ = created<UniqueFence>(device.get(), vkCreateFence, fence_info, "creating a fence");
+  if (device.timestamp_bits() == 0) return;
+  const VkQueryPoolCreateInfo query_info{
       .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO, .queryType = VK_QUERY_TYPE_TIMESTAMP, .queryCount = 2};
-  VkQueryPool timestamps = VK_NULL_HANDLE;
-  check(vkCreateQueryPool(device_.get(), &info, nullptr, &timestamps), "creating a query pool");
-  timestamps_ = UniqueQueryPool(device_.get(), timestamps);
+  timestamps_ = created<UniqueQueryPool>(device.get(), vkCreateQueryPool, query_info, "creating a query pool");
 }
 
 void CommandStream::begin() {
@@ -146,6 +140,21 @@ double CommandStream::elapsed_s() const {
   const std::uint64_t difference = ((ticks[1] << unused_bits) - (ticks[0] << unused_bits)) >> unused_bits;
   return static_cast<double>(difference) * static_cast<double>(device_.limits().timestampPeriod) /
          kNanosecondsPerSecond;
+}
+
+InputBuffer::InputBuffer(const Device& device, VkDeviceSize bytes, bool force_staging, VkFormat texels)
+    : staging_(force_staging || must_stage(device)
+                   ? std::optional<Buffer>(std::in_place, device, bytes, MemoryUse::kUpload)
+                   : std::nullopt),
+      buffer_(device, bytes, staging_ ? MemoryUse::kDeviceOnly : MemoryUse::kUpload, texels) {}
+
+void InputBuffer::write(std::span<const std::byte> bytes, CommandStream& stream) {
+  if (!staging_) {
+    buffer_.write(bytes);
+  } else if (!bytes.empty()) {
+    staging_->write(bytes);
+    stream.copy(*staging_, buffer_.get(), bytes.size());
+  }
 }
 
 }  // namespace dolp::vulkan

@@ -1,14 +1,17 @@
-// Records commands, submits them and waits.
+// Records commands, submits them and waits; the buffers that their kernels read.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 
+#include "device/buffer.hpp"
 #include "device/device.hpp"
-#include "device/handle.hpp"
+#include "device/result.hpp"
 
 namespace dolp::vulkan {
 
-class Buffer;
 class Kernels;
 
 /// The accesses that a barrier separates.
@@ -18,7 +21,7 @@ enum class Barrier {
   kKernelToHost,    ///< kernels write, the host reads after the wait
 };
 
-/// One command buffer, recorded and submitted again and again; never more than one submission is in flight.
+/// One command buffer, recorded and submitted again and again; at most one submission is in flight.
 class CommandStream {
  public:
   explicit CommandStream(const Device& device);
@@ -27,16 +30,15 @@ class CommandStream {
   void begin();
   void copy(const Buffer& from, VkBuffer to, VkDeviceSize bytes);
   void barrier(Barrier barrier);
-  /// Runs `pipeline` on `count` invocations from `first` (see DOLP_PUSH_CONSTANTS); does nothing when count is 0.
+  /// Runs `pipeline` on `count` invocations from `first` (see DOLP_PUSH_CONSTANTS); does nothing if `count` is 0.
   void dispatch(const Kernels& kernels, VkPipeline pipeline, std::uint32_t first, std::uint32_t count,
                 int largest_order, std::uint32_t sky = 0);
-  /// Submits what was recorded and waits for it. Returns the seconds on the device's clock from begin to end; by the
-  /// host's clock, submission included, where the queue has no timestamps.
-  /// Errors: DeviceTimeout after `timeout_s`; DeviceError when the device is lost.
+  /// Submits the recording and waits for it. Returns the seconds from begin to end, by the device's clock; if the queue
+  /// has no timestamps, by the host's clock, submission included.
+  /// Errors: DeviceTimeout after `timeout_s`; DeviceError if the device is lost.
   double submit_and_wait(double timeout_s);
 
  private:
-  void create_timestamps();
   double elapsed_s() const;
 
   const Device& device_;
@@ -45,6 +47,23 @@ class CommandStream {
   UniqueQueryPool timestamps_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
   bool has_copies_ = false;  ///< since the last barrier
+};
+
+/// A buffer in the device's own memory that the host writes and kernels read. The host writes directly where it can map
+/// that memory, and otherwise through a staging buffer.
+class InputBuffer {
+ public:
+  /// `force_staging` uses the staging buffer on every device.
+  InputBuffer(const Device& device, VkDeviceSize bytes, bool force_staging, VkFormat texels = VK_FORMAT_UNDEFINED);
+
+  VkBuffer get() const { return buffer_.get(); }
+  VkBufferView texels() const { return buffer_.texels(); }
+  /// Writes to the start of the buffer; a staging copy is recorded in `stream`, which must be recording.
+  void write(std::span<const std::byte> bytes, CommandStream& stream);
+
+ private:
+  std::optional<Buffer> staging_;
+  Buffer buffer_;
 };
 
 }  // namespace dolp::vulkan

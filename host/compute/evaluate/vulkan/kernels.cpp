@@ -20,40 +20,46 @@
 namespace dolp::vulkan {
 namespace {
 
+using Module = std::array<std::span<const std::uint32_t>, 2>;  // in float and in double
+
 /// The SPIR-V module of a variant.
 std::span<const std::uint32_t> module_of(const KernelVariant& variant, bool float64) {
-  if (variant.entry == EntryPoint::kMaskingTable) {
-    return float64 ? spirv::masking_table_double : spirv::masking_table_float;
+  using namespace spirv;
+  using ByColumns = std::array<Module, 3>;  // none, functions of a sky, responses
+  const ByColumns slopes = {{{slopes_float, slopes_double},
+                             {slopes_sky_float, slopes_sky_double},
+                             {slopes_responses_float, slopes_responses_double}}};
+  const ByColumns moments = {{{moments_float, moments_double},
+                              {moments_sky_float, moments_sky_double},
+                              {moments_responses_float, moments_responses_double}}};
+  const ByColumns rows = {{{moments_rows_float, moments_rows_double},
+                           {moments_sky_rows_float, moments_sky_rows_double},
+                           {moments_responses_rows_float, moments_responses_rows_double}}};
+  const std::size_t columns = variant.columns == 0 ? 0 : variant.column_kind == DOLP_COLUMNS_SKY ? 1 : 2;
+  switch (variant.entry) {
+    case EntryPoint::kMaskingTable:
+      return float64 ? masking_table_double : masking_table_float;
+    case EntryPoint::kMueller:
+      return float64 ? mueller_double : mueller_float;
+    case EntryPoint::kSlopes:
+      return slopes[columns][float64 ? 1 : 0];
+    case EntryPoint::kMoments:
+      break;
   }
-  if (variant.entry == EntryPoint::kMueller) return float64 ? spirv::mueller_double : spirv::mueller_float;
-  const bool has_rows = variant.width == kRowWidth;
-  if (variant.columns > 0 && variant.column_kind == DOLP_COLUMNS_SKY) {
-    if (variant.entry == EntryPoint::kSlopes) return float64 ? spirv::slopes_sky_double : spirv::slopes_sky_float;
-    if (has_rows) return float64 ? spirv::moments_sky_rows_double : spirv::moments_sky_rows_float;
-    return float64 ? spirv::moments_sky_double : spirv::moments_sky_float;
-  }
-  if (variant.columns > 0) {
-    if (variant.entry == EntryPoint::kSlopes) {
-      return float64 ? spirv::slopes_responses_double : spirv::slopes_responses_float;
-    }
-    if (has_rows) return float64 ? spirv::moments_responses_rows_double : spirv::moments_responses_rows_float;
-    return float64 ? spirv::moments_responses_double : spirv::moments_responses_float;
-  }
-  if (variant.entry == EntryPoint::kSlopes) return float64 ? spirv::slopes_double : spirv::slopes_float;
-  if (has_rows) return float64 ? spirv::moments_rows_double : spirv::moments_rows_float;
-  return float64 ? spirv::moments_double : spirv::moments_float;
+  return (variant.width == kRowWidth ? rows : moments)[columns][float64 ? 1 : 0];
 }
 
-/// Has the driver compile a variant of a module.
+constexpr std::uint32_t kWordBytes = sizeof(std::uint32_t);
+
+/// Lets the driver compile a variant of a module.
 UniquePipeline compile(VkDevice device, VkPipelineLayout layout, std::uint32_t local_size,
                        std::span<const std::uint32_t> spirv, const KernelVariant& variant) {
   const VkShaderModuleCreateInfo module_info{
       .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = spirv.size_bytes(), .pCode = spirv.data()};
-  VkShaderModule created_module = VK_NULL_HANDLE;
-  check(vkCreateShaderModule(device, &module_info, nullptr, &created_module), "creating a shader module");
-  const UniqueShaderModule shader(device, created_module);
+  const auto shader =
+      created<UniqueShaderModule>(device, vkCreateShaderModule, module_info, "creating a shader module");
 
-  // The enumerators are the values of interface.glsl.
+  // In the order of DOLP_SPEC_*. The enumerators are the values of interface.glsl.
   const std::array<std::uint32_t, 9> values{local_size,
                                             static_cast<std::uint32_t>(variant.distribution),
                                             static_cast<std::uint32_t>(variant.masking),
@@ -63,16 +69,8 @@ UniquePipeline compile(VkDevice device, VkPipelineLayout layout, std::uint32_t l
                                             variant.columns,
                                             variant.column_kind,
                                             variant.has_curves ? 1U : 0U};
-  constexpr std::uint32_t kSize = sizeof(std::uint32_t);
-  const std::array<VkSpecializationMapEntry, 9> entries{{{DOLP_SPEC_LOCAL_SIZE, 0, kSize},
-                                                         {DOLP_SPEC_DISTRIBUTION, kSize, kSize},
-                                                         {DOLP_SPEC_MASKING, 2 * kSize, kSize},
-                                                         {DOLP_SPEC_TOTAL_REFLECTION, 3 * kSize, kSize},
-                                                         {DOLP_SPEC_MULTIPLE, 4 * kSize, kSize},
-                                                         {DOLP_SPEC_DIRECT, 5 * kSize, kSize},
-                                                         {DOLP_SPEC_COLUMN_COUNT, 6 * kSize, kSize},
-                                                         {DOLP_SPEC_COLUMNS, 7 * kSize, kSize},
-                                                         {DOLP_SPEC_CURVES, 8 * kSize, kSize}}};
+  std::array<VkSpecializationMapEntry, values.size()> entries;
+  for (std::uint32_t i = 0; i < entries.size(); ++i) entries[i] = {i, i * kWordBytes, kWordBytes};
   const VkSpecializationInfo constants{.mapEntryCount = static_cast<std::uint32_t>(entries.size()),
                                        .pMapEntries = entries.data(),
                                        .dataSize = sizeof values,
@@ -94,7 +92,7 @@ constexpr auto kInterruptInterval = std::chrono::milliseconds(20);
 constexpr double kDefaultCompilationLimitS = 120.0;
 constexpr const char* kCompilationLimit = "DOLP_COMPILATION_LIMIT_S";
 
-/// Seconds that a driver may take for a kernel. Errors: InputError for a wish that is no number above 0.
+/// Seconds that a driver may take for a kernel. Errors: InputError if the variable is not a number above 0.
 double compilation_limit_s() {
   const char* const wish = std::getenv(kCompilationLimit);
   if (wish == nullptr) return kDefaultCompilationLimitS;
@@ -118,15 +116,10 @@ KernelVariant moments_variant(const KernelData& data, std::uint32_t width) {
 }
 
 KernelVariant slopes_variant(const KernelData& data) {
-  return {.entry = EntryPoint::kSlopes,
-          .distribution = data.distribution,
-          .masking = data.masking,
-          .has_total_reflection = data.has_total_reflection,
-          .is_multiple = data.scattering == Scattering::kMultiple,
-          .has_direct = data.has_direct,
-          .columns = static_cast<std::uint32_t>(data.column_count()),
-          .column_kind = column_kind(data),
-          .has_curves = data.has_curves};
+  KernelVariant variant = moments_variant(data, 1);
+  variant.entry = EntryPoint::kSlopes;
+  variant.is_multiple = data.scattering == Scattering::kMultiple;
+  return variant;
 }
 
 KernelVariant masking_table_variant(const KernelData& data) {
@@ -150,21 +143,17 @@ void Kernels::create_layouts() {
   const VkDescriptorSetLayoutCreateInfo set_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
                                                  .bindingCount = static_cast<std::uint32_t>(bindings.size()),
                                                  .pBindings = bindings.data()};
-  VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
-  check(vkCreateDescriptorSetLayout(device_.get(), &set_info, nullptr, &set_layout),
-        "creating a descriptor set layout");
-  set_layout_ = UniqueDescriptorSetLayout(device_.get(), set_layout);
-
+  set_layout_ = created<UniqueDescriptorSetLayout>(device_.get(), vkCreateDescriptorSetLayout, set_info,
+                                                   "creating a descriptor set layout");
+  const VkDescriptorSetLayout set_layout = set_layout_.get();
   const VkPushConstantRange constants{
-      .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT, .offset = 0, .size = kPushConstantCount * sizeof(std::uint32_t)};
+      .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT, .offset = 0, .size = kPushConstantCount * kWordBytes};
   const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                         .setLayoutCount = 1,
                                         .pSetLayouts = &set_layout,
                                         .pushConstantRangeCount = 1,
                                         .pPushConstantRanges = &constants};
-  VkPipelineLayout layout = VK_NULL_HANDLE;
-  check(vkCreatePipelineLayout(device_.get(), &info, nullptr, &layout), "creating a pipeline layout");
-  layout_ = UniquePipelineLayout(device_.get(), layout);
+  layout_ = created<UniquePipelineLayout>(device_.get(), vkCreatePipelineLayout, info, "creating a pipeline layout");
 }
 
 void Kernels::create_descriptor_set() {
@@ -174,12 +163,10 @@ void Kernels::create_descriptor_set() {
                                              .maxSets = 1,
                                              .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
                                              .pPoolSizes = sizes.data()};
-  VkDescriptorPool pool = VK_NULL_HANDLE;
-  check(vkCreateDescriptorPool(device_.get(), &pool_info, nullptr, &pool), "creating a descriptor pool");
-  pool_ = UniqueDescriptorPool(device_.get(), pool);
+  pool_ = created<UniqueDescriptorPool>(device_.get(), vkCreateDescriptorPool, pool_info, "creating a descriptor pool");
   const VkDescriptorSetLayout set_layout = set_layout_.get();
   const VkDescriptorSetAllocateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-                                         .descriptorPool = pool,
+                                         .descriptorPool = pool_.get(),
                                          .descriptorSetCount = 1,
                                          .pSetLayouts = &set_layout};
   check(vkAllocateDescriptorSets(device_.get(), &info, &set_), "allocating a descriptor set");
@@ -225,7 +212,7 @@ VkPipeline Kernels::pipeline(const KernelVariant& variant) {
 
 UniquePipeline Kernels::create(std::span<const std::uint32_t> spirv, const KernelVariant& variant) const {
   const double limit_s = compilation_limit_s();
-  // A driver may compile for ever, and cannot be told to stop: it does so on a thread that can be left behind.
+  // A driver may compile without end, and nothing stops it: it compiles on a thread that can be left behind.
   std::packaged_task<UniquePipeline()> compilation(
       [device = device_.get(), layout = layout_.get(), local_size = local_size(), spirv, variant] {
         return compile(device, layout, local_size, spirv, variant);

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "device/device.hpp"
-#include "device/handle.hpp"
+#include "device/result.hpp"
 #include "plan/kernel_data.hpp"
 
 namespace dolp::vulkan {
@@ -34,7 +34,7 @@ struct KernelVariant {
   std::uint32_t columns = 0;
   std::uint32_t column_kind = DOLP_COLUMNS_SKY;
   bool has_curves = false;
-  std::uint32_t width = 1;  ///< of moments: 1 or kRowWidth of plan/rows.hpp
+  std::uint32_t width = 1;  ///< members of a row: 1, or kRowWidth of plan/rows.hpp
   auto operator<=>(const KernelVariant&) const = default;
 };
 
@@ -43,7 +43,7 @@ KernelVariant moments_variant(const KernelData& data, std::uint32_t width);
 KernelVariant slopes_variant(const KernelData& data);
 KernelVariant masking_table_variant(const KernelData& data);
 
-/// Creates pipelines on demand, one for each variant; any thread may ask for one.
+/// Creates pipelines on demand, one for each variant, from any thread.
 class Kernels {
  public:
   Kernels(const Device& device, bool float64);
@@ -51,10 +51,10 @@ class Kernels {
   /// The buffers that the bindings of interface.glsl refer to, whole.
   struct Bindings {
     std::array<VkBuffer, kStorageCount> buffers{};
-    std::array<VkBufferView, kTexelCount> texels{};  ///< from DOLP_BINDING_RULE_NODES on
+    std::array<VkBufferView, kTexelCount> texels{};  ///< the first is DOLP_BINDING_RULE_NODES
   };
-  /// A binding without a buffer or view, which the pipelines to run do not read, gets any of the others, so that no
-  /// binding refers to a destroyed one.
+  /// A binding without a buffer or view, which no pipeline will read, gets another's, so that no binding refers to a
+  /// destroyed buffer.
   void bind(const Bindings& bindings);
 
   VkPipeline pipeline(const KernelVariant& variant);
@@ -78,7 +78,7 @@ class Kernels {
   UniquePipelineLayout layout_;
   UniqueDescriptorPool pool_;
   VkDescriptorSet set_ = VK_NULL_HANDLE;
-  std::mutex mutex_;  ///< of the pipelines
+  std::mutex mutex_;  ///< guards the pipelines
   std::map<KernelVariant, UniquePipeline> pipelines_;
 };
 

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "base/parallel_ranges.hpp"
-#include "plan/convert_reals.hpp"
 #include "plan/kernel_data.hpp"
 
 namespace dolp::vulkan {

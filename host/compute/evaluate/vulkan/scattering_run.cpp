@@ -1,64 +1,77 @@
-#include "evaluate/vulkan/scattering_run.hpp"
-
 #include <algorithm>
 
 #include "base/parallel_ranges.hpp"
+#include "evaluate/vulkan/tiled_run.hpp"
+#include "evaluate/vulkan/tiles.hpp"
 
 namespace dolp::vulkan {
+namespace {
+
+class ScatteringRun final : public Run<ScatteringMatrix> {
+ public:
+  ScatteringRun(const KernelContext& context, const ScatteringRequest& request, const VulkanOptions& options)
+      : Run(context, request.precision), request_(request), tiles_(request, context.description, options) {
+    beam_buffer_.emplace(input_buffer<kernel::BeamNode>(tiles_.beams));
+    mueller_buffer_.emplace(context_.device, tiles_.beams * packing_.node_bytes<kernel::MuellerNode>(),
+                            MemoryUse::kReadback);
+    Kernels::Bindings bindings;
+    create_rule(tiles_.plan.data(), bindings);
+    bindings.buffers[DOLP_BINDING_BEAMS] = beam_buffer_->get();
+    bindings.buffers[DOLP_BINDING_MUELLERS] = mueller_buffer_->get();
+    context_.kernels.bind(bindings);
+  }
+
+  std::optional<std::vector<ScatteringMatrix>> compute(const Progress& progress) override {
+    std::vector<ScatteringMatrix> matrices(request_.entries.size());
+    const std::span<const ScatteringEntry> entries(request_.entries);
+    context_.stream.begin();
+    upload_rule(tiles_.plan.data());
+    for (std::size_t first = 0; first < entries.size(); first += tiles_.beams) {
+      const std::size_t count = std::min<std::size_t>(tiles_.beams, entries.size() - first);
+      if (first > 0) context_.stream.begin();
+      run_tile(entries.subspan(first, count), std::span(matrices).subspan(first, count));
+      if (progress && !progress(first + count, matrices.size())) return std::nullopt;
+    }
+    return matrices;
+  }
+
+  void create_pipelines() override { context_.kernels.pipeline(mueller_variant(request_)); }
+
+ private:
+  void run_tile(std::span<const ScatteringEntry> entries, std::span<ScatteringMatrix> matrices) {
+    beams_.clear();
+    scratch_.clear();
+    for (const ScatteringEntry& entry : entries) {
+      beams_.push_back(tiles_.plan(entry));
+      packing_.append(beams_.back().node, scratch_);
+    }
+    beam_buffer_->write(scratch_, context_.stream);
+    run_kernel(mueller_variant(request_), entries.size(), tiles_.plan.data());
+    scratch_.resize(entries.size() * packing_.node_bytes<kernel::MuellerNode>());
+    mueller_buffer_->read(scratch_);
+    const auto finish = [&](std::size_t i) {
+      const auto node = packing_.read<kernel::MuellerNode>(scratch_, i);
+      matrices[i] = tiles_.plan.matrix(node, beams_[i], entries[i], packing_.unit_roundoff());
+    };
+    parallel_for(entries.size(), finish, {});
+  }
+
+  const ScatteringRequest& request_;
+  BeamTiles tiles_;
+  std::vector<Beam> beams_;
+  std::optional<InputBuffer> beam_buffer_;
+  std::optional<Buffer> mueller_buffer_;
+};
+
+}  // namespace
+
+std::unique_ptr<Run<ScatteringMatrix>> scattering_run(const KernelContext& context, const ScatteringRequest& request,
+                                                      const VulkanOptions& options) {
+  return std::make_unique<ScatteringRun>(context, request, options);
+}
 
 KernelVariant mueller_variant(const ScatteringRequest& request) {
   return {EntryPoint::kMueller, request.distribution, request.masking};
-}
-
-ScatteringRun::ScatteringRun(const KernelContext& context, const ScatteringRequest& request,
-                             const VulkanOptions& options)
-    : TiledRun(context, Packing(request.precision == Precision::kDouble)),
-      request_(request),
-      tiles_(request, context.description, options) {
-  create_buffers();
-}
-
-void ScatteringRun::create_buffers() {
-  beam_buffer_.emplace(input_buffer<kernel::BeamNode>(tiles_.beams));
-  mueller_buffer_.emplace(context_.device, tiles_.beams * packing_.node_bytes<kernel::MuellerNode>(),
-                          MemoryUse::kReadback);
-  Kernels::Bindings bindings;
-  create_rule(tiles_.plan.data(), bindings);
-  bindings.buffers[DOLP_BINDING_BEAMS] = beam_buffer_->get();
-  bindings.buffers[DOLP_BINDING_MUELLERS] = mueller_buffer_->get();
-  context_.kernels.bind(bindings);
-}
-
-std::optional<std::vector<ScatteringMatrix>> ScatteringRun::compute(const Progress& progress) {
-  std::vector<ScatteringMatrix> matrices(request_.entries.size());
-  const std::span<const ScatteringEntry> entries(request_.entries);
-  context_.stream.begin();
-  upload_rule(tiles_.plan.data());
-  for (std::size_t first = 0; first < entries.size(); first += tiles_.beams) {
-    const std::size_t count = std::min<std::size_t>(tiles_.beams, entries.size() - first);
-    if (first > 0) context_.stream.begin();
-    run_tile(entries.subspan(first, count), std::span(matrices).subspan(first, count));
-    if (progress && !progress(first + count, matrices.size())) return std::nullopt;
-  }
-  return matrices;
-}
-
-void ScatteringRun::run_tile(std::span<const ScatteringEntry> entries, std::span<ScatteringMatrix> matrices) {
-  beams_.clear();
-  scratch_.clear();
-  for (const ScatteringEntry& entry : entries) {
-    beams_.push_back(tiles_.plan(entry));
-    packing_.append(beams_.back().node, scratch_);
-  }
-  beam_buffer_->write(scratch_, context_.stream);
-  run_kernel(mueller_variant(request_), entries.size(), tiles_.plan.data());
-  scratch_.resize(entries.size() * packing_.node_bytes<kernel::MuellerNode>());
-  mueller_buffer_->read(scratch_);
-  const auto finish = [&](std::size_t i) {
-    const auto node = packing_.read<kernel::MuellerNode>(scratch_, i);
-    matrices[i] = tiles_.plan.matrix(node, beams_[i], entries[i], packing_.unit_roundoff());
-  };
-  parallel_for(entries.size(), finish, {});
 }
 
 }  // namespace dolp::vulkan

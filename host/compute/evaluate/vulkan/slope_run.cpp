@@ -1,96 +1,115 @@
-#include "evaluate/vulkan/slope_run.hpp"
-
 #include <algorithm>
 #include <chrono>
 
 #include "base/parallel_ranges.hpp"
 #include "base/stopwatch.hpp"
+#include "evaluate/vulkan/tiled_run.hpp"
+#include "evaluate/vulkan/tiles.hpp"
 
 namespace dolp::vulkan {
+namespace {
 
-SlopeRun::SlopeRun(const KernelContext& context, const MomentsRequest& request, const VulkanOptions& options)
-    : TiledRun(context, Packing(request.precision == Precision::kDouble)),
-      request_(request),
-      tiles_(request, context.description, options),
-      data_(tiles_.data),
-      thetas_(data_.thetas.size()),
-      indices_(request.indices.size()) {
-  create_buffers();
-}
+class SlopeRun final : public Run<Moments> {
+ public:
+  SlopeRun(const KernelContext& context, const MomentsRequest& request, const VulkanOptions& options)
+      : Run(context, request.precision),
+        request_(request),
+        tiles_(request, context.description, options),
+        data_(tiles_.data),
+        thetas_(data_.thetas.size()),
+        indices_(request.optics.size()) {
+    const std::size_t slopes = tiles_.slopes;
+    theta_buffer_.emplace(input_buffer<kernel::ThetaNode>(std::min(slopes, data_.thetas.size())));
+    index_buffer_.emplace(input_buffer<kernel::IndexNode>(std::min(slopes, data_.indices.size())));
+    slope_buffer_.emplace(input_buffer<kernel::SlopeNode>(slopes));
+    azimuth_buffer_.emplace(context_.device,
+                            slopes * packing_.output_bytes<kernel::AzimuthNode>(column_azimuths(data_)),
+                            MemoryUse::kReadback);
+    Kernels::Bindings bindings;
+    create_rule(data_, bindings);
+    bindings.buffers[DOLP_BINDING_THETAS] = theta_buffer_->get();
+    bindings.buffers[DOLP_BINDING_INDICES] = index_buffer_->get();
+    bindings.buffers[DOLP_BINDING_SLOPES] = slope_buffer_->get();
+    bindings.buffers[DOLP_BINDING_AZIMUTHS] = azimuth_buffer_->get();
+    context_.kernels.bind(bindings);
+  }
 
-void SlopeRun::create_buffers() {
-  const std::size_t slopes = tiles_.slopes;
-  theta_buffer_.emplace(input_buffer<kernel::ThetaNode>(std::min(slopes, data_.thetas.size())));
-  index_buffer_.emplace(input_buffer<kernel::IndexNode>(std::min(slopes, data_.indices.size())));
-  slope_buffer_.emplace(input_buffer<kernel::SlopeNode>(slopes));
-  azimuth_buffer_.emplace(context_.device, slopes * packing_.output_bytes<kernel::AzimuthNode>(column_azimuths(data_)),
-                          MemoryUse::kReadback);
-  Kernels::Bindings bindings;
-  create_rule(data_, bindings);
-  bindings.buffers[DOLP_BINDING_THETAS] = theta_buffer_->get();
-  bindings.buffers[DOLP_BINDING_INDICES] = index_buffer_->get();
-  bindings.buffers[DOLP_BINDING_SLOPES] = slope_buffer_->get();
-  bindings.buffers[DOLP_BINDING_AZIMUTHS] = azimuth_buffer_->get();
-  context_.kernels.bind(bindings);
-}
+  void create_pipelines() override { context_.kernels.pipeline(slopes_variant(data_)); }
 
-std::optional<std::vector<Moments>> SlopeRun::compute(const Progress& progress) {
-  std::vector<Moments> moments(request_.size());
-  const std::size_t wanted = request_.wanted_count();
-  const std::size_t at_once = tiles_.batch_directions();
-  context_.stream.begin();
-  upload_rule(data_);
-  for (std::size_t first = 0; first < data_.directions; first += at_once) {
-    const std::size_t last = std::min(first + at_once, data_.directions);
-    const SlopeBatch batch = tiles_.batch(first);
-    SampledAzimuths azimuths(batch.slopes.size(), data_);
-    const std::span<const std::uint32_t> slopes(batch.in_lockstep);
-    for (std::size_t done = 0; done < slopes.size();) {
-      const std::size_t count = std::min<std::size_t>(tiles_.slopes, slopes.size() - done);
-      if (cost_.dispatches > 0) context_.stream.begin();
-      run_tile(batch, slopes.subspan(done, count), azimuths);
-      done += count;
-      const double of_batch = static_cast<double>(done) / static_cast<double>(slopes.size());
-      const double share = (static_cast<double>(first) + of_batch * static_cast<double>(last - first)) /
-                           static_cast<double>(data_.directions);
-      if (progress && !progress(static_cast<std::size_t>(share * static_cast<double>(wanted)), wanted))
-        return std::nullopt;
-    }
-    for (const kernel::AzimuthNode& azimuth : azimuths.nodes) cost_.evaluations += azimuth.evaluations;
-    const auto start = std::chrono::steady_clock::now();
-    parallel_ranges(batch.samples.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const SlopeSamples& samples = batch.samples[i];
-        tiles_.sampling.integrate(samples, azimuths, batch.first[i], packing_.unit_roundoff(), moments);
+  std::optional<std::vector<Moments>> compute(const Progress& progress) override {
+    std::vector<Moments> moments(request_.size());
+    const std::size_t wanted = request_.wanted_count();
+    const std::size_t at_once = tiles_.batch_directions();
+    context_.stream.begin();
+    upload_rule(data_);
+    for (std::size_t first = 0; first < data_.directions; first += at_once) {
+      const std::size_t last = std::min(first + at_once, data_.directions);
+      const SlopeBatch batch = tiles_.batch(first);
+      SampledAzimuths azimuths(batch.slopes.size(), data_);
+      const std::span<const std::uint32_t> slopes(batch.in_lockstep);
+      for (std::size_t done = 0; done < slopes.size();) {
+        const std::size_t count = std::min<std::size_t>(tiles_.slopes, slopes.size() - done);
+        if (cost_.dispatches > 0) context_.stream.begin();
+        run_tile(batch, slopes.subspan(done, count), azimuths);
+        done += count;
+        const double of_batch = static_cast<double>(done) / static_cast<double>(slopes.size());
+        const double share = (static_cast<double>(first) + of_batch * static_cast<double>(last - first)) /
+                             static_cast<double>(data_.directions);
+        if (progress && !progress(static_cast<std::size_t>(share * static_cast<double>(wanted)), wanted))
+          return std::nullopt;
       }
-    });
-    cost_.sums_s += seconds_since(start);
+      for (const kernel::AzimuthNode& azimuth : azimuths.nodes) cost_.evaluations += azimuth.evaluations;
+      const auto start = std::chrono::steady_clock::now();
+      parallel_ranges(batch.samples.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const SlopeSamples& samples = batch.samples[i];
+          tiles_.sampling.integrate(samples, azimuths, batch.first[i], packing_.unit_roundoff(), moments);
+        }
+      });
+      cost_.sums_s += seconds_since(start);
+    }
+    return moments;
   }
-  return moments;
-}
 
-void SlopeRun::run_tile(const SlopeBatch& batch, std::span<const std::uint32_t> slopes, SampledAzimuths& azimuths) {
-  thetas_.clear();
-  indices_.clear();
-  nodes_.clear();
-  for (const std::uint32_t i : slopes) {
-    kernel::SlopeNode& node = nodes_.emplace_back(batch.slopes[i]);
-    node.theta = thetas_(static_cast<std::uint32_t>(node.theta));
-    node.index = indices_(static_cast<std::uint32_t>(node.index));
+ private:
+  void run_tile(const SlopeBatch& batch, std::span<const std::uint32_t> slopes, SampledAzimuths& azimuths) {
+    thetas_.clear();
+    indices_.clear();
+    nodes_.clear();
+    for (const std::uint32_t i : slopes) {
+      kernel::SlopeNode& node = nodes_.emplace_back(batch.slopes[i]);
+      node.theta = thetas_(static_cast<std::uint32_t>(node.theta));
+      node.index = indices_(static_cast<std::uint32_t>(node.index));
+    }
+    const std::span<const std::uint32_t> thetas = thetas_.used(), indices = indices_.used();
+    upload(*slope_buffer_, nodes_.size(), [&](std::size_t i) { return nodes_[i]; });
+    upload(*theta_buffer_, thetas.size(), [&](std::size_t i) { return data_.thetas[thetas[i]]; });
+    upload(*index_buffer_, indices.size(), [&](std::size_t i) { return data_.indices[indices[i]]; });
+    run_kernel(slopes_variant(data_), slopes.size(), data_);
+    const std::size_t per_entry = column_azimuths(data_);
+    scratch_.resize(slopes.size() * packing_.output_bytes<kernel::AzimuthNode>(per_entry));
+    azimuth_buffer_->read(scratch_);
+    const std::size_t behind = slopes.size() * packing_.node_bytes<kernel::AzimuthNode>();
+    for (std::size_t i = 0; i < slopes.size(); ++i) {
+      azimuths.nodes[slopes[i]] = packing_.read<kernel::AzimuthNode>(scratch_, i);
+      packing_.read_numbers(scratch_, behind + i * per_entry * packing_.real_bytes(), azimuths.columns_of(slopes[i]));
+    }
   }
-  const std::span<const std::uint32_t> thetas = thetas_.used(), indices = indices_.used();
-  upload(*slope_buffer_, nodes_.size(), [&](std::size_t i) { return nodes_[i]; });
-  upload(*theta_buffer_, thetas.size(), [&](std::size_t i) { return data_.thetas[thetas[i]]; });
-  upload(*index_buffer_, indices.size(), [&](std::size_t i) { return data_.indices[indices[i]]; });
-  run_kernel(slopes_variant(data_), slopes.size(), data_);
-  const std::size_t per_entry = column_azimuths(data_);
-  scratch_.resize(slopes.size() * packing_.output_bytes<kernel::AzimuthNode>(per_entry));
-  azimuth_buffer_->read(scratch_);
-  const std::size_t behind = slopes.size() * packing_.node_bytes<kernel::AzimuthNode>();
-  for (std::size_t i = 0; i < slopes.size(); ++i) {
-    azimuths.nodes[slopes[i]] = packing_.read<kernel::AzimuthNode>(scratch_, i);
-    packing_.read_numbers(scratch_, behind + i * per_entry * packing_.real_bytes(), azimuths.columns_of(slopes[i]));
-  }
+
+  const MomentsRequest& request_;
+  SlopeTiles tiles_;
+  const KernelData& data_;
+  Renumbering thetas_, indices_;
+  std::vector<kernel::SlopeNode> nodes_;  ///< the slopes of a tile
+  std::optional<InputBuffer> theta_buffer_, index_buffer_, slope_buffer_;
+  std::optional<Buffer> azimuth_buffer_;
+};
+
+}  // namespace
+
+std::unique_ptr<Run<Moments>> slope_run(const KernelContext& context, const MomentsRequest& request,
+                                        const VulkanOptions& options) {
+  return std::make_unique<SlopeRun>(context, request, options);
 }
 
 }  // namespace dolp::vulkan

@@ -1,17 +1,18 @@
-// Base of all kernel runs: uploads, the buffers of the rule, and the dispatch of a tile.
+// Runs a request on a device, tile by tile.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <dolp/errors.hpp>
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include "device/buffer.hpp"
 #include "evaluate/vulkan/command_stream.hpp"
-#include "evaluate/vulkan/input_buffer.hpp"
 #include "evaluate/vulkan/kernels.hpp"
 #include "evaluate/vulkan/packing.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
 
 namespace dolp::vulkan {
 
@@ -33,13 +34,17 @@ struct RunCost {
   double sums_s = 0.0;  ///< EvaluationReport::sums_s
 };
 
-/// A request on the device, tile by tile. The inputs of a tile are recorded, then its kernel runs.
+/// The buffers of a request on the device. The inputs of a tile are recorded, then its kernel runs.
 class TiledRun {
  public:
+  virtual ~TiledRun() = default;
+  /// Creates the pipelines before the computation, so that their time is measured separately.
+  virtual void create_pipelines() = 0;
   const RunCost& cost() const { return cost_; }
 
  protected:
-  TiledRun(const KernelContext& context, const Packing& packing) : context_(context), packing_(packing) {}
+  TiledRun(const KernelContext& context, Precision precision)
+      : context_(context), packing_(precision == Precision::kDouble) {}
 
   template <class Node>
   InputBuffer input_buffer(std::size_t count, VkFormat texels = VK_FORMAT_UNDEFINED) const {
@@ -65,5 +70,28 @@ class TiledRun {
  private:
   std::optional<InputBuffer> rule_buffer_, rule_node_buffer_;
 };
+
+template <class Result>
+class Run : public TiledRun {
+ public:
+  /// The results of the wanted entries, at their positions in the request; nothing if `progress` returned false.
+  /// Errors: DeviceError.
+  virtual std::optional<std::vector<Result>> compute(const Progress& progress) = 0;
+
+ protected:
+  using TiledRun::TiledRun;
+};
+
+/// A run for moments in kernel rows.
+std::unique_ptr<Run<Moments>> row_run(const KernelContext& context, const MomentsRequest& request,
+                                      const VulkanOptions& options);
+/// A run for moments by slope samples, which serve all slope distributions: some directions at a time.
+std::unique_ptr<Run<Moments>> slope_run(const KernelContext& context, const MomentsRequest& request,
+                                        const VulkanOptions& options);
+/// A run for pBRDFs. Entries bring their own shapes and need no tables, so the size of a tile bounds the memory.
+std::unique_ptr<Run<ScatteringMatrix>> scattering_run(const KernelContext& context, const ScatteringRequest& request,
+                                                      const VulkanOptions& options);
+
+KernelVariant mueller_variant(const ScatteringRequest& request);
 
 }  // namespace dolp::vulkan

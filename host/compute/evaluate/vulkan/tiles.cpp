@@ -13,7 +13,7 @@ namespace {
 
 using EntryWords = std::array<std::uint32_t, 4>;
 
-constexpr std::uint64_t kHeapFraction = 8;    // of the device's memory for tiles, and for masking tables
+constexpr std::uint64_t kHeapFraction = 8;    // tiles get an eighth of the memory, masking tables another
 constexpr std::size_t kSampledAtOnce = 1024;  // bounds the memory of a batch: some hundred slopes each
 
 std::uint32_t at_least_one(std::uint64_t count) {
@@ -31,34 +31,13 @@ TileSizes sizes_on(const dolp::Device& device, const TileCosts& costs, std::uint
           .shapes = at_least_one(std::min({bytes / costs.shape_bytes, of_dispatch, shapes, tables}))};
 }
 
-TileCosts row_costs(const Packing& packing, const KernelData& data, std::uint32_t width) {
-  return {.invocation_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
-                              packing.node_bytes<kernel::IndexNode>() +
-                              width * packing.output_bytes<kernel::MomentsNode>(column_sums(data)),
-          .shape_bytes =
-              packing.node_bytes<kernel::ShapeNode>() + packing.masking_nodes() * packing.node_bytes<MaskingNode>(),
-          .shape_texels = packing.texels_of_table()};
-}
-
-TileCosts slope_costs(const Packing& packing, const KernelData& data) {
-  return {.invocation_bytes = packing.node_bytes<kernel::SlopeNode>() + packing.node_bytes<kernel::ThetaNode>() +
-                              packing.node_bytes<kernel::IndexNode>() +
-                              packing.output_bytes<kernel::AzimuthNode>(column_azimuths(data)),
-          .shape_bytes = 1};
-}
-
-TileCosts beam_costs(const Packing& packing) {
-  return {.invocation_bytes = packing.node_bytes<kernel::BeamNode>() + packing.node_bytes<kernel::MuellerNode>(),
-          .shape_bytes = 1};
-}
-
 std::uint64_t rule_bytes(const Packing& packing, const KernelData& data) {
   return data.rule_nodes.size() * packing.node_bytes<std::array<double, 2>>();
 }
 
 std::uint64_t tiles_in(std::uint64_t invocations, std::uint32_t tile) { return (invocations + tile - 1) / tile; }
 
-// The slopes in the order for the device: slopes that run in lockstep have the same loop bounds. Copies of the slope
+// The slopes in the order for the device: slopes that run in lockstep have equal loop bounds. Copies of the slope
 // before a gap fill the gap.
 std::vector<std::uint32_t> in_lockstep(const SlopeBatch& batch, const KernelData& data) {
   std::map<std::uint16_t, std::vector<std::uint32_t>> by_bound;
@@ -88,7 +67,12 @@ RowTiles::RowTiles(const MomentsRequest& request, const dolp::Device& device, co
     : packing(packing_of(request.precision)),
       data(kernel_data(request)),
       rows(rows_of(request, data)),
-      costs(row_costs(packing, data, rows.width)) {
+      costs{.invocation_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
+                                packing.node_bytes<kernel::IndexNode>() +
+                                rows.width * packing.output_bytes<kernel::MomentsNode>(column_sums(data)),
+            .shape_bytes =
+                packing.node_bytes<kernel::ShapeNode>() + packing.masking_nodes() * packing.node_bytes<MaskingNode>(),
+            .shape_texels = packing.texels_of_table()} {
   const std::uint64_t pieces = rows.rows.size() * DOLP_MAX_PIECES;
   // A block holds any chunk.
   const std::uint64_t shapes =
@@ -130,7 +114,9 @@ SlopeTiles::SlopeTiles(const MomentsRequest& of_request, const dolp::Device& dev
       packing(packing_of(request.precision)),
       data(kernel_data(request)),
       sampling(data),
-      costs(slope_costs(packing, data)) {
+      costs{.invocation_bytes = packing.node_bytes<kernel::SlopeNode>() + packing.node_bytes<kernel::ThetaNode>() +
+                                packing.node_bytes<kernel::IndexNode>() +
+                                packing.output_bytes<kernel::AzimuthNode>(column_azimuths(data))} {
   const std::uint64_t pairs = std::uint64_t{data.directions} * (data.is_grid ? data.indices.size() : 1);
   const std::uint64_t most = pairs * DOLP_MAX_PIECES * 2 * static_cast<std::uint64_t>(data.rule_order);
   const std::uint32_t fit =
@@ -173,7 +159,7 @@ DispatchCount SlopeTiles::count() const {
 BeamTiles::BeamTiles(const ScatteringRequest& request, const dolp::Device& device, const VulkanOptions& options)
     : packing(packing_of(request.precision)),
       plan(request),
-      costs(beam_costs(packing)),
+      costs{.invocation_bytes = packing.node_bytes<kernel::BeamNode>() + packing.node_bytes<kernel::MuellerNode>()},
       entries(request.entries.size()),
       beams(sizes_on(device, costs, std::min<std::uint64_t>(options.max_tile_invocations, entries)).invocations) {}
 

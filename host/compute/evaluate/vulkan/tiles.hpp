@@ -19,10 +19,10 @@ namespace dolp::vulkan {
 /// A node of a masking table, in double.
 using MaskingNode = std::array<double, 4>;
 
-/// Bytes that an invocation (a piece of a row, or a beam) and a shape take in the buffers.
+/// Bytes in the buffers for an invocation (a piece of a row, a slope or a beam) and for a shape.
 struct TileCosts {
   std::uint64_t invocation_bytes = 0;  ///< all buffers that grow with the invocations of a tile
-  std::uint64_t shape_bytes = 0;       ///< the masking table and the node of a shape
+  std::uint64_t shape_bytes = 1;       ///< the masking table and the node of a shape; 1 without them
   std::uint64_t shape_texels = 0;      ///< the masking table
 };
 
@@ -32,8 +32,8 @@ struct TileSizes {
   std::uint32_t shapes = 1;
 };
 
-/// Invocations that may run in lockstep on a device that bounds their loops, so that each waits for the longest: the
-/// numbers of lavapipe's widest vector.
+/// Invocations that may run in lockstep on a device that bounds their loops: each waits for the longest. This is the
+/// number of lanes of lavapipe's widest vector.
 inline constexpr std::uint32_t kLockstep = 16;
 
 /// Chunks of shapes whose masking tables are bound together, and the rows that need them.
@@ -47,8 +47,8 @@ struct Block {
 /// Slope samples that are planned, sampled and integrated together, with the kernel's input for them.
 struct SlopeBatch {
   std::vector<SlopeSamples> samples;
-  std::vector<std::size_t> first;          ///< first slope of each
-  std::vector<kernel::SlopeNode> slopes;   ///< of all samples
+  std::vector<std::size_t> first;          ///< position of the first slope of each sample
+  std::vector<kernel::SlopeNode> slopes;   ///< the slopes of all samples
   std::vector<std::uint32_t> in_lockstep;  ///< the order for the device, with gaps filled: positions of slopes
 };
 
@@ -57,8 +57,8 @@ struct DispatchCount {
   std::uint32_t tile_invocations = 0;
   std::uint32_t block_shapes = 0;
   std::uint32_t row_width = 1;  ///< most entries that share an invocation, see plan/rows.hpp
-  std::uint64_t rows = 0;       ///< of the moments, or pairs of a direction and an index with slope samples
-  std::uint64_t slopes = 0;     ///< of all slope samples
+  std::uint64_t rows = 0;       ///< kernel rows, or pairs of a direction and an index with slope samples
+  std::uint64_t slopes = 0;     ///< slopes of all slope samples
   std::uint64_t dispatches = 0;
   std::uint64_t device_bytes = 0;  ///< bound of the memory of all buffers
 };
@@ -91,7 +91,7 @@ struct SlopeTiles {
   KernelData data;
   SlopeSampling sampling;
   TileCosts costs;
-  std::uint32_t slopes = 0;  ///< of a dispatch: a multiple of kLockstep, so that none of its groups is cut
+  std::uint32_t slopes = 0;  ///< slopes of a dispatch: a multiple of kLockstep, so that no group is cut
 };
 
 /// The dispatches of a request for pBRDFs, whose entries bring their own shapes.
@@ -103,10 +103,10 @@ struct BeamTiles {
   BeamPlan plan;
   TileCosts costs;
   std::size_t entries = 0;
-  std::uint32_t beams = 0;  ///< of a dispatch
+  std::uint32_t beams = 0;  ///< beams of a dispatch
 };
 
-/// Numbers the members of a list in the order of their first use: a tile binds only what its rows use.
+/// Numbers the members of a list in the order of their first use, so that a tile binds only used members.
 class Renumbering {
  public:
   explicit Renumbering(std::size_t list_size) : number_(list_size, kUnused) {}

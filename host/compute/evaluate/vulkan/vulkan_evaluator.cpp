@@ -10,9 +10,7 @@
 #include "base/stopwatch.hpp"
 #include "device/context.hpp"
 #include "device/result.hpp"
-#include "evaluate/vulkan/moments_run.hpp"
-#include "evaluate/vulkan/scattering_run.hpp"
-#include "evaluate/vulkan/slope_run.hpp"
+#include "evaluate/vulkan/tiled_run.hpp"
 
 namespace dolp {
 namespace {
@@ -25,7 +23,7 @@ constexpr std::uint32_t kSmallestTile = 64;
 void check_entries(const MomentsRequest& request) {
   const std::size_t size = request.size();
   const bool is_points = request.layout == MomentsRequest::Layout::kList;
-  const bool is_even = request.indices.size() == size && request.sigma.size() == size && request.q.size() == size;
+  const bool is_even = request.optics.size() == size && request.sigma.size() == size && request.q.size() == size;
   if (is_points && !(is_even && request.wanted.empty())) {
     throw InputError("the lists of a request for points differ in length, or it has a mask");
   }
@@ -42,10 +40,10 @@ void check_entries(const ScatteringRequest& request) {
   for (std::size_t i = 0; i < request.entries.size(); ++i) {
     const ScatteringEntry& entry = request.entries[i];
     if (entry.angles >= request.angles.size() || entry.shape >= request.shapes.size() ||
-        entry.index >= request.indices.size()) {
+        entry.index >= request.optics.size()) {
       throw InputError("entry " + std::to_string(i) + " of the request is outside its lists of " +
                        std::to_string(request.angles.size()) + " pairs of beams, " +
-                       std::to_string(request.shapes.size()) + " shapes and " + std::to_string(request.indices.size()) +
+                       std::to_string(request.shapes.size()) + " shapes and " + std::to_string(request.optics.size()) +
                        " indices");
     }
   }
@@ -75,8 +73,6 @@ class VulkanEvaluator::Impl {
   /// small as is sensible.
   bool shrink_tiles() {
     run_.reset();
-    slope_run_.reset();
-    scattering_run_.reset();
     if (options_.max_tile_invocations <= kSmallestTile) return false;
     options_.max_tile_invocations /= kShrinking;
     options_.max_block_shapes = std::max(options_.max_block_shapes / kShrinking, 1U);
@@ -85,26 +81,16 @@ class VulkanEvaluator::Impl {
 
   /// Computes a request and adds its cost to `report`. After a DeviceTimeout this object must not be destroyed.
   std::vector<Moments> compute(const MomentsRequest& request, const Progress& progress, EvaluationReport& report) {
-    const vulkan::KernelContext context = context_for(request.precision);
-    const VulkanOptions options = for_device(options_, description(), request.precision);
-    if (has_slope_samples(request)) {
-      slope_run_.emplace(context, request, options);
-      prepare_pipelines(*slope_run_, report);
-      return finish(slope_run_, slope_run_->compute(progress), request.precision, report);
-    }
-    run_.emplace(context, request, options);
-    prepare_pipelines(*run_, report);
-    return finish(run_, run_->compute(progress), request.precision, report);
+    run_.reset();
+    const auto make_run = has_slope_samples(request) ? vulkan::slope_run : vulkan::row_run;
+    return results_of(make_run(context_for(request.precision), request, options_for(request.precision)),
+                      request.precision, progress, report);
   }
   std::vector<ScatteringMatrix> compute(const ScatteringRequest& request, const Progress& progress,
                                         EvaluationReport& report) {
-    const Clock::time_point start = Clock::now();
-    if (prepared_.valid()) prepared_.wait();
-    kernels_for(request.precision).pipeline(vulkan::mueller_variant(request));
-    note_pipelines(seconds_since(start), report);
-    scattering_run_.emplace(context_for(request.precision), request,
-                            for_device(options_, description(), request.precision));
-    return finish(scattering_run_, scattering_run_->compute(progress), request.precision, report);
+    run_.reset();
+    return results_of(vulkan::scattering_run(context_for(request.precision), request, options_for(request.precision)),
+                      request.precision, progress, report);
   }
   void prepare(const ScatteringRequest& request) {
     vulkan::Kernels& kernels = kernels_for(request.precision);
@@ -122,27 +108,26 @@ class VulkanEvaluator::Impl {
             .tile_timeout_s = options_.tile_timeout_s};
   }
 
-  template <class Run>
-  static void prepare_pipelines(Run& run, EvaluationReport& report) {
-    const Clock::time_point start = Clock::now();
-    run.create_pipelines();
-    note_pipelines(seconds_since(start), report);
-  }
-  static void note_pipelines(double seconds, EvaluationReport& report) {
-    report.setup_s += seconds;
-    report.pipelines_s += seconds;
-  }
+  VulkanOptions options_for(Precision requested) const { return for_device(options_, description(), requested); }
 
-  /// Ends a run: adds its cost, frees its buffers and checks the messages of the validation layer.
-  template <class Run, class Result>
-  std::vector<Result> finish(std::optional<Run>& run, std::optional<std::vector<Result>> results, Precision requested,
-                             EvaluationReport& report) {
-    report.dispatches += run->cost().dispatches;
-    report.evaluations += run->cost().evaluations;
-    report.kernel_s += run->cost().kernel_s;
-    report.sums_s += run->cost().sums_s;
+  template <class Result>
+  std::vector<Result> results_of(std::unique_ptr<vulkan::Run<Result>> made, Precision requested,
+                                 const Progress& progress, EvaluationReport& report) {
+    vulkan::Run<Result>& run = *made;
+    run_ = std::move(made);
+    const Clock::time_point start = Clock::now();
+    if (prepared_.valid()) prepared_.wait();
+    run.create_pipelines();
+    const double pipelines_s = seconds_since(start);
+    report.setup_s += pipelines_s;
+    report.pipelines_s += pipelines_s;
+    std::optional<std::vector<Result>> results = run.compute(progress);
+    report.dispatches += run.cost().dispatches;
+    report.evaluations += run.cost().evaluations;
+    report.kernel_s += run.cost().kernel_s;
+    report.sums_s += run.cost().sums_s;
     note_precision(report.precision, requested == Precision::kDouble);
-    run.reset();
+    run_.reset();
     if (!results) throw Cancelled();
     context_.check_validation();
     return std::move(*results);
@@ -163,10 +148,7 @@ class VulkanEvaluator::Impl {
   std::optional<vulkan::Kernels> float_kernels_, double_kernels_;
   std::future<void> prepared_;  ///< waits when it is destroyed
   vulkan::CommandStream stream_;
-  // Members, so that their buffers outlive a submission that never ends.
-  std::optional<vulkan::MomentsRun> run_;
-  std::optional<vulkan::SlopeRun> slope_run_;
-  std::optional<vulkan::ScatteringRun> scattering_run_;
+  std::unique_ptr<vulkan::TiledRun> run_;  ///< a member, so that its buffers outlive a submission that never ends
 };
 
 VulkanEvaluator::VulkanEvaluator(const VulkanOptions& options) {

@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "device/buffer.hpp"
-#include "device/handle.hpp"
 #include "device/result.hpp"
 #include "explore/window/style.hpp"
 

@@ -25,8 +25,8 @@ struct Integral {
 
 /// Stop criterion of a quadrature.
 struct Goal {
-  double relative = 1e-9;        ///< of the scale of each integral
-  std::size_t max_panels = 400;  ///< beyond it the error reached so far is returned as it is
+  double relative = 1e-9;        ///< error of each integral over its scale
+  std::size_t max_panels = 400;  ///< the quadrature ends here with the error reached so far
   int subdivisions = 1;          ///< equal parts of each first panel: more of them is a different, finer rule
 };
 
@@ -124,7 +124,7 @@ Integral<N> sum_of(const std::vector<Panel<N>>& panels) {
   return total;
 }
 
-/// Largest of the N errors, each over its scale. A component of infinite scale is carried along and never refined for.
+/// Largest of the N errors, each over its scale. A component of infinite scale is never refined.
 template <std::size_t N>
 double scaled_error(const Values<N>& error, const Values<N>& scale) {
   double worst = 0.0;

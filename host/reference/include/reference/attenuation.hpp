@@ -7,11 +7,11 @@
 
 namespace dolp::reference {
 
-/// A zenith angle, given by its elevation above the horizon as well, so that nothing cancels at grazing.
+/// A zenith angle, with its elevation above the horizon, so that nothing cancels at grazing incidence.
 struct Zenith {
   double elevation_rad = 0.0;
-  double cos = 1.0;  ///< of the zenith angle
-  double sin = 0.0;  ///< of the zenith angle
+  double cos = 1.0;  ///< cosine of the zenith angle
+  double sin = 0.0;  ///< sine of the zenith angle
 };
 
 /// Lambda of the height-correlated Smith masking, in closed form.

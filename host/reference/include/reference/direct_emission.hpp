@@ -12,14 +12,14 @@ namespace dolp::reference {
 /// The direct emission of a rough surface (sigma > 0): direct_i, direct_q and their errors, the rest 0.
 ///
 /// Equation: cos(theta) eps = int P t dt dphi e G_1 (1 - |r|^2) in the view's frame, e = cos(theta) + sin(theta) t
-///   cos(phi), over all facets with e > 0, G_1 the masking of the view alone.
+///   cos(phi), over all facets with e > 0, G_1 being the masking of the view.
 /// Domain: masking smith or v-cavity; theta in [0, 90] degrees; at 90 both are 0, the limit.
-/// Accuracy: that of `refinement`, relative to direct_i.
+/// Accuracy: the tolerance of `refinement`, relative to direct_i.
 Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
                         const Refinement& refinement);
 
-/// The same with a curve instead of 1 - (R_s + R_p) / 2 and (R_p - R_s) / (2 sin^2), to an accuracy relative to
-/// cos(theta). `bend`: cosine at which the curve bends.
+/// The direct emission with a curve instead of 1 - (R_s + R_p) / 2 and (R_p - R_s) / (2 sin^2), to an accuracy relative
+/// to cos(theta). `bend`: cosine at which the curve bends.
 Moments direct_response(const Slopes& slopes, Masking masking, double theta_deg,
                         const std::function<double(double cos_beta)>& curve, double bend, const Refinement& refinement);
 

@@ -1,9 +1,11 @@
 // Fresnel reflection of the reference, in complex amplitudes.
 #pragma once
 
+#include <boost/math/constants/constants.hpp>
 #include <complex>
 
 #include "model/facet_optics.hpp"
+#include "reference/vectors.hpp"
 
 namespace dolp::reference {
 
@@ -18,5 +20,41 @@ struct FresnelCoefficients {
 /// Reflection at the angle beta from the facet normal.
 /// Conventions: r_p = -r_s at normal incidence.
 FresnelCoefficients fresnel(const FacetOptics& optics, double cos_beta);
+
+/// Amplitudes of a medium under films from their characteristic matrices, in the number type of the caller.
+///
+/// Equation: the tangential fields (E, H) above a film are [cos d, -i sin d / y; -i y sin d, cos d] times those below
+/// it, d = 2 pi q thickness, with y = q for s and q / N^2 for p; r = (y_0 E - H) / (y_0 E + H), starting with (1, y) of
+/// the medium. Each matrix is scaled with e^(i d), which cancels in r and keeps thick absorbing films finite.
+/// Source: Born and Wolf, Principles of Optics, section 1.6.2.
+template <class Number, class Real>
+Amplitudes<Number> stack_amplitudes(const FacetOptics& optics, const Real& cos_beta, const Real& sin2_beta) {
+  using std::exp;
+  using std::sqrt;
+  const Number i(0, 1);
+  const auto square_of = [](const OpticalConstants& index) {
+    const Number n(index.n, index.k);
+    return Number(n * n);
+  };
+  const auto reflected = [&](bool is_p) {
+    const auto admittance = [&](const Number& n2, const Number& q) { return is_p ? Number(q / n2) : q; };
+    const Number n2 = square_of(optics.index);
+    Number e(1), h = admittance(n2, sqrt(Number(n2 - sin2_beta)));
+    for (auto film = optics.films.rbegin(); film != optics.films.rend(); ++film) {
+      const Number square = square_of(film->index);
+      const Number q = sqrt(Number(square - sin2_beta));
+      const Number y = admittance(square, q);
+      const Number turned = exp(Number(i * (4 * boost::math::constants::pi<Real>() * Real(film->thickness)) * q));
+      const Number cosine = (turned + Real(1)) / Real(2);
+      const Number sine = (turned - Real(1)) / Number(0, 2);
+      const Number above = cosine * e - i * sine * h / y;
+      h = cosine * h - i * y * sine * e;
+      e = above;
+    }
+    const Number y0(cos_beta);
+    return Number((y0 * e - h) / (y0 * e + h));
+  };
+  return {reflected(false), reflected(true)};
+}
 
 }  // namespace dolp::reference

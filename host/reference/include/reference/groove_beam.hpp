@@ -64,7 +64,7 @@ class GrooveBeam {
     if (cos_beta <= 0) return 0;
     const Vector<Real> rim{side_ * groove_.cos_alpha, Real(0), Real(0)};
     const Vector<Real> down{-side_ * groove_.cos_alpha, Real(0), -groove_.sin_alpha};
-    Real depth = 1;  // of the edge, along the facet from the rim
+    Real depth = 1;  // distance of the edge from the rim, along the facet
     if (!meets_apex_) {
       const Vector<Real> from_rim = sum(edge_, scaled(Real(-1), rim));
       const Vector<Real> hit = sum(from_rim, scaled(Real(dot(from_rim, n) / cos_beta), k_));
@@ -75,7 +75,7 @@ class GrooveBeam {
   }
 
   Groove<Real> groove_;
-  Real side_;  ///< of the present facet along u: -1 for A
+  Real side_;  ///< -1 on facet A, 1 on facet B
   Vector<Real> k_;
   Vector<Real> edge_{};
   Real flux_;

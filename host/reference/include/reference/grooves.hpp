@@ -10,12 +10,13 @@ namespace dolp::reference {
 /// The moments of a rough surface (sigma > 0) of symmetric V-grooves, all bounces included, k_s = 1.
 ///
 /// Equation: r = int P t dt dphi sum_k w_k |E_k|^2 over the facets that are met first, w_k the flux that leaves a
-///   groove after k bounces over half of its width, |E_k|^2 the intensity then, the mean of that of s and of p light;
-///   the absorbed part is the sum over the absorption of all bounces.
+///   groove after k bounces over half of its width, |E_k|^2 the intensity then, the mean for s and p light; the
+///   absorbed part is the sum over the absorption of all bounces.
 /// Domain: theta in [0, 90] degrees; at 90 all are 0, the limit.
-/// Accuracy: the errors returned, those of `refinement` but where many steep grooves reflect much, which is too much
-///   work: metals reach 1e-8 to 1e-4 of r_i, total reflection at q close to 1 nothing. Grooves steeper than the last
-///   slope followed are taken to reflect between nothing and twice the share that those of that slope do (test
+/// Accuracy: the errors returned. They meet `refinement` unless many steep grooves reflect much, which is too much
+/// work:
+///   metals reach 1e-8 to 1e-4 of r_i, total reflection at q close to 1 reaches nothing. Grooves steeper than the last
+///   slope followed reflect between nothing and twice its share (test
 ///   ReferenceGrooves.CoarseQuadrature_StaysWithinItsErrors).
 Moments groove_moments(const Slopes& slopes, double theta_deg, const FacetOptics& constants,
                        const Refinement& refinement, const SkyFunction* sky = nullptr);

@@ -14,11 +14,11 @@ namespace dolp::reference {
 
 /// Accuracy of the integrals; two different settings give two nearly independent values.
 struct Refinement {
-  double relative_tolerance = 1e-9;  ///< of r_i, albedo and absorbed part; r_q is within this times r_i
+  double relative_tolerance = 1e-9;  ///< for r_i, albedo and absorbed part; the error of r_q is relative to r_i
   int subdivisions = 1;              ///< equal parts of each first panel
 };
 
-/// A function of the zenith of the reflected ray, with which ColumnMoments are wanted.
+/// A function of the zenith of the reflected ray, for ColumnMoments.
 struct SkyFunction {
   std::function<double(double zenith_deg)> value;
   std::vector<double> corners_deg;

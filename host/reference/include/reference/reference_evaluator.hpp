@@ -11,23 +11,21 @@
 namespace dolp {
 
 struct ReferenceOptions {
-  /// Relative to r_i (r_q too), albedo and absorbed part.
+  /// Relative to r_i (also for r_q), albedo and absorbed part.
   double relative_tolerance = 1e-9;
   /// Equal parts of each first panel of the quadratures: 2 recomputes with other nodes.
   int subdivisions = 1;
-  /// 0: as many as the machine has hardware threads.
-  unsigned threads = 0;
 };
 
 /// The independent reference: moments by nested adaptive Gauss-Kronrod quadrature in double, over zenith and azimuth of
 /// the other direction, the masking `integral` integrated over the facet tilt at every point.
-/// With Scattering::kMultiple they are those of V-grooves (reference/grooves.hpp), with wants_direct they have the
-/// direct emission too (reference/direct_emission.hpp), both integrated over the slopes of the facets.
+/// Scattering::kMultiple gives the moments of V-grooves (reference/grooves.hpp), wants_direct adds the direct emission
+/// (reference/direct_emission.hpp); both are integrated over the slopes of the facets.
 /// Equation: (4), (7), (9)-(13), (15), (16).
 /// Accuracy: relative_tolerance or, if that is larger, a hundredth of the request's tolerance; never more than half of
-///   the request's tolerance. A request of tolerance 0 leaves it to relative_tolerance. With all bounces of steep metal
-///   grooves the quadratures may end before: the errors say so. The errors returned are those
-///   of the quadratures plus rounding (test ReferenceMoments_CoarseQuadrature_StaysWithinItsErrors).
+///   the request's tolerance. Tolerance 0 means relative_tolerance. With all bounces of steep metal grooves the
+///   quadratures may end before, with larger errors. The errors returned are the errors of the quadratures plus
+///   rounding (test ReferenceMoments_CoarseQuadrature_StaysWithinItsErrors).
 /// Domain: theta in [0, 90] degrees; sigma >= 0; cauchy q > 1, with smith masking q > 3/2; n > 0, k >= 0. At 90 degrees
 ///   all four moments are the limits: 0 for v-cavity and smith, finite for the others but infinite (with infinite
 ///   errors; r_q and the absorbed part negative) for cauchy with q <= 3/2.

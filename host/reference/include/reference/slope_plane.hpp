@@ -1,13 +1,15 @@
 // Integrals over the slopes of the facets, for integrands that bend along unknown curves.
 //
-// A slope has the length t and the angle chi from the normal of the plane of incidence, sin(chi) = cos(phi). What faces
-// A at phi faces B at phi + 180 degrees, and left and right of the plane of incidence are alike, so that chi runs over
-// a quarter of a turn. The bends of the integrand are not computed but detected: its `regime`, a number that encodes
-// the history of the beams, changes there, and bisection finds the place.
+// A slope has the length t and the angle chi from the normal of the plane of incidence, sin(chi) = cos(phi). A facet
+// that faces A at phi faces B at phi + 180 degrees, and both sides of the plane of incidence are alike, so chi runs
+// over a quarter of a turn. The bends of the integrand are not computed but detected: its `regime`, a number that
+// encodes the history of the beams, changes there, and bisection finds the place.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <complex>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -18,8 +20,10 @@
 
 #include "reference/adaptive.hpp"
 #include "reference/attenuation.hpp"
+#include "reference/fresnel.hpp"
 #include "reference/hemisphere.hpp"
 #include "reference/slopes.hpp"
+#include "reference/vectors.hpp"
 
 namespace dolp::reference {
 
@@ -32,6 +36,49 @@ struct SlopePoint {
 
 /// Equal slopes of every direction: chi = 0 ... pi/2.
 inline SlopePoint slope_point(double t, double chi_rad) { return {t, std::sin(chi_rad), std::cos(chi_rad)}; }
+
+using Electric = std::array<std::complex<double>, 3>;
+
+/// Toward the view, in the axes of a groove: u at phi from the plane of incidence, v along the groove, z up.
+inline Vector<double> toward_view(const SlopePoint& point, const Zenith& view) {
+  return {view.sin * point.sin_chi, -view.sin * point.cos_chi, view.cos};
+}
+
+/// A wave of unit amplitude for each of the view's polarisations, s = k x z (at theta = 0 its limit) and p = k x s.
+struct UnitLight {
+  Electric from_s;
+  Electric from_p;
+};
+
+inline UnitLight unit_light(const SlopePoint& point, const Vector<double>& k) {
+  const Vector<double> s{point.cos_chi, point.sin_chi, 0.0};
+  const Vector<double> p = cross(k, s);
+  return {{s[0], s[1], s[2]}, {p[0], p[1], p[2]}};
+}
+
+/// Reflects a wave of a beam; returns its absorbed part.
+inline double reflect(const Bounce<double>& b, const FresnelCoefficients& r, Electric& e) {
+  const Amplitudes<std::complex<double>> incident = components(b, e);
+  e = reflected(b, incident, {r.r_s, r.r_p});
+  return std::norm(incident.s) * r.absorbed_s + std::norm(incident.p) * r.absorbed_p;
+}
+
+/// The angles beta of total reflection and of the (pseudo-)Brewster minimum.
+class SpecialAngles {
+ public:
+  explicit SpecialAngles(const FacetOptics& constants)
+      : brewster_(1.0 / std::hypot(1.0, constants.index.n, constants.index.k)),
+        critical_(constants.index.n < 1.0 ? std::sqrt(1.0 - constants.index.n * constants.index.n) : 0.0) {}
+
+  /// Code of the special angles below which cos(beta) lies: 0 to 3.
+  std::uint64_t side(double cos_beta) const {
+    return (cos_beta < brewster_ ? 1U : 0U) + (cos_beta < critical_ ? 2U : 0U);
+  }
+
+ private:
+  double brewster_;
+  double critical_;
+};
 
 /// Numbers that differ where the integrand is on different sides of a bend.
 using Regime = std::function<std::uint64_t(const SlopePoint&)>;
@@ -59,42 +106,22 @@ class RegimeScan {
   Regime regime_;
 };
 
-/// Shares and densities of slopes, in v of t = width sinh(v).
-class SlopeAxis {
- public:
-  explicit SlopeAxis(const Slopes& slopes) : slopes_(slopes) {}
-  double t(double v) const { return slopes_.width() * std::sinh(v); }
-  double v(double t) const { return std::asinh(t / slopes_.width()); }
-  /// 2 pi P t dt/dv: its integral over all v is 1.
-  double density(double v) const;
-  /// Share of the slopes above t.
-  double share_above(double t) const;
-  /// int 2 pi P t^2 dt above t, t so large that P is its leading power. Domain: cauchy q > 3/2, t >= 1e8 m.
-  double length_above(double t) const;
-  /// The slope that a share of all slopes is above.
-  double quantile(double share) const;
-  double width() const { return slopes_.width(); }
-
- private:
-  const Slopes& slopes_;
-};
-
 /// Description of the integrand of an integral over slopes.
 template <std::size_t N>
 struct SlopeTask {
   std::function<Values<N>(const SlopePoint&)> integrand;
-  std::function<Values<N>(const Values<N>&)> scales;  ///< of the integrals, for the goal
+  std::function<Values<N>(const Values<N>&)> scales;  ///< scales of the integrals, for the goal
   double steepest;                                    ///< upper end of t
   double bends_end;                                   ///< t up to which bends are looked for, at most the upper end
-  double thin_weight;                                 ///< rows of less weight per v may be as far off as those of it
-  std::function<double()> work;                       ///< done so far, in any unit
-  double most_work;                                   ///< beyond it no integral is refined
+  double thin_weight;            ///< rows of less weight per v need no smaller errors than rows of this weight
+  std::function<double()> work;  ///< done so far, in any unit
+  double most_work;              ///< beyond it no integral is refined
 };
 
 /// int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi of N functions; the errors of the inner integrals follow as N
 /// values more.
 template <std::size_t N>
-Integral<2 * N> integrate_slopes_of(const SlopeTask<N>& task, const SlopeAxis& axis, const RegimeScan& scan,
+Integral<2 * N> integrate_slopes_of(const SlopeTask<N>& task, const Slopes& slopes, const RegimeScan& scan,
                                     const Refinement& refinement, const Values<N>& expected) {
   constexpr double kInnerShare = 0.02;
   constexpr double kInnerFloor = 4e-15;  // a Kronrod panel's own rounding is 1e-15 of its magnitude
@@ -103,8 +130,8 @@ Integral<2 * N> integrate_slopes_of(const SlopeTask<N>& task, const SlopeAxis& a
   boundless.fill(std::numeric_limits<double>::infinity());
 
   const auto row = [&](double v) {
-    const double t = axis.t(v);
-    const double weight = axis.density(v);
+    const double t = slopes.at(v);
+    const double weight = slopes.density_at(v);
     const double relaxed = std::max(1.0, task.thin_weight / std::max(weight, 1e-300));
     const auto inner_scales = [&](const Values<N>& value) {
       if (is_tired()) return boundless;
@@ -136,9 +163,9 @@ Integral<2 * N> integrate_slopes_of(const SlopeTask<N>& task, const SlopeAxis& a
     std::copy(first.begin(), first.end(), all.begin());
     return all;
   };
-  Breaks breaks(0.0, axis.v(task.steepest));
+  Breaks breaks(0.0, slopes.coordinate_of(task.steepest));
   for (const double v : {1.5, 4.0, 8.0, 16.0, 24.0, 32.0, 40.0, 48.0}) breaks.add(v);
-  for (const double t : scan.t_breaks(axis.width(), task.bends_end)) breaks.add(axis.v(t));
+  for (const double t : scan.t_breaks(slopes.width(), task.bends_end)) breaks.add(slopes.coordinate_of(t));
   const Goal goal{.relative = refinement.relative_tolerance, .subdivisions = refinement.subdivisions};
   return integrate<2 * N>(row, breaks, goal, scales);
 }

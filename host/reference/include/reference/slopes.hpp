@@ -1,6 +1,8 @@
 // The two slope distributions of the reference.
 #pragma once
 
+#include <cmath>
+
 #include "model/choices.hpp"
 
 namespace dolp::reference {
@@ -21,6 +23,20 @@ class Slopes {
   /// Share of in-plane slopes above `slope`, for slopes so large that p is its leading power.
   /// Domain: slope >= 1e8 m.
   double in_plane_tail(double slope) const;
+
+  /// Share of the slopes of any azimuth above t.
+  double share_above(double t) const;
+
+  /// The slope that a share of all slopes is above.
+  double quantile(double share) const;
+
+  /// int 2 pi P t^2 dt above t. Domain: cauchy q > 3/2; t >= 1e8 m, where P is its leading power.
+  double length_above(double t) const;
+
+  /// The integration variable v of t = width sinh(v), and the density 2 pi P t dt/dv, whose integral over v is 1.
+  double at(double v) const { return width_ * std::sinh(v); }
+  double coordinate_of(double t) const { return std::asinh(t / width_); }
+  double density_at(double v) const;
 
   /// Slope over which the densities fall off: the natural unit of t.
   double width() const { return width_; }

@@ -48,7 +48,7 @@ struct Bounce {
 /// `s_at_normal`, a unit vector in the facet.
 template <class Real>
 Bounce<Real> bounce(const Vector<Real>& k, const Vector<Real>& normal, const Vector<Real>& s_at_normal) {
-  constexpr double kNormal = 1e-30;  // sin^2 beta below which rounding alone turns s
+  constexpr double kNormal = 1e-30;  // sin^2 beta below which only rounding turns s
   Bounce<Real> b;
   b.cos_beta = -dot(k, normal);
   b.k_out = sum(k, scaled(Real(2 * b.cos_beta), normal));

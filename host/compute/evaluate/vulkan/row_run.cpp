@@ -1,0 +1,186 @@
+#include <algorithm>
+#include <future>
+
+#include "base/parallel_ranges.hpp"
+#include "evaluate/vulkan/tiled_run.hpp"
+#include "evaluate/vulkan/tiles.hpp"
+
+namespace dolp::vulkan {
+namespace {
+
+using TaskWords = std::array<std::uint32_t, 4>;
+
+// Rows that a thread processes at a time.
+constexpr std::size_t kRowsAtOnce = 512;
+
+class RowRun final : public Run<Moments> {
+ public:
+  RowRun(const KernelContext& context, const MomentsRequest& request, const VulkanOptions& options)
+      : Run(context, request.precision),
+        request_(request),
+        tiles_(request, context.description, options),
+        data_(tiles_.data),
+        rows_(tiles_.rows),
+        thetas_(data_.thetas.size()),
+        indices_(request.optics.size()) {
+    const Device& device = context_.device;
+    const std::size_t invocations = tiles_.sizes.invocations;
+    const std::size_t shapes = tiles_.sizes.shapes;
+    theta_buffer_.emplace(input_buffer<kernel::ThetaNode>(std::min(invocations, data_.thetas.size())));
+    shape_buffer_.emplace(input_buffer<kernel::ShapeNode>(shapes));
+    index_buffer_.emplace(input_buffer<kernel::IndexNode>(std::min(invocations, data_.indices.size())));
+    task_buffer_.emplace(device, invocations * sizeof(TaskWords), context_.staged_uploads);
+    masking_buffer_.emplace(device, shapes * packing_.masking_nodes() * packing_.node_bytes<MaskingNode>(),
+                            MemoryUse::kDeviceOnly, packing_.masking_texels());
+    moments_buffer_.emplace(device,
+                            invocations * rows_.width * packing_.output_bytes<kernel::MomentsNode>(column_sums(data_)),
+                            MemoryUse::kReadback);
+
+    Kernels::Bindings bindings;
+    create_rule(data_, bindings);
+    bindings.buffers[DOLP_BINDING_THETAS] = theta_buffer_->get();
+    bindings.buffers[DOLP_BINDING_SHAPES] = shape_buffer_->get();
+    bindings.buffers[DOLP_BINDING_INDICES] = index_buffer_->get();
+    bindings.buffers[DOLP_BINDING_TASKS] = task_buffer_->get();
+    bindings.buffers[DOLP_BINDING_MASKING_TABLE] = masking_buffer_->get();
+    bindings.texels[DOLP_BINDING_MASKING_NODES - kStorageCount] = masking_buffer_->texels();
+    bindings.buffers[DOLP_BINDING_MOMENTS] = moments_buffer_->get();
+    context_.kernels.bind(bindings);
+  }
+
+  void create_pipelines() override {
+    const KernelVariant tables = masking_table_variant(data_);
+    std::future<void> made;
+    if (data_.needs_masking_table() && !context_.kernels.has(tables)) {
+      made = std::async(std::launch::async, [&] { context_.kernels.pipeline(tables); });
+    }
+    context_.kernels.pipeline(moments_variant(data_, rows_.width));
+    if (made.valid()) made.get();
+  }
+
+  std::optional<std::vector<Moments>> compute(const Progress& progress) override {
+    std::vector<kernel::MomentsNode> results(rows_.rows.size() * rows_.width);
+    column_results_.assign(results.size() * column_sums(data_), 0.0);
+    const std::size_t wanted = request_.wanted_count();
+    for (const Block& block : tiles_.blocks()) {
+      const std::vector<RowPiece> pieces = pieces_of(rows_, data_, block.first_row, block.row_count);
+      if (!pieces.empty()) begin_block(block);
+      for (std::size_t first = 0; first < pieces.size(); first += tiles_.sizes.invocations) {
+        const std::size_t count = std::min<std::size_t>(tiles_.sizes.invocations, pieces.size() - first);
+        if (first > 0) context_.stream.begin();
+        const auto tile = std::span<const RowPiece>(pieces).subspan(first, count);
+        upload_tile(block, tile);
+        run_kernel(moments_variant(data_, rows_.width), tile.size(), data_);
+        add_pieces(tile, results);
+        const double of_block = static_cast<double>(first + count) / static_cast<double>(pieces.size());
+        const double share = (block.first_row + block.row_count * of_block) / static_cast<double>(rows_.rows.size());
+        if (progress && !progress(static_cast<std::size_t>(share * static_cast<double>(wanted)), wanted))
+          return std::nullopt;
+      }
+    }
+    return moments_of(results);
+  }
+
+ private:
+  /// Begins a submission with the inputs that all tiles of a block share; the first tile continues it.
+  void begin_block(const Block& block) {
+    CommandStream& stream = context_.stream;
+    stream.begin();
+    upload(*shape_buffer_, block.shape_count, [&](std::size_t i) { return rows_.shapes[block.first_shape + i]; });
+    upload_rule(data_);
+    if (!data_.needs_masking_table()) return;
+    stream.barrier(Barrier::kUploadToKernel);
+    stream.dispatch(context_.kernels, context_.kernels.pipeline(masking_table_variant(data_)), 0, block.shape_count,
+                    data_.rule_order);
+    stream.barrier(Barrier::kKernelToKernel);
+    ++cost_.dispatches;
+  }
+
+  void upload_tile(const Block& block, std::span<const RowPiece> pieces) {
+    thetas_.clear();
+    indices_.clear();
+    std::vector<TaskWords> words;
+    words.reserve(pieces.size());
+    for (const RowPiece& own : pieces) {
+      const Row& row = rows_.rows[own.row];
+      const Chunk& chunk = rows_.chunks[row.chunk];
+      const std::uint32_t theta = rows_.theta_of(data_, row);
+      words.push_back({thetas_(theta), chunk.first - block.first_shape, indices_(row.index),
+                       task_word(data_.pieces[theta], own.piece, chunk.count)});
+    }
+    task_buffer_->write(std::as_bytes(std::span(words)), context_.stream);
+    const std::span<const std::uint32_t> thetas = thetas_.used(), indices = indices_.used();
+    upload(*theta_buffer_, thetas.size(), [&](std::size_t i) { return data_.thetas[thetas[i]]; });
+    upload(*index_buffer_, indices.size(), [&](std::size_t i) { return data_.indices[indices[i]]; });
+  }
+
+  void add_pieces(std::span<const RowPiece> pieces, std::span<kernel::MomentsNode> results) {
+    const std::size_t members = pieces.size() * rows_.width;
+    const std::size_t per_entry = column_sums(data_);
+    scratch_.resize(members * packing_.output_bytes<kernel::MomentsNode>(per_entry));
+    moments_buffer_->read(scratch_);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      cost_.evaluations += packing_.read<kernel::MomentsNode>(scratch_, i * rows_.width).evaluations;
+    }
+    // Each range owns its rows, so that the pieces of a row are summed in their order on any thread.
+    const auto [least, most] = std::ranges::minmax(pieces, {}, &RowPiece::row);
+    const std::uint32_t first_row = least.row;
+    parallel_ranges(most.row - least.row + std::size_t{1}, kRowsAtOnce, [&](std::size_t first, std::size_t last) {
+      std::vector<double> columns(per_entry);
+      for (std::size_t i = 0; i < pieces.size(); ++i) {
+        const std::size_t row = pieces[i].row - first_row;
+        if (row < first || row >= last) continue;
+        const Row& of_piece = rows_.rows[pieces[i].row];
+        for (std::uint32_t g = 0; g < rows_.chunks[of_piece.chunk].count; ++g) {
+          auto node = packing_.read<kernel::MomentsNode>(scratch_, i * rows_.width + g);
+          node.evaluations /= of_piece.used;
+          const std::size_t place = pieces[i].row * std::size_t{rows_.width} + g;
+          add_piece(results[place], node);
+          packing_.read_numbers(scratch_,
+                                members * packing_.node_bytes<kernel::MomentsNode>() +
+                                    (i * rows_.width + g) * per_entry * packing_.real_bytes(),
+                                columns);
+          add_columns(data_, std::span<const double>(columns),
+                      std::span(column_results_).subspan(place * per_entry, per_entry));
+        }
+      }
+    });
+  }
+
+  std::vector<Moments> moments_of(std::span<const kernel::MomentsNode> results) const {
+    std::vector<Moments> moments(request_.size());
+    const std::size_t per_entry = column_sums(data_);
+    parallel_ranges(rows_.rows.size(), kRowsAtOnce, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        const Row& row = rows_.rows[i];
+        const Chunk& chunk = rows_.chunks[row.chunk];
+        const std::uint32_t theta = rows_.theta_of(data_, row);
+        for (std::uint32_t g = 0; g < chunk.count; ++g) {
+          const std::uint32_t shape = rows_.shape_of[chunk.first + g];
+          moments[data_.entry_of(row.direction, row.index, shape)] = moments_from_kernel(
+              results[i * rows_.width + g], data_, {theta, shape, row.index}, packing_.unit_roundoff(),
+              std::span(column_results_).subspan((i * rows_.width + g) * per_entry, per_entry));
+        }
+      }
+    });
+    return moments;
+  }
+
+  const MomentsRequest& request_;
+  RowTiles tiles_;
+  const KernelData& data_;
+  const Rows& rows_;
+  Renumbering thetas_, indices_;
+  std::vector<double> column_results_;  ///< DOLP_COLUMN_PARTS sums for each column of each member
+  std::optional<InputBuffer> theta_buffer_, shape_buffer_, index_buffer_, task_buffer_;
+  std::optional<Buffer> masking_buffer_, moments_buffer_;
+};
+
+}  // namespace
+
+std::unique_ptr<Run<Moments>> row_run(const KernelContext& context, const MomentsRequest& request,
+                                      const VulkanOptions& options) {
+  return std::make_unique<RowRun>(context, request, options);
+}
+
+}  // namespace dolp::vulkan

@@ -132,8 +132,8 @@ toml::table view_table(const Session& session) {
   const View& view = session.view();
   toml::table table{{"quantity", described(view.quantity).name},
                     {"theta_max_deg", view.theta_max_deg},
-                    {"map_x", description_of(view.map_x).name},
-                    {"map_y", description_of(view.map_y).name},
+                    {"map_x", view.map_x},
+                    {"map_y", view.map_y},
                     {"panel", kPanelNames.at(static_cast<std::size_t>(view.panel))},
                     {"mueller_row", static_cast<int>(view.mueller_row)},
                     {"mueller_column", static_cast<int>(view.mueller_column)},
@@ -204,8 +204,9 @@ std::size_t index_in(Node node, std::size_t count, const std::string& location) 
 
 View view_in(Node node, const std::string& location) {
   const auto axis = [&](const char* key) {
+    const std::vector<std::string> names = map_axis_names();
     return need_one_of(
-        kMapAxes, [](Axis one) { return description_of(one).name; }, node[key], location + key);
+        names, [](const std::string& name) { return name; }, node[key], location + key);
   };
   View view;
   view.quantity =

@@ -1,5 +1,7 @@
 #include "explore/heat_map.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,10 +11,55 @@
 namespace dolp::explore {
 namespace {
 
-Scale log_range_of(const std::vector<double>& grid, const Scale& fallback) {
-  const auto [low, high] = std::ranges::minmax_element(grid);
-  const bool has_range = low != grid.end() && *low<*high&& * low> 0.0;
-  return has_range ? Scale{*low, *high, true} : Scale{fallback.from, fallback.to, true};
+struct AxisOfNumber {
+  std::string name, key;
+};
+
+/// All axes but the zenith. No scene has both numbers that share a name.
+const std::vector<AxisOfNumber>& axes_of_numbers() {
+  static const std::vector<AxisOfNumber> all = [] {
+    std::vector<AxisOfNumber> axes = {{"sigma", "surface.sigma"},
+                                      {"sigma", "surface.wind_m_s"},
+                                      {"q", "surface.q"},
+                                      {"n", "surface.n"},
+                                      {"k", "surface.k"},
+                                      {"wavelength", "spectrum.wavelength_um"},
+                                      {"temperature", "emission.temperature_K"}};
+    for (const Key& key : keys()) {
+      if (key.key.ends_with(".thickness_um")) axes.push_back({fmt::format("film {}", key.layer), key.key});
+    }
+    return axes;
+  }();
+  return all;
+}
+
+/// The range of an axis of a scene's grid; `otherwise` where that has no range.
+Scale grid_range(const Scene& scene, const std::string& column, const Scale& otherwise) {
+  const std::vector<double> grid = scene.numbers("grid." + column);
+  if (grid.empty()) return otherwise;
+  const auto [low, high] = std::ranges::minmax(grid);
+  const bool has_range = low < high && !(otherwise.is_log && low <= 0.0);
+  return has_range ? Scale{low, high, otherwise.is_log} : otherwise;
+}
+
+/// The range of a number of a scene.
+Scale suggested_range(const Scene& scene, const MapAxis& axis, double value) {
+  constexpr Scale kK{1e-3, 100.0, true};
+  constexpr Scale kThickness{1e-2, 10.0, true};
+  Scale range = range_in(scene, parameter(axis.key));
+  if (axis.name == "k") range = kK;
+  if (axis.name.starts_with("film")) range = kThickness;
+  if (axis.is_of_tables()) range = grid_range(scene, axis.column(), range);
+  return range.including(value);
+}
+
+bool is_accepted(const Scene& scene, const std::string& key, double value) {
+  try {
+    static_cast<void>(scene.with(key, value));
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 /// The corners of a square in turn.
@@ -47,30 +94,61 @@ void add_lines(const MapField& field, double level, std::size_t column, std::siz
 
 }  // namespace
 
-MapAxis suggested_axis(Axis axis, const Scene& scene, double theta_max_deg) {
-  if (axis == Axis::kTheta) return {axis, {0.0, theta_max_deg}};
-  if (axis == Axis::kSigma && has_wind(scene)) {
-    const auto [low, high] = std::ranges::minmax(scene.numbers("grid.wind_m_s"));
-    return {axis, low < high ? Scale{low, high} : parameter("surface.wind_m_s").slider, true};
+std::vector<std::string> map_axis_names() {
+  std::vector<std::string> names = {"theta"};
+  for (const AxisOfNumber& one : axes_of_numbers()) {
+    if (names.back() != one.name) names.push_back(one.name);
   }
-  if (axis == Axis::kSigma) return {axis, log_range_of(scene.numbers("grid.sigma"), parameter("surface.sigma").slider)};
-  return {axis, log_range_of(scene.numbers("grid.q"), range_in(scene, parameter("surface.q")))};
+  return names;
 }
 
-const char* MapAxis::label() const {
-  return axis == Axis::kTheta ? "θ [°]" : axis == Axis::kQ ? "q" : is_wind ? "U [m/s]" : "σ";
+std::vector<MapAxis> map_axes(const Scene& scene, double theta_max_deg) {
+  std::vector<MapAxis> axes = {{.scale = {0.0, theta_max_deg}}};
+  for (const AxisOfNumber& one : axes_of_numbers()) {
+    const std::optional<double> value = parameter(one.key).value(scene);
+    if (!value) continue;
+    MapAxis& axis = axes.emplace_back(MapAxis{one.name, parameter(one.key).label(), one.key});
+    axis.scale = suggested_range(scene, axis, *value);
+  }
+  return axes;
 }
 
-std::string MapAxis::key() const {
-  return axis == Axis::kTheta ? "" : axis == Axis::kQ ? "surface.q" : is_wind ? "surface.wind_m_s" : "surface.sigma";
+Scale known_part(const Scene& scene, const MapAxis& axis) {
+  constexpr int kHalvings = 8;
+  const double inside = scene.number(axis.key).value();
+  Scale range = axis.scale;
+  for (const BuiltInMaterial& known : materials()) {
+    if (known.name != scene.word("surface.material")) continue;
+    range = {std::max(range.from, known.from_um), std::min(range.to, known.to_um), range.is_log};
+  }
+  for (double Scale::*end : {&Scale::from, &Scale::to}) {
+    for (int i = 0; i < kHalvings && !is_accepted(scene, axis.key, range.*end); ++i)
+      range.*end = i + 1 < kHalvings ? std::sqrt(range.*end * inside) : inside;
+  }
+  return range;
 }
+
+std::string MapAxis::column() const {
+  if (key.empty()) return "theta_deg";
+  if (key == "emission.temperature_K") return {};
+  return key.starts_with("surface.coating") ? key : key.substr(key.find('.') + 1);
+}
+
+std::size_t MapAxis::rank() const {
+  const std::string own = column() == kWind.column ? description_of(Axis::kSigma).column : column();
+  const auto found = std::ranges::find_if(kAxes, [&](const AxisDescription& one) { return own == one.column; });
+  if (found != kAxes.end()) return 2 + static_cast<std::size_t>(found - kAxes.begin());
+  return own.empty() ? 0 : 1;
+}
+
+bool MapAxis::is_of_tables() const { return rank() >= 2; }
 
 std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range) {
   for (const double end : {range.from, range.to}) {
     try {
-      if (axis.axis != Axis::kTheta) {
-        static_cast<void>(scene.with(axis.key(), end));
-      } else if (!description_of(axis.axis).range.contains(end)) {
+      if (!axis.key.empty()) {
+        static_cast<void>(scene.with(axis.key, end));
+      } else if (!description_of(Axis::kTheta).range.contains(end)) {
         return "must be numbers in [0, 90]";
       }
     } catch (const InputError& error) {
@@ -108,19 +186,30 @@ std::string HeatMap::key_of(std::size_t level) const {
   return "map " + std::to_string(kLevels[level].count) + ' ' + key_;
 }
 
-PointList HeatMap::rows(std::size_t level, std::size_t first) const {
-  const auto& [all, tolerance, batch] = kLevels[level];
-  PointList list = points_at(scene_, {theta_deg_});
-  const auto fill = [&, last = static_cast<double>(all - 1)](const MapAxis& axis, std::size_t from, std::size_t count) {
-    std::vector<double>& column = axis.axis == Axis::kTheta   ? list.theta_deg
-                                  : axis.axis == Axis::kSigma ? list.sigma
-                                                              : list.q;
-    column.clear();
-    for (std::size_t i = from; i < from + count; ++i) column.push_back(axis.scale.value(static_cast<double>(i) / last));
+PointList HeatMap::part(std::size_t level, std::size_t first) const {
+  const std::size_t all = kLevels[level].count;
+  const auto values = [&](const MapAxis& axis, std::size_t from, std::size_t count) {
+    std::vector<double> column;
+    for (std::size_t i = from; i < from + count; ++i)
+      column.push_back(axis.scale.value(static_cast<double>(i) / static_cast<double>(all - 1)));
+    return column;
   };
-  fill(x_, 0, all);
-  fill(y_, first, batch);
-  list.is_grid = true;
+  const std::vector<double> slow = values(slower(), first, batch(level)), fast = values(faster(), 0, all);
+  PointList list = points_at(scene_, {theta_deg_});
+  list.is_grid = faster().is_of_tables() && slower().rank() != 1;
+  if (slower().column().empty()) list.changes = {{slower().key, slow.front()}};
+  if (list.is_grid) {
+    if (list.changes.empty()) list[slower().column()] = slow;
+    list[faster().column()] = fast;
+    return list;
+  }
+  // Films are in no table: a list has all combinations.
+  list[faster().column()].clear();
+  if (list.changes.empty()) list[slower().column()].clear();
+  for (const double value : slow) {
+    list[faster().column()].insert(list[faster().column()].end(), fast.begin(), fast.end());
+    if (list.changes.empty()) list[slower().column()].insert(list[slower().column()].end(), fast.size(), value);
+  }
   return list;
 }
 
@@ -128,7 +217,7 @@ std::optional<Job> HeatMap::wanted(std::size_t level) const {
   if (key_.empty() || (is_current() && is_complete(level))) return std::nullopt;
   const Level& next = kLevels[level];
   Job job{.key = key_of(level), .scene = scene_, .parts = {}, .tolerance = next.tolerance, .keep_all = keep_all_};
-  for (std::size_t row = 0; row < next.count; row += next.batch) job.parts.push_back(rows(level, row));
+  for (std::size_t i = 0; i < next.count; i += batch(level)) job.parts.push_back(part(level, i));
   return job;
 }
 
@@ -138,12 +227,8 @@ bool HeatMap::take(const JobPart& news) {
   if (level == kLevels.size()) return false;
   const bool is_first = level == 0 && !is_current();
   if (is_first && (std::exchange(arriving_key_, key_) != key_ || news.part == 0)) arriving_.clear();
-  // On a grid the last of theta, sigma and q is the fastest, whatever axis it is on.
-  const std::size_t columns = kLevels[level].count;
-  const std::size_t rows = news.points.size() / columns;
   std::vector<Point>& points = is_first ? arriving_ : points_[level];
-  for (std::size_t i = 0; i < news.points.size(); ++i)
-    points.push_back(news.points[x_.axis > y_.axis ? i : (i % columns) * rows + i / columns]);
+  points.insert(points.end(), news.points.begin(), news.points.end());
   if (is_first && news.is_last) {
     points_ = {};
     points_[0] = std::exchange(arriving_, {});
@@ -175,7 +260,8 @@ const Point& HeatMap::point_at(std::size_t finest, std::size_t row, std::size_t 
   for (std::size_t level = finest;; --level) {
     const std::size_t last = kLevels[level].count - 1;
     const auto nearest = [&](std::size_t i) { return (2 * i * last + steps) / (2 * steps); };
-    const std::size_t position = nearest(row) * kLevels[level].count + nearest(column);
+    const auto [slow, fast] = is_turned() ? std::pair(column, row) : std::pair(row, column);
+    const std::size_t position = nearest(slow) * kLevels[level].count + nearest(fast);
     if (level == 0 || position < points_[level].size()) return points_[level][position];
   }
 }

@@ -24,6 +24,7 @@ void Residuals::load(MeasuredData data) {
     throw InputError(data.name + ": measured points take the window's scene; KEY=VALUE beside them is for dolp fit");
   }
   data_ = std::move(data);
+  loaded_for_ = scene_;
   ++loads_;
 }
 
@@ -35,7 +36,7 @@ void Residuals::follow(const std::string& key, const Scene& scene) {
 std::string Residuals::job_key() const { return fmt::format("measured {} {}", loads_, key_); }
 
 std::optional<Job> Residuals::wanted() const {
-  if (!data_ || known_ == job_key()) return std::nullopt;
+  if (!data_ || is_known()) return std::nullopt;
   std::vector<double> theta_deg;
   std::vector<double> wavelength_um;
   for (const Measurement& one : data_->measurements) {
@@ -43,7 +44,7 @@ std::optional<Job> Residuals::wanted() const {
     if (one.wavelength_um) wavelength_um.push_back(*one.wavelength_um);
   }
   PointList list = points_at(scene_, std::move(theta_deg));
-  list.wavelength_um = std::move(wavelength_um);
+  if (!wavelength_um.empty()) list["wavelength_um"] = std::move(wavelength_um);
   return Job{.key = job_key(), .scene = scene_, .parts = {std::move(list)}, .keep_all = true};
 }
 
@@ -63,7 +64,7 @@ std::vector<Measurement> Residuals::measured(Plotted quantity) const {
 
 std::vector<Measurement> Residuals::residuals(Plotted quantity) const {
   std::vector<Measurement> residuals;
-  if (!data_ || known_ != job_key()) return residuals;
+  if (!data_ || !is_known()) return residuals;
   for (std::size_t i = 0; i < model_.size(); ++i) {
     Measurement one = data_->measurements[i];
     one.value -= described(quantity).value(model_[i]);
@@ -89,7 +90,7 @@ FitRange fit_range(const FitMarks& marks, const Scene& scene, const Parameter& p
     return typed;
   }
   const Scale slider = range_in(scene, parameter);
-  const double low = key == "surface.k" ? kLeastK : std::min(slider.from, value);
+  const double low = key.ends_with(".k") ? kLeastK : std::min(slider.from, value);
   return {key, low, std::max(slider.to, value), std::max(low, value)};
 }
 

@@ -18,7 +18,7 @@ MeasuredData read_measured(const std::string& path);
 /// Measured points, and the model there.
 class Residuals {
  public:
-  explicit Residuals(const Scene& scene) : scene_(scene) {}
+  explicit Residuals(const Scene& scene) : scene_(scene), loaded_for_(scene) {}
 
   /// Errors: InputError for data that have their own settings.
   void load(MeasuredData data);
@@ -29,6 +29,9 @@ class Residuals {
   bool take(const JobPart& news);
 
   const std::optional<MeasuredData>& data() const { return data_; }
+  /// The scene for which the data were loaded.
+  const Scene& loaded_for() const { return loaded_for_; }
+  bool is_known() const { return known_ == job_key(); }
   /// The measured points of a quantity.
   std::vector<Measurement> measured(Plotted quantity) const;
   /// The measured points of a quantity with measured minus model as their values; without points at which the model
@@ -42,6 +45,7 @@ class Residuals {
   std::size_t loads_ = 0;
   std::string key_;
   Scene scene_;
+  Scene loaded_for_;
   std::string known_;  ///< key of the job that gave the model
   std::vector<Point> model_;
 };

@@ -76,6 +76,44 @@ MaterialCurve material_curve(const Scene& scene, std::size_t count) {
   return curve;
 }
 
+Scene at_one_wavelength(const Scene& scene) {
+  const auto [from_um, to_um] = spectrum_um(scene);
+  if (from_um == to_um) return scene;
+  return scene.with({{"spectrum.band_um", Value()}, {"spectrum.wavelength_um", 0.5 * (from_um + to_um)}});
+}
+
+Scene smooth_scene(const Scene& scene) {
+  return scene.with({{"surface.wind_m_s", Value()},
+                     {"grid.wind_m_s", Value()},
+                     {"surface.sigma", 0.0},
+                     {"surface.scattering", "single"},
+                     {"surface.specular", 1.0},
+                     {"surface.diffuse", 0.0},
+                     {"geometry.mode", "hemispherical"}});
+}
+
+void Sweep::follow(const std::string& key, const Scene& scene, PointList list, const std::string& column,
+                   bool keep_all) {
+  key_ = key;
+  scene_ = scene;
+  list_ = std::move(list);
+  column_ = column;
+  keep_all_ = keep_all;
+}
+
+std::optional<Job> Sweep::wanted() const {
+  if (!scene_ || is_finished()) return std::nullopt;
+  return Job{.key = key_, .scene = *scene_, .parts = {list_}, .keep_all = keep_all_};
+}
+
+bool Sweep::take(const JobPart& news) {
+  if (!scene_ || news.key != key_) return false;
+  shown_key_ = key_;
+  points_ = news.points;
+  at_ = list_[column_];
+  return true;
+}
+
 ScatteringCut scattering_cut(Evaluator& evaluator, const Scene& scene, double theta_i_deg, std::size_t count) {
   ScatteringCut cut;
   const auto [from_um, to_um] = spectrum_um(scene);

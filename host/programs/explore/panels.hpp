@@ -1,5 +1,5 @@
-// Values of the views beside the map: slope distributions, a material over wavelength, the pBRDF in the plane of
-// incidence, a sphere, and the sky of a source.
+// Values of the views beside the map: slope distributions, a material over wavelength, curves over wavelength and of
+// the smooth surface, the pBRDF in the plane of incidence, a sphere, and the sky of a source.
 #pragma once
 
 #include <numbers>
@@ -11,10 +11,11 @@ namespace dolp::explore {
 inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< in radians
 
 /// A view beside the curve; it is computed while it is shown.
-enum class Panel : std::uint8_t { kMap, kSlopes, kMaterial, kScattering, kShapes, kSky, kFit };
+enum class Panel : std::uint8_t { kMap, kSlopes, kMaterial, kSmooth, kSpectrum, kScattering, kShapes, kSky, kFit };
 
 /// Their names, in the order of Panel.
-inline constexpr std::array kPanelNames = {"map", "slopes", "material", "pBRDF", "sphere", "sky", "fit"};
+inline constexpr std::array kPanelNames = {"map",   "slopes", "material", "smooth", "spectrum",
+                                           "pBRDF", "sphere", "sky",      "fit"};
 
 /// The panel of a name. Errors: InputError that lists the names.
 Panel panel_of(const std::string& name);
@@ -37,6 +38,36 @@ MaterialCurve material_curve(const Scene& scene, std::size_t count);
 
 /// The ends of the scene's spectrum, equal for a single wavelength.
 std::pair<double, double> spectrum_um(const Scene& scene);
+
+/// The scene at the middle of its band.
+Scene at_one_wavelength(const Scene& scene);
+
+/// The scene's surface without roughness: its rho_s and rho_p are the reflectances R_s and R_p of a facet.
+Scene smooth_scene(const Scene& scene);
+
+/// Points of a scene along one column, computed while a view shows them.
+class Sweep {
+ public:
+  /// Switches to the points of `list` with different values in `column`; `key` identifies their content.
+  void follow(const std::string& key, const Scene& scene, PointList list, const std::string& column, bool keep_all);
+  std::optional<Job> wanted() const;
+  bool take(const JobPart& news);
+  /// True where the points on display are those of the scene.
+  bool is_finished() const { return key_ == shown_key_; }
+  // The points on display, and their values in the column.
+  const std::vector<Point>& points() const { return points_; }
+  const std::vector<double>& at() const { return at_; }
+
+ private:
+  std::string key_;
+  std::optional<Scene> scene_;
+  PointList list_;
+  std::string column_;
+  bool keep_all_ = false;
+  std::string shown_key_;
+  std::vector<Point> points_;
+  std::vector<double> at_;
+};
 
 /// The Mueller pBRDF in the plane of incidence.
 struct ScatteringCut {

@@ -9,6 +9,7 @@
 
 #include "base/text.hpp"
 #include "explore/points.hpp"
+#include "explore/scene_edits.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -16,26 +17,40 @@ namespace {
 bool is_cauchy(const Scene& s) { return s.word("surface.distribution") == "cauchy"; }
 bool has_no_wind(const Scene& s) { return !has_wind(s); }
 bool is_diffuse(const Scene& s) { return s.number("surface.diffuse") > 0.0; }
+bool has_index(const Scene& s) { return !s.word("surface.reflectance_file"); }
 
-/// The words that describe a surface, in groups.
-std::vector<std::vector<std::string>> surface_words(const Scene& scene) {
-  const auto with_number = [&](const char* symbol, const char* key, const char* unit = "") {
-    return fmt::format("{} {:.4g}{}", symbol, scene.number(key).value(), unit);
-  };
-  std::vector<std::vector<std::string>> groups = {
-      {scene.word("surface.distribution").value(),
-       has_wind(scene) ? with_number("U", "surface.wind_m_s", " m/s") : with_number("σ", "surface.sigma")},
-      {scene.word("surface.masking").value()}};
-  if (is_cauchy(scene)) groups[0].push_back(with_number("q", "surface.q"));
-  if (scene.word("surface.scattering") == "multiple") groups.push_back({"all bounces"});
-  if (const auto material = scene.word("surface.material")) {
-    groups.push_back({*material});
-  } else if (const auto file = scene.word("surface.material_file")) {
-    groups.push_back({*file});
-  } else {
-    groups.push_back({with_number("n", "surface.n"), with_number("k", "surface.k")});
+std::string with_number(const Scene& scene, const char* symbol, const std::string& key, const char* unit = "") {
+  return fmt::format("{} {:.4g}{}", symbol, scene.number(key).value(), unit);
+}
+
+/// The material of the table "surface", or of a film: a name, a file, or n and k.
+std::string material_of(const Scene& scene, const std::string& table) {
+  if (table == "surface" && !has_index(scene)) return *scene.word("surface.reflectance_file");
+  for (const char* name : {".material", ".material_file"}) {
+    if (const auto word = scene.word(table + name)) return *word;
   }
+  return with_number(scene, "n", table + ".n") + ' ' + with_number(scene, "k", table + ".k");
+}
+
+/// The words that describe the shape of a surface, in groups.
+std::vector<std::vector<std::string>> shape_words(const Scene& scene) {
+  std::vector<std::vector<std::string>> groups = {
+      {scene.word("surface.distribution").value(), has_wind(scene) ? with_number(scene, "U", "surface.wind_m_s", " m/s")
+                                                                   : with_number(scene, "σ", "surface.sigma")},
+      {scene.word("surface.masking").value()}};
+  if (is_cauchy(scene)) groups[0].push_back(with_number(scene, "q", "surface.q"));
+  if (scene.word("surface.scattering") == "multiple") groups.push_back({"all bounces"});
   return groups;
+}
+
+/// The material of a surface and its films.
+std::string material_name(const Scene& scene) {
+  std::string name = material_of(scene, "surface");
+  for (std::size_t layer = 1; layer <= films_of(scene).size(); ++layer) {
+    const std::string film = fmt::format("surface.coating.{}", layer);
+    name += fmt::format(", film {} {:.4g} µm", material_of(scene, film), scene.number(film + ".thickness_um").value());
+  }
+  return name;
 }
 
 /// The numbers and the sky of a scene that differ from another scene's: "T 300 K, clear-sky".
@@ -53,37 +68,11 @@ std::string different_numbers(const Scene& scene, const Scene& other) {
   return join(words);
 }
 
-}  // namespace
-
-const Key& described(const std::string& key) {
-  const auto found = std::ranges::find(dolp::keys(), key, &Key::key);
-  if (found == dolp::keys().end()) throw std::logic_error("no scene key " + key);
-  return *found;
-}
-
-std::optional<double> Parameter::value(const Scene& scene) const {
-  return is_used && !is_used(scene) ? std::nullopt : scene.number(key->key);
-}
-
-double Parameter::slider_value(double position) const {
-  const double exact = slider.value(position);
-  // The text that one would type into a file, and that reads back as the same number.
-  if (exact == 0.0) return exact;
-  const double digit = std::pow(10.0, 3.0 - std::floor(std::log10(std::abs(exact))));
-  return slider.clamp(std::round(exact * digit) / digit);
-}
-
-std::optional<std::size_t> Choice::word(const Scene& scene) const {
-  const std::optional<std::string> word = scene.word(key->key);
-  if (!word) return std::nullopt;
-  return static_cast<std::size_t>(std::ranges::find(key->words, *word) - key->words.begin());
-}
-
-const std::vector<Parameter>& parameters() {
+std::vector<Parameter> parameters_without_films() {
   const auto key = [](const char* name) { return &described(name); };
-  static const std::vector<Parameter> all = {
-      {key("surface.n"), "n", {1.0, 40.0, true}, "N = n + ik"},
-      {key("surface.k"), "k", {0.0, 100.0}, "N = n + ik, k ≥ 0 absorbs"},
+  return {
+      {key("surface.n"), "n", {1.0, 40.0, true}, "N = n + ik", has_index},
+      {key("surface.k"), "k", {0.0, 100.0}, "N = n + ik, k ≥ 0 absorbs", has_index},
       {key("surface.sigma"), "σ", {0.01, 2.0, true}, "m² = 2σ²; D(α) of eq. (8) or (1)", has_no_wind},
       {key("surface.wind_m_s"), "U", {0.0, 30.0}, "m² = 0.003 + 0.00512 U (Cox and Munk 1954), D(α) of eq. (1)"},
       {key("surface.q"), "q", {1.1, 20.0, true}, "D = (q−1)/(π m² cos⁴α) · (1 + tan²α/m²)^(−q), eq. (8)", is_cauchy},
@@ -103,6 +92,55 @@ const std::vector<Parameter>& parameters() {
       {key("geometry.relative_azimuth_deg"), "Δφ", {0.0, 360.0}, "cos 2β = ωi · ωr, eq. (2)", is_bistatic},
       {key("accuracy.tolerance"), "tolerance", {1e-9, 1e-2, true}, "|δDOLP|, |δρ|/ρ_I ≤ tolerance"},
   };
+}
+
+/// n, k or the thickness of a film.
+Parameter film_parameter(const Key& key) {
+  const std::string part = key.key.substr(key.key.rfind('.') + 1);
+  if (part == "n") return {&key, fmt::format("n_{}", key.layer), {0.1, 10.0, true}, "N = n + ik of the film"};
+  if (part == "k") return {&key, fmt::format("k_{}", key.layer), {0.0, 10.0}, "N = n + ik of the film"};
+  return {&key, fmt::format("d_{}", key.layer), {1e-3, 100.0, true}, "δ = 2π d √(N² − sin²β)/λ, the phase of a film"};
+}
+
+}  // namespace
+
+const Key& described(const std::string& key) {
+  const auto found = std::ranges::find(dolp::keys(), key, &Key::key);
+  if (found == dolp::keys().end()) throw std::logic_error("no scene key " + key);
+  return *found;
+}
+
+std::optional<double> Parameter::value(const Scene& scene) const {
+  return is_used && !is_used(scene) ? std::nullopt : scene.number(key->key);
+}
+
+std::string Parameter::label() const {
+  const std::string unit = unit_text(*key);
+  return unit.empty() ? symbol : fmt::format("{} [{}]", symbol, unit);
+}
+
+double Parameter::slider_value(double position) const {
+  const double exact = slider.value(position);
+  // The text that one would type into a file, and that reads back as the same number.
+  if (exact == 0.0) return exact;
+  const double digit = std::pow(10.0, 3.0 - std::floor(std::log10(std::abs(exact))));
+  return slider.clamp(std::round(exact * digit) / digit);
+}
+
+std::optional<std::size_t> Choice::word(const Scene& scene) const {
+  const std::optional<std::string> word = scene.word(key->key);
+  if (!word) return std::nullopt;
+  return static_cast<std::size_t>(std::ranges::find(key->words, *word) - key->words.begin());
+}
+
+const std::vector<Parameter>& parameters() {
+  static const std::vector<Parameter> all = [] {
+    std::vector<Parameter> known = parameters_without_films();
+    for (const Key& key : dolp::keys()) {
+      if (key.layer > 0 && key.type == Key::Type::kNumber) known.push_back(film_parameter(key));
+    }
+    return known;
+  }();
   return all;
 }
 
@@ -133,7 +171,7 @@ Scale range_in(const Scene& scene, const Parameter& parameter) {
   return is_smith && parameter.key->key == "surface.q" ? kSmithQ : parameter.slider;
 }
 
-std::string table_of(const std::string& key) { return key.substr(0, key.find('.')); }
+std::string table_of(const std::string& key) { return key.substr(0, key.rfind('.')); }
 
 std::string unit_text(const Key& key) {
   if (key.unit == "1") return {};
@@ -150,16 +188,20 @@ bool is_bistatic(const Scene& scene) { return scene.word("geometry.mode") == "bi
 std::string surface_name(const Scene& scene, const Scene* other) {
   std::vector<std::string> common, parts;
   if (other) {
-    for (const std::vector<std::string>& group : surface_words(*other))
+    for (const std::vector<std::string>& group : shape_words(*other))
       common.insert(common.end(), group.begin(), group.end());
   }
-  for (std::vector<std::string> words : surface_words(scene)) {
+  for (std::vector<std::string> words : shape_words(scene)) {
     std::erase_if(words, [&](const std::string& word) { return std::ranges::count(common, word) > 0; });
     if (!words.empty()) parts.push_back(fmt::format("{}", fmt::join(words, " ")));
   }
-  if (!parts.empty()) return join(parts);
-  const std::string rest = other ? different_numbers(scene, *other) : "";
-  return rest.empty() ? "the same surface" : rest;
+  const std::string material = material_name(scene);
+  if (parts.empty() && material == material_name(*other)) {
+    const std::string rest = different_numbers(scene, *other);
+    parts.push_back(rest.empty() ? "the same surface" : rest);
+  }
+  parts.push_back(material);
+  return join(parts);
 }
 
 }  // namespace dolp::explore

@@ -10,7 +10,7 @@ namespace dolp::explore {
 /// A number of the scene that a slider moves.
 struct Parameter {
   const Key* key;
-  const char* symbol;    ///< UTF-8
+  std::string symbol;    ///< UTF-8
   Scale slider;          ///< a part of the key's range; you can type the rest
   const char* equation;  ///< UTF-8, with its number in the paper where it has one
   /// True where the scene uses the parameter; null: every scene that has it uses it.
@@ -18,6 +18,8 @@ struct Parameter {
 
   /// The scene's value; none where the window hides the control.
   std::optional<double> value(const Scene& scene) const;
+  /// "λ [µm]".
+  std::string label() const;
   /// The position of a value on the slider, from 0 to 1, and the value at a position, rounded to four digits.
   double slider_position(double value) const { return slider.position(slider.clamp(value)); }
   double slider_value(double position) const;
@@ -37,7 +39,7 @@ struct Choice {
 /// The scene key of this name, which must exist.
 const Key& described(const std::string& key);
 
-/// All controls, in the order of the scene keys.
+/// All controls, in the order of the scene keys; the numbers of films come last.
 const std::vector<Parameter>& parameters();
 const std::vector<Choice>& choices();
 
@@ -47,7 +49,7 @@ const Parameter& parameter(const std::string& key);
 /// The range of a parameter's slider, without the values that the scene's masking excludes.
 Scale range_in(const Scene& scene, const Parameter& parameter);
 
-/// The table of a dotted key: "surface" of "surface.sigma".
+/// The table of a dotted key: "surface" of "surface.sigma", "surface.coating.1" of "surface.coating.1.n".
 std::string table_of(const std::string& key);
 
 /// The unit for readers: empty for 1, "°" for degree.
@@ -55,8 +57,9 @@ std::string unit_text(const Key& key);
 
 bool is_bistatic(const Scene& scene);
 
-/// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1"; with `other` only the words that
-/// differ from it, or, where all of them are common, the other numbers that differ.
+/// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1". With `other` only the words of the
+/// shape that differ from it, or, where all of them and the material are common, the other numbers that differ; and the
+/// material.
 std::string surface_name(const Scene& scene, const Scene* other = nullptr);
 
 }  // namespace dolp::explore

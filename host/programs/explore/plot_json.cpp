@@ -39,7 +39,7 @@ json map_json(const Session& session) {
   if (const auto& typed = session.view().map_colours) {
     colours = {{"from", description.scale() * typed->from}, {"to", description.scale() * typed->to}};
   }
-  const auto axis = [](const MapAxis& one) { return axis_json(one.label(), one.scale); };
+  const auto axis = [](const MapAxis& one) { return axis_json(one.label, one.scale); };
   return {{"x", axis(session.map().x())},
           {"y", axis(session.map().y())},
           {"label", description.label()},
@@ -59,7 +59,7 @@ std::string plot_json(const Session& session, const Scale& x, const Scale& y) {
     if (!pin.is_visible) continue;
     const Scene& scene = pin.curve.shown_scene();
     std::string name = pin.name.empty() ? surface_name(scene) : pin.name;
-    if (name == surface_name(session.curve().shown_scene())) name += ", " + pin_name(session, pin);
+    if (name == surface_name(session.curve().shown_scene())) name = pin_name(session, pin);
     curves.push_back(curve_json(pin.curve, name, pin.colour, quantity));
   }
   curves.push_back(curve_json(session.curve(), curve_name(session), "curve", quantity));

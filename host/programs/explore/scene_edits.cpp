@@ -1,5 +1,7 @@
 #include "explore/scene_edits.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <fstream>
@@ -13,10 +15,13 @@
 namespace dolp::explore {
 namespace {
 
+constexpr const char* kCoating = "surface.coating";
+
 /// True where a change makes an older change of `other` void.
 bool replaces(const Setting& change, const std::string& other) {
   const std::string& key = change.key;
   if (other == key || other == table_of(key)) return true;
+  if (key == kCoating) return other.starts_with(kCoating);
   const bool is_table = key.find('.') == std::string::npos && key != "title";
   if (is_table) return table_of(other) == key;
   return std::ranges::count(described(key).rivals, other) > 0;
@@ -106,6 +111,29 @@ std::vector<Setting> SceneEdits::changes_without(const std::vector<std::string>&
   std::vector<Setting> left = changes_;
   std::erase_if(left, [&](const Setting& change) { return std::ranges::count(keys, change.key) > 0; });
   return left;
+}
+
+std::vector<std::string> films_of(const Scene& scene) {
+  std::vector<std::string> films;
+  for (const Key& key : dolp::keys()) {
+    if (key.layer == 0) continue;
+    Value value;
+    if (key.type == Key::Type::kNumber) {
+      if (const auto number = scene.number(key.key)) value = *number;
+    } else if (const auto word = scene.word(key.key)) {
+      value = *word;
+    }
+    if (value == Value()) continue;
+    films.resize(key.layer);
+    std::string& film = films.back();
+    film += fmt::format("{}{} = {}", film.empty() ? "" : ", ", key.key.substr(key.key.rfind('.') + 1), value.text());
+  }
+  return films;
+}
+
+Setting coating_of(const std::vector<std::string>& films) {
+  if (films.empty()) return {kCoating, Value()};
+  return {kCoating, TomlText{fmt::format("[{{ {} }}]", fmt::join(films, " }, { "))}};
 }
 
 std::string word_of(const Value& value) {

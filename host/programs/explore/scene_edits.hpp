@@ -51,6 +51,11 @@ class SceneEdits {
   Scene scene_;
 };
 
+/// The films of a scene from the outside in, each as the keys of a TOML table: "n = 1.5, k = 0, thickness_um = 1".
+std::vector<std::string> films_of(const Scene& scene);
+/// The change of a scene that gives it these films.
+Setting coating_of(const std::vector<std::string>& films);
+
 /// The word of a value, without quotes.
 std::string word_of(const Value& value);
 

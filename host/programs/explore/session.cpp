@@ -19,7 +19,12 @@ std::string text_of(const std::vector<Setting>& changes) {
 }  // namespace
 
 Session::Session(SceneEdits edits)
-    : edits_(std::move(edits)), curve_(scene()), map_(scene()), peak_(scene()), residuals_(scene()) {
+    : edits_(std::move(edits)),
+      curve_(scene()),
+      map_(scene()),
+      spectral_scene_(scene()),
+      peak_(scene()),
+      residuals_(scene()) {
   tell_new_remarks_on_scene();
   follow();
 }
@@ -196,7 +201,7 @@ void Session::set_view(const View& view) {
     view_.map_colours.reset();
   }
   if (view.is_theta_log != before.is_theta_log) view_.curve_zoom.x.reset();
-  if (view_.map_x == view_.map_y) view_.map_y = view_.map_x == Axis::kSigma ? Axis::kTheta : Axis::kSigma;
+  if (view_.map_x == view_.map_y) view_.map_y = view_.map_x == "sigma" ? "theta" : "sigma";
   view_.theta_max_deg = std::clamp(view_.theta_max_deg, kLeastThetaMaxDeg, 90.0);
   set_theta(theta_deg_);
 }
@@ -210,19 +215,19 @@ void Session::set_map_cursor(double x, double y) {
   std::vector<Setting> changes;
   for (const auto& [axis, position] : {std::pair{&map_.x(), x}, {&map_.y(), y}}) {
     const double value = axis->scale.value(position);
-    if (axis->axis == Axis::kTheta) {
+    if (axis->key.empty()) {
       theta_deg_ = value;
     } else {
       // Four digits, as a slider gives.
-      changes.push_back({axis->key(), TomlText{fmt::format("{:.4g}", axis->scale.clamp(value))}});
+      changes.push_back({axis->key, TomlText{fmt::format("{:.4g}", axis->scale.clamp(value))}});
     }
   }
   set(changes);
 }
 
 double Session::map_cursor(const MapAxis& axis) const {
-  const std::string key = axis.key();
-  return axis.scale.position(key.empty() ? theta_deg_ : scene().number(key).value_or(axis.scale.from));
+  const double value = axis.key.empty() ? theta_deg_ : scene().number(axis.key).value_or(axis.scale.from);
+  return axis.scale.position(axis.scale.clamp(value));
 }
 
 const Point* Session::at_cursor() const {

@@ -19,6 +19,31 @@ struct JobList {
   void add(std::vector<Job> more) { std::ranges::move(more, std::back_inserter(jobs)); }
 };
 
+/// Gives an axis the range that was typed for it, or else the range in which the scene is known. False where that is
+/// one value.
+bool find_range(const Scene& scene, const View& view, MapAxis& axis) {
+  const auto typed = view.map_ranges.find(axis.label);
+  // The scene may have changed since the range was typed, and no longer take it.
+  if (typed != view.map_ranges.end() && refusal(scene, axis, typed->second).empty()) {
+    axis.scale = typed->second;
+  } else if (axis.name == "wavelength") {
+    axis.scale = known_part(scene, axis);
+  }
+  return axis.scale.refusal().empty();
+}
+
+constexpr const char* kWavelength = "spectrum.wavelength_um";
+
+/// The axis of this name, or, where the scene has none, another one than `other`.
+MapAxis axis_or_another(const Scene& scene, const View& view, const std::string& name, const std::string& other) {
+  std::vector<MapAxis> axes = map_axes(scene, view.theta_max_deg);
+  const auto named = std::ranges::find(axes, name, &MapAxis::name);
+  if (named != axes.end() && find_range(scene, view, *named)) return *named;
+  MapAxis& another = axes[axes.front().name == other ? 1 : 0];
+  find_range(scene, view, another);
+  return another;
+}
+
 }  // namespace
 
 std::string content_key(const Scene& scene, const std::vector<Setting>& changes, bool keep_all) {
@@ -33,6 +58,7 @@ void Session::follow() {
   residuals_.follow(content, scene());
   follow_overlay(content);
   follow_map();
+  follow_sweeps(content);
   source_sky_.follow(content_key(scene(), edits_.changes_without({"geometry.relative_azimuth_deg"}), false), scene());
   estimate_influences();
   follow_peak();
@@ -65,24 +91,43 @@ void Session::follow_overlay(const std::string& content) {
   }
 }
 
-MapAxis Session::map_axis(Axis axis) const {
-  MapAxis suggested = suggested_axis(axis, scene(), view_.theta_max_deg);
-  const auto typed = view_.map_ranges.find(suggested.label());
-  // The scene may have changed since the range was typed, and no longer take it.
-  const bool is_taken = typed != view_.map_ranges.end() && refusal(scene(), suggested, typed->second).empty();
-  if (is_taken) suggested.scale = typed->second;
-  return suggested;
-}
-
 void Session::follow_map() {
   if (is_dragged() && map_.is_arriving()) return;  // a drag goes from one complete map to the next
-  const MapAxis x = map_axis(view_.map_x);
-  const MapAxis y = map_axis(view_.map_y);
-  std::string key = content_key(scene(), edits_.changes_without({x.key(), y.key()}), keeps_all());
-  if (x.axis != Axis::kTheta && y.axis != Axis::kTheta) key += "\ntheta=" + format_number(theta_deg_);
+  const MapAxis x = axis_or_another(scene(), view_, view_.map_x, view_.map_y);
+  const MapAxis y = axis_or_another(scene(), view_, view_.map_y, x.name);
+  std::string key = content_key(scene(), edits_.changes_without({x.key, y.key}), keeps_all());
+  if (!x.key.empty() && !y.key.empty()) key += "\ntheta=" + format_number(theta_deg_);
   for (const MapAxis& axis : {x, y})
-    key += fmt::format("\n{} {} {} {}", axis.label(), axis.scale.from, axis.scale.to, axis.scale.is_log);
+    key += fmt::format("\n{} {} {} {}", axis.label, axis.scale.from, axis.scale.to, axis.scale.is_log);
   map_.follow(key, scene(), keeps_all(), x, y, theta_deg_);
+}
+
+void Session::follow_sweeps(const std::string& content) {
+  constexpr std::size_t kSpectrum = 121;
+  constexpr std::size_t kSmooth = 901;  // fringes of films, in closed form
+  constexpr double kWidth = 2.0;        // from half of the opened scene's wavelength to twice
+  const bool is_spectrum = view_.panel == Panel::kSpectrum;
+  if (!is_spectrum && view_.panel != Panel::kSmooth) return;
+  spectral_scene_ = at_one_wavelength(scene());
+  const auto [from_um, to_um] = spectrum_um(edits_.opened());
+  wavelengths_ = {"wavelength", parameter(kWavelength).label(), kWavelength, {from_um / kWidth, to_um * kWidth}};
+  wavelengths_.scale = wavelengths_.scale.including(spectral_scene_.number(kWavelength).value());
+  const bool has_range = find_range(spectral_scene_, view_, wavelengths_);
+  const auto follow_wavelengths = [&](Sweep& sweep, const Scene& one, std::size_t count, bool keep_all) {
+    if (!has_range) return;
+    PointList list = points_at(one, std::vector<double>(count, theta_deg_));
+    std::vector<double>& all = list["wavelength_um"];
+    for (std::size_t i = 0; i < count; ++i)
+      all.push_back(wavelengths_.scale.value(static_cast<double>(i) / static_cast<double>(count - 1)));
+    const std::string key = fmt::format("{} wavelengths from {} to {}, {} at {}\n{}", count, all.front(), all.back(),
+                                        wavelengths_.scale.is_log, theta_deg_, content);
+    sweep.follow(key, one, list, "wavelength_um", keep_all);
+  };
+  if (is_spectrum) return follow_wavelengths(spectrum_, spectral_scene_, kSpectrum, keeps_all());
+  const Scene smooth = smooth_scene(scene());
+  smooth_.follow("smooth\n" + content, smooth, points_at(smooth, zeniths(0.0, 90.0, Curve::kFineCount)), "theta_deg",
+                 true);
+  follow_wavelengths(smooth_spectrum_, smooth_scene(spectral_scene_), kSmooth, true);
 }
 
 void Session::follow_peak() {
@@ -99,6 +144,8 @@ std::vector<Job> Session::wanted_in_drag() const {
   if (!is_curve_next_) add_other(is_map_next_);
   list.add(curve_.wanted(Curve::Stage::kCoarse));
   if (is_curve_next_) add_other(is_map_next_);
+  if (view_.panel == Panel::kSmooth) list.add(smooth_.wanted());
+  if (view_.panel == Panel::kSmooth) list.add(smooth_spectrum_.wanted());
   add_other(!is_map_next_);
   return list.jobs;
 }
@@ -110,6 +157,9 @@ std::vector<Job> Session::wanted() const {
   list.add(curve_.wanted(Curve::Stage::kFine));
   if (overlay_) list.add(overlay_->wanted(Curve::Stage::kFine));
   if (shows_map()) list.add(map_.wanted(0));
+  if (view_.panel == Panel::kSmooth) list.add(smooth_.wanted());
+  if (view_.panel == Panel::kSmooth) list.add(smooth_spectrum_.wanted());
+  if (view_.panel == Panel::kSpectrum) list.add(spectrum_.wanted());
   list.add(peak_.wanted());
   list.add(residuals_.wanted());
   for (const Pin& pin : pins_) list.add(pin.curve.wanted(Curve::Stage::kFine));
@@ -128,6 +178,7 @@ void Session::take(const std::vector<JobPart>& news) {
     if (!is_curve) is_map_next_ = !is_map;
     if (is_map && part.is_last && is_dragged()) follow();
     source_sky_.take(part);
+    for (Sweep* sweep : {&spectrum_, &smooth_, &smooth_spectrum_}) sweep->take(part);
     if (peak_.take(part) && peak_.answer()) {
       for (Pin& pin : pins_) {
         if (pin.curve.key() == curve_.key()) pin.curve.set_peak(peak_.answer()->at);

@@ -33,7 +33,8 @@ std::vector<Shown> shown_curves(const Session& session) {
   };
   if (session.overlay()) add(*session.overlay(), overlay_style(), overlay_name(session));
   for (const Pin& pin : session.pins()) {
-    if (pin.is_visible) add(pin.curve, pin_style(pin.colour), pin_name(session, pin));
+    const CurveStyle style = pin_style(pin.colour);
+    if (pin.is_visible) add(pin.curve, session.is_foreign(pin.curve.scene()) ? stale(style) : style, "");
   }
   // Last, so that it lies over the others.
   add(session.curve(), current_style(), curve_name(session));
@@ -55,7 +56,7 @@ const PeakAnswer* shown_peak(const Session& session) {
   return is_marked && peak && session.curve().is_finished() ? &*peak : nullptr;
 }
 
-/// The values that the axis must show; only the positive ones for a logarithmic axis.
+/// The values that the axis must show.
 std::vector<double> values_to_show(const Session& session, const std::vector<Shown>& curves) {
   const Plotted quantity = session.view().quantity;
   std::vector<double> values;
@@ -71,31 +72,7 @@ std::vector<double> values_to_show(const Session& session, const std::vector<Sho
   }
   for (const Measurement& one : session.residuals().measured(quantity))
     values.push_back(scale_of(quantity) * one.value);
-  std::erase_if(values, [&](double value) { return !std::isfinite(value) || (session.view().is_log && value <= 0.0); });
   return values;
-}
-
-PlotAxis value_axis(const Session& session, const std::vector<Shown>& curves) {
-  const bool is_log = session.view().is_log;
-  std::vector<double> values = values_to_show(session, curves);
-  if (values.empty()) values = {is_log ? 0.01 : 0.0, 1.0};
-  if (!is_log) values.push_back(0.0);
-  const auto [low, high] = std::ranges::minmax(values);
-  PlotAxis axis{described(session.view().quantity).label(), {0.0, 1.0, is_log}};
-  double& from = axis.scale.from;
-  double& to = axis.scale.to;
-  if (is_log) {
-    constexpr double kMostDecades = 1e6;
-    constexpr double kRoom = 4.0;  // for the mark of the maximum
-    to = kRoom * high;
-    from = std::max(low / 1.5, to / kMostDecades);
-    return axis;
-  }
-  const double room = 0.06 * std::max(high - low, 1e-9);
-  from = low < 0.0 ? low - room : 0.0;
-  to = high > 0.0 ? high + 2.0 * room : 0.0;
-  if (to <= from) to = from + 1.0;
-  return axis;
 }
 
 /// Fills the range of DOLP with all bounces. Only the current curve has a band: overlapping bands are unreadable.
@@ -166,7 +143,7 @@ void draw_legend(const std::vector<Shown>& curves, Session& session) {
     const CurveStyle style = pin_style(pin.colour);
     ImGui::PushID(&pin);
     if (add_curve("pin", "pinned: " + pin_name(session, pin), pin.is_visible ? style : stale(style),
-                  pin.is_visible ? colour_of(pin.curve) : kDimColour))
+                  pin.is_visible && !session.is_foreign(pin.curve.scene()) ? colour_of(pin.curve) : kDimColour))
       pin.is_visible = !pin.is_visible;
     ImGui::PopID();
   }
@@ -180,6 +157,8 @@ void draw_legend(const std::vector<Shown>& curves, Session& session) {
   }
   if (std::ranges::any_of(points, [](const Point& point) { return !point.is_good(); }))
     add_curve("bad", "the model fails here (status)", bad_style());
+  if (session.residuals().data() && session.is_foreign(session.residuals().loaded_for()))
+    add_entry("measured", "o  points measured for another scene", kDimColour);
 }
 
 /// Returns the height of the legend. It does not depend on the entries, so that the plot stays where it is; more
@@ -228,8 +207,8 @@ void draw_peak(const Plot& plot, const Session& session) {
 }
 
 /// Measured points or residuals with error bars of one standard deviation.
-void draw_points(const Plot& plot, const std::vector<Measurement>& points, double scale, bool is_filled) {
-  const auto line = [&](ImVec2 from, ImVec2 to) { plot.list()->AddLine(from, to, kTextColour, scaled(1.0F)); };
+void draw_points(const Plot& plot, const std::vector<Measurement>& points, double scale, bool is_filled, ImU32 colour) {
+  const auto line = [&](ImVec2 from, ImVec2 to) { plot.list()->AddLine(from, to, colour, scaled(1.0F)); };
   const float cap = scaled(3.0F);
   for (const Measurement& point : points) {
     const double value = scale * point.value;
@@ -242,11 +221,16 @@ void draw_points(const Plot& plot, const std::vector<Measurement>& points, doubl
     }
     const ImVec2 at = plot.at(point.theta_deg, value);
     if (is_filled) {
-      plot.list()->AddCircleFilled(at, scaled(3.0F), kTextColour);
+      plot.list()->AddCircleFilled(at, scaled(3.0F), colour);
     } else {
-      plot.list()->AddCircle(at, scaled(4.0F), kTextColour, 0, scaled(1.5F));
+      plot.list()->AddCircle(at, scaled(4.0F), colour, 0, scaled(1.5F));
     }
   }
+}
+
+/// Grey for points that were loaded for another scene.
+ImU32 colour_of_points(const Session& session) {
+  return session.is_foreign(session.residuals().loaded_for()) ? kDimColour : kTextColour;
 }
 
 void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
@@ -260,8 +244,9 @@ void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
   const Plot plot("residuals", size, {"", theta}, {label, {-1.2 * largest, 1.2 * largest}});
   plot.clip();
   plot.list()->AddLine(plot.at(theta.from, 0.0), plot.at(theta.to, 0.0), kDimColour);
-  draw_points(plot, residuals, quantity.scale(), true);
+  draw_points(plot, residuals, quantity.scale(), true, colour_of_points(session));
   plot.unclip();
+  draw_label(plot.list(), plot.area().at(0.5F, 0.3F), {0.5F, 0.5F}, kDimColour, no_residuals_text(session, theta));
 }
 
 }  // namespace
@@ -304,13 +289,13 @@ void CurveView::draw(Session& session, ImVec2 size) {
   const Plotted quantity = session.view().quantity;
   const std::vector<Measurement> measured = session.residuals().measured(quantity);
   const float line = ImGui::GetTextLineHeight();
-  const bool has_residuals = !measured.empty() && size.y > kRoomForResiduals * line;
+  const bool has_residuals = session.residuals().data() && size.y > kRoomForResiduals * line;
   const float residual_height = has_residuals ? std::max(0.28F * size.y, kLeastResiduals * line) : 0.0F;
   const float gap = has_residuals ? ImGui::GetStyle().ItemSpacing.y : 0.0F;
 
   View view = session.view();
   const Scale zeniths = Scale{0.0, view.theta_max_deg}.with_log(view.is_theta_log);
-  PlotAxis values = value_axis(session, curves);
+  PlotAxis values{described(quantity).label(), range_of(values_to_show(session, curves), view.is_log)};
   choose_axes(session, view.curve_zoom, zeniths, values.scale);
   const Plot plot("curve", {size.x, size.y - residual_height - gap},
                   {is_bistatic(session.scene()) ? "zenith θ of the source [°]" : "zenith θ [°]", x_}, values);
@@ -320,7 +305,7 @@ void CurveView::draw(Session& session, ImVec2 size) {
   if (!plot.y().is_log) plot.list()->AddLine(plot.at(x_.from, 0.0), plot.at(x_.to, 0.0), kDimColour);
   if (quantity == Plotted::kDolp) draw_bracket(plot, curves.back());
   for (const Shown& shown : curves) draw_curve(plot, shown, quantity);
-  draw_points(plot, measured, scale_of(quantity), false);
+  draw_points(plot, measured, scale_of(quantity), false, colour_of_points(session));
   draw_cursor(plot, session, curves.back().style);
   if (plot.is_hovered() && !plot.is_dragged()) {
     draw_label(plot.list(), plot.area().at(0.99F, 0.98F), {1.0F, 1.0F}, kDimColour,

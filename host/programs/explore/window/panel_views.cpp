@@ -15,13 +15,6 @@ constexpr std::size_t kMaterialCount = 240;
 constexpr std::size_t kCutCount = 181;
 constexpr float kLineWidth = 2.0F;
 
-/// The values of a line over positions that all lines of a plot share.
-struct NamedLine {
-  std::string name;
-  CurveStyle style;
-  std::vector<double> values;
-};
-
 /// A range from 0, or from `least` where it is logarithmic, with room for names above the largest value.
 Scale values_range(const std::vector<NamedLine>& lines, double largest_part, double least, bool is_log) {
   double largest = 0.0;
@@ -34,21 +27,22 @@ Scale values_range(const std::vector<NamedLine>& lines, double largest_part, dou
   return {is_log ? std::max(least, largest_part * largest) : 0.0, (is_log ? 2.0 : 1.15) * largest, is_log};
 }
 
-/// Draws lines, with gaps where they have no value, and their names in the upper right corner.
-void draw_lines(const Plot& plot, const std::vector<double>& xs, const std::vector<NamedLine>& lines) {
+/// Draws lines, with gaps where they have no value, and their names in the upper right corner or in a row above it.
+void draw_lines(const Plot& plot, const std::vector<double>& xs, const std::vector<NamedLine>& lines,
+                bool is_above = false) {
   for (const NamedLine& line : std::views::reverse(lines)) {  // the first lies over the others
     std::vector<ImVec2> points;
     for (std::size_t i = 0; i < xs.size(); ++i)
       points.push_back(plot.can_show(xs[i], line.values[i]) ? plot.at(xs[i], line.values[i]) : kGap);
     draw_line(plot.list(), points, line.style, kLineWidth);
   }
-  const float height = ImGui::GetTextLineHeight(), right = plot.max().x - 0.6F * height;
-  float y = plot.min().y + 0.8F * height;
+  const float height = ImGui::GetTextLineHeight();
+  ImVec2 right{plot.max().x - 0.6F * height, plot.min().y + (is_above ? -1.1F : 0.8F) * height};
   for (const NamedLine& line : lines) {
-    draw_label(plot.list(), {right, y}, {1.0F, 0.5F}, kTextColour, line.name);
-    const float end = right - ImGui::CalcTextSize(shown(line.name).c_str()).x - 0.6F * height;
-    draw_line(plot.list(), {{end - 2.0F * height, y}, {end, y}}, line.style, kLineWidth);
-    y += 1.3F * height;
+    draw_label(plot.list(), right, {1.0F, 0.5F}, kTextColour, line.name);
+    const float end = right.x - ImGui::CalcTextSize(shown(line.name).c_str()).x - 0.6F * height;
+    draw_line(plot.list(), {{end - 2.0F * height, right.y}, {end, right.y}}, line.style, kLineWidth);
+    right = is_above ? ImVec2{end - 3.0F * height, right.y} : ImVec2{right.x, right.y + 1.3F * height};
   }
 }
 
@@ -59,6 +53,25 @@ std::string distribution_name(const Scene& scene) {
 }
 
 void draw_reason(const std::string& reason) { coloured_text(kDimColour, reason); }
+
+/// Marks the scene's wavelength or band on an axis of wavelengths.
+void mark_spectrum(const Plot& plot, const Scene& scene) {
+  const auto [from_um, to_um] = spectrum_um(scene);
+  const float from = plot.at_position(plot.x().position(from_um), 0.0).x;
+  const float to = plot.at_position(plot.x().position(to_um), 0.0).x;
+  plot.list()->AddRectFilled({from, plot.min().y}, {std::max(to, from + 1.5F), plot.max().y},
+                             band_colour(current_style()));
+}
+
+/// A quantity along a sweep, dim while the sweep belongs to an earlier scene, with gaps where the model fails.
+NamedLine line_of(const Sweep& sweep, Plotted quantity, const CurveStyle& style, const std::string& name) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  NamedLine line{name, sweep.is_finished() ? style : stale(style), {}};
+  const PlottedDescription& description = described(quantity);
+  for (const Point& point : sweep.points())
+    line.values.push_back(point.is_good() ? description.scale() * description.value(point) : kNone);
+  return line;
+}
 
 /// The largest magnitude of an element in a cut.
 double largest_magnitude(const ScatteringCut& cut, std::size_t element) {
@@ -290,13 +303,58 @@ void draw_material(const Session& session, ImVec2 size) {
   const Plot plot("material", size, {"wavelength λ [µm]", wavelengths},
                   {"n, k", values_range(lines, 0.0, 1e-4, session.view().is_log)});
   plot.clip();
-  const auto [from_um, to_um] = spectrum_um(session.scene());
-  const float from = plot.at_position(plot.x().position(from_um), 0.0).x;
-  const float to = plot.at_position(plot.x().position(to_um), 0.0).x;
-  plot.list()->AddRectFilled({from, plot.min().y}, {std::max(to, from + 1.5F), plot.max().y},
-                             band_colour(current_style()));
+  mark_spectrum(plot, session.scene());
   draw_lines(plot, curve.wavelength_um, lines);
   plot.unclip();
+}
+
+void SweepViews::draw_wavelengths(const char* id, Session& session, ImVec2 size, const std::vector<NamedLine>& lines,
+                                  const Sweep& sweep, const PlotAxis& values) {
+  const MapAxis axis = session.wavelengths();
+  if (!axis.scale.refusal().empty()) return draw_reason("n and k are known at only one wavelength.");
+  const Plot plot(id, size, {axis.label, axis.scale}, values);
+  plot.clip();
+  mark_spectrum(plot, session.scene());
+  draw_lines(plot, sweep.at(), lines, true);
+  plot.unclip();
+  const Scene& scene = session.spectral_scene();
+  const auto change = axis_editor_.draw(axis.label, plot.x_numbers(), axis.scale,
+                                        [&](const Scale& range) { return refusal(scene, axis, range); });
+  if (change) set_range(session, axis, *change);
+  const bool has_wavelength = session.scene().numbers("spectrum.band_um").empty();
+  if (plot.is_dragged() && has_wavelength)
+    session.set(axis.key, TomlText{fmt::format("{:.4g}", axis.scale.value(plot.mouse_x()))});
+}
+
+void SweepViews::draw_spectrum(Session& session, ImVec2 size) {
+  const PlottedDescription& quantity = described(session.view().quantity);
+  const NamedLine line =
+      line_of(session.spectrum(), quantity.quantity, current_style(), fmt::format("θ = {:.4g}°", session.theta_deg()));
+  draw_wavelengths("spectrum", session, size, {line}, session.spectrum(),
+                   {quantity.label(), range_of(line.values, session.view().is_log)});
+}
+
+void SweepViews::draw_smooth(Session& session, ImVec2 size) {
+  const ImVec2 half{size.x, 0.5F * (size.y - ImGui::GetStyle().ItemSpacing.y)};
+  const auto lines_of = [&](const Sweep& sweep) {
+    return std::vector<NamedLine>{line_of(sweep, Plotted::kRhoS, current_style(), "R_s"),
+                                  line_of(sweep, Plotted::kRhoP, overlay_style(), "R_p")};
+  };
+  const auto range = [&](const std::vector<NamedLine>& lines) {
+    return values_range(lines, 1e-4, 1e-4, session.view().is_log);
+  };
+  const std::vector<NamedLine> over_angle = lines_of(session.smooth()), over = lines_of(session.smooth_spectrum());
+  const bool is_band = !session.scene().numbers("spectrum.band_um").empty();
+  const Plot plot("smooth", half, {"local angle of incidence β [°]", {0.0, 90.0}},
+                  {is_band ? "R_s, R_p, mean over the band" : "R_s, R_p", range(over_angle)});
+  if (plot.is_dragged()) session.set_theta(plot.x().value(plot.mouse_x()));
+  plot.clip();
+  draw_lines(plot, session.smooth().at(), over_angle, true);
+  const float x = plot.at_position(plot.x().position(session.theta_deg()), 0.0).x;
+  plot.list()->AddLine({x, plot.min().y}, {x, plot.max().y}, kCursorColour, scaled(1.0F));
+  plot.unclip();
+  draw_wavelengths("smooth spectrum", session, half, over, session.smooth_spectrum(),
+                   {fmt::format("R_s, R_p at β = {:.4g}°", session.theta_deg()), range(over)});
 }
 
 void ScatteringView::update(const Session& session) {

@@ -78,6 +78,7 @@ class Ui {
   ControlsState controls_;
   NumberFields fields_;
   MapView map_view_;
+  SweepViews sweep_views_;
   ScatteringView scattering_view_;
   ShapeView shape_view_;
   CurveView curve_view_;

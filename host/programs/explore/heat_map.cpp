@@ -6,13 +6,15 @@
 #include <cmath>
 #include <limits>
 
-#include "explore/parameters.hpp"
+#include "explore/scene_edits.hpp"
 
 namespace dolp::explore {
 namespace {
 
+/// A number of scenes that an axis can have.
 struct AxisOfNumber {
   std::string name, key;
+  std::optional<Scale> range = {};  ///< none: the slider's
 };
 
 /// All axes but the zenith. No scene has both numbers that share a name.
@@ -22,44 +24,25 @@ const std::vector<AxisOfNumber>& axes_of_numbers() {
                                       {"sigma", "surface.wind_m_s"},
                                       {"q", "surface.q"},
                                       {"n", "surface.n"},
-                                      {"k", "surface.k"},
+                                      {"k", "surface.k", Scale{1e-3, 100.0, true}},
                                       {"wavelength", "spectrum.wavelength_um"},
                                       {"temperature", "emission.temperature_K"}};
     for (const Key& key : keys()) {
-      if (key.key.ends_with(".thickness_um")) axes.push_back({fmt::format("film {}", key.layer), key.key});
+      if (key.key.ends_with(".thickness_um"))
+        axes.push_back({fmt::format("film {}", key.layer), key.key, Scale{1e-2, 10.0, true}});
     }
     return axes;
   }();
   return all;
 }
 
-/// The range of an axis of a scene's grid; `otherwise` where that has no range.
-Scale grid_range(const Scene& scene, const std::string& column, const Scale& otherwise) {
-  const std::vector<double> grid = scene.numbers("grid." + column);
-  if (grid.empty()) return otherwise;
+/// The range of the scene's grid, if it has one; otherwise the range of the axis.
+Scale grid_range(const Scene& scene, const MapAxis& axis) {
+  const std::vector<double> grid = axis.is_of_tables() ? scene.numbers("grid." + axis.column()) : std::vector<double>();
+  if (grid.empty()) return axis.scale;
   const auto [low, high] = std::ranges::minmax(grid);
-  const bool has_range = low < high && !(otherwise.is_log && low <= 0.0);
-  return has_range ? Scale{low, high, otherwise.is_log} : otherwise;
-}
-
-/// The range of a number of a scene.
-Scale suggested_range(const Scene& scene, const MapAxis& axis, double value) {
-  constexpr Scale kK{1e-3, 100.0, true};
-  constexpr Scale kThickness{1e-2, 10.0, true};
-  Scale range = range_in(scene, parameter(axis.key));
-  if (axis.name == "k") range = kK;
-  if (axis.name.starts_with("film")) range = kThickness;
-  if (axis.is_of_tables()) range = grid_range(scene, axis.column(), range);
-  return range.including(value);
-}
-
-bool is_accepted(const Scene& scene, const std::string& key, double value) {
-  try {
-    static_cast<void>(scene.with(key, value));
-    return true;
-  } catch (const InputError&) {
-    return false;
-  }
+  const bool has_range = low < high && !(axis.scale.is_log && low <= 0.0);
+  return has_range ? Scale{low, high, axis.scale.is_log} : axis.scale;
 }
 
 /// The corners of a square in turn.
@@ -94,21 +77,16 @@ void add_lines(const MapField& field, double level, std::size_t column, std::siz
 
 }  // namespace
 
-std::vector<std::string> map_axis_names() {
-  std::vector<std::string> names = {"theta"};
-  for (const AxisOfNumber& one : axes_of_numbers()) {
-    if (names.back() != one.name) names.push_back(one.name);
-  }
-  return names;
-}
-
 std::vector<MapAxis> map_axes(const Scene& scene, double theta_max_deg) {
   std::vector<MapAxis> axes = {{.scale = {0.0, theta_max_deg}}};
   for (const AxisOfNumber& one : axes_of_numbers()) {
     const std::optional<double> value = parameter(one.key).value(scene);
+    if (!value && one.name.starts_with("film")) break;
     if (!value) continue;
-    MapAxis& axis = axes.emplace_back(MapAxis{one.name, parameter(one.key).label(), one.key});
-    axis.scale = suggested_range(scene, axis, *value);
+    MapAxis axis{one.name, parameter(one.key).label(), one.key};
+    axis.scale = one.range.value_or(range_in(scene, parameter(one.key)));
+    axis.scale = grid_range(scene, axis).including(*value);
+    axes.push_back(axis);
   }
   return axes;
 }
@@ -122,7 +100,7 @@ Scale known_part(const Scene& scene, const MapAxis& axis) {
     range = {std::max(range.from, known.from_um), std::min(range.to, known.to_um), range.is_log};
   }
   for (double Scale::*end : {&Scale::from, &Scale::to}) {
-    for (int i = 0; i < kHalvings && !is_accepted(scene, axis.key, range.*end); ++i)
+    for (int i = 0; i < kHalvings && !refusal(scene, axis, {range.*end, range.*end}).empty(); ++i)
       range.*end = i + 1 < kHalvings ? std::sqrt(range.*end * inside) : inside;
   }
   return range;
@@ -187,29 +165,27 @@ std::string HeatMap::key_of(std::size_t level) const {
 }
 
 PointList HeatMap::part(std::size_t level, std::size_t first) const {
-  const std::size_t all = kLevels[level].count;
-  const auto values = [&](const MapAxis& axis, std::size_t from, std::size_t count) {
-    std::vector<double> column;
-    for (std::size_t i = from; i < from + count; ++i)
-      column.push_back(axis.scale.value(static_cast<double>(i) / static_cast<double>(all - 1)));
-    return column;
-  };
-  const std::vector<double> slow = values(slower(), first, batch(level)), fast = values(faster(), 0, all);
+  const std::size_t count = kLevels[level].count;
+  const std::vector<double> fast = faster().scale.values(count), all = slower().scale.values(count);
+  const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+  const std::vector<double> slow(begin, begin + static_cast<std::ptrdiff_t>(batch(level)));
   PointList list = points_at(scene_, {theta_deg_});
   list.is_grid = faster().is_of_tables() && slower().rank() != 1;
-  if (slower().column().empty()) list.changes = {{slower().key, slow.front()}};
+  const bool has_column = !slower().column().empty();
+  if (!has_column) list.changes = {{slower().key, slow.front()}};
   if (list.is_grid) {
-    if (list.changes.empty()) list[slower().column()] = slow;
+    if (has_column) list[slower().column()] = slow;
     list[faster().column()] = fast;
     return list;
   }
   // Films are in no table: a list has all combinations.
-  list[faster().column()].clear();
-  if (list.changes.empty()) list[slower().column()].clear();
+  std::vector<double> all_slow, all_fast;
   for (const double value : slow) {
-    list[faster().column()].insert(list[faster().column()].end(), fast.begin(), fast.end());
-    if (list.changes.empty()) list[slower().column()].insert(list[slower().column()].end(), fast.size(), value);
+    all_fast.insert(all_fast.end(), fast.begin(), fast.end());
+    all_slow.insert(all_slow.end(), fast.size(), value);
   }
+  if (has_column) list[slower().column()] = all_slow;
+  list[faster().column()] = all_fast;
   return list;
 }
 

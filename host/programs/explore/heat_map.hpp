@@ -22,9 +22,6 @@ struct MapAxis {
   friend bool operator==(const MapAxis&, const MapAxis&) = default;
 };
 
-/// The names of all axes that a map can have.
-std::vector<std::string> map_axis_names();
-
 /// The axes that maps of a scene can have. Their ranges are those of the scene's grid or of sliders, extended to the
 /// scene's values.
 std::vector<MapAxis> map_axes(const Scene& scene, double theta_max_deg);

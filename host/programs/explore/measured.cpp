@@ -29,30 +29,16 @@ void Residuals::load(MeasuredData data) {
 }
 
 void Residuals::follow(const std::string& key, const Scene& scene) {
-  key_ = key;
   scene_ = scene;
-}
-
-std::string Residuals::job_key() const { return fmt::format("measured {} {}", loads_, key_); }
-
-std::optional<Job> Residuals::wanted() const {
-  if (!data_ || is_known()) return std::nullopt;
-  std::vector<double> theta_deg;
-  std::vector<double> wavelength_um;
+  if (!data_) return;
+  std::vector<double> theta_deg, wavelength_um;
   for (const Measurement& one : data_->measurements) {
     theta_deg.push_back(one.theta_deg);
     if (one.wavelength_um) wavelength_um.push_back(*one.wavelength_um);
   }
-  PointList list = points_at(scene_, std::move(theta_deg));
+  PointList list = points_at(scene, std::move(theta_deg));
   if (!wavelength_um.empty()) list["wavelength_um"] = std::move(wavelength_um);
-  return Job{.key = job_key(), .scene = scene_, .parts = {std::move(list)}, .keep_all = true};
-}
-
-bool Residuals::take(const JobPart& news) {
-  if (!data_ || news.key != job_key()) return false;
-  known_ = news.key;
-  model_ = news.points;
-  return true;
+  model_.follow({.key = fmt::format("measured {} {}", loads_, key), .scene = scene, .parts = {list}, .keep_all = true});
 }
 
 std::vector<Measurement> Residuals::measured(Plotted quantity) const {
@@ -64,10 +50,10 @@ std::vector<Measurement> Residuals::measured(Plotted quantity) const {
 
 std::vector<Measurement> Residuals::residuals(Plotted quantity) const {
   std::vector<Measurement> residuals;
-  if (!data_ || !is_known()) return residuals;
-  for (std::size_t i = 0; i < model_.size(); ++i) {
+  if (!is_known()) return residuals;
+  for (std::size_t i = 0; i < model_.points().size(); ++i) {
     Measurement one = data_->measurements[i];
-    one.value -= described(quantity).value(model_[i]);
+    one.value -= described(quantity).value(model_.points()[i]);
     if (plotted(one.observable) == quantity && std::isfinite(one.value)) residuals.push_back(one);
   }
   return residuals;

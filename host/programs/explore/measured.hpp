@@ -4,7 +4,6 @@
 #include <map>
 
 #include "explore/background.hpp"
-#include "explore/parameters.hpp"
 #include "explore/scene_edits.hpp"
 
 namespace dolp::explore {
@@ -25,13 +24,13 @@ class Residuals {
   void clear() { data_.reset(); }
   void follow(const std::string& key, const Scene& scene);
 
-  std::optional<Job> wanted() const;
-  bool take(const JobPart& news);
+  std::optional<Job> wanted() const { return data_ ? model_.wanted() : std::nullopt; }
+  void take(const JobPart& news) { model_.take(news); }
 
   const std::optional<MeasuredData>& data() const { return data_; }
   /// The scene for which the data were loaded.
   const Scene& loaded_for() const { return loaded_for_; }
-  bool is_known() const { return known_ == job_key(); }
+  bool is_known() const { return data_ && model_.is_finished(); }
   /// The measured points of a quantity.
   std::vector<Measurement> measured(Plotted quantity) const;
   /// The measured points of a quantity with measured minus model as their values; without points at which the model
@@ -39,15 +38,10 @@ class Residuals {
   std::vector<Measurement> residuals(Plotted quantity) const;
 
  private:
-  std::string job_key() const;
-
   std::optional<MeasuredData> data_;
   std::size_t loads_ = 0;
-  std::string key_;
-  Scene scene_;
-  Scene loaded_for_;
-  std::string known_;  ///< key of the job that gave the model
-  std::vector<Point> model_;
+  Scene scene_, loaded_for_;
+  Sweep model_;
 };
 
 /// Root mean square of the values; none without any.

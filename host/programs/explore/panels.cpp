@@ -7,7 +7,7 @@
 
 #include "base/text.hpp"
 #include "explore/curve.hpp"
-#include "explore/parameters.hpp"
+#include "explore/scene_edits.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -61,9 +61,7 @@ std::pair<double, double> spectrum_um(const Scene& scene) {
 MaterialCurve material_curve(const Scene& scene, std::size_t count) {
   const auto [from_um, to_um] = known_um(scene);
   MaterialCurve curve;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double part = static_cast<double>(i) / static_cast<double>(count - 1);
-    const double at_um = std::clamp(from_um * std::pow(to_um / from_um, part), from_um, to_um);
+  for (const double at_um : Scale{from_um, to_um, true}.values(count)) {
     try {
       const auto [n, k] = scene.refractive_index(at_um);
       curve.wavelength_um.push_back(at_um);
@@ -90,28 +88,6 @@ Scene smooth_scene(const Scene& scene) {
                      {"surface.specular", 1.0},
                      {"surface.diffuse", 0.0},
                      {"geometry.mode", "hemispherical"}});
-}
-
-void Sweep::follow(const std::string& key, const Scene& scene, PointList list, const std::string& column,
-                   bool keep_all) {
-  key_ = key;
-  scene_ = scene;
-  list_ = std::move(list);
-  column_ = column;
-  keep_all_ = keep_all;
-}
-
-std::optional<Job> Sweep::wanted() const {
-  if (!scene_ || is_finished()) return std::nullopt;
-  return Job{.key = key_, .scene = *scene_, .parts = {list_}, .keep_all = keep_all_};
-}
-
-bool Sweep::take(const JobPart& news) {
-  if (!scene_ || news.key != key_) return false;
-  shown_key_ = key_;
-  points_ = news.points;
-  at_ = list_[column_];
-  return true;
 }
 
 ScatteringCut scattering_cut(Evaluator& evaluator, const Scene& scene, double theta_i_deg, std::size_t count) {
@@ -148,38 +124,21 @@ std::optional<ImagePolarisation> polarisation_at(const std::vector<Point>& curve
 }
 
 void SourceSky::follow(const std::string& key, const Scene& scene) {
-  key_ = key;
-  scene_ = scene;
+  for (std::size_t i = 0; i < kAzimuths; ++i) {
+    const Scene ring = scene.with("geometry.relative_azimuth_deg", azimuth_deg(i));
+    rings_[i].follow({.key = fmt::format("sky {} {}", i, key),
+                      .scene = ring,
+                      .parts = {points_at(ring, zeniths(0.0, 90.0, kZeniths))},
+                      .tolerance = Curve::kCoarseTolerance});
+  }
 }
-
-std::string SourceSky::key_of(std::size_t azimuth) const { return fmt::format("sky {} {}", azimuth, key_); }
 
 std::vector<Job> SourceSky::wanted() const {
   std::vector<Job> jobs;
-  if (!scene_ || !is_bistatic(*scene_)) return jobs;
-  for (std::size_t i = 0; i < kAzimuths; ++i) {
-    if (rings_[i].key == key_of(i)) continue;
-    const Scene scene = scene_->with("geometry.relative_azimuth_deg", azimuth_deg(i));
-    jobs.push_back({.key = key_of(i),
-                    .scene = scene,
-                    .parts = {points_at(scene, zeniths(0.0, 90.0, kZeniths))},
-                    .tolerance = Curve::kCoarseTolerance});
+  for (const Sweep& ring : rings_) {
+    if (const std::optional<Job> job = ring.wanted()) jobs.push_back(*job);
   }
   return jobs;
-}
-
-bool SourceSky::take(const JobPart& news) {
-  for (std::size_t i = 0; i < kAzimuths; ++i) {
-    if (news.key != key_of(i)) continue;
-    rings_[i] = {news.key, news.points};
-    return true;
-  }
-  return false;
-}
-
-bool SourceSky::is_finished() const {
-  std::size_t i = 0;
-  return std::ranges::all_of(rings_, [&](const Ring& ring) { return ring.key == key_of(i++); });
 }
 
 }  // namespace dolp::explore

@@ -2,6 +2,7 @@
 // the smooth surface, the pBRDF in the plane of incidence, a sphere, and the sky of a source.
 #pragma once
 
+#include <algorithm>
 #include <numbers>
 
 #include "explore/background.hpp"
@@ -45,30 +46,6 @@ Scene at_one_wavelength(const Scene& scene);
 /// The scene's surface without roughness: its rho_s and rho_p are the reflectances R_s and R_p of a facet.
 Scene smooth_scene(const Scene& scene);
 
-/// Points of a scene along one column, computed while a view shows them.
-class Sweep {
- public:
-  /// Switches to the points of `list` with different values in `column`; `key` identifies their content.
-  void follow(const std::string& key, const Scene& scene, PointList list, const std::string& column, bool keep_all);
-  std::optional<Job> wanted() const;
-  bool take(const JobPart& news);
-  /// True where the points on display are those of the scene.
-  bool is_finished() const { return key_ == shown_key_; }
-  // The points on display, and their values in the column.
-  const std::vector<Point>& points() const { return points_; }
-  const std::vector<double>& at() const { return at_; }
-
- private:
-  std::string key_;
-  std::optional<Scene> scene_;
-  PointList list_;
-  std::string column_;
-  bool keep_all_ = false;
-  std::string shown_key_;
-  std::vector<Point> points_;
-  std::vector<double> at_;
-};
-
 /// The Mueller pBRDF in the plane of incidence.
 struct ScatteringCut {
   std::vector<double> theta_r_deg;  ///< from -90 to 90; positive on the side to which a mirror reflects
@@ -98,28 +75,21 @@ class SourceSky {
   static constexpr std::size_t kZeniths = 31;   ///< 0 to 90 degrees
   static constexpr std::size_t kAzimuths = 37;  ///< 0 to 180 degrees; the other half mirrors them
 
-  /// Switches to the sky of `scene`; `key` identifies its content without the azimuth.
+  /// Switches to the sky of a bistatic scene; `key` identifies its content without the azimuth.
   void follow(const std::string& key, const Scene& scene);
   /// A coarse job for each azimuth that is not known yet.
   std::vector<Job> wanted() const;
-  bool take(const JobPart& news);
+  void take(const JobPart& news) {
+    std::ranges::any_of(rings_, [&](Sweep& ring) { return ring.take(news); });
+  }
   /// The points at an azimuth, ordered by zenith; empty while they are unknown.
-  const std::vector<Point>& at(std::size_t azimuth) const { return rings_[azimuth].points; }
+  const std::vector<Point>& at(std::size_t azimuth) const { return rings_[azimuth].points(); }
   static double azimuth_deg(std::size_t azimuth) { return 180.0 * static_cast<double>(azimuth) / (kAzimuths - 1); }
   /// True where all azimuths belong to the present scene.
-  bool is_finished() const;
+  bool is_finished() const { return std::ranges::all_of(rings_, &Sweep::is_finished); }
 
  private:
-  /// Results at one azimuth, and the key of the job that gave them.
-  struct Ring {
-    std::string key;
-    std::vector<Point> points;
-  };
-  std::string key_of(std::size_t azimuth) const;
-
-  std::string key_;
-  std::optional<Scene> scene_;
-  std::array<Ring, kAzimuths> rings_;
+  std::array<Sweep, kAzimuths> rings_;
 };
 
 }  // namespace dolp::explore

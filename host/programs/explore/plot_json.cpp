@@ -18,7 +18,7 @@ json curve_json(const Curve& curve, const std::string& name, const json& style, 
   json theta = json::array(), values = json::array(), good = json::array(), low = json::array(), high = json::array();
   for (const Point& point : curve.drawn()) {
     theta.push_back(point.theta_deg);
-    values.push_back(description.scale() * description.value(point));
+    values.push_back(description.shown(point));
     good.push_back(point.is_good());
     const bool has_band = quantity == Plotted::kDolp && style == "curve" && point.is_good() && point.has_bracket();
     low.push_back(has_band ? json(description.scale() * point[Quantity::kDolpLow]) : json());

@@ -61,6 +61,8 @@ struct PlottedDescription {
   double (*value)(const Point&);  ///< NaN where the model gives no value
   bool is_signed = false;
 
+  /// The value of a point in the units of the label.
+  double shown(const Point& point) const { return scale() * value(point); }
   double scale() const { return in_percent ? 100.0 : 1.0; }
   /// "DOLP [%]".
   std::string label() const { return std::string(name) + (in_percent ? " [%]" : ""); }

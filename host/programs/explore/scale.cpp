@@ -64,6 +64,20 @@ double Scale::position(double value) const {
 
 double Scale::clamp(double value) const { return std::clamp(value, from, to); }
 
+double Scale::rounded(double position) const {
+  const double exact = value(position);
+  // The text that one would type into a file, and that reads back as the same number.
+  if (exact == 0.0) return exact;
+  const double digit = std::pow(10.0, 3.0 - std::floor(std::log10(std::abs(exact))));
+  return clamp(std::round(exact * digit) / digit);
+}
+
+std::vector<double> Scale::values(std::size_t count) const {
+  std::vector<double> all;
+  for (std::size_t i = 0; i < count; ++i) all.push_back(value(static_cast<double>(i) / static_cast<double>(count - 1)));
+  return all;
+}
+
 Scale Scale::within(const Scale& all) const {
   const double first = all.position(from), last = all.position(to);
   if (last - first >= 1.0) return all;

@@ -20,6 +20,10 @@ struct Scale {
   double value(double position) const;
   double position(double value) const;
   double clamp(double value) const;
+  /// The value at a position with four digits, within the range.
+  double rounded(double position) const;
+  /// `count` values at equal steps of the position, both ends among them.
+  std::vector<double> values(std::size_t count) const;
   /// The range between two positions, which may lie outside the range.
   Scale between(double first, double last) const { return {value(first), value(last), is_log}; }
   /// This range shifted into `all`; all of it if this range is larger.

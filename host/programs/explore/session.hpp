@@ -186,7 +186,7 @@ class Session {
   void tell_remarks(const std::vector<std::string>& remarks);
   void tell_new_remarks_on_scene();
   void tell_needed(const std::string& chosen, const std::vector<Setting>& needed);
-  // Give curves, map and the rest the present scene. In session_jobs.cpp.
+  // Give curves, map and the rest the present scene.
   void follow();
   void follow_overlay(const std::string& content);
   void follow_map();

@@ -118,7 +118,7 @@ TEST(HeatMap, Axes_FollowTheScene) {
   session.set("surface.wind_m_s", 14.0);
   EXPECT_EQ(session.map().y().scale, (Scale{2.0, 14.0}));
   EXPECT_EQ(session.map_cursor(session.map().y()), 1.0);
-  session.set({coating_of({"n = 1.5, thickness_um = 2"})});
+  session.set({coating_of({{{"n", 1.5}, {"thickness_um", 2.0}}})});
   session.set_view(&View::map_y, "film 1");
   EXPECT_EQ(session.map().y().label, "d_1 [µm]");
   session.set({coating_of({})});

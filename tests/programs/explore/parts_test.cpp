@@ -9,7 +9,7 @@
 #include <mutex>
 
 #include "base/text.hpp"
-#include "explore/parameters.hpp"
+#include "explore/scene_edits.hpp"
 #include "explore/session.hpp"
 #include "explore_support.hpp"
 #include "temporary_file.hpp"

@@ -9,8 +9,8 @@
 
 #include "cli_support.hpp"
 #include "explore/files.hpp"
-#include "explore/parameters.hpp"
 #include "explore/readout.hpp"
+#include "explore/scene_edits.hpp"
 #include "explore/window/app.hpp"
 #include "explore/window/style.hpp"
 #include "table/table_file.hpp"

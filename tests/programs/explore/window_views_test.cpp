@@ -75,17 +75,17 @@ TEST(ExplorePanels, SmoothSurface_HasFresnelsReflectances_AndAQuarterWaveFilmRef
   explore::Sweep sweep;
   const Scene glass = explore::smooth_scene(paint({"surface.k=0", "surface.specular=0.5"}).scene());
   const double brewster_deg = std::atan(1.5) * 180.0 / std::numbers::pi;
-  sweep.follow("glass", glass, explore::points_at(glass, {0.0, brewster_deg}), "theta_deg", true);
+  sweep.follow({.key = "glass", .scene = glass, .parts = {explore::points_at(glass, {0.0, brewster_deg})}});
   const std::vector<explore::Point> bare = swept(sweep);
   EXPECT_NEAR(reflectance(kS, bare[0]), 0.04, 1e-12);
   EXPECT_NEAR(reflectance(kP, bare[1]), 0.0, 1e-12);
   EXPECT_NEAR(reflectance(kS, bare[1]), std::pow((1.0 - 2.25) / (1.0 + 2.25), 2), 1e-12);
   // At normal incidence a film of index sqrt(n) reflects nothing where it is a quarter or three quarters of a wave.
   const double n = std::sqrt(1.5);
-  const Scene coated = glass.with({explore::coating_of({"n = " + std::to_string(n) + ", thickness_um = 2"})});
+  const Scene coated = glass.with({explore::coating_of({{{"n", n}, {"thickness_um", 2.0}}})});
   explore::PointList list = explore::points_at(coated, {0.0, 0.0, 0.0});
   list["wavelength_um"] = {8.0 * n, 4.0 * n, 8.0 * n / 3.0};
-  sweep.follow("coated", coated, list, "wavelength_um", true);
+  sweep.follow({.key = "coated", .scene = coated, .parts = {list}}, "wavelength_um");
   const std::vector<explore::Point> film = swept(sweep);
   for (const auto& [at, expected] : {std::pair{0U, 0.0}, {1U, 0.04}, {2U, 0.0}})
     EXPECT_NEAR(reflectance(kS, film[at]), expected, 1e-10) << at;
@@ -192,7 +192,7 @@ TEST_F(Window, Panels_ClickedOneByOne_AreDrawn_AndTheMapIsComputedWhileItIsShown
 TEST_F(Window, Films_AreAddedOutside_ChangedRemovedAndSaved_AndUndoBringsThemBack) {
   const auto films = [&] { return explore::films_of(app_->session().scene()); };
   app_->session().set_view(&explore::View::panel, explore::Panel::kSlopes);  // the map of films would take long
-  app_->session().set({explore::coating_of({"material = \"PMMA acrylic\", thickness_um = 2"})});
+  app_->session().set({explore::coating_of({{{"material", "PMMA acrylic"}, {"thickness_um", 2.0}}})});
   app_->settle();
   frames();
   click_control("add film");

@@ -89,11 +89,12 @@ std::vector<Ui::Command> Ui::file_commands() {
       {"File", "Save a picture", "Ctrl+I",
        save_as("Save a picture of the window as PNG", "_window.png", ".png",
                [this](Path path) { actions_.save_picture(path); })},
-      {.menu = "File",
-       .text = "Remove measured points",
-       .shortcut = "",
-       .run = [this] { session_.clear_measured(); },
-       .is_enabled = [this] { return session_.residuals().data().has_value(); }},
+      {"File",
+       "Remove measured points",
+       "",
+       [this] { session_.clear_measured(); },
+       {},
+       [this] { return session_.residuals().data().has_value(); }},
       {"File", "Quit", "Ctrl+Q", [this] { actions_.quit(); }},
   };
 }
@@ -191,15 +192,12 @@ void Ui::draw_help() {
     ImGui::Separator();
     for (const char* hint :
          {"Drag in the curve: moves θ. Drag in the map: moves the parameters of its axes, and the curve follows.",
-          "Wheel in the curve: zooms (with Shift only θ, with Alt only the values). Right button: moves the axes. "
-          "Double "
-          "click: shows all. Double click on the numbers of an axis: edits its ends.",
+          "Wheel in the curve: zooms (with Shift only θ, with Alt only the values). Right button: moves the axes.",
+          "Double click in the curve: shows all; on the numbers of an axis: edits its ends.",
           "Click in the legend: hides or shows a curve. Right click on a pin: edits its name.",
-          "Ctrl-click on a slider: restores the value of the scene as opened. You can type any allowed value beside "
-          "it.",
-          "Rest the mouse on a control: shows meaning, equation and range. Drop a scene, a session or measured points "
-          "on "
-          "the window: opens them.",
+          "Ctrl-click on a slider: restores the value as opened. You can type any allowed value beside it.",
+          "Rest the mouse on a control: shows meaning, equation and range.",
+          "Drop a scene, a session or measured points on the window: opens them.",
           "Grey in map and curve: the model fails there; the line under the plots names the reason."}) {
       coloured_text(kTextColour, hint);
     }

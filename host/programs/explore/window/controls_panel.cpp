@@ -1,4 +1,4 @@
-#include "explore/window/controls_panel.hpp"
+#include "explore/window/views.hpp"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -30,7 +30,7 @@ void heading(const char* text) {
 void draw_interval(const Parameter& parameter, const FitInterval& interval) {
   const ImVec2 corner = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
   const auto at = [&](const std::optional<double>& value, double otherwise) {
-    const double position = value ? parameter.slider_position(*value) : otherwise;
+    const double position = value ? parameter.slider.position(parameter.slider.clamp(*value)) : otherwise;
     return corner.x + static_cast<float>(position) * (end.x - corner.x);
   };
   constexpr float kThickness = 3.0F;
@@ -87,8 +87,7 @@ struct Controls {
     std::string note;
     std::string reset_key;  ///< Ctrl-click resets it
     Scale scale;
-    std::function<Setting(double position)> moved;
-    std::function<Setting(const std::string& text)> typed;
+    std::function<Setting(const std::string& text)> change;
   };
 
   /// Changes the scene; returns why it is refused, or nothing.
@@ -133,31 +132,26 @@ struct Controls {
     if (const FitParameter* found = session.fitted(slider.id)) draw_interval(*parameter, found->interval_68);
     const bool is_ctrl = ImGui::GetIO().KeyCtrl;
     if (ImGui::IsItemClicked() && is_ctrl) session.reset(slider.reset_key);
-    if (is_moved && !is_ctrl) session.set({slider.moved(static_cast<double>(position))});
+    if (is_moved && !is_ctrl)
+      session.set({slider.change(format_number(slider.scale.rounded(static_cast<double>(position))))});
     if (!ImGui::IsItemActive()) tooltip(slider.note);
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1.0F);
     draw_fields(slider.id, [&] {
-      state.fields.draw(slider.id, value, [&](const std::string& text) { return set(slider.typed(text)); });
+      state.fields.draw(slider.id, value, [&](const std::string& text) { return set(slider.change(text)); });
     });
     state.fields.draw_reason(slider.id);
   }
 
   void draw_parameter(const Parameter& parameter, double value) {
     const std::string& key = parameter.key->key;
+    const auto change = [&](const std::string& text) { return Setting{key, value_of(text)}; };
     draw_slider({.id = key,
                  .label = parameter.label(),
                  .note = note_on(parameter, session),
                  .reset_key = key,
                  .scale = parameter.slider,
-                 .moved =
-                     [&](double position) {
-                       return Setting{key, parameter.slider_value(position)};
-                     },
-                 .typed =
-                     [&](const std::string& text) {
-                       return Setting{key, value_of(text)};
-                     }},
+                 .change = change},
                 value, &parameter);
     draw_fit_range(parameter, value);
   }
@@ -244,29 +238,24 @@ struct Controls {
 
   void draw_coating() {
     heading("Coating, from the outside in");
-    std::vector<std::string> films = films_of(session.scene());
-    if (ImGui::Button("Add a film outside")) {
-      films.insert(films.begin(), "n = 1.5, k = 0, thickness_um = 1");
-      return session.set({coating_of(films)});
-    }
+    std::vector<Film> films = films_of(session.scene());
+    const bool is_added = ImGui::Button("Add a film outside");
     name_item("add film");
+    if (is_added) films.insert(films.begin(), {{"n", 1.5}, {"k", 0.0}, {"thickness_um", 1.0}});
+    if (is_added) return session.set({coating_of(films)});
     for (std::size_t layer = 1; layer <= films.size(); ++layer) {
       const std::string film = fmt::format("surface.coating.{}", layer);
       const bool is_removed = ImGui::SmallButton(("x##" + film).c_str());
       name_item("remove " + film);
       ImGui::SameLine();
       coloured_text(kTextColour, fmt::format("film {}", layer));
-      if (is_removed) {
-        films.erase(films.begin() + static_cast<std::ptrdiff_t>(layer) - 1);
-        return session.set({coating_of(films)});
+      Film chosen = draw_material(film);
+      if (is_removed) films.erase(films.begin() + static_cast<std::ptrdiff_t>(layer) - 1);
+      if (!chosen.empty()) {
+        chosen.push_back(films[layer - 1].back());  // the thickness
+        films[layer - 1] = chosen;
       }
-      if (std::vector<Setting> chosen = draw_material(film); !chosen.empty()) {
-        chosen.push_back({"thickness_um", *session.scene().number(film + ".thickness_um")});
-        films[layer - 1].clear();
-        for (const Setting& one : chosen)
-          films[layer - 1] += fmt::format("{}{} = {}", films[layer - 1].empty() ? "" : ", ", one.key, one.value.text());
-        return session.set({coating_of(films)});
-      }
+      if (is_removed || !chosen.empty()) return session.set({coating_of(films)});
       draw_table(film);
     }
   }
@@ -329,8 +318,11 @@ struct Controls {
 
   void draw_sky_temperature(const std::string& name, double SkyPair::*part) {
     SkyPair sky = *state.sky;
-    const auto with = [&](double temperature_K) {
-      sky.*part = temperature_K;
+    const auto change = [&](const std::string& text) {
+      const std::optional<double> typed = parse_number(text);
+      // Text that is no temperature is refused with the message for a uniform sky.
+      if (!typed || !described(kUniformSky).range.contains(*typed)) return Setting{kUniformSky, TomlText{text}};
+      sky.*part = *typed;
       return Setting{kSkyProfile, session.skies().path(sky)};
     };
     draw_slider({.id = "sky " + name,
@@ -338,14 +330,7 @@ struct Controls {
                  .note = fmt::format("brightness temperature at the {}; a straight line in zenith between both", name),
                  .reset_key = kSkyProfile,
                  .scale = kSkySlider,
-                 .moved = [&](double position) { return with(std::round(10.0 * kSkySlider.value(position)) / 10.0); },
-                 .typed =
-                     [&](const std::string& text) {
-                       const std::optional<double> typed = parse_number(text);
-                       // Text that is no temperature is refused with the message for a uniform sky.
-                       const bool is_allowed = typed && described(kUniformSky).range.contains(*typed);
-                       return is_allowed ? with(*typed) : Setting{kUniformSky, TomlText{text}};
-                     }},
+                 .change = change},
                 state.sky.value().*part);
   }
 

@@ -20,7 +20,6 @@ constexpr float kLeastResiduals = 7.0F;
 struct Shown {
   const Curve* curve;
   CurveStyle style;
-  std::string name;
 };
 
 /// The style of parts where the model fails.
@@ -28,24 +27,16 @@ CurveStyle bad_style() { return {kBadColour, 4.0F, 4.0F}; }
 
 std::vector<Shown> shown_curves(const Session& session) {
   std::vector<Shown> curves;
-  const auto add = [&](const Curve& curve, const CurveStyle& style, const std::string& name) {
-    curves.push_back({&curve, session.is_outdated(curve) ? stale(style) : style, name});
+  const auto add = [&](const Curve& curve, const CurveStyle& style) {
+    curves.push_back({&curve, session.is_outdated(curve) || session.is_foreign(curve.scene()) ? stale(style) : style});
   };
-  if (session.overlay()) add(*session.overlay(), overlay_style(), overlay_name(session));
+  if (session.overlay()) add(*session.overlay(), overlay_style());
   for (const Pin& pin : session.pins()) {
-    const CurveStyle style = pin_style(pin.colour);
-    if (pin.is_visible) add(pin.curve, session.is_foreign(pin.curve.scene()) ? stale(style) : style, "");
+    if (pin.is_visible) add(pin.curve, pin_style(pin.colour));
   }
   // Last, so that it lies over the others.
-  add(session.curve(), current_style(), curve_name(session));
+  add(session.curve(), current_style());
   return curves;
-}
-
-double scale_of(Plotted quantity) { return described(quantity).scale(); }
-
-/// The value of a point in the units of the plot.
-double shown_value(Plotted quantity, const Point& point) {
-  return scale_of(quantity) * described(quantity).value(point);
 }
 
 /// The maximum of polarisation where the plot marks it; null elsewhere.
@@ -64,14 +55,14 @@ std::vector<double> values_to_show(const Session& session, const std::vector<Sho
     for (const Point& point : shown.curve->drawn()) {
       if (point.theta_deg > session.view().theta_max_deg) break;
       if (!point.is_good()) continue;
-      values.push_back(shown_value(quantity, point));
+      values.push_back(described(quantity).shown(point));
       if (shown.curve != &session.curve() || quantity != Plotted::kDolp) continue;
       for (const Quantity limit : {Quantity::kDolpLow, Quantity::kDolpHigh})
-        values.push_back(scale_of(quantity) * point[limit]);
+        values.push_back(described(quantity).scale() * point[limit]);
     }
   }
   for (const Measurement& one : session.residuals().measured(quantity))
-    values.push_back(scale_of(quantity) * one.value);
+    values.push_back(described(quantity).scale() * one.value);
   return values;
 }
 
@@ -80,7 +71,7 @@ void draw_bracket(const Plot& plot, const Shown& shown) {
   const std::vector<Point> points = shown.curve->drawn();
   const ImU32 colour = band_colour(shown.style);
   const auto at = [&](const Point& point, Quantity limit) {
-    return plot.at(point.theta_deg, std::max(scale_of(Plotted::kDolp) * point[limit], plot.y().from));
+    return plot.at(point.theta_deg, std::max(described(Plotted::kDolp).scale() * point[limit], plot.y().from));
   };
   // Smooth edges would show as seams.
   const ImDrawListFlags flags = std::exchange(plot.list()->Flags, ImDrawListFlags_None);
@@ -100,7 +91,7 @@ void draw_curve(const Plot& plot, const Shown& shown, Plotted quantity) {
   const std::vector<Point> points = shown.curve->drawn();
   std::vector<ImVec2> good, bad;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const double value = shown_value(quantity, points[i]);
+    const double value = described(quantity).shown(points[i]);
     const bool can_show = plot.can_show(points[i].theta_deg, value);
     const bool is_beside_bad = !points[i].is_good() || (i > 0 && !points[i - 1].is_good()) ||
                                (i + 1 < points.size() && !points[i + 1].is_good());
@@ -135,15 +126,17 @@ bool add_curve(const char* id, const std::string& name, const CurveStyle& style,
 }
 
 void draw_legend(const std::vector<Shown>& curves, Session& session) {
-  const auto colour_of = [&](const Curve& curve) { return session.is_outdated(curve) ? kDimColour : kTextColour; };
-  add_curve("curve", curves.back().name, curves.back().style, colour_of(session.curve()));
+  const auto colour_of = [&](const Curve& curve) {
+    return session.is_outdated(curve) || session.is_foreign(curve.scene()) ? kDimColour : kTextColour;
+  };
+  add_curve("curve", curve_name(session), curves.back().style, colour_of(session.curve()));
   if (session.overlay() && add_curve("overlay", overlay_name(session), overlay_style(), colour_of(*session.overlay())))
     session.set_view(&View::has_overlay, false);
   for (Pin& pin : session.pins()) {
     const CurveStyle style = pin_style(pin.colour);
     ImGui::PushID(&pin);
     if (add_curve("pin", "pinned: " + pin_name(session, pin), pin.is_visible ? style : stale(style),
-                  pin.is_visible && !session.is_foreign(pin.curve.scene()) ? colour_of(pin.curve) : kDimColour))
+                  pin.is_visible ? colour_of(pin.curve) : kDimColour))
       pin.is_visible = !pin.is_visible;
     ImGui::PopID();
   }
@@ -180,7 +173,7 @@ void draw_cursor(const Plot& plot, const Session& session, const CurveStyle& sty
   const Point* const shown = session.at_cursor();
   if (!shown) return;
   const Plotted quantity = session.view().quantity;
-  const double value = shown_value(quantity, *shown);
+  const double value = described(quantity).shown(*shown);
   if (!plot.can_show(shown->theta_deg, value)) return;
   const ImVec2 at = plot.at(shown->theta_deg, value);
   plot.list()->AddCircleFilled(at, scaled(4.0F), style.colour);
@@ -190,7 +183,7 @@ void draw_cursor(const Plot& plot, const Session& session, const CurveStyle& sty
 void draw_peak(const Plot& plot, const Session& session) {
   const PeakAnswer* const peak = shown_peak(session);
   if (!peak) return;
-  const double value = shown_value(session.view().quantity, peak->at);
+  const double value = described(session.view().quantity).shown(peak->at);
   if (!plot.can_show(peak->at.theta_deg, value)) return;
   const bool is_low = value < 0.0;
   const ImVec2 at = plot.at(peak->at.theta_deg, value);
@@ -305,7 +298,7 @@ void CurveView::draw(Session& session, ImVec2 size) {
   if (!plot.y().is_log) plot.list()->AddLine(plot.at(x_.from, 0.0), plot.at(x_.to, 0.0), kDimColour);
   if (quantity == Plotted::kDolp) draw_bracket(plot, curves.back());
   for (const Shown& shown : curves) draw_curve(plot, shown, quantity);
-  draw_points(plot, measured, scale_of(quantity), false, colour_of_points(session));
+  draw_points(plot, measured, described(quantity).scale(), false, colour_of_points(session));
   draw_cursor(plot, session, curves.back().style);
   if (plot.is_hovered() && !plot.is_dragged()) {
     draw_label(plot.list(), plot.area().at(0.99F, 0.98F), {1.0F, 1.0F}, kDimColour,

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "explore/window/actions.hpp"
-#include "explore/window/controls_panel.hpp"
 #include "explore/window/views.hpp"
 
 namespace dolp::explore {

@@ -229,7 +229,7 @@ ImU32 colour_of_points(const Session& session) {
 void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
   const PlottedDescription& quantity = described(session.view().quantity);
   const std::vector<Measurement> residuals = session.residuals().residuals(quantity.quantity);
-  double largest = 1e-6;
+  double largest = residuals.empty() ? 1.0 : 1e-6;
   for (const Measurement& one : residuals)
     largest = std::max(largest, quantity.scale() * (std::abs(one.value) + one.uncertainty.value_or(0.0)));
   std::string label = std::string("measured − model") + (quantity.in_percent ? " [points]" : "");
@@ -239,7 +239,8 @@ void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
   plot.list()->AddLine(plot.at(theta.from, 0.0), plot.at(theta.to, 0.0), kDimColour);
   draw_points(plot, residuals, quantity.scale(), true, colour_of_points(session));
   plot.unclip();
-  draw_label(plot.list(), plot.area().at(0.5F, 0.3F), {0.5F, 0.5F}, kDimColour, no_residuals_text(session, theta));
+  const std::string reason = no_residuals_text(session, theta);
+  if (!reason.empty()) draw_label(plot.list(), plot.area().at(0.5F, 0.3F), {0.5F, 0.5F}, kDimColour, reason);
 }
 
 }  // namespace

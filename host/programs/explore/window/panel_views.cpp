@@ -35,7 +35,8 @@ void draw_lines(const Plot& plot, const std::vector<double>& xs, const std::vect
   plot.unclip();
   const float height = ImGui::GetTextLineHeight();
   ImVec2 right{plot.max().x - 0.6F * height, plot.min().y + (is_above ? -1.1F : 0.8F) * height};
-  for (const NamedLine& line : lines) {
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const NamedLine& line = lines[is_above ? lines.size() - 1 - i : i];
     draw_label(plot.list(), right, {1.0F, 0.5F}, kTextColour, line.name);
     const float end = right.x - ImGui::CalcTextSize(shown(line.name).c_str()).x - 0.6F * height;
     draw_line(plot.list(), {{end - 2.0F * height, right.y}, {end, right.y}}, line.style, kLineWidth);

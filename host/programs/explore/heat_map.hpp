@@ -26,7 +26,8 @@ struct MapAxis {
 /// scene's values.
 std::vector<MapAxis> map_axes(const Scene& scene, double theta_max_deg);
 
-/// The part of an axis of wavelengths in which the scene is known; its ends are equal where that is one wavelength.
+/// A part of an axis of wavelengths in which the scene is known: all of it for built-in materials, most of it for
+/// files. Its ends are equal where only one wavelength is known.
 Scale known_part(const Scene& scene, const MapAxis& axis);
 
 /// Why a map of a scene cannot have a range along an axis; empty where it can.

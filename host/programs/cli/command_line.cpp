@@ -10,6 +10,7 @@
 
 #include "base/text.hpp"
 #include "cli/commands.hpp"
+#include "explore/panels.hpp"
 
 namespace dolp::cli {
 namespace {
@@ -144,7 +145,7 @@ std::vector<OptionRow> option_rows() {
       {"explore", "--frames", &Options::frames, "draw so many frames, print how long they took, and end",
        range_to(1'000'000)},
       {"explore", "--view", &Options::panel, "panel beside the curve",
-       CLI::IsMember({"map", "slopes", "material", "pBRDF", "sphere", "sky", "fit"})},
+       CLI::IsMember(std::vector<std::string>(explore::kPanelNames.begin(), explore::kPanelNames.end()))},
       {"explore", "--screenshot", &Options::screenshot_path, "PNG of the last frame, when all is computed"},
       {"materials", "--at", &Options::wavelength_um,
        "at this wavelength [um], or from one to another: FROM:TO or FROM:TO:COUNT"},

@@ -49,6 +49,19 @@ void BackgroundTask::finish() {
   }
 }
 
+void Sweep::follow(Job job, const std::string& column) {
+  job_ = std::move(job);
+  column_ = column;
+}
+
+bool Sweep::take(const JobPart& news) {
+  if (!job_ || news.key != job_->key) return false;
+  shown_key_ = news.key;
+  points_ = news.points;
+  at_ = job_->parts.front()[column_];
+  return true;
+}
+
 Worker::Worker(Evaluate evaluate, std::function<void()> on_news)
     : evaluate_(std::move(evaluate)),
       on_news_(std::move(on_news)),

@@ -99,6 +99,26 @@ struct JobPart {
   double evaluations = 0.0;
 };
 
+/// The points of a job of one part, from when it is wanted to when a later one is done.
+class Sweep {
+ public:
+  /// Switches to the points of `job`, which differ in `column`.
+  void follow(Job job, const std::string& column = "theta_deg");
+  std::optional<Job> wanted() const { return is_finished() ? std::nullopt : job_; }
+  bool take(const JobPart& news);
+  /// True where the points on display are those of the last job.
+  bool is_finished() const { return job_ && shown_key_ == job_->key; }
+  // The points on display, and their values in the column.
+  const std::vector<Point>& points() const { return points_; }
+  const std::vector<double>& at() const { return at_; }
+
+ private:
+  std::optional<Job> job_;
+  std::string column_, shown_key_;
+  std::vector<Point> points_;
+  std::vector<double> at_;
+};
+
 /// Has the meaning of explore::evaluate. One thread makes all calls.
 using Evaluate = std::function<Results(const Scene& scene, const PointList& list, const RunOptions& options)>;
 

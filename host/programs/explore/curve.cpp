@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/text.hpp"
-#include "explore/parameters.hpp"
+#include "explore/scene_edits.hpp"
 
 namespace dolp::explore {
 namespace {

@@ -132,8 +132,8 @@ toml::table view_table(const Session& session) {
   const View& view = session.view();
   toml::table table{{"quantity", described(view.quantity).name},
                     {"theta_max_deg", view.theta_max_deg},
-                    {"map_x", description_of(view.map_x).name},
-                    {"map_y", description_of(view.map_y).name},
+                    {"map_x", view.map_x},
+                    {"map_y", view.map_y},
                     {"panel", kPanelNames.at(static_cast<std::size_t>(view.panel))},
                     {"mueller_row", static_cast<int>(view.mueller_row)},
                     {"mueller_column", static_cast<int>(view.mueller_column)},
@@ -154,13 +154,13 @@ T need(Node node, const std::string& location) {
   return *value;
 }
 
-/// The one of `choices` that has the name in the file. Errors: InputError.
+/// The position of the name in the file among some names. Errors: InputError.
 template <class Choices, class NameOf>
-auto need_one_of(const Choices& choices, const NameOf& name_of, Node node, const std::string& location) {
+std::size_t need_one_of(const Choices& choices, const NameOf& name_of, Node node, const std::string& location) {
   const auto name = need<std::string>(node, location);
-  const auto found = std::ranges::find_if(choices, [&](const auto& one) { return name == name_of(one); });
+  const auto found = std::ranges::find(choices, name, name_of);
   if (found == choices.end()) throw InputError(location + " \"" + name + "\" is unknown");
-  return *found;
+  return static_cast<std::size_t>(found - choices.begin());
 }
 
 SceneEdits state_in(Node node, const std::string& location, const fs::path& folder) {
@@ -203,20 +203,13 @@ std::size_t index_in(Node node, std::size_t count, const std::string& location) 
 }
 
 View view_in(Node node, const std::string& location) {
-  const auto axis = [&](const char* key) {
-    return need_one_of(
-        kMapAxes, [](Axis one) { return description_of(one).name; }, node[key], location + key);
-  };
   View view;
-  view.quantity =
-      need_one_of(
-          kAllPlotted, [](const PlottedDescription& one) { return one.name; }, node["quantity"], location + "quantity")
-          .quantity;
-  view.panel = panel_of(need_one_of(
-      kPanelNames, [](const char* name) { return name; }, node["panel"], location + "panel"));
+  view.quantity = static_cast<Plotted>(
+      need_one_of(kAllPlotted, &PlottedDescription::name, node["quantity"], location + "quantity"));
+  view.panel = static_cast<Panel>(need_one_of(kPanelNames, std::identity(), node["panel"], location + "panel"));
   view.theta_max_deg = need<double>(node["theta_max_deg"], location + "theta_max_deg");
-  view.map_x = axis("map_x");
-  view.map_y = axis("map_y");
+  view.map_x = need<std::string>(node["map_x"], location + "map_x");
+  view.map_y = need<std::string>(node["map_y"], location + "map_y");
   for (const Flag& flag : kFlags) view.*flag.flag = need<bool>(node[flag.key], location + flag.key);
   view.mueller_row = index_in(node["mueller_row"], 4, location + "mueller_row");
   view.mueller_column = index_in(node["mueller_column"], 4, location + "mueller_column");

@@ -1,18 +1,48 @@
 #include "explore/heat_map.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "explore/parameters.hpp"
+#include "explore/scene_edits.hpp"
 
 namespace dolp::explore {
 namespace {
 
-Scale log_range_of(const std::vector<double>& grid, const Scale& fallback) {
-  const auto [low, high] = std::ranges::minmax_element(grid);
-  const bool has_range = low != grid.end() && *low<*high&& * low> 0.0;
-  return has_range ? Scale{*low, *high, true} : Scale{fallback.from, fallback.to, true};
+/// A number of scenes that an axis can have.
+struct AxisOfNumber {
+  std::string name, key;
+  std::optional<Scale> range = {};  ///< none: the slider's
+};
+
+/// All axes but the zenith. No scene has both numbers that share a name.
+const std::vector<AxisOfNumber>& axes_of_numbers() {
+  static const std::vector<AxisOfNumber> all = [] {
+    std::vector<AxisOfNumber> axes = {{"sigma", "surface.sigma"},
+                                      {"sigma", "surface.wind_m_s"},
+                                      {"q", "surface.q"},
+                                      {"n", "surface.n"},
+                                      {"k", "surface.k", Scale{1e-3, 100.0, true}},
+                                      {"wavelength", "spectrum.wavelength_um"},
+                                      {"temperature", "emission.temperature_K"}};
+    for (const Key& key : keys()) {
+      if (key.key.ends_with(".thickness_um"))
+        axes.push_back({fmt::format("film {}", key.layer), key.key, Scale{1e-2, 10.0, true}});
+    }
+    return axes;
+  }();
+  return all;
+}
+
+/// The range of the scene's grid, if it has one; otherwise the range of the axis.
+Scale grid_range(const Scene& scene, const MapAxis& axis) {
+  const std::vector<double> grid = axis.is_of_tables() ? scene.numbers("grid." + axis.column()) : std::vector<double>();
+  if (grid.empty()) return axis.scale;
+  const auto [low, high] = std::ranges::minmax(grid);
+  const bool has_range = low < high && !(axis.scale.is_log && low <= 0.0);
+  return has_range ? Scale{low, high, axis.scale.is_log} : axis.scale;
 }
 
 /// The corners of a square in turn.
@@ -47,30 +77,56 @@ void add_lines(const MapField& field, double level, std::size_t column, std::siz
 
 }  // namespace
 
-MapAxis suggested_axis(Axis axis, const Scene& scene, double theta_max_deg) {
-  if (axis == Axis::kTheta) return {axis, {0.0, theta_max_deg}};
-  if (axis == Axis::kSigma && has_wind(scene)) {
-    const auto [low, high] = std::ranges::minmax(scene.numbers("grid.wind_m_s"));
-    return {axis, low < high ? Scale{low, high} : parameter("surface.wind_m_s").slider, true};
+std::vector<MapAxis> map_axes(const Scene& scene, double theta_max_deg) {
+  std::vector<MapAxis> axes = {{.scale = {0.0, theta_max_deg}}};
+  for (const AxisOfNumber& one : axes_of_numbers()) {
+    const std::optional<double> value = parameter(one.key).value(scene);
+    if (!value && one.name.starts_with("film")) break;
+    if (!value) continue;
+    MapAxis axis{one.name, parameter(one.key).label(), one.key};
+    axis.scale = one.range.value_or(range_in(scene, parameter(one.key)));
+    axis.scale = grid_range(scene, axis).including(*value);
+    axes.push_back(axis);
   }
-  if (axis == Axis::kSigma) return {axis, log_range_of(scene.numbers("grid.sigma"), parameter("surface.sigma").slider)};
-  return {axis, log_range_of(scene.numbers("grid.q"), range_in(scene, parameter("surface.q")))};
+  return axes;
 }
 
-const char* MapAxis::label() const {
-  return axis == Axis::kTheta ? "θ [°]" : axis == Axis::kQ ? "q" : is_wind ? "U [m/s]" : "σ";
+Scale known_part(const Scene& scene, const MapAxis& axis) {
+  constexpr int kHalvings = 8;
+  const double inside = scene.number(axis.key).value();
+  Scale range = axis.scale;
+  for (const BuiltInMaterial& known : materials()) {
+    if (known.name != scene.word("surface.material")) continue;
+    range = {std::max(range.from, known.from_um), std::min(range.to, known.to_um), range.is_log};
+  }
+  for (double Scale::*end : {&Scale::from, &Scale::to}) {
+    for (int i = 0; i < kHalvings && !refusal(scene, axis, {range.*end, range.*end}).empty(); ++i)
+      range.*end = i + 1 < kHalvings ? std::sqrt(range.*end * inside) : inside;
+  }
+  return range;
 }
 
-std::string MapAxis::key() const {
-  return axis == Axis::kTheta ? "" : axis == Axis::kQ ? "surface.q" : is_wind ? "surface.wind_m_s" : "surface.sigma";
+std::string MapAxis::column() const {
+  if (key.empty()) return "theta_deg";
+  if (key == "emission.temperature_K") return {};
+  return key.starts_with("surface.coating") ? key : key.substr(key.find('.') + 1);
 }
+
+std::size_t MapAxis::rank() const {
+  const std::string own = column() == kWind.column ? description_of(Axis::kSigma).column : column();
+  const auto found = std::ranges::find_if(kAxes, [&](const AxisDescription& one) { return own == one.column; });
+  if (found != kAxes.end()) return 2 + static_cast<std::size_t>(found - kAxes.begin());
+  return own.empty() ? 0 : 1;
+}
+
+bool MapAxis::is_of_tables() const { return rank() >= 2; }
 
 std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range) {
   for (const double end : {range.from, range.to}) {
     try {
-      if (axis.axis != Axis::kTheta) {
-        static_cast<void>(scene.with(axis.key(), end));
-      } else if (!description_of(axis.axis).range.contains(end)) {
+      if (!axis.key.empty()) {
+        static_cast<void>(scene.with(axis.key, end));
+      } else if (!description_of(Axis::kTheta).range.contains(end)) {
         return "must be numbers in [0, 90]";
       }
     } catch (const InputError& error) {
@@ -108,19 +164,28 @@ std::string HeatMap::key_of(std::size_t level) const {
   return "map " + std::to_string(kLevels[level].count) + ' ' + key_;
 }
 
-PointList HeatMap::rows(std::size_t level, std::size_t first) const {
-  const auto& [all, tolerance, batch] = kLevels[level];
+PointList HeatMap::part(std::size_t level, std::size_t first) const {
+  const std::size_t count = kLevels[level].count;
+  const std::vector<double> fast = faster().scale.values(count), all = slower().scale.values(count);
+  const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+  const std::vector<double> slow(begin, begin + static_cast<std::ptrdiff_t>(batch(level)));
   PointList list = points_at(scene_, {theta_deg_});
-  const auto fill = [&, last = static_cast<double>(all - 1)](const MapAxis& axis, std::size_t from, std::size_t count) {
-    std::vector<double>& column = axis.axis == Axis::kTheta   ? list.theta_deg
-                                  : axis.axis == Axis::kSigma ? list.sigma
-                                                              : list.q;
-    column.clear();
-    for (std::size_t i = from; i < from + count; ++i) column.push_back(axis.scale.value(static_cast<double>(i) / last));
-  };
-  fill(x_, 0, all);
-  fill(y_, first, batch);
-  list.is_grid = true;
+  list.is_grid = faster().is_of_tables() && slower().rank() != 1;
+  const bool has_column = !slower().column().empty();
+  if (!has_column) list.changes = {{slower().key, slow.front()}};
+  if (list.is_grid) {
+    if (has_column) list[slower().column()] = slow;
+    list[faster().column()] = fast;
+    return list;
+  }
+  // Films are in no table: a list has all combinations.
+  std::vector<double> all_slow, all_fast;
+  for (const double value : slow) {
+    all_fast.insert(all_fast.end(), fast.begin(), fast.end());
+    all_slow.insert(all_slow.end(), fast.size(), value);
+  }
+  if (has_column) list[slower().column()] = all_slow;
+  list[faster().column()] = all_fast;
   return list;
 }
 
@@ -128,7 +193,7 @@ std::optional<Job> HeatMap::wanted(std::size_t level) const {
   if (key_.empty() || (is_current() && is_complete(level))) return std::nullopt;
   const Level& next = kLevels[level];
   Job job{.key = key_of(level), .scene = scene_, .parts = {}, .tolerance = next.tolerance, .keep_all = keep_all_};
-  for (std::size_t row = 0; row < next.count; row += next.batch) job.parts.push_back(rows(level, row));
+  for (std::size_t i = 0; i < next.count; i += batch(level)) job.parts.push_back(part(level, i));
   return job;
 }
 
@@ -138,12 +203,8 @@ bool HeatMap::take(const JobPart& news) {
   if (level == kLevels.size()) return false;
   const bool is_first = level == 0 && !is_current();
   if (is_first && (std::exchange(arriving_key_, key_) != key_ || news.part == 0)) arriving_.clear();
-  // On a grid the last of theta, sigma and q is the fastest, whatever axis it is on.
-  const std::size_t columns = kLevels[level].count;
-  const std::size_t rows = news.points.size() / columns;
   std::vector<Point>& points = is_first ? arriving_ : points_[level];
-  for (std::size_t i = 0; i < news.points.size(); ++i)
-    points.push_back(news.points[x_.axis > y_.axis ? i : (i % columns) * rows + i / columns]);
+  points.insert(points.end(), news.points.begin(), news.points.end());
   if (is_first && news.is_last) {
     points_ = {};
     points_[0] = std::exchange(arriving_, {});
@@ -175,7 +236,8 @@ const Point& HeatMap::point_at(std::size_t finest, std::size_t row, std::size_t 
   for (std::size_t level = finest;; --level) {
     const std::size_t last = kLevels[level].count - 1;
     const auto nearest = [&](std::size_t i) { return (2 * i * last + steps) / (2 * steps); };
-    const std::size_t position = nearest(row) * kLevels[level].count + nearest(column);
+    const auto [slow, fast] = is_turned() ? std::pair(column, row) : std::pair(row, column);
+    const std::size_t position = nearest(slow) * kLevels[level].count + nearest(fast);
     if (level == 0 || position < points_[level].size()) return points_[level][position];
   }
 }

@@ -1,4 +1,4 @@
-// A map over two of theta, sigma and q, from 16 x 16 to 128 x 128 entries, and its lines of equal value.
+// A map over two numbers of a scene, from 16 x 16 to 128 x 128 entries, and its lines of equal value.
 #pragma once
 
 #include "explore/background.hpp"
@@ -6,22 +6,29 @@
 
 namespace dolp::explore {
 
-/// One axis of a map: theta, sigma or the wind, or q.
+/// One axis of a map: the zenith, or a number of the scene.
 struct MapAxis {
-  Axis axis = Axis::kTheta;
-  Scale scale;
-  bool is_wind = false;  ///< the wind instead of sigma
+  std::string name = "theta";  ///< in files of sessions
+  std::string label = "θ [°]";
+  std::string key = {};  ///< of the scene; empty for the zenith
+  Scale scale = {0.0, 90.0};
 
-  /// "θ [°]", "σ", "U [m/s]", "q".
-  const char* label() const;
-  /// The key of the scene that it varies; empty for the zenith.
-  std::string key() const;
+  /// The column of points that has its values; empty for the temperature, which changes the scene.
+  std::string column() const;
+  /// The order in which a grid or a list has axes, the slowest first.
+  std::size_t rank() const;
+  /// True where a table can have the axis.
+  bool is_of_tables() const;
   friend bool operator==(const MapAxis&, const MapAxis&) = default;
 };
-inline constexpr std::array kMapAxes = {Axis::kTheta, Axis::kSigma, Axis::kQ};
 
-/// The axis that a scene suggests: the range of its grid, or, without a range there, of the parameter's slider.
-MapAxis suggested_axis(Axis axis, const Scene& scene, double theta_max_deg);
+/// The axes that maps of a scene can have. Their ranges are those of the scene's grid or of sliders, extended to the
+/// scene's values.
+std::vector<MapAxis> map_axes(const Scene& scene, double theta_max_deg);
+
+/// A part of an axis of wavelengths in which the scene is known: all of it for built-in materials, most of it for
+/// files. Its ends are equal where only one wavelength is known.
+Scale known_part(const Scene& scene, const MapAxis& axis);
 
 /// Why a map of a scene cannot have a range along an axis; empty where it can.
 std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range);
@@ -51,15 +58,15 @@ class HeatMap {
   struct Level {
     std::size_t count;  ///< rows, and columns
     double tolerance;   ///< the least tolerance; 0: the scene's
-    std::size_t batch;  ///< rows in one part of the job
+    std::size_t batch;  ///< values along the slower axis in one part of the job
   };
-  // The first level takes two rows at a time, because each part delays the curve of a drag.
+  // The first level takes two values at a time, because each part delays the curve of a drag.
   static constexpr std::array<Level, 3> kLevels = {{{16, 1e-2, 2}, {64, 1e-2, 8}, {128, 0.0, 4}}};
 
   explicit HeatMap(const Scene& scene) : scene_(scene) {}
 
-  /// Switches to this map. `key` identifies the content of the scene without the parameters that the axes vary. Of
-  /// theta, sigma and q the one without an axis is `theta_deg` or the scene's value.
+  /// Switches to this map. `key` identifies the content of the scene without the parameters that the axes vary. Without
+  /// an axis for it the zenith is `theta_deg`.
   void follow(const std::string& key, const Scene& scene, bool keep_all, const MapAxis& x, const MapAxis& y,
               double theta_deg);
 
@@ -91,18 +98,24 @@ class HeatMap {
   bool is_current() const { return shown_key_ == key_; }
   bool is_complete(std::size_t level) const { return points_[level].size() == entries(level); }
   std::string key_of(std::size_t level) const;
-  /// `batch` rows of a level.
-  PointList rows(std::size_t level, std::size_t first) const;
+  /// True where x is the slower axis, so that points are in columns.
+  bool is_turned() const { return x_.rank() < y_.rank(); }
+  const MapAxis& slower() const { return is_turned() ? x_ : y_; }
+  const MapAxis& faster() const { return is_turned() ? y_ : x_; }
+  /// Values along the slower axis in one part of a job.
+  std::size_t batch(std::size_t level) const { return slower().column().empty() ? 1 : kLevels[level].batch; }
+  /// The entries from a position along the slower axis.
+  PointList part(std::size_t level, std::size_t first) const;
   /// The point nearest to an entry of the finest begun level.
   const Point& point_at(std::size_t finest, std::size_t row, std::size_t column) const;
 
   std::string key_;
   Scene scene_;
   bool keep_all_ = false;
-  MapAxis x_, y_;
+  MapAxis x_, y_{.name = "sigma"};
   double theta_deg_ = 0.0;
   std::string shown_key_;                                  ///< key of the map on display
-  std::array<std::vector<Point>, kLevels.size()> points_;  ///< row by row
+  std::array<std::vector<Point>, kLevels.size()> points_;  ///< the faster axis first
   std::string arriving_key_;
   std::vector<Point> arriving_;  ///< points of the first level that is not complete
   std::size_t version_ = 0;

@@ -24,34 +24,21 @@ void Residuals::load(MeasuredData data) {
     throw InputError(data.name + ": measured points take the window's scene; KEY=VALUE beside them is for dolp fit");
   }
   data_ = std::move(data);
+  loaded_for_ = scene_;
   ++loads_;
 }
 
 void Residuals::follow(const std::string& key, const Scene& scene) {
-  key_ = key;
   scene_ = scene;
-}
-
-std::string Residuals::job_key() const { return fmt::format("measured {} {}", loads_, key_); }
-
-std::optional<Job> Residuals::wanted() const {
-  if (!data_ || known_ == job_key()) return std::nullopt;
-  std::vector<double> theta_deg;
-  std::vector<double> wavelength_um;
+  if (!data_) return;
+  std::vector<double> theta_deg, wavelength_um;
   for (const Measurement& one : data_->measurements) {
     theta_deg.push_back(one.theta_deg);
     if (one.wavelength_um) wavelength_um.push_back(*one.wavelength_um);
   }
-  PointList list = points_at(scene_, std::move(theta_deg));
-  list.wavelength_um = std::move(wavelength_um);
-  return Job{.key = job_key(), .scene = scene_, .parts = {std::move(list)}, .keep_all = true};
-}
-
-bool Residuals::take(const JobPart& news) {
-  if (!data_ || news.key != job_key()) return false;
-  known_ = news.key;
-  model_ = news.points;
-  return true;
+  PointList list = points_at(scene, std::move(theta_deg));
+  if (!wavelength_um.empty()) list["wavelength_um"] = std::move(wavelength_um);
+  model_.follow({.key = fmt::format("measured {} {}", loads_, key), .scene = scene, .parts = {list}, .keep_all = true});
 }
 
 std::vector<Measurement> Residuals::measured(Plotted quantity) const {
@@ -63,10 +50,10 @@ std::vector<Measurement> Residuals::measured(Plotted quantity) const {
 
 std::vector<Measurement> Residuals::residuals(Plotted quantity) const {
   std::vector<Measurement> residuals;
-  if (!data_ || known_ != job_key()) return residuals;
-  for (std::size_t i = 0; i < model_.size(); ++i) {
+  if (!is_known()) return residuals;
+  for (std::size_t i = 0; i < model_.points().size(); ++i) {
     Measurement one = data_->measurements[i];
-    one.value -= described(quantity).value(model_[i]);
+    one.value -= described(quantity).value(model_.points()[i]);
     if (plotted(one.observable) == quantity && std::isfinite(one.value)) residuals.push_back(one);
   }
   return residuals;
@@ -89,7 +76,7 @@ FitRange fit_range(const FitMarks& marks, const Scene& scene, const Parameter& p
     return typed;
   }
   const Scale slider = range_in(scene, parameter);
-  const double low = key == "surface.k" ? kLeastK : std::min(slider.from, value);
+  const double low = key.ends_with(".k") ? kLeastK : std::min(slider.from, value);
   return {key, low, std::max(slider.to, value), std::max(low, value)};
 }
 

@@ -4,7 +4,6 @@
 #include <map>
 
 #include "explore/background.hpp"
-#include "explore/parameters.hpp"
 #include "explore/scene_edits.hpp"
 
 namespace dolp::explore {
@@ -18,17 +17,20 @@ MeasuredData read_measured(const std::string& path);
 /// Measured points, and the model there.
 class Residuals {
  public:
-  explicit Residuals(const Scene& scene) : scene_(scene) {}
+  explicit Residuals(const Scene& scene) : scene_(scene), loaded_for_(scene) {}
 
   /// Errors: InputError for data that have their own settings.
   void load(MeasuredData data);
   void clear() { data_.reset(); }
   void follow(const std::string& key, const Scene& scene);
 
-  std::optional<Job> wanted() const;
-  bool take(const JobPart& news);
+  std::optional<Job> wanted() const { return data_ ? model_.wanted() : std::nullopt; }
+  void take(const JobPart& news) { model_.take(news); }
 
   const std::optional<MeasuredData>& data() const { return data_; }
+  /// The scene for which the data were loaded.
+  const Scene& loaded_for() const { return loaded_for_; }
+  bool is_known() const { return data_ && model_.is_finished(); }
   /// The measured points of a quantity.
   std::vector<Measurement> measured(Plotted quantity) const;
   /// The measured points of a quantity with measured minus model as their values; without points at which the model
@@ -36,14 +38,10 @@ class Residuals {
   std::vector<Measurement> residuals(Plotted quantity) const;
 
  private:
-  std::string job_key() const;
-
   std::optional<MeasuredData> data_;
   std::size_t loads_ = 0;
-  std::string key_;
-  Scene scene_;
-  std::string known_;  ///< key of the job that gave the model
-  std::vector<Point> model_;
+  Scene scene_, loaded_for_;
+  Sweep model_;
 };
 
 /// Root mean square of the values; none without any.

@@ -7,7 +7,7 @@
 
 #include "base/text.hpp"
 #include "explore/curve.hpp"
-#include "explore/parameters.hpp"
+#include "explore/scene_edits.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -61,9 +61,7 @@ std::pair<double, double> spectrum_um(const Scene& scene) {
 MaterialCurve material_curve(const Scene& scene, std::size_t count) {
   const auto [from_um, to_um] = known_um(scene);
   MaterialCurve curve;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double part = static_cast<double>(i) / static_cast<double>(count - 1);
-    const double at_um = std::clamp(from_um * std::pow(to_um / from_um, part), from_um, to_um);
+  for (const double at_um : Scale{from_um, to_um, true}.values(count)) {
     try {
       const auto [n, k] = scene.refractive_index(at_um);
       curve.wavelength_um.push_back(at_um);
@@ -74,6 +72,22 @@ MaterialCurve material_curve(const Scene& scene, std::size_t count) {
     }
   }
   return curve;
+}
+
+Scene at_one_wavelength(const Scene& scene) {
+  const auto [from_um, to_um] = spectrum_um(scene);
+  if (from_um == to_um) return scene;
+  return scene.with({{"spectrum.band_um", Value()}, {"spectrum.wavelength_um", 0.5 * (from_um + to_um)}});
+}
+
+Scene smooth_scene(const Scene& scene) {
+  return scene.with({{"surface.wind_m_s", Value()},
+                     {"grid.wind_m_s", Value()},
+                     {"surface.sigma", 0.0},
+                     {"surface.scattering", "single"},
+                     {"surface.specular", 1.0},
+                     {"surface.diffuse", 0.0},
+                     {"geometry.mode", "hemispherical"}});
 }
 
 ScatteringCut scattering_cut(Evaluator& evaluator, const Scene& scene, double theta_i_deg, std::size_t count) {
@@ -110,38 +124,21 @@ std::optional<ImagePolarisation> polarisation_at(const std::vector<Point>& curve
 }
 
 void SourceSky::follow(const std::string& key, const Scene& scene) {
-  key_ = key;
-  scene_ = scene;
+  for (std::size_t i = 0; i < kAzimuths; ++i) {
+    const Scene ring = scene.with("geometry.relative_azimuth_deg", azimuth_deg(i));
+    rings_[i].follow({.key = fmt::format("sky {} {}", i, key),
+                      .scene = ring,
+                      .parts = {points_at(ring, zeniths(0.0, 90.0, kZeniths))},
+                      .tolerance = Curve::kCoarseTolerance});
+  }
 }
-
-std::string SourceSky::key_of(std::size_t azimuth) const { return fmt::format("sky {} {}", azimuth, key_); }
 
 std::vector<Job> SourceSky::wanted() const {
   std::vector<Job> jobs;
-  if (!scene_ || !is_bistatic(*scene_)) return jobs;
-  for (std::size_t i = 0; i < kAzimuths; ++i) {
-    if (rings_[i].key == key_of(i)) continue;
-    const Scene scene = scene_->with("geometry.relative_azimuth_deg", azimuth_deg(i));
-    jobs.push_back({.key = key_of(i),
-                    .scene = scene,
-                    .parts = {points_at(scene, zeniths(0.0, 90.0, kZeniths))},
-                    .tolerance = Curve::kCoarseTolerance});
+  for (const Sweep& ring : rings_) {
+    if (const std::optional<Job> job = ring.wanted()) jobs.push_back(*job);
   }
   return jobs;
-}
-
-bool SourceSky::take(const JobPart& news) {
-  for (std::size_t i = 0; i < kAzimuths; ++i) {
-    if (news.key != key_of(i)) continue;
-    rings_[i] = {news.key, news.points};
-    return true;
-  }
-  return false;
-}
-
-bool SourceSky::is_finished() const {
-  std::size_t i = 0;
-  return std::ranges::all_of(rings_, [&](const Ring& ring) { return ring.key == key_of(i++); });
 }
 
 }  // namespace dolp::explore

@@ -1,7 +1,8 @@
-// Values of the views beside the map: slope distributions, a material over wavelength, the pBRDF in the plane of
-// incidence, a sphere, and the sky of a source.
+// Values of the views beside the map: slope distributions, a material over wavelength, curves over wavelength and of
+// the smooth surface, the pBRDF in the plane of incidence, a sphere, and the sky of a source.
 #pragma once
 
+#include <algorithm>
 #include <numbers>
 
 #include "explore/background.hpp"
@@ -11,10 +12,11 @@ namespace dolp::explore {
 inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< in radians
 
 /// A view beside the curve; it is computed while it is shown.
-enum class Panel : std::uint8_t { kMap, kSlopes, kMaterial, kScattering, kShapes, kSky, kFit };
+enum class Panel : std::uint8_t { kMap, kSlopes, kMaterial, kSmooth, kSpectrum, kScattering, kShapes, kSky, kFit };
 
 /// Their names, in the order of Panel.
-inline constexpr std::array kPanelNames = {"map", "slopes", "material", "pBRDF", "sphere", "sky", "fit"};
+inline constexpr std::array kPanelNames = {"map",   "slopes", "material", "smooth", "spectrum",
+                                           "pBRDF", "sphere", "sky",      "fit"};
 
 /// The panel of a name. Errors: InputError that lists the names.
 Panel panel_of(const std::string& name);
@@ -37,6 +39,12 @@ MaterialCurve material_curve(const Scene& scene, std::size_t count);
 
 /// The ends of the scene's spectrum, equal for a single wavelength.
 std::pair<double, double> spectrum_um(const Scene& scene);
+
+/// The scene at the middle of its band.
+Scene at_one_wavelength(const Scene& scene);
+
+/// The scene's surface without roughness: its rho_s and rho_p are the reflectances R_s and R_p of a facet.
+Scene smooth_scene(const Scene& scene);
 
 /// The Mueller pBRDF in the plane of incidence.
 struct ScatteringCut {
@@ -67,28 +75,21 @@ class SourceSky {
   static constexpr std::size_t kZeniths = 31;   ///< 0 to 90 degrees
   static constexpr std::size_t kAzimuths = 37;  ///< 0 to 180 degrees; the other half mirrors them
 
-  /// Switches to the sky of `scene`; `key` identifies its content without the azimuth.
+  /// Switches to the sky of a bistatic scene; `key` identifies its content without the azimuth.
   void follow(const std::string& key, const Scene& scene);
   /// A coarse job for each azimuth that is not known yet.
   std::vector<Job> wanted() const;
-  bool take(const JobPart& news);
+  void take(const JobPart& news) {
+    std::ranges::any_of(rings_, [&](Sweep& ring) { return ring.take(news); });
+  }
   /// The points at an azimuth, ordered by zenith; empty while they are unknown.
-  const std::vector<Point>& at(std::size_t azimuth) const { return rings_[azimuth].points; }
+  const std::vector<Point>& at(std::size_t azimuth) const { return rings_[azimuth].points(); }
   static double azimuth_deg(std::size_t azimuth) { return 180.0 * static_cast<double>(azimuth) / (kAzimuths - 1); }
   /// True where all azimuths belong to the present scene.
-  bool is_finished() const;
+  bool is_finished() const { return std::ranges::all_of(rings_, &Sweep::is_finished); }
 
  private:
-  /// Results at one azimuth, and the key of the job that gave them.
-  struct Ring {
-    std::string key;
-    std::vector<Point> points;
-  };
-  std::string key_of(std::size_t azimuth) const;
-
-  std::string key_;
-  std::optional<Scene> scene_;
-  std::array<Ring, kAzimuths> rings_;
+  std::array<Sweep, kAzimuths> rings_;
 };
 
 }  // namespace dolp::explore

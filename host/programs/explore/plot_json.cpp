@@ -18,7 +18,7 @@ json curve_json(const Curve& curve, const std::string& name, const json& style, 
   json theta = json::array(), values = json::array(), good = json::array(), low = json::array(), high = json::array();
   for (const Point& point : curve.drawn()) {
     theta.push_back(point.theta_deg);
-    values.push_back(description.scale() * description.value(point));
+    values.push_back(description.shown(point));
     good.push_back(point.is_good());
     const bool has_band = quantity == Plotted::kDolp && style == "curve" && point.is_good() && point.has_bracket();
     low.push_back(has_band ? json(description.scale() * point[Quantity::kDolpLow]) : json());
@@ -39,7 +39,7 @@ json map_json(const Session& session) {
   if (const auto& typed = session.view().map_colours) {
     colours = {{"from", description.scale() * typed->from}, {"to", description.scale() * typed->to}};
   }
-  const auto axis = [](const MapAxis& one) { return axis_json(one.label(), one.scale); };
+  const auto axis = [](const MapAxis& one) { return axis_json(one.label, one.scale); };
   return {{"x", axis(session.map().x())},
           {"y", axis(session.map().y())},
           {"label", description.label()},
@@ -59,7 +59,7 @@ std::string plot_json(const Session& session, const Scale& x, const Scale& y) {
     if (!pin.is_visible) continue;
     const Scene& scene = pin.curve.shown_scene();
     std::string name = pin.name.empty() ? surface_name(scene) : pin.name;
-    if (name == surface_name(session.curve().shown_scene())) name += ", " + pin_name(session, pin);
+    if (name == surface_name(session.curve().shown_scene())) name = pin_name(session, pin);
     curves.push_back(curve_json(pin.curve, name, pin.colour, quantity));
   }
   curves.push_back(curve_json(session.curve(), curve_name(session), "curve", quantity));

@@ -1,8 +1,8 @@
 #include "explore/points.hpp"
 
+#include <algorithm>
 #include <cmath>
 
-#include <utility>
 #include "base/text.hpp"
 
 namespace dolp::explore {
@@ -10,10 +10,13 @@ namespace {
 
 /// The scene with a list as its grid. Other axes of the scene's grid get the scene's single value.
 Scene with_grid(const Scene& scene, const PointList& list) {
-  std::vector<Setting> axes = {{"theta_deg", list.theta_deg}, {list.roughness(), list.sigma}, {"q", list.q}};
+  std::vector<Setting> axes;
+  for (const auto& [name, values] : list.values) axes.push_back({name, values});
   for (const auto& [axis, key] :
        {std::pair{"wavelength_um", "spectrum.wavelength_um"}, {"n", "surface.n"}, {"k", "surface.k"}}) {
-    if (!scene.numbers(std::string("grid.") + axis).empty()) axes.push_back({axis, scene.number(key).value()});
+    const bool is_listed = std::ranges::count(axes, axis, &Setting::key) > 0;
+    if (!is_listed && !scene.numbers(std::string("grid.") + axis).empty())
+      axes.push_back({axis, scene.number(key).value()});
   }
   return scene.with_grid(axes);
 }
@@ -46,17 +49,21 @@ const std::array<PlottedDescription, 7> kAllPlotted = {{
     {Plotted::kAlbedo, "albedo", "A(θ), ρ of perfectly reflecting facets", false, true, value_of<Quantity::kAlbedo>},
 }};
 
-std::size_t PointList::size() const { return is_grid ? theta_deg.size() * sigma.size() * q.size() : theta_deg.size(); }
-
 Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list, const RunOptions& options) {
-  if (!list.is_grid) return evaluator.evaluate(scene, list.columns(), options);
-  const Table table = evaluator.table(with_grid(scene, list), options);
+  const Scene changed = list.changes.empty() ? scene : scene.with(list.changes);
+  if (!list.is_grid) return evaluator.evaluate(changed, list.columns(), options);
+  const Table table = evaluator.table(with_grid(changed, list), options);
   return {table.values(), table.values().quantities(), table.values().stokes_units};
 }
 
+std::vector<double>& PointList::operator[](const std::string& name) {
+  const auto found = std::ranges::find(values, name, &decltype(values)::value_type::first);
+  return found == values.end() ? values.emplace_back(name, std::vector<double>()).second : found->second;
+}
+
 std::vector<Column> PointList::columns() const {
-  std::vector<Column> columns = {{"theta_deg", theta_deg}, {roughness(), sigma}, {"q", q}};
-  if (!wavelength_um.empty()) columns.push_back({"wavelength_um", wavelength_um});
+  std::vector<Column> columns;
+  for (const auto& [name, column] : values) columns.push_back({name, column});
   return columns;
 }
 
@@ -64,10 +71,9 @@ bool has_wind(const Scene& scene) { return scene.number("surface.wind_m_s").has_
 
 PointList points_at(const Scene& scene, std::vector<double> theta_deg) {
   const std::size_t count = theta_deg.size();
-  const auto all = [&](const std::string& key) { return std::vector<double>(count, scene.number(key).value()); };
-  PointList list{.theta_deg = std::move(theta_deg), .has_winds = has_wind(scene)};
-  list.sigma = all(std::string("surface.") + list.roughness());
-  list.q = all("surface.q");
+  PointList list{.values = {{"theta_deg", std::move(theta_deg)}}};
+  for (const std::string name : {has_wind(scene) ? "wind_m_s" : "sigma", "q"})
+    list[name].assign(count, scene.number("surface." + name).value());
   return list;
 }
 
@@ -89,12 +95,9 @@ bool Point::has_bracket() const {
 
 std::vector<Point> points_of(const PointList& list, const Results& results) {
   std::vector<Point> points;
-  const std::size_t sigmas = list.is_grid ? list.sigma.size() : 1;
-  const std::size_t qs = list.is_grid ? list.q.size() : 1;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const double sigma = list.sigma[list.is_grid ? i / qs % sigmas : i];
-    points.push_back({results.at(i), list.theta_deg[i / (sigmas * qs)], sigma, list.q[list.is_grid ? i % qs : i]});
-  }
+  const std::vector<double>& theta_deg = list.values.front().second;
+  for (std::size_t i = 0; i < results.status.size(); ++i)
+    points.push_back({results.at(i), theta_deg[i < theta_deg.size() ? i : 0]});
   return points;
 }
 

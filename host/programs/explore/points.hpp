@@ -6,28 +6,26 @@
 #include <cstdint>
 #include <dolp/dolp.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace dolp::explore {
 
-/// Points to compute: columns of one length, or the axes of a grid.
+/// Points to compute: columns, each with one value or with one per point, or the axes of a grid.
 struct PointList {
-  std::vector<double> theta_deg;
-  std::vector<double> sigma;  ///< or winds, m/s
-  std::vector<double> q;
-  std::vector<double> wavelength_um = {};  ///< one value per point; empty, and on a grid: the scene's wavelength
-  bool has_winds = false;
-  bool is_grid = false;  ///< all combinations, q fastest: shared work is done once
+  std::vector<std::pair<std::string, std::vector<double>>> values;  ///< names as in points of `dolp eval`
+  bool is_grid = false;               ///< all combinations in the order of a table: shared work is done once
+  std::vector<Setting> changes = {};  ///< changes of the scene for these points: numbers that have no column
 
-  const char* roughness() const { return has_winds ? "wind_m_s" : "sigma"; }
-  std::size_t size() const;
+  /// The values of a column, which is added where it is missing.
+  std::vector<double>& operator[](const std::string& name);
   std::vector<Column> columns() const;
 };
 
 /// True where a wind gives the surface its sigma.
 bool has_wind(const Scene& scene);
 
-/// A scene's surface at some zeniths.
+/// A scene's surface at some zeniths, which are the first column.
 PointList points_at(const Scene& scene, std::vector<double> theta_deg);
 
 /// `count` zeniths from `from` to `to`, both included.
@@ -38,9 +36,7 @@ Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list
 
 /// The results at a point, in the units of a table.
 struct Point : PointResult {
-  double theta_deg = 0.0;
-  double sigma = 0.0;  ///< or the wind of a scene that has one
-  double q = 0.0;
+  double theta_deg = 0.0;  ///< meaningless on a grid
 
   /// True where the status has no bit that makes DOLP meaningless or voids its error bound.
   bool is_good() const;
@@ -65,6 +61,8 @@ struct PlottedDescription {
   double (*value)(const Point&);  ///< NaN where the model gives no value
   bool is_signed = false;
 
+  /// The value of a point in the units of the label.
+  double shown(const Point& point) const { return scale() * value(point); }
   double scale() const { return in_percent ? 100.0 : 1.0; }
   /// "DOLP [%]".
   std::string label() const { return std::string(name) + (in_percent ? " [%]" : ""); }

@@ -74,8 +74,24 @@ std::string overlay_name(const Session& session) {
 }
 
 std::string pin_name(const Session& session, const Pin& pin) {
-  if (!pin.name.empty()) return pin.name;
-  return surface_name(pin.curve.shown_scene(), &session.curve().shown_scene()) + stale_text(pin.curve.is_stale());
+  const Scene& scene = pin.curve.shown_scene();
+  const std::string name = pin.name.empty() ? surface_name(scene, &session.curve().shown_scene()) : pin.name;
+  return name + (session.is_foreign(scene) ? ", another scene" : stale_text(pin.curve.is_stale()));
+}
+
+std::string no_residuals_text(const Session& session, const Scale& theta) {
+  const Plotted shown = session.view().quantity;
+  const std::vector<Measurement>& all = session.residuals().data().value().measurements;
+  if (all.empty()) return "the file has no points";
+  const bool is_shown = !session.residuals().measured(shown).empty();
+  if (!is_shown) return fmt::format("measured: {}; choose it above", described(plotted(all[0].observable)).name);
+  if (!session.residuals().is_known()) return "…";
+  const std::vector<Measurement> residuals = session.residuals().residuals(shown);
+  if (residuals.empty()) return "the model has no value at the measured points";
+  const auto is_inside = [&](const Measurement& one) {
+    return theta.from <= one.theta_deg && one.theta_deg <= theta.to;
+  };
+  return std::ranges::any_of(residuals, is_inside) ? "" : "no measured point is at these zeniths";
 }
 
 std::string peak_text(const Session& session) {
@@ -124,10 +140,12 @@ std::string cursor_text(const Session& session) {
   const Point& r = *shown;
   const Scene& scene = session.curve().shown_scene();
   const bool has_q = scene.word("surface.distribution") == "cauchy";
-  std::string text = fmt::format("Cursor{}: θ = {:.1f}°, {} = {:.4g}{}: DOLP {:.3f} % ± {}, Q/I {:+.3f} %",
-                                 remark(session, session.curve()), r.theta_deg, has_wind(scene) ? "U" : "σ", r.sigma,
-                                 has_q ? fmt::format(", q = {:.4g}", r.q) : "", kPercent * r[Quantity::kDolp],
-                                 points_text(r[Quantity::kErrorEstimate]), kPercent * r[Quantity::kQOverI]);
+  const Parameter& width = parameter(has_wind(scene) ? "surface.wind_m_s" : "surface.sigma");
+  std::string text =
+      fmt::format("Cursor{}: θ = {:.1f}°, {} = {:.4g}{}: DOLP {:.3f} % ± {}, Q/I {:+.3f} %",
+                  remark(session, session.curve()), r.theta_deg, width.symbol, *width.value(scene),
+                  has_q ? fmt::format(", q = {:.4g}", *scene.number("surface.q")) : "", kPercent * r[Quantity::kDolp],
+                  points_text(r[Quantity::kErrorEstimate]), kPercent * r[Quantity::kQOverI]);
   if (r.has_bracket()) {
     text += fmt::format(", all bounces {:.3f} to {:.3f} %", kPercent * r[Quantity::kDolpLow],
                         kPercent * r[Quantity::kDolpHigh]);

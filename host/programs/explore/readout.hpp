@@ -11,7 +11,7 @@ const char* remark(const Session& session, const Curve& curve);
 /// The surface of the curve on display.
 std::string curve_name(const Session& session);
 std::string overlay_name(const Session& session);
-/// The typed name of a pin, or the surface in the words that differ from the curve on display.
+/// The typed name of a pin, or its material with the words that differ from the curve on display.
 std::string pin_name(const Session& session, const Pin& pin);
 /// ", the scene before" for outdated values.
 const char* stale_text(bool is_stale);
@@ -21,6 +21,8 @@ const char* stale_text(bool is_stale);
 std::string peak_text(const Session& session);
 /// The radiation that causes the polarisation at the maximum: parts of Q/I that add up.
 std::string cause_text(const Session& session);
+/// Why there are no residuals between two zeniths; empty where there are some.
+std::string no_residuals_text(const Session& session, const Scale& theta);
 /// The values under the cursor.
 std::string cursor_text(const Session& session);
 /// Q/I at the maximum with all effects and without one, in percent: "-14.36 → -59.59 %"; empty where it is unknown.

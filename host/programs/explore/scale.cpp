@@ -64,11 +64,29 @@ double Scale::position(double value) const {
 
 double Scale::clamp(double value) const { return std::clamp(value, from, to); }
 
+double Scale::rounded(double position) const {
+  const double exact = value(position);
+  // The text that one would type into a file, and that reads back as the same number.
+  if (exact == 0.0) return exact;
+  const double digit = std::pow(10.0, 3.0 - std::floor(std::log10(std::abs(exact))));
+  return clamp(std::round(exact * digit) / digit);
+}
+
+std::vector<double> Scale::values(std::size_t count) const {
+  std::vector<double> all;
+  for (std::size_t i = 0; i < count; ++i) all.push_back(value(static_cast<double>(i) / static_cast<double>(count - 1)));
+  return all;
+}
+
 Scale Scale::within(const Scale& all) const {
   const double first = all.position(from), last = all.position(to);
   if (last - first >= 1.0) return all;
   const double shift = std::max(-first, 0.0) + std::min(1.0 - last, 0.0);
   return all.between(first + shift, last + shift);
+}
+
+Scale Scale::including(double value) const {
+  return is_log && !(value > 0.0) ? *this : Scale{std::min(from, value), std::max(to, value), is_log};
 }
 
 Scale Scale::with_log(bool wants_log) const {
@@ -85,6 +103,21 @@ std::vector<double> Scale::ticks(std::size_t most) const {
   const std::size_t stride = (all.size() + most - 1) / most;
   for (std::size_t i = 0; i < all.size(); i += stride) some.push_back(all[i]);
   return some;
+}
+
+Scale range_of(std::vector<double> values, bool is_log) {
+  std::erase_if(values, [&](double value) { return !std::isfinite(value) || (is_log && value <= 0.0); });
+  if (values.empty()) values = {is_log ? 0.01 : 0.0, 1.0};
+  if (!is_log) values.push_back(0.0);
+  const auto [low, high] = std::ranges::minmax(values);
+  if (is_log) {
+    constexpr double kMostDecades = 1e6;
+    constexpr double kRoom = 4.0;  // for the mark of the maximum
+    return {std::max(low / 1.5, kRoom * high / kMostDecades), kRoom * high, true};
+  }
+  const double room = 0.06 * std::max(high - low, 1e-9);
+  const Scale range{low < 0.0 ? low - room : 0.0, high > 0.0 ? high + 2.0 * room : 0.0};
+  return range.to > range.from ? range : Scale{range.from, range.from + 1.0};
 }
 
 std::string tick_text(double value) { return fmt::format("{:.4g}", value == 0.0 ? 0.0 : value); }

@@ -20,10 +20,16 @@ struct Scale {
   double value(double position) const;
   double position(double value) const;
   double clamp(double value) const;
+  /// The value at a position with four digits, within the range.
+  double rounded(double position) const;
+  /// `count` values at equal steps of the position, both ends among them.
+  std::vector<double> values(std::size_t count) const;
   /// The range between two positions, which may lie outside the range.
   Scale between(double first, double last) const { return {value(first), value(last), is_log}; }
   /// This range shifted into `all`; all of it if this range is larger.
   Scale within(const Scale& all) const;
+  /// This range, extended to a value that it can show.
+  Scale including(double value) const;
   /// This range as a linear or a logarithmic one. A logarithmic range from 0 begins at 1/180 of its end: 0.5 of 90.
   Scale with_log(bool wants_log) const;
 
@@ -40,6 +46,10 @@ struct Zoom {
   std::optional<Scale> x, y;
   friend bool operator==(const Zoom&, const Zoom&) = default;
 };
+
+/// A range for the values of curves, with room above them. A linear one contains 0; a logarithmic one leaves out values
+/// that are not positive. Values that are not finite do not count.
+Scale range_of(std::vector<double> values, bool is_log);
 
 /// The number beside a tick, with four digits at most.
 std::string tick_text(double value);

@@ -1,5 +1,5 @@
-// The scene that the window shows: a file's text with changes, choices that exclude one another, and skies of the
-// window.
+// The scene that the window shows: its controls and names; a file's text with changes, choices that exclude one
+// another, and skies of the window.
 #pragma once
 
 #include <dolp/dolp.hpp>
@@ -9,8 +9,61 @@
 #include <vector>
 
 #include "base/temporary_folder.hpp"
+#include "explore/scale.hpp"
 
 namespace dolp::explore {
+
+/// A number of the scene that a slider moves.
+struct Parameter {
+  const Key* key;
+  std::string symbol;    ///< UTF-8
+  Scale slider;          ///< a part of the key's range; you can type the rest
+  const char* equation;  ///< UTF-8, with its number in the paper where it has one
+  /// True where the scene uses the parameter; null: every scene that has it uses it.
+  bool (*is_used)(const Scene& scene) = nullptr;
+
+  /// The scene's value; none where the window hides the control.
+  std::optional<double> value(const Scene& scene) const;
+  /// "λ [µm]".
+  std::string label() const;
+};
+
+/// A word of the scene that a list offers, or a flag that a box shows.
+struct Choice {
+  const Key* key;
+  const char* label;
+  const char* equation;
+
+  /// Position in Key::words; none where the window hides the control.
+  std::optional<std::size_t> word(const Scene& scene) const;
+  bool is_flag() const { return key->words.front() == "false"; }
+};
+
+/// The scene key of this name, which must exist.
+const Key& described(const std::string& key);
+
+/// All controls, in the order of the scene keys; the numbers of films come last.
+const std::vector<Parameter>& parameters();
+const std::vector<Choice>& choices();
+
+/// The parameter with this key, which must exist.
+const Parameter& parameter(const std::string& key);
+
+/// The range of a parameter's slider, without the values that the scene's masking excludes.
+Scale range_in(const Scene& scene, const Parameter& parameter);
+
+/// The table of a dotted key: "surface" of "surface.sigma", "surface.coating.1" of "surface.coating.1.n".
+std::string table_of(const std::string& key);
+
+/// The unit for readers: empty for 1, "°" for degree.
+std::string unit_text(const Key& key);
+
+bool is_bistatic(const Scene& scene);
+
+/// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1". With `other` only the words of the
+/// shape that differ from it, or, where all of them and the material are common, the other numbers that differ; and the
+/// material.
+std::string surface_name(const Scene& scene, const Scene* other = nullptr);
 
 /// A scene file with changes: the window computes what `dolp eval` computes with the same settings.
 class SceneEdits {
@@ -50,6 +103,13 @@ class SceneEdits {
   Scene opened_;
   Scene scene_;
 };
+
+/// The keys of a film in its table: n and k, or material, or material_file; thickness_um.
+using Film = std::vector<Setting>;
+/// The films of a scene from the outside in.
+std::vector<Film> films_of(const Scene& scene);
+/// The change of a scene that gives it these films.
+Setting coating_of(const std::vector<Film>& films);
 
 /// The word of a value, without quotes.
 std::string word_of(const Value& value);

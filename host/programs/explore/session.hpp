@@ -27,8 +27,8 @@ struct View {
   bool has_overlay = true;      ///< the other slope distribution with the same D(0)
   bool keeps_all = false;       ///< compute what the plan would drop, too
   double theta_max_deg = 90.0;  ///< ends the plots and the search for the maximum
-  Axis map_x = Axis::kTheta;
-  Axis map_y = Axis::kSigma;
+  std::string map_x = "theta";  ///< name of an axis; the map has another one where the scene lacks it
+  std::string map_y = "sigma";
   Zoom curve_zoom = {};
   std::map<std::string, Scale> map_ranges = {};  ///< typed ranges, by the label of the axis
   std::optional<Scale> map_colours = {};         ///< typed values of the first and the last colour
@@ -140,8 +140,17 @@ class Session {
   const std::vector<Snapshot>& snapshots() const { return snapshots_; }
   const HeatMap& map() const { return map_; }
   const SourceSky& source_sky() const { return source_sky_; }
+  /// The scene at one wavelength, and its axis of wavelengths; without a range where only one is known.
+  const Scene& spectral_scene() const { return spectral_scene_; }
+  const MapAxis& wavelengths() const { return wavelengths_; }
+  // At the cursor's zenith: the scene over wavelength, and the smooth surface over wavelength; and that over zenith.
+  const Sweep& spectrum() const { return spectrum_; }
+  const Sweep& smooth_spectrum() const { return smooth_spectrum_; }
+  const Sweep& smooth() const { return smooth_; }
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
+  /// True for the scene of another file.
+  bool is_foreign(const Scene& other) const { return other.name() != scene().name() || other.text() != scene().text(); }
   const FitMarks& marked() const { return marked_; }
   bool varies(const std::string& key) const { return marked_.contains(key); }
   /// The files of skies that the window edits.
@@ -177,13 +186,13 @@ class Session {
   void tell_remarks(const std::vector<std::string>& remarks);
   void tell_new_remarks_on_scene();
   void tell_needed(const std::string& chosen, const std::vector<Setting>& needed);
-  // Give curves, map and the rest the present scene. In session_jobs.cpp.
+  // Give curves, map and the rest the present scene.
   void follow();
   void follow_overlay(const std::string& content);
   void follow_map();
   void follow_peak();
-  MapAxis map_axis(Axis axis) const;
   std::vector<Job> wanted_in_drag() const;
+  void follow_sweeps(const std::string& content);
   bool shows_map() const { return view_.panel == Panel::kMap; }
   void estimate_influences();
 
@@ -200,6 +209,9 @@ class Session {
   std::deque<Pin> pins_;
   HeatMap map_;
   SourceSky source_sky_;
+  Scene spectral_scene_;
+  MapAxis wavelengths_;
+  Sweep spectrum_, smooth_, smooth_spectrum_;
   Peak peak_;
   Residuals residuals_;
   FitMarks marked_;

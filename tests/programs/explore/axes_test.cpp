@@ -50,21 +50,86 @@ TEST(Colours, Diverging_AreBlueWhiteAndRed) {
 
 TEST(ExploreSession, TypedRangeOfTheMap_IsTakenIfTheSceneTakesIt) {
   Session session(paint({"surface.masking=smith"}));
-  for (const auto& [map_axis, range, is_refused] : {std::tuple{Axis::kTheta, Scale{20.0, 70.0}, false},
-                                                    {Axis::kTheta, Scale{20.0, 95.0}, true},
-                                                    {Axis::kSigma, Scale{0.0, 0.3}, false},
-                                                    {Axis::kSigma, Scale{0.1, 11.0}, true},
-                                                    {Axis::kQ, Scale{2.0, 8.0, true}, false},
-                                                    {Axis::kQ, Scale{1.2, 8.0, true}, true}}) {
-    const MapAxis axis{map_axis};
-    EXPECT_EQ(!refusal(session.scene(), axis, range).empty(), is_refused) << axis.label() << ' ' << range.from;
+  for (const auto& [name, range, is_refused] : {std::tuple{"theta", Scale{20.0, 70.0}, false},
+                                                {"theta", Scale{20.0, 95.0}, true},
+                                                {"sigma", Scale{0.0, 0.3}, false},
+                                                {"sigma", Scale{0.1, 11.0}, true},
+                                                {"q", Scale{2.0, 8.0, true}, false},
+                                                {"q", Scale{1.2, 8.0, true}, true},
+                                                {"temperature", Scale{250.0, 310.0}, false}}) {
+    const std::vector<MapAxis> axes = map_axes(session.scene(), 90.0);
+    const MapAxis axis = *std::ranges::find(axes, name, &MapAxis::name);
+    EXPECT_EQ(!refusal(session.scene(), axis, range).empty(), is_refused) << axis.label << ' ' << range.from;
     View view = session.view();
-    view.map_x = map_axis;
-    view.map_y = map_axis == Axis::kTheta ? Axis::kSigma : Axis::kTheta;
-    view.map_ranges = {{axis.label(), range}};
+    view.map_x = name;
+    view.map_y = axis.key.empty() ? "sigma" : "theta";
+    view.map_ranges = {{axis.label, range}};
     session.set_view(view);
-    EXPECT_EQ(session.map().x().scale == range, !is_refused) << axis.label() << ' ' << range.from;
+    EXPECT_EQ(session.map().x().scale == range, !is_refused) << axis.label << ' ' << range.from;
   }
+}
+
+TEST(HeatMap, EachPairOfAxes_HasTheValuesOfTheScene) {
+  const SceneEdits oxide = paint({"surface.coating=[{n=1.3,k=0.1,thickness_um=1},{n=2,thickness_um=0.5}]"});
+  Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
+  for (const auto& [x, y] : {std::pair{"theta", "sigma"},
+                             {"sigma", "theta"},
+                             {"theta", "temperature"},
+                             {"temperature", "film 1"},
+                             {"film 2", "theta"},
+                             {"film 1", "film 2"},
+                             {"wavelength", "temperature"},
+                             {"n", "k"},
+                             {"q", "wavelength"}}) {
+    SCOPED_TRACE(std::string(x) + ' ' + y);
+    View view;
+    view.map_x = x;
+    view.map_y = y;
+    Session session(oxide);
+    session.set_view(view);
+    const std::vector<Job> jobs = session.wanted();
+    const Job& job = *std::ranges::find_if(jobs, [](const Job& one) { return one.key.starts_with("map 16 "); });
+    for (std::size_t i = 0; i < job.parts.size(); ++i) {
+      JobPart part{.key = job.key, .part = i, .scene = job.scene, .is_last = i + 1 == job.parts.size()};
+      part.points = points_of(job.parts[i], evaluate(evaluator, job.scene, job.parts[i], {}));
+      session.take({part});
+    }
+    const HeatMap& map = session.map();
+    ASSERT_EQ(map.finished_count(), 16U);
+    for (const auto& [column, row] : {std::pair{3U, 7U}, {11U, 2U}, {15U, 15U}}) {
+      Scene scene = session.scene();
+      double theta_deg = session.theta_deg();
+      for (const auto& [axis, position] : {std::pair{&map.x(), column}, {&map.y(), row}}) {
+        const double value = axis->scale.value(position / 15.0);
+        if (axis->key.empty()) theta_deg = value;
+        if (!axis->key.empty()) scene = scene.with(axis->key, value);
+      }
+      const Point exact = truth(scene, points_at(scene, {theta_deg})).front();
+      const double shown = map.field(Plotted::kDolp).values[column + row * 16];
+      EXPECT_NEAR(shown, exact[Quantity::kDolp], 2.0 * exact[Quantity::kErrorEstimate]) << column << ' ' << row;
+    }
+  }
+}
+
+TEST(HeatMap, Axes_FollowTheScene) {
+  Session session(paint({"surface.distribution=gaussian", "surface.wind_m_s=8", "grid.wind_m_s=[2,10]"}));
+  EXPECT_EQ(session.map().y().label, "U [m/s]");
+  EXPECT_EQ(session.map().y().scale, (Scale{2.0, 10.0}));
+  session.set("surface.wind_m_s", 14.0);
+  EXPECT_EQ(session.map().y().scale, (Scale{2.0, 14.0}));
+  EXPECT_EQ(session.map_cursor(session.map().y()), 1.0);
+  session.set({coating_of({{{"n", 1.5}, {"thickness_um", 2.0}}})});
+  session.set_view(&View::map_y, "film 1");
+  EXPECT_EQ(session.map().y().label, "d_1 [µm]");
+  session.set({coating_of({})});
+  EXPECT_EQ(session.map().y().label, "U [m/s]");
+  session.set_view(&View::map_x, "n");
+  session.set("surface.material", "water 25C");
+  EXPECT_EQ(session.map().x().label, "θ [°]");
+  // Wavelengths that the material knows.
+  session.set_view(&View::map_x, "wavelength");
+  session.set("surface.material", "oxidised Al mirror");
+  EXPECT_EQ(session.map().x().scale, (Scale{2.0, 12.5}));
 }
 
 }  // namespace

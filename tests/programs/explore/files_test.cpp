@@ -53,7 +53,7 @@ void fill(Session& session, const std::string& measured) {
             .is_log = true,
             .has_overlay = false,
             .theta_max_deg = 80.0,
-            .map_x = Axis::kQ,
+            .map_x = "q",
             .panel = Panel::kSlopes,
             .mueller_row = 1,
             .mueller_column = 3};
@@ -226,7 +226,7 @@ TEST(ExplorePlots, Json_HasTheVisibleCurvesAndTheMap) {
   driver.session.set({{"surface.sigma", 0.15}, {"emission.temperature_K", 310.0}});
   driver.settle();
   const std::string name = json()["curves"][1]["name"];
-  EXPECT_TRUE(name.ends_with(", T 290 K")) << name;
+  EXPECT_EQ(name, "T 290 K, n 1.5 k 0.1");
   driver.session.set_view(&View::map_colours, Scale{0.01, 0.08});
   EXPECT_EQ(json()["map"]["colours"]["to"], 8.0);
   driver.session.set_view({.panel = Panel::kSlopes});

@@ -9,7 +9,7 @@
 #include <mutex>
 
 #include "base/text.hpp"
-#include "explore/parameters.hpp"
+#include "explore/scene_edits.hpp"
 #include "explore/session.hpp"
 #include "explore_support.hpp"
 #include "temporary_file.hpp"
@@ -19,11 +19,18 @@ namespace {
 
 const std::string kHostDir = DOLP_HOST_DIR;
 
+std::string sixteen_films() {
+  std::string films;
+  for (int i = 0; i < 16; ++i) films += "{n=1.5,k=0,thickness_um=1},";
+  return "surface.coating=[" + films + "]";
+}
+
 TEST(Parameters, EndsOfEverySlider_AreAccepted) {
   for (const Parameter& p : parameters()) {
     for (const double end : {p.slider.from, p.slider.to}) {
       const std::string beside = p.key->key == "source.scale"       ? "source.irradiance=1"
                                  : p.key->key == "surface.wind_m_s" ? "surface.distribution=gaussian"
+                                 : p.key->layer > 0                 ? sixteen_films()
                                                                     : "title=paint";
       const Scene scene = paint({beside, p.key->key + "=" + format_number(end)}).scene();
       EXPECT_EQ(scene.number(p.key->key), end) << p.key->key;
@@ -90,6 +97,16 @@ const std::vector<EditCase> kEditCases = {
      {"surface.distribution=cauchy"},
      {"surface.wind_m_s=-", "surface.sigma=0.1646207763315433"},
      "surface.sigma = 0.16462"},
+    // A whole coating replaces its films; their numbers and materials change one by one.
+    {{"surface.coating=[{n=1.4,thickness_um=2}]"},
+     {"surface.coating.1.k=0.3", "surface.coating=[{n=1.6,thickness_um=3},{n=1.4,k=0.3,thickness_um=2}]",
+      "surface.coating.2.thickness_um=5", "surface.coating.1.n=1.7"},
+     {"surface.coating.1.n=1.7", "surface.coating.1.thickness_um=3", "surface.coating.2.k=0.3",
+      "surface.coating.2.thickness_um=5"}},
+    {{"surface.coating=[{n=1.4,thickness_um=2}]"},
+     {"surface.coating.1.n=1.7", "surface.coating=none"},
+     {"surface.coating.1.n=-", "surface.n=1.5"}},
+    {{}, {"surface.coating=[{n=1.4,thickness_um=-2}]"}, {"surface.coating.1.n=-"}, "thickness_um", true},
     // One sky replaces another.
     {{}, {"surroundings.profile=clear-sky"}, {"surroundings.temperature_K=-", "surroundings.profile=clear-sky"}},
     {{"emission.bracket=true"}, {"surroundings.profile=overcast"}, {"emission.bracket=true"}},

@@ -115,7 +115,6 @@ TEST(ExploreSession, CoarseCurveOfAnEarlierScene_IsShownWithItsParameters_AndPin
   EXPECT_TRUE(curve.is_stale());
   EXPECT_EQ(curve.points().size(), Curve::kCoarseCount);
   EXPECT_EQ(curve.shown_scene().number("surface.sigma"), 0.3);
-  EXPECT_EQ(driver.session.at_cursor()->sigma, 0.3);
   expect_same(driver.session.pins()[0].curve.points(), pinned);
   driver.settle();
   EXPECT_FALSE(curve.is_stale());
@@ -126,7 +125,7 @@ TEST(ExploreSession, CoarseCurveOfAnEarlierScene_IsShownWithItsParameters_AndPin
 TEST(ExploreSession, Drag_GetsCoarseResultsInTurn_AndSaysSoOnce) {
   Driver driver(paint());
   Session& session = driver.session;
-  session.set_view({.map_y = Axis::kQ});
+  session.set_view({.map_y = "q"});
   driver.settle();
   session.hold(true);
   std::size_t maps = session.map().version();
@@ -207,19 +206,44 @@ TEST(ExploreSession, UndoAndRedo_GoThroughGestures_AndASavedSceneIsUnchanged) {
   EXPECT_EQ(sigma(), 0.3);
 }
 
-TEST(ExploreSession, PinNames_HaveTheWordsThatDiffer) {
+TEST(ExploreSession, PinNames_HaveTheWordsThatDiffer_AndTheMaterial) {
   Driver driver(paint());
   driver.session.pin();
   const auto name = [&] { return pin_name(driver.session, driver.session.pins()[0]); };
-  EXPECT_EQ(name(), "the same surface");
+  EXPECT_EQ(name(), "the same surface, n 1.5 k 0.1");
   driver.session.set({{"emission.temperature_K", 300.0}, {"surroundings.profile", "clear-sky"}});
   driver.settle();
-  EXPECT_EQ(name(), "T 290 K, T_surr 240 K");
+  EXPECT_EQ(name(), "T 290 K, T_surr 240 K, n 1.5 k 0.1");
   driver.session.set({{"surface.sigma", 0.4}, {"surface.masking", "smith"}});
   driver.settle();
-  EXPECT_EQ(name(), "σ 0.15, v-cavity");
+  EXPECT_EQ(name(), "σ 0.15, v-cavity, n 1.5 k 0.1");
+  driver.session.set("surface.material", "gold (Ordal)");
+  driver.settle();
+  EXPECT_EQ(name(), "σ 0.15, v-cavity, n 1.5 k 0.1");
   driver.session.pins()[0].name = "before";
   EXPECT_EQ(name(), "before");
+}
+
+TEST(ExploreSession, PinsAndPointsOfAnotherScene_AreKnown_AndMissingResidualsHaveAReason) {
+  Driver driver(paint());
+  Session& session = driver.session;
+  session.pin();
+  session.load_measured(TemporaryFile(".csv", "theta_deg,q_over_i\n50,-0.05\n60,-0.06\n").path());
+  driver.settle();
+  const auto reason = [&](double to_deg) { return no_residuals_text(session, {0.0, to_deg}); };
+  EXPECT_EQ(reason(90.0), "measured: Q/I; choose it above");
+  session.set_view(&View::quantity, Plotted::kSignedDolp);
+  driver.settle();
+  EXPECT_EQ(reason(90.0), "");
+  EXPECT_EQ(reason(30.0), "no measured point is at these zeniths");
+  session.set("surface.n", 1.7);
+  EXPECT_EQ(reason(90.0), "…");
+  EXPECT_FALSE(session.is_foreign(session.residuals().loaded_for()));
+  session.go_to(SceneEdits(Scene::from_text(kPaint, {}, "other.toml")));
+  EXPECT_TRUE(session.is_foreign(session.residuals().loaded_for()));
+  EXPECT_NE(pin_name(session, session.pins()[0]).find(", another scene"), std::string::npos);
+  session.undo();
+  EXPECT_FALSE(session.is_foreign(session.pins()[0].curve.scene()));
 }
 
 TEST(ExploreSession, TableCommand_IsQuotedForAShell) {
@@ -314,7 +338,7 @@ TEST(ExploreSession, MapCursor_DrivesTheCurveAndDoesNotChangeTheMap) {
   driver.settle();
   EXPECT_DOUBLE_EQ(driver.session.theta_deg(), 45.0);
   EXPECT_NEAR(*driver.session.scene().number("surface.sigma"), 0.2, 1e-4);  // the grid's 0.1 .. 0.4
-  EXPECT_EQ(driver.session.curve().points()[0].sigma, driver.session.scene().number("surface.sigma"));
+  EXPECT_FALSE(driver.session.curve().is_stale());
   EXPECT_NEAR(driver.session.map_cursor(driver.session.map().y()), 0.5, 1e-3);
   EXPECT_EQ(driver.session.map().version(), version);
 }

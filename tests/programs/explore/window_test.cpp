@@ -9,8 +9,8 @@
 
 #include "cli_support.hpp"
 #include "explore/files.hpp"
-#include "explore/parameters.hpp"
 #include "explore/readout.hpp"
+#include "explore/scene_edits.hpp"
 #include "explore/window/app.hpp"
 #include "explore/window/style.hpp"
 #include "table/table_file.hpp"
@@ -128,7 +128,7 @@ TEST_F(Window, CurveAndMapClicked_MoveTheCursor_AndTheCurveFollowsTheMap) {
   click(app_->map_view().area().at(0.5F, 0.5F));
   app_->settle();
   EXPECT_NE(number("surface.sigma"), 0.15);
-  EXPECT_EQ(session.curve().points()[0].sigma, number("surface.sigma"));
+  EXPECT_EQ(session.curve().shown_scene().number("surface.sigma"), number("surface.sigma"));
   EXPECT_TRUE(session.map().is_finished());
   xdotool({"key", "ctrl+q"});
   bool is_open = true;

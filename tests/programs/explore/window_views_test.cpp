@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "explore/files.hpp"
 #include "explore/panels.hpp"
 #include "explore/readout.hpp"
 #include "explore_support.hpp"
@@ -15,6 +16,7 @@ using namespace dolp;
 using namespace dolp::explore_test;
 using explore::Area;
 using explore::paint;
+using explore::Scale;
 
 double projected(const Scene& scene) {
   // Midpoint rule in tan(alpha) = m t / (1 - t), which takes steep facets in; the integrand is smooth there.
@@ -56,6 +58,63 @@ TEST(ExplorePanels, MaterialCurve_HasTheScenesIndex_FromEndToEnd) {
   EXPECT_EQ(curve.wavelength_um.front(), water_25->from_um);
   EXPECT_EQ(curve.wavelength_um.back(), water_25->to_um);
   EXPECT_EQ(explore::material_curve(paint().scene(), 5).n, std::vector<double>(5, 1.5));
+}
+
+/// The points of a sweep as a view would get them.
+std::vector<explore::Point> swept(explore::Sweep& sweep) {
+  sweep.take(explore::done(sweep.wanted().value()));
+  EXPECT_TRUE(sweep.is_finished());
+  return sweep.points();
+}
+
+TEST(ExplorePanels, SmoothSurface_HasFresnelsReflectances_AndAQuarterWaveFilmReflectsNothing) {
+  const explore::Plotted kS = explore::Plotted::kRhoS, kP = explore::Plotted::kRhoP;
+  const auto reflectance = [](explore::Plotted one, const explore::Point& at) {
+    return explore::described(one).value(at);
+  };
+  explore::Sweep sweep;
+  const Scene glass = explore::smooth_scene(paint({"surface.k=0", "surface.specular=0.5"}).scene());
+  const double brewster_deg = std::atan(1.5) * 180.0 / std::numbers::pi;
+  sweep.follow({.key = "glass", .scene = glass, .parts = {explore::points_at(glass, {0.0, brewster_deg})}});
+  const std::vector<explore::Point> bare = swept(sweep);
+  EXPECT_NEAR(reflectance(kS, bare[0]), 0.04, 1e-12);
+  EXPECT_NEAR(reflectance(kP, bare[1]), 0.0, 1e-12);
+  EXPECT_NEAR(reflectance(kS, bare[1]), std::pow((1.0 - 2.25) / (1.0 + 2.25), 2), 1e-12);
+  // At normal incidence a film of index sqrt(n) reflects nothing where it is a quarter or three quarters of a wave.
+  const double n = std::sqrt(1.5);
+  const Scene coated = glass.with({explore::coating_of({{{"n", n}, {"thickness_um", 2.0}}})});
+  explore::PointList list = explore::points_at(coated, {0.0, 0.0, 0.0});
+  list["wavelength_um"] = {8.0 * n, 4.0 * n, 8.0 * n / 3.0};
+  sweep.follow({.key = "coated", .scene = coated, .parts = {list}}, "wavelength_um");
+  const std::vector<explore::Point> film = swept(sweep);
+  for (const auto& [at, expected] : {std::pair{0U, 0.0}, {1U, 0.04}, {2U, 0.0}})
+    EXPECT_NEAR(reflectance(kS, film[at]), expected, 1e-10) << at;
+  EXPECT_EQ(sweep.at()[1], 4.0 * n);
+}
+
+TEST(ExplorePanels, SmoothSceneOfAWind_AndABandOfTheWindow_AreAccepted) {
+  const Scene sea = paint({"surface.distribution=gaussian", "surface.wind_m_s=8", "spectrum.band_um=[8,14]"}).scene();
+  EXPECT_EQ(explore::smooth_scene(sea).number("surface.sigma"), 0.0);
+  EXPECT_EQ(explore::at_one_wavelength(sea).number("spectrum.wavelength_um"), 11.0);
+}
+
+TEST(ExplorePanels, Spectrum_IsTheCurveOverWavelengthAtTheCursor_AndIsComputedWhileItIsShown) {
+  explore::Driver driver(paint({"surface.material=water 25C", "spectrum.band_um=[8,14]", "accuracy.tolerance=1e-2"}));
+  explore::Session& session = driver.session;
+  EXPECT_TRUE(session.spectrum().points().empty());
+  session.set_view(&explore::View::panel, explore::Panel::kSpectrum);
+  session.set_theta(70.0);
+  driver.settle();
+  ASSERT_TRUE(session.spectrum().is_finished());
+  EXPECT_EQ(session.wavelengths().scale, (Scale{4.0, 20.0}));  // from half of 8 um to the end of what is known
+  const std::size_t at = 40;
+  const Scene scene = session.spectral_scene().with("spectrum.wavelength_um", session.spectrum().at()[at]);
+  const explore::Point truth = explore::truth(scene, explore::points_at(scene, {70.0})).front();
+  const explore::Point& shown = session.spectrum().points()[at];
+  EXPECT_NEAR(shown[Quantity::kDolp], truth[Quantity::kDolp],
+              shown[Quantity::kErrorEstimate] + truth[Quantity::kErrorEstimate]);
+  session.set("emission.temperature_K", 310.0);
+  EXPECT_FALSE(session.spectrum().is_finished());
 }
 
 TEST(ExplorePanels, ScatteringCut_HasItsLobeBeyondTheNormal_AndTheValuesOfMueller) {
@@ -130,6 +189,39 @@ TEST_F(Window, Panels_ClickedOneByOne_AreDrawn_AndTheMapIsComputedWhileItIsShown
   EXPECT_NE(app_->session().map().version(), version);
 }
 
+TEST_F(Window, Films_AreAddedOutside_ChangedRemovedAndSaved_AndUndoBringsThemBack) {
+  const auto films = [&] { return explore::films_of(app_->session().scene()); };
+  app_->session().set_view(&explore::View::panel, explore::Panel::kSlopes);  // the map of films would take long
+  app_->session().set({explore::coating_of({{{"material", "PMMA acrylic"}, {"thickness_um", 2.0}}})});
+  app_->settle();
+  frames();
+  click_control("add film");
+  EXPECT_EQ(films().size(), 2U);
+  EXPECT_EQ(word("surface.coating.2.material"), "PMMA acrylic");
+  EXPECT_THROW(app_->control_area("surface.coating.2.n"), std::out_of_range);
+  drag_slider("surface.coating.1.thickness_um", kPartOfSlider);
+  // From 0.001 to 100 um the slider is logarithmic.
+  const double expected = std::pow(10.0, -3.0 + 5.0 * static_cast<double>(kPartOfSlider));
+  EXPECT_NEAR(std::log10(*number("surface.coating.1.thickness_um") / expected), 0.0, 5.0 * kGrab / 2.0);
+  const Columns truth = evaluated();
+  EXPECT_EQ(app_->session().curve().points()[100][Quantity::kDolp], truth.at("dolp")[100]);
+  const Scene before = app_->session().scene();
+  explore::save_scene(app_->session(), at("coated.toml"));
+  EXPECT_EQ(explore::films_of(Scene::from_file(at("coated.toml"))), films());
+  click_control("surface.coating.1.material");
+  click(app_->control_area("surface.coating.1.material").at(0.5F, 2.6F));  // the first material of the list
+  EXPECT_TRUE(word("surface.coating.1.material"));
+  EXPECT_EQ(number("surface.coating.1.thickness_um"), before.number("surface.coating.1.thickness_um"));
+  keys("ctrl+z");
+  EXPECT_EQ(app_->session().scene().toml(), before.toml());
+  click_control("remove surface.coating.2");
+  EXPECT_EQ(films().size(), 1U);
+  EXPECT_EQ(number("surface.coating.1.thickness_um"), before.number("surface.coating.1.thickness_um"));
+  app_->session().undo();
+  EXPECT_EQ(app_->session().scene().toml(), before.toml());
+  EXPECT_NE(explore::surface_name(before).find("film PMMA acrylic 2 µm"), std::string::npos);
+}
+
 TEST_F(Window, SceneWithAWind_HasItsSliderAndItsAxis_InsteadOfSigma) {
   app_->session().set({{"surface.distribution", "gaussian"}, {"surface.wind_m_s", 8.0}});
   app_->settle();
@@ -144,12 +236,12 @@ TEST_F(Window, SceneWithAWind_HasItsSliderAndItsAxis_InsteadOfSigma) {
   for (std::size_t i = 0; i < truth.at("dolp").size(); i += 10) {
     EXPECT_EQ(session.curve().points()[i][Quantity::kDolp], truth.at("dolp")[i]) << i;
   }
-  EXPECT_EQ(session.map().y().label(), std::string("U [m/s]"));
+  EXPECT_EQ(session.map().y().label, "U [m/s]");
   EXPECT_NE(explore::cursor_text(session).find("U = "), std::string::npos);
   click(app_->map_view().area().at(0.5F, 0.5F));
   app_->settle();
   EXPECT_NE(session.scene().number("surface.wind_m_s"), wind);
-  EXPECT_EQ(session.curve().points()[0].sigma, session.scene().number("surface.wind_m_s"));
+  EXPECT_FALSE(session.curve().is_stale());
 }
 
 }  // namespace

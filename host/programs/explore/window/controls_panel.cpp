@@ -1,4 +1,4 @@
-#include "explore/window/controls_panel.hpp"
+#include "explore/window/views.hpp"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -30,7 +30,7 @@ void heading(const char* text) {
 void draw_interval(const Parameter& parameter, const FitInterval& interval) {
   const ImVec2 corner = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
   const auto at = [&](const std::optional<double>& value, double otherwise) {
-    const double position = value ? parameter.slider_position(*value) : otherwise;
+    const double position = value ? parameter.slider.position(parameter.slider.clamp(*value)) : otherwise;
     return corner.x + static_cast<float>(position) * (end.x - corner.x);
   };
   constexpr float kThickness = 3.0F;
@@ -45,8 +45,10 @@ std::string note_on(const Parameter& parameter, const Session& session) {
   const Key& key = *parameter.key;
   std::string note = fmt::format("{} = {}\n{}\nallowed: {} {}", key.key, key.meaning, parameter.equation, key.allowed(),
                                  unit_text(key));
-  if (const std::optional<double> opened = parameter.value(session.edits().opened()))
-    note += fmt::format("\nCtrl-click: {:.6g}, as opened", *opened);
+  const bool has_other_films =
+      key.layer > 0 && std::ranges::count(session.edits().changes(), "surface.coating", &Setting::key) > 0;
+  const std::optional<double> opened = parameter.value(session.edits().opened());
+  if (opened && !has_other_films) note += fmt::format("\nCtrl-click: {:.6g}, as opened", *opened);
   if (const FitParameter* const found = session.fitted(key.key))
     note += fmt::format("\n68 %: {}\n95 %: {}", interval_text(found->interval_68), interval_text(found->interval_95));
   return note;
@@ -57,6 +59,15 @@ bool has_effect(const Scene& scene, const std::string& table) {
   if (table == "path") return scene.number("path.transmittance").has_value();
   if (table == "surroundings" && scene.word("surroundings.profile")) return true;
   return scene.number(table + ".temperature_K").has_value();
+}
+
+/// n and k of the material of the surface or of a film, where the spectrum begins.
+std::pair<double, double> index_of(const Scene& scene, const std::string& table) {
+  Scene bare = scene.without("surface.coating");
+  for (const char* name : {"material", "material_file"}) {
+    if (const auto word = scene.word(table + '.' + name)) bare = bare.with(std::string("surface.") + name, *word);
+  }
+  return bare.refractive_index(spectrum_um(scene).first);
 }
 
 /// The typed text as a value. The scene refuses text that is not a number, and names what is allowed.
@@ -76,8 +87,7 @@ struct Controls {
     std::string note;
     std::string reset_key;  ///< Ctrl-click resets it
     Scale scale;
-    std::function<Setting(double position)> moved;
-    std::function<Setting(const std::string& text)> typed;
+    std::function<Setting(const std::string& text)> change;
   };
 
   /// Changes the scene; returns why it is refused, or nothing.
@@ -122,32 +132,26 @@ struct Controls {
     if (const FitParameter* found = session.fitted(slider.id)) draw_interval(*parameter, found->interval_68);
     const bool is_ctrl = ImGui::GetIO().KeyCtrl;
     if (ImGui::IsItemClicked() && is_ctrl) session.reset(slider.reset_key);
-    if (is_moved && !is_ctrl) session.set({slider.moved(static_cast<double>(position))});
+    if (is_moved && !is_ctrl)
+      session.set({slider.change(format_number(slider.scale.rounded(static_cast<double>(position))))});
     if (!ImGui::IsItemActive()) tooltip(slider.note);
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1.0F);
     draw_fields(slider.id, [&] {
-      state.fields.draw(slider.id, value, [&](const std::string& text) { return set(slider.typed(text)); });
+      state.fields.draw(slider.id, value, [&](const std::string& text) { return set(slider.change(text)); });
     });
     state.fields.draw_reason(slider.id);
   }
 
   void draw_parameter(const Parameter& parameter, double value) {
     const std::string& key = parameter.key->key;
-    const std::string unit = unit_text(*parameter.key);
+    const auto change = [&](const std::string& text) { return Setting{key, value_of(text)}; };
     draw_slider({.id = key,
-                 .label = unit.empty() ? parameter.symbol : fmt::format("{} [{}]", parameter.symbol, unit),
+                 .label = parameter.label(),
                  .note = note_on(parameter, session),
                  .reset_key = key,
                  .scale = parameter.slider,
-                 .moved =
-                     [&](double position) {
-                       return Setting{key, parameter.slider_value(position)};
-                     },
-                 .typed =
-                     [&](const std::string& text) {
-                       return Setting{key, value_of(text)};
-                     }},
+                 .change = change},
                 value, &parameter);
     draw_fit_range(parameter, value);
   }
@@ -195,11 +199,12 @@ struct Controls {
     }
   }
 
-  void draw_material() {
+  /// The list of materials for the surface or for a film. Returns the new keys of its table, none without a choice.
+  std::vector<Setting> draw_material(const std::string& table) {
     static const std::vector<BuiltInMaterial> known = materials();
     const Scene& scene = session.scene();
-    const bool is_typed = scene.number("surface.n").has_value();
-    const std::string current = is_typed ? "n and k as below" : scene.word("surface.material").value_or("file");
+    const bool is_typed = parameter(table + ".n").value(scene).has_value();
+    const std::string current = is_typed ? "n and k as below" : scene.word(table + ".material").value_or("file");
     // The entry before the built-in materials is 0; a file has no entry.
     const auto now = std::ranges::find(known, current, &BuiltInMaterial::name);
     std::optional<std::size_t> chosen;
@@ -216,11 +221,43 @@ struct Controls {
     };
     row_label("material");
     const std::string note = is_typed ? "a built-in material, or your n and k" : "N = n + ik of " + surface_name(scene);
-    const auto clicked = draw_list("material", -1.0F, current, note, chosen, entries);
-    if (!clicked) return;
-    if (*clicked > 0) return session.set("surface.material", known[*clicked - 1].name);
-    const auto [n, k] = scene.refractive_index(spectrum_um(scene).first);
-    session.set({{"surface.n", n}, {"surface.k", k}});
+    const auto clicked = draw_list(table + ".material", -1.0F, current, note, chosen, entries);
+    if (!clicked) return {};
+    if (*clicked > 0) return {{"material", known[*clicked - 1].name}};
+    const auto [n, k] = index_of(scene, table);
+    return {{"n", n}, {"k", k}};
+  }
+
+  void draw_surface() {
+    std::vector<Setting> chosen = draw_material("surface");
+    for (Setting& setting : chosen) setting.key = "surface." + setting.key;
+    if (!chosen.empty()) session.set(chosen);
+    draw_choices("surface");
+    draw_table("surface");
+  }
+
+  void draw_coating() {
+    heading("Coating, from the outside in");
+    std::vector<Film> films = films_of(session.scene());
+    const bool is_added = ImGui::Button("Add a film outside");
+    name_item("add film");
+    if (is_added) films.insert(films.begin(), {{"n", 1.5}, {"k", 0.0}, {"thickness_um", 1.0}});
+    if (is_added) return session.set({coating_of(films)});
+    for (std::size_t layer = 1; layer <= films.size(); ++layer) {
+      const std::string film = fmt::format("surface.coating.{}", layer);
+      const bool is_removed = ImGui::SmallButton(("x##" + film).c_str());
+      name_item("remove " + film);
+      ImGui::SameLine();
+      coloured_text(kTextColour, fmt::format("film {}", layer));
+      Film chosen = draw_material(film);
+      if (is_removed) films.erase(films.begin() + static_cast<std::ptrdiff_t>(layer) - 1);
+      if (!chosen.empty()) {
+        chosen.push_back(films[layer - 1].back());  // the thickness
+        films[layer - 1] = chosen;
+      }
+      if (is_removed || !chosen.empty()) return session.set({coating_of(films)});
+      draw_table(film);
+    }
   }
 
   void draw_source_kind() {
@@ -281,8 +318,11 @@ struct Controls {
 
   void draw_sky_temperature(const std::string& name, double SkyPair::*part) {
     SkyPair sky = *state.sky;
-    const auto with = [&](double temperature_K) {
-      sky.*part = temperature_K;
+    const auto change = [&](const std::string& text) {
+      const std::optional<double> typed = parse_number(text);
+      // Text that is no temperature is refused with the message for a uniform sky.
+      if (!typed || !described(kUniformSky).range.contains(*typed)) return Setting{kUniformSky, TomlText{text}};
+      sky.*part = *typed;
       return Setting{kSkyProfile, session.skies().path(sky)};
     };
     draw_slider({.id = "sky " + name,
@@ -290,14 +330,7 @@ struct Controls {
                  .note = fmt::format("brightness temperature at the {}; a straight line in zenith between both", name),
                  .reset_key = kSkyProfile,
                  .scale = kSkySlider,
-                 .moved = [&](double position) { return with(std::round(10.0 * kSkySlider.value(position)) / 10.0); },
-                 .typed =
-                     [&](const std::string& text) {
-                       const std::optional<double> typed = parse_number(text);
-                       // Text that is no temperature is refused with the message for a uniform sky.
-                       const bool is_allowed = typed && described(kUniformSky).range.contains(*typed);
-                       return is_allowed ? with(*typed) : Setting{kUniformSky, TomlText{text}};
-                     }},
+                 .change = change},
                 state.sky.value().*part);
   }
 
@@ -316,9 +349,8 @@ struct Controls {
 
   void draw_all() {
     heading("Surface");
-    draw_material();
-    draw_choices("surface");
-    draw_table("surface");
+    draw_surface();
+    draw_coating();
     heading("Radiation");
     for (const char* effect : {"emission", "source", "surroundings", "path"}) {
       draw_effect_box(effect);

@@ -20,7 +20,6 @@ constexpr float kLeastResiduals = 7.0F;
 struct Shown {
   const Curve* curve;
   CurveStyle style;
-  std::string name;
 };
 
 /// The style of parts where the model fails.
@@ -28,23 +27,16 @@ CurveStyle bad_style() { return {kBadColour, 4.0F, 4.0F}; }
 
 std::vector<Shown> shown_curves(const Session& session) {
   std::vector<Shown> curves;
-  const auto add = [&](const Curve& curve, const CurveStyle& style, const std::string& name) {
-    curves.push_back({&curve, session.is_outdated(curve) ? stale(style) : style, name});
+  const auto add = [&](const Curve& curve, const CurveStyle& style) {
+    curves.push_back({&curve, session.is_outdated(curve) || session.is_foreign(curve.scene()) ? stale(style) : style});
   };
-  if (session.overlay()) add(*session.overlay(), overlay_style(), overlay_name(session));
+  if (session.overlay()) add(*session.overlay(), overlay_style());
   for (const Pin& pin : session.pins()) {
-    if (pin.is_visible) add(pin.curve, pin_style(pin.colour), pin_name(session, pin));
+    if (pin.is_visible) add(pin.curve, pin_style(pin.colour));
   }
   // Last, so that it lies over the others.
-  add(session.curve(), current_style(), curve_name(session));
+  add(session.curve(), current_style());
   return curves;
-}
-
-double scale_of(Plotted quantity) { return described(quantity).scale(); }
-
-/// The value of a point in the units of the plot.
-double shown_value(Plotted quantity, const Point& point) {
-  return scale_of(quantity) * described(quantity).value(point);
 }
 
 /// The maximum of polarisation where the plot marks it; null elsewhere.
@@ -55,7 +47,7 @@ const PeakAnswer* shown_peak(const Session& session) {
   return is_marked && peak && session.curve().is_finished() ? &*peak : nullptr;
 }
 
-/// The values that the axis must show; only the positive ones for a logarithmic axis.
+/// The values that the axis must show.
 std::vector<double> values_to_show(const Session& session, const std::vector<Shown>& curves) {
   const Plotted quantity = session.view().quantity;
   std::vector<double> values;
@@ -63,39 +55,15 @@ std::vector<double> values_to_show(const Session& session, const std::vector<Sho
     for (const Point& point : shown.curve->drawn()) {
       if (point.theta_deg > session.view().theta_max_deg) break;
       if (!point.is_good()) continue;
-      values.push_back(shown_value(quantity, point));
+      values.push_back(described(quantity).shown(point));
       if (shown.curve != &session.curve() || quantity != Plotted::kDolp) continue;
       for (const Quantity limit : {Quantity::kDolpLow, Quantity::kDolpHigh})
-        values.push_back(scale_of(quantity) * point[limit]);
+        values.push_back(described(quantity).scale() * point[limit]);
     }
   }
   for (const Measurement& one : session.residuals().measured(quantity))
-    values.push_back(scale_of(quantity) * one.value);
-  std::erase_if(values, [&](double value) { return !std::isfinite(value) || (session.view().is_log && value <= 0.0); });
+    values.push_back(described(quantity).scale() * one.value);
   return values;
-}
-
-PlotAxis value_axis(const Session& session, const std::vector<Shown>& curves) {
-  const bool is_log = session.view().is_log;
-  std::vector<double> values = values_to_show(session, curves);
-  if (values.empty()) values = {is_log ? 0.01 : 0.0, 1.0};
-  if (!is_log) values.push_back(0.0);
-  const auto [low, high] = std::ranges::minmax(values);
-  PlotAxis axis{described(session.view().quantity).label(), {0.0, 1.0, is_log}};
-  double& from = axis.scale.from;
-  double& to = axis.scale.to;
-  if (is_log) {
-    constexpr double kMostDecades = 1e6;
-    constexpr double kRoom = 4.0;  // for the mark of the maximum
-    to = kRoom * high;
-    from = std::max(low / 1.5, to / kMostDecades);
-    return axis;
-  }
-  const double room = 0.06 * std::max(high - low, 1e-9);
-  from = low < 0.0 ? low - room : 0.0;
-  to = high > 0.0 ? high + 2.0 * room : 0.0;
-  if (to <= from) to = from + 1.0;
-  return axis;
 }
 
 /// Fills the range of DOLP with all bounces. Only the current curve has a band: overlapping bands are unreadable.
@@ -103,7 +71,7 @@ void draw_bracket(const Plot& plot, const Shown& shown) {
   const std::vector<Point> points = shown.curve->drawn();
   const ImU32 colour = band_colour(shown.style);
   const auto at = [&](const Point& point, Quantity limit) {
-    return plot.at(point.theta_deg, std::max(scale_of(Plotted::kDolp) * point[limit], plot.y().from));
+    return plot.at(point.theta_deg, std::max(described(Plotted::kDolp).scale() * point[limit], plot.y().from));
   };
   // Smooth edges would show as seams.
   const ImDrawListFlags flags = std::exchange(plot.list()->Flags, ImDrawListFlags_None);
@@ -123,7 +91,7 @@ void draw_curve(const Plot& plot, const Shown& shown, Plotted quantity) {
   const std::vector<Point> points = shown.curve->drawn();
   std::vector<ImVec2> good, bad;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const double value = shown_value(quantity, points[i]);
+    const double value = described(quantity).shown(points[i]);
     const bool can_show = plot.can_show(points[i].theta_deg, value);
     const bool is_beside_bad = !points[i].is_good() || (i > 0 && !points[i - 1].is_good()) ||
                                (i + 1 < points.size() && !points[i + 1].is_good());
@@ -158,8 +126,10 @@ bool add_curve(const char* id, const std::string& name, const CurveStyle& style,
 }
 
 void draw_legend(const std::vector<Shown>& curves, Session& session) {
-  const auto colour_of = [&](const Curve& curve) { return session.is_outdated(curve) ? kDimColour : kTextColour; };
-  add_curve("curve", curves.back().name, curves.back().style, colour_of(session.curve()));
+  const auto colour_of = [&](const Curve& curve) {
+    return session.is_outdated(curve) || session.is_foreign(curve.scene()) ? kDimColour : kTextColour;
+  };
+  add_curve("curve", curve_name(session), curves.back().style, colour_of(session.curve()));
   if (session.overlay() && add_curve("overlay", overlay_name(session), overlay_style(), colour_of(*session.overlay())))
     session.set_view(&View::has_overlay, false);
   for (Pin& pin : session.pins()) {
@@ -180,6 +150,8 @@ void draw_legend(const std::vector<Shown>& curves, Session& session) {
   }
   if (std::ranges::any_of(points, [](const Point& point) { return !point.is_good(); }))
     add_curve("bad", "the model fails here (status)", bad_style());
+  if (session.residuals().data() && session.is_foreign(session.residuals().loaded_for()))
+    add_entry("measured", "o  points measured for another scene", kDimColour);
 }
 
 /// Returns the height of the legend. It does not depend on the entries, so that the plot stays where it is; more
@@ -201,7 +173,7 @@ void draw_cursor(const Plot& plot, const Session& session, const CurveStyle& sty
   const Point* const shown = session.at_cursor();
   if (!shown) return;
   const Plotted quantity = session.view().quantity;
-  const double value = shown_value(quantity, *shown);
+  const double value = described(quantity).shown(*shown);
   if (!plot.can_show(shown->theta_deg, value)) return;
   const ImVec2 at = plot.at(shown->theta_deg, value);
   plot.list()->AddCircleFilled(at, scaled(4.0F), style.colour);
@@ -211,7 +183,7 @@ void draw_cursor(const Plot& plot, const Session& session, const CurveStyle& sty
 void draw_peak(const Plot& plot, const Session& session) {
   const PeakAnswer* const peak = shown_peak(session);
   if (!peak) return;
-  const double value = shown_value(session.view().quantity, peak->at);
+  const double value = described(session.view().quantity).shown(peak->at);
   if (!plot.can_show(peak->at.theta_deg, value)) return;
   const bool is_low = value < 0.0;
   const ImVec2 at = plot.at(peak->at.theta_deg, value);
@@ -228,8 +200,8 @@ void draw_peak(const Plot& plot, const Session& session) {
 }
 
 /// Measured points or residuals with error bars of one standard deviation.
-void draw_points(const Plot& plot, const std::vector<Measurement>& points, double scale, bool is_filled) {
-  const auto line = [&](ImVec2 from, ImVec2 to) { plot.list()->AddLine(from, to, kTextColour, scaled(1.0F)); };
+void draw_points(const Plot& plot, const std::vector<Measurement>& points, double scale, bool is_filled, ImU32 colour) {
+  const auto line = [&](ImVec2 from, ImVec2 to) { plot.list()->AddLine(from, to, colour, scaled(1.0F)); };
   const float cap = scaled(3.0F);
   for (const Measurement& point : points) {
     const double value = scale * point.value;
@@ -242,17 +214,22 @@ void draw_points(const Plot& plot, const std::vector<Measurement>& points, doubl
     }
     const ImVec2 at = plot.at(point.theta_deg, value);
     if (is_filled) {
-      plot.list()->AddCircleFilled(at, scaled(3.0F), kTextColour);
+      plot.list()->AddCircleFilled(at, scaled(3.0F), colour);
     } else {
-      plot.list()->AddCircle(at, scaled(4.0F), kTextColour, 0, scaled(1.5F));
+      plot.list()->AddCircle(at, scaled(4.0F), colour, 0, scaled(1.5F));
     }
   }
+}
+
+/// Grey for points that were loaded for another scene.
+ImU32 colour_of_points(const Session& session) {
+  return session.is_foreign(session.residuals().loaded_for()) ? kDimColour : kTextColour;
 }
 
 void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
   const PlottedDescription& quantity = described(session.view().quantity);
   const std::vector<Measurement> residuals = session.residuals().residuals(quantity.quantity);
-  double largest = 1e-6;
+  double largest = residuals.empty() ? 1.0 : 1e-6;
   for (const Measurement& one : residuals)
     largest = std::max(largest, quantity.scale() * (std::abs(one.value) + one.uncertainty.value_or(0.0)));
   std::string label = std::string("measured − model") + (quantity.in_percent ? " [points]" : "");
@@ -260,8 +237,10 @@ void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
   const Plot plot("residuals", size, {"", theta}, {label, {-1.2 * largest, 1.2 * largest}});
   plot.clip();
   plot.list()->AddLine(plot.at(theta.from, 0.0), plot.at(theta.to, 0.0), kDimColour);
-  draw_points(plot, residuals, quantity.scale(), true);
+  draw_points(plot, residuals, quantity.scale(), true, colour_of_points(session));
   plot.unclip();
+  const std::string reason = no_residuals_text(session, theta);
+  if (!reason.empty()) draw_label(plot.list(), plot.area().at(0.5F, 0.3F), {0.5F, 0.5F}, kDimColour, reason);
 }
 
 }  // namespace
@@ -304,13 +283,13 @@ void CurveView::draw(Session& session, ImVec2 size) {
   const Plotted quantity = session.view().quantity;
   const std::vector<Measurement> measured = session.residuals().measured(quantity);
   const float line = ImGui::GetTextLineHeight();
-  const bool has_residuals = !measured.empty() && size.y > kRoomForResiduals * line;
+  const bool has_residuals = session.residuals().data() && size.y > kRoomForResiduals * line;
   const float residual_height = has_residuals ? std::max(0.28F * size.y, kLeastResiduals * line) : 0.0F;
   const float gap = has_residuals ? ImGui::GetStyle().ItemSpacing.y : 0.0F;
 
   View view = session.view();
   const Scale zeniths = Scale{0.0, view.theta_max_deg}.with_log(view.is_theta_log);
-  PlotAxis values = value_axis(session, curves);
+  PlotAxis values{described(quantity).label(), range_of(values_to_show(session, curves), view.is_log)};
   choose_axes(session, view.curve_zoom, zeniths, values.scale);
   const Plot plot("curve", {size.x, size.y - residual_height - gap},
                   {is_bistatic(session.scene()) ? "zenith θ of the source [°]" : "zenith θ [°]", x_}, values);
@@ -320,7 +299,7 @@ void CurveView::draw(Session& session, ImVec2 size) {
   if (!plot.y().is_log) plot.list()->AddLine(plot.at(x_.from, 0.0), plot.at(x_.to, 0.0), kDimColour);
   if (quantity == Plotted::kDolp) draw_bracket(plot, curves.back());
   for (const Shown& shown : curves) draw_curve(plot, shown, quantity);
-  draw_points(plot, measured, scale_of(quantity), false);
+  draw_points(plot, measured, described(quantity).scale(), false, colour_of_points(session));
   draw_cursor(plot, session, curves.back().style);
   if (plot.is_hovered() && !plot.is_dragged()) {
     draw_label(plot.list(), plot.area().at(0.99F, 0.98F), {1.0F, 1.0F}, kDimColour,

@@ -41,6 +41,14 @@ void draw_map_cursor(const Session& session, const Plot& plot) {
 
 }  // namespace
 
+void set_range(Session& session, const MapAxis& axis, const AxisEditor::Change& change) {
+  View view = session.view();
+  const bool is_automatic = !change.range && change.is_log == axis.scale.is_log;
+  view.map_ranges.erase(axis.label);
+  if (!is_automatic) view.map_ranges[axis.label] = change.range.value_or(axis.scale.with_log(change.is_log));
+  session.set_view(view);
+}
+
 double MapView::colour_position(double value) const {
   if (!(colour_scale_.from < colour_scale_.to)) return 0.0;
   if (colour_scale_.is_log && !(value > colour_scale_.from)) return 0.0;
@@ -154,22 +162,18 @@ void MapView::draw_bar(const Plot& plot) const {
 }
 
 void MapView::edit_axes(Session& session, const Plot& plot) {
-  View view = session.view();
   for (const auto& [axis, numbers] :
        {std::pair{session.map().x(), plot.x_numbers()}, {session.map().y(), plot.y_numbers()}}) {
     const auto check = [&](const Scale& range) { return refusal(session.scene(), axis, range); };
-    const auto change = axis_editor_.draw(axis.label(), numbers, axis.scale, check);
-    if (!change) continue;
-    const bool is_automatic = !change->range && change->is_log == axis.scale.is_log;
-    view.map_ranges.erase(axis.label());
-    if (!is_automatic) view.map_ranges[axis.label()] = change->range.value_or(axis.scale.with_log(change->is_log));
-    session.set_view(view);
+    const auto change = axis_editor_.draw(axis.label, numbers, axis.scale, check);
+    if (change) set_range(session, axis, *change);
   }
   const float line = ImGui::GetTextLineHeight();
   const Area numbers{{plot.max().x + 0.5F * line, plot.min().y}, {plot.max().x + kBarRoom * line, plot.max().y}};
   const auto change = axis_editor_.draw("colours: " + quantity().label(), numbers,
                                         times(colour_scale_, quantity().scale()), [](const Scale&) { return ""; });
   if (!change) return;
+  View view = session.view();
   view.map_colours.reset();
   if (change->range) view.map_colours = times(*change->range, 1.0 / quantity().scale());
   if (!quantity().is_signed) view.is_log = change->is_log;
@@ -180,8 +184,7 @@ void MapView::draw(Session& session, ImVec2 size) {
   update(session);
   const HeatMap& map = session.map();
   const float line = ImGui::GetTextLineHeight();
-  const Plot plot("map", size, {map.x().label(), map.x().scale}, {map.y().label(), map.y().scale}, kBarRoom * line,
-                  false);
+  const Plot plot("map", size, {map.x().label, map.x().scale}, {map.y().label, map.y().scale}, kBarRoom * line, false);
   if (plot.is_dragged()) session.set_map_cursor(plot.mouse_x(), plot.mouse_y());
   draw_text(plot.list(), {plot.max().x, plot.min().y - 0.6F * line}, {1.0F, 1.0F}, kTextColour, title_of(session));
   plot.clip();

@@ -15,40 +15,32 @@ constexpr std::size_t kMaterialCount = 240;
 constexpr std::size_t kCutCount = 181;
 constexpr float kLineWidth = 2.0F;
 
-/// The values of a line over positions that all lines of a plot share.
-struct NamedLine {
-  std::string name;
-  CurveStyle style;
-  std::vector<double> values;
-};
-
-/// A range from 0, or from `least` where it is logarithmic, with room for names above the largest value.
-Scale values_range(const std::vector<NamedLine>& lines, double largest_part, double least, bool is_log) {
-  double largest = 0.0;
-  for (const NamedLine& line : lines) {
-    for (const double value : line.values) {
-      if (std::isfinite(value)) largest = std::max(largest, value);
-    }
-  }
-  if (!(largest > 0.0)) largest = 1.0;
-  return {is_log ? std::max(least, largest_part * largest) : 0.0, (is_log ? 2.0 : 1.15) * largest, is_log};
+/// The range of the values of lines.
+Scale values_range(const std::vector<NamedLine>& lines, bool is_log) {
+  std::vector<double> all;
+  for (const NamedLine& line : lines) all.insert(all.end(), line.values.begin(), line.values.end());
+  return range_of(std::move(all), is_log);
 }
 
-/// Draws lines, with gaps where they have no value, and their names in the upper right corner.
-void draw_lines(const Plot& plot, const std::vector<double>& xs, const std::vector<NamedLine>& lines) {
+/// Draws lines, with gaps where they have no value, and their names in the upper right corner or in a row above it.
+void draw_lines(const Plot& plot, const std::vector<double>& xs, const std::vector<NamedLine>& lines,
+                bool is_above = false) {
+  plot.clip();
   for (const NamedLine& line : std::views::reverse(lines)) {  // the first lies over the others
     std::vector<ImVec2> points;
     for (std::size_t i = 0; i < xs.size(); ++i)
       points.push_back(plot.can_show(xs[i], line.values[i]) ? plot.at(xs[i], line.values[i]) : kGap);
     draw_line(plot.list(), points, line.style, kLineWidth);
   }
-  const float height = ImGui::GetTextLineHeight(), right = plot.max().x - 0.6F * height;
-  float y = plot.min().y + 0.8F * height;
-  for (const NamedLine& line : lines) {
-    draw_label(plot.list(), {right, y}, {1.0F, 0.5F}, kTextColour, line.name);
-    const float end = right - ImGui::CalcTextSize(shown(line.name).c_str()).x - 0.6F * height;
-    draw_line(plot.list(), {{end - 2.0F * height, y}, {end, y}}, line.style, kLineWidth);
-    y += 1.3F * height;
+  plot.unclip();
+  const float height = ImGui::GetTextLineHeight();
+  ImVec2 right{plot.max().x - 0.6F * height, plot.min().y + (is_above ? -1.1F : 0.8F) * height};
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const NamedLine& line = lines[is_above ? lines.size() - 1 - i : i];
+    draw_label(plot.list(), right, {1.0F, 0.5F}, kTextColour, line.name);
+    const float end = right.x - ImGui::CalcTextSize(shown(line.name).c_str()).x - 0.6F * height;
+    draw_line(plot.list(), {{end - 2.0F * height, right.y}, {end, right.y}}, line.style, kLineWidth);
+    right = is_above ? ImVec2{end - 3.0F * height, right.y} : ImVec2{right.x, right.y + 1.3F * height};
   }
 }
 
@@ -59,6 +51,26 @@ std::string distribution_name(const Scene& scene) {
 }
 
 void draw_reason(const std::string& reason) { coloured_text(kDimColour, reason); }
+
+/// Marks the scene's wavelength or band on an axis of wavelengths.
+void mark_spectrum(const Plot& plot, const Scene& scene) {
+  const auto [from_um, to_um] = spectrum_um(scene);
+  const float from = plot.at_position(plot.x().position(from_um), 0.0).x;
+  const float to = plot.at_position(plot.x().position(to_um), 0.0).x;
+  plot.clip();
+  plot.list()->AddRectFilled({from, plot.min().y}, {std::max(to, from + 1.5F), plot.max().y},
+                             band_colour(current_style()));
+  plot.unclip();
+}
+
+/// A quantity along a sweep, dim while the sweep belongs to an earlier scene, with gaps where the model fails.
+NamedLine line_of(const Sweep& sweep, Plotted quantity, const CurveStyle& style, const std::string& name) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  NamedLine line{name, sweep.is_finished() ? style : stale(style), {}};
+  const PlottedDescription& description = described(quantity);
+  for (const Point& point : sweep.points()) line.values.push_back(point.is_good() ? description.shown(point) : kNone);
+  return line;
+}
 
 /// The largest magnitude of an element in a cut.
 double largest_magnitude(const ScatteringCut& cut, std::size_t element) {
@@ -255,6 +267,77 @@ std::vector<Point> all_points(const SourceSky& sky) {
   return all;
 }
 
+void cell(const std::string& text, ImU32 colour = kTextColour) {
+  ImGui::TableNextColumn();
+  coloured_text(colour, text);
+}
+
+/// In points of DOLP: a bound for a dropped effect, an estimate for a kept one.
+std::string influence_text(const Effect& row) {
+  if (!row.bound && !row.influence) return "";
+  const double points = 100.0 * row.bound.value_or(row.influence.value_or(0.0));
+  if (points == 0.0) return "0";
+  return fmt::format("{} {} points", row.bound ? "≤" : "≈",
+                     points >= 10.0 ? fmt::format("{:.0f}", points) : fmt::format("{:.2g}", points));
+}
+
+/// True where the effects belong to an earlier scene.
+bool is_stale(const Session& session) { return !session.effects().empty() && !session.curve().is_finished(); }
+
+void draw_row(const Session& session, const Effect& row) {
+  const bool is_absent = row.state == EffectState::kAbsent;
+  const ImU32 colour = is_absent || is_stale(session) ? kDimColour : kTextColour;
+  // A surface without slopes is a smooth one.
+  const bool is_slopes = row.name == "distribution";
+  const std::string removed = is_slopes ? "roughness" : row.name;
+  const std::string without = is_absent ? "" : without_text(session, removed);
+  cell(row.name, colour);
+  cell(row.state == EffectState::kNotNeeded ? "not needed" : name_of(row.state), colour);
+  cell(influence_text(row), colour);
+  cell(is_slopes && !without.empty() ? "smooth: " + without : without, colour);
+  if (const std::string words = without_words(session, removed); !words.empty()) tooltip(words);
+  cell(row.reason, colour);
+  if (!row.needs.empty()) tooltip("needs: " + row.needs);
+}
+
+/// A line for each minimum, and one for each kind of interval; returns the minimum that was clicked.
+std::optional<std::size_t> draw_minima(const Fit& fit, std::optional<std::size_t> current) {
+  std::optional<std::size_t> clicked;
+  const int columns = static_cast<int>(fit.parameters.size()) + 2;
+  if (!ImGui::BeginTable("minima", columns, ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV)) return clicked;
+  ImGui::TableSetupColumn("minimum");
+  ImGui::TableSetupColumn(shown("χ²").c_str());
+  for (const FitParameter& one : fit.parameters) ImGui::TableSetupColumn(shown(parameter(one.key).symbol).c_str());
+  ImGui::TableHeadersRow();
+  for (std::size_t i = 0; i < fit.minima.size(); ++i) {
+    ImGui::TableNextColumn();
+    const std::string name = fmt::format("{}{}", i + 1, i == 0 ? ", lowest" : "");
+    if (ImGui::Selectable(name.c_str(), current == i, ImGuiSelectableFlags_SpanAllColumns)) clicked = i;
+    name_item(fmt::format("minimum {}", i + 1));
+    cell(fmt::format("{:.5g}", fit.minima[i].chi_square));
+    for (const double value : fit.minima[i].values) cell(fmt::format("{:.5g}", value));
+  }
+  for (const auto& [name, interval] :
+       {std::pair{"68 %", &FitParameter::interval_68}, {"95 %", &FitParameter::interval_95}}) {
+    cell(name);
+    ImGui::TableNextColumn();
+    for (const FitParameter& one : fit.parameters) cell(interval_text(one.*interval));
+  }
+  ImGui::EndTable();
+  return clicked;
+}
+
+/// The lines of the report that interpret the result; the table above has the numbers.
+void draw_words(const Fit& fit) {
+  constexpr std::array<std::string_view, 9> kShown = {"minimum",    "misfit",     "scale",  "scaled", "pieces",
+                                                      "correlated", "degenerate", "status", "model"};
+  for (const auto& [label, text] : fit.report.rows) {
+    if (std::ranges::count(kShown, label) == 0) continue;
+    const ImU32 colour = label == "misfit" || label == "status" ? kErrorColour : kTextColour;
+    coloured_text(colour, fmt::format("{}: {}", label, text));
+  }
+}
+
 }  // namespace
 
 void draw_slopes(const Session& session, ImVec2 size) {
@@ -274,12 +357,10 @@ void draw_slopes(const Session& session, ImVec2 size) {
     return values;
   };
   std::vector<NamedLine> lines = {{distribution_name(scene), current_style(), densities(scene)}};
-  const Scale range = values_range(lines, 1e-6, 0.0, session.view().is_log);
+  const Scale range = values_range(lines, session.view().is_log);
   if (other) lines.push_back({distribution_name(*other) + ", same D(0)", overlay_style(), densities(*other)});
   const Plot plot("slopes", size, {"angle of the facets α [°]", {0.0, 90.0}}, {"D(α) cos α [1/sr]", range});
-  plot.clip();
   draw_lines(plot, all_deg, lines);
-  plot.unclip();
 }
 
 void draw_material(const Session& session, ImVec2 size) {
@@ -288,15 +369,52 @@ void draw_material(const Session& session, ImVec2 size) {
   const std::vector<NamedLine> lines = {{"n", current_style(), curve.n}, {"k", overlay_style(), curve.k}};
   const Scale wavelengths{curve.wavelength_um.front(), curve.wavelength_um.back(), true};
   const Plot plot("material", size, {"wavelength λ [µm]", wavelengths},
-                  {"n, k", values_range(lines, 0.0, 1e-4, session.view().is_log)});
-  plot.clip();
-  const auto [from_um, to_um] = spectrum_um(session.scene());
-  const float from = plot.at_position(plot.x().position(from_um), 0.0).x;
-  const float to = plot.at_position(plot.x().position(to_um), 0.0).x;
-  plot.list()->AddRectFilled({from, plot.min().y}, {std::max(to, from + 1.5F), plot.max().y},
-                             band_colour(current_style()));
+                  {"n, k", values_range(lines, session.view().is_log)});
+  mark_spectrum(plot, session.scene());
   draw_lines(plot, curve.wavelength_um, lines);
-  plot.unclip();
+}
+
+void SweepViews::draw_wavelengths(const char* id, Session& session, ImVec2 size, const std::vector<NamedLine>& lines,
+                                  const Sweep& sweep, const PlotAxis& values) {
+  const MapAxis axis = session.wavelengths();
+  if (!axis.scale.refusal().empty()) return draw_reason("n and k are known at only one wavelength.");
+  const Plot plot(id, size, {axis.label, axis.scale}, values);
+  mark_spectrum(plot, session.scene());
+  draw_lines(plot, sweep.at(), lines, true);
+  const Scene& scene = session.spectral_scene();
+  const auto change = axis_editor_.draw(axis.label, plot.x_numbers(), axis.scale,
+                                        [&](const Scale& range) { return refusal(scene, axis, range); });
+  if (change) set_range(session, axis, *change);
+  const bool has_wavelength = session.scene().numbers("spectrum.band_um").empty();
+  if (plot.is_dragged() && has_wavelength) session.set(axis.key, axis.scale.rounded(plot.mouse_x()));
+}
+
+void SweepViews::draw_spectrum(Session& session, ImVec2 size) {
+  const PlottedDescription& quantity = described(session.view().quantity);
+  const NamedLine line =
+      line_of(session.spectrum(), quantity.quantity, current_style(), fmt::format("θ = {:.4g}°", session.theta_deg()));
+  draw_wavelengths("spectrum", session, size, {line}, session.spectrum(),
+                   {quantity.label(), range_of(line.values, session.view().is_log)});
+}
+
+void SweepViews::draw_smooth(Session& session, ImVec2 size) {
+  const ImVec2 half{size.x, 0.5F * (size.y - ImGui::GetStyle().ItemSpacing.y)};
+  const auto lines_of = [&](const Sweep& sweep) {
+    return std::vector<NamedLine>{line_of(sweep, Plotted::kRhoS, current_style(), "R_s"),
+                                  line_of(sweep, Plotted::kRhoP, overlay_style(), "R_p")};
+  };
+  const std::vector<NamedLine> over_angle = lines_of(session.smooth()), over = lines_of(session.smooth_spectrum());
+  const bool is_band = !session.scene().numbers("spectrum.band_um").empty();
+  const Plot plot(
+      "smooth", half, {"local angle of incidence β [°]", {0.0, 90.0}},
+      {is_band ? "R_s, R_p, mean over the band" : "R_s, R_p", values_range(over_angle, session.view().is_log)});
+  if (plot.is_dragged()) session.set_theta(plot.x().value(plot.mouse_x()));
+  draw_lines(plot, session.smooth().at(), over_angle, true);
+  const float x = plot.at_position(plot.x().position(session.theta_deg()), 0.0).x;
+  plot.list()->AddLine({x, plot.min().y}, {x, plot.max().y}, kCursorColour, scaled(1.0F));
+  draw_wavelengths(
+      "smooth spectrum", session, half, over, session.smooth_spectrum(),
+      {fmt::format("R_s, R_p at β = {:.4g}°", session.theta_deg()), values_range(over, session.view().is_log)});
 }
 
 void ScatteringView::update(const Session& session) {
@@ -401,6 +519,62 @@ void draw_sky(const Session& session, ImVec2 size) {
   draw_rings(sky, at, colours);
   draw_sky_marks(session.scene(), session.theta_deg(), at);
   draw_bar({middle.x - radius, middle.y + radius + 0.5F * line}, 2.0F * radius, colours);
+}
+
+void draw_effects(const Session& session) {
+  struct Column {
+    const char* name;
+    const char* meaning;
+    float width;  ///< in sizes of the font
+  };
+  const std::array<Column, 5> columns = {
+      {{is_stale(session) ? "the scene before" : "effect", "a part of the scene", 6.8F},
+       {"plan", "kept, dropped, absent, or not needed by what is kept", 4.2F},
+       {"at cursor", "what it adds to DOLP at the cursor: a bound (≤) where it is dropped, else an estimate", 6.0F},
+       {"Q/I → without it",
+        "Q/I at the maximum of the curve with all effects → without this one; their difference is its part", 9.4F},
+       {"why", "the reason of the plan", 14.0F}}};
+  const float em = ImGui::GetFontSize();
+  const bool is_narrow = ImGui::GetContentRegionAvail().x < 36.0F * em;
+  ImGuiTableFlags flags =
+      ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV | ImGuiTableFlags_ScrollY | ImGuiTableFlags_SizingFixedFit;
+  if (is_narrow) flags |= ImGuiTableFlags_ScrollX;
+  if (!ImGui::BeginTable(is_narrow ? "narrow effects" : "effects", static_cast<int>(columns.size()), flags)) return;
+  ImGui::TableSetupScrollFreeze(0, 1);
+  for (const Column& column : columns) {
+    const bool is_stretched = &column == &columns.back() && !is_narrow;
+    ImGui::TableSetupColumn(column.name,
+                            is_stretched ? ImGuiTableColumnFlags_WidthStretch : ImGuiTableColumnFlags_WidthFixed,
+                            is_stretched ? 0.0F : column.width * em);
+  }
+  ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+  for (const Column& column : columns) {
+    ImGui::TableNextColumn();
+    ImGui::TableHeader(column.name);
+    tooltip(column.meaning);
+  }
+  for (const Effect& row : session.effects()) {
+    ImGui::TableNextRow();
+    draw_row(session, row);
+  }
+  ImGui::EndTable();
+}
+
+void draw_fit_result(Session& session) {
+  ImGui::BeginChild("fit result");
+  if (const std::optional<Fit>& fit = session.last_fit()) {
+    const std::optional<std::size_t> current = session.minimum();
+    const std::optional<std::size_t> clicked = draw_minima(*fit, current);
+    coloured_text(kDimColour, current ? "A click moves the sliders to a minimum."
+                                      : "The scene has changed since the fit. A click brings a minimum back.");
+    draw_words(*fit);
+    if (clicked) session.visit_minimum(*clicked);
+  } else {
+    coloured_text(kDimColour,
+                  "No fit yet: load measured points (Ctrl+O), mark the numbers that vary in the boxes beside their "
+                  "sliders, then press Ctrl+F.");
+  }
+  ImGui::EndChild();
 }
 
 }  // namespace dolp::explore

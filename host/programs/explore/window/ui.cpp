@@ -109,21 +109,23 @@ void Ui::draw_view_controls() {
 
 void Ui::draw_map_axes(View& view) {
   label("   map over");
-  const auto label_of = [&](Axis axis) { return MapAxis{.axis = axis, .is_wind = has_wind(session_.scene())}.label(); };
-  const auto axes = [&] {
+  const std::vector<MapAxis> axes = map_axes(session_.scene(), view.theta_max_deg);
+  const auto entries = [&] {
     std::vector<ListEntry> all;
-    for (const Axis axis : kMapAxes) all.push_back({label_of(axis)});
+    for (const MapAxis& axis : axes) all.push_back({axis.label});
     return all;
   };
-  for (const auto& [id, axis, other] :
-       {std::tuple{"map x", &view.map_x, &view.map_y}, {"map y", &view.map_y, &view.map_x}}) {
-    const auto position = static_cast<std::size_t>(std::ranges::find(kMapAxes, *axis) - kMapAxes.begin());
-    if (const auto clicked = draw_list(id, 5.5F * ImGui::GetFontSize(), label_of(*axis), "", position, axes)) {
+  const MapAxis &x = session_.map().x(), &y = session_.map().y();
+  for (const auto& [id, axis, other] : {std::tuple{"map x", &x, &y}, {"map y", &y, &x}}) {
+    const auto position = static_cast<std::size_t>(std::ranges::find(axes, axis->name, &MapAxis::name) - axes.begin());
+    if (const auto clicked = draw_list(id, 5.5F * ImGui::GetFontSize(), axis->label, "", position, entries)) {
       // The two axes swap if the other one is this.
-      if (*other == kMapAxes[*clicked]) *other = *axis;
-      *axis = kMapAxes[*clicked];
+      const std::string& name = axes[*clicked].name;
+      const std::string& left = name == other->name ? axis->name : other->name;
+      view.map_x = axis == &x ? name : left;
+      view.map_y = axis == &x ? left : name;
     }
-    if (axis == &view.map_x) ImGui::SameLine();
+    if (axis == &x) ImGui::SameLine();
   }
 }
 
@@ -213,7 +215,7 @@ bool Ui::draw_tab(const std::string& name, bool is_shown) {
   const bool is_clicked = ImGui::SmallButton(name.c_str());
   ImGui::PopStyleColor();
   name_item("panel " + name);
-  ImGui::SameLine();
+  ImGui::SameLine(0.0F, ImGui::GetStyle().ItemInnerSpacing.x);
   return is_clicked;
 }
 
@@ -235,6 +237,10 @@ void Ui::draw_panel(ImVec2 size) {
       return draw_slopes(session_, size);
     case Panel::kMaterial:
       return draw_material(session_, size);
+    case Panel::kSmooth:
+      return sweep_views_.draw_smooth(session_, size);
+    case Panel::kSpectrum:
+      return sweep_views_.draw_spectrum(session_, size);
     case Panel::kScattering:
       return scattering_view_.draw(session_, size);
     case Panel::kShapes:

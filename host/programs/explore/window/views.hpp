@@ -1,4 +1,5 @@
-// The window's views of a session: curves, map, effects, and the views that can replace the map.
+// The window's views of a session: the controls of the scene, curves, map, effects, and the views that can replace the
+// map.
 #pragma once
 
 #include "explore/session.hpp"
@@ -8,6 +9,27 @@
 namespace dolp::explore {
 
 // Each view fills the current ImGui window, or `size` of it.
+
+/// What the controls keep from frame to frame.
+struct ControlsState {
+  NumberFields fields;
+  std::string sky_file;  ///< the scene's sky, which `sky` describes
+  std::optional<SkyPair> sky;
+};
+
+/// Fills the current ImGui window with the controls of a scene. Areas have the key of their control as name, "vary KEY"
+/// for the box that lets a number vary in fits, "field KEY" for a field, "field fit KEY 0" and "1" for the ends of its
+/// range in fits, "sky", "sky zenith" and "sky horizon".
+void draw_controls(Session& session, ControlsState& state);
+/// Draws tolerance and precision, which stand beside their cost.
+void draw_accuracy_controls(Session& session, ControlsState& state);
+
+/// The values of a line over positions that all lines of a plot share.
+struct NamedLine {
+  std::string name;
+  CurveStyle style;
+  std::vector<double> values;
+};
 
 /// The current curve, the overlay, pins and measured points, below a legend that switches them. A click or drag moves
 /// the cursor, and the zoom follows the mouse.
@@ -39,6 +61,20 @@ void draw_slopes(const Session& session, ImVec2 size);
 
 /// n and k of the material over wavelength, the scene's spectrum marked.
 void draw_material(const Session& session, ImVec2 size);
+
+/// The curve over wavelength at the cursor's zenith; and R_s and R_p of the smooth surface over the local angle of
+/// incidence, and over wavelength where that is the cursor's zenith. A drag along wavelengths changes the scene's.
+class SweepViews {
+ public:
+  void draw_spectrum(Session& session, ImVec2 size);
+  void draw_smooth(Session& session, ImVec2 size);
+
+ private:
+  void draw_wavelengths(const char* id, Session& session, ImVec2 size, const std::vector<NamedLine>& lines,
+                        const Sweep& sweep, const PlotAxis& values);
+
+  AxisEditor axis_editor_;
+};
 
 /// One element of the Mueller pBRDF in the plane of incidence, as a polar plot for the cursor's zenith.
 class ScatteringView {
@@ -72,6 +108,9 @@ void draw_fit_result(Session& session);
 void draw_sky(const Session& session, ImVec2 size);
 
 /// Map, contour lines, colour bar and cursor. A click or drag moves the cursor, which the scene follows.
+/// Changes the typed range of an axis of wavelengths or of a map.
+void set_range(Session& session, const MapAxis& axis, const AxisEditor::Change& change);
+
 class MapView {
  public:
   void draw(Session& session, ImVec2 size);

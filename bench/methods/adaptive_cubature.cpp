@@ -15,7 +15,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::size_t kMostEvaluations = 10'000'000;  // of one entry: a few seconds
+constexpr std::size_t kMostEvaluations = 10'000'000;  // per entry; this takes a few seconds
 
 struct Integral {
   const DirectSurface& surface;
@@ -47,7 +47,7 @@ class Cubature final : public Solver {
       Integral integral{surface};
       double values[2];
       double errors[2];
-      // The largest error over the largest value, which is r_i: the very error of this study.
+      // The largest error over the largest value, which is r_i: the definition of error in this study.
       const int status =
           routine_(2, integrand, &integral, 2, kLow, kHigh, kMostEvaluations, 0.0, setting, ERROR_LINF, values, errors);
       if (status != 0) throw Unavailable("libcubature gave up");

@@ -7,7 +7,7 @@
 
 namespace dolp::bench {
 
-/// Float multiplications and additions per second, from `repeats` runs of a kernel that does nothing else; sorted, the
+/// Float multiplications and additions per second in `repeats` runs of a kernel that does nothing else. Sorted, the
 /// fastest last. Errors: DeviceError.
 std::vector<double> arithmetic_peak(const std::string& device, std::size_t repeats);
 

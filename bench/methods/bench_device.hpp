@@ -1,4 +1,4 @@
-// A Vulkan device for kernels of the benchmark's own.
+// A Vulkan device for kernels that only the benchmark has.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace dolp::bench {
 
-/// Instance, device and stream, with the validation layer where DOLP_VALIDATION is 1.
+/// Instance, device and stream; with the validation layer if DOLP_VALIDATION is 1.
 struct BenchDevice {
-  /// `choice`: position or part of the name, empty for the default. Errors: DeviceError.
+  /// `choice`: position or part of the name; empty means the default. Errors: DeviceError.
   explicit BenchDevice(const std::string& choice);
   BenchDevice(const BenchDevice&) = delete;
   BenchDevice& operator=(const BenchDevice&) = delete;
@@ -19,7 +19,7 @@ struct BenchDevice {
   /// Name and driver.
   std::string where() const;
 
-  /// Errors: DeviceError when the validation layer had anything to say.
+  /// Errors: DeviceError if the validation layer reported a message.
   void check_messages() const;
 
   vulkan::ValidationLog log;

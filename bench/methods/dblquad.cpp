@@ -1,4 +1,4 @@
-// SciPy's dblquad, run as a program of its own that also takes its times: the start of the interpreter is not counted.
+// SciPy's dblquad in a separate process, which measures its times itself, without the start of the interpreter.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>

@@ -16,9 +16,9 @@ namespace dolp::bench {
 using std::numbers::inv_sqrtpi;
 using std::numbers::pi;
 
-/// With g = 1 for smith and 1/sqrt(1 + tau^2) for `integral`, p the in-plane slope density:
-///   probability(x) = int_x p,   first(x) = int_x g p,   height(x) = int_x g p (tau - x) dtau,   integrals to infinity.
-/// Quintic Hermite interpolation with exact derivatives on a uniform grid in X = asinh(tau/w).
+/// Integrals of the in-plane slope density p, with g = 1 for smith and g = 1/sqrt(1 + tau^2) for `integral`:
+/// probability(x) = int_x p, first(x) = int_x g p, height(x) = int_x g p (tau - x) dtau, integrals to infinity. Quintic
+/// Hermite interpolation with exact derivatives on a uniform grid in X = asinh(tau/w).
 class MaskingTails {
  public:
   MaskingTails(const Entry& entry);
@@ -45,20 +45,20 @@ class MaskingTails {
   double q_;
   double norm_;           ///< p(0)
   double width_;          ///< w
-  double tail_exponent_;  ///< of height far out
+  double tail_exponent_;  ///< exponent of `height` at large tau
   double end_tau_;
   std::optional<Interpolant> height_, first_, probability_;
 };
 
 namespace {
 
-constexpr double kStep = 1.0 / 24.0;      // of X: interpolation errors of 1e-12
-constexpr double kEndOverWidth = 1e6;     // beyond it the tails are powers to 1e-12
+constexpr double kStep = 1.0 / 24.0;      // spacing in X; the interpolation error is 1e-12
+constexpr double kEndOverWidth = 1e6;     // beyond this the tails are powers to 1e-12
 constexpr double kVerticalSlope = 1e100;  // its square does not overflow
 using CellRule = boost::math::quadrature::gauss<double, 4>;
 
 /// R_s and R_p without complex numbers.
-/// Source: Born and Wolf, Principles of Optics, 14.2, u and v of N cos(beta') = u + iv.
+/// Source: Born and Wolf, Principles of Optics, 14.2, with N cos(beta') = u + iv.
 struct Reflectances {
   double s;
   double p;
@@ -73,7 +73,7 @@ Reflectances reflectances(const OpticalConstants& index, double cos_beta) {
   const double v2 = real > 0.0 ? 0.5 * imaginary * imaginary / (modulus + real) : 0.5 * (modulus - real);
   const double u = std::sqrt(u2);
   const double r_s = ((cos_beta - u) * (cos_beta - u) + v2) / ((cos_beta + u) * (cos_beta + u) + v2);
-  // R_p/R_s with s tan(beta) multiplied by cos(beta)
+  // R_p/R_s, with s tan(beta) multiplied by cos(beta)
   const double low = u * cos_beta - sin2;
   const double high = u * cos_beta + sin2;
   const double v2_cos2 = v2 * cos_beta * cos_beta;
@@ -109,7 +109,8 @@ double MaskingTails::density(double tau) const {
   return norm_ * (is_gaussian_ ? std::exp(-ratio2) : std::pow(1.0 + ratio2, 0.5 - q_));
 }
 
-// Integrals beyond the table: there the cauchy density follows the power tau^(1-2q), and the gaussian is negligible.
+// Integrals beyond the table. There the Cauchy density follows the power tau^(1-2q), and the Gaussian density is
+// negligible.
 MaskingTails::Node MaskingTails::end() const {
   const double p = density(end_tau_);
   Node node{.tau = end_tau_, .density = p};

@@ -1,7 +1,7 @@
 // The plain textbook formulas of the model, for the methods that dolp is compared with.
 //
-// Nothing here is shared with the shaders or with the reference. Reflectances are in real arithmetic and the masking of
-// the paper comes from tables of its three primitives, because a user who cares about time would do so too.
+// They share nothing with the shaders or the reference. Reflectances use real arithmetic, and the paper's masking comes
+// from tables of its three primitives, because a user who cares about time would program it this way.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ struct Entry {
 };
 Entry entry_of(const MomentsRequest& request, std::size_t position);
 
-/// G M00 and G M01: the reflection of one facet.
+/// G M00 and G M01 of one facet.
 struct Reflected {
   double i = 0.0;
   double q = 0.0;
@@ -30,7 +30,7 @@ struct Reflected {
 /// Tails of the in-plane slope density, from which both tabulated maskings follow.
 class MaskingTails;
 
-/// The direction of the running beam, with the part of G that depends on nothing else.
+/// The direction of the running beam, with the part of G that depends only on this beam.
 struct RunningBeam {
   double cos = 1.0;
   double sin = 0.0;
@@ -40,11 +40,11 @@ struct RunningBeam {
 /// The microfacet surface seen from one fixed direction.
 ///
 /// Equation: (1), (2), (3), (5), (7), (8), (9)-(12).
-/// Accuracy: tables of the masking 1e-10 absolute (test BenchFormulas).
+/// Accuracy: masking tables to 1e-10 absolute (test BenchFormulas).
 /// Domain: 0 < theta < 90 degrees, sigma > 0, cauchy q > 1 (smith: q > 3/2).
 class DirectSurface {
  public:
-  /// The source of Smith's Lambda: the closed form is best for a few running beams, the table for many.
+  /// How Smith's Lambda is computed. The closed form is faster for a few running beams, the table for many.
   enum class SmithBy { kClosedForm, kTable };
   DirectSurface(const Entry& entry, SmithBy smith_by);
   DirectSurface(const DirectSurface&) = delete;
@@ -65,7 +65,7 @@ class DirectSurface {
   /// Prepares G for a running beam; cos_r > 0.
   RunningBeam beam(double cos_r, double sin_r) const;
 
-  /// G M00 and G M01 of the facet between the fixed beam and the running one; 0 for M01 where eta is undefined.
+  /// G M00 and G M01 of the facet between the fixed beam and the running one. M01 is 0 where eta is undefined.
   Reflected reflected(const RunningBeam& beam, double cos_alpha, double tan_alpha, double cos_beta) const;
 
  private:
@@ -77,15 +77,16 @@ class DirectSurface {
   double sin_theta_;
   double m_;
   std::unique_ptr<MaskingTails> tails_;
-  double fixed_masking_ = 0.0;  ///< smith: Lambda; integral: height integral, of the fixed beam
+  double fixed_masking_ = 0.0;  ///< of the fixed beam. smith: Lambda; integral: height integral
 };
 
 /// The integrand over the running beam, by the plain formulas.
-/// Equation: r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r)/2, both halves of the azimuth counted.
+/// Equation: r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r)/2. It counts both halves of the
+/// azimuth.
 Reflected beam_integrand(const DirectSurface& surface, const RunningBeam& beam, double cos_azimuth);
 
-/// The facet of slope tan_alpha at azimuth phi_h from the fixed beam: whether its ray leaves, and what it reflects per
-/// unit of P(t) t dt dphi_h.
+/// Integrand of the facet with slope tan_alpha at azimuth phi_h from the fixed beam, per unit of P(t) t dt dphi_h. Zero
+/// if the reflected ray does not leave the surface.
 /// Equation: r = int P t dt dphi_h (cos(beta)/cos(alpha)) G M, over cos(theta_r) > 0.
 Reflected half_vector_integrand(const DirectSurface& surface, double tan_alpha, double cos_phi);
 

@@ -1,4 +1,4 @@
-// A method of the benchmark: one way to compute the moments r_i and r_q of entries, at a setting of its own.
+// A method of the benchmark: one way to compute the moments r_i and r_q of entries, at one of its settings.
 #pragma once
 
 #include <functional>
@@ -12,28 +12,29 @@
 
 namespace dolp::bench {
 
-/// The two moments of one entry (Moments::r_i and r_q), and the error the method itself states for them.
+/// The two moments of one entry (Moments::r_i and r_q), and the error that the method states for them.
 struct Answer {
   double r_i = 0.0;
   double r_q = 0.0;
-  std::optional<double> stated_error;  ///< bound or estimate of max(|d r_i|, |d r_q|)/r_i, where the method gives one
+  /// bound or estimate of max(|d r_i|, |d r_q|)/r_i; empty if the method states none
+  std::optional<double> stated_error;
 };
 
 /// The result of one call of a solver.
 struct Solution {
-  std::vector<Answer> answers = {};        ///< one for each entry of the request, in its order
+  std::vector<Answer> answers = {};        ///< one per entry of the request, in its order
   std::optional<double> evaluations = {};  ///< integrand evaluations of the whole call
   std::optional<double> kernel_s =
-      {};  ///< time of the whole call in kernels and sums of their results, where the method has kernels
-  std::vector<double> own_times_s = {};  ///< repeated times of the call, where only the method can take them
+      {};  ///< time of kernels and of sums of their results, for the whole call; empty without kernels
+  std::vector<double> own_times_s = {};  ///< repeated times of the call, if only the method can measure them
 };
 
-/// A method ready to run. Resources that it needs once (a device, an interpreter) are made with it and are not timed;
-/// data that each entry needs (nodes, tables of its masking) belong to `solve`.
+/// A method that is ready to run. Its constructor makes what is needed once (a device, an interpreter), untimed.
+/// `solve` makes what each entry needs (nodes, masking tables), timed.
 class Solver {
  public:
   virtual ~Solver() = default;
-  /// Computes every entry of the request, whose tolerance is ignored: `setting` controls the accuracy.
+  /// Computes every entry of the request. Ignores the tolerance of the request: `setting` controls the accuracy.
   virtual Solution solve(const MomentsRequest& request, double setting) = 0;
   /// The device, processor or interpreter that runs the method, with versions.
   virtual std::string where() const = 0;
@@ -52,10 +53,10 @@ struct TookTooLong : Unavailable {
 struct SolverOptions {
   std::string device = {};     ///< Vulkan device: position or part of the name, empty for the default
   double time_limit_s = 20.0;  ///< for one call of a method that may not end
-  std::vector<std::string> pythons = {"/usr/bin/python3", "python3"};  ///< tried in turn for one that has SciPy
+  std::vector<std::string> pythons = {"/usr/bin/python3", "python3"};  ///< tried in turn until one has SciPy
 };
 
-/// One row of the registry.
+/// One row of the list of methods.
 struct Method {
   std::string name;                    ///< as on the command line and in results
   std::string label;                   ///< for figures and tables
@@ -63,10 +64,11 @@ struct Method {
   std::string cores;                   ///< "1", or "all" for the evaluators of dolp
   std::string setting_name;            ///< what `settings` count: nodes, samples, tolerance
   std::vector<double> settings;        ///< from coarse to fine
-  std::vector<double> quick_settings;  ///< the few of them that --quick runs
-  bool is_batched = false;             ///< meant for many entries a call: its time is that of a call over its entries
-  bool needs_grid = false;             ///< gains nothing from entries that are no grid
-  bool is_random = false;              ///< every call gives other answers; its error is the rms of them
+  std::vector<double> quick_settings;  ///< the subset that --quick runs
+  /// meant for many entries per call: its time is the time of a call over the number of entries
+  bool is_batched = false;
+  bool needs_grid = false;  ///< faster only for entries that form a grid
+  bool is_random = false;   ///< every call gives other answers; the error is their rms
   /// Errors: Unavailable.
   std::function<std::unique_ptr<Solver>(const SolverOptions&)> make;
 };
@@ -74,20 +76,20 @@ struct Method {
 /// All methods, in the order of tables and legends.
 const std::vector<Method>& methods();
 
-// The solvers, one family a file.
+// The solvers, one family per file.
 std::unique_ptr<Solver> make_midpoint_rule();
 std::unique_ptr<Solver> make_gauss_rule();
-/// Errors: Unavailable when there is no usable device, of both.
+/// Errors: Unavailable without a usable device (both functions).
 std::unique_ptr<Solver> make_vulkan_midpoint(const SolverOptions& options);
 std::unique_ptr<Solver> make_vulkan_gauss(const SolverOptions& options);
 std::unique_ptr<Solver> make_monte_carlo();
 std::unique_ptr<Solver> make_hcubature();
 std::unique_ptr<Solver> make_pcubature();
-/// Errors: Unavailable when no interpreter with SciPy is found.
+/// Errors: Unavailable without an interpreter that has SciPy.
 std::unique_ptr<Solver> make_dblquad(const SolverOptions& options);
-/// Errors: Unavailable when there is no usable device of this precision.
+/// Errors: Unavailable without a usable device of this precision.
 std::unique_ptr<Solver> make_vulkan(const SolverOptions& options, Precision precision);
-/// The same in float, interpolated between slope distributions where the entries are dense.
+/// The Vulkan method in float, interpolated between slope distributions where the entries are dense.
 std::unique_ptr<Solver> make_vulkan_table(const SolverOptions& options);
 std::unique_ptr<Solver> make_cpu(Precision precision);
 std::unique_ptr<Solver> make_native();

@@ -1,4 +1,4 @@
-// The registry: every method that any study compares, including the slow ones.
+// The list of all methods that any study compares, including the slow ones.
 #include "methods/method.hpp"
 #include "model/choices.hpp"
 

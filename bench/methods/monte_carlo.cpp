@@ -1,4 +1,4 @@
-// Importance sampling of the facets: half vectors are drawn from D cos(alpha), so that this factor drops out of the
+// Importance sampling of the facets. Half vectors are drawn from D cos(alpha), so this factor drops out of the
 // integrand.
 #include <cmath>
 #include <cstdint>
@@ -13,7 +13,7 @@
 namespace dolp::bench {
 namespace {
 
-/// Uniform in (0, 1), the same with every standard library.
+/// Uniform in (0, 1), with the same numbers in every standard library.
 double uniform(std::mt19937_64& random) {
   constexpr double kUnit = 0x1p-53;
   return (static_cast<double>(random() >> 11U) + 0.5) * kUnit;
@@ -52,7 +52,7 @@ class MonteCarlo final : public Solver {
   std::string where() const override { return processor_name(); }
 
  private:
-  std::mt19937_64 random_{20'250'808};  // each call goes on where the last one ended
+  std::mt19937_64 random_{20'250'808};  // each call continues the sequence
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The kernel source, compiled for this very processor: the same algorithm, rows and pieces as on the device.
+// The kernel source compiled for this processor, with the same algorithm, rows and pieces as on the device.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -13,10 +13,10 @@
 namespace dolp::bench {
 namespace {
 
-constexpr std::size_t kBlock = 64;  // invocations between two choices of a core
+constexpr std::size_t kBlock = 64;  // invocations that a core takes at a time
 
-/// Calls body(i) once for each i < count. Threads of OpenMP would spin while they wait, and lose where anything else
-/// runs.
+/// Calls body(i) once for each i < count. OpenMP would be slower beside other load, because its threads spin while they
+/// wait.
 void on_all_cores(std::size_t count, const std::function<void(std::size_t)>& body) {
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {

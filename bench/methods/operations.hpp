@@ -9,15 +9,15 @@ namespace dolp::bench {
 
 /// Operations of the float kernels for one request, masking tables included.
 struct KernelWork {
-  OperationCounts counts;  ///< of all entries, extrapolated from the invocations that were counted
+  OperationCounts counts;  ///< of all entries, extrapolated from the counted invocations
   double evaluations = 0.0;
-  /// Share of the operations that are useful where `lanes` neighbouring invocations run in lockstep and wait for the
-  /// one with the most work: an upper bound, for they also wait within loops.
+  /// Useful share of the operations if `lanes` neighbouring invocations run in lockstep and wait for the slowest. An
+  /// upper bound, because lanes also wait within loops.
   double busy_lanes = 1.0;
 };
 
-/// Runs `workgroups` workgroups of the kernel, evenly spread, in arithmetic that counts.
-/// Accuracy: a few percent, for the rest is like the sample. Domain: has_kernel_for.
+/// Runs `workgroups` evenly spread workgroups of the kernel with counting arithmetic.
+/// Accuracy: a few percent, if the other workgroups resemble these. Domain: has_kernel_for.
 KernelWork count_operations(const MomentsRequest& request, std::size_t workgroups, std::size_t lanes);
 
 }  // namespace dolp::bench

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Product rule over the running beam: some zeniths theta_r of one entry, all azimuths, per invocation. Density,
-// geometry and rotations are the plain formulas; Fresnel and the tables of the masking are dolp's own.
+// Product rule over the running beam: each invocation sums some zeniths theta_r of one entry and all azimuths. Density,
+// geometry and rotations use the plain formulas. Fresnel reflectances and masking tables are the ones of dolp.
 //   r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r) / 2
 
 #include "physics/prelude.glsl"
@@ -20,7 +20,7 @@ layout(std430, binding = DOLP_BINDING_MOMENTS) writeonly buffer Sums { real2 sum
 // The facet that reflects one beam into the other.
 struct Bisector {
   real slope2;  // tan^2(alpha)
-  real along;   // of the fixed beam on the facet, in the plane of incidence, over cos(alpha)
+  real along;   // fixed beam on the facet, in the plane of incidence, over cos(alpha)
   real across2;
   real cos_beta;
 };

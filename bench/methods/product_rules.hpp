@@ -1,4 +1,4 @@
-// One-dimensional rules that product rules are built from.
+// One-dimensional rules, the factors of product rules.
 #pragma once
 
 #include <cstddef>

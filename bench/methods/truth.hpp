@@ -1,4 +1,4 @@
-// Reference values of the entries that methods are judged by, from the independent reference.
+// Values from the independent reference, which show the error of each method.
 #pragma once
 
 #include <vector>
@@ -11,8 +11,8 @@ namespace dolp::bench {
 /// The reference's moments of one entry.
 struct Truth {
   Moments moments;
-  double bound = 0.0;   ///< of max(|d r_i|, |d r_q|)/r_i
-  double time_s = 0.0;  ///< an entry, on one core
+  double bound = 0.0;   ///< bound of max(|d r_i|, |d r_q|)/r_i
+  double time_s = 0.0;  ///< time per entry, on one core
 };
 
 /// The reference at its tightest setting, for every entry of a request.

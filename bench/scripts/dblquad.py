@@ -19,13 +19,13 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.special import betainc, gammaln
 
 STEP = 1 / 64  # of asinh(tau/width)
-FAR = 1e5  # where the tails of the slope density are powers
+FAR = 1e5  # beyond this the tails of the slope density are powers
 MOST_REPEATS = 3
 ENOUGH_S = 1.5  # of repeats
 
 
 class MaskingTails:
-    """Tails of the in-plane slope density p beyond tau: int p, int g p, int g p (t - tau) with g = 1/sqrt(1 + t^2)."""
+    """Tails of the in-plane slope density p beyond tau: int p, int g p, int g p (t - tau), with g = 1/sqrt(1 + t^2)."""
 
     def __init__(self, m, q, is_gaussian):
         self.q = q
@@ -69,7 +69,7 @@ class MaskingTails:
 
 
 class Surface:
-    """The integrand D G M sin(theta_r)/4 of both moments."""
+    """The integrand D G M sin(theta_r)/4 for both moments."""
 
     def __init__(self, request):
         self.is_gaussian = request["distribution"] == "gaussian"
@@ -92,7 +92,7 @@ class Surface:
         return first - 0.5 * betainc(q - 1, 0.5, m * m / (m * m + mu * mu))
 
     def start_row(self, theta_r):
-        """What depends on theta_r alone: dblquad keeps it while delta_phi runs."""
+        """Values that depend only on theta_r. dblquad keeps theta_r fixed while delta_phi runs."""
         self.theta_r, self.cr, self.sr = theta_r, math.cos(theta_r), math.sin(theta_r)
         if self.masking == "smith":
             self.smith = 1 / (1 + self.smith_lambda(self.c / self.s) + self.smith_lambda(self.cr / self.sr))
@@ -149,7 +149,7 @@ def moments(request):
             lambda delta_phi, theta_r: surface.values(delta_phi, theta_r)[component],
             0, math.pi / 2, 0, math.pi, epsabs=absolute, epsrel=relative)
 
-    # r_q may vanish, so that its error is measured by r_i; the factor 2 is the other half of the azimuth.
+    # r_q may vanish, so its error is relative to r_i. The factor 2 adds the other half of the azimuth.
     r_i, error_i = integral(0, 0.0, tolerance)
     r_q, error_q = integral(1, tolerance * r_i, 0.0)
     return {"r_i": 2 * r_i, "r_q": 2 * r_q, "stated_error": max(error_i, error_q) / r_i,
@@ -188,7 +188,7 @@ def main(arguments):
         print("usage: dblquad.py --version | dblquad.py REQUEST", file=sys.stderr)
         return 2
     import warnings
-    warnings.simplefilter("ignore")  # of quad that a tolerance was not reached: stated_error says so
+    warnings.simplefilter("ignore")  # quad warns if it misses a tolerance; stated_error reports it
     print(json.dumps(timed(json.loads(arguments[0]))))
     return 0
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """SciPy's least_squares around `dolp.evaluate`, as one would write it without `dolp fit`.
 
-One argument, JSON: `package` (the folder of the Python package dolp), `scene` (text), `tolerance`, `columns` (of the
-points, one for each parameter), `low`, `high`, `start`, `theta_deg`, `measured`, `uncertainty`. Prints JSON: `values`,
+One argument, JSON: `package` (the folder of the Python package dolp), `scene` (text), `tolerance`, `columns` (column of
+the points, for each parameter), `low`, `high`, `start`, `theta_deg`, `measured`, `uncertainty`. Prints JSON: `values`,
 `chi_square`, `calls` of dolp.evaluate, `time_s`. One call computes a whole Jacobian.
 """
 import json
@@ -12,7 +12,7 @@ import time
 import numpy as np
 import scipy.optimize
 
-STEP = 1e-4  # of differences, relative to the range
+STEP = 1e-4  # step of differences, relative to the range
 
 
 class Model:
@@ -27,7 +27,7 @@ class Model:
         self.calls = 0
 
     def residuals_at(self, sets):
-        """Residuals of each parameter set, from one call."""
+        """Residuals of all parameter sets from one call."""
         self.calls += 1
         columns = dict(zip(self.question["columns"], np.array(sets).T[:, :, np.newaxis]))
         found = self.evaluate(self.scene, theta_deg=self.theta, **columns)
@@ -46,7 +46,7 @@ class Model:
 def main():
     question = json.loads(sys.argv[1])
     model = Model(question)
-    model.residuals(np.array(question["start"]))  # device and kernels are ready, as they are for dolp fit
+    model.residuals(np.array(question["start"]))  # so that device and kernels are ready, as they are for dolp fit
     model.calls = 0
     start = time.perf_counter()
     found = scipy.optimize.least_squares(model.residuals, question["start"], model.jacobian,

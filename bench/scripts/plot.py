@@ -4,7 +4,7 @@
 Usage: plot.py accuracy RESULT.json -o FIGURE.png    error against time per entry, one panel a case
        plot.py accuracy RESULT.json --markdown       time per entry at given errors, as a Markdown table on stdout
        plot.py effects RESULT.json -o FIGURE.png     time per entry of each effect
-       plot.py effects RESULT.json --markdown        the same as Markdown tables on stdout
+       plot.py effects RESULT.json --markdown        time per entry of each effect, as Markdown tables on stdout
        plot.py throughput|peers|scale|fit RESULT.json -o FIGURE.png | --markdown    likewise, of those studies
 RESULT.json is what `dolp-bench STUDY --json RESULT.json` writes. Figures need python3-matplotlib (and with it Pillow).
 Exit status: 0 done, 2 usage or a file that is not such a result, 4 the figure could not be written.
@@ -16,7 +16,7 @@ import pathlib
 import sys
 import textwrap
 
-sys.dont_write_bytecode = True  # leaves no folder among the sources
+sys.dont_write_bytecode = True  # writes no cache folder among the sources
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "host"))
 
 import picture_file  # noqa: E402
@@ -28,7 +28,7 @@ import plot_throughput  # noqa: E402
 from plot_style import style, time_text  # noqa: E402
 
 STUDIES = {"effects": plot_effects, "throughput": plot_throughput, "peers": plot_peers,
-           "scale": plot_scale, "fit": plot_fit_sets}  # others than accuracy
+           "scale": plot_scale, "fit": plot_fit_sets}  # all studies except accuracy
 NEEDED = {"context", "methods", "cases", "results"}  # of accuracy
 WANTED_ERRORS = (1e-3, 1e-6, 1e-9)
 PANEL_COLUMNS = 3
@@ -40,7 +40,7 @@ SYMBOLS = {"theta_r": "θr", "delta_phi": "Δφ", "alpha": "α"}
 
 
 class NotAResult(Exception):
-    """The file is no result of the study."""
+    """The file is not a result of the study."""
 
 
 def read_result(path, study):
@@ -55,14 +55,14 @@ def read_result(path, study):
 
 
 def points(result, method, case):
-    """(error, time) of each setting that ran; errors below what the reference knows are that bound."""
+    """(error, time) of each setting that ran. An error below the bound of the reference is replaced by the bound."""
     bound = case["reference"]["bound"]
     return [(max(row["error"], bound), row["time_s"]) for row in result["results"]
             if row["method"] == method and row["case"] == case["name"] and "error" in row]
 
 
 def worth_it(all_points):
-    """The points that no cheaper setting of the same method beats, from coarse to fine."""
+    """The points that no cheaper setting of the method beats, from coarse to fine."""
     kept = []
     for error, time_s in sorted(all_points, key=lambda point: (point[1], point[0])):
         if not kept or error < kept[-1][0]:
@@ -78,7 +78,7 @@ def why_not_run(result, method):
 
 
 def markdown(result):
-    """Time per entry of the cheapest setting that reaches each wanted error, for every method and case."""
+    """Time per entry of the cheapest setting that reaches each given error, for every method and case."""
     wanted = " / ".join(f"{error:g}" for error in WANTED_ERRORS)
     names = [case["name"] for case in result["cases"]]
     lines = [f"Time per entry for an error of at most {wanted} (—: at no setting):", "",
@@ -98,7 +98,7 @@ def markdown(result):
 
 
 def spread_apart(heights, gap):
-    """Heights, in their order, moved as little as a sweep can so that neighbours are `gap` apart."""
+    """The heights, in their order, moved little so that neighbours are at least `gap` apart."""
     order = sorted(range(len(heights)), key=lambda i: heights[i])
     placed = [heights[i] for i in order]
     for _ in range(200):
@@ -118,7 +118,7 @@ def spread_apart(heights, gap):
 
 
 def draw_curves(axes, result, case):
-    """All curves of a case; returns the end of each with its label and colour."""
+    """Draws all curves of a case. Returns the end of each with its label and colour."""
     ends = []
     for method in result["methods"]:
         label, colour, marker, line = style(method["name"])
@@ -138,7 +138,7 @@ def draw_curves(axes, result, case):
 
 
 def label_ends(axes, ends):
-    """Names each curve left of its finest point, moved apart where they would touch; the coarsest end, right of it."""
+    """Labels the least accurate curve right of its end, and the others left of theirs. Moves labels that would touch."""
     if not ends:
         return
     to_points = 72.0 / axes.figure.dpi
@@ -165,7 +165,7 @@ def panel_title(case):
 
 
 def draw_key(axes, result):
-    """What each method is, and how to read the figure."""
+    """Describes the methods, and how to read the figure."""
     axes.axis("off")
     context = result["context"]
     device = context["device"].get("name", "no Vulkan device")
@@ -213,7 +213,7 @@ def limits_of(result):
         raise NotAResult("holds no measured setting")
     errors, times = zip(*everything)
     finest, coarsest = math.log10(min(errors)), math.log10(max(errors))
-    # The room left and right is for the labels.
+    # The space left and right is for the labels.
     return 10 ** (finest - 4.7), 10 ** (coarsest + 1.4), min(times) / 2.0, max(times) * 2.5
 
 

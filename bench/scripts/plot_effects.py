@@ -7,7 +7,7 @@ NOTE_WIDTH = 140  # letters
 
 
 def micro(time_s):
-    """Three digits."""
+    """The number with three digits."""
     return f"{1e6 * time_s:.3g}"
 
 

@@ -42,7 +42,7 @@ def line_of(name, rows):
 
 
 def intervals_of(result):
-    """(low, high) of each bounded 95 % interval, less the truth and over half the width."""
+    """(low, high) of each bounded 95 % interval, minus the truth and divided by half the width."""
     for row in sets_of(result):
         for truth, (low, high) in zip(row["truth"], row["interval_95"]):
             if low is not None and high is not None:

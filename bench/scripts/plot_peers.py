@@ -7,7 +7,7 @@ TARGET_TOLERANCE = 1e-4
 
 
 def rows_of(result, method, case):
-    """By tolerance."""
+    """The rows of a method and case, by tolerance."""
     return {row["tolerance"]: row for row in result["results"] if row["method"] == method and row["case"] == case}
 
 
@@ -36,7 +36,7 @@ def time_table(result):
 
 
 def ratio_text(row):
-    """To the table's kernels and to those of entry by entry."""
+    """Both ratios of a row: to kernels with interpolation, and to kernels that compute every entry."""
     cells = []
     for prefix in ("table_", ""):
         ratio = row.get(f"{prefix}ratio", row.get(f"hindsight_{prefix}ratio"))
@@ -104,7 +104,7 @@ def draw_case(axes, result, case):
 
 
 def figure(result, path, save):
-    """One panel a masking; `save(drawing, path)` writes it."""
+    """Draws one panel per masking; `save(drawing, path)` writes it."""
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt

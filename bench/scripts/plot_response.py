@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Response tables: their weights, their accuracy by the number of angles, and time by the number of materials.
+"""Draws the weights of response tables, their accuracy against the number of angles, and their time against the number
+of materials.
 
 Usage: plot_response.py -o FIGURE.png, with the package dolp on PYTHONPATH. Prints the figures of bench/README.md.
 """
@@ -15,7 +16,7 @@ import numpy as np
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-sys.dont_write_bytecode = True  # leaves no folder among the sources
+sys.dont_write_bytecode = True  # writes no cache folder among the sources
 sys.path.append(str(Path(__file__).resolve().parents[2] / "host"))
 import picture_file
 
@@ -54,11 +55,11 @@ def transform(count):
 
 
 def errors(counts):
-    """The largest error of rho_i and rho_q over rho_i, of each index and number of angles."""
+    """The largest error of rho_i and rho_q over rho_i, for each index and number of angles."""
     scene = SCENE.with_({"accuracy.tolerance": TIGHT})
     response = dolp.response(scene, evaluator="cpu", **GRID)
     c0, most = response.attrs["c0"], response.sizes["beta"]
-    sums = np.polynomial.chebyshev.chebvander(transform(most)[0], most - 1)  # weights into sums with polynomials
+    sums = np.polynomial.chebyshev.chebvander(transform(most)[0], most - 1)  # weights to sums with polynomials
     of_i = response.response_i.values @ sums
     of_q = (response.response_q * np.sin(np.deg2rad(response.beta)) ** 2).values @ sums
     found = np.empty((len(INDICES), len(counts)))
@@ -84,7 +85,7 @@ def seconds(call):
 
 
 def times(numbers):
-    """Of moments from a response table, and of the same from tables of all materials, one scene each."""
+    """Times: moments from a response table, and from a separate table for each material."""
     axes = {"theta_deg": np.linspace(0, 85, 32), "sigma": np.geomspace(0.05, 1, 8), "q": np.linspace(1.75, 6, 8)}
     response = dolp.response(SCENE, **axes)
     pass_s = seconds(lambda: dolp.response(SCENE, **axes))

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Emissivity and DOLP of a rough metal and of rough paint over zenith: single scattering, all bounces, direct, bracket.
+"""Emissivity and DOLP of a rough metal and of rough paint over zenith, with single scattering, all bounces, direct
+emission, and the bracket.
 
-Usage: plot_scattering.py DOLP -o FIGURE.png, DOLP the program.
+Usage: plot_scattering.py DOLP -o FIGURE.png. DOLP is the program.
 """
 
 import argparse
@@ -18,7 +19,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-sys.dont_write_bytecode = True  # leaves no folder among the sources
+sys.dont_write_bytecode = True  # writes no cache folder among the sources
 sys.path.append(str(Path(__file__).resolve().parents[2] / "host"))
 import picture_file
 
@@ -47,7 +48,7 @@ theta_deg = { from = 0, to = 89, count = 90 }
 
 
 def computed(program, scene, overrides):
-    """Columns of the table of a scene, by name."""
+    """Columns of a scene's table, by name."""
     command = [program, "table", scene, "-o", "-", "--quiet"]
     for override in overrides:
         command += ["--set", override]

@@ -1,8 +1,8 @@
 """What the figures and tables of all studies share."""
 import textwrap
 
-# Colours of Okabe and Ito, which colour-blind readers tell apart; a method and its other precision, or the same rule on
-# another processor, share one.
+# Colours of Okabe and Ito, which colour-blind readers can tell apart. A method in both precisions, or a rule on several
+# processors, has one colour.
 STYLES = {
     "midpoint": ("midpoint", "#E69F00", "s", "-"),
     "gauss": ("Gauss", "#009E73", "D", "-"),
@@ -37,7 +37,7 @@ def time_text(time_s):
 
 
 def digits(value):
-    """Three digits, in thousands where there are more."""
+    """Three digits; thousands are separated by commas."""
     return f"{float(f'{value:.3g}'):,.0f}" if value >= 100 else f"{value:.3g}"
 
 
@@ -59,7 +59,7 @@ def tidy(axes, grid="x"):
 
 
 def origin(result):
-    """Where and when, for the foot of a figure."""
+    """Machine and date, for the foot of a figure."""
     context = result["context"]
     device = context["device"].get("name", "no Vulkan device")
     return f"{context['machine']['processor']}, {context['machine']['cores']} cores; {device}; {context['date'][:10]}"

@@ -6,7 +6,7 @@ TOLERANCE = 1e-4
 
 
 def interpolated(rows):
-    """As `dolp table` runs a grid."""
+    """The rows with interpolation: these runs compute a grid as `dolp table` does."""
     return [row for row in rows if row["interpolation"] == "auto"]
 
 

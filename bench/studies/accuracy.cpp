@@ -1,4 +1,4 @@
-// The work-precision study.
+// The study of accuracy: error against time.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -173,7 +173,7 @@ std::string row_text(const ordered_json& row) {
                      time_text(row["time_s"].get<double>()), kernel, work);
 }
 
-/// The table for people.
+/// The table that people read.
 std::string table_text(const ordered_json& result) {
   std::string text;
   for (const ordered_json& one : result["cases"]) {

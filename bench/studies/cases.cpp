@@ -8,7 +8,8 @@ namespace {
 
 constexpr double kSpread = 1e-3;
 
-/// Element i of a sequence in (-1, 1) that fills the interval evenly and never repeats (multiples of an irrational).
+/// Element i of a sequence in (-1, 1) that fills the interval evenly and never repeats: multiples of an irrational
+/// number.
 double spread(std::size_t i, double irrational) {
   const double x = irrational * static_cast<double>(i);
   return 2.0 * (x - std::floor(x)) - 1.0;

@@ -1,4 +1,4 @@
-// The cases of the work-precision study, from harmless to the worst of the domain.
+// The cases of the study of accuracy, from harmless to the worst of the domain.
 #pragma once
 
 #include <cstddef>
@@ -22,8 +22,8 @@ struct Case {
 /// The cases in the order of figures.
 const std::vector<Case>& cases();
 
-/// A request of `count` entries of the same cost that share nothing: the first is the case itself, each other one has a
-/// theta, sigma and q of its own within 1e-3 (relative) of it.
+/// A request of `count` entries of equal cost that share no work. The first is the case itself; theta, sigma and q of
+/// the others differ from it by up to 1e-3 (relative).
 MomentsRequest neighbourhood(const Case& which, std::size_t count);
 
 }  // namespace dolp::bench

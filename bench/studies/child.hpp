@@ -15,10 +15,10 @@ struct ChildOutcome {
 /// Treatment of a program's stderr.
 enum class ChildErrors { kShown, kHidden };
 
-/// Runs a program to its end. Errors: Unavailable when no process can be started.
+/// Runs a program to its end. Errors: Unavailable if the process does not start.
 ChildOutcome run_child(const std::vector<std::string>& arguments, ChildErrors errors);
 
-/// The file of this very program.
+/// Path of the running program.
 std::string own_program();
 
 }  // namespace dolp::bench

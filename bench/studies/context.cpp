@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// "Debian GNU/Linux 12 (bookworm), Linux 6.1.0", as far as it is known.
+/// "Debian GNU/Linux 12 (bookworm), Linux 6.1.0", or the part of it that is known.
 std::string system_name() {
   std::string name;
   std::ifstream release("/etc/os-release");
@@ -32,7 +32,7 @@ std::string system_name() {
   return ::uname(&kernel) == 0 ? name + kernel.sysname + " " + kernel.release : name + "unknown kernel";
 }
 
-/// Mean number of busy programs over the last minute; 0 when the system does not tell.
+/// Mean number of busy programs over the last minute; 0 if the system does not report it.
 double load() {
   double mean = 0.0;
   return ::getloadavg(&mean, 1) == 1 ? mean : 0.0;
@@ -51,7 +51,7 @@ ordered_json device_json(const std::string& choice) {
   }
 }
 
-/// The widest vector instructions that the processor has, as far as kernels feel them: whether lanes gather at once.
+/// The widest vector instructions of the processor. Distinguishes only sets that matter for kernels.
 const char* vector_instructions() {
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx512f")) return "AVX-512";

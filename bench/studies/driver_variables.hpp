@@ -14,13 +14,14 @@ namespace dolp::bench {
 struct DriverVariable {
   std::string name;
   std::vector<unsigned> settings;
-  bool changes_code = false;  ///< of kernels, which Mesa's cache on disk does not know: each setting gets its own
+  /// the variable changes the code of kernels. Mesa's cache on disk ignores it, so each setting gets a separate cache.
+  bool changes_code = false;
 };
 
-/// Runs `dolp-bench throughput --case kernels` with each setting, `rounds` times in turns, so that other load on the
-/// machine spreads over all. A row for each setting and masking, in this order: case, setting, entries, time_s,
-/// time_min_s, speedup over the first setting (by the minima) and raw_times_s.
-/// Errors: Unavailable when a process fails; IoError.
+/// Runs `dolp-bench throughput --case kernels` `rounds` times with each setting, in turns, so that other load on the
+/// machine affects all settings equally. Returns a row for each setting and masking: case, setting, entries, time_s,
+/// time_min_s, speedup over the first setting (from the minima) and raw_times_s.
+/// Errors: Unavailable if a process fails; IoError.
 std::vector<nlohmann::ordered_json> kernels_with(const DriverVariable& variable, const StudyOptions& options,
                                                  std::size_t entries, std::size_t rounds);
 

@@ -12,16 +12,16 @@
 namespace dolp::bench {
 namespace {
 
-constexpr double kTemperature = 298.15;  // K, of the surface
+constexpr double kTemperature = 298.15;  // temperature of the surface, K
 constexpr double kLastTheta = 85.0;
 constexpr double kFirstSigma = 0.05;
 constexpr double kLastSigma = 1.0;
-constexpr double kIrradiance = 20.0;  // W m-2 um-1, somewhat below what the surface emits
-constexpr double kSunAtTenUm = 0.18;  // the same, at 10.6 um above the atmosphere
+constexpr double kIrradiance = 20.0;  // W m-2 um-1, slightly less than the surface emits
+constexpr double kSunAtTenUm = 0.18;  // the sun at 10.6 um above the atmosphere, W m-2 um-1
 constexpr double kSunInVisible = 1800.0;
 constexpr double kVisible_um = 0.55;
 constexpr double kColdSky = 250.0;    // K
-constexpr double kOnePercent = 1e-2;  // of DOLP: what a thermal camera sees
+constexpr double kOnePercent = 1e-2;  // of DOLP: roughly what a thermal camera resolves
 
 Axes grid_of(std::size_t entries) {
   const auto side = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(entries))));
@@ -39,7 +39,7 @@ Axes grid_of(std::size_t entries) {
   return grid;
 }
 
-/// The stainless steel of the paper, that emits and nothing else.
+/// The stainless steel of the paper, with emission and no other radiation.
 SceneValues emitting(const Axes& grid) {
   SceneValues scene;
   scene.surface.material.constant = {1.508, 0.0};
@@ -49,14 +49,14 @@ SceneValues emitting(const Axes& grid) {
   return scene;
 }
 
-/// The same, seen from one direction beside the plane of the source.
+/// The emitting steel with a source, seen from one direction outside the plane of the source.
 SceneValues seen_from_one_side(const Axes& grid) {
   SceneValues scene = emitting(grid);
   scene.geometry = {Mode::kBistatic, 60.0, 90.0};
   return scene;
 }
 
-/// A day: the same under a clear sky, with one masking that keeps energy.
+/// The emitting steel by day, under a clear sky, with the one masking that conserves energy.
 SceneValues under_the_sky(const Axes& grid) {
   SceneValues scene = seen_from_one_side(grid);
   scene.surface.masking = Masking::kSmith;
@@ -70,7 +70,7 @@ Source flat_source(double irradiance) {
   return source;
 }
 
-/// n and k that follow the wavelength, linear in between.
+/// A material whose n and k change with wavelength, linearly.
 Material dispersive() {
   Material material;
   material.name = "dispersive";
@@ -87,7 +87,7 @@ std::vector<double> spaced(double first, double last, std::size_t count) {
   return values;
 }
 
-/// A name and what it makes of the base.
+/// The name of a change to the base scene, and the changed scene.
 struct Change {
   std::string name;
   std::function<void(SceneValues&)> apply = [](SceneValues&) {};
@@ -128,7 +128,7 @@ Change profile(const std::string& name, const SkyProfile& sky) {
           }};
 }
 
-/// Temperatures that rise toward the horizon, in steps of 5 degrees.
+/// Temperatures that rise toward the horizon in steps of 5 degrees.
 SkyProfile sky_of_rows() {
   SkyProfile sky;
   sky.zenith_deg = spaced(0.0, 90.0, 19);
@@ -155,7 +155,7 @@ std::vector<EffectGroup> surface_groups(const SceneValues& base) {
                                                           }}})};
 }
 
-/// Effects beyond single scattering, with the one masking that supports all of them.
+/// Effects beyond single scattering, with the only masking that supports all of them.
 std::vector<EffectGroup> scattering_groups(const Axes& grid) {
   SceneValues rough = emitting(grid);
   rough.surface.masking = Masking::kVCavity;
@@ -190,7 +190,7 @@ std::vector<EffectGroup> radiation_groups(const SceneValues& base, const SceneVa
                                                                          }}})};
 }
 
-/// Radiation that hardly counts beside another one.
+/// Radiation that is negligible beside another part.
 std::vector<EffectGroup> daylight_groups(const Axes& grid) {
   SceneValues thermal = under_the_sky(grid);
   thermal.accuracy.tolerance = kOnePercent;

@@ -15,7 +15,7 @@ struct EffectSetting {
   SceneValues scene;
 };
 
-/// Scenes that differ in one effect alone; the first is the base of the ratios.
+/// Scenes that differ only in one effect. The first is the base of the ratios.
 struct EffectGroup {
   std::string effect;
   std::string mode;  ///< "hemispherical" or "bistatic"
@@ -23,8 +23,8 @@ struct EffectGroup {
 };
 
 /// All groups, in the order of scene files. Every scene has the same grid of about `entries` entries: theta from 0 to
-/// 85 degrees, sigma from 0.05 to 1, one q, so that no model can share more moments than another. The sun at 10.6 um is
-/// asked about at a tolerance of 1e-2.
+/// 85 degrees, sigma from 0.05 to 1, and one q, so that all models share moments equally. The sun at 10.6 um has a
+/// tolerance of 1e-2.
 std::vector<EffectGroup> effect_groups(std::size_t entries);
 
 }  // namespace dolp::bench

@@ -1,4 +1,4 @@
-// The study of effects: the cost of each alone, and the savings of the plan.
+// The study of effects: the cost of each one, and the savings by the plan.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ constexpr std::size_t kFullRepeats = 5;
 constexpr std::size_t kQuickRepeats = 3;
 constexpr std::size_t kQuickEntries = 4096;
 
-/// The largest |change of DOLP| of the entries for which both promise one, and how many those are.
+/// The largest |change of DOLP| over the entries for which both runs promise a DOLP, and the number of these entries.
 struct Change {
   double dolp = 0.0;
   std::size_t compared = 0;
@@ -52,13 +52,13 @@ std::vector<std::string> left_out(const TimedScene& timed) {
   return names;
 }
 
-/// One scene of a group, as planned and with everything kept.
+/// One scene of a group, run as planned and with all effects kept.
 struct Pair {
   std::string name;
   TimedScene planned;
   TimedScene all;
 
-  /// True where the plan saves work; otherwise both runs are the same.
+  /// True if the plan saves work. Otherwise both runs are equal.
   bool saves() const {
     const EffectPlan& own = planned.plan();
     const EffectPlan& whole = all.plan();
@@ -158,7 +158,7 @@ void Study::run_group(const EffectGroup& group) {
   for (const EffectSetting& setting : group.settings) {
     pairs.push_back({setting.name, {setting.scene, false, evaluator_}, {setting.scene, true, evaluator_}});
   }
-  // Runs take turns, so that other load on the machine spreads over all of them.
+  // The runs take turns, so that other load on the machine affects all of them equally.
   for (std::size_t i = 0; i < repeats_; ++i) {
     for (Pair& pair : pairs) {
       pair.planned.repeat();
@@ -186,7 +186,7 @@ std::string effect_text(const ordered_json& row) {
                      row["error"].get<double>(), joined(row["left_out"]));
 }
 
-/// The table for people.
+/// The table that people read.
 std::string table_text(const ordered_json& result) {
   std::string text = fmt::format(
       "Times in us an entry; ratio to the first line of an effect\n  {:<14} {:<13} {:<22} {:>9} {:>9} {:>7} {:>9} "
@@ -196,7 +196,7 @@ std::string table_text(const ordered_json& result) {
   return text;
 }
 
-/// Names the scenes where dropping changed more than the tolerance.
+/// Names the scenes in which dropping an effect changed DOLP by more than the tolerance.
 void add_tolerance_warnings(ordered_json& result) {
   for (const ordered_json& row : result["results"]) {
     const double tolerance = row["tolerance"].get<double>();

@@ -57,7 +57,7 @@ ordered_json set_row(const char* part, const FitSet& set, std::size_t number, co
   return row;
 }
 
-/// Shares of all intervals of a part that hold the truth, and of the sets whose global minimum was found.
+/// Share of all intervals that contain the truth, and share of the sets whose global minimum was found.
 ordered_json coverage_json(const ordered_json& rows, const char* part) {
   std::size_t intervals = 0, held_68 = 0, held_95 = 0, global = 0, evaluations = 0;
   std::vector<double> times_s;
@@ -80,7 +80,7 @@ ordered_json coverage_json(const ordered_json& rows, const char* part) {
           {"median_time_s", median(times_s)}};
 }
 
-/// The same minimum by SciPy around the Python package, from the middle of the ranges; null without SciPy.
+/// The minimum that SciPy finds with the Python package, from the middle of the ranges; null without SciPy.
 ordered_json scipy_json(const FitSet& set, const MeasuredData& data, const fit::FitResult& result) {
   const std::string script = DOLP_BENCH_SCRIPTS "/fit_scipy.py";
   if (run_child({kPython, "-c", "import scipy, xarray"}, ChildErrors::kHidden).status != 0) return {};
@@ -110,7 +110,7 @@ ordered_json scipy_json(const FitSet& set, const MeasuredData& data, const fit::
   return reply;
 }
 
-/// A whole fit, search and intervals, with device and kernels ready.
+/// Times a whole fit, search and intervals, with device and kernels ready.
 ordered_json time_json(ModelEvaluator& evaluator) {
   const FitSet set = timed_set();
   const MeasuredData data = synthetic_data(set, 0, evaluator);
@@ -131,7 +131,7 @@ ordered_json time_json(ModelEvaluator& evaluator) {
           {"scipy", scipy_json(set, data, result)}};
 }
 
-/// What single scattering leaves of the range of n at 95 %, in the median.
+/// Median share of the range of n that remains at 95 % with single scattering.
 double median_share_of_n(const ordered_json& rows) {
   const FitRange range = bracket_set(0).parameters.front();
   std::vector<double> shares;

@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t kPoints = 12;
 constexpr double kFirstDeg = 2.0;
-constexpr double kLastDeg = 80.0;         // beyond, `integral` masking creates energy and Q/I has poles
-constexpr double kExactTolerance = 1e-8;  // of the data before the noise: far below it
+constexpr double kLastDeg = 80.0;         // beyond this, `integral` masking creates energy and Q/I has poles
+constexpr double kExactTolerance = 1e-8;  // tolerance of the data without noise: far below the noise
 constexpr double kSameObjective = 0.01;   // of chi^2
 
 constexpr const char* kSceneText = R"([surface]
@@ -35,13 +35,13 @@ wavelength_um = 10
 precision = "auto"
 )";
 
-/// Uniform and normal random numbers that are the same with every standard library.
+/// Uniform and normal random numbers, equal in every standard library.
 class Random {
  public:
   explicit Random(std::size_t seed) : engine_(seed) {}
   double uniform(double low, double high) { return low + (high - low) * unit(); }
   double log_uniform(double low, double high) { return low * std::pow(high / low, unit()); }
-  double normal() {  // Box and Muller
+  double normal() {  // method of Box and Muller
     constexpr double kTwoPi = 6.283185307179586;
     const double radius = std::sqrt(-2.0 * std::log1p(-unit()));
     return radius * std::cos(kTwoPi * unit());

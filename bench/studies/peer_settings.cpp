@@ -14,7 +14,7 @@
 namespace dolp::bench {
 namespace {
 
-constexpr double kShortCall = 0.01;  // seconds: of shorter calls the faster of two counts
+constexpr double kShortCall = 0.01;  // seconds: a shorter call is timed twice, and the faster time counts
 
 /// One entry of the sample.
 MomentsRequest one_of(const PeerSample& sample, std::size_t i) {
@@ -49,7 +49,7 @@ Call undisturbed_call(Solver& solver, const MomentsRequest& request, double sett
   return second.time_s < first.time_s ? second : first;
 }
 
-/// The stride of the smallest grid that shows the performance of a method.
+/// The stride of the smallest grid that shows the speed of a method.
 std::size_t stride_of_tries(const Method& method) { return method.needs_grid ? 1 : NestedGrid::kLargestStride; }
 
 }  // namespace
@@ -115,7 +115,7 @@ std::optional<double> PeerSettings::with_hindsight(double tolerance) const {
   return sum_s / static_cast<double>(sample_.truths.size());
 }
 
-/// Kernels are compiled, and tables of nodes made, at the first run.
+/// The first run compiles kernels and makes tables of nodes.
 void PeerSettings::warm_up() {
   const MomentsRequest request =
       method_.is_batched ? nested_grid(sample_, stride_of_tries(method_)).request : one_of(sample_, 0);
@@ -147,7 +147,7 @@ bool PeerSettings::try_next() {
   return true;
 }
 
-/// Returns the seconds that it took, as try_each does.
+/// Returns the seconds that the run took, as try_each does.
 double PeerSettings::try_grid(TriedSetting& tried) {
   const PeerBatch batch = nested_grid(sample_, stride_of_tries(method_));
   const Call made = call(solver_, batch.request, tried.setting);

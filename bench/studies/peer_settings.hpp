@@ -1,4 +1,4 @@
-// Search for the cheapest setting of a method that is fine enough, for the study of peers.
+// Search for the cheapest setting of a method that reaches an accuracy, for the study of peers.
 #pragma once
 
 #include <cstddef>
@@ -12,13 +12,13 @@
 
 namespace dolp::bench {
 
-/// Entries of one masking that all methods are judged by.
+/// Entries of one masking on which all methods are compared.
 struct PeerSample {
   PeerSample(Masking which, const std::vector<NestedGrid::Place>& sample_places);
 
   Masking masking;
   std::vector<NestedGrid::Place> places;
-  MomentsRequest alone;  ///< the sample's entries and no others
+  MomentsRequest alone;  ///< a request with only the entries of the sample
   std::vector<Truth> truths;
 };
 
@@ -40,29 +40,30 @@ PeerBatch nested_grid(const PeerSample& sample, std::size_t stride);
 struct TriedSetting {
   double setting = 0.0;
   std::vector<double> errors = {};
-  std::vector<double> times_s = {};  ///< an entry; of methods for many entries a call, that of all in it
+  /// time per entry; methods for many entries per call have one time per call, divided by its entries
+  std::vector<double> times_s = {};
 
   double worst_error() const;
 };
 
 /// The settings of one method for one sample, from coarse to fine, as far as they are worth trying. Methods for many
-/// entries a call do the smallest nested grid, the others the entries of the sample one by one.
+/// entries per call compute the smallest nested grid, the other methods each entry of the sample separately.
 class PeerSettings {
  public:
-  /// A call that takes longer than `most_s` is the last.
+  /// Stops after a call that takes longer than `most_s`.
   PeerSettings(const Method& method, Solver& solver, const PeerSample& sample, double most_s);
 
-  /// Tries settings until one gives all entries the tolerance; null when none does.
+  /// Tries settings until one keeps the tolerance at all entries; null if none does.
   const TriedSetting* reaching(double tolerance);
 
-  /// Records that a setting has a larger error after all, on other entries.
+  /// Records a larger error of a setting, found on other entries.
   void reject(const TriedSetting& setting, double error);
 
-  /// The reason why no further setting was tried.
+  /// The reason why no more settings were tried.
   const std::string& why_not() const { return why_not_; }
 
-  /// Mean time of an entry when each has the cheapest setting that meets the tolerance: a choice that requires
-  /// knowledge of the truth. Nothing when one entry has none.
+  /// Mean time per entry if each entry has the cheapest setting that meets the tolerance. Such a choice is possible
+  /// only if the truth is known. Empty if no setting meets the tolerance at some entry.
   std::optional<double> with_hindsight(double tolerance) const;
 
  private:

@@ -1,4 +1,4 @@
-// The study of peers: the cost of the same entries with each method at the same accuracy.
+// The study of peers: the time of different methods for the same entries at the same accuracy.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,16 +35,16 @@ std::vector<PeerCase> peer_cases() {
   return cases;
 }
 
-// The kernels that the others are compared with: every entry integrated, and as `dolp table` computes a grid.
+// The methods of dolp that others are compared with: every entry integrated, and a grid computed as `dolp table` does.
 constexpr const char* kOwn = "vulkan-float";
 constexpr const char* kOwnTable = "vulkan-table";
 
 /// The effort of the study.
 struct Effort {
   std::vector<double> tolerances;  ///< from coarse to fine
-  std::size_t sample;              ///< entries whose errors count
-  double call_s;                   ///< a call of a method that takes longer is its last
-  double grid_s;                   ///< a grid that would take longer than this is too large
+  std::size_t sample;              ///< entries whose errors are checked
+  double call_s;                   ///< limit in seconds: after a longer call the method stops
+  double grid_s;                   ///< limit in seconds for the time of a grid
   TimingPolicy timing;
 };
 const Effort kFull{.tolerances = {1e-3, 1e-4, 1e-6},
@@ -64,7 +64,7 @@ struct Target {
   std::vector<std::string> methods;  ///< the fastest of them counts
   std::vector<std::string> cases;
   double ratio;
-  const char* key = "table_ratio";  ///< of the rows
+  const char* key = "table_ratio";  ///< key of the ratio in the rows
 };
 const std::vector<Target> kTargets = {
     {"SciPy dblquad", {"dblquad"}, {"none", "v-cavity", "integral", "smith"}, 1e5},
@@ -74,11 +74,11 @@ const std::vector<Target> kTargets = {
     {"native float build, same cores and entries", {"native-float"}, {"integral", "smith"}, 0.9, "ratio"}};
 constexpr double kTargetTolerance = 1e-4;
 
-/// The entries that a method's time is taken from: the sample, or the largest grid that it does in time.
+/// The entries whose time is measured: the sample, or the largest grid that the method computes within the limit.
 PeerBatch timed_batch(const Method& method, Solver& solver, const PeerSample& sample, double setting,
                       const Effort& effort) {
   if (!method.is_batched) return whole_sample(sample);
-  constexpr double kGrowth = 8.0;  // of the entries with half the stride
+  constexpr double kGrowth = 8.0;  // growth of the number of entries with half the stride
   std::size_t stride = NestedGrid::kLargestStride;
   PeerBatch batch = nested_grid(sample, stride);
   while (stride > 1) {
@@ -184,7 +184,7 @@ ordered_json Study::measured_row(const Method& method, Solver& solver, const Pee
     const std::size_t entries = batch.request.size();
     const Measurement measurement = measure(solver, batch.request, tried->setting, method.is_random, effort_.timing);
     const double error = method.is_batched ? batch.worst_error(measurement.last, sample) : tried->worst_error();
-    if (error > tolerance) {  // a larger grid shares more
+    if (error > tolerance) {  // larger grids are interpolated more
       settings.reject(*tried, error);
       continue;
     }
@@ -207,7 +207,7 @@ ordered_json Study::measured_row(const Method& method, Solver& solver, const Pee
   return row;
 }
 
-/// The time that methods are compared by: in kernels, where there are any.
+/// The time that is compared: the kernels' time if the method has kernels.
 std::optional<double> compared_time(const ordered_json& row, const char* otherwise = "time_s") {
   for (const char* key : {"kernel_time_s", otherwise}) {
     if (row.contains(key)) return row[key].get<double>();

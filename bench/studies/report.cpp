@@ -13,9 +13,9 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double kAcceptedSpread = 0.2;
-constexpr double kAcceptedLoad = 0.3;  // of each core, before the study begins
+constexpr double kAcceptedLoad = 0.3;  // load per core before the study begins
 
-/// The first few of them.
+/// The first few names.
 std::string some_of(const std::vector<std::string>& names) {
   constexpr std::size_t kMostNames = 4;
   std::string text;

@@ -1,4 +1,4 @@
-// The study of scale: time and peak memory of `dolp table` over the size of the table, and of its shards.
+// The study of scale: time and peak memory of `dolp table` against the size of the table, and of shards.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
@@ -44,7 +44,7 @@ q = [1.8, 2, 3, 5]
 tolerance = 1e-3
 )";
 
-/// Values of wavelength, n and k beside the scene's 10,000 entries.
+/// Numbers of values of wavelength, n and k for the scene's 10,000 entries.
 struct Size {
   std::size_t wavelengths, n, k;
   std::size_t entries() const { return 10'000 * wavelengths * n * k; }
@@ -71,7 +71,7 @@ class Folder {
   TemporaryFolder folder_;
 };
 
-/// A program under way, without output.
+/// Starts a program without output.
 pid_t start(const std::vector<std::string>& arguments) {
   std::vector<char*> words;
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
@@ -103,7 +103,7 @@ std::vector<std::string> table_command(const StudyOptions& options, const Folder
   return command;
 }
 
-/// The table of one process; and how long a copy of it takes.
+/// The table of one process, and the time to copy it.
 ordered_json size_row(const StudyOptions& options, const Size& size) {
   const Folder folder;
   const auto begin = std::chrono::steady_clock::now();
@@ -122,7 +122,7 @@ ordered_json size_row(const StudyOptions& options, const Size& size) {
           {"raw_times_s", {time_s}}};
 }
 
-/// All shards at once, then their merge.
+/// All shards at the same time, then their merge.
 ordered_json shards_row(const StudyOptions& options, const Size& size, std::size_t count) {
   const Folder folder;
   const auto begin = std::chrono::steady_clock::now();

@@ -1,4 +1,4 @@
-// The run that all studies share, from the check of the output file to the results and their warnings.
+// The steps that all studies share, from the check of the output file to the results and their warnings.
 #pragma once
 
 #include <fmt/format.h>
@@ -16,20 +16,20 @@
 
 namespace dolp::bench {
 
-/// A study while it runs: its JSON so far, and its progress in rows.
+/// A study while it runs: the JSON so far, and the progress in rows.
 class StudyRun {
  public:
   StudyRun(const StudyOptions& options, Progress progress) : options_(options), progress_(std::move(progress)) {}
 
   const StudyOptions& options() const { return options_; }
 
-  /// Starts the JSON: the study's name, its context, and what `error` and `time_s` of its rows are.
+  /// Starts the JSON: name of the study, context, and the meanings of `error` and `time_s` in its rows.
   void describe(const std::string& study, const std::string& error, const std::string& time_s);
 
-  /// The JSON, for everything but rows.
+  /// The JSON, to add anything except rows.
   nlohmann::ordered_json& json() { return json_; }
 
-  /// Rows that will come.
+  /// Announces more rows.
   void expect(std::size_t rows) { total_ += rows; }
 
   /// Adds a finished row. Errors: Cancelled.
@@ -37,7 +37,7 @@ class StudyRun {
 
   const nlohmann::ordered_json& rows() const { return json_["results"]; }
 
-  /// The finished JSON, with the time that all took.
+  /// The finished JSON, with the total time.
   nlohmann::ordered_json result();
 
  private:
@@ -52,16 +52,16 @@ class StudyRun {
 /// The parts that each study supplies.
 struct StudyParts {
   std::function<void(StudyRun&)> measure;
-  std::function<std::string(const nlohmann::ordered_json&)> table_text;                ///< the table for people
+  std::function<std::string(const nlohmann::ordered_json&)> table_text;                ///< the table that people read
   std::function<void(nlohmann::ordered_json&)> warn = [](nlohmann::ordered_json&) {};  ///< adds to `warnings`
 };
 
-/// Runs a study under a progress bar, which is gone before anything is printed; prints its table and its warnings and
-/// writes its JSON. Errors: IoError before anything runs when the file cannot be written; those of `measure`.
+/// Runs a study with a progress bar, prints its table and warnings, and writes its JSON. Errors: IoError before the
+/// start if the file cannot be written; the errors of `measure`.
 void run_study(const StudyOptions& options, const StudyParts& parts);
 
-/// The members of `all` that are named, all of them when none is. Errors: InputError that names `option`, the name
-/// there is none of, and those there are.
+/// The members of `all` with these names; all members if no name is given. Errors: InputError that names `option`, the
+/// unknown name and the known names.
 template <class Named>
 std::vector<Named> chosen(const std::vector<Named>& all, const std::vector<std::string>& names, const char* option) {
   std::string known;
@@ -77,10 +77,10 @@ std::vector<Named> chosen(const std::vector<Named>& all, const std::vector<std::
   return kept;
 }
 
-/// Errors: DeviceError when --device names a device that there is not, before anything runs.
+/// Errors: DeviceError before the start if --device names an unknown device.
 void check_device(const StudyOptions& options);
 
-/// Seconds for a table: "3.1 us".
+/// A time as text in a table: "3.1 us".
 std::string time_text(double time_s);
 
 }  // namespace dolp::bench

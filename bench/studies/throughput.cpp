@@ -1,4 +1,4 @@
-// The study of throughput: how many entries and evaluations a second, of what the device can do.
+// The study of throughput: entries and evaluations per second, as a share of what the device can do.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,7 +31,8 @@ using nlohmann::ordered_json;
 
 constexpr std::array kMaskings = {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith};
 constexpr std::array kMaskingsByRows = {Masking::kIntegral, Masking::kSmith};
-constexpr std::array kQuickMaskings = {Masking::kNone, Masking::kIntegral};  // of the kernels in processes of their own
+// maskings of the kernels that run in separate processes
+constexpr std::array kQuickMaskings = {Masking::kNone, Masking::kIntegral};
 constexpr double kTolerance = 1e-4;
 constexpr std::array kTolerances = {1e-3, 1e-4, 1e-6};
 constexpr std::array<GridSize, 8> kGrids = {{{32, 32, 32},
@@ -42,12 +43,12 @@ constexpr std::array<GridSize, 8> kGrids = {{{32, 32, 32},
                                              {256, 64, 64},
                                              {256, 128, 64},
                                              {256, 128, 128}}};
-constexpr std::size_t kMainGrid = 1;         // of kGrids: what all but the grids themselves are measured on
-constexpr GridSize kSmallGrid = {2, 2, 16};  // whose entries come in groups
+constexpr std::size_t kMainGrid = 1;         // position in kGrids of the grid for all parts except the grids themselves
+constexpr GridSize kSmallGrid = {2, 2, 16};  // its entries come in groups
 constexpr std::size_t kQuickEntries = std::size_t{24} * 24 * 24;
 constexpr std::size_t kFullRepeats = 5;
 constexpr std::size_t kQuickRepeats = 2;
-constexpr double kLongTime = 1.0;  // seconds of a call that is repeated as in a quick study
+constexpr double kLongTime = 1.0;  // seconds: a longer call is repeated as seldom as in a quick study
 constexpr std::size_t kFullWorkgroups = 48;
 constexpr std::size_t kQuickWorkgroups = 6;
 constexpr std::size_t kFullRounds = 3;  // of processes
@@ -62,7 +63,7 @@ struct Part {
 };
 const std::vector<Part> kParts = {{"grids"}, {"materials"}, {"arithmetic"}, {"cores"}, {"vector-width"}, {"kernels"}};
 
-/// Grids of at most so many entries; one of about as many where the smallest has more.
+/// Grids of at most this many entries; if the smallest has more, one of about this many.
 std::vector<GridSize> grids_up_to(std::size_t entries) {
   std::vector<GridSize> sizes;
   for (const GridSize& size : kGrids) {
@@ -82,7 +83,7 @@ dolp::Device device_of(const StudyOptions& options) {
   return list.devices[choose_device(list.devices, options.device, false)];
 }
 
-/// The largest error that a run states, over the entries without a status.
+/// The largest error that a run states, over the entries with status 0.
 double stated_error(const std::vector<PointResult>& results) {
   double largest = 0.0;
   for (const PointResult& result : results) {
@@ -95,14 +96,14 @@ ordered_json row_start(const char* part, const std::string& which, const ordered
   return {{"part", part}, {"case", which}, {"setting", setting}};
 }
 
-/// A run of a grid as `dolp table` makes it, and what it is called.
+/// A run of a grid as `dolp table` makes it, with its name.
 struct GridRun {
   GridSize size;
   double tolerance = kTolerance;
   bool may_interpolate = true;
   std::unique_ptr<TimedScene> timed = {};
 
-  /// True where this run is `other` with one axis twice as long.
+  /// True if this run is `other` with one axis twice as long.
   bool doubles(const GridRun& other) const {
     return tolerance == other.tolerance && may_interpolate == other.may_interpolate &&
            size.entries() == 2 * other.size.entries() && size.thetas % other.size.thetas == 0 &&
@@ -110,7 +111,7 @@ struct GridRun {
   }
 };
 
-constexpr std::array<GridSize, 2> kMaterialGrids = {{{64, 16, 16}, {8, 8, 8}}};  // of a full and of a quick study
+constexpr std::array<GridSize, 2> kMaterialGrids = {{{64, 16, 16}, {8, 8, 8}}};  // for a full and for a quick study
 constexpr std::size_t kManyIndices = 12;                                         // values of n, and of k
 constexpr std::size_t kManyWavelengths = 300;
 
@@ -121,19 +122,18 @@ std::vector<double> spaced(double first, double last, std::size_t count) {
   return values;
 }
 
-/// Axes of materials, and what they are called.
-// At 10.6 um, rounded.
+/// Axes of materials, with their names.
 constexpr OpticalConstants kAluminium{27.0, 90.0};
 constexpr OpticalConstants kOxide{0.7, 0.1};
 constexpr OpticalConstants kPaint{1.5, 0.02};
 
 struct MaterialAxes {
   std::string name;
-  std::string material = {};  ///< a built-in one; empty: the scene's
+  std::string material = {};  ///< name of a built-in one; empty: the scene's material
   std::vector<double> n = {}, k = {}, wavelength_um = {};
   std::optional<OpticalConstants> index = {};  ///< instead of the scene's
   std::vector<Layer> coating = {};
-  std::size_t over = 0;  ///< position of the case whose kernels are the unit
+  std::size_t over = 0;  ///< position of the case whose kernel time is the unit
 };
 
 Layer layer(const OpticalConstants& index, double thickness_um) { return {{.constant = index}, thickness_um}; }
@@ -227,7 +227,7 @@ Study::Study(StudyRun& run)
       device_(device_of(run.options())),
       parts_(chosen(kParts, run.options().cases, "--case")),
       grids_(grids_up_to(quick() ? std::min(run.options().entries, kQuickEntries) : run.options().entries)) {
-  if (run.options().cases.empty()) parts_.pop_back();  // what the others run
+  if (run.options().cases.empty()) parts_.pop_back();  // the processes of the other parts run it
   if (runs("grids")) run_.expect(kMaskings.size() * (grids_.size() + 2 * kTolerances.size() - 1));
   if (runs("materials")) run_.expect(kMaskingsByRows.size() * material_axes().size());
   if (runs("arithmetic")) run_.expect(kMaskingsByRows.size() * arithmetic_tolerances().size());
@@ -275,7 +275,7 @@ void Study::run_grids(Masking masking) {
     scene.accuracy.may_interpolate = run.may_interpolate;
     run.timed = std::make_unique<TimedScene>(std::move(scene), false, evaluator);
   }
-  // In turns, so that what else the machine does is spread over all.
+  // The runs take turns, so that other load on the machine affects all of them equally.
   for (std::size_t i = 0; i < (quick() ? kQuickRepeats : kFullRepeats); ++i) {
     for (const GridRun& run : runs) {
       const std::vector<double> times_s = run.timed->times_s();
@@ -316,7 +316,7 @@ void Study::run_materials(Masking masking) {
   for (std::size_t i = 0; i < kQuickRepeats; ++i) {
     for (const std::unique_ptr<TimedScene>& one : all) one->repeat();
   }
-  // Without the sums over responses, which the host makes for each entry.
+  // Excludes the sums over responses, which the host computes for each entry.
   const auto kernels_s = [&](std::size_t i) { return all[i]->work().kernel_s; };
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto entries = static_cast<double>(all[i]->entries().size());
@@ -339,7 +339,7 @@ void Study::run_materials(Masking masking) {
 
 Measurement Study::kernel_times(Masking masking, double tolerance) {
   if (!float_solver_) float_solver_ = make_vulkan({.device = run_.options().device}, Precision::kFloat);
-  // The kernels are compiled at their first run, which takes its time.
+  // The first run compiles the kernels, so it is not timed.
   float_solver_->solve(steel_request(masking, steel_grid(kSmallGrid)), tolerance);
   return measure(*float_solver_, main_request(masking), tolerance, false, quick() ? kQuickTiming : kFullTiming);
 }

@@ -1,4 +1,4 @@
-// A scene as a user runs it, timed.
+// Times a scene as a user runs it.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@ namespace dolp::bench {
 /// Plan and evaluation of a scene's grid, again and again.
 class TimedScene {
  public:
-  /// Runs it once, which creates the pipelines. The evaluator outlives the object.
+  /// Runs the scene once, which creates the pipelines. The evaluator must outlive the object.
   TimedScene(SceneValues scene, bool keep_all, ModelEvaluator& evaluator);
 
   /// Adds a raw time of a call.
@@ -22,7 +22,7 @@ class TimedScene {
   const EffectPlan& plan() const { return plan_; }
   const std::vector<PointResult>& results() const { return results_; }
   const Work& work() const { return work_; }  ///< of the last call
-  /// Raw times in seconds an entry, of calls and of their kernels.
+  /// Raw times per entry in seconds, of calls and of their kernels.
   std::vector<double> times_s() const;
   std::vector<double> kernel_times_s() const;
 

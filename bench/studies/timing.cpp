@@ -13,7 +13,7 @@ namespace {
 
 struct Timed {
   Solution solution;
-  double time_s = 0.0;    ///< of one call
+  double time_s = 0.0;    ///< time per call
   double kernel_s = 0.0;  ///< likewise
 };
 

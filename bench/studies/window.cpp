@@ -30,8 +30,8 @@ constexpr int kWidth = 1920;
 constexpr int kHeight = 1080;
 constexpr double kDrag_s = 3.0;
 constexpr int kMovesPerSecond = 30;
-constexpr double kGoalOfOne = 20.0;  // fresh curves a second of one wavelength
-constexpr double kGoalOfBand = 8.0;  // of a band with n(lambda)
+constexpr double kGoalOfOne = 20.0;  // fresh curves per second, for one wavelength
+constexpr double kGoalOfBand = 8.0;  // fresh curves per second, for a band with n(lambda)
 
 /// A slider to drag in a scene.
 struct DragCase {
@@ -70,7 +70,7 @@ const std::vector<DragCase>& drag_cases() {
   return all;
 }
 
-/// Xvfb on a display of its own, which DISPLAY then names.
+/// Xvfb on a private display. Sets DISPLAY to it.
 class Display {
  public:
   Display() {
@@ -108,7 +108,7 @@ void xdotool(const std::string& commands) {
     throw IoError("xdotool fails");
 }
 
-/// A drag there and back, one move after the other, with the button down from the first to the last.
+/// The events of a drag there and back. The button is down from the first move to the last.
 std::string drag_commands(const explore::Area& slider) {
   const auto at = [&](double part) {
     const ImVec2 place = slider.at(static_cast<float>(part), 0.5F);
@@ -125,7 +125,7 @@ std::string drag_commands(const explore::Area& slider) {
   return commands + "mouseup 1";
 }
 
-/// Follows what the frames of a drag show.
+/// Records what the frames of a drag show.
 class Watch {
  public:
   explicit Watch(explore::App& app) : app_(app), scene_(curve().key()), shown_(shown_text()) {}
@@ -147,7 +147,7 @@ class Watch {
     gap_s_ = std::max(gap_s_, std::chrono::duration<double>(now - last_fresh_).count());
     last_fresh_ = now;
   }
-  /// The last curve is that of the scene at its tolerance.
+  /// The last curve belongs to the scene and has its tolerance.
   bool is_done() const { return begin_ && curve().is_finished(); }
 
   ordered_json json(Clock::time_point released) const {
@@ -168,7 +168,7 @@ class Watch {
 
  private:
   const explore::Curve& curve() const { return app_.session().curve(); }
-  /// Changes with what is drawn.
+  /// A text that changes whenever the drawn curve changes.
   std::string shown_text() const {
     return explore::surface_name(curve().shown_scene()) + std::to_string(curve().points().size()) +
            std::to_string(curve().points().at(curve().points().size() / 2)[Quantity::kDolp]);
@@ -188,7 +188,7 @@ ordered_json drag_row(const DragCase& one, const std::string& device) {
   explore::App app(explore::SceneEdits(Scene::from_text(kScene, one.changes, one.name)), {.device = device});
   xdotool(fmt::format("windowsize --sync %1 {} {} windowfocus %1", kWidth, kHeight));
   app.settle();
-  // The first coarse results of a scene compile kernels; the second drag is the one that counts.
+  // The first coarse results of a scene compile kernels, so only the second drag counts.
   ordered_json measured;
   for (int i = 0; i < 2; ++i) {
     Watch watch(app);
@@ -238,7 +238,7 @@ std::string table_text(const ordered_json& result) {
   return text;
 }
 
-/// Names the drags that miss the goal of fresh curves.
+/// Names the drags that miss the goal for fresh curves.
 void warn(ordered_json& result) {
   for (const ordered_json& row : result["drags"]) {
     const double goal = row["is_band"].get<bool>() ? kGoalOfBand : kGoalOfOne;

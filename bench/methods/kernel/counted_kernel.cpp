@@ -1,4 +1,4 @@
-// The source with a number type that counts its operations: those of the kernel, no more and no less.
+// The kernel source with a number type that counts exactly the operations of the kernel.
 #define DOLP_KERNEL_NAMESPACE counted_kernel
 
 #include "methods/kernel/grouped_kernel.hpp"
@@ -17,7 +17,7 @@ namespace counted_kernel {
 
 void count(std::uint64_t OperationCounts::*kind) { ++(counts.*kind); }
 
-/// A float whose operations are counted, except those on constants alone, which a compiler evaluates.
+/// A float that counts its operations. Operations between constants are free, because a compiler evaluates them.
 class Counted {
  public:
   Counted() = default;

@@ -1,5 +1,5 @@
-// Body of native_kernel.cpp and counted_kernel.cpp, which define DOLP_KERNEL_NAMESPACE and in it real, real2, real4 and
-// as_data first. Masking and the width of a row are known to the compiler, as they are to that of a device.
+// Body of native_kernel.cpp and counted_kernel.cpp, which first define DOLP_KERNEL_NAMESPACE and in it real, real2,
+// real4 and as_data. The compiler knows the masking and the width of a row, as a device's compiler does.
 
 #include <algorithm>
 #include <array>

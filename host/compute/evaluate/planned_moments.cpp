@@ -99,7 +99,7 @@ class PlannedMoments {
     return moments;
   }
 
-  /// Computes the pairs of direction and index that are left, entry by entry.
+  /// Computes the remaining pairs of direction and index, entry by entry.
   void compute_left(const MomentsRequest& request, std::span<const char> is_left, std::span<Moments> moments) {
     MomentsRequest direct = request;
     direct.basis = nullptr;

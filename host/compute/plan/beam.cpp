@@ -69,8 +69,8 @@ struct FacetReflection {
   std::complex<double> cross;
 };
 
-// Equations: shaders/physics/fresnel.glsl, which do not cancel; r_s* r_p = a (sin^2 beta - c w) / (conj(c + w) (N^2 c +
-// w)), a = |N^2 - 1|^2 / |c + w|^2.
+// Equations: the forms of shaders/physics/fresnel.glsl, which do not cancel; r_s* r_p = a (sin^2 beta - c w) / (conj(c
+// + w) (N^2 c + w)) with a = |N^2 - 1|^2 / |c + w|^2.
 FacetReflection bare_reflection(const BeamAngles& angles, const BeamGeometry& geometry, const OpticalConstants& index) {
   using Complex = std::complex<double>;
   const double n2_re = (index.n - index.k) * (index.n + index.k);
@@ -90,7 +90,7 @@ FacetReflection bare_reflection(const BeamAngles& angles, const BeamGeometry& ge
   return {r_s - m01, m01, r_s * (sin2 - c * w) * s_sum * std::conj(p_sum) / p_norm};
 }
 
-// Measured reflectances have no phase, so r_s* r_p is 0.
+// A measurement of reflectances gives no phase, so r_s* r_p is set to 0.
 FacetReflection covered_reflection(const BeamGeometry& geometry, const FacetOptics& optics) {
   const double c = std::max(geometry.node.cos_beta, kSmallestFacetCosine);
   const SmoothAbsorptance absorbed = smooth_absorptance(optics, c);
@@ -118,7 +118,7 @@ struct DoubleAngle {
 DoubleAngle double_angle(double x, double y) {
   const double length = std::max(std::abs(x), std::abs(y));
   if (length == 0.0) return {};
-  const double u = x / length;  // squares of tiny angles would vanish
+  const double u = x / length;  // normalised first, because squares of tiny angles would vanish
   const double v = y / length;
   return {(u - v) * (u + v) / (u * u + v * v), 2.0 * u * v / (u * u + v * v)};
 }

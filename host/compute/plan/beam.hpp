@@ -16,12 +16,12 @@ struct BeamGeometry {
 
 /// The facet between two beams, and the rotation angles of eq. (4), in double and without cancellation.
 ///
-/// Equation: eqs. (2)-(6) as |w_i + w_r|^2 = 4 cos^2(beta), |w_i - w_r|^2 = 4 sin^2(beta); eta_i is the direction of
-/// (sin i cos r - cos i sin r cos(dphi), sin r sin(dphi)), eta_r is the direction of (sin r cos i - cos r sin i
-/// cos(dphi), sin i sin(dphi)). Conventions: delta_phi = 180 degrees is the specular side; eta turns s toward p and has
-/// the sign of sin(delta_phi). Domain: zeniths in [0, 90] degrees, not 90 both. In the retro direction, where eta is
-/// undefined, the limit eta_i = eta_r = 0; at theta_i = 0 the plane of incidence has azimuth 0, at theta_r = 0 azimuth
-/// delta_phi.
+/// Equation: eqs. (2)-(6) in the form |w_i + w_r|^2 = 4 cos^2(beta), |w_i - w_r|^2 = 4 sin^2(beta). eta_i is the
+/// direction of (sin i cos r - cos i sin r cos(dphi), sin r sin(dphi)), eta_r is the direction of (sin r cos i - cos r
+/// sin i cos(dphi), sin i sin(dphi)). Conventions: delta_phi = 180 degrees is the specular side; eta turns s toward p
+/// and has the sign of sin(delta_phi). Domain: zeniths in [0, 90] degrees, but not both 90. In the retro direction eta
+/// is undefined; the result is the limit eta_i = eta_r = 0. At theta_i = 0 the plane of incidence has azimuth 0; at
+/// theta_r = 0 it has azimuth delta_phi.
 BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_phi_deg);
 
 /// Inputs of the kernel for one entry; the pBRDF is the kernel's result times 2^power.
@@ -54,18 +54,18 @@ class BeamPlan {
   std::vector<BeamGeometry> geometries_;
 };
 
-/// Adds the beams of two and more bounces to f cos(theta_i) cos(theta_r) of the first.
+/// Adds the beams of two and more bounces to f cos(theta_i) cos(theta_r) of the first bounce.
 ///
-/// Equation: the light that leaves after k bounces comes from the grooves whose horizontal direction u lies along h,
-/// the horizontal part of omega_i + omega_r, or against it, and whose gamma = pi/2 - alpha is
-/// (pi - psi_i - psi_r)/(2 k) for odd k, (pi - psi_i + psi_r)/(2 k) for even k, psi being the angle from z toward u
-/// across the groove;
+/// Equation: Let h be the horizontal part of omega_i + omega_r. Light that leaves after k bounces comes from grooves
+/// whose horizontal direction u points along h or against it. Their gamma = pi/2 - alpha is (pi - psi_i - psi_r)/(2 k)
+/// for odd k and (pi - psi_i + psi_r)/(2 k) for even k. psi is the angle from z toward u across the groove. Then
 ///   f^(k) cos(theta_i) cos(theta_r) = D sin(alpha) a ds_k M / (2 k |h|),
-/// a ds_k being the width of the beam of k bounces and M their Mueller matrix (shaders/physics/README.md, section 3).
-/// Domain: masking v-cavity. NaN where h = 0, where the beams mirror each other: there grooves of all azimuths reflect.
-/// Accuracy: `accuracy` of m00, and where more than 1,000 bounces count, next to |psi_i| = |psi_r| of strong
-/// reflectors, what may be left, in `error`.
-/// Returns the bounces computed, which are its cost.
+/// where a ds_k is the width of the beam of k bounces and M its Mueller matrix (shaders/physics/README.md, section 3).
+/// Domain: masking v-cavity. The result is NaN at h = 0, where the beams mirror each other: there grooves of all
+/// azimuths reflect.
+/// Accuracy: `accuracy` of m00. If more than 1,000 bounces count, next to |psi_i| = |psi_r| of strong reflectors,
+/// `error` includes the light that may remain.
+/// Returns the number of bounces computed, which is the cost.
 int add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, const ScatteringEntry& entry,
                         double accuracy);
 

@@ -23,8 +23,8 @@ constexpr double kCoincident = 1e-9;  // relative distance of breakpoints that d
 // Most breakpoints of a direction with a sky.
 constexpr std::size_t kMostSkyBreakpoints = 60;
 
-// Slopes that only split the long way to the horizon of a grazing direction, where a heavy tail reaches far, into
-// pieces of ten units of X or so.
+// Slopes that only divide the long way to the horizon of a grazing direction, which a heavy tail reaches, into pieces
+// of about ten units of X.
 constexpr std::array kPlainBreakpoints = {30.0, 3e5};
 constexpr std::array kSteepBreakpoints = {1e5, 3e8, 1e12};  // for grooves, which have no horizon
 
@@ -33,8 +33,8 @@ double tan_deg(double angle_deg) {
   return a.sin / a.cos;
 }
 
-// Slopes at which the critical line cos(beta) = critical_cos meets phi = 0 or pi, the horizon, theta_r = theta or the
-// lines of v-cavity, e = 2 c and e = 2 cos(theta_r).
+// Slopes at which the critical line cos(beta) = critical_cos meets one of these: phi = 0 or pi, the horizon, theta_r =
+// theta, or the lines of v-cavity, e = 2 c and e = 2 cos(theta_r).
 void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, Masking masking,
                               double critical) {
   const double critical_deg = std::acos(critical) * 180.0 / pi;
@@ -52,7 +52,8 @@ void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   add(critical / (std::hypot(a.cos, 2.0 * critical) - a.cos), at_slope_1);
 }
 
-// Slopes at which the line b = pi/2 of `integral` meets phi = 0 or pi, and theta_r = theta; or smith's cusp.
+// Slopes at which the line b = pi/2 of `integral` meets phi = 0, phi = pi or theta_r = theta; for smith the slope of
+// its cusp.
 void add_line_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, Masking masking) {
   if (masking == Masking::kSmith) {
     points.push_back({tan_deg(0.5 * theta_deg), kRoots});
@@ -66,8 +67,8 @@ void add_line_breakpoints(std::vector<Breakpoint>& points, double theta_deg, con
   points.push_back({a.cos > 0.0 ? tan_deg(30.0 + theta_deg * 2.0 / 3.0) : kNoEnd, kRootBelow});
 }
 
-// The direct emission goes on beyond the horizon, up to the line on which facets turn away; with v-cavity masking it
-// has the line e = 2 c, which crosses the horizon at sqrt(3).
+// Direct emission continues beyond the horizon, up to the line at which facets turn away. With v-cavity masking it has
+// the line e = 2 c, which crosses the horizon at sqrt(3).
 void add_direct_breakpoints(std::vector<Breakpoint>& points, const CosSin& a, Masking masking, double& last) {
   last = kNoEnd;
   points.push_back({last, 0});
@@ -86,8 +87,8 @@ void add_v_cavity_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   }
 }
 
-// Slopes at which a bounce after the first meets the critical line at phi = 0 or pi, where its cos(beta) is the sine of
-// its angle in the fan (groove.glsl): where theta is 0 that is everywhere.
+// Slopes at which a later bounce meets the critical line at phi = 0 or pi. There its cos(beta) is the sine of its angle
+// in the fan (groove.glsl). At theta = 0 this holds for all phi.
 void add_critical_bounces(std::vector<Breakpoint>& points, double theta_deg, double critical) {
   const double critical_deg = std::asin(critical) * 180.0 / pi;
   for (int k = 2; k <= kCriticalBounces; ++k) {
@@ -100,7 +101,8 @@ void add_critical_bounces(std::vector<Breakpoint>& points, double theta_deg, dou
   }
 }
 
-// Where the lines of groove_lines (arcs.glsl) meet phi = 0, psi = theta, or phi = pi, psi = -theta, or each other.
+// Slopes at which the lines of groove_lines (arcs.glsl) meet each other, phi = 0 (psi = theta) or phi = pi (psi =
+// -theta).
 void add_groove_breakpoints(std::vector<Breakpoint>& points, double theta_deg, int splits) {
   const auto add = [&](double gamma_deg, unsigned roots) {
     if (gamma_deg > 0.0 && gamma_deg <= 90.0) points.push_back({tan_deg(90.0 - gamma_deg), roots});
@@ -134,9 +136,9 @@ std::vector<Breakpoint> without_coincident(const std::vector<Breakpoint>& points
   return distinct;
 }
 
-// Slopes at which a corner of the sky meets phi = 0 or pi: the reflected rays of a slope have zeniths from |theta - 2
-// alpha| to theta + 2 alpha. A sky that is not level at the zenith has a cusp there. Beside them the sum over the
-// azimuths goes as the distance to the power 3/2.
+// Slopes at which a corner of the sky meets phi = 0 or pi. The reflected rays of a slope have zeniths from |theta - 2
+// alpha| to theta + 2 alpha. A sky that is not level at the zenith has a cusp there. Next to these slopes the sum over
+// the azimuths follows the distance to the power 3/2.
 void add_sky_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const SkyTable& sky) {
   if (sky.has_cusp) points.push_back({tan_deg(0.5 * theta_deg), kRoots});
   for (const double corner_deg : sky.corners_deg) {
@@ -146,7 +148,7 @@ void add_sky_breakpoints(std::vector<Breakpoint>& points, double theta_deg, cons
   }
 }
 
-// Splits each piece once more, so that no node of its rules stays where it was.
+// Splits each piece once more, which moves every node of its rules.
 void add_extra_splits(std::vector<Breakpoint>& points) {
   constexpr double kShare = 0.43;  // no fraction that a rule's nodes have
   const std::size_t count = points.size();
@@ -160,10 +162,10 @@ void add_extra_splits(std::vector<Breakpoint>& points) {
 
 }  // namespace
 
-// Slopes, starting with 0, at which the set of smooth arcs changes: where a split line of the azimuth (arcs.glsl) meets
-// phi = 0 or pi or another line. The horizon does at t1 = c / (1 + s) and t2 = (1 + s) / c, theta_r = theta at
-// tan(theta), the limit b = pi/2 at tan(30 -+ 2/3 theta) and, on theta_r = theta, at tan(2 theta - 90); the lines of
-// v-cavity at tan(30 -+ theta/3), cot(theta), 1 and tan(theta); smith's cusp is at tan(theta/2).
+// Slopes, starting with 0, at which the set of smooth arcs changes, because a split line of the azimuth (arcs.glsl)
+// meets phi = 0, phi = pi or another line. Horizon: t1 = c / (1 + s) and t2 = (1 + s) / c. theta_r = theta: tan(theta).
+// Limit b = pi/2: tan(30 -+ 2/3 theta) and, on theta_r = theta, tan(2 theta - 90). Lines of v-cavity: tan(30 -+
+// theta/3), cot(theta), 1 and tan(theta). Cusp of smith: tan(theta/2).
 std::vector<Breakpoint> breakpoints(double theta_deg, const MomentsRequest& request, const DirectionVariant& variant,
                                     const SkyTable& sky, int splits) {
   const CosSin a = cos_sin_deg(theta_deg);

@@ -11,14 +11,14 @@ namespace dolp {
 /// The largest slope of all integrals: beyond it the squares of a float overflow.
 inline constexpr double kLargestCut = 1e15;
 
-/// An end of pieces, with kRootAbove and kRootBelow.
+/// An end of a piece, with the flags kRootAbove and kRootBelow.
 struct Breakpoint {
   double slope;
   unsigned roots;
   bool operator<(const Breakpoint& other) const { return slope < other.slope; }
 };
 
-/// Lines of a direction besides the lines of its masking.
+/// The lines of a direction that do not belong to its masking.
 struct DirectionVariant {
   double critical_cos = 0.0;  ///< cos(beta) at which total reflection begins; 0: there is none
   bool has_line = false;      ///< b = pi/2 of `integral`, or smith's cusp

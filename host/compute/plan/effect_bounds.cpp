@@ -29,7 +29,7 @@ bool KeptEffects::*flag(Part part) { return kFlags[static_cast<std::size_t>(part
 
 double or_infinite(double bound) { return std::isnan(bound) ? kInfinity : bound; }
 
-/// R_s of the most reflective index, and the mean of R_s and R_p of the least and the most reflective one.
+/// R_s of the most reflective index, and the means of R_s and R_p for the least and the most reflective index.
 struct Fresnel {
   double most_s = 0.0;
   double least = 1.0;
@@ -57,7 +57,8 @@ double most_lambda(Distribution distribution, const SlopeShape& shape, const Cos
 }
 
 /// Equation: rho c = E[e G M], e <= max(c + s t cos(phi), 0), G <= 1. `v-cavity` and `smith` reflect at most all
-/// incident light; else 1 + tan(theta) E|t_x| / 2, because the mean of t is pi E|t_x| / 2.
+/// incident light. For the other maskings the bound is 1 + tan(theta) E|t_x| / 2, because the mean of t is pi E|t_x| /
+/// 2.
 double most_albedo(const Surface& surface, const CosSin& a, const SlopeShape& roughest) {
   return keeps_projected_area(surface.masking) ? 1.0 : 1.0 + most_lambda(surface.distribution, roughest, a);
 }
@@ -70,8 +71,8 @@ struct Range {
 
 /// Slope density of facets at `slope` for all sigma and q of an extent.
 ///
-/// Equation: in m^2 it rises to a maximum at t^2 (gaussian) or (q - 1) t^2 (cauchy), and then falls; (q - 1) and
-/// (1 + t^2 / m^2)^-q are monotonic in q.
+/// Equation: As a function of m^2 it rises to a maximum at t^2 (gaussian) or (q - 1) t^2 (cauchy), and then falls. (q -
+/// 1) and (1 + t^2 / m^2)^-q are monotonic in q.
 Range slope_density(Distribution distribution, const EntriesExtent& extent, double slope) {
   const bool is_gaussian = distribution == Distribution::kGaussian;
   const double m2_low = std::pow(slope_width(extent.smoothest), 2);
@@ -88,8 +89,8 @@ Range slope_density(Distribution distribution, const EntriesExtent& extent, doub
           (is_gaussian ? 1.0 : q_high - 1.0) * density(std::clamp(peak, m2_low, m2_high), q_low)};
 }
 
-/// f cos(theta_i) cos(theta_r) for k_s = 1, in 1/sr: the closed form p (1 + t^2)^2 G M / 4 but for G, which is exact
-/// for `none` and `v-cavity`, in [1/2, 1] for `integral`, in [1 / (1 + L + L_r), 1] for `smith`.
+/// f cos(theta_i) cos(theta_r) for k_s = 1, in 1/sr: the closed form p (1 + t^2)^2 G M / 4 with bounds of G. G is exact
+/// for `none` and `v-cavity`, lies in [1/2, 1] for `integral`, and in [1 / (1 + L + L_r), 1] for `smith`.
 Range beam_range(const Surface& surface, const BeamAngles& angles, const EntriesExtent& extent,
                  const std::vector<FacetOptics>& indices) {
   if (!has_facet(angles)) return {};

@@ -29,7 +29,7 @@ bool add_nothing(const std::vector<EffectBounds>& bounds, Part part, const KeptE
   return std::ranges::all_of(bounds, [&](const EffectBounds& of_one) { return of_one.adds_nothing(part, kept); });
 }
 
-/// A part that matters in the whole scene is kept, even if the parts that it acts on have been dropped.
+/// A part that matters in the whole scene is kept, even if the parts that it multiplies have been dropped.
 double worst_bound(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
   double worst = 0.0;
   for (const EffectBounds& of_one : bounds) {
@@ -95,7 +95,7 @@ std::string below_share(double bound, double tolerance) {
   return fmt::format("changes DOLP by {:.2g} at most, {:.2g} of the tolerance", bound, bound / tolerance);
 }
 
-/// The reason why the moments are not needed although no part is lost.
+/// The reason why the moments are not needed although nothing is lost without them.
 std::string why_no_moments(const SceneValues& scene, const KeptEffects& kept) {
   const bool has_emission = scene.emission && kept.emission;
   const bool has_surroundings = scene.surroundings && kept.surroundings;
@@ -108,7 +108,7 @@ std::string why_no_moments(const SceneValues& scene, const KeptEffects& kept) {
 
 Effect absent(const char* name, std::string why) { return {name, EffectState::kAbsent, std::move(why)}; }
 
-/// A part as the plan treats it; `row` has the reason and the needs of a kept part.
+/// Describes how the plan treats a part. `row` has the reason, and for a kept part the needs.
 Effect part_row(const SceneValues& scene, const EffectPlan& plan, Part part, Effect row) {
   row.part = part;
   const DroppedPart* dropped = find_dropped(plan, part);
@@ -120,7 +120,7 @@ Effect part_row(const SceneValues& scene, const EffectPlan& plan, Part part, Eff
   return row;
 }
 
-/// The needs of a part that the moments serve while they are kept.
+/// What a part needs from the moments while they are kept.
 std::string needs_of_moments(const SceneValues& scene, const EffectPlan& plan) {
   if (!plan.kept.moments) return "closed form";
   return is_bistatic(scene) ? fmt::format("moments at {:g} deg", scene.geometry.view_zenith_deg)
@@ -147,7 +147,7 @@ Effect specular_row(const SceneValues& scene, const EffectPlan& plan) {
   return row;
 }
 
-/// A choice of the model; `reason` is for a kept choice.
+/// Describes a choice of the model. `reason` is for a kept choice.
 Effect model_row(const SceneValues& scene, const EffectPlan& plan, const char* name, const std::string& choice,
                  const SceneEntries& entries, const char* reason = ", a choice of the model: never swapped") {
   const auto is_flat = [](const SceneEntry& entry) { return entry.shape.sigma == 0.0; };

@@ -24,7 +24,7 @@ struct EntriesExtent {
   std::vector<double> theta_deg;
   SlopeShape roughest;              ///< the largest sigma and the smallest q
   SlopeShape smoothest;             ///< the smallest sigma and the largest q
-  std::vector<FacetOptics> optics;  ///< facet optics that the entries bring
+  std::vector<FacetOptics> optics;  ///< optics of the facets of these entries
 };
 
 /// The extent of a grid, whose directions all have all wavelengths; or the extents of the points at each wavelength.
@@ -32,17 +32,17 @@ std::vector<EntriesExtent> extents_of(const SceneEntries& entries);
 
 /// Bounds of the change that each part of a scene causes at any of the entries.
 ///
-/// Derivation: a part adds (dI, dQ, dU) to the Stokes sums, so that with q = (Q, U) / I and ' for the sums without it
-///   q - q' = (dQ - q dI) / I'.
-/// |dI| and |dQ, dU| are factors of the scene times the bounds 0 <= rho_I <= A, |rho_Q| <= A / 2 and bounds of the
-/// beam. With E, S, X the exitances of emission, surroundings and source (X only in hemispherical mode), Kirchhoff's
-/// emission gives I = E + (S - E + X) rho >= E - max(0, E - S) A and Q = (S - E + X) rho_Q, because S - E has one sign
-/// at all wavelengths: the weight of the moments is |S - E| + X, which is 0 where emission and surroundings have one
-/// temperature and no source illuminates the hemisphere. A profile of the sky adds at most its largest distance from
-/// its mean to S, in any direction. The fresnel emission is at least E (1 - R_s) / 2; the direct emission has no known
-/// lower bound. A path multiplies all by its transmittance and adds to I. |q| <= 1 where A <= 1, which bounds rho_s and
-/// rho_p: then every part has a degree of polarisation of at most 1. All Stokes parameters are in the units of the
-/// exitances, bistatic ones times pi; sums over a band are sums over the spectral rule's samples.
+/// Derivation: a part adds (dI, dQ, dU) to the Stokes sums. With q = (Q, U) / I, and a prime for the sums without the
+/// part, q - q' = (dQ - q dI) / I'. |dI| and |dQ, dU| are factors of the scene times the bounds 0 <= rho_I <= A,
+/// |rho_Q| <= A / 2 and bounds of the beam. With E, S, X the exitances of emission, surroundings and source (X only in
+/// hemispherical mode), Kirchhoff's emission gives I = E + (S - E + X) rho >= E - max(0, E - S) A and Q = (S - E + X)
+/// rho_Q, because S - E has one sign at all wavelengths: the weight of the moments is |S - E| + X, which is 0 where
+/// emission and surroundings have one temperature and no source illuminates the hemisphere. A profile of the sky adds
+/// at most its largest distance from its mean to S, in any direction. The fresnel emission is at least E (1 - R_s) / 2;
+/// the direct emission has no known lower bound. A path multiplies all by its transmittance and adds to I. |q| <= 1
+/// where A <= 1, which bounds rho_s and rho_p: then every part has a degree of polarisation of at most 1. All Stokes
+/// parameters are in the units of the exitances, bistatic ones times pi; sums over a band are sums over the spectral
+/// rule's samples.
 class EffectBounds {
  public:
   EffectBounds(const SceneModel& scene, const EntriesExtent& extent);
@@ -66,15 +66,15 @@ class EffectBounds {
   SceneModel scene_;
   bool is_bistatic_;
   SpectralSample total_;       ///< sums of the absolute values of the samples' factors; the emitted ones are signed
-  double sky_above_ = 0.0;     ///< the most that a profile adds to its mean,
-  double sky_below_ = 0.0;     ///< and the most that it takes from its mean
-  bool has_negative_ = false;  ///< weights of both signs, as the interpolation of a steep factor may have
+  double sky_above_ = 0.0;     ///< the most that a profile adds to its mean
+  double sky_below_ = 0.0;     ///< the most that a profile takes from its mean
+  bool has_negative_ = false;  ///< some weights are negative, as in the interpolation of a steep factor
   double path_;
   double most_specular_ = 0.0;  ///< upper bound of the specular rho_I
   double most_diffuse_ = 0.0;   ///< upper bound of the diffuse rho
   double least_smooth_ = 0.0;   ///< lower bound of the emissivity of the smooth surface
   double most_beam_ = 0.0;      ///< upper bound of the exitance for E0 = 1 that is reflected into the view
-  double most_beam_qu_ = 0.0;   ///< upper bound of its length of (Q, U)
+  double most_beam_qu_ = 0.0;   ///< upper bound of the length of its (Q, U)
   double least_beam_ = 0.0;
 };
 
@@ -88,26 +88,26 @@ struct DroppedPart {
 struct EffectPlan {
   bool keep_all = false;
   KeptEffects kept;
-  std::vector<DroppedPart> dropped;     ///< in the order of dropping; parts that the scene lacks are not among them
+  std::vector<DroppedPart> dropped;     ///< in the order of dropping, without parts that the scene lacks
   double bound = 0.0;                   ///< bounds the change by all dropped parts together
-  bool needs_direct = false;            ///< the moments of the direct emission
-  bool needs_beams = false;             ///< f from the source's direction into the view
+  bool needs_direct = false;            ///< whether the run needs the moments of the direct emission
+  bool needs_beams = false;             ///< whether the run needs f from the source's direction into the view
   std::shared_ptr<const SkyBasis> sky;  ///< basis of the moments with a sky; null without a profile, see with_sky
   bool gives_rho = true;                ///< rho_i, rho_q and rho_error_estimate are known; the albedo needs the moments
 };
 
 /// The effects that the scene's output needs at these entries.
 ///
-/// A part is dropped if the bound of EffectBounds leaves the sum of all dropped parts at kDroppedShare of the tolerance
-/// or below. The moments are tried first, then the source, the profile, the surroundings, the emission and the path,
-/// then the moments again. Further bounces are dropped only with the moments: a bound of their effect costs more than
-/// it saves. Each bound is for the scene without the parts dropped before, so that the sum bounds the whole change.
-/// Except for the moments, a part's bound in the whole scene counts too. A part that contributes exactly nothing is
-/// dropped at no cost, for instance the moments where emission and surroundings have one temperature. Model choices
-/// (distribution, masking, k) and the diffuse part are never dropped. `keep_all` keeps everything that the scene has.
+/// A part is dropped if the bounds of all dropped parts (EffectBounds) sum to at most kDroppedShare of the tolerance.
+/// The moments are tried first, then the source, the profile, the surroundings, the emission, the path, and the moments
+/// again. Further bounces are dropped only with the moments, because a bound of their effect would cost more than it
+/// saves. Each bound is for the scene without the parts dropped before, so the sum bounds the whole change. For a part
+/// other than the moments, its bound in the whole scene counts too. A part that contributes exactly nothing is dropped
+/// at no cost, for instance the moments if emission and surroundings have one temperature. Model choices (distribution,
+/// masking, k) and the diffuse part are never dropped. `keep_all` keeps everything that the scene has.
 EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, bool keep_all);
 
-/// The plan of a run that computes `kept`: its needs and its results.
+/// The plan of a run that computes `kept`.
 EffectPlan plan_to_keep(const SceneValues& scene, const KeptEffects& kept);
 
 /// The plan that drops nothing: plan_effects with `keep_all`.
@@ -116,7 +116,7 @@ EffectPlan keep_everything(const SceneValues& scene);
 /// Adds the basis of the sky at the wavelengths of these entries, if the moments need one and the plan has none.
 EffectPlan with_sky(EffectPlan plan, const SceneValues& scene, const SceneEntries& entries);
 
-/// True if a run gives the emissivities: with an emission, unless they need moments that are dropped.
+/// True if a run gives the emissivities: the scene has an emission that does not need dropped moments.
 bool gives_emissivity(const SceneValues& scene, const EffectPlan& plan);
 
 /// All effects, in the order of the scene file.

@@ -41,8 +41,8 @@ double mean_slope(Distribution distribution, const kernel::ShapeNode& shape) {
   return distribution == Distribution::kGaussian ? gaussian : 2.0 * gaussian / shape.two_q_minus_3;
 }
 
-// Upper bound of G over all facets. v-cavity: e G <= 2 c is used instead. smith: the facets that theta sees add up to
-// c, so that G <= G1(theta) = c / integral of e over e > 0, and that integral is at least (c + s mean |t_x|) / 2.
+// Upper bound of G over all facets. v-cavity does not need it: e G <= 2 c is used. smith: the facets that theta sees
+// sum to c, so G <= G1(theta) = c / integral of e over e > 0. That integral is at least (c + s mean |t_x|) / 2.
 double masking_bound(Distribution distribution, Masking masking, const kernel::ThetaNode& theta,
                      const kernel::ShapeNode& shape) {
   if (masking != Masking::kSmith) return 1.0;
@@ -53,8 +53,8 @@ double share_beyond(Distribution distribution, const kernel::ShapeNode& shape, d
   return steeper_share(distribution, {shape.m / std::numbers::sqrt2, shape.q_minus_1 + 1.0}, slope);
 }
 
-// Upper bound of the albedo integral (times cos theta) over the slopes T beyond the cut, which the kernel leaves out:
-// e <= c + s t, so that without masking it is at most c * tail(T) + 2 s * integral of P t^2 over t > T.
+// Upper bound of the albedo integral (times cos theta) over the slopes beyond the cut T, which the kernel leaves out. e
+// <= c + s t, so without masking it is at most c * tail(T) + 2 s * integral of P t^2 over t > T.
 double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::ShapeNode& shape) {
   const double reached = std::min(shape.cut, theta.end[DOLP_MAX_PIECES]);
   const double tail = share_beyond(data.distribution, shape, reached);
@@ -71,7 +71,7 @@ double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const k
   return masking_bound(data.distribution, data.masking, theta, shape) * (theta.c * tail + theta.s * slopes);
 }
 
-// Bound of the error of G relative to the albedo. With smith it grows as the mean slope next to the normal.
+// Bound of the error of G relative to the albedo. With smith masking it grows like the mean slope near the normal.
 double masking_error(const KernelData& data, const MomentsEntry& entry, double unit_roundoff) {
   if (!data.needs_masking_table()) return 0.0;
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
@@ -84,15 +84,15 @@ double masking_error(const KernelData& data, const MomentsEntry& entry, double u
 
 // R_s, which falls with cos(beta) and bounds M00.
 double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
-  if (index.curve_cells > 0.0) return 1.0;  // with films it need not fall
+  if (index.curve_cells > 0.0) return 1.0;  // with films it may rise
   const std::complex<double> w =
       std::sqrt(std::complex<double>(index.n2m1_re + cos_beta * cos_beta, std::max(index.n2m1_im, 0.0)));
   return std::min(1.0, std::norm((cos_beta - w) / (cos_beta + w)));
 }
 
-// Upper bound of the light left after `bounces` bounces with cos(beta) >= a/2, a the length of its direction across the
-// groove. a is at least `level` except for the azimuths with sin(theta) |cos(phi)| < sqrt(level^2 - c^2), which take at
-// most twice their share. `most` is left in any case.
+// Upper bound of the light left after `bounces` bounces with cos(beta) >= a/2, where a is the length of the direction
+// across the groove. a is at least `level` except at azimuths with sin(theta) |cos(phi)| < sqrt(level^2 - c^2), which
+// have at most twice their share of the light. At most `most` is left in any case.
 double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double bounces, double most) {
   double least = most;
   for (double level = 1.0; level > 1e-6; level *= 0.5) {
@@ -100,15 +100,15 @@ double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index
     const double missed = along <= 0.0 ? 0.0 : along < theta.s ? 4.0 / pi * std::asin(along / theta.s) : 1.0;
     const double reflected = std::pow(reflectance_s(index, 0.5 * std::max(level, theta.c)), bounces);
     least = std::min(least, most * missed + reflected);
-    if (reflected >= least) break;  // and lower levels reflect more
+    if (reflected >= least) break;  // lower levels reflect even more
   }
   return least;
 }
 
-// Upper bound of the share of their light that the facets beyond the cut reflect. Those whose ray leaves after one
-// bounce have cos(theta_r) > 0, which means cos(beta) > c sqrt(1 + t^2) / 2, and R_s, which falls with cos(beta), is no
-// less than M00. In grooves the bounces of a ray lie at psi + gamma, psi + 3 gamma ... up to pi - psi, at least slope
-// min(pi/3, pi/2 - theta) - 1 of them with cos(beta) >= a/2.
+// Upper bound of the share of their light that the facets beyond the cut reflect. A ray that leaves after one bounce
+// has cos(theta_r) > 0, so cos(beta) > c sqrt(1 + t^2) / 2; R_s falls with cos(beta) and is at least M00. In grooves
+// the bounces of a ray lie at psi + gamma, psi + 3 gamma ... up to pi - psi. At least slope min(pi/3, pi/2 - theta) - 1
+// of them have cos(beta) >= a/2.
 double steep_reflectance(const KernelData& data, const kernel::IndexNode& index, const kernel::ThetaNode& theta,
                          const kernel::ShapeNode& shape) {
   if (data.scattering == Scattering::kSingle) {
@@ -119,9 +119,9 @@ double steep_reflectance(const KernelData& data, const kernel::IndexNode& index,
   return left_after(theta, index, std::max(std::min(pi / 3.0, elevation) * slope - 1.0, 0.0), 1.0);
 }
 
-// `reflected` is the computed reflection of these grooves. Taking bounces as one changes the logarithm of the light
-// left by less than a hundredth, so that a small computed value is small in truth. Under total reflection, bounces
-// without loss may be taken as one with bounces that lose light. Light below `least` is negligible. Beyond
+// `reflected` is the computed reflection of these grooves. Counting bounces as one changes the logarithm of the
+// remaining light by less than a hundredth, so a small computed value is small in truth. Under total reflection,
+// bounces without loss may be counted as one with bounces that lose light. Light below `least` is negligible. After
 // DOLP_LAST_BOUNCES no light counts as left.
 double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::IndexNode& index,
                           const kernel::ShapeNode& shape, double reflected, double least) {
@@ -137,28 +137,27 @@ double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta
   return last + std::min(many + very_many, reflected);
 }
 
-// Error of the finer of two rules over its distance from the coarser one: how much slower than expected the rules may
-// converge. G of the maskings with tables has cusps and lines at which it is not smooth, where they converge
-// algebraically.
+// Factor from the distance of two rules to the error of the finer one: it allows for slower convergence than expected.
+// G of maskings with tables has cusps and lines at which it is not smooth; there the rules converge algebraically.
 double pair_factor(const KernelData& data, const kernel::IndexNode& index) {
   const bool is_multiple = data.scattering == Scattering::kMultiple;
   const double smooth = is_multiple ? kGroovePairFactor : data.needs_masking_table() ? kTablePairFactor : kPairFactor;
   return index.critical_cos > 0.0 ? kCriticalFactor * smooth : smooth;
 }
 
-// Errors of a function of the sky: its table, the corners that split nothing, and rounding. The rounding of
-// 1 - cos(theta_r) shows only next to the zenith.
+// Errors of a function of the sky: of its table, of corners that do not split pieces, and of rounding. The rounding of
+// 1 - cos(theta_r) matters only near the zenith.
 double sky_error(const KernelData& data, std::size_t function, double unit_roundoff) {
   return data.sky.error[function] + kUnsplitBends * data.sky.bends[function] + kSkyRoundings * unit_roundoff +
          data.sky.steepness[function] * std::sqrt(kSkyCosineRoundings * unit_roundoff);
 }
 
-// Rounding of a Chebyshev polynomial: of its abscissa, times the largest slope, and of the recurrence.
+// Rounding error of a Chebyshev polynomial: of its abscissa, times the largest slope, and of the recurrence.
 double response_rounding(std::size_t degree, double unit_roundoff) {
   return kResponseRoundings * unit_roundoff * static_cast<double>(1 + degree * degree);
 }
 
-/// Shares of the errors of an entry.
+/// Contributions to the error of an entry.
 struct Shares {
   double cut = 0.0;            ///< albedo beyond the cut
   double reflected_cut = 0.0;  ///< light that the facets beyond the cut reflect
@@ -167,8 +166,8 @@ struct Shares {
   double rounding = 0.0;       ///< relative rounding error
   double least = 0.0;          ///< smallest relative error
   double pair = 1.0;           ///< error of the finer rule over the distance of two rules
-  // Two rules of few nodes may agree by chance. So no bound of a sum is below a share of the tolerance that its rules
-  // are made for, its rounding and the error of its masking.
+  // Two rules of few nodes may agree by chance. So no bound of a sum is smaller than a share of its rule's tolerance
+  // plus its rounding.
   double of_rule() const { return least + rounding; }
   double of_masked() const { return of_rule() + masking; }
 };
@@ -282,7 +281,7 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
     const auto sums = columns.subspan(DOLP_COLUMN_PARTS * k, DOLP_COLUMN_PARTS);
     moments.columns.push_back(column_moments(sums, k, node, data, theta, shares, unit_roundoff));
   }
-  // A groove never absorbs less than 0.
+  // A groove never absorbs less than nothing.
   if (!is_multiple || moments.r_i < theta.c || moments.deficit_error <= moments.r_i_error)
     take_complement(moments, theta.c);
   return moments;

@@ -18,8 +18,8 @@ using Complex = std::complex<double>;
 
 /// Two beams in the frame of a groove.
 struct Across {
-  double a = 0.0;      ///< length of the ray across the groove
-  double psi_i = 0.0;  ///< zeniths there, toward u
+  double a = 0.0;      ///< length of the ray's projection across the groove
+  double psi_i = 0.0;  ///< zeniths across the groove, toward u
   double psi_r = 0.0;
   double along = 0.0;                              ///< component of omega_i along the groove
   Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< azimuths of the beams, across and along the groove
@@ -31,7 +31,7 @@ struct Across {
 /// A Jones matrix: (E_s, E_p) after the bounces for each of (E_s, E_p) before.
 using Jones = Eigen::Matrix2cd;
 
-/// Fields in a frame turned by the angle of (x, y), from s toward p.
+/// Turns fields into a frame rotated by the angle of (x, y), from s toward p.
 Eigen::Matrix2d turned(double x, double y) {
   const double length = std::hypot(x, y);
   const double cosine = length > 0.0 ? x / length : 1.0;
@@ -39,8 +39,9 @@ Eigen::Matrix2d turned(double x, double y) {
   return Eigen::Matrix2d{{cosine, sine}, {-sine, cosine}};
 }
 
-/// A bounce at cos(beta) = c on a facet whose frame is turned by the angle of (x, y); in the unfolded groove r_p is r_s
-/// at normal incidence. Written out, because thousands of bounces may count and complex roots and quotients are slow.
+/// A bounce at cos(beta) = c on a facet whose frame is rotated by the angle of (x, y). In the unfolded groove r_p
+/// equals r_s at normal incidence. Written without complex types, because thousands of bounces may count and complex
+/// roots and quotients are slow.
 class Facet {
  public:
   explicit Facet(const OpticalConstants& index)
@@ -61,7 +62,7 @@ class Facet {
   }
 
  private:
-  /// The square root of re + i im_, im_ >= 0.
+  /// The square root of re + i im_. Domain: im_ >= 0.
   Complex root(double re) const {
     const double larger = std::sqrt(0.5 * (std::abs(re) + std::sqrt(re * re + im_ * im_)));
     const double smaller = larger > 0.0 ? 0.5 * im_ / larger : 0.0;
@@ -73,7 +74,7 @@ class Facet {
 };
 
 Eigen::Matrix4d mueller(const Jones& j) {
-  const Complex ss = j(0, 0), sp = j(0, 1), ps = j(1, 0), pp = j(1, 1);  // after, before
+  const Complex ss = j(0, 0), sp = j(0, 1), ps = j(1, 0), pp = j(1, 1);  // names: field after, field before
   const double a = std::norm(ss), b = std::norm(sp), c = std::norm(ps), d = std::norm(pp);
   const Complex first = std::conj(ss) * sp, second = std::conj(ps) * pp;
   const Complex of_s = std::conj(ss) * ps, of_p = std::conj(sp) * pp;
@@ -85,8 +86,8 @@ Eigen::Matrix4d mueller(const Jones& j) {
       {(of_s + of_p).imag(), (of_s - of_p).imag(), (straight + crossed).imag(), (straight - crossed).real()}};
 }
 
-/// The Mueller matrix of `bounces` bounces in a groove of angle gamma: from frame to frame in the unfolded groove,
-/// whose mirror images turn s around after an odd number.
+/// The Mueller matrix of `bounces` bounces in a groove of angle gamma, from frame to frame in the unfolded groove. Its
+/// mirror images reverse s after an odd number of bounces.
 Eigen::Matrix4d chain(const Across& at, const Facet& facet, double gamma, int bounces) {
   Jones fields = turned(-at.from.x(), at.from.y() * at.cos_i).transpose().cast<Complex>();
   const Complex turn = std::polar(1.0, 2.0 * gamma);
@@ -114,12 +115,11 @@ double beam_width(const Across& at, double gamma, int bounces) {
 /// The beams of two and more bounces that meet one side of the groove first.
 struct FurtherBeams {
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
-  double unfollowed = 0.0;  ///< bound of m00 by bounces that are not followed
+  double unfollowed = 0.0;  ///< bound of the m00 of bounces that are not followed
   int bounces = 0;          ///< bounces computed so far, summed over all beams
 };
 
-/// The light of the bounces beyond the last over the light of the last. Light of k bounces falls as k^(2 - 2q) or
-/// faster.
+/// Light after the last bounce over the light of the last bounce. Light of k bounces falls like k^(2 - 2q) or faster.
 double beyond_last(const ScatteringRequest& request, const SlopeShape& shape, int bounces) {
   const bool is_cauchy = request.distribution == Distribution::kCauchy;
   return is_cauchy ? bounces / std::clamp(2.0 * shape.q - 3.0, kSlowestFall, 1.0) : bounces;
@@ -162,9 +162,9 @@ int add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, c
   const CosSin i = cos_sin_deg(angles.theta_i_deg);
   const CosSin r = cos_sin_deg(angles.theta_r_deg);
   const double azimuth_deg = std::remainder(angles.delta_phi_deg, 360.0);
-  const CosSin half = cos_sin_deg(0.5 * std::abs(azimuth_deg));  // it keeps all digits next to 180 degrees
+  const CosSin half = cos_sin_deg(0.5 * std::abs(azimuth_deg));  // keeps all digits near 180 degrees
   const CosSin azimuth{cos_sin_deg(azimuth_deg).cos, std::copysign(2.0, azimuth_deg) * half.sin * half.cos};
-  // h, without the cancellation next to the mirror direction.
+  // h, without cancellation near the mirror direction.
   const double h_x = 2.0 * cos_sin_deg(0.5 * (angles.theta_i_deg + angles.theta_r_deg)).cos *
                          cos_sin_deg(0.5 * (angles.theta_i_deg - angles.theta_r_deg)).sin +
                      2.0 * r.sin * half.cos * half.cos;

@@ -26,7 +26,7 @@ using std::numbers::pi;
 
 constexpr double kSmallestPole = 1e-6;  // lower bound for |N^2 + 1| and |N^2 - 1|
 
-/// Loop bounds of one piece, besides the orders of its rules.
+/// Loop bounds of a piece, except the orders of its rules.
 struct Loops {
   double arcs = 1.0;     ///< arcs of a slope
   double turns = 0.0;    ///< turns of an azimuth, with all bounces
@@ -56,8 +56,8 @@ double turns_of(double bounces) {
   return turns;
 }
 
-// Loop bounds of a piece from slope `start` to `end`, with pi / (2 gamma) bounces and more. Steep grooves have no lines
-// below gamma.
+// Loop bounds of a piece from slope `start` to `end`, for rays with pi / (2 gamma) or more bounces. Steep grooves have
+// no lines below gamma.
 Loops groove_loops(const KernelData& data, double start, double end) {
   const double most = pi / (2.0 * std::atan(1.0 / end));
   const double splits = data.rule.split_bounces;
@@ -79,11 +79,11 @@ Loops loops_of(const KernelData& data, double critical, double start, double end
 // Loops of one invocation: below the 65,535 iterations at which lavapipe stops without notice.
 constexpr double kMostIterations = 64'000.0;
 constexpr double kMostArcs = 2.0 * DOLP_MAX_ARCS;
-constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // turns that find the lines of a groove
+constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // turns that search for the lines of a groove
 
-// Bound of the loop iterations of one invocation with the most nodes everywhere. A piece has two rules, slopes, arcs
-// and azimuths; a slope sample has arcs, azimuths and bounces. Invocations that run in lockstep wait for each other, so
-// the bound holds for all entries.
+// Upper bound of the loop iterations of one invocation. A piece has two rules, slopes, arcs and azimuths; a slope
+// sample has arcs, azimuths and bounces. Invocations in lockstep wait for each other, so the bound holds for all
+// entries.
 double iterations(const KernelData& data, const Loops& loops, double most_nodes) {
   const double arcs = loops.arcs + loops.corners;
   const double idle = data.sky.count == 0 ? 0.0 : 2.0 * loops.arcs * (1.0 + loops.corners);  // corners beyond an arc
@@ -126,7 +126,7 @@ void add_direction(KernelData& data, const MomentsRequest& request, double theta
   data.pieces.push_back(pieces);
 }
 
-// Slope beyond which less than `share` of the facets' weight lies, weighted by 1 and by slope.
+// Slope beyond which the facets have less than `share` of their weight, both unweighted and weighted by slope.
 double slope_cut(const MomentsRequest& request, const SlopeShape& shape, double share) {
   const double m = slope_width(shape);
   if (request.distribution == Distribution::kGaussian) return m * std::sqrt(1.0 - std::log(share));
@@ -151,7 +151,8 @@ kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& sh
   return node;
 }
 
-// The pole of R_p in cos(beta), and the branch point of the amplitudes, both with parts of at least 0.
+// The pole of R_p in cos(beta), and the branch point of the amplitudes. Both have real and imaginary parts of at least
+// 0.
 struct FresnelSingularities {
   std::complex<double> pole;
   std::complex<double> branch;
@@ -170,7 +171,7 @@ FresnelSingularities singularities_of(const OpticalConstants& index) {
 
 kernel::IndexNode index_node(const FacetOptics& optics) {
   const OpticalConstants& index = optics.index;
-  // Films add no singularities: their amplitudes are even in the wave number across them.
+  // Films add no singularities, because their amplitudes are even in the wave number.
   const FresnelSingularities nearest = singularities_of(index);
   return {(index.n - 1.0) * (index.n + 1.0) - index.k * index.k,
           2.0 * index.n * index.k,
@@ -202,8 +203,8 @@ void add_curves(KernelData& data, const MomentsRequest& request) {
   data.rule.phi_nodes += kNodesOfFringe * fringes;
 }
 
-// Adds every direction of a grid for each line of total reflection of its indices, without and with the line that some
-// shapes need.
+// For each index with total reflection, adds every direction of the grid with the index's line. For shapes that need a
+// line of the masking, adds the directions with that line, too.
 void add_grid_directions(KernelData& data, const MomentsRequest& request) {
   const bool any_line = std::ranges::find(data.needs_line, 1) != data.needs_line.end();
   const std::uint32_t lines = any_line ? 2 : 1;

@@ -1,4 +1,4 @@
-// All inputs of the kernel, computed by the host in double; the evaluators narrow it to the precision they run in.
+// All inputs of the kernel, computed in double. The evaluators convert them to the kernel's precision.
 #pragma once
 
 #include <algorithm>
@@ -36,13 +36,13 @@ To convert_reals(const From& from) {
 }
 
 inline constexpr unsigned kRootAbove = 1;  ///< a square root just above a breakpoint
-inline constexpr unsigned kRootBelow = 2;  ///< just below
+inline constexpr unsigned kRootBelow = 2;  ///< a square root just below a breakpoint
 
 /// The pieces of the slope axis of one direction; ThetaNode has their ends.
 struct Pieces {
   std::uint32_t count = 0;
   std::array<std::uint8_t, DOLP_MAX_PIECES + 3> roots{};  ///< bits kRootAbove, kRootBelow of each end
-  /// Most nodes of an arc for each piece; they bound the loop iterations.
+  /// Largest number of nodes of an arc, per piece. It bounds the loop iterations.
   std::array<std::uint8_t, DOLP_MAX_PIECES + 1> most_nodes{};
   /// Lockstep class of each piece: pieces with equal numbers may run in lockstep within these bounds.
   std::array<std::uint16_t, DOLP_MAX_PIECES> lockstep{};
@@ -59,13 +59,13 @@ struct MomentsEntry {
 /// Bounds of the errors of all quantities in the table of an index.
 struct CurveError {
   double absolute = 0.0;
-  double per_roundoff = 0.0;  ///< error over the unit roundoff of the kernel's precision
+  double per_roundoff = 0.0;  ///< error divided by the unit roundoff of the kernel's precision
 };
 
-/// Inputs of one run of the kernel. For a grid, `indices` and `shapes` (sigma x q, q fastest) match its axes; `thetas`
+/// Inputs of one run of the kernel. For a grid, `indices` and `shapes` (sigma x q, q fastest) follow its axes. `thetas`
 /// has its directions, and then all of them again for each variant: for total reflection, whose split lines depend on
-/// the index, and for shapes that need one more line. Each point has its own direction and index; neighbouring points
-/// of one shape share it.
+/// the index, and for shapes that need one more line. Each point has a separate direction and index; neighbouring
+/// points with the same shape share it.
 struct KernelData {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
@@ -74,9 +74,9 @@ struct KernelData {
   double tolerance = 1e-4;
   kernel::RuleNode rule{};
   int rule_order = 1;                 ///< largest order of the rule nodes
-  bool has_total_reflection = false;  ///< any index reflects totally, sharply or nearly so
+  bool has_total_reflection = false;  ///< at least one index reflects totally, sharply or nearly so
   bool has_curves = false;            ///< the kernel reads the reflectances of all indices from tables
-  /// Errors of these tables, for each index; empty without them.
+  /// Errors of these tables, per index; empty without tables.
   std::vector<CurveError> curve_errors;
   bool is_grid = false;
   std::size_t directions = 0;  ///< directions of the request
@@ -85,11 +85,12 @@ struct KernelData {
   std::vector<kernel::ShapeNode> shapes;
   std::vector<char> needs_line;  ///< one flag for each shape
   std::vector<kernel::IndexNode> indices;
-  std::vector<std::uint32_t> index_variant;       ///< first variant of the directions for each index of a grid
-  std::vector<std::uint32_t> shape_of;            ///< shape of each point
-  std::vector<std::array<double, 2>> rule_nodes;  ///< and then the cells of the sky and of tables of reflectances
+  std::vector<std::uint32_t> index_variant;  ///< first variant of the directions, per index of a grid
+  std::vector<std::uint32_t> shape_of;       ///< shape of each point
+  /// nodes of the rules, then cells of the sky and of reflectance tables
+  std::vector<std::array<double, 2>> rule_nodes;
   SkyTable sky;
-  std::optional<Response> response;  ///< kind of the columns; null: they are functions of the sky
+  std::optional<Response> response;  ///< kind of the columns; null if they are functions of the sky
 
   std::size_t column_count() const { return response ? response->count : sky.count; }
   bool needs_masking_table() const { return masking == Masking::kIntegral || masking == Masking::kSmith; }
@@ -109,15 +110,16 @@ struct KernelData {
 
 struct RuleModel;
 
-/// Splits, orders, nodes and constants for a request at its tolerance, by the rules of its masking or by `model`. Pure.
+/// Splits, orders, nodes and constants for a request at its tolerance, by the rules of its masking or by `model`. Pure
+/// function.
 KernelData kernel_data(const MomentsRequest& request);
 KernelData kernel_data(const MomentsRequest& request, const RuleModel& model);
 
-/// Numbers beside a MomentsNode, and beside an AzimuthNode, for the columns of the data.
+/// Numbers that follow a MomentsNode, and an AzimuthNode, for the columns of the data.
 inline std::size_t column_sums(const KernelData& data) { return DOLP_COLUMN_PARTS * data.column_count(); }
 inline std::size_t column_azimuths(const KernelData& data) { return 2 * data.column_count(); }
-/// Adds the kernel's columns of a piece, DOLP_COLUMN_PARTS numbers each, to `sums`: i and q of the finer rule, and
-/// their differences from the coarser rule; for a sky, only the larger difference, without its sign.
+/// Adds the kernel's columns of a piece to `sums`, DOLP_COLUMN_PARTS numbers per column: i and q of the finer rule, and
+/// their differences from the coarser rule. A sky has only the magnitude of the larger difference.
 template <class Real>
 void add_columns(const KernelData& data, std::span<const Real> piece, std::span<double> sums) {
   for (std::size_t first = 0; first < piece.size(); first += DOLP_COLUMN_PARTS) {
@@ -142,7 +144,7 @@ std::uint32_t task_word(const Pieces& pieces, std::uint32_t piece, std::uint32_t
 /// Number of pieces of the slope axis up to the cut, which the kernel has to compute; at least the first one.
 std::uint32_t piece_count(const KernelData& data, std::uint32_t theta, const kernel::ShapeNode& shape);
 
-/// The slope of V-grooves in which a vertical ray has `bounces` bounces.
+/// The slope of V-grooves in which a vertical ray bounces `bounces` times.
 double slope_with_bounces(double bounces);
 
 /// Adds the kernel's result for a piece to the sum over other pieces.
@@ -160,8 +162,8 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
 /// distribution does not resolve directions whose cot(theta) lies within its first scale.
 bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin_theta);
 
-/// Upper bound of the loop iterations of one invocation, a piece of any entry of `data`: all its nested loops together.
-/// Drivers may stop an invocation after 65,535 of them, without an error and with wrong sums.
+/// Upper bound of the loop iterations of one invocation, over all nested loops and all entries of `data`. Drivers may
+/// stop an invocation after 65,535 iterations, without an error and with wrong sums.
 double worst_iterations(const KernelData& data);
 
 }  // namespace dolp

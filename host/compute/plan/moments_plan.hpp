@@ -1,4 +1,4 @@
-// Decides what the kernels compute of a request, and how all of its moments follow from that.
+// Decides which moments of a request the kernels compute, and how the other moments follow.
 #pragma once
 
 #include <cstddef>
@@ -16,9 +16,10 @@ namespace dolp {
 struct MomentsStep {
   std::vector<std::size_t> directions;  ///< positions in the request's directions; empty for points
   MomentsRequest request;               ///< the request's entries at these directions
-  /// Nodes between which the slope distributions are interpolated; without it, each one is computed.
+  /// Nodes for the interpolation over slope distributions; empty if each one is computed.
   std::optional<ShapePlan> shapes;
-  /// Responses from which the indices are combined, at the nodes if there are any; without it, each index is computed.
+  /// Responses whose sums are the moments of the indices, at the nodes if there are any; empty if each index is
+  /// computed.
   std::optional<ResponsePlan> responses;
 
   const MomentsRequest& nodes() const { return shapes ? shapes->nodes : request; }
@@ -41,13 +42,13 @@ class MomentsPlan {
   std::size_t saved_entries() const;
   /// Moments that the kernels compute for the saved entries.
   std::size_t nodes_of_saved() const;
-  /// Moments that the kernels compute, of all steps.
+  /// Moments that the kernels compute in all steps.
   std::size_t kernel_moments() const;
   /// For each direction of a grid: true if its entries are interpolated or combined. Empty for points.
   std::vector<char> saving_directions() const;
 
  private:
-  /// Adds a step, or several where its responses would take too much memory.
+  /// Adds a step. Splits it if its responses would take too much memory.
   void add(MomentsStep step);
 
   std::size_t size_ = 0;

@@ -1,4 +1,4 @@
-// Selects the rule and precision of an entry, and tighter ones where the result misses the scene's tolerance.
+// Selects the rule and precision of an entry, and tighter ones if the result misses the scene's tolerance.
 #pragma once
 
 #include <memory>
@@ -15,8 +15,8 @@ namespace dolp {
 struct RefinementLevel {
   Precision precision = Precision::kFloat;          ///< kFloat or kDouble
   double tolerance = 1e-4;                          ///< MomentsRequest::tolerance
-  bool may_interpolate = false;                     ///< between slope distributions
-  bool is_check = false;                            ///< by a rule of another kind
+  bool may_interpolate = false;                     ///< interpolation over slope distributions is allowed
+  bool is_check = false;                            ///< the level checks another one by a different kind of rule
   std::shared_ptr<const ResponseBasis> basis = {};  ///< MomentsRequest::basis
   /// Orders by cost: float before double, wide tolerances before tight tolerances.
   friend bool operator<(const RefinementLevel& a, const RefinementLevel& b) {
@@ -25,15 +25,15 @@ struct RefinementLevel {
   }
 };
 
-/// The level at which a scene's entries are computed first: float where the tolerance is well above its
-/// rounding, unless the scene sets the precision.
+/// The level for the first computation of entries: float if the tolerance is well above its rounding, unless the scene
+/// sets the precision.
 RefinementLevel first_level(const Accuracy& accuracy, bool has_double);
 
-/// The level that checks entries computed at `first`: a rule of another kind, at a hundredth of the tolerance.
+/// The level that checks entries computed at `first`: a different kind of rule, at a hundredth of the tolerance.
 RefinementLevel check_level(const RefinementLevel& first);
 
-/// The next level of an entry, tighter by as many half decades as the result misses the tolerance, in double if float
-/// cannot be that tight; none if the result meets the tolerance or no tighter level exists. Pure.
+/// The next level of an entry: tighter by as many half decades as the result misses the tolerance, and in double if
+/// float cannot be that tight. Empty if the result meets the tolerance or no tighter level exists. Pure function.
 std::optional<RefinementLevel> next_level(const RefinementLevel& last, const PointResult& result,
                                           const Accuracy& accuracy, bool has_double);
 

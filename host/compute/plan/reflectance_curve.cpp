@@ -15,14 +15,14 @@ constexpr std::size_t kFewestCells = 64;
 constexpr std::size_t kMostCells = 4096;
 constexpr double kShareOfTolerance = 0.02;
 constexpr double kLeastLevel = 1e-3;  // smallest level for which the error is relative
-constexpr double kSafety = 2.0;       // bound over the errors at some places in the cells
+constexpr double kSafety = 2.0;       // factor from the errors at some positions in the cells to the bound
 
 /// R_s, 1 - R_s and (R_s - R_p) / sin^2 at v = sqrt(cos(beta)).
 using Values = std::array<double, 3>;
 constexpr std::size_t kSplit = 2;
 
 Values values_at(const FacetOptics& optics, double v) {
-  constexpr double kLeastCosine = 1e-12;  // films still reflect everything there
+  constexpr double kLeastCosine = 1e-12;  // at smaller cosines films still reflect everything
   const SmoothAbsorptance absorbed = smooth_absorptance(optics, std::clamp(v * v, kLeastCosine, 1.0));
   return {1.0 - absorbed.s, absorbed.s, absorbed.split};
 }
@@ -46,7 +46,7 @@ void add_cell(ReflectanceCurve& curve, const FacetOptics& optics, double start, 
         cubic_through(values[0][part], values[2][part], values[4][part], values[6][part]);
     curve.nodes.push_back({cubic[0], cubic[1]});
     curve.nodes.push_back({cubic[2], cubic[3]});
-    // The split counts with sin^2(beta).
+    // The error of the split is multiplied by sin^2(beta).
     const double weight = part == kSplit ? 1.0 - std::pow(start, 4.0) : 1.0;
     for (const std::size_t i : {1U, 3U, 5U}) {
       const double off = std::abs(at(cubic, static_cast<double>(i) / 6.0) - values[i][part]);

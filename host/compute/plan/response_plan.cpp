@@ -34,7 +34,7 @@ std::vector<char> wanted_of(const MomentsRequest& request, const std::vector<std
 
 /// The responses of one pass at one direction: responses x shapes.
 struct Responses {
-  /// Unwanted entries are zero.
+  /// Unwanted entries become zero.
   Responses(std::span<const Moments> moments, std::size_t responses) : all(kParts) {
     const auto shapes = static_cast<Eigen::Index>(moments.size());
     for (RowMajor& part : all) part = RowMajor::Zero(static_cast<Eigen::Index>(responses), shapes);
@@ -56,20 +56,21 @@ struct Responses {
   std::vector<double> relative_error;  ///< one value for each shape
 };
 
-/// The product, summed in one order. Eigen's order follows from the sizes, so parts of a grid would differ in the last
-/// bits.
+/// The product, always summed in one order. Eigen's order depends on the sizes, so the last bits of an entry would
+/// depend on the part of the grid.
 RowMajor product(const RowMajor& weights, const RowMajor& part) {
   RowMajor sums = RowMajor::Zero(weights.rows(), part.cols());
   for (Eigen::Index i = 0; i < weights.rows(); ++i) {
     for (Eigen::Index j = 0; j < weights.cols(); ++j) {
-      if (weights(i, j) != 0.0) sums.row(i) += weights(i, j) * part.row(j);  // a bound may be infinite
+      // the test prevents 0 times an infinite bound
+      if (weights(i, j) != 0.0) sums.row(i) += weights(i, j) * part.row(j);
     }
   }
   return sums;
 }
 
-/// Sums over responses with one set of weights for each reached index: indices x shapes. The bounds of their errors do
-/// not cover the part of a curve that the weights leave out.
+/// Sums over responses with one set of weights per reached index: indices x shapes. Their error bounds do not cover the
+/// part of a curve that the weights leave out.
 struct Sums {
   Sums(const Responses& responses, Responses::Part of, Responses::Part apart, const RowMajor& weights)
       : value(product(weights, responses.all[of])),
@@ -78,8 +79,8 @@ struct Sums {
     for (Eigen::Index shape = 0; shape < error.cols(); ++shape)
       error.col(shape) += responses.relative_error[static_cast<std::size_t>(shape)] * value.col(shape).cwiseAbs();
   }
-  /// Sums with weights that are a difference of curves. It changes its sign, so relative errors are relative to its
-  /// largest value.
+  /// Sums with weights that are a difference of curves. The difference changes its sign, so relative errors refer to
+  /// its largest value.
   static Sums of_difference(const Responses& responses, Responses::Part of, Responses::Part apart,
                             const RowMajor& weights) {
     Sums sums(responses, of, apart, weights);
@@ -116,7 +117,7 @@ class Combination {
     if (rows > 0) reflected_.col(0).array() += 1.0;
   }
 
-  /// `passes`: the moments of all shapes at one direction. `moments`: of all indices and shapes there.
+  /// `passes` has the moments of all shapes at one direction. `moments` receives the moments of all indices and shapes.
   void operator()(double cosine, std::span<const std::span<const Moments>> passes, std::span<Moments> moments) const {
     add_reflected(cosine, passes.front(), moments);
     std::size_t pass = 1;
@@ -139,7 +140,7 @@ class Combination {
     const Responses all(reference, request_.basis->count());
     const Sums i(all, Responses::kI, Responses::kIApart, reflected_);
     const Sums q(all, Responses::kQ, Responses::kQApart, split_);
-    // Sums of the differences from the reference are better where the curves are alike or little is absorbed.
+    // Sums of differences from the reference are more accurate if the curves are similar or little light is absorbed.
     const Sums more_absorbed = Sums::of_difference(all, Responses::kI, Responses::kIApart, absorbed_apart_);
     const Sums more_split = Sums::of_difference(all, Responses::kQ, Responses::kQApart, split_apart_);
     const ResponseWeights& of_reference = request_.basis->of_reference();
@@ -162,7 +163,7 @@ class Combination {
         sum.r_q_error = from.r_q_error + more_split.error(index, shape) + more_absorbed.error(index, shape) +
                         (own.split_error + of_reference.split_error) * albedo;
       }
-      // The distances of the two rules may cancel in a sum; the reference's bound adds their sizes.
+      // In a sum the distances of the two rules may cancel. The bound of the reference adds their magnitudes.
       const double whole_error = from.r_i_error * std::max(sum.r_i / from.r_i, 0.0);
       sum.r_i_error = std::max(sum.r_i_error, whole_error);
       sum.r_q_error = std::max(sum.r_q_error, whole_error);
@@ -195,7 +196,7 @@ class Combination {
     const Sums q(all, Responses::kQ, Responses::kQApart, split_);
     for_all(pass.size(), moments, [&](Moments& sum, const ResponseWeights& own, auto index, auto shape) {
       const Moments& from = pass[static_cast<std::size_t>(shape)];
-      // The function of the sky changes its sign, so relative errors are relative to the light without it.
+      // The function of the sky changes its sign, so relative errors refer to the light without it.
       const double relative = all.relative_error[static_cast<std::size_t>(shape)] * std::abs(sum.r_i);
       sum.columns.resize(function + 1);
       sum.columns[function] = {i.value(index, shape), q.value(index, shape),
@@ -226,7 +227,7 @@ std::size_t response_passes(bool wants_direct, std::size_t sky_functions) {
 
 namespace {
 
-/// The sources of some indices. Depends on nothing but the basis and the indices.
+/// The sources of some indices. They depend only on the basis and the indices.
 std::vector<ResponsePlan::Source> sources_of(const ResponseBasis& basis, std::span<const FacetOptics> indices) {
   std::vector<ResponsePlan::Source> sources(indices.size());
   parallel_ranges(sources.size(), 1, [&](std::size_t first, std::size_t last) {
@@ -256,7 +257,7 @@ void add_passes(ResponsePlan& plan, const MomentsRequest& request, MomentsReques
   }
 }
 
-/// The request without entries.
+/// The request with all its entries removed.
 MomentsRequest without_entries(const MomentsRequest& request) {
   MomentsRequest empty = request;
   empty.basis = nullptr;

@@ -45,8 +45,8 @@ void add_chunk(Rows& rows, const KernelData& data, std::span<const std::uint32_t
   unite(std::span(rows.shapes).subspan(first));
 }
 
-// The chunks of a grid: sigma by sigma along its ascending q, independent of the wanted entries, so that an entry keeps
-// its neighbours.
+// The chunks of a grid: sigma by sigma, in ascending order of q. They do not depend on the wanted entries, so an entry
+// always has the same neighbours.
 void add_grid_chunks(Rows& rows, const MomentsRequest& request, const KernelData& data) {
   std::vector<std::uint32_t> ascending(request.q.size());
   std::iota(ascending.begin(), ascending.end(), 0U);
@@ -78,7 +78,7 @@ std::uint32_t used_members(const Rows& rows, const MomentsRequest& request, cons
   return used;
 }
 
-// Without rows yet.
+// The chunks without rows.
 Rows grid_chunks(const MomentsRequest& request, const KernelData& data) {
   Rows rows;
   rows.width = kRowWidth;

@@ -1,5 +1,5 @@
-// Groups the entries that one invocation of the kernel computes together: entries of a grid that differ only in the
-// exponent q share the nodes, the facets and their reflection (Row of shaders/physics/row.glsl).
+// Groups the entries that one invocation of the kernel computes together. Entries of a grid that differ only in the
+// exponent q share nodes, facets and reflection (Row of shaders/physics/row.glsl).
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace dolp {
 
-/// Most members of a row: the kernel is compiled for rows of one and of this many.
+/// Largest number of members of a row. The kernel is compiled for rows of one member and of this many.
 inline constexpr std::uint32_t kRowWidth = DOLP_ROW_WIDTH;
 
-/// Consecutive shapes of one sigma, in ascending order of q, that share the nodes; or the shape of points.
+/// Consecutive shapes of one sigma, in ascending order of q, that share their nodes; or the shape of points.
 struct Chunk {
   std::uint32_t first = 0;  ///< position in Rows::shapes
   std::uint32_t count = 1;  ///< at most the width of a row
@@ -24,7 +24,7 @@ struct Row {
   std::uint32_t direction = 0;  ///< position in the request's directions
   std::uint32_t index = 0;
   std::uint32_t chunk = 0;
-  std::uint32_t used = 1;  ///< members that are wanted
+  std::uint32_t used = 1;  ///< number of wanted members
 };
 
 /// One invocation of the kernel.
@@ -36,7 +36,7 @@ struct RowPiece {
 /// The rows of a request that have a wanted entry.
 struct Rows {
   std::uint32_t width = 1;                ///< 1 or kRowWidth
-  std::vector<kernel::ShapeNode> shapes;  ///< ordered by chunk, whose shapes share scale, cut and cusp
+  std::vector<kernel::ShapeNode> shapes;  ///< ordered by chunk; the shapes of a chunk share scale, cut and cusp
   std::vector<std::uint32_t> shape_of;    ///< position in the data for each of `shapes`
   std::vector<Chunk> chunks;
   std::vector<Row> rows;  ///< ordered by chunk, index and direction
@@ -47,11 +47,11 @@ struct Rows {
   }
 };
 
-/// Rows of kRowWidth members if most members are used, else rows of one. The neighbours of an entry follow only from
-/// the shapes, not from directions, indices and wanted entries.
+/// Rows of kRowWidth members if most members are used; otherwise rows of one. The neighbours of an entry depend only on
+/// the shapes, not on directions, indices and wanted entries.
 Rows rows_of(const MomentsRequest& request, const KernelData& data);
 
-/// The invocations of rows first, first + 1, ...: neighbours differ only in the direction, so that their work is equal.
+/// The invocations of all rows from `first`. Neighbours differ only in the direction, so their work is equal.
 std::vector<RowPiece> pieces_of(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count);
 
 }  // namespace dolp

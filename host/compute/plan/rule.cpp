@@ -38,7 +38,7 @@ constexpr std::array<RuleModel, 5> kModels = {{
      .phi_nodes = 0.3,
      .phi_digits = -0.5,
      .cluster_stretch = 5.5},
-    // all bounces
+    // all bounces in grooves
     {.margin_digits = 2.4, .t_nodes = 2.3, .t_digits = -0.375, .t_fall = 0.09, .phi_nodes = 0.625, .phi_digits = 0},
 }};
 
@@ -50,8 +50,8 @@ double decades_per_node(const SlopeShape& shape, double digits) {
   return std::log10(std::max(kNodesPerDigit * digits / width, 1.5));
 }
 
-// log10 of the remaining part of smith's cusp, L = C (m tan(theta_r))^(2q-2) and more beside theta_r = 0, where rules
-// do not split: a point of the slope plane, which n nodes in each dimension resolve to n^-2q.
+// log10 of the remaining part of smith's cusp at theta_r = 0, where rules do not split: L = C (m tan(theta_r))^(2q-2)
+// and higher terms. The cusp is a point of the slope plane; n nodes in each dimension resolve it to n^-2q.
 double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double digits) {
   const double per_node = decades_per_node(shape, digits);
   if (distribution == Distribution::kGaussian) {
@@ -66,8 +66,8 @@ double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double d
   return size - 2.0 * shape.q * per_node;
 }
 
-// log10 of the remaining part of the line b = pi/2 of `integral`: the share of the facets steeper than 45 degrees goes
-// as |x|^(2q-1).
+// log10 of the remaining part of the line b = pi/2 of `integral`. The share of facets steeper than 45 degrees follows
+// |x|^(2q-1).
 double unsplit_line(Distribution distribution, const SlopeShape& shape, double digits) {
   if (distribution == Distribution::kGaussian) {
     return shape.sigma > (digits > kTightDigits ? kTightLineSigma : kLineSigma) ? 0.0 : kNone;
@@ -105,7 +105,7 @@ RuleNodes make_rule_nodes(const Rules& gauss, int largest_order) {
     centre.insert(centre.end(), rule.begin(), rule.end());
     const RuleNodes& twice = gauss.at(2 * order);
     half.insert(half.end(), twice.begin() + order, twice.end());
-    // Midpoints psi of [0, pi] as tau = tan(psi/4), the weight chosen so that 4 / (1 + tau^2) * weight = pi / order.
+    // Midpoints psi of [0, pi] as tau = tan(psi/4). The weights make 4 / (1 + tau^2) * weight = pi / order.
     const double part = std::numbers::pi / order;
     for (int i = 0; i < order; ++i) {
       const double tau = std::tan(0.25 * part * (i + 0.5));
@@ -121,7 +121,7 @@ RuleNodes make_rule_nodes(const Rules& gauss, int largest_order) {
 
 RuleNodes gauss_legendre(int order) {
   RuleNodes nodes;
-  for (const double x : boost::math::legendre_p_zeros<double>(order)) {  // the zeros >= 0
+  for (const double x : boost::math::legendre_p_zeros<double>(order)) {  // the zeros that are not negative
     const double slope = boost::math::legendre_p_prime(order, x);
     const double weight = 2.0 / ((1.0 - x) * (1.0 + x) * slope * slope);
     nodes.push_back({x, weight});

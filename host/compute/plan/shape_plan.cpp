@@ -13,7 +13,7 @@ namespace {
 
 using Values = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// value_of each node: sigma x q.
+/// The values of value_of at each node: sigma x q.
 template <class ValueOf>
 Values at_nodes(const ShapePlan& plan, std::span<const Moments> nodes, const ValueOf& value_of) {
   Values values(static_cast<Eigen::Index>(plan.sigma.nodes.size()), static_cast<Eigen::Index>(plan.q.nodes.size()));
@@ -21,8 +21,8 @@ Values at_nodes(const ShapePlan& plan, std::span<const Moments> nodes, const Val
   return values;
 }
 
-/// Error bounds of the interpolation of each column of `values` at the axis's nodes: the sum of the coefficients left
-/// out, if they continue to fall like the last coefficients.
+/// Error bounds of the interpolation of each column of `values` at the axis's nodes: the sum of the omitted
+/// coefficients, if they fall like the last known ones.
 Eigen::RowVectorXd tails(const ShapeAxis& axis, const Values& values) {
   if (!axis.is_interpolated()) return Eigen::RowVectorXd::Zero(values.cols());
   const Eigen::MatrixXd sizes = (axis.coefficients.bottomRows(2 * kLastShapeCoefficients) * values).cwiseAbs();
@@ -57,7 +57,7 @@ class Interpolation {
   Values q_;
 };
 
-/// Interpolates column `k` of the moments. Bounds lose their signs.
+/// Interpolates column `k` of the moments. Bounds become positive.
 void interpolate_column(const ShapePlan& plan, const Interpolation& interpolated, std::span<const Moments> nodes,
                         std::size_t k, std::span<Moments> moments) {
   for (Moments& of_entry : moments) of_entry.columns.resize(k + 1);
@@ -76,7 +76,7 @@ void interpolate_column(const ShapePlan& plan, const Interpolation& interpolated
   }
 }
 
-/// True if all entries of each direction and index are wanted, or no entry.
+/// True if the request wants all entries of a direction and index, or none, for each of them.
 bool wants_whole_directions(const MomentsRequest& request) {
   if (request.layout != MomentsRequest::Layout::kGrid) return false;
   const std::size_t shapes = request.shapes();
@@ -86,13 +86,13 @@ bool wants_whole_directions(const MomentsRequest& request) {
   return true;
 }
 
-/// The moments are analytic in ln(x - origin) within `strip` of the real axis, x being sigma or q.
+/// The moments are analytic in ln(x - origin) within `strip` of the real axis, where x is sigma or q.
 ///
-/// For sigma: with the slope in units of m, sigma enters only P(u) = (1 + u^2)^-q, analytic where |Im ln m| < pi/2;
-/// toward there a power of q grows, so that a smaller strip is used. For q: P is analytic for Re q > 1; the mean
-/// slope, on which smith masking depends and, without shadows that bound it, the projection of the facets at grazing
-/// incidence, for Re q > 3/2 (shaders/physics/README.md, section 2). A polynomial of n nodes in the logarithm then is
-/// wrong by rho^-n, rho = exp(asinh(strip / half length)).
+/// For sigma: with the slope in units of m, sigma enters only P(u) = (1 + u^2)^-q, which is analytic for |Im ln m| <
+/// pi/2. Near that limit a power of q grows, so a narrower strip is used. For q: P is analytic for Re q > 1. The mean
+/// slope, which smith masking needs, is analytic for Re q > 3/2; so is the projection of the facets at grazing
+/// incidence if no shadows bound it (shaders/physics/README.md, section 2). A polynomial of n nodes in the logarithm
+/// then has an error of rho^-n, rho = exp(asinh(strip / half length)).
 struct ShapeParameter {
   double origin = 0.0;
   double strip = 1.0;
@@ -116,7 +116,7 @@ ShapeParameter sigma_parameter(Distribution distribution) {
   return {0.0, distribution == Distribution::kGaussian ? 0.78 : 1.15};
 }
 
-/// Domain: all of the request's directions are grazing, or none.
+/// Domain: either all or none of the request's directions are grazing.
 ShapeParameter q_parameter(const MomentsRequest& request) {
   const bool needs_mean_slope =
       request.masking == Masking::kSmith ||

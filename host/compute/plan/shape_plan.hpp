@@ -1,7 +1,7 @@
-// Selects the moments of a grid to compute; the others are interpolated between them.
+// Selects the moments of a grid to compute. The others are interpolated.
 //
 // The moments of one direction and one index are analytic in ln(sigma) and ln(q - 1). So the moments of many slope
-// distributions follow from a few Chebyshev nodes, computed to a tolerance of their own.
+// distributions follow from a few Chebyshev nodes, which have a tighter tolerance.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,19 +15,18 @@
 
 namespace dolp {
 
-/// Positions of the directions of a grid in groups that have one parameter each: one group, or grazing directions in a
-/// second.
+/// Groups of directions of a grid that can share their parameters: grazing directions form a separate group.
 std::vector<std::vector<std::size_t>> split_grazing_directions(const MomentsRequest& request);
 
 /// Values of a parameter, and the nodes from which they are interpolated.
 struct ShapeAxis {
-  std::vector<double> nodes;     ///< the values themselves where interpolation gains nothing
+  std::vector<double> nodes;     ///< equal to the values if interpolation gains nothing
   Eigen::MatrixXd cardinal;      ///< values x nodes: weights of the moments at the nodes
   Eigen::MatrixXd coefficients;  ///< nodes x nodes: from values to Chebyshev coefficients; empty without interpolation
   bool is_interpolated() const { return coefficients.size() > 0; }
 };
 
-/// Plan for a grid. It follows only from the request.
+/// Plan for a grid. It depends only on the request.
 struct ShapePlan {
   ShapeAxis sigma;
   ShapeAxis q;
@@ -36,12 +35,12 @@ struct ShapePlan {
   std::size_t nodes_of_a_direction() const { return sigma.nodes.size() * q.nodes.size(); }
 };
 
-/// The plan of a request whose directions have one parameter (split_grazing_directions). Null if every entry is
-/// computed by itself, for instance because only some entries of a direction and index are wanted.
+/// The plan of a request whose directions form one group (split_grazing_directions). Empty if every entry is computed
+/// separately, for instance if only some entries of a direction and index are wanted.
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request);
 
-/// Computes the moments of one direction and index at the request's sigma x q from the moments at the nodes. Bounds are
-/// the nodes' bounds, weighted with the interpolant's weights, plus an interpolation error estimated from the last
+/// Interpolates the moments of one direction and index at the request's sigma x q from the moments at the nodes. Bounds
+/// are the nodes' bounds, weighted by the interpolant's weights, plus an interpolation error estimated from the last
 /// Chebyshev coefficients.
 void interpolate(const ShapePlan& plan, std::span<const Moments> nodes, std::span<Moments> moments);
 

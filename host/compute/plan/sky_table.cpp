@@ -60,7 +60,7 @@ Eigen::RowVectorXd middle_distances(const SkyBasis& basis, double cells) {
   return largest_distances(basis, middles, cells);
 }
 
-/// A corner, with the change of the slope in u of each function.
+/// A corner, and for each function the change of its slope in u there.
 struct Corner {
   double zenith_deg = 0.0;
   Eigen::RowVectorXd bend;
@@ -90,7 +90,7 @@ Eigen::RowVectorXd bends_of(std::span<const Corner> corners, Eigen::Index functi
   return squares.cwiseSqrt();
 }
 
-/// Number of the sharpest corners that split, so that the others matter little.
+/// Number of the sharpest corners that must split, so that the others have little effect.
 std::size_t split_corners(std::span<const Corner> corners, Eigen::Index functions, double tolerance) {
   const std::size_t most = std::min<std::size_t>(corners.size(), DOLP_MOST_SKY_CORNERS);
   std::size_t split = 0;

@@ -9,7 +9,7 @@
 
 namespace dolp {
 
-/// Tables of the functions of a basis over u = sqrt(1 - cos(zenith)), straight lines between equal steps.
+/// Tables of the functions of a basis over u = sqrt(1 - cos(zenith)): straight lines in cells of equal width.
 struct SkyTable {
   std::uint32_t count = 0;          ///< number of functions
   std::uint32_t log2_cells = 0;     ///< log2 of the cells of each function
@@ -18,16 +18,17 @@ struct SkyTable {
   bool has_cusp = false;            ///< a function has a cusp at the zenith
   std::vector<double> corners_deg;  ///< zeniths of these corners, the sharpest first
   std::vector<double> error;        ///< bound of the distance from each function
-  std::vector<double> bends;        ///< root of the sum of squares of the bends in u of each function's other corners
-  std::vector<double> steepness;  ///< largest slope of each function in u at the zenith, where 1 - cos loses its digits
+  /// for each function: root of the sum of squares of its bends in u at the corners that do not split
+  std::vector<double> bends;
+  std::vector<double> steepness;  ///< largest slope of each function in u at the zenith, where 1 - cos loses digits
 
   /// DOLP_PUSH_CONSTANTS.
   std::uint32_t word() const;
 };
 
-/// Appends the cells of the basis to the nodes of the rules, as many as the tolerance needs: up to 2^15 in all, for
-/// tight tolerances up to 2^18. `splits` appends the cosines of the sharpest corners, too. The table has the corners of
-/// the sky, except within the cell in which a corner lies.
+/// Appends the cells of the basis to the nodes of the rules, as many as the tolerance needs: up to 2^15, for tight
+/// tolerances up to 2^18. `splits`: also appends the cosines of the sharpest corners. The table reproduces a corner of
+/// the sky except within its cell.
 SkyTable append_sky(const SkyBasis& basis, double tolerance, bool splits, std::vector<std::array<double, 2>>& nodes);
 
 }  // namespace dolp

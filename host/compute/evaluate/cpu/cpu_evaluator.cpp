@@ -19,7 +19,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kTablesAtOnce = 4096;  // masking tables; each takes 4 or 7 KiB
+constexpr std::size_t kTablesAtOnce = 4096;  // masking tables at a time; each takes 4 or 7 KiB
 
 std::unique_ptr<CpuKernel> make_kernel(const KernelData& data, bool in_double) {
   return in_double ? make_cpu_kernel_double(data) : make_cpu_kernel_float(data);

@@ -1,4 +1,4 @@
-// Moments and pBRDFs by the shaders' own source on the CPU, on all its cores.
+// Moments and pBRDFs on all cores of the CPU, from the kernel source.
 #pragma once
 
 #include "model/evaluator.hpp"

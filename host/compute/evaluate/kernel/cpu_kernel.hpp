@@ -24,8 +24,8 @@ class CpuKernel {
   /// The sums over the azimuths at a slope; `columns` gets the two sums of each column of the data.
   virtual kernel::AzimuthNode azimuths(const kernel::SlopeNode& slope, std::span<double> columns) = 0;
 
-  /// f cos(theta_i) cos(theta_r) for k_s = 1 over the beam's power of two, in 1/sr. It needs only the model and the
-  /// rule nodes from the data.
+  /// f cos(theta_i) cos(theta_r) for k_s = 1 over the beam's power of two, in 1/sr. From the data it reads only the
+  /// model and the rule nodes.
   virtual kernel::MuellerNode mueller(const kernel::BeamNode& beam) = 0;
 };
 

@@ -63,7 +63,7 @@ struct KernelSource {
   std::vector<real2> rule_nodes;
   std::vector<real4> masking_table;
 
-  /// For the model and the rules of `data`, without masking tables.
+  /// The source with the model and the rules of `data`, without masking tables.
   static KernelSource of(const KernelData& data) {
     KernelSource source;
     source.kDistribution = static_cast<uint>(data.distribution);
@@ -155,7 +155,7 @@ class SourceKernel final : public CpuKernel {
     sums[0] = static_cast<double>(result.columns.i[k]);
     sums[1] = static_cast<double>(result.columns.q[k]);
   }
-#else  // for plans, which compute no moments
+#else  // plans compute no moments
   static void copy_column(std::size_t, const KernelSource::SlopeResult&, std::span<double>) {}
 #endif
 
@@ -166,7 +166,7 @@ class SourceKernel final : public CpuKernel {
   const KernelData& data_;
   KernelSource::RuleNode rule_;
   KernelSource source_;
-  std::vector<std::uint32_t> shapes_;  ///< with a masking table
+  std::vector<std::uint32_t> shapes_;  ///< the shapes that have a masking table
 };
 
 }  // namespace dolp::DOLP_KERNEL_NAMESPACE

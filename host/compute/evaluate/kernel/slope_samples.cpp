@@ -28,25 +28,25 @@ constexpr double kNoFacets = 80.0;
 // Requirements of one corner for the rule of a piece.
 struct SampleRequest {
   double all = 0.0;     // weight_of_shape of orders.glsl
-  double digits = 0.0;  // that the piece requires
+  double digits = 0.0;  // digits that the piece requires
 };
 
-// An end of a piece of the slope axis.
+// An end of a piece on the slope axis.
 struct End {
   double slope = 0.0;
-  std::uint32_t direction_piece = 0;  // breakpoint at or before it
-  bool is_own = false;                // it is that breakpoint
+  std::uint32_t direction_piece = 0;  // the last breakpoint at or before this end
+  bool is_own = false;                // whether this end is that breakpoint
 };
 
 // Factors of the weights of the sampled slopes, shared by all shapes of one width.
 struct SlopeWeights {
   double m = 0.0;
   Eigen::ArrayXd exponent;  // common_exponent of slope.glsl
-  Eigen::ArrayXd common;    // independent of the tail, up to a factor
+  Eigen::ArrayXd common;    // the part that does not depend on the tail exponent, up to a factor
 };
 
-// Shapes between which all wanted ones lie, with the scale and cut that the hardest of these needs: widths from the
-// narrowest to the widest, each with the heaviest and the lightest tail.
+// Shapes that enclose all wanted ones: widths from the narrowest to the widest, each with the heaviest and the lightest
+// tail. All have the scale and cut of the hardest one.
 std::vector<kernel::ShapeNode> corners_of(const KernelData& data, std::span<const std::uint32_t> shapes) {
   kernel::ShapeNode corner = data.shapes[shapes.front()];
   double widest = corner.m, lightest = corner.q_minus_1;
@@ -86,7 +86,8 @@ struct SlopeSampling::Impl {
   explicit Impl(const KernelData& of)
       : data(of), source(KernelSource::of(of)), rule(std::bit_cast<KernelSource::RuleNode>(of.rule)) {}
 
-  // The breakpoints of the direction below the cut, the cut itself, and further ends among the shapes' widths.
+  // The ends of pieces: the breakpoints of the direction below the cut, the cut, and more ends among the widths of the
+  // shapes.
   std::vector<End> ends_of(std::uint32_t theta, std::span<const kernel::ShapeNode> corners) {
     const kernel::ThetaNode& node = data.thetas[theta];
     const double cut = corners.front().cut;
@@ -127,7 +128,7 @@ struct SlopeSampling::Impl {
     return task;
   }
 
-  // The piece as the most demanding corner requires it, and the digits that each corner requires.
+  // The piece with the largest requirement of all corners, and the digits that each corner requires.
   KernelSource::Piece hardest_piece(const KernelSource::ThetaNode& theta, const KernelSource::IndexNode& index,
                                     std::span<const kernel::ShapeNode> corners, const KernelSource::Task& task,
                                     std::vector<SampleRequest>& requests) {
@@ -192,7 +193,7 @@ struct SlopeSampling::Impl {
     return std::bit_cast<kernel::AzimuthNode>(sums);
   }
 
-  // Adds the sums of both rules of a piece of the columns to `sums`, and the distance of the rules.
+  // Adds the sums over the columns of a piece, by both rules, to `sums`, and the difference of the rules.
   void add_columns(const SampledPiece& piece, const Eigen::ArrayXd& own, double share, std::span<const double> azimuths,
                    std::span<double> sums) {
     const auto functions = static_cast<Eigen::Index>(sums.size() / DOLP_COLUMN_PARTS);
@@ -215,8 +216,8 @@ struct SlopeSampling::Impl {
     }
   }
 
-  // The moments of one shape without the slopes beyond the cut; `own` is scratch space for the weights, `columns` gets
-  // the columns of the data.
+  // The moments of one shape, without the slopes beyond the cut. `own` is scratch space for the weights; `columns`
+  // receives the columns of the data.
   kernel::MomentsNode moments_of(const SlopeSamples& samples, const KernelSource::ShapeNode& shape,
                                  const SlopeWeights& weights, std::span<const kernel::AzimuthNode> azimuths,
                                  std::span<const double> of_columns, Eigen::ArrayXd& own, std::span<double> columns) {

@@ -64,7 +64,7 @@ CommandStream::CommandStream(const Device& device) : device_(device) {
 }
 
 void CommandStream::begin() {
-  // An error may have left a recording open.
+  // After an error the commands may still be in recording state.
   check(vkResetCommandBuffer(commands_, 0), "resetting commands");
   has_copies_ = false;
   const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
@@ -123,7 +123,7 @@ double CommandStream::submit_and_wait(double timeout_s) {
     }
   }
   const double host_s = seconds_since(start);
-  if (result != VK_SUCCESS) vkDeviceWaitIdle(device_.get());  // only the wait failed: the work may still be running
+  if (result != VK_SUCCESS) vkDeviceWaitIdle(device_.get());  // only the wait failed; the kernels may still be running
   const VkResult reset = vkResetFences(device_.get(), 1, &fence);
   check(result, "waiting for the device");
   check(reset, "resetting a fence");
@@ -136,7 +136,7 @@ double CommandStream::elapsed_s() const {
                               VK_QUERY_RESULT_64_BIT),
         "reading timestamps");
   const std::uint32_t unused_bits = 64 - device_.timestamp_bits();
-  // Shifting the unused bits out lets the difference wrap as the device's counter does.
+  // Shifting out the unused bits makes the difference wrap around as the device's counter does.
   const std::uint64_t difference = ((ticks[1] << unused_bits) - (ticks[0] << unused_bits)) >> unused_bits;
   return static_cast<double>(difference) * static_cast<double>(device_.limits().timestampPeriod) /
          kNanosecondsPerSecond;

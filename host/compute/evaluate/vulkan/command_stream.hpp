@@ -16,7 +16,7 @@ class Kernels;
 
 /// The accesses that a barrier separates.
 enum class Barrier {
-  kUploadToKernel,  ///< staging copies, then kernels read; without copies there is nothing to wait for
+  kUploadToKernel,  ///< staging copies, then a kernel that reads them; nothing happens without copies
   kKernelToKernel,  ///< a kernel writes, the next ones read
   kKernelToHost,    ///< kernels write, the host reads after the wait
 };
@@ -33,8 +33,8 @@ class CommandStream {
   /// Runs `pipeline` on `count` invocations from `first` (see DOLP_PUSH_CONSTANTS); does nothing if `count` is 0.
   void dispatch(const Kernels& kernels, VkPipeline pipeline, std::uint32_t first, std::uint32_t count,
                 int largest_order, std::uint32_t sky = 0);
-  /// Submits the recording and waits for it. Returns the seconds from begin to end, by the device's clock; if the queue
-  /// has no timestamps, by the host's clock, submission included.
+  /// Submits the recording and waits for it. Returns the seconds from begin to end, measured by the device's clock. If
+  /// the queue has no timestamps, the host's clock measures them, with the submission.
   /// Errors: DeviceTimeout after `timeout_s`; DeviceError if the device is lost.
   double submit_and_wait(double timeout_s);
 
@@ -46,7 +46,7 @@ class CommandStream {
   UniqueFence fence_;
   UniqueQueryPool timestamps_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
-  bool has_copies_ = false;  ///< since the last barrier
+  bool has_copies_ = false;  ///< copies were recorded since the last barrier
 };
 
 /// A buffer in the device's own memory that the host writes and kernels read. The host writes directly where it can map

@@ -25,7 +25,7 @@ using Module = std::array<std::span<const std::uint32_t>, 2>;  // in float and i
 /// The SPIR-V module of a variant.
 std::span<const std::uint32_t> module_of(const KernelVariant& variant, bool float64) {
   using namespace spirv;
-  using ByColumns = std::array<Module, 3>;  // none, functions of a sky, responses
+  using ByColumns = std::array<Module, 3>;  // modules without columns, with functions of a sky, with responses
   const ByColumns slopes = {{{slopes_float, slopes_double},
                              {slopes_sky_float, slopes_sky_double},
                              {slopes_responses_float, slopes_responses_double}}};
@@ -212,7 +212,7 @@ VkPipeline Kernels::pipeline(const KernelVariant& variant) {
 
 UniquePipeline Kernels::create(std::span<const std::uint32_t> spirv, const KernelVariant& variant) const {
   const double limit_s = compilation_limit_s();
-  // A driver may compile without end, and nothing stops it: it compiles on a thread that can be left behind.
+  // A driver may never finish a compilation, and nothing can stop it. So it runs on a thread that can be abandoned.
   std::packaged_task<UniquePipeline()> compilation(
       [device = device_.get(), layout = layout_.get(), local_size = local_size(), spirv, variant] {
         return compile(device, layout, local_size, spirv, variant);

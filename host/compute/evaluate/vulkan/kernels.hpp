@@ -53,8 +53,8 @@ class Kernels {
     std::array<VkBuffer, kStorageCount> buffers{};
     std::array<VkBufferView, kTexelCount> texels{};  ///< the first is DOLP_BINDING_RULE_NODES
   };
-  /// A binding without a buffer or view, which no pipeline will read, gets another's, so that no binding refers to a
-  /// destroyed buffer.
+  /// A binding without a buffer or view gets the buffer of another binding. No pipeline reads it, but it must not refer
+  /// to a destroyed buffer.
   void bind(const Bindings& bindings);
 
   VkPipeline pipeline(const KernelVariant& variant);

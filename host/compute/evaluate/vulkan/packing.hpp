@@ -1,4 +1,4 @@
-// Structures of interface.glsl (real = double on the host) to and from the bytes of the kernels' precision.
+// Converts structures of interface.glsl (real = double on the host) to bytes in the kernels' precision, and back.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -33,7 +33,7 @@ class Packing {
   std::size_t node_bytes() const {
     return real_count<Node>() * real_bytes();
   }
-  /// Bytes of one structure with `numbers` beside it, which stand behind all structures of an output.
+  /// Output bytes per structure if `numbers` numbers belong to each structure. The numbers follow after all structures.
   template <class Node>
   std::size_t output_bytes(std::size_t numbers) const {
     return node_bytes<Node>() + numbers * real_bytes();
@@ -43,8 +43,7 @@ class Packing {
     return float64_ ? DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_DOUBLE)
                     : DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_FLOAT);
   }
-  /// Formats that hold the bytes of a node of a rule and of a masking table (two texels in double), and texels of a
-  /// table.
+  /// Formats of a node of a rule and of a masking table (two texels in double), and the texels of a masking table.
   VkFormat rule_texels() const { return float64_ ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32_SFLOAT; }
   VkFormat masking_texels() const { return float64_ ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT; }
   std::size_t texels_of_table() const { return masking_nodes() * (float64_ ? 2 : 1); }

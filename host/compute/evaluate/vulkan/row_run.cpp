@@ -122,7 +122,7 @@ class RowRun final : public Run<Moments> {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       cost_.evaluations += packing_.read<kernel::MomentsNode>(scratch_, i * rows_.width).evaluations;
     }
-    // Each range owns its rows, so that the pieces of a row are summed in their order on any thread.
+    // Each range owns its rows, so any thread sums the pieces of a row in the same order.
     const auto [least, most] = std::ranges::minmax(pieces, {}, &RowPiece::row);
     const std::uint32_t first_row = least.row;
     parallel_ranges(most.row - least.row + std::size_t{1}, kRowsAtOnce, [&](std::size_t first, std::size_t last) {
@@ -171,7 +171,7 @@ class RowRun final : public Run<Moments> {
   const KernelData& data_;
   const Rows& rows_;
   Renumbering thetas_, indices_;
-  std::vector<double> column_results_;  ///< DOLP_COLUMN_PARTS sums for each column of each member
+  std::vector<double> column_results_;  ///< DOLP_COLUMN_PARTS sums per column and member
   std::optional<InputBuffer> theta_buffer_, shape_buffer_, index_buffer_, task_buffer_;
   std::optional<Buffer> masking_buffer_, moments_buffer_;
 };

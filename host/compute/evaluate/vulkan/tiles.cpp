@@ -13,14 +13,14 @@ namespace {
 
 using EntryWords = std::array<std::uint32_t, 4>;
 
-constexpr std::uint64_t kHeapFraction = 8;    // tiles get an eighth of the memory, masking tables another
-constexpr std::size_t kSampledAtOnce = 1024;  // bounds the memory of a batch: some hundred slopes each
+constexpr std::uint64_t kHeapFraction = 8;    // tiles get an eighth of the memory, masking tables another eighth
+constexpr std::size_t kSampledAtOnce = 1024;  // limits the memory of a batch: a sample has some hundred slopes
 
 std::uint32_t at_least_one(std::uint64_t count) {
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(count, 1, UINT32_MAX));
 }
 
-/// The largest sizes of at most so many invocations and shapes that the device takes.
+/// The largest sizes that the device supports, up to a number of invocations and shapes.
 TileSizes sizes_on(const dolp::Device& device, const TileCosts& costs, std::uint64_t invocations,
                    std::uint64_t shapes = 1) {
   // Both costs are sums over buffers, so they bound each of the buffers.
@@ -37,8 +37,8 @@ std::uint64_t rule_bytes(const Packing& packing, const KernelData& data) {
 
 std::uint64_t tiles_in(std::uint64_t invocations, std::uint32_t tile) { return (invocations + tile - 1) / tile; }
 
-// The slopes in the order for the device: slopes that run in lockstep have equal loop bounds. Copies of the slope
-// before a gap fill the gap.
+// The slopes in the device's order: slopes that run in lockstep have equal loop bounds. Copies of the preceding slope
+// fill gaps.
 std::vector<std::uint32_t> in_lockstep(const SlopeBatch& batch, const KernelData& data) {
   std::map<std::uint16_t, std::vector<std::uint32_t>> by_bound;
   for (std::size_t i = 0; i < batch.samples.size(); ++i) {

@@ -19,14 +19,14 @@ namespace dolp::vulkan {
 /// A node of a masking table, in double.
 using MaskingNode = std::array<double, 4>;
 
-/// Bytes in the buffers for an invocation (a piece of a row, a slope or a beam) and for a shape.
+/// Buffer bytes per invocation (a piece of a row, a slope or a beam) and per shape.
 struct TileCosts {
-  std::uint64_t invocation_bytes = 0;  ///< all buffers that grow with the invocations of a tile
-  std::uint64_t shape_bytes = 1;       ///< the masking table and the node of a shape; 1 without them
-  std::uint64_t shape_texels = 0;      ///< the masking table
+  std::uint64_t invocation_bytes = 0;  ///< in all buffers that grow with the invocations of a tile
+  std::uint64_t shape_bytes = 1;       ///< of the masking table and node of a shape; 1 without them
+  std::uint64_t shape_texels = 0;      ///< of the masking table
 };
 
-/// Invocations of a dispatch and shapes bound at a time, at least one each.
+/// Invocations per dispatch, and shapes bound at a time; at least one each.
 struct TileSizes {
   std::uint32_t invocations = 1;
   std::uint32_t shapes = 1;
@@ -57,10 +57,10 @@ struct DispatchCount {
   std::uint32_t tile_invocations = 0;
   std::uint32_t block_shapes = 0;
   std::uint32_t row_width = 1;  ///< most entries that share an invocation, see plan/rows.hpp
-  std::uint64_t rows = 0;       ///< kernel rows, or pairs of a direction and an index with slope samples
+  std::uint64_t rows = 0;       ///< kernel rows; with slope samples, pairs of a direction and an index
   std::uint64_t slopes = 0;     ///< slopes of all slope samples
   std::uint64_t dispatches = 0;
-  std::uint64_t device_bytes = 0;  ///< bound of the memory of all buffers
+  std::uint64_t device_bytes = 0;  ///< upper bound of the memory of all buffers
 };
 
 /// The dispatches of a request for moments, row by row. The request must outlive it.
@@ -112,7 +112,7 @@ class Renumbering {
   explicit Renumbering(std::size_t list_size) : number_(list_size, kUnused) {}
   /// The number of a member of the list.
   std::uint32_t operator()(std::uint32_t member);
-  /// Members in the order of their numbers.
+  /// The members in the order of their numbers.
   std::span<const std::uint32_t> used() const { return used_; }
   void clear();
 

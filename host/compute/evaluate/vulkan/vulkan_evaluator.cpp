@@ -69,8 +69,8 @@ class VulkanEvaluator::Impl {
   std::vector<std::string> validation_messages() const { return context_.validation_messages(); }
   const VulkanOptions& options() const { return options_; }
 
-  /// Releases the buffers of the last request and uses smaller tiles from now on; false where the tiles are already as
-  /// small as is sensible.
+  /// Releases the buffers of the last request, and uses smaller tiles from now on. Returns false if the tiles cannot
+  /// sensibly be smaller.
   bool shrink_tiles() {
     run_.reset();
     if (options_.max_tile_invocations <= kSmallestTile) return false;
@@ -146,7 +146,7 @@ class VulkanEvaluator::Impl {
   VulkanOptions options_;
   vulkan::Context context_;
   std::optional<vulkan::Kernels> float_kernels_, double_kernels_;
-  std::future<void> prepared_;  ///< waits when it is destroyed
+  std::future<void> prepared_;  ///< its destructor waits for the thread
   vulkan::CommandStream stream_;
   std::unique_ptr<vulkan::TiledRun> run_;  ///< a member, so that its buffers outlive a submission that never ends
 };
@@ -197,7 +197,7 @@ std::vector<Result> VulkanEvaluator::compute(const Request& request, const Progr
 
 std::vector<Moments> VulkanEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
   std::vector<Moments> moments = compute<Moments>(request, progress);
-  moments.resize(request.size());  // it is empty where nothing is wanted
+  moments.resize(request.size());  // evaluate() returns nothing if no entry is wanted
   return moments;
 }
 

@@ -18,11 +18,11 @@ struct VulkanOptions {
   bool needs_double = false;  ///< requires double precision of the device
   /// Any message of the layer makes `evaluate` throw DeviceError.
   ValidationMode validation = ValidationMode::kFromEnvironment;
-  // The results depend on none of these.
-  std::uint32_t max_tile_invocations =
-      65'536;                              ///< most invocations of a dispatch, for which progress and cancelling wait
-  std::uint32_t max_block_shapes = 4'096;  ///< shapes whose masking tables are on the device at a time
-  bool staged_uploads = false;             ///< copy inputs through staging buffers even where it is not necessary
+  // These options do not change results.
+  std::uint32_t max_tile_invocations = 65'536;  ///< limit for a dispatch; progress and cancelling wait for its end
+  std::uint32_t max_block_shapes = 4'096;       ///< number of shapes whose masking tables are on the device at a time
+  /// copies inputs through staging buffers even if the device can map its memory
+  bool staged_uploads = false;
   double tile_timeout_s = 600.0;
 };
 

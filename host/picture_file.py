@@ -1,15 +1,16 @@
-"""Pictures of Matplotlib in files that appear whole or not at all."""
+"""Writes pictures of Matplotlib to files that are complete or absent."""
 import errno
 import io
 import os
 
 
 def save(figure, path, colours=None, **how):
-    """Draws a figure beside its file, then renames it. `colours`: most colours of a PNG, so that the file stays small.
+    """Writes a figure to a temporary file, then renames it. `colours` limits the colours of a PNG to keep the file
+    small.
 
-    Errors: OSError that names `path`, whose file is then as it was.
+    Errors: OSError that names `path`. The old file then remains unchanged.
     """
-    target = os.path.realpath(path)  # a link stays
+    target = os.path.realpath(path)  # keeps a symbolic link
     suffix = os.path.splitext(target)[1]
     target += "" if suffix else ".png"
     is_there = os.path.exists(target)

@@ -25,16 +25,17 @@ from matplotlib.lines import Line2D  # noqa: E402
 from matplotlib.patches import Patch  # noqa: E402
 from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter  # noqa: E402
 
-sys.dont_write_bytecode = True  # leaves no folder beside the scripts
+sys.dont_write_bytecode = True  # writes no cache folder beside the scripts
 import picture_file  # noqa: E402
 
 COLOURS = "viridis"
 MOST_CURVES = 6
 CONTOURS_PERCENT = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50)
-SHOWN_SHARE_PERCENT = 97  # of the entries, peaks apart: a rise at grazing incidence would otherwise take the whole scale
-FEW_ANGLES = 25  # up to which each entry gets a dot
-FEWEST_OF_MAP = 6  # values of theta and of sigma: a map of fewer would show what is not in the table
-SMALLEST_SPAN_PERCENT = 0.01  # of the DOLP axes: rounding noise must not look like a signal
+SHOWN_SHARE_PERCENT = 97  # of the entries without peaks; otherwise a rise at grazing incidence would fill the scale
+FEW_ANGLES = 25  # with at most this many zeniths each entry gets a dot
+# least number of values of theta and of sigma; a smaller map would show structure that the table lacks
+FEWEST_OF_MAP = 6
+SMALLEST_SPAN_PERCENT = 0.01  # least range of the DOLP axes, so that rounding noise does not look like a signal
 STATUS_MEANINGS = {
     1: r"$\rho_s$ or $\rho_p$ outside [0, 1]",
     2: "tolerance not met",
@@ -45,20 +46,21 @@ STATUS_MEANINGS = {
 RHO_TOLERANCE_NOT_MET = 16
 
 
-SYMBOLS = {"q": "q", "wavelength": "λ", "temperature": "T", "n": "n", "k": "k"}  # axes of which one value is drawn
-NAMED = ("material", "band")  # the same, whose values are names
+# axes with numbers; the picture shows one value of each
+SYMBOLS = {"q": "q", "wavelength": "λ", "temperature": "T", "n": "n", "k": "k"}
+NAMED = ("material", "band")  # axes with names; the picture shows one value of each
 UNITS = {"wavelength": " µm", "temperature": " K", "band": " µm"}
 KEYS = {"temperature": ("emission", "temperature_K"), "q": ("surface", "q"), "wavelength": ("spectrum", "wavelength_um"), "n": ("surface", "n"), "k": ("surface", "k"),
-        "sigma": ("surface", "sigma"), "wind_m_s": ("surface", "wind_m_s")}  # where a scene has its own value of an axis
+        "sigma": ("surface", "sigma"), "wind_m_s": ("surface", "wind_m_s")}  # the scene's keys for the value of an axis
 
 
 def text_of(dataset, name):
-    """A text attribute, which is a variable of characters where it is long."""
+    """A text attribute. Long texts are variables of characters."""
     return dataset[name][:].tobytes().decode() if name in dataset.variables else getattr(dataset, name, "")
 
 
 def scene_part(dataset, part):
-    """The keys of one part of the scene, such as surface, with its overrides; empty where they are no TOML."""
+    """The keys of one part of the scene, such as surface, with its overrides; empty if they are not TOML."""
     try:
         keys = tomllib.loads(text_of(dataset, "scene")).get(part, {})
         for line in text_of(dataset, "scene_overrides").splitlines():
@@ -71,14 +73,14 @@ def scene_part(dataset, part):
 
 
 def spectrum_of(dataset):
-    """Wavelength or band of a table without an axis of either, in words."""
+    """The wavelength or band of a table that has neither axis, in words."""
     has_axis = "wavelength" in dataset.variables or "band" in dataset.variables
     spectrum = {} if has_axis else scene_part(dataset, "spectrum")
     return "–".join(f"{end:g}" for end in np.ravel(list(spectrum.values()))) + " µm" if spectrum else ""
 
 
 def index_in_scene(dataset, axis):
-    """Position of the value nearest to the scene's own; the middle one where the scene has none."""
+    """Position of the value nearest to the scene's value; the middle if the scene has none."""
     part, key = KEYS[axis]
     own = scene_part(dataset, part).get(key)
     along = np.asarray(dataset[axis][:])
@@ -86,7 +88,7 @@ def index_in_scene(dataset, axis):
 
 
 def title_of(dataset):
-    """The scene's title, with the wavelengths and without the wind that the table may not be of."""
+    """The scene's title with the wavelengths. Omits the scene's wind, which may differ from the table's."""
     title = re.sub(r"[, ]*[\d.]+( *[-–] *[\d.]+)? *[uµ]m$", "", text_of(dataset, "title"))
     if "wind_m_s" in dataset.variables:
         title = re.sub(r"[, ]*wind [\d.]+ m/s", "", title)
@@ -94,11 +96,11 @@ def title_of(dataset):
 
 
 class NotATable(Exception):
-    """The file is no table of dolp, or has no such axis."""
+    """The file is not a table of dolp, or lacks a requested axis."""
 
 
 def position_of(dataset, axis, name):
-    """Position of a name: in full, or the only one that has it as a part."""
+    """Position of a name: an exact match, or the only name that contains the text."""
     names = [str(own) for own in dataset[axis][:]]
     alike = [i for i, own in enumerate(names) if name.lower() in own.lower()]
     same = [i for i in alike if names[i].lower() == name.lower()]
@@ -108,10 +110,11 @@ def position_of(dataset, axis, name):
 
 
 class Slice:
-    """One value of all axes but theta and sigma, which are ascending; DOLP in percent."""
+    """The part of a table at one value of every axis except theta and sigma. Theta and sigma are ascending, DOLP is
+    in percent."""
 
     def __init__(self, dataset, wanted):
-        """`wanted`: a value of each axis in SYMBOLS and NAMED, or None for the scene's own."""
+        """`wanted` has a value for each axis in SYMBOLS and NAMED, or None for the scene's value."""
         for name in ("theta", "sigma", "q", "dolp"):
             if name not in dataset.variables:
                 raise NotATable(f"has no variable {name}; a table with DOLP is expected")
@@ -145,10 +148,10 @@ class Slice:
             return data[np.ix_(rows, columns)]
 
         self.dolp = 100.0 * values("dolp", np.nan)
-        if "stokes_i" in dataset.variables:  # at 90 degrees DOLP may be a limit that no line leads to
+        if "stokes_i" in dataset.variables:  # at 90 degrees DOLP may be a limit to which no line leads
             self.dolp[np.isnan(values("stokes_i", np.nan))] = np.nan
         status = values("status", 0) if "status" in dataset.variables else np.zeros(self.dolp.shape, int)
-        self.status = status & ~RHO_TOLERANCE_NOT_MET  # which says nothing against DOLP
+        self.status = status & ~RHO_TOLERANCE_NOT_MET  # DOLP is right even if rho misses its tolerance
         has_bracket = "dolp_low" in dataset.variables and "dolp_high" in dataset.variables
         self.bracket = [100.0 * values(name, np.nan) for name in ("dolp_low", "dolp_high")] if has_bracket else None
         errors = values("error_estimate", np.nan) if "error_estimate" in dataset.variables else None
@@ -166,7 +169,7 @@ class Slice:
         return promised.max() if promised.size else None
 
     def largest(self):
-        """End of the DOLP scale: below it lie SHOWN_SHARE_PERCENT of the entries without a status."""
+        """End of the DOLP scale: SHOWN_SHARE_PERCENT of the entries without a status lie below it."""
         trusted = self.dolp[(self.status == 0) & np.isfinite(self.dolp)]
         shown = trusted if trusted.size else self.dolp[np.isfinite(self.dolp)]
         return max(np.percentile(shown, SHOWN_SHARE_PERCENT), SMALLEST_SPAN_PERCENT) if shown.size else 1.0
@@ -183,20 +186,20 @@ class Slice:
 
 
 def cell_edges(centres):
-    """Edges halfway between the centres; a single centre gets a cell of its own."""
+    """Edges halfway between the centres. The outer edges are the outer centres."""
     middle = 0.5 * (centres[1:] + centres[:-1])
     return np.concatenate([[centres[0]], middle, [centres[-1]]])
 
 
 def highest_peak(curve):
-    """The largest value between two lower ones; 0 without one."""
+    """The largest local maximum of the curve; 0 without one."""
     known = curve[np.isfinite(curve)]
     is_peak = (known[1:-1] > known[:-2]) & (known[1:-1] >= known[2:])
     return max(known[1:-1][is_peak], default=0.0)
 
 
 def drawn_columns(table):
-    """Up to MOST_CURVES columns, evenly spread; the scene's own takes the place of the nearest one."""
+    """At most MOST_CURVES columns, evenly spread. The scene's column replaces the nearest one."""
     chosen = np.linspace(0, table.sigma.size - 1, min(MOST_CURVES, table.sigma.size)).round().astype(int)
     chosen[np.argmin(np.abs(chosen - table.column_in_scene))] = table.column_in_scene
     return chosen
@@ -239,7 +242,7 @@ def draw_flags(axes, table):
 
 
 def draw_contours(axes, table):
-    """Lines of equal DOLP."""
+    """Draws lines of equal DOLP."""
     shown = np.ma.masked_where((table.status != 0) | ~np.isfinite(table.dolp), table.dolp)
     if shown.count() == 0 or shown.max() - shown.min() < SMALLEST_SPAN_PERCENT:
         return
@@ -285,7 +288,7 @@ def draw(table, path):
 
 
 def draw_ranking(tables, theta, path):
-    """A bar for each material: DOLP with the scene's sigma, and a line over all values of sigma."""
+    """Draws a bar for each material: DOLP with the scene's sigma, and a line over all values of sigma."""
     first = next(iter(tables.values()))
     row = int(np.argmin(np.abs(first.theta - theta)))
     own = {name: table.dolp[row, table.column_in_scene] for name, table in tables.items()}
@@ -315,7 +318,7 @@ def draw_ranking(tables, theta, path):
 
 
 def finite(text):
-    """A number for argparse, which names it in its message."""
+    """Reads a number. argparse uses the function's name in its messages."""
     number = float(text)
     if not np.isfinite(number):
         raise ValueError

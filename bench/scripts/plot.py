@@ -138,7 +138,7 @@ def draw_curves(axes, result, case):
 
 
 def label_ends(axes, ends):
-    """Labels the least accurate curve right of its end, and the others left of theirs. Moves labels that would touch."""
+    """Labels the least accurate curve right of its end, the others left of it. Moves labels that would touch."""
     if not ends:
         return
     to_points = 72.0 / axes.figure.dpi

@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the weights of response tables, their accuracy against the number of angles, and their time against the number
-of materials.
+"""Draws response tables: weights, accuracy against the number of angles, time against the number of materials.
 
 Usage: plot_response.py -o FIGURE.png, with the package dolp on PYTHONPATH. Prints the figures of bench/README.md.
 """

@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Emissivity and DOLP of a rough metal and of rough paint over zenith, with single scattering, all bounces, direct
-emission, and the bracket.
+"""Draws emissivity and DOLP of rough metal and paint: single scattering, all bounces, direct emission, bracket.
 
 Usage: plot_scattering.py DOLP -o FIGURE.png. DOLP is the program.
 """

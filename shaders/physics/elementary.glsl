@@ -101,7 +101,7 @@ real log1p_real(real u) {
 // ln(x) for 0 < x <= 1, coarse below 1e-30.
 real log_unit(real x) { return -log1p_real((real(1.0) - x) / max(x, real(1e-30))); }
 
-// ln(1 + u^2) for u >= 0, also where u^2 overflows: there it is 2 ln(u).
+// ln(1 + u^2) for u >= 0, also if u^2 overflows: there it is 2 ln(u).
 real log1p_square(real u) {
   bool is_large = u > real(1e9);
   real logarithm = log1p_real(choose(is_large, u - real(1.0), u * u));

@@ -24,7 +24,7 @@ real marginal_density(ShapeNode shape, real tau) {
   return shape.marginal_norm * exp_real(-exponent);
 }
 
-// True where smith's masking ends: the mean slope is about to diverge.
+// True if smith's masking ends: the mean slope is about to diverge.
 CONST real kDivergingSlope = real(0.2);  // value of 2q - 3
 bool is_diverging(ShapeNode shape) {
   return kMasking == DOLP_MASKING_SMITH && kDistribution == DOLP_CAUCHY && shape.two_q_minus_3 < kDivergingSlope;

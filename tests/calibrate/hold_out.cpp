@@ -97,7 +97,7 @@ MomentsPoint neighbour(Draw& draw, const MomentsPoint& entry, Domain domain, dou
   return next;
 }
 
-/// True where `entry` lies in the region from which the domain's entries are drawn.
+/// True if `entry` lies in the region from which the domain's entries are drawn.
 bool is_in(Domain domain, const MomentsPoint& entry, double q_end) {
   if (domain == Domain::kCorners) return entry.shape.sigma <= 10.0 && entry.shape.q <= q_end + 20.0;
   return entry.shape.sigma >= 0.01 && entry.shape.sigma <= 2.0 && entry.shape.q >= q_end + 0.1 &&

@@ -58,7 +58,7 @@ std::string entry_text(const dolp::CheckedEntry& checked) {
                      e.shape.sigma, e.shape.q, e.index.index.n, e.index.index.k);
 }
 
-/// A line for each tolerance, masking and distribution. Returns true where all bounds hold.
+/// A line for each tolerance, masking and distribution. Returns true if all bounds hold.
 bool check(const CheckArguments& arguments) {
   std::size_t understated = 0;
   for (const double tolerance : arguments.tolerances) {

@@ -51,7 +51,7 @@ class Driver {
  public:
   explicit Driver(SceneEdits edits) : session(std::move(edits)), worker_(on_the_cpu(evaluator_), [] {}) { settle(); }
 
-  /// Takes what has been computed, and asks for what is wanted; false where there is no more to come.
+  /// Takes what has been computed, and asks for what is wanted; false if there is no more to come.
   bool frame() {
     const bool was_idle = worker_.is_idle();
     session.take(worker_.take_news());

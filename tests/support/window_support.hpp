@@ -124,7 +124,7 @@ class Window : public CommandLine {
   }
   std::optional<double> number(const std::string& key) const { return app_->session().scene().number(key); }
   std::optional<std::string> word(const std::string& key) const { return app_->session().scene().word(key); }
-  /// True where a field has the ground of one whose text is refused.
+  /// True if a field has the ground of one whose text is refused.
   bool is_marked(const std::string& field) {
     frames();
     const Area area = app_->control_area(field);

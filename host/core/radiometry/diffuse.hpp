@@ -9,7 +9,7 @@
 
 namespace dolp {
 
-/// Diffusely reflected light, of unpolarised incident light, in the frame of the view: Q > 0 is s-polarised.
+/// Diffusely reflected light for unpolarised incident light, in the frame of the view: Q > 0 is s-polarised.
 struct DiffuseLight {
   double i = 0.0;
   double q = 0.0;
@@ -25,13 +25,13 @@ class DiffuseReflection {
  public:
   DiffuseReflection(const Surface& surface, const FacetOptics& optics);
 
-  /// Its part of rho, by reciprocity also that of uniform incident light. Domain: cosine in [0, 1].
+  /// The diffuse part of rho. By reciprocity it also holds for uniform incident light. Domain: cosine in [0, 1].
   DiffuseLight rho(double cosine) const;
   /// pi cos(theta_i) f.
   DiffuseLight beam(double cos_theta_i, double cos_theta_r) const;
   /// (t_+, t_-) at a direction, each divided by t_+(0); (1, 0) for unpolarised reflection.
   DiffuseLight transmitted(double cosine) const;
-  /// Weights of a sky's values at nodes in the mean that this reflection sees of it.
+  /// Weights of a sky's values at nodes. Their sum is the mean radiance that this reflection receives.
   Eigen::VectorXd mean_weights(const SkyNodes& nodes) const;
 
  private:
@@ -40,7 +40,7 @@ class DiffuseReflection {
   bool is_polarised_;
   FacetOptics optics_;
   double normal_ = 1.0;    ///< t_+(0)
-  double integral_ = 0.0;  ///< of mu^(c + 1) t_+(mu) / t_+(0) over mu from 0 to 1
+  double integral_ = 0.0;  ///< integral of mu^(c + 1) t_+(mu) / t_+(0) over mu from 0 to 1
 };
 
 /// True if the diffuse part of rho has no limit at 90 degrees.

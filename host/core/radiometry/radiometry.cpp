@@ -59,9 +59,9 @@ std::uint32_t tolerance_status(const PointResult& result, double tolerance) {
   return (dolp_missed ? std::uint32_t{kToleranceNotMet} : 0U) | (rho_missed ? std::uint32_t{kRhoToleranceNotMet} : 0U);
 }
 
-/// Estimated change of I by the light that single scattering loses at a second facet or that a masking creates: with it
-/// every facet's light counts once, rho_I / A instead of rho_I. With direct emission: what neither is emitted nor
-/// reflected.
+/// Estimated change of I by light that single scattering loses at a second facet, or that a masking creates. With this
+/// light every facet counts once: rho_I / A instead of rho_I. With direct emission it is the light that is neither
+/// emitted nor reflected.
 double change_by_model(const SceneModel& scene, const SpectralRule& rule, std::span<const Moments> moments,
                        std::span<const Reflectance> reflectances, std::span<const Emissivity> emissivities,
                        double cos_theta) {
@@ -95,7 +95,7 @@ bool is_known(const Moments& moments) {
   return !std::isnan(moments.r_i) && !std::isnan(moments.r_q) && !std::isnan(moments.deficit);
 }
 
-// A specular part that stays below 2 as the cosine vanishes belongs to a mirror or to n = 1: it has a limit.
+// A specular part that stays below 2 as the cosine vanishes belongs to a mirror or to n = 1, and has a limit.
 bool reflectance_diverges(const Surface& surface, const Direction& direction, std::span<const Moments> moments) {
   if (direction.theta_deg != kRightAngle_deg) return false;
   if (direction.cos_theta == 0.0 || diffuse_diverges(surface)) return true;
@@ -104,9 +104,9 @@ bool reflectance_diverges(const Surface& surface, const Direction& direction, st
   });
 }
 
-/// Equation: the terms of I and Q that grow fastest as cos(theta) -> 0, times a factor that makes them finite: D r,
-/// D being the surroundings without the emission that the moments subtract; with D = 0, pi B + E0 r_i and E0 r_q, and
-/// the path. The fresnel emission vanishes there.
+/// Equation: the terms of I and Q that grow fastest as cos(theta) -> 0, times a factor that makes them finite. With D,
+/// the surroundings minus the emission that the moments subtract, they are D r. If D = 0 they are pi B + E0 r_i, E0 r_q
+/// and the path. The fresnel emission vanishes in this limit.
 Stokes grazing_stokes(const SceneModel& scene, const SpectralRule& rule, std::span<const SkyWeights> sky,
                       std::span<const Moments> moments) {
   const Surface& surface = scene.surface;
@@ -140,8 +140,8 @@ PointResult grazing_limit(const SceneModel& scene, const SpectralRule& rule, std
   result[kRhoErrorEstimate] = 0.0;
   if (keeps_projected_area(surface.masking)) {
     if (direction.cos_theta > 0.0) result[kAlbedo] = moments.front().albedo / direction.cos_theta;
-    // A diverging diffuse part is unpolarised. It cancels only next to a fresnel emission of the same temperature; the
-    // rest is too small to need a formula of its own.
+    // A diverging diffuse part is unpolarised. It cancels only with a fresnel emission of equal temperature; the rest
+    // is too small to need a formula.
     const bool cancels = emission_model(scene) == EmissionModel::kFresnel && is_isothermal(rule);
     if (diffuse_diverges(surface) && !cancels) result[kDolp] = result[kQOverI] = result[kErrorEstimate] = 0.0;
     return result;
@@ -227,7 +227,7 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
                                  double cos_theta_i, std::span<const Scattered> scattered) const {
   const bool bistatic = scene_.geometry.mode == Mode::kBistatic;
   PointResult result;
-  boost::container::small_vector<Reflectance, 1> own;  // most scenes have one sample, and many entries
+  boost::container::small_vector<Reflectance, 1> own;  // most scenes have one sample and many entries
   boost::container::small_vector<DiffuseSample, 1> diffuse;
   boost::container::small_vector<DiffuseLight, 1> diffuse_beam;
   for (std::size_t j = 0; j < moments.size(); ++j) {
@@ -261,7 +261,7 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   if (bistatic)
     add_beam(sum, beam_specular_, kept_rule_, scattered, {diffuse_beam.data(), diffuse_beam.size()}, cos_theta);
   add_path(sum, scene_.path, kept_rule_.path_exitance);
-  const double unit = bistatic ? 1.0 / pi : 1.0;  // an exitance, or the radiance that it is the integral of
+  const double unit = bistatic ? 1.0 / pi : 1.0;  // an exitance, or the radiance whose integral it is
   const MeanReflectance mean = mean_reflectance(rule_, reflectances, cos_theta);
   result[kStokesI] = unit * sum.i;
   result[kStokesQ] = unit * sum.q + 0.0;  // turns -0 into 0

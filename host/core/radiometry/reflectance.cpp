@@ -12,7 +12,7 @@ namespace {
 // Rounding of the reflectances: fewer than 8 operations on positive terms.
 constexpr double kReflectanceRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
-/// The weight of a sample in the mean reflectance, from the kind of radiation the scene has.
+/// The weight of a sample in the mean reflectance. It depends on the kind of radiation that the scene has.
 double mean_weight(const SpectralSample& sample, double total_emitted, double total_incident, double cos_theta) {
   if (total_emitted != 0.0) return sample.emitted;
   if (total_incident != 0.0) return sample.irradiance * cos_theta + sample.surroundings;
@@ -21,7 +21,7 @@ double mean_weight(const SpectralSample& sample, double total_emitted, double to
 
 }  // namespace
 
-// 1 - rho comes from the absorbed part; the subtraction 1 - rho would lose the digits of a metal's emission.
+// 1 - rho comes from the absorbed part. Subtracting rho from 1 would lose the digits of a metal's emission.
 Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta, const DiffuseLight& diffuse) {
   const double scale = surface.specular / cos_theta;
   const double absorbed_terms = (1.0 - surface.specular) + scale * std::abs(moments.deficit) + diffuse.i;

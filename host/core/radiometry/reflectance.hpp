@@ -18,44 +18,44 @@ struct Reflectance {
   double rho_i_error = 0.0;
   double rho_q_error = 0.0;
   double absorbed_error = 0.0;
-  double mismatch = 0.0;  ///< |rho_i + absorbed - 1|, which two independently summed moments need not make 0
+  double mismatch = 0.0;  ///< |rho_i + absorbed - 1|; not exactly 0, because the two moments are summed independently
 };
 
-/// Polarised emissivity at one index: that of s is i + q, that of p is i - q.
+/// Polarised emissivity at one index: i + q for s polarisation, i - q for p polarisation.
 struct Emissivity {
   double i = 0.0;
   double q = 0.0;
   double i_error = 0.0;
   double q_error = 0.0;
-  double terms = 0.0;  ///< sum of the magnitudes that make up either
+  double terms = 0.0;  ///< sum of the magnitudes in either of them
 };
 
 /// rho over the spectral samples.
 struct MeanReflectance {
   double rho_i = 0.0;
   double rho_q = 0.0;
-  double error = 0.0;  ///< of the worse of the two
+  double error = 0.0;  ///< error of the less accurate of the two
 };
 
-/// `diffuse`: its part of rho.
+/// `diffuse` is the diffuse part of rho.
 Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta, const DiffuseLight& diffuse);
 
 /// True if rho_s or rho_p is outside [0, 1] beyond doubt.
 bool is_unphysical(const Reflectance& r);
 
-/// Weighted with the kind of radiation that the scene has, as PointResult says.
+/// The mean weighted by the kind of radiation that the scene has; see Quantity.
 MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances, double cos_theta);
 
 /// Emissivity of the smooth surface.
 Emissivity fresnel_emissivity(const FacetOptics& index, double cos_theta);
 
-/// Emissivity of the facets, straight to the viewer.
+/// Emissivity of the facets for light that goes straight to the viewer.
 ///
 /// Equation: eps_I = k_s eps_I,direct + 1 - k_s - diffuse_I, eps_Q = k_s eps_Q,direct - diffuse_Q.
 Emissivity direct_emissivity(const Surface& surface, const Moments& moments, double cos_theta,
                              const DiffuseLight& diffuse);
 
-/// Emissivities 1 - rho of s and of p.
+/// Emissivities 1 - rho for s and for p polarisation.
 Emissivity kirchhoff_emissivity(const Reflectance& r);
 
 }  // namespace dolp

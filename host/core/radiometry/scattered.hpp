@@ -11,7 +11,7 @@ struct Scattered {
   double q = 0.0;
   double u = 0.0;
   double v = 0.0;
-  double error = 0.0;  ///< bound of the absolute error of each
+  double error = 0.0;  ///< bound of the absolute error of each one
 };
 
 }  // namespace dolp

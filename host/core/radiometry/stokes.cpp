@@ -11,19 +11,20 @@ namespace {
 
 using std::numbers::pi;
 
-// Rounding of the Stokes sums, each relative to its terms: Planck's exponent, at most 745, times an ulp or two.
+// Rounding of the Stokes sums, relative to the terms: Planck's exponent, at most 745, times one or two ulp.
 constexpr double kRadianceRounding = 1e-12;
 
 /// Contribution of one sample to I with Kirchhoff's emission.
 struct Intensity {
   double value = 0.0;
-  double terms = 0.0;  ///< sum of the magnitudes that were added, to which rounding is relative
-  double error = 0.0;  ///< from the errors of the moments
+  double terms = 0.0;  ///< sum of the magnitudes of the summed terms; rounding is relative to it
+  double error = 0.0;  ///< error because of the errors of the moments
 };
 
-/// Equation: I = pi B (1 - rho_I) + X rho_I = pi B + (X - pi B) rho_I, whichever adds the smaller terms: the first
-/// keeps the digits of a metal, the second those of a reflectance far above 1 and of equal temperatures. The moments
-/// r_i and the absorbed part have correlated errors, so either may replace the other at the cost of their mismatch.
+/// Equation: I = pi B (1 - rho_I) + X rho_I = pi B + (X - pi B) rho_I. The form with the smaller terms is used: the
+/// first keeps the digits of a metal, the second the digits of a reflectance far above 1 and of equal temperatures. The
+/// errors of r_i and of the absorbed part are correlated, so one may replace the other, and their mismatch is added to
+/// the error.
 Intensity moments_intensity(double emitted, double incident, double net, double net_terms, const Reflectance& r) {
   const double split_terms = std::abs(emitted * r.absorbed) + std::abs(incident * r.rho_i);
   const double whole_terms = std::abs(emitted) + net_terms * std::abs(r.rho_i);
@@ -41,7 +42,7 @@ Intensity moments_intensity(double emitted, double incident, double net, double 
 void add_moments_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, double direct,
                         double rounding) {
   const double net = direct + sample.excess;
-  // Equal temperatures cancel exactly: then the excess has no rounding either.
+  // Equal temperatures cancel exactly. Then the excess has no rounding either.
   const double thermal = sample.excess == 0.0 ? 0.0 : std::abs(sample.emitted) + std::abs(sample.surroundings);
   const double net_terms = std::abs(direct) + thermal;
   const Intensity intensity = moments_intensity(sample.emitted, direct + sample.surroundings, net, net_terms, r);
@@ -51,7 +52,7 @@ void add_moments_sample(Stokes& sum, const SpectralSample& sample, const Reflect
   sum.q_error += std::abs(net) * r.rho_q_error + rounding * net_terms * std::abs(r.rho_q);
 }
 
-/// The same with an emission that is not 1 - rho.
+/// One sample's part of the Stokes sums with an emission that is not 1 - rho.
 void add_emitting_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, const Emissivity& e,
                          double direct, double rounding) {
   const double incident = direct + sample.surroundings;
@@ -195,8 +196,8 @@ Bracket bracket(const SceneModel& scene, const SpectralRule& rule, std::span<con
   single.i_error += sky.i_error;
   double q = sky.q;
   double unknown = 0.0;    // largest change of Q if all of D is emitted
-  double unreached = 0.0;  // largest change of Q and I if all of D comes from an unknown part of the sky, beside
-  double reflected = 0.0;  // the change of I with the middle of the sky
+  double unreached = 0.0;  // largest change of Q and of I if all of D comes from an unknown part of the sky
+  double reflected = 0.0;  // change of I if D comes from the middle of the sky
   double error = sky.q_error;
   for (std::size_t j = 0; j < reflectances.size(); ++j) {
     const SpectralSample& sample = rule.samples[j];

@@ -12,7 +12,7 @@
 
 namespace dolp {
 
-/// In the order of a table, the last one fastest.
+/// In the order of a table; the last axis varies fastest.
 enum class Axis : std::uint8_t { kMaterial, kBand, kWavelength, kTemperature, kN, kK, kTheta, kSigma, kQ };
 inline constexpr std::size_t kAxisCount = static_cast<std::size_t>(Axis::kQ) + 1;
 
@@ -22,13 +22,13 @@ using AxisArray = EnumArray<Axis, Value, kAxisCount>;
 inline constexpr std::array<Axis, kAxisCount> kAllAxes = enumerators<Axis, kAxisCount>();
 
 struct AxisDescription {
-  const char* name;    ///< of the coordinate in table files and Datasets
-  const char* column;  ///< of points, of .csv and .npy tables, in [grid] and of keywords
+  const char* name;    ///< name of the coordinate in table files and Datasets
+  const char* column;  ///< name in points, in .csv and .npy tables, in [grid] and as a keyword
   const char* units;
   const char* long_name;
   NumberRange range;
-  bool is_required;         ///< every table has it; the others are the scene's where a table lacks them
-  bool has_labels = false;  ///< its values are positions, from 0, in the list of labels that the scene and files have
+  bool is_required;         ///< every table has the axis; for other axes, a table without one has the scene's value
+  bool has_labels = false;  ///< its values are positions, from 0, in the list of labels
 };
 
 inline constexpr std::array<AxisDescription, kAxisCount> kAxes = {{
@@ -47,7 +47,8 @@ static_assert(kAxes.back().name != nullptr, "each axis has a row");
 
 constexpr const AxisDescription& description_of(Axis axis) { return kAxes[static_cast<std::size_t>(axis)]; }
 
-/// Winds, which stand for values of sigma: in [grid] and in points; in tables a second coordinate along sigma.
+/// Wind speeds. In [grid] and in points they replace values of sigma; tables have them as a second coordinate along
+/// sigma.
 inline constexpr AxisDescription kWind = {
     "wind_m_s", "wind_m_s", "m s-1", "wind speed that gives sigma (Cox and Munk 1954)", kWindRange, false};
 
@@ -56,11 +57,11 @@ inline constexpr std::array<Axis, kAxisCount> kColumnOrder = {Axis::kTheta,    A
                                                               Axis::kN,        Axis::kK,           Axis::kWavelength,
                                                               Axis::kMaterial, Axis::kTemperature, Axis::kBand};
 
-/// The values of each axis in any order, each once. A grid has one value at least of those that every table has.
+/// The values of each axis, in any order and without repetition. A grid has at least one value of each required axis.
 using Axes = AxisArray<std::vector<double>>;
-/// The names on axes that have labels; empty for the others. Materials by name, bands as "8-14".
+/// The names of the values of axes with labels: materials by name, bands as "8-14". Empty for other axes.
 using AxisLabels = AxisArray<std::vector<std::string>>;
-/// A number of each axis: positions, or counts.
+/// One number per axis: positions, or counts.
 using PerAxis = AxisArray<std::size_t>;
 
 }  // namespace dolp

@@ -24,7 +24,7 @@ struct Device {
   std::uint32_t max_texels = 0;                ///< maxTexelBufferElements
   std::uint32_t max_workgroups = 0;            ///< maxComputeWorkGroupCount[0]
   std::uint32_t subgroup_size = 0;             ///< 0 when unknown (Vulkan 1.0)
-  std::uint32_t local_size = 64;               ///< invocations of a workgroup, as dolp wants them
+  std::uint32_t local_size = 64;               ///< invocations in a workgroup of dolp's kernels
   bool timestamps = false;                     ///< the compute queue has a clock
 };
 
@@ -34,7 +34,7 @@ DOLP_EXPORT std::string type_name(Device::Type type);
 /// All devices in the order of the Vulkan loader; EvaluatorOptions::device may be a position in it.
 DOLP_EXPORT std::vector<Device> devices();
 
-/// Refuses a device that cannot be used. Errors: DeviceError with the reason; with no name, where none can be used.
+/// Throws if a device cannot be used, or with no name, if no device can be used. Errors: DeviceError with the reason.
 DOLP_EXPORT void require_device(const std::string& device = {});
 
 }  // namespace dolp

@@ -8,10 +8,10 @@
 namespace dolp {
 
 enum class EffectState : std::uint8_t {
-  kAbsent,     ///< the scene does not ask for it
+  kAbsent,     ///< the scene does not have it
   kKept,       ///< computed
-  kDropped,    ///< left out: a bound shows that its change is negligible
-  kNotNeeded,  ///< a choice of the model that nothing kept depends on
+  kDropped,    ///< left out, because a bound shows that its effect is negligible
+  kNotNeeded,  ///< a choice of the model that affects nothing that is kept
 };
 
 /// "absent", "kept", "dropped", "not_needed".
@@ -29,18 +29,20 @@ enum class Part : std::uint8_t {
   kEmission,
   kPathRadiance,
   kDiffuse,
-  kProfile  ///< of the surroundings, over their mean
+  kProfile  ///< variation of the surroundings around their mean
 };
 
-/// An effect that a scene can ask for, and its treatment at some points.
+/// An effect that a scene can have, and its treatment at some points.
 struct Effect {
   std::string name;
   EffectState state = EffectState::kKept;
   std::string reason = {};
-  std::string needs = {};                ///< quantities that it requires; empty when it is not kept
-  std::optional<Part> part = {};         ///< none for choices of the model
-  std::optional<double> bound = {};      ///< of a dropped one: of the change of (Q/I, U/I) without it, worst point
-  std::optional<double> influence = {};  ///< of a kept one: estimate of that change, the largest of a few points
+  std::string needs = {};         ///< quantities that it needs; empty if it is not kept
+  std::optional<Part> part = {};  ///< empty for choices of the model
+  /// for a dropped effect: bound of the change of (Q/I, U/I) without it, at the worst point
+  std::optional<double> bound = {};
+  /// for a kept effect: estimate of the change of (Q/I, U/I) without it, the largest of a few points
+  std::optional<double> influence = {};
 };
 
 }  // namespace dolp

@@ -6,7 +6,7 @@
 
 namespace dolp {
 
-/// A value of each enumerator; the enumeration counts from 0.
+/// An array with one value per enumerator. The enumeration counts from 0.
 template <class Key, class Value, std::size_t kCount>
 struct EnumArray : std::array<Value, kCount> {
   using std::array<Value, kCount>::operator[];

@@ -1,5 +1,5 @@
-// Errors that calls of the library throw, each with an exit status of the command line, and the progress that may
-// cancel a call.
+// Errors that the library throws; each belongs to an exit status of the command line. And the progress function, which
+// can cancel a call.
 #pragma once
 
 #include <cstddef>
@@ -35,14 +35,14 @@ class DOLP_EXPORT MemoryError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A Progress returned false (exit 130). The message says what remains on disk, and how to continue.
+/// A Progress returned false (exit 130). The message names what remains on disk and how to continue.
 class DOLP_EXPORT Cancelled : public std::runtime_error {
  public:
   explicit Cancelled(const std::string& left = "no file was written") : std::runtime_error(left) {}
 };
 
-/// Called with the number of finished items, first with 0 when all inputs are read, from one thread at a time, not
-/// always the caller's; returning false ends the call with Cancelled.
+/// Receives the number of finished items; the first call is with 0 when all inputs are read. Calls come from one thread
+/// at a time, which may not be the caller's. If it returns false, the call ends with Cancelled.
 using Progress = std::function<bool(std::size_t done, std::size_t total)>;
 
 }  // namespace dolp

@@ -19,7 +19,7 @@ struct DOLP_EXPORT NumberRange {
 
   /// False for NaN and infinities.
   bool contains(double value) const;
-  /// For messages, e.g. "(0, 1e6]"; an infinite end is written "inf)".
+  /// For messages, for example "(0, 1e6]". An infinite end is written "inf)".
   std::string text() const;
 };
 
@@ -28,19 +28,19 @@ struct DOLP_EXPORT Key {
   enum class Type { kNumber, kWord, kFlag, kText, kPair, kAxis, kNames, kPairs };
   std::string key;  ///< dotted: "surface.sigma"
   Type type = Type::kNumber;
-  std::string unit;                ///< "1" for numbers without one, empty for words and texts
-  NumberRange range;               ///< of a number and of each value of pairs and axes
-  std::vector<std::string> words;  ///< that a word may be
-  std::string fallback;            ///< default as in a scene file; "required"; empty when the key is simply absent
-  std::string meaning;             ///< one line, with the symbol
-  std::vector<std::string> rivals = {};  ///< alternative keys, which stand in no scene together
-  std::size_t layer = 0;  ///< layer of the coating that the key describes; all layers have the keys of the first
+  std::string unit;                      ///< "1" for numbers without a unit, empty for words and texts
+  NumberRange range;                     ///< allowed range of a number, and of each value of pairs and axes
+  std::vector<std::string> words;        ///< allowed words
+  std::string fallback;                  ///< default, as in a scene file; "required"; empty if the key is simply absent
+  std::string meaning;                   ///< one line, with the symbol
+  std::vector<std::string> rivals = {};  ///< alternative keys; a scene has at most one of them
+  std::size_t layer = 0;  ///< number of the film that the key describes; all films have the keys of the first
 
   /// "a number in [0, 90]", "one of cauchy, gaussian", …
   std::string allowed() const;
 };
 
-/// Every key a scene can have, in the order of a scene file: the reader accepts exactly these.
+/// Every key that a scene can have, in the order of a scene file. The reader accepts only these.
 DOLP_EXPORT const std::vector<Key>& keys();
 
 }  // namespace dolp

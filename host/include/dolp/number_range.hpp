@@ -1,4 +1,4 @@
-// Allowed ranges of the numbers a user can give, shared by scene keys and point columns.
+// Allowed ranges of numbers, for scene keys and for columns of points.
 #pragma once
 
 #include <dolp/key.hpp>
@@ -22,14 +22,14 @@ inline constexpr NumberRange kNonNegativeRange{0.0, std::numeric_limits<double>:
 inline constexpr NumberRange kPositiveRange{0.0, std::numeric_limits<double>::infinity(),
                                             NumberRange::Ends::kOpenBelow};
 inline constexpr NumberRange kWavelengthUmRange{0.1, 1e4};
-/// Wavelengths in um that are all above this number are likely in nm.
+/// Wavelengths in um that are all above this number are probably in nm.
 inline constexpr double kLikelyNanometres = 1000.0;
 inline constexpr NumberRange kToleranceRange{1e-10, 1e-2};
 inline constexpr NumberRange kAxisCountRange{1.0, 1e6};
 /// Positions on an axis with labels.
 inline constexpr NumberRange kLabelRange{0.0, 1e6};
 
-/// The smith masking of the cauchy distribution needs a finite mean slope (shaders/physics/README.md, section 2).
+/// For the Cauchy distribution smith masking needs a finite mean slope (shaders/physics/README.md, section 2).
 inline constexpr NumberRange kSmithCauchyQRange{1.5, 1e4, NumberRange::Ends::kOpenBelow};
 
 }  // namespace dolp

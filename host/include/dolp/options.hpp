@@ -11,11 +11,11 @@
 
 namespace dolp {
 
-/// A column of points by the name that it has in CSV files: theta_deg, sigma, q, n, k, wavelength_um; for Mueller
-/// matrices theta_i_deg, theta_r_deg, delta_phi_deg.
+/// A column of points. Its name is the one in CSV files: theta_deg, sigma, q, n, k, wavelength_um; for Mueller matrices
+/// theta_i_deg, theta_r_deg, delta_phi_deg.
 struct Column {
   std::string name;
-  std::span<const double> values;  ///< one for each point, or one for all
+  std::span<const double> values;  ///< one per point, or one for all
 };
 
 /// The 4 x 4 Mueller pBRDF of a pair of directions, row by row. Units: 1/sr.
@@ -24,20 +24,21 @@ using MuellerMatrix = std::array<double, 16>;
 /// Evaluator, device and dispatch options.
 struct EvaluatorOptions {
   std::string evaluator = "vulkan";  ///< vulkan; cpu: the kernel source compiled as C++; reference: adaptive quadrature
-  std::string device = {};           ///< of vulkan: its position in devices(), or a part of its name; empty: the best
-  bool is_interactive = false;       ///< in short dispatches: a call ends soon after Progress returns false; a window
-                                     ///< on the same device continues to draw
+  /// for vulkan: position in devices(), or a part of the name; empty: the best device
+  std::string device = {};
+  /// dispatches are short: a call ends soon after Progress returns false, and a window on the device continues to draw
+  bool is_interactive = false;
 };
 
 /// Options for one table or list of points.
 struct RunOptions {
   bool keep_all = false;     ///< drop no effect, however small
   Progress progress = {};    ///< may be empty
-  std::string history = {};  ///< what the attribute "history" of a table says beside the time
-  bool resume = false;       ///< of write_table: go on with what a cancelled or killed call of the same scene left
+  std::string history = {};  ///< text for the attribute "history" of a table, besides the time
+  bool resume = false;       ///< for write_table: continues a cancelled or killed call of the same scene
 };
 
-/// One of `count` equal parts of a table that several processes compute; by default none, but the table itself.
+/// One of `count` equal parts of a table that several processes compute. The default is the whole table.
 struct Shard {
   std::size_t number = 0;  ///< from 1 to count
   std::size_t count = 0;
@@ -46,9 +47,9 @@ struct Shard {
 
 /// Options for the check of a table.
 struct TableCheckOptions {
-  std::size_t samples = 64;  ///< entries to compute again, distinct; all when the table has no more
-  std::uint64_t seed = 1;    ///< of their choice
-  bool named_files = false;  ///< n, k and E0 from the files that the scene names, not from the table
+  std::size_t samples = 64;  ///< number of different entries to compute again; all if the table has fewer
+  std::uint64_t seed = 1;    ///< seed for the choice of entries
+  bool named_files = false;  ///< reads n, k and E0 from the files that the scene names instead of from the table
   Progress progress = {};    ///< may be empty
 };
 

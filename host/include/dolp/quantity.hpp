@@ -1,4 +1,4 @@
-// The quantities of results: the only place that names and orders them.
+// The quantities of results. Only this file names and orders them.
 #pragma once
 
 #include <algorithm>
@@ -12,12 +12,13 @@
 
 namespace dolp {
 
-/// A number that results have of each entry or point, in the order of table files; the status comes after the last.
+/// A number that results have for each entry or point, in the order of table files. The status follows after the last
+/// one.
 ///
-/// Units: Stokes parameters are exitances, W m-2 um-1 at a single wavelength and W m-2 over a band; in bistatic mode
-/// radiances, W m-2 sr-1 um-1 and W m-2 sr-1; the others are 1.
-/// Conventions: Q = I_s - I_p keeps its sign; U = V = 0 in hemispherical mode. Over a band rho is the mean weighted by
-/// the emission pi B(T), without emission by the incident radiation, without either by the wavelength.
+/// Units: Stokes parameters are exitances, in W m-2 um-1 at one wavelength and W m-2 over a band; in bistatic mode they
+/// are radiances, in W m-2 sr-1 um-1 and W m-2 sr-1. The other quantities have unit 1.
+/// Conventions: Q = I_s - I_p keeps its sign; U = V = 0 in hemispherical mode. Over a band, rho is a mean weighted by
+/// the emission pi B(T); without emission by the incident radiation; without both by the wavelength.
 enum class Quantity : std::uint8_t {
   kDolp,    ///< sqrt(Q^2 + U^2) / I; negative with a negative I, NaN with I = 0
   kQOverI,  ///< Q / I, signed: it crosses zero where contributions cancel
@@ -25,15 +26,15 @@ enum class Quantity : std::uint8_t {
   kStokesQ,
   kStokesU,
   kStokesV,
-  kRhoI,         ///< with k_s and the diffuse part
-  kRhoQ,         ///< with k_s
-  kAlbedo,       ///< A(theta): R = 1, without k_s and the diffuse part
-  kEmissivityS,  ///< the emission uses it; over a band weighted with pi B(T)
+  kRhoI,         ///< includes k_s and the diffuse part
+  kRhoQ,         ///< includes k_s
+  kAlbedo,       ///< A(theta): reflectance if R = 1, without k_s and the diffuse part
+  kEmissivityS,  ///< the value that the emission uses; over a band weighted by pi B(T)
   kEmissivityP,
   kDolpLow,  ///< with dolp_high: bounds of the DOLP of a surface with these facets and all bounces
   kDolpHigh,
-  kErrorEstimate,     ///< bound of |d DOLP|, q_over_i, dolp_low and dolp_high included; infinite when there is none
-  kRhoErrorEstimate,  ///< bound of max(|d rho_I|, |d rho_Q|) / rho_I; infinite when there is none
+  kErrorEstimate,     ///< bound of |d DOLP|, also for q_over_i, dolp_low and dolp_high; infinite without a bound
+  kRhoErrorEstimate,  ///< bound of max(|d rho_I|, |d rho_Q|) / rho_I; infinite without a bound
 };
 inline constexpr std::size_t kQuantityCount = static_cast<std::size_t>(Quantity::kRhoErrorEstimate) + 1;
 
@@ -42,20 +43,20 @@ using QuantityArray = EnumArray<Quantity, Value, kQuantityCount>;
 
 inline constexpr std::array<Quantity, kQuantityCount> kAllQuantities = enumerators<Quantity, kQuantityCount>();
 
-/// Some of them, in their order.
+/// Some quantities, in the order of Quantity.
 using Quantities = std::vector<Quantity>;
 
-/// Requirement of a quantity on the scene.
+/// What a scene must have for a quantity.
 enum class QuantityNeeds : std::uint8_t { kNothing, kReflectance, kMoments, kEmission, kBracket };
 
 struct QuantityDescription {
   const char* name;
   const char* long_name;
-  bool has_stokes_units;  ///< otherwise the unit is 1
-  const char* ancillary;  ///< names of the variables that qualify it, or ""
+  bool has_stokes_units;  ///< false: the unit is 1
+  const char* ancillary;  ///< names of the variables that describe its quality, or ""
   QuantityNeeds needs;
 
-  /// Points have a column of it only where the scene asks for it.
+  /// True if points have its column only if the scene needs it.
   constexpr bool is_optional() const { return needs == QuantityNeeds::kEmission || needs == QuantityNeeds::kBracket; }
 };
 
@@ -97,7 +98,7 @@ constexpr const QuantityDescription& description_of(Quantity quantity) {
   return kQuantities[static_cast<std::size_t>(quantity)];
 }
 
-/// `stokes_units`: of the Stokes parameters of these results.
+/// `stokes_units` is the unit of the Stokes parameters.
 inline std::string units_of(Quantity quantity, const std::string& stokes_units) {
   return description_of(quantity).has_stokes_units ? stokes_units : "1";
 }

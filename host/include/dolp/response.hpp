@@ -1,5 +1,5 @@
-// Response tables: what the facets at each local angle of incidence contribute to the reflectance of a rough surface,
-// whatever its material. The only place that names and orders their variables.
+// Response tables: the contribution of facets at each local angle of incidence to the reflectance of a rough surface,
+// for any material. Only this file names and orders their variables.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@
 
 namespace dolp {
 
-/// A variable of a response table. With the reflectances R_s and R_p of a facet at the local angle of incidence beta,
-/// R = (R_s + R_p) / 2 and D = (R_s - R_p) / 2, sums over beta are moments, for k_s = 1 and without a diffuse part.
+/// A variable of a response table. With the reflectances R_s and R_p of a facet at the local angle of incidence beta, R
+/// = (R_s + R_p) / 2 and D = (R_s - R_p) / 2, the sums over beta are moments, for k_s = 1 and without a diffuse part.
 ///
 /// Accuracy: let a_m and b_m be the coefficients of the Chebyshev polynomials T_m(x), x = 2 asinh(cos(beta) / c0) /
 ///   asinh(1 / c0) - 1, m < beta.size(), through R (of emission 1 - R) and D / sin^2(beta) at the angles beta. Errors
@@ -29,7 +29,7 @@ inline constexpr auto kAllResponseVariables = enumerators<ResponseVariable, kRes
 struct ResponseDescription {
   const char* name;
   const char* long_name;
-  bool has_beta;  ///< else it has one value of each entry
+  bool has_beta;  ///< false: it has one value per entry
 };
 
 inline constexpr const char* kResponseQualifier = "response_error";
@@ -48,7 +48,7 @@ constexpr const ResponseDescription& description_of(ResponseVariable variable) {
   return kResponseVariables[static_cast<std::size_t>(variable)];
 }
 
-/// The coordinate beta of files.
+/// The coordinate beta in files.
 struct BetaDescription {
   const char* name;
   const char* long_name;

@@ -12,18 +12,18 @@ namespace dolp {
 
 /// Results of one entry of a grid or one scattered point.
 struct PointResult {
-  QuantityArray<double> values;  ///< NaN where there is none
+  QuantityArray<double> values;  ///< NaN without a value
   std::uint32_t status = 0;      ///< bits of status.hpp
-  double model_change = 0.0;     ///< what kModelInaccurate is about, as a share of I; not among the values of files
+  double model_change = 0.0;     ///< change of I that sets kModelInaccurate, as a share of I; not stored in files
 
   PointResult() { values.fill(std::numeric_limits<double>::quiet_NaN()); }
   double& operator[](Quantity quantity) { return values[quantity]; }
   double operator[](Quantity quantity) const { return values[quantity]; }
 };
 
-/// Results of many entries: a column of each quantity, and the status.
+/// Results of many entries: one column per quantity, and the status.
 struct ResultColumns {
-  QuantityArray<std::vector<double>> columns;  ///< empty where a quantity was not computed
+  QuantityArray<std::vector<double>> columns;  ///< empty if a quantity was not computed
   std::vector<std::uint32_t> status;           ///< likewise
 
   std::vector<double>& operator[](Quantity quantity) { return columns[quantity]; }

@@ -14,7 +14,7 @@
 
 namespace dolp {
 
-/// Values of an axis between two ends, both of which are among them.
+/// Values of an axis between two ends, which are included.
 struct AxisRange {
   double from = 0.0;
   double to = 0.0;
@@ -23,14 +23,14 @@ struct AxisRange {
   friend bool operator==(const AxisRange&, const AxisRange&) = default;
 };
 
-/// A value as a scene file writes it: 0.2, [0.1, 0.2], { from = 0, to = 60, count = 7 }. Text that is no TOML is a
+/// A value in the syntax of a scene file: 0.2, [0.1, 0.2], { from = 0, to = 60, count = 7 }. Text that is not TOML is a
 /// word: smith.
 struct TomlText {
   std::string text;
   friend bool operator==(const TomlText&, const TomlText&) = default;
 };
 
-/// A value of a key, or none, which removes the key, or the whole table of an effect.
+/// A value of a key, or no value. No value removes the key, or the whole table of an effect.
 class DOLP_EXPORT Value {
  public:
   using Content = std::variant<std::monostate, bool, double, std::string, std::vector<double>, AxisRange, TomlText>;
@@ -54,7 +54,7 @@ class DOLP_EXPORT Value {
   // NOLINTEND(google-explicit-constructor)
 
   const Content& content() const { return content_; }
-  /// As a scene file writes it; "none" for no value.
+  /// The value in the syntax of a scene file; "none" without a value.
   std::string text() const;
 
   friend bool operator==(const Value&, const Value&) = default;
@@ -63,15 +63,15 @@ class DOLP_EXPORT Value {
   Content content_;
 };
 
-/// A key of a scene, dotted ("surface.sigma", "grid.theta_deg"), and its value. A missing table is created. Between
-/// alternatives (surface.n, .material, .material_file; source.irradiance, .relative_irradiance, .preset, .file;
-/// path.temperature_K, .radiance; spectrum.wavelength_um, .band_um) a setting replaces what the scene has.
+/// A dotted key of a scene ("surface.sigma", "grid.theta_deg") and its value. A missing table is created. A setting
+/// replaces alternatives that the scene has (surface.n, .material, .material_file; source.irradiance,
+/// .relative_irradiance, .preset, .file; path.temperature_K, .radiance; spectrum.wavelength_um, .band_um).
 struct DOLP_EXPORT Setting {
   std::string key;
   Value value;
-  std::string origin = {};  ///< beginning of messages about it; empty: the key and the value
+  std::string origin = {};  ///< beginning of error messages; empty: the key and the value
 
-  /// Reads "KEY=VALUE", a value as TomlText. `option`: of a command line, which messages then begin with.
+  /// Reads "KEY=VALUE" with a value as in TomlText. `option` is the option of a command line with which messages begin.
   /// Errors: InputError for anything else.
   static Setting from_text(const std::string& argument, const std::string& option = {});
 

@@ -1,4 +1,4 @@
-// Status bits of an entry or point; 0 where nothing is wrong. This is the only place that numbers them.
+// Status bits of an entry or point; 0 means that nothing is wrong. Only this file numbers them.
 #pragma once
 
 #include <array>
@@ -7,31 +7,31 @@
 namespace dolp {
 
 enum Status : std::uint32_t {
-  /// rho_s or rho_p outside [0, 1] by more than its error bound: Kirchhoff's law does not hold there.
+  /// rho_s or rho_p is outside [0, 1] by more than its error bound. Kirchhoff's law does not hold there.
   kReflectanceOutsideZeroToOne = 1,
   /// DOLP misses the scene's tolerance.
   kToleranceNotMet = 2,
   /// Outside the model's domain; undefined quantities are NaN.
   kOutsideModelDomain = 4,
-  /// I <= 0: the sum of what is emitted and reflected is not a radiation that exists.
+  /// I <= 0: such radiation does not exist.
   kIntensityNotPositive = 8,
   /// rho misses the scene's tolerance. DOLP may be right.
   kRhoToleranceNotMet = 16,
-  /// Light that single scattering loses, or that a masking creates, changes I by an estimated more than 5 %. Alone: the
-  /// numbers are right for the model, and the model is wrong for the surface.
+  /// Light that single scattering loses, or that a masking creates, changes I by more than 5 % (an estimate). If it is
+  /// the only bit, the numbers are right for the model, but the model is wrong for the surface.
   kModelInaccurate = 32,
 };
 
-/// Largest change of I without kModelInaccurate.
+/// Largest change of I that does not set kModelInaccurate.
 inline constexpr double kLargestModelChange = 0.05;
 
-/// A bit of Status with the word that files have for it.
+/// A bit of Status with its name in files.
 struct StatusBit {
   std::uint32_t mask;
   const char* meaning;
 };
 
-/// In the order in which files list them.
+/// In the order of files.
 inline constexpr std::array<StatusBit, 6> kStatusBits = {{
     {kReflectanceOutsideZeroToOne, "reflectance_outside_zero_to_one"},
     {kToleranceNotMet, "tolerance_not_met"},

@@ -20,28 +20,30 @@ struct Attribute {
   friend bool operator==(const Attribute&, const Attribute&) = default;
 };
 
-/// Longer texts are variables of characters in files: the netCDF library stores attributes of less than 64 KiB.
+/// Longer texts are stored as variables of characters, because the netCDF library limits attributes to less than 64
+/// KiB.
 inline constexpr std::size_t kMostAttributeBytes = 64'000;
 
-/// A quantity over wavelength, as the scene has it; one row is a constant.
+/// A quantity over wavelength in the scene; a constant has one row.
 struct Curve {
   std::vector<double> wavelength_um;
   std::vector<double> values;
-  std::vector<double> used;  ///< at each value of the axis of wavelengths, one without that axis; empty over a band
+  std::vector<double> used;  ///< at each value of the wavelength axis; one value without the axis; empty over a band
   friend bool operator==(const Curve&, const Curve&) = default;
 };
 
 /// All data of a table except its values.
 struct TableHead {
-  Axes axes;                     ///< in the user's order; the required ones, and others where the table has them
+  Axes axes;                     ///< in the user's order; required axes, and other axes that the table has
   AxisLabels labels;             ///< all labels of the scene's axes, also in a part of a table
-  std::vector<double> wind_m_s;  ///< that give the values of sigma; empty where the scene gives sigma itself
-  std::vector<double> beta_deg;  ///< of a response table: local angles of incidence, ascending
-  Curve index_n;                 ///< n, k and E0 that the table was computed with; empty where there is none
+  std::vector<double> wind_m_s;  ///< wind speeds that give the values of sigma; empty if the scene gives sigma
+  std::vector<double> beta_deg;  ///< local angles of incidence of a response table, ascending
+  Curve index_n;                 ///< n, k and E0 of the computation; empty if there is none
   Curve index_k;
-  Curve irradiance;                         ///< before source.scale
+  Curve irradiance;                         ///< before multiplication by source.scale
   std::string stokes_units = "W m-2 um-1";  ///< UDUNITS; "W m-2" over a band
-  std::vector<Attribute> attributes;        ///< in the order of the file, without those of Table::file_attributes alone
+  /// in the order of the file, without the additional ones of Table::file_attributes
+  std::vector<Attribute> attributes;
 
   /// Number of values of each axis, 1 for an axis that the table lacks.
   PerAxis counts() const {
@@ -56,11 +58,11 @@ struct TableHead {
   }
   /// The label of a value of an axis that has labels.
   const std::string& label(Axis axis, double value) const { return labels[axis].at(static_cast<std::size_t>(value)); }
-  /// Values that a response variable has of an entry.
+  /// Number of values per entry of a response variable.
   std::size_t width_of(ResponseVariable variable) const {
     return description_of(variable).has_beta ? beta_deg.size() : 1;
   }
-  /// At the first wavelength, n and k.
+  /// Position of an entry at the first wavelength, n and k.
   std::size_t position(std::size_t theta, std::size_t sigma_index, std::size_t q_index) const {
     return (theta * axes[Axis::kSigma].size() + sigma_index) * axes[Axis::kQ].size() + q_index;
   }
@@ -70,7 +72,7 @@ struct TableHead {
 ///
 /// Shape: columns in C order of the axes.
 struct TableValues : TableHead, ResultColumns {
-  /// Of a response table: width_of values of each entry.
+  /// Only in response tables: width_of values per entry.
   ResponseArray<std::vector<double>> responses;
 };
 

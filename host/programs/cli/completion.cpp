@@ -70,7 +70,7 @@ Words settings_for(const std::string& option) {
   return all;
 }
 
-/// The words that an option's value may be; empty where it may be anything.
+/// The words that an option's value may be; empty if it may be anything.
 Words choices_of(const CLI::Option& option) {
   const std::string name = option.get_name();
   if (name == "--set" || name == "--vary" || name == "--compare") return settings_for(name);

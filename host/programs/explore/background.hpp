@@ -26,7 +26,7 @@ std::jthread run_in_background(Work work, std::future<Result>& result, const std
   });
 }
 
-/// True where the work of run_in_background has ended.
+/// True if the work of run_in_background has ended.
 template <class Result>
 bool is_ended(const std::future<Result>& result) {
   return !result.valid() || result.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
@@ -56,7 +56,7 @@ class BackgroundTask {
   bool is_running() const { return state_ == State::kRunning; }
   /// From 0 to 1 within the phase.
   double progress() const { return progress_; }
-  /// The present phase; empty where work has one phase. The work sets it, and progress begins again from 0.
+  /// The present phase; empty if work has one phase. The work sets it, and progress begins again from 0.
   std::string phase() const;
   void set_phase(const std::string& phase);
   /// The message, or the reason of a failure, in one line.
@@ -106,7 +106,7 @@ class Sweep {
   void follow(Job job, const std::string& column = "theta_deg");
   std::optional<Job> wanted() const { return is_finished() ? std::nullopt : job_; }
   bool take(const JobPart& news);
-  /// True where the points on display are those of the last job.
+  /// True if the points on display are those of the last job.
   bool is_finished() const { return job_ && shown_key_ == job_->key; }
   // The points on display, and their values in the column.
   const std::vector<Point>& points() const { return points_; }
@@ -138,7 +138,7 @@ class Worker {
   /// Waits for results, at most this long.
   void await_news(std::chrono::duration<double> at_most);
 
-  /// True where all wanted jobs are done. Some results may not have been taken yet.
+  /// True if all wanted jobs are done. Some results may not have been taken yet.
   bool is_idle() const;
 
  private:

@@ -34,7 +34,7 @@ class Curve {
   const Scene& scene() const { return scene_; }
   const std::string& key() const { return key_; }
   bool is_finished() const { return shown_.key == key_of(Stage::kFine); }
-  /// True where the points on display belong to an earlier scene.
+  /// True if the points on display belong to an earlier scene.
   bool is_stale() const { return !points().empty() && !is_current(); }
   // The points on display, and the scene that they were computed with.
   const Scene& shown_scene() const { return points().empty() ? scene_ : shown_.scene; }
@@ -102,7 +102,7 @@ class Peak {
   const std::optional<PeakAnswer>& answer() const { return answer_; }
   /// One for each effect that the scene has.
   const std::vector<WithoutEffect>& without() const { return without_; }
-  /// True where the answer and the peak without each effect are known.
+  /// True if the answer and the peak without each effect are known.
   bool is_complete() const;
 
   /// The part that one radiating effect adds to Q/I at the peak; exact, because Stokes parameters add up.

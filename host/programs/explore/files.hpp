@@ -17,7 +17,7 @@ void save_scene(Session& session, const std::string& path);
 /// Writes the finished curve with the columns of `dolp eval`. Errors: InputError before it is finished; IoError.
 void save_curve(const Session& session, const std::string& path);
 
-/// True for a file that save_session wrote; false also where it cannot be read.
+/// True for a file that save_session wrote; false also if it cannot be read.
 bool is_session_file(const std::string& path);
 
 /// Shows a file: measured points (.csv), a scene, or a session that save_session wrote.

@@ -17,7 +17,7 @@ struct MapAxis {
   std::string column() const;
   /// The order in which a grid or a list has axes, the slowest first.
   std::size_t rank() const;
-  /// True where a table can have the axis.
+  /// True if a table can have the axis.
   bool is_of_tables() const;
   friend bool operator==(const MapAxis&, const MapAxis&) = default;
 };
@@ -30,7 +30,7 @@ std::vector<MapAxis> map_axes(const Scene& scene, double theta_max_deg);
 /// files. Its ends are equal where only one wavelength is known.
 Scale known_part(const Scene& scene, const MapAxis& axis);
 
-/// Why a map of a scene cannot have a range along an axis; empty where it can.
+/// Why a map of a scene cannot have a range along an axis; empty if it can.
 std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range);
 
 /// The values of one quantity on a map.
@@ -74,11 +74,11 @@ class HeatMap {
   /// Takes results of this map; false for other results. The first level is shown when it is complete.
   bool take(const JobPart& news);
   bool is_finished() const { return is_current() && is_complete(kLevels.size() - 1); }
-  /// True where the map on display is the scene's, at the first level at least.
+  /// True if the map on display is the scene's, at the first level at least.
   bool is_coarse_done() const { return is_current() && !points_[0].empty(); }
-  /// True where the first level is begun and not complete.
+  /// True if the first level is begun and not complete.
   bool is_arriving() const { return arriving_key_ == key_ && !arriving_.empty(); }
-  /// True where the map on display belongs to an earlier scene.
+  /// True if the map on display belongs to an earlier scene.
   bool is_stale() const { return !shown_key_.empty() && !is_current(); }
 
   const MapAxis& x() const { return x_; }
@@ -98,7 +98,7 @@ class HeatMap {
   bool is_current() const { return shown_key_ == key_; }
   bool is_complete(std::size_t level) const { return points_[level].size() == entries(level); }
   std::string key_of(std::size_t level) const;
-  /// True where x is the slower axis, so that points are in columns.
+  /// True if x is the slower axis, so that points are in columns.
   bool is_turned() const { return x_.rank() < y_.rank(); }
   const MapAxis& slower() const { return is_turned() ? x_ : y_; }
   const MapAxis& faster() const { return is_turned() ? y_ : x_; }

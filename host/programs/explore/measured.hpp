@@ -61,7 +61,7 @@ struct FitJob {
   std::vector<FitRange> vary;
 };
 
-/// Fits as `dolp fit` does. Errors: InputError where points, parameters and scene do not fit together and where no
+/// Fits as `dolp fit` does. Errors: InputError if points, parameters and scene do not fit together and where no
 /// minimum was found; other errors of Evaluator::fit; Cancelled.
 Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress,
             const std::function<void(const std::string&)>& phase = {});

@@ -53,7 +53,7 @@ struct ScatteringCut {
   double wavelength_um = 0.0;  ///< the middle of a band
 };
 
-/// The pBRDF for `count` directions of reflection. Errors: InputError where the scene has no pBRDF there; other errors
+/// The pBRDF for `count` directions of reflection. Errors: InputError if the scene has no pBRDF there; other errors
 /// of Evaluator::mueller.
 ScatteringCut scattering_cut(Evaluator& evaluator, const Scene& scene, double theta_i_deg, std::size_t count);
 
@@ -64,7 +64,7 @@ struct ImagePolarisation {
 };
 
 /// The polarisation of a surface at `theta_deg` whose normal points to `azimuth_deg` in the image, interpolated in a
-/// curve in hemispherical mode; none where the model fails.
+/// curve in hemispherical mode; none if the model fails.
 /// Conventions: s polarised (Q > 0) is normal to the plane of normal and view, which the image shows as a line along
 /// the azimuth; p lies in the plane.
 std::optional<ImagePolarisation> polarisation_at(const std::vector<Point>& curve, double theta_deg, double azimuth_deg);
@@ -85,7 +85,7 @@ class SourceSky {
   /// The points at an azimuth, ordered by zenith; empty while they are unknown.
   const std::vector<Point>& at(std::size_t azimuth) const { return rings_[azimuth].points(); }
   static double azimuth_deg(std::size_t azimuth) { return 180.0 * static_cast<double>(azimuth) / (kAzimuths - 1); }
-  /// True where all azimuths belong to the present scene.
+  /// True if all azimuths belong to the present scene.
   bool is_finished() const { return std::ranges::all_of(rings_, &Sweep::is_finished); }
 
  private:

@@ -22,7 +22,7 @@ struct PointList {
   std::vector<Column> columns() const;
 };
 
-/// True where a wind gives the surface its sigma.
+/// True if a wind gives the surface its sigma.
 bool has_wind(const Scene& scene);
 
 /// A scene's surface at some zeniths, which are the first column.
@@ -38,9 +38,9 @@ Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list
 struct Point : PointResult {
   double theta_deg = 0.0;  ///< meaningless on a grid
 
-  /// True where the status has no bit that makes DOLP meaningless or voids its error bound.
+  /// True if the status has no bit that makes DOLP meaningless or voids its error bound.
   bool is_good() const;
-  /// True where the point has limits between which DOLP with all bounces lies.
+  /// True if the point has limits between which DOLP with all bounces lies.
   bool has_bracket() const;
 };
 

@@ -43,7 +43,7 @@ std::vector<Part> radiating_parts(const Session& session) {
   return parts;
 }
 
-/// The point at the peak without an effect; null where there is none.
+/// The point at the peak without an effect; null if there is none.
 const Point* point_without(const Session& session, const std::string& effect) {
   if (!session.peak().answer()) return nullptr;
   const std::vector<WithoutEffect>& all = session.peak().without();

@@ -21,13 +21,13 @@ const char* stale_text(bool is_stale);
 std::string peak_text(const Session& session);
 /// The radiation that causes the polarisation at the maximum: parts of Q/I that add up.
 std::string cause_text(const Session& session);
-/// Why there are no residuals between two zeniths; empty where there are some.
+/// Why there are no residuals between two zeniths; empty if there are some.
 std::string no_residuals_text(const Session& session, const Scale& theta);
 /// The values under the cursor.
 std::string cursor_text(const Session& session);
-/// Q/I at the maximum with all effects and without one, in percent: "-14.36 → -59.59 %"; empty where it is unknown.
+/// Q/I at the maximum with all effects and without one, in percent: "-14.36 → -59.59 %"; empty if it is unknown.
 std::string without_text(const Session& session, const std::string& effect);
-/// Q/I with and without an effect in a sentence; empty also where the model fails without the effect.
+/// Q/I with and without an effect in a sentence; empty also if the model fails without the effect.
 std::string without_words(const Session& session, const std::string& effect);
 /// The cost of the finished curve, in three lines: time, work, error.
 std::vector<std::string> cost_lines(const Session& session);

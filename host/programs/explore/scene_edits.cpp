@@ -107,7 +107,7 @@ Parameter film_parameter(const Key& key) {
 
 constexpr const char* kCoating = "surface.coating";
 
-/// True where a change makes an older change of `other` void.
+/// True if a change makes an older change of `other` void.
 bool replaces(const Setting& change, const std::string& other) {
   const std::string& key = change.key;
   if (other == key || other == table_of(key)) return true;

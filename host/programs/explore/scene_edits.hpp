@@ -19,10 +19,10 @@ struct Parameter {
   std::string symbol;    ///< UTF-8
   Scale slider;          ///< a part of the key's range; you can type the rest
   const char* equation;  ///< UTF-8, with its number in the paper where it has one
-  /// True where the scene uses the parameter; null: every scene that has it uses it.
+  /// True if the scene uses the parameter; null: every scene that has it uses it.
   bool (*is_used)(const Scene& scene) = nullptr;
 
-  /// The scene's value; none where the window hides the control.
+  /// The scene's value; none if the window hides the control.
   std::optional<double> value(const Scene& scene) const;
   /// "λ [µm]".
   std::string label() const;
@@ -34,7 +34,7 @@ struct Choice {
   const char* label;
   const char* equation;
 
-  /// Position in Key::words; none where the window hides the control.
+  /// Position in Key::words; none if the window hides the control.
   std::optional<std::size_t> word(const Scene& scene) const;
   bool is_flag() const { return key->words.front() == "false"; }
 };
@@ -88,7 +88,7 @@ class SceneEdits {
   void note_saved() { saved_ = changes_; }
   /// Goes to another state of this file or of another file; what was saved of this file stays known.
   void go_to(const SceneEdits& other);
-  /// True where both have the same changes of the same file.
+  /// True if both have the same changes of the same file.
   bool is_same_scene(const SceneEdits& other) const { return is_same_file(other) && changes_ == other.changes_; }
   const std::vector<Setting>& changes() const { return changes_; }
   std::vector<Setting> changes_without(const std::vector<std::string>& keys) const;

@@ -26,7 +26,7 @@ struct JobList {
   void add(std::vector<Job> more) { std::ranges::move(more, std::back_inserter(jobs)); }
 };
 
-/// Gives an axis the range that was typed for it, or else the range in which the scene is known. False where that is
+/// Gives an axis the range that was typed for it, or else the range in which the scene is known. False if that is
 /// one value.
 bool find_range(const Scene& scene, const View& view, MapAxis& axis) {
   const auto typed = view.map_ranges.find(axis.label);

@@ -123,7 +123,7 @@ class Session {
   // ---- Computing.
   /// The wanted jobs, the most wanted first.
   std::vector<Job> wanted() const;
-  /// True where wanted() may have changed since the last call.
+  /// True if wanted() may have changed since the last call.
   bool take_changed() { return std::exchange(is_changed_, false); }
   void take(const std::vector<JobPart>& news);
 
@@ -156,7 +156,7 @@ class Session {
   /// The files of skies that the window edits.
   SkyFiles& skies() { return skies_; }
   const SkyFiles& skies() const { return skies_; }
-  /// True where the scene names one of these files.
+  /// True if the scene names one of these files.
   bool has_own_sky() const { return skies_.hold(sky_file(scene())); }
   /// The fit of the marked parameters to the measured points; none without points, or without a marked parameter that
   /// the scene has.
@@ -169,7 +169,7 @@ class Session {
   const Message& message() const { return message_; }
   /// True while the mouse changes the scene.
   bool is_dragged() const { return is_held_ && is_in_gesture_; }
-  /// True where a curve belongs to an earlier scene that is not of the same drag.
+  /// True if a curve belongs to an earlier scene that is not of the same drag.
   bool is_outdated(const Curve& curve) const { return curve.is_stale() && !is_dragged(); }
   /// The effects of the last finished curve. For kept effects the influence is the one at the cursor's zenith.
   const std::vector<Effect>& effects() const { return effects_; }

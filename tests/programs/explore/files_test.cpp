@@ -18,7 +18,7 @@ class ExploreFiles : public testing::Test {
  protected:
   std::string at(const std::string& name) const { return (folder_.path() / name).string(); }
   void put(const std::string& name, const std::string& text) const { std::ofstream(at(name)) << text; }
-  /// The line that refuses a file; empty where it is opened.
+  /// The line that refuses a file; empty if it is opened.
   std::string refusal(const std::string& name) const {
     Session session(paint());
     try {

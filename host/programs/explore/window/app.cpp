@@ -132,7 +132,7 @@ struct Gui {
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
 
-  /// Applies theme and scale. True where the font has changed.
+  /// Applies theme and scale. True if the font has changed.
   bool follow(const Preferences& wanted) {
     if (wanted.is_light != is_light()) set_theme(wanted.is_light);
     float display = 1.0F;

@@ -44,7 +44,7 @@ class App {
   /// path for a picture of the last frame, the last frames wait until all results are there.
   std::string run_frames(std::size_t count, const std::string& screenshot_path);
 
-  /// True where nothing is left to compute, and all results are in the session.
+  /// True if nothing is left to compute, and all results are in the session.
   bool is_idle() const;
   /// Draws until is_idle() returns true.
   void settle();

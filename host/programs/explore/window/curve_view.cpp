@@ -116,7 +116,7 @@ Area add_entry(const char* id, const std::string& name, ImU32 colour = kTextColo
   return {at, {at.x + 2.0F * line, at.y + line}};
 }
 
-/// An entry with a line in a style. Returns true where the entry was clicked.
+/// An entry with a line in a style. Returns true if the entry was clicked.
 bool add_curve(const char* id, const std::string& name, const CurveStyle& style, ImU32 colour = kTextColour) {
   const Area sample = add_entry(id, name, colour);
   const bool is_clicked = ImGui::IsItemClicked();

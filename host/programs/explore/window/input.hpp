@@ -39,7 +39,7 @@ class Input {
   bool has_more() const { return !events_.empty(); }
   /// GLFW's number of the key that goes down in this frame.
   int pressed_key() const { return pressed_key_; }
-  /// True where there was anything to show since the last call.
+  /// True if there was anything to show since the last call.
   bool take_news() { return std::exchange(has_news_, false); }
   /// Time since the last event.
   double rest_s() const { return std::chrono::duration<double>(Clock::now() - last_event_).count(); }

@@ -281,7 +281,7 @@ std::string influence_text(const Effect& row) {
                      points >= 10.0 ? fmt::format("{:.0f}", points) : fmt::format("{:.2g}", points));
 }
 
-/// True where the effects belong to an earlier scene.
+/// True if the effects belong to an earlier scene.
 bool is_stale(const Session& session) { return !session.effects().empty() && !session.curve().is_finished(); }
 
 void draw_row(const Session& session, const Effect& row) {

@@ -31,7 +31,7 @@ class Plot {
   // The numbers beside the axes.
   Area x_numbers() const;
   Area y_numbers() const;
-  /// True where both axes can show a point: it is finite, and positive along logarithmic axes.
+  /// True if both axes can show a point: it is finite, and positive along logarithmic axes.
   bool can_show(double x_value, double y_value) const;
 
   ImVec2 at(double x_value, double y_value) const { return at_position(x().position(x_value), y().position(y_value)); }

@@ -20,7 +20,6 @@
 #include "device/buffer.hpp"
 #include "device/context.hpp"
 #include "device/result.hpp"
-#include "device/result.hpp"
 #include "explore/window/style.hpp"
 
 namespace dolp::explore {
@@ -161,7 +160,7 @@ class Presenter {
     return capabilities;
   }
 
-  /// True where the surface has a size to draw into: a minimised window has none.
+  /// True if the surface has a size to draw into: a minimised window has none.
   bool has_area(VkExtent2D size) const {
     if (size.width == 0 || size.height == 0) return false;
     const VkExtent2D extent = extent_of(capabilities(), size);

@@ -45,7 +45,7 @@ class Actions {
   BackgroundTask& table_task() { return table_; }
   BackgroundTask& true_error_task() { return true_error_; }
   BackgroundTask& fit_task() { return fit_; }
-  /// True where the true error belongs to another curve than the one on display.
+  /// True if the true error belongs to another curve than the one on display.
   bool is_true_error_old() const;
 
  private:

@@ -147,7 +147,7 @@ class MapView {
   bool is_log_ = false;
   std::optional<Scale> typed_colours_;
 
-  Scale colour_scale_;  ///< from the first colour to the last; empty where all values are equal
+  Scale colour_scale_;  ///< from the first colour to the last; empty if all values are equal
   MapField field_;
   std::vector<ImU32> colours_;
   std::vector<Run> runs_;

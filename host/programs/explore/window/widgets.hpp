@@ -25,7 +25,7 @@ class NumberFields {
   void draw_end(const std::string& id, std::size_t end, const std::array<double, 2>& ends, const ApplyEnds& apply);
   /// The text in a field that was not applied; empty: none.
   std::string text(const std::string& id) const;
-  /// Why the text of a field was refused; empty where it was not.
+  /// Why the text of a field was refused; empty if it was not.
   std::string reason(const std::string& id) const;
   /// Draws the reason below the fields.
   void draw_reason(const std::string& id) const;
@@ -101,7 +101,7 @@ class PathDialog {
 
  private:
   void enter(const std::filesystem::path& folder);
-  /// True where the chosen file is clicked again.
+  /// True if the chosen file is clicked again.
   bool draw_list();
   /// The typed path; a relative one begins in the folder.
   std::filesystem::path path() const { return folder_ / name_; }

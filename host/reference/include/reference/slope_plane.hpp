@@ -94,7 +94,7 @@ class RegimeScan {
  public:
   RegimeScan(const Zenith& view, double theta_rad, const ScanSteps& steps, Regime regime)
       : view_(view), theta_rad_(theta_rad), steps_(steps), regime_(std::move(regime)) {}
-  /// Break points of chi in (0, pi/2) at one t; none where there are too many to be worth it.
+  /// Break points of chi in (0, pi/2) at one t; none if there are too many to be worth it.
   std::vector<double> chi_breaks(double t) const;
   /// Break points of t up to `end`, where bends enter at chi = 0 or pi/2.
   std::vector<double> t_breaks(double width, double end) const;

@@ -57,9 +57,9 @@ constexpr CommandRow kCommands[] = {
     {"completion", run_completion, "completions of a shell for this command line, or its manual page",
      "dolp completion bash > ~/.local/share/bash-completion/completions/dolp\n  dolp completion man | man -l -"}};
 
-/// An option, a flag or, without hyphens, a positional argument.
+/// An option, a flag, or (without hyphens) a positional argument.
 struct OptionRow {
-  const char* commands;  ///< separated by blanks; those that require it end in "!"
+  const char* commands;  ///< names separated by blanks; "!" marks commands that require the option
   const char* name;
   std::variant<bool Options::*, std::string Options::*, std::size_t Options::*, std::vector<std::string> Options::*>
       value;
@@ -69,7 +69,7 @@ struct OptionRow {
 
 CLI::Validator range_to(std::size_t most) { return CLI::Range(std::size_t{1}, most); }
 
-/// Refuses a minus sign, with which a whole number would pass as 2^64 less it.
+/// Refuses a minus sign. Otherwise a negative whole number would wrap around to a huge one.
 CLI::Validator not_negative() {
   return {[](const std::string& value) {
             return value.starts_with('-') ? "must be a whole number from 0, not " + value : "";
@@ -157,7 +157,7 @@ std::vector<OptionRow> option_rows() {
        "exit 1 if any entry misses its tolerance"}};
 }
 
-/// Refuses empty values: they would pass as options that are not there.
+/// Refuses empty values, which would count as missing options.
 std::string not_empty(const std::string& value) { return value.empty() ? "must not be empty" : ""; }
 
 CLI::Option* add_option(CLI::App& command, const OptionRow& row, Options& options) {
@@ -180,7 +180,7 @@ CLI::Option* add_option(CLI::App& command, const OptionRow& row, Options& option
       row.value);
 }
 
-/// The options of `verify` and `materials` that make sense only with others.
+/// Declares which options of `verify` and `materials` need others.
 void add_conditions(CLI::App& verify, CLI::App& materials) {
   for (const char* of_table : {"--samples", "--seed", "--named-files"})
     verify.get_option(of_table)->needs(verify.get_option("TABLE"));

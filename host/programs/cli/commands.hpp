@@ -1,4 +1,4 @@
-// The command line, its values, and the commands. command_line.cpp says what each command and option does.
+// The command line, its values, and the commands. command_line.cpp describes each command and option.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -10,7 +10,7 @@
 
 namespace dolp::cli {
 
-/// The values of the command line. An empty text was not given.
+/// The values of the command line. A missing option has an empty text.
 struct Options {
   int (*run)(const Options&) = nullptr;  ///< the command; null if none was given
   std::string command_line;              ///< for the table's history
@@ -43,16 +43,16 @@ std::vector<Setting> all_settings(const Options& options);
 /// The allowed values of a scene key: "a number in [0, 10]".
 std::string allowed(const std::string& key);
 
-/// The scene with all_settings and then `more`, after a warning on stderr for each of its remarks.
+/// The scene with all_settings and then `more`. Prints each remark as a warning on stderr.
 Scene load_scene(const Options& options, const std::vector<Setting>& more = {});
 
-/// The evaluator of --evaluator and --device. Errors: InputError for a device of an evaluator that has none.
+/// The evaluator of --evaluator and --device. Errors: InputError if --device is given for an evaluator without devices.
 Evaluator evaluator_of(const Options& options);
 
-/// Prints a report as --json and --quiet ask for: to stdout, or to stderr when the results themselves go to stdout.
+/// Prints a report according to --json and --quiet: to stdout, or to stderr if the results themselves go to stdout.
 void print(const Report& report, const Options& options);
 
-/// Prints a report and its remarks; returns the exit status that --strict asks for.
+/// Prints a report and its remarks. Returns the exit status, which depends on --strict.
 int finish(const Report& report, const Options& options);
 
 /// The commands and their options, for parsing, help, completions and the manual page. Parsing fills `options`, which
@@ -66,10 +66,10 @@ int run_merge(const Options& options);
 int run_eval(const Options& options);
 int run_mueller(const Options& options);
 int run_plan(const Options& options);
-/// kExitAccuracy if a stated error is too small or a tolerance is missed without the status that says so.
+/// Returns kExitAccuracy if a stated error is too small, or if a tolerance is missed without its status.
 int run_verify(const Options& options);
 int run_lookup(const Options& options);
-/// kExitAccuracy if no minimum is found.
+/// Returns kExitAccuracy if no minimum is found.
 int run_fit(const Options& options);
 int run_explore(const Options& options);
 int run_materials(const Options& options);

@@ -46,7 +46,7 @@ complete -c dolp -a '(dolp completion words -- (commandline -opc)[2..] :(command
 
 bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
-/// "--output", "-o".
+/// The names of an option: "--output", "-o".
 Words names_of(const CLI::Option& option) {
   Words names;
   for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
@@ -54,11 +54,11 @@ Words names_of(const CLI::Option& option) {
   return names;
 }
 
-/// "KEY=WORD" for the keys of a scene that an option takes, or "KEY=".
+/// Completions of a setting: "KEY=WORD" for keys with words, "KEY=" for other keys.
 Words settings_for(const std::string& option) {
   Words all;
   for (const Key& key : dolp::keys()) {
-    if (key.layer > 1) continue;  // as the first
+    if (key.layer > 1) continue;  // later layers have the keys of the first
     if (option == "--vary" && key.type != Key::Type::kNumber) continue;
     if (option == "--compare" && key.words.empty()) continue;
     if (key.words.empty() || option == "--compare") {
@@ -70,7 +70,7 @@ Words settings_for(const std::string& option) {
   return all;
 }
 
-/// The words that an option's value may be; empty if it may be anything.
+/// The allowed words of an option's value; empty if any value is allowed.
 Words choices_of(const CLI::Option& option) {
   const std::string name = option.get_name();
   if (name == "--set" || name == "--vary" || name == "--compare") return settings_for(name);
@@ -86,8 +86,8 @@ Words choices_of(const CLI::Option& option) {
   return words;
 }
 
-/// The words that complete a line, each with its description behind a tab. `line`: the words behind the program's
-/// name; the last one, behind a colon, is not complete.
+/// The words that complete a line, each with a tab and its description. `line` has the words after the program's name;
+/// the last one, after a colon, is incomplete.
 std::string completing_words(const CLI::App& app, const Words& line) {
   const std::string current = line.empty() ? "" : line.back().substr(1);
   std::string found;
@@ -118,7 +118,7 @@ std::string replaced(std::string text, std::string_view what, std::string_view b
   return text;
 }
 
-/// Text that roff takes as it is.
+/// Text with the characters escaped that roff would interpret.
 std::string roff(const std::string& text) {
   std::string safe = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
   if (safe.starts_with('.') || safe.starts_with('\'')) safe.insert(0, "\\&");

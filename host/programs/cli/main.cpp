@@ -25,7 +25,7 @@
 namespace dolp::cli {
 namespace {
 
-/// The option that was meant, or how to give a key of a scene as one; empty for other words.
+/// A hint at the option that was probably meant, or at --set for a key of a scene; empty for other words.
 std::string option_hint(const CLI::App& command, const std::string& option) {
   constexpr std::size_t kMostMistakes = 2;
   const std::string given = option.substr(0, option.find('='));
@@ -77,16 +77,16 @@ int parse_and_run(int argc, char** argv) {
   return status;
 }
 
-/// Ends the program, with one line, where C++ code finds no memory, in a driver too: little of it survives that, and
-/// nothing is lost, because an output has no name before it is whole.
+/// Ends the program with one line if C++ code, also in a driver, finds no memory. With little memory nothing else is
+/// safe. Nothing is lost, because an output has no name until it is complete.
 [[noreturn]] void end_out_of_memory() {
   static std::atomic_flag is_ending;
-  while (is_ending.test_and_set()) ::pause();  // another thread says it
+  while (is_ending.test_and_set()) ::pause();  // another thread is printing the message
   ::_exit(fail_out_of_memory("dolp"));
 }
 
-/// Reuses freed memory: lists as long as a table, and a driver's memory for a pipeline, would otherwise return to the
-/// system and come back page by page.
+/// Keeps freed memory for reuse. Otherwise large lists, and a driver's memory for a pipeline, would return to the
+/// system and be requested again page by page.
 void keep_freed_memory() {
   mallopt(M_MMAP_MAX, 0);
   mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
@@ -96,11 +96,11 @@ void keep_freed_memory() {
 }  // namespace dolp::cli
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of its writing
+  std::signal(SIGXFSZ, SIG_IGN);  // so that a too large file is an error of the write call
   std::set_new_handler(dolp::cli::end_out_of_memory);
   dolp::cli::keep_freed_memory();
   const int status = dolp::guarded("dolp", [&] { return dolp::cli::parse_and_run(argc, argv); });
   if (status != dolp::kExitMemory && !dolp::vulkan::driver_is_busy()) return status;
   std::fflush(stdout);
-  ::_exit(status);  // libraries need memory, and the driver's threads, to clean up
+  ::_exit(status);  // no cleanup: libraries would need memory and the driver's threads
 }

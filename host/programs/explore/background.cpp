@@ -138,7 +138,7 @@ void Worker::run() {
     try {
       part = advance(*next);
     } catch (const Cancelled&) {
-      // The job was no longer wanted when it stopped; by now it may be wanted again.
+      // The job stopped because it was no longer wanted. It may be wanted again now.
     }
     put_back(std::move(*next), std::move(part));
     on_news_();

@@ -32,34 +32,34 @@ bool is_ended(const std::future<Result>& result) {
   return !result.valid() || result.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
-/// One piece of work at a time that the user starts, watches and may cancel. The window's thread makes all calls.
+/// One piece of work at a time, which the user starts, watches and may cancel. Call it only from the window's thread.
 class BackgroundTask {
  public:
-  /// The end of the work, in the window's thread; returns the message for the user. Throws as Work.
+  /// Ends the work, in the window's thread. Returns the message for the user. May throw what Work throws.
   using Ending = std::function<std::string()>;
-  /// Runs on its own thread. Throws Cancelled when its Progress returns false.
+  /// Work for a separate thread. Throws Cancelled if its Progress returns false.
   using Work = std::function<Ending(const Progress&)>;
   enum class State { kNone, kRunning, kDone, kFailed, kCancelled };
 
   /// The thread calls `on_change` at each progress and at the end.
   explicit BackgroundTask(std::function<void()> on_change) : on_change_(std::move(on_change)) {}
-  /// Cancels and waits.
+  /// Cancels the work and waits for its end.
   ~BackgroundTask() { cancel(); }
 
   /// Does nothing while work is running.
   void start(const Work& work);
   void cancel() { is_cancelled_ = true; }
-  /// Calls the Ending of work that has ended.
+  /// Calls the Ending of finished work.
   void finish();
 
   State state() const { return state_; }
   bool is_running() const { return state_ == State::kRunning; }
   /// From 0 to 1 within the phase.
   double progress() const { return progress_; }
-  /// The present phase; empty if work has one phase. The work sets it, and progress begins again from 0.
+  /// The current phase; empty if the work has only one. The work sets it; progress then restarts from 0.
   std::string phase() const;
   void set_phase(const std::string& phase);
-  /// The message, or the reason of a failure, in one line.
+  /// The message, or the reason for a failure, in one line.
   const std::string& message() const { return message_; }
 
  private:
@@ -78,11 +78,11 @@ class BackgroundTask {
 struct Job {
   std::string key;  ///< jobs with the same key have the same content
   Scene scene;
-  std::vector<PointList> parts;  ///< computed one after the other; a more wanted job may come in between
+  std::vector<PointList> parts;  ///< computed one after the other; jobs of higher rank may come in between
   double tolerance = 0.0;        ///< replaces a lower tolerance of the scene
   bool keep_all = false;
   bool wants_effects = false;
-  bool is_brief = false;  ///< once begun it is finished, wanted or not
+  bool is_brief = false;  ///< once begun, it runs to its end even if it is no longer wanted
 };
 
 /// The results of one part of a job.
@@ -91,15 +91,15 @@ struct JobPart {
   std::size_t part = 0;  ///< position among the job's parts
   Scene scene;           ///< the job's scene with the tolerance that was used
   std::vector<Point> points = {};
-  std::string csv = {};  ///< the points with the columns of `dolp eval`, where the job wants effects
+  std::string csv = {};  ///< the points with the columns of `dolp eval`, if the job wants effects
   bool is_last = false;
-  // Totals of the whole job, in the last part.
+  // Totals of the whole job; only the last part has them.
   std::vector<Effect> effects = {};
   double wall_s = 0.0;
   double evaluations = 0.0;
 };
 
-/// The points of a job of one part, from when it is wanted to when a later one is done.
+/// The points of a job with one part. They stay on display until the points of a later job are complete.
 class Sweep {
  public:
   /// Switches to the points of `job`, which differ in `column`.
@@ -119,17 +119,18 @@ class Sweep {
   std::vector<double> at_;
 };
 
-/// Has the meaning of explore::evaluate. One thread makes all calls.
+/// Same contract as explore::evaluate. Only one thread calls it.
 using Evaluate = std::function<Results(const Scene& scene, const PointList& list, const RunOptions& options)>;
 
-/// Computes the wanted jobs in order. A job that is no longer wanted stops within a tile of the device, unless brief.
+/// Computes the wanted jobs in order. A job that is no longer wanted stops within a tile of the device, unless it is
+/// brief.
 class Worker {
  public:
   /// The worker's thread calls `on_news` after each part and after a failure.
   Worker(Evaluate evaluate, std::function<void()> on_news);
   ~Worker();
 
-  /// Replaces the list of wanted jobs, the most wanted first. A running job continues if its key is still in the list.
+  /// Replaces the list of wanted jobs, in order of their rank. A running job continues if its key is still in the list.
   void want(std::vector<Job> jobs);
 
   /// The results since the last call. Errors: rethrows what ended the worker, for example a DeviceError.
@@ -150,10 +151,10 @@ class Worker {
   };
 
   void run();
-  /// Waits for the next task; none when the worker is to stop.
+  /// Waits for the next task; empty if the worker must stop.
   std::optional<Task> next_task();
   JobPart advance(Task& task);
-  /// Reports the finished part of a task, and puts the rest of the task back to its rank among the wanted jobs.
+  /// Reports the finished part of a task, and returns the rest of the task to its rank among the wanted jobs.
   void put_back(Task task, std::optional<JobPart> part);
   bool is_wanted(const std::string& key) const;
   bool may_continue(const Job& job) const;
@@ -163,10 +164,10 @@ class Worker {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::condition_variable arrived_;
-  std::vector<Task> tasks_;            ///< all but the running one
+  std::vector<Task> tasks_;            ///< all tasks except the running one
   std::vector<std::string> wanted_;    ///< keys
   std::vector<std::string> finished_;  ///< wanted keys whose jobs are done
-  std::string running_;                ///< a key; empty while no job runs
+  std::string running_;                ///< key of the running job; empty if none runs
   std::vector<JobPart> news_;
   bool is_stopping_ = false;
   std::future<void> end_;  ///< holds the exception that ended the worker

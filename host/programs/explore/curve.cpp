@@ -15,7 +15,7 @@ constexpr std::size_t kStride = 10;  // the reference recomputes every tenth poi
 
 double dolp_of(const Point& point) { return point[Quantity::kDolp]; }
 
-/// The largest DOLP that the point may have within its error bound.
+/// The largest DOLP of a point within its error bound.
 double most_of(const Point& point) { return dolp_of(point) + point[Quantity::kErrorEstimate]; }
 
 /// A part of a scene that can be removed.
@@ -57,13 +57,14 @@ std::vector<WithoutEffect> without_each(const Scene& scene, const SceneEdits& ed
     try {
       without.push_back({removal.effect, removal.radiates, edits.scene().with({removal.change})});
     } catch (const InputError&) {
-      // Nothing else radiates, the source is relative to the emission, or the emission needs the masking.
+      // The part cannot be removed: nothing else radiates, the source is relative to the emission, or the emission
+      // needs the masking.
     }
   }
   return without;
 }
 
-/// The good point with the largest DOLP; the end where no point is good.
+/// The good point with the largest DOLP; end() without a good point.
 std::vector<Point>::const_iterator largest_of(const std::vector<Point>& points) {
   const auto rank = [](const Point& point) {
     return std::pair(point.is_good(), point.is_good() ? dolp_of(point) : 0.0);

@@ -1,4 +1,4 @@
-// One curve over theta, from the first coarse results to the finished ones, and its maximum.
+// One curve over theta, from its first coarse results to its final ones, and its maximum.
 #pragma once
 
 #include "explore/background.hpp"
@@ -11,7 +11,7 @@ class Curve {
  public:
   enum class Stage { kCoarse, kFine };
 
-  static constexpr std::size_t kFineCount = 181;  ///< zeniths from 0 to 90 degrees by half a degree
+  static constexpr std::size_t kFineCount = 181;  ///< zeniths from 0 to 90 degrees in steps of half a degree
   static constexpr std::size_t kCoarseCount = 46;
   static constexpr double kCoarseTolerance = 1e-2;
 
@@ -19,16 +19,16 @@ class Curve {
   explicit Curve(const Scene& scene, std::string name = "curve")
       : name_(std::move(name)), scene_(scene), shown_{.scene = scene}, finished_{.scene = scene} {}
 
-  /// Switches to the curve of `scene`, whose content `key` identifies. The curve on display stays, marked as outdated,
+  /// Switches to the curve of `scene`. `key` identifies its content. The curve on display stays, marked as outdated,
   /// until newer points arrive.
   void follow(const std::string& key, const Scene& scene, bool keep_all);
 
-  /// The job of a stage; none if it is done.
+  /// The job of a stage; empty if the stage is done.
   std::optional<Job> wanted(Stage stage) const;
 
-  /// Takes results of this curve; false for other results.
+  /// Takes results of this curve. Returns false for other results.
   bool take(const JobPart& news);
-  /// Takes a coarse curve of an earlier scene, unless the curve on display is current; false for other results.
+  /// Takes a coarse curve of an earlier scene, unless the curve on display is current. Returns false for other results.
   bool take_earlier(const JobPart& news);
 
   const Scene& scene() const { return scene_; }
@@ -39,10 +39,10 @@ class Curve {
   // The points on display, and the scene that they were computed with.
   const Scene& shown_scene() const { return points().empty() ? scene_ : shown_.scene; }
   const std::vector<Point>& points() const { return shown_.points; }
-  /// The points on display and the maximum, which may lie between them; for drawing.
+  /// The points on display and the maximum, which may lie between them.
   std::vector<Point> drawn() const;
   void set_peak(const Point& peak) { peak_ = peak; }
-  /// The last finished curve; it has no points before the first one is finished.
+  /// The last finished curve; without points until the first one is finished.
   const JobPart& finished() const { return finished_; }
 
   /// The largest error bound of DOLP among points whose status promises a bound.
@@ -62,19 +62,19 @@ class Curve {
   std::optional<Point> peak_;  ///< the maximum of the finished curve
 };
 
-/// Compares every tenth point of a finished curve with the independent reference, all effects kept. Returns the largest
-/// error of DOLP beside its bound, in words.
-/// Errors: Cancelled when `progress` returns false.
+/// Compares every tenth point of a finished curve with the independent reference, with all effects kept. Returns a
+/// sentence with the largest error of DOLP and its bound.
+/// Errors: Cancelled if `progress` returns false.
 std::string true_error(const Curve& curve, const Progress& progress);
 
-/// The largest DOLP of a curve among entries that status calls good.
+/// The largest DOLP of a curve among entries without a bad status.
 struct PeakAnswer {
   Point at;
-  // Between these zeniths DOLP could be the largest, all errors included.
+  // Range of zeniths in which DOLP could be largest, within all errors.
   double theta_low_deg = 0.0;
   double theta_high_deg = 0.0;
   std::optional<double> rival_deg;  ///< a zenith far from the peak at which DOLP could be the largest
-  bool is_at_end = false;           ///< the largest is beside entries that are not good, or at the end of the range
+  bool is_at_end = false;           ///< the maximum is next to entries that are not good, or at the end of the range
 };
 
 /// The peak without one effect.
@@ -82,25 +82,25 @@ struct WithoutEffect {
   std::string effect;  ///< as in Effect::name, or "roughness"
   bool radiates;       ///< the effect is a term of the sum of radiances
   Scene scene;
-  std::optional<Point> result = {};  ///< none until it is computed
+  std::optional<Point> result = {};  ///< empty until it is computed
 };
 
-/// Looks for the peak of a finished curve on a fine grid, then removes each effect there.
+/// Searches the peak of a finished curve on a fine grid. Then removes each effect there.
 class Peak {
  public:
   static constexpr double kStepDeg = 0.02;  ///< resolution in zenith
 
   explicit Peak(const Scene& scene) : scene_(scene) {}
 
-  /// Switches to the peak of a finished curve up to a zenith; `edits` has the curve's scene.
+  /// Switches to the peak of a finished curve up to a zenith. `edits` must have the curve's scene.
   void follow(const Curve& curve, const SceneEdits& edits, double theta_max_deg);
 
   std::vector<Job> wanted() const;
   bool take(const JobPart& news);
 
-  /// None until it is known, and where no entry is good.
+  /// Empty until it is known, and if no entry is good.
   const std::optional<PeakAnswer>& answer() const { return answer_; }
-  /// One for each effect that the scene has.
+  /// One element per effect of the scene.
   const std::vector<WithoutEffect>& without() const { return without_; }
   /// True if the answer and the peak without each effect are known.
   bool is_complete() const;
@@ -116,7 +116,7 @@ class Peak {
   std::string key_;
   Scene scene_;
   std::vector<Point> curve_;
-  std::vector<double> theta_deg_;  ///< around the peak of the curve; empty when no entry is good
+  std::vector<double> theta_deg_;  ///< zeniths near the peak of the curve; empty if no entry is good
   std::optional<PeakAnswer> answer_;
   std::vector<WithoutEffect> without_;
 };

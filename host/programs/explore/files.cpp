@@ -47,7 +47,7 @@ void write_toml(const fs::path& path, const toml::table& table) {
   write_text_atomically(path, text.str());
 }
 
-/// The texts of an array; empty without it.
+/// The texts of an array; empty if there is no array.
 std::vector<std::string> texts_in(Node node) {
   std::vector<std::string> texts;
   const toml::array* const array = node.as_array();
@@ -84,7 +84,7 @@ FitMarks marks_in(const std::vector<std::string>& texts, const std::string& loca
   return marks;
 }
 
-/// Settings that still hold without the window: skies of the window are copied beside the session's file.
+/// The settings, made valid without the window: copies skies of the window to a file beside the session's file.
 toml::array lasting_texts(std::vector<Setting> settings, const SkyFiles& skies, const fs::path& scene,
                           const fs::path& session) {
   for (Setting& setting : settings) {
@@ -97,7 +97,7 @@ toml::array lasting_texts(std::vector<Setting> settings, const SkyFiles& skies, 
   return array_of(settings, [](const Setting& setting) { return setting.text(); });
 }
 
-/// A scene as opened, with its changes and a name, for the file of a session.
+/// A scene as opened, its changes and a name, for a session file.
 toml::table state_table(const SceneEdits& edits, const std::string& name, const SkyFiles& skies,
                         const fs::path& session) {
   const Scene& opened = edits.opened();
@@ -112,7 +112,7 @@ toml::table range_table(const Scale& range) {
   return toml::table{{"from", range.from}, {"to", range.to}, {"log", range.is_log}};
 }
 
-/// The typed range of a name in the file; null for the label of an axis of the map.
+/// The typed range with this name in the file; null if the name is the label of a map axis.
 std::optional<Scale>* fixed_range(View& view, const std::string& name) {
   if (name == "curve zenith") return &view.curve_zoom.x;
   if (name == "curve values") return &view.curve_zoom.y;
@@ -143,7 +143,7 @@ toml::table view_table(const Session& session) {
   return table;
 }
 
-/// A value of a file; `location` begins error messages. Errors: InputError.
+/// A value in a file. Error messages begin with `location`. Errors: InputError.
 template <class T>
 T need(Node node, const std::string& location) {
   const std::optional<T> value = node ? node.value<T>() : std::nullopt;
@@ -154,7 +154,7 @@ T need(Node node, const std::string& location) {
   return *value;
 }
 
-/// The position of the name in the file among some names. Errors: InputError.
+/// The position of a name among the allowed names. Errors: InputError.
 template <class Choices, class NameOf>
 std::size_t need_one_of(const Choices& choices, const NameOf& name_of, Node node, const std::string& location) {
   const auto name = need<std::string>(node, location);
@@ -193,7 +193,7 @@ void read_ranges(View& view, Node node, const std::string& location) {
   }
 }
 
-/// A number below `count`; 0 where it is missing.
+/// A number below `count`; 0 if it is missing.
 std::size_t index_in(Node node, std::size_t count, const std::string& location) {
   if (!node) return 0;
   const int index = need<int>(node, location);
@@ -344,7 +344,7 @@ double Preferences::zoom() const {
 }
 
 void Preferences::zoom_by(int steps) {
-  constexpr int kMostSteps = 8;  // twice the size, or half of it
+  constexpr int kMostSteps = 8;  // zoom to about twice or half the size
   zoom_steps_ = std::clamp(zoom_steps_ + std::clamp(steps, -2 * kMostSteps, 2 * kMostSteps), -kMostSteps, kMostSteps);
 }
 

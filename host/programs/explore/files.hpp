@@ -1,30 +1,30 @@
-// TOML files of the window: sessions, and preferences that outlive it.
+// TOML files of the window: sessions and preferences.
 #pragma once
 
 #include "explore/session.hpp"
 
 namespace dolp::explore {
 
-/// Writes scene, pins, snapshots, view, the path of the measured points and what a fit varies. Paths in the file are
-/// relative to its folder; skies of skies() are copied into that folder, as NAME_sky_ZENITH_HORIZON.csv.
+/// Writes scene, pins, snapshots, view, path of the measured points, and the fitted parameters. Paths in the file are
+/// relative to its folder. Copies skies of skies() into that folder as NAME_sky_ZENITH_HORIZON.csv.
 /// Errors: IoError.
 void save_session(const Session& session, const std::string& path);
 
-/// Writes the scene, which counts as unchanged from then on. A sky of the window goes into a file beside it,
-/// "NAME_sky.csv", which the scene names from then on. Errors: IoError.
+/// Writes the scene, which then counts as unchanged. Writes a sky of the window to a file beside it, "NAME_sky.csv";
+/// from then on the scene names that file. Errors: IoError.
 void save_scene(Session& session, const std::string& path);
 
-/// Writes the finished curve with the columns of `dolp eval`. Errors: InputError before it is finished; IoError.
+/// Writes the finished curve with the columns of `dolp eval`. Errors: InputError if it is not finished; IoError.
 void save_curve(const Session& session, const std::string& path);
 
-/// True for a file that save_session wrote; false also if it cannot be read.
+/// True for a file from save_session; false also for an unreadable file.
 bool is_session_file(const std::string& path);
 
-/// Shows a file: measured points (.csv), a scene, or a session that save_session wrote.
-/// Errors: InputError in one line; the session stays as it was.
+/// Shows a file: measured points (.csv), a scene, or a session from save_session.
+/// Errors: InputError in one line; the session then stays unchanged.
 void open_file(Session& session, const std::string& path);
 
-/// Look and recent files.
+/// The look of the window, and recent files.
 class Preferences {
  public:
   static constexpr std::size_t kMostRecent = 10;
@@ -32,12 +32,12 @@ class Preferences {
   /// $XDG_CONFIG_HOME/dolp/window.toml, by default in ~/.config; empty without a home.
   static std::filesystem::path default_path();
 
-  /// Reads the file, if there is one. With an empty path nothing is kept. Errors: InputError for other content.
+  /// Reads the file if it exists. With an empty path preferences are not stored. Errors: InputError for wrong content.
   void load(const std::filesystem::path& path);
   /// Errors: IoError.
   void save() const;
 
-  /// Puts a file first among the recent ones.
+  /// Puts a file at the head of the recent files.
   void remember(const std::filesystem::path& file);
   /// The absolute paths of the recent files that exist, the most recent first.
   std::vector<std::string> recent() const;
@@ -45,7 +45,7 @@ class Preferences {
   bool is_light = false;  ///< theme
   /// Factor for the size of text and controls.
   double zoom() const;
-  /// Makes text and controls larger by some steps, within limits that keep text readable and in the window.
+  /// Enlarges text and controls by some steps. Limits keep text readable and controls in the window.
   void zoom_by(int steps);
   void zoom_to_default() { zoom_steps_ = 0; }
 

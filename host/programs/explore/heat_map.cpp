@@ -11,13 +11,13 @@
 namespace dolp::explore {
 namespace {
 
-/// A number of scenes that an axis can have.
+/// A number of a scene that can be an axis.
 struct AxisOfNumber {
   std::string name, key;
-  std::optional<Scale> range = {};  ///< none: the slider's
+  std::optional<Scale> range = {};  ///< empty: the range of its slider
 };
 
-/// All axes but the zenith. No scene has both numbers that share a name.
+/// All axes except the zenith. No scene has both numbers that share a name.
 const std::vector<AxisOfNumber>& axes_of_numbers() {
   static const std::vector<AxisOfNumber> all = [] {
     std::vector<AxisOfNumber> axes = {{"sigma", "surface.sigma"},
@@ -45,13 +45,13 @@ Scale grid_range(const Scene& scene, const MapAxis& axis) {
   return has_range ? Scale{low, high, axis.scale.is_log} : axis.scale;
 }
 
-/// The corners of a square in turn.
+/// The corners of a square, in order.
 struct Corner {
   std::size_t x, y;
 };
 constexpr std::array<Corner, 4> kCorners = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
 
-/// Adds the lines within the square at (column, row).
+/// Adds the lines in the square at (column, row).
 void add_lines(const MapField& field, double level, std::size_t column, std::size_t row, std::vector<Segment>& lines) {
   std::array<double, 4> value{};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -70,7 +70,7 @@ void add_lines(const MapField& field, double level, std::size_t column, std::siz
     };
     crossings.emplace_back(between(column, &Corner::x), between(row, &Corner::y));
   }
-  // Two crossings, or four around a saddle, joined in turn.
+  // Joins two crossings, or four around a saddle in pairs.
   for (std::size_t i = 0; i + 1 < crossings.size(); i += 2)
     lines.push_back({crossings[i].first, crossings[i].second, crossings[i + 1].first, crossings[i + 1].second});
 }
@@ -147,7 +147,7 @@ std::vector<Segment> contour(const MapField& field, double level) {
 void HeatMap::follow(const std::string& key, const Scene& scene, bool keep_all, const MapAxis& x, const MapAxis& y,
                      double theta_deg) {
   if (x != x_ || y != y_) {
-    // Old results along new axes would be wrong.
+    // Old results would be wrong on the new axes.
     points_ = {};
     shown_key_.clear();
     ++version_;
@@ -178,7 +178,7 @@ PointList HeatMap::part(std::size_t level, std::size_t first) const {
     list[faster().column()] = fast;
     return list;
   }
-  // Films are in no table: a list has all combinations.
+  // A table has no axis for films, so a list of all combinations is computed.
   std::vector<double> all_slow, all_fast;
   for (const double value : slow) {
     all_fast.insert(all_fast.end(), fast.begin(), fast.end());

@@ -67,7 +67,7 @@ std::optional<double> rms_of(const std::vector<Measurement>& residuals) {
 }
 
 FitRange fit_range(const FitMarks& marks, const Scene& scene, const Parameter& parameter, double value) {
-  constexpr double kLeastK = 1e-3;  // above 0, so that the search runs along the logarithm of k and finds small ones
+  constexpr double kLeastK = 1e-3;  // positive, so that the search is logarithmic in k and finds small values
   const std::string& key = parameter.key->key;
   const auto marked = marks.find(key);
   if (marked != marks.end() && marked->second) {

@@ -1,4 +1,4 @@
-// Measured points beside the model, and fits of the model to them.
+// Measured points, and fits of the model to them.
 #pragma once
 
 #include <map>
@@ -8,18 +8,18 @@
 
 namespace dolp::explore {
 
-/// The quantity that shows an observable.
+/// The plotted quantity of an observable.
 Plotted plotted(Observable observable);
 
-/// The measured points of a regular file: the window never waits for a pipe. Errors: InputError.
+/// Reads measured points from a regular file, so that the window never waits for a pipe. Errors: InputError.
 MeasuredData read_measured(const std::string& path);
 
-/// Measured points, and the model there.
+/// Measured points, with the model at their positions.
 class Residuals {
  public:
   explicit Residuals(const Scene& scene) : scene_(scene), loaded_for_(scene) {}
 
-  /// Errors: InputError for data that have their own settings.
+  /// Errors: InputError if the data have separate settings.
   void load(MeasuredData data);
   void clear() { data_.reset(); }
   void follow(const std::string& key, const Scene& scene);
@@ -31,10 +31,10 @@ class Residuals {
   /// The scene for which the data were loaded.
   const Scene& loaded_for() const { return loaded_for_; }
   bool is_known() const { return data_ && model_.is_finished(); }
-  /// The measured points of a quantity.
+  /// The measured points for a quantity.
   std::vector<Measurement> measured(Plotted quantity) const;
-  /// The measured points of a quantity with measured minus model as their values; without points at which the model
-  /// gives no value, and empty until the model is known.
+  /// For a quantity: the measured points with measured minus model as their values. Leaves out points without a value
+  /// of the model. Empty until the model is known.
   std::vector<Measurement> residuals(Plotted quantity) const;
 
  private:
@@ -44,35 +44,35 @@ class Residuals {
   Sweep model_;
 };
 
-/// Root mean square of the values; none without any.
+/// Root mean square of the values; empty without values.
 std::optional<double> rms_of(const std::vector<Measurement>& residuals);
 
-/// Keys that vary in fits, with the ranges that were typed for them.
+/// Keys that vary in fits, with the ranges that the user typed.
 using FitMarks = std::map<std::string, std::optional<FitRange>>;
 
-/// The range of a parameter in fits: the typed range, or the slider's as far as the scene takes it. The fit starts at
-/// `value`.
+/// The range of a parameter in fits: the typed range, or the part of the slider's range that the scene allows. The fit
+/// starts at `value`.
 FitRange fit_range(const FitMarks& marks, const Scene& scene, const Parameter& parameter, double value);
 
-/// Everything that a fit needs, so that it can run on its own thread.
+/// All inputs of a fit, so that it can run on a separate thread.
 struct FitJob {
   SceneEdits edits;
   MeasuredData data;
   std::vector<FitRange> vary;
 };
 
-/// Fits as `dolp fit` does. Errors: InputError if points, parameters and scene do not fit together and where no
-/// minimum was found; other errors of Evaluator::fit; Cancelled.
+/// Fits as `dolp fit` does. Errors: InputError if points, parameters and scene do not fit together or no minimum was
+/// found; other errors of Evaluator::fit; Cancelled.
 Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress,
             const std::function<void(const std::string&)>& phase = {});
 
-/// The position of the minimum nearest to the start of the job, by the coordinates of its ranges.
+/// The position of the minimum that is nearest to the job's start, measured in the coordinates of its ranges.
 std::size_t nearest_minimum(const Fit& fit, const FitJob& job);
 
-/// The result of a fit with a chosen minimum, in one line.
+/// The result of a fit, with the chosen minimum, in one line.
 std::string fit_text(const Fit& fit, std::size_t chosen);
 
-/// "1.2 to 1.5"; an end that the range cuts off is "open".
+/// An interval as text: "1.2 to 1.5". An end that the range cuts off is "open".
 std::string interval_text(const FitInterval& interval);
 
 }  // namespace dolp::explore

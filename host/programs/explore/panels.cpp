@@ -12,7 +12,7 @@
 namespace dolp::explore {
 namespace {
 
-constexpr double kSpecularAzimuth_deg = 180.0;  // between the source and a mirror's reflection
+constexpr double kSpecularAzimuth_deg = 180.0;  // azimuth between the source and the reflection by a mirror
 
 /// The wavelengths at which n and k are shown.
 std::pair<double, double> known_um(const Scene& scene) {
@@ -68,7 +68,7 @@ MaterialCurve material_curve(const Scene& scene, std::size_t count) {
       curve.n.push_back(n);
       curve.k.push_back(k);
     } catch (const InputError&) {
-      // The user's file ends within the range.
+      // The range of the user's file ends within the range of the plot.
     }
   }
   return curve;

@@ -1,5 +1,5 @@
-// Values of the views beside the map: slope distributions, a material over wavelength, curves over wavelength and of
-// the smooth surface, the pBRDF in the plane of incidence, a sphere, and the sky of a source.
+// Values for the views beside the map: slope distributions, a material over wavelength, curves over wavelength and of
+// the smooth surface, the pBRDF in the plane of incidence, a sphere, and a sky of source directions.
 #pragma once
 
 #include <algorithm>
@@ -11,17 +11,17 @@ namespace dolp::explore {
 
 inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< in radians
 
-/// A view beside the curve; it is computed while it is shown.
+/// A view beside the curve. It is computed only while it is shown.
 enum class Panel : std::uint8_t { kMap, kSlopes, kMaterial, kSmooth, kSpectrum, kScattering, kShapes, kSky, kFit };
 
-/// Their names, in the order of Panel.
+/// The names in the order of Panel.
 inline constexpr std::array kPanelNames = {"map",   "slopes", "material", "smooth", "spectrum",
                                            "pBRDF", "sphere", "sky",      "fit"};
 
 /// The panel of a name. Errors: InputError that lists the names.
 Panel panel_of(const std::string& name);
 
-/// The other distribution with the same density of flat facets, sigma_G = sigma / sqrt(q - 1), as changes of a scene.
+/// Changes of a scene to the other distribution with an equal density of flat facets: sigma_G = sigma / sqrt(q - 1).
 std::vector<Setting> other_distribution(const Scene& scene);
 
 /// The slope distribution D at an angle alpha between facet and mean plane.
@@ -33,7 +33,7 @@ struct MaterialCurve {
   std::vector<double> wavelength_um, n, k;
 };
 
-/// n and k over all known wavelengths of a built-in material; for other materials over the scene's spectrum, or from 20
+/// n and k over all known wavelengths of a built-in material. For other materials over the scene's spectrum, or from 20
 /// % below to 25 % above a single wavelength.
 MaterialCurve material_curve(const Scene& scene, std::size_t count);
 
@@ -53,31 +53,31 @@ struct ScatteringCut {
   double wavelength_um = 0.0;  ///< the middle of a band
 };
 
-/// The pBRDF for `count` directions of reflection. Errors: InputError if the scene has no pBRDF there; other errors
-/// of Evaluator::mueller.
+/// The pBRDF for `count` directions of reflection. Errors: InputError if the scene has no pBRDF there; other errors of
+/// Evaluator::mueller.
 ScatteringCut scattering_cut(Evaluator& evaluator, const Scene& scene, double theta_i_deg, std::size_t count);
 
-/// The polarisation of a facet of the mean surface in a camera's image.
+/// The polarisation of a facet in a camera's image.
 struct ImagePolarisation {
   double dolp = 0.0;
   double angle_deg = 0.0;  ///< direction of the electric field from the image's horizontal, counterclockwise, 0 to 180
 };
 
-/// The polarisation of a surface at `theta_deg` whose normal points to `azimuth_deg` in the image, interpolated in a
-/// curve in hemispherical mode; none if the model fails.
-/// Conventions: s polarised (Q > 0) is normal to the plane of normal and view, which the image shows as a line along
-/// the azimuth; p lies in the plane.
+/// The polarisation of a facet at `theta_deg` whose normal points to `azimuth_deg` in the image, interpolated in a
+/// curve in hemispherical mode. Empty if the model fails.
+/// Conventions: s polarisation (Q > 0) is perpendicular to the plane of normal and view; p lies in the plane. In the
+/// image this plane is a line along the azimuth.
 std::optional<ImagePolarisation> polarisation_at(const std::vector<Point>& curve, double theta_deg, double azimuth_deg);
 
-/// DOLP of a bistatic scene over the source's directions: rings of zeniths, one for each azimuth.
+/// DOLP of a bistatic scene over directions of the source: rings of zeniths, one per azimuth.
 class SourceSky {
  public:
   static constexpr std::size_t kZeniths = 31;   ///< 0 to 90 degrees
-  static constexpr std::size_t kAzimuths = 37;  ///< 0 to 180 degrees; the other half mirrors them
+  static constexpr std::size_t kAzimuths = 37;  ///< from 0 to 180 degrees; the other half is the mirror image
 
   /// Switches to the sky of a bistatic scene; `key` identifies its content without the azimuth.
   void follow(const std::string& key, const Scene& scene);
-  /// A coarse job for each azimuth that is not known yet.
+  /// Coarse jobs for the azimuths that are not known yet.
   std::vector<Job> wanted() const;
   void take(const JobPart& news) {
     std::ranges::any_of(rings_, [&](Sweep& ring) { return ring.take(news); });
@@ -85,7 +85,7 @@ class SourceSky {
   /// The points at an azimuth, ordered by zenith; empty while they are unknown.
   const std::vector<Point>& at(std::size_t azimuth) const { return rings_[azimuth].points(); }
   static double azimuth_deg(std::size_t azimuth) { return 180.0 * static_cast<double>(azimuth) / (kAzimuths - 1); }
-  /// True if all azimuths belong to the present scene.
+  /// True if all azimuths belong to the current scene.
   bool is_finished() const { return std::ranges::all_of(rings_, &Sweep::is_finished); }
 
  private:

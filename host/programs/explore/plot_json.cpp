@@ -1,4 +1,4 @@
-// The plots of the window as JSON for a picture of lines and text.
+// The plots of the window as JSON, for pictures with lines and text.
 #include <nlohmann/json.hpp>
 
 #include "explore/readout.hpp"
@@ -35,7 +35,7 @@ json map_json(const Session& session) {
   json rows(field.count, json::array());
   for (std::size_t i = 0; i < field.values.size(); ++i)
     rows[i / field.count].push_back(field.is_good[i] ? json(description.scale() * field.values[i]) : json());
-  json colours;  // null unless they were typed
+  json colours;  // null unless the user typed them
   if (const auto& typed = session.view().map_colours) {
     colours = {{"from", description.scale() * typed->from}, {"to", description.scale() * typed->to}};
   }

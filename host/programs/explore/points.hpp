@@ -14,24 +14,25 @@ namespace dolp::explore {
 /// Points to compute: columns, each with one value or with one per point, or the axes of a grid.
 struct PointList {
   std::vector<std::pair<std::string, std::vector<double>>> values;  ///< names as in points of `dolp eval`
-  bool is_grid = false;               ///< all combinations in the order of a table: shared work is done once
-  std::vector<Setting> changes = {};  ///< changes of the scene for these points: numbers that have no column
+  /// all combinations of the values, in the order of a table; shared work is done once
+  bool is_grid = false;
+  std::vector<Setting> changes = {};  ///< changes of the scene for numbers that have no column
 
-  /// The values of a column, which is added where it is missing.
+  /// The values of a column. Adds the column if it is missing.
   std::vector<double>& operator[](const std::string& name);
   std::vector<Column> columns() const;
 };
 
-/// True if a wind gives the surface its sigma.
+/// True if the scene's sigma comes from a wind speed.
 bool has_wind(const Scene& scene);
 
-/// A scene's surface at some zeniths, which are the first column.
+/// The points of a scene's surface at some zeniths. The zenith is the first column.
 PointList points_at(const Scene& scene, std::vector<double> theta_deg);
 
 /// `count` zeniths from `from` to `to`, both included.
 std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count);
 
-/// Computes the points of a list. Errors: as Evaluator::evaluate and Evaluator::table.
+/// Computes the points of a list. Errors: the errors of Evaluator::evaluate and Evaluator::table.
 Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list, const RunOptions& options);
 
 /// The results at a point, in the units of a table.
@@ -40,13 +41,13 @@ struct Point : PointResult {
 
   /// True if the status has no bit that makes DOLP meaningless or voids its error bound.
   bool is_good() const;
-  /// True if the point has limits between which DOLP with all bounces lies.
+  /// True if the point has limits of the DOLP with all bounces.
   bool has_bracket() const;
 };
 
 std::vector<Point> points_of(const PointList& list, const Results& results);
 
-/// "good", or the meaning of status bits, in few words.
+/// "good", or a short text of the status bits.
 std::string status_text(std::uint32_t status);
 
 /// A quantity that a curve or a map can show.
@@ -55,13 +56,13 @@ enum class Plotted : std::uint8_t { kDolp, kSignedDolp, kRhoS, kRhoP, kEmissivit
 struct PlottedDescription {
   Plotted quantity;
   const char* name;               ///< UTF-8
-  const char* meaning;            ///< UTF-8, with the equation
-  bool in_percent;                ///< shown times 100
-  bool needs_rho;                 ///< missing where the plan drops effects
+  const char* meaning;            ///< text in UTF-8, with the equation
+  bool in_percent;                ///< shown multiplied by 100
+  bool needs_rho;                 ///< missing if the plan drops effects
   double (*value)(const Point&);  ///< NaN where the model gives no value
   bool is_signed = false;
 
-  /// The value of a point in the units of the label.
+  /// The value of a point in the unit of the label.
   double shown(const Point& point) const { return scale() * value(point); }
   double scale() const { return in_percent ? 100.0 : 1.0; }
   /// "DOLP [%]".

@@ -10,7 +10,7 @@
 namespace dolp::explore {
 namespace {
 
-// Albedos outside these limits are mentioned.
+// The readout mentions albedos outside these limits.
 constexpr double kAlbedoMin = 0.95;
 constexpr double kAlbedoMax = 1.05;
 constexpr double kPercent = 100.0;
@@ -18,13 +18,13 @@ constexpr double kPercent = 100.0;
 /// A bound in points of DOLP.
 std::string points_text(double bound) { return std::isfinite(bound) ? fmt::format("{:.2g}", kPercent * bound) : "∞"; }
 
-/// A radiating effect and what it adds to Q/I at the peak.
+/// A radiating effect and its contribution to Q/I at the peak.
 struct Part {
   std::string name;
   double q_over_i;
 };
 
-/// Stokes parameters add up, so the rest belongs to the emission where a scene without emission is impossible.
+/// Stokes parameters add up. If a scene without emission is impossible, the emission contributes the rest.
 std::vector<Part> radiating_parts(const Session& session) {
   const Peak& peak = session.peak();
   double rest = peak.answer()->at[Quantity::kQOverI];

@@ -1,4 +1,4 @@
-// Texts about a session: names, values, commands, and its plots as JSON.
+// Texts about a session (names, values, commands), and its plots as JSON.
 #pragma once
 
 #include "explore/session.hpp"
@@ -11,7 +11,7 @@ const char* remark(const Session& session, const Curve& curve);
 /// The surface of the curve on display.
 std::string curve_name(const Session& session);
 std::string overlay_name(const Session& session);
-/// The typed name of a pin, or its material with the words that differ from the curve on display.
+/// The typed name of a pin, or its material with the words that distinguish it from the curve on display.
 std::string pin_name(const Session& session, const Pin& pin);
 /// ", the scene before" for outdated values.
 const char* stale_text(bool is_stale);
@@ -21,13 +21,13 @@ const char* stale_text(bool is_stale);
 std::string peak_text(const Session& session);
 /// The radiation that causes the polarisation at the maximum: parts of Q/I that add up.
 std::string cause_text(const Session& session);
-/// Why there are no residuals between two zeniths; empty if there are some.
+/// The reason why there are no residuals between two zeniths; empty if there are some.
 std::string no_residuals_text(const Session& session, const Scale& theta);
 /// The values under the cursor.
 std::string cursor_text(const Session& session);
-/// Q/I at the maximum with all effects and without one, in percent: "-14.36 → -59.59 %"; empty if it is unknown.
+/// Q/I at the maximum with all effects and without one, in percent: "-14.36 → -59.59 %"; empty if unknown.
 std::string without_text(const Session& session, const std::string& effect);
-/// Q/I with and without an effect in a sentence; empty also if the model fails without the effect.
+/// A sentence with Q/I with and without an effect; empty also if the model fails without the effect.
 std::string without_words(const Session& session, const std::string& effect);
 /// The cost of the finished curve, in three lines: time, work, error.
 std::vector<std::string> cost_lines(const Session& session);
@@ -37,7 +37,7 @@ std::vector<std::string> cost_lines(const Session& session);
 std::string table_command(const SceneEdits& edits);
 /// The text of host/tools/plot_view.py.
 extern const char* const kPlotScript;
-/// The visible curves between two axes, the measured points, and the map where it is shown, in JSON for the script.
+/// The visible curves between two axes, the measured points, and the map if it is shown, as JSON for the script.
 /// Units: as in the labels. Values that the model does not give are null.
 std::string plot_json(const Session& session, const Scale& x, const Scale& y);
 

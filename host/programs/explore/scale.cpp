@@ -9,7 +9,7 @@
 namespace dolp::explore {
 namespace {
 
-constexpr double kRounding = 1e-9;  // an end may miss a tick by this part of a step
+constexpr double kRounding = 1e-9;  // as a share of a step: an end may miss a tick by this much
 
 std::vector<double> linear_ticks(double low, double high, std::size_t most) {
   const double rough = (high - low) / static_cast<double>(most);
@@ -44,7 +44,7 @@ std::vector<double> log_ticks(double low, double high, std::size_t a_decade) {
 }  // namespace
 
 std::string Scale::refusal() const {
-  constexpr double kLeastSpan = 1e-9;  // relative to the ends: positions within a narrower range would be rounding
+  constexpr double kLeastSpan = 1e-9;  // relative to the ends; in a narrower range positions would be rounding errors
   if (!std::isfinite(to - from)) return "must be finite";
   if (!(from < to)) return "must be from < to";
   if (is_log && from <= 0.0) return "must be above 0 on a logarithmic axis";
@@ -66,7 +66,7 @@ double Scale::clamp(double value) const { return std::clamp(value, from, to); }
 
 double Scale::rounded(double position) const {
   const double exact = value(position);
-  // The text that one would type into a file, and that reads back as the same number.
+  // Four digits, so that a file has a short number that reads back unchanged.
   if (exact == 0.0) return exact;
   const double digit = std::pow(10.0, 3.0 - std::floor(std::log10(std::abs(exact))));
   return clamp(std::round(exact * digit) / digit);
@@ -97,7 +97,7 @@ Scale Scale::with_log(bool wants_log) const {
 std::vector<double> Scale::ticks(std::size_t most) const {
   if (!is_log) return linear_ticks(from, to, most);
   std::vector<double> all = log_ticks(from, to, 3);
-  if (all.size() < 3) return linear_ticks(from, to, most);  // a part of a decade
+  if (all.size() < 3) return linear_ticks(from, to, most);  // the range is only a part of a decade
   if (all.size() > most) all = log_ticks(from, to, 1);
   std::vector<double> some;
   const std::size_t stride = (all.size() + most - 1) / most;
@@ -112,7 +112,7 @@ Scale range_of(std::vector<double> values, bool is_log) {
   const auto [low, high] = std::ranges::minmax(values);
   if (is_log) {
     constexpr double kMostDecades = 1e6;
-    constexpr double kRoom = 4.0;  // for the mark of the maximum
+    constexpr double kRoom = 4.0;  // space for the mark of the maximum
     return {std::max(low / 1.5, kRoom * high / kMostDecades), kRoom * high, true};
   }
   const double room = 0.06 * std::max(high - low, 1e-9);

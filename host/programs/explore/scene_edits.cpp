@@ -26,7 +26,7 @@ std::string with_number(const Scene& scene, const char* symbol, const std::strin
   return fmt::format("{} {:.4g}{}", symbol, scene.number(key).value(), unit);
 }
 
-/// The material of the table "surface", or of a film: a name, a file, or n and k.
+/// The material of a surface or of a film, from the table of either: a name, a file, or n and k.
 std::string material_of(const Scene& scene, const std::string& table) {
   if (table == "surface" && !has_index(scene)) return *scene.word("surface.reflectance_file");
   for (const char* name : {".material", ".material_file"}) {
@@ -35,7 +35,7 @@ std::string material_of(const Scene& scene, const std::string& table) {
   return with_number(scene, "n", table + ".n") + ' ' + with_number(scene, "k", table + ".k");
 }
 
-/// The words that describe the shape of a surface, in groups.
+/// The words that describe the shape of a surface, grouped.
 std::vector<std::vector<std::string>> shape_words(const Scene& scene) {
   std::vector<std::vector<std::string>> groups = {
       {scene.word("surface.distribution").value(), has_wind(scene) ? with_number(scene, "U", "surface.wind_m_s", " m/s")
@@ -97,7 +97,7 @@ std::vector<Parameter> parameters_without_films() {
   };
 }
 
-/// n, k or the thickness of a film.
+/// The control of n, k or the thickness of a film.
 Parameter film_parameter(const Key& key) {
   const std::string part = key.key.substr(key.key.rfind('.') + 1);
   if (part == "n") return {&key, fmt::format("n_{}", key.layer), {0.1, 10.0, true}, "N = n + ik of the film"};
@@ -107,7 +107,7 @@ Parameter film_parameter(const Key& key) {
 
 constexpr const char* kCoating = "surface.coating";
 
-/// True if a change makes an older change of `other` void.
+/// True if a change makes an older change of `other` ineffective.
 bool replaces(const Setting& change, const std::string& other) {
   const std::string& key = change.key;
   if (other == key || other == table_of(key)) return true;
@@ -117,7 +117,7 @@ bool replaces(const Setting& change, const std::string& other) {
   return std::ranges::count(described(key).rivals, other) > 0;
 }
 
-/// Words of one key that exclude words of another key, and the word that the key takes when it gives way.
+/// Words of one key that exclude words of another key, and the replacement word of that key.
 struct Side {
   const char* key;
   std::vector<std::string_view> words;
@@ -126,7 +126,7 @@ struct Side {
   bool excludes(std::string_view word) const { return std::ranges::count(words, word) > 0; }
 };
 
-// The words that are taken instead exclude nothing, so that one conflict never leads to the next.
+// The replacement words exclude nothing, so one conflict never causes another.
 const std::vector<std::array<Side, 2>>& conflicts() {
   const Side multiple{"surface.scattering", {"multiple"}, "single"};
   const Side direct{"emission.model", {"direct"}, "moments"};
@@ -216,7 +216,7 @@ const Parameter& parameter(const std::string& key) {
 }
 
 Scale range_in(const Scene& scene, const Parameter& parameter) {
-  constexpr Scale kSmithQ{1.6, 20.0, true};  // smith needs more than 1.5
+  constexpr Scale kSmithQ{1.6, 20.0, true};  // smith masking needs q > 1.5
   const bool is_smith = scene.word("surface.masking") == "smith" && is_cauchy(scene);
   return is_smith && parameter.key->key == "surface.q" ? kSmithQ : parameter.slider;
 }
@@ -345,7 +345,7 @@ std::vector<Setting> needed_with(const Scene& scene, const std::vector<Setting>&
       if (now && other.excludes(*now)) needed.push_back({other.key, TomlText{other.instead}});
     }
   }
-  // A wind gives Gaussian slopes; another distribution begins with their sigma.
+  // A wind implies Gaussian slopes. Another distribution starts with their sigma.
   if (word_in(chosen, "surface.distribution") == "cauchy" && scene.number("surface.wind_m_s"))
     needed.push_back({"surface.sigma", scene.number("surface.sigma").value()});
   return needed;

@@ -1,5 +1,5 @@
-// The scene that the window shows: its controls and names; a file's text with changes, choices that exclude one
-// another, and skies of the window.
+// The scene that the window shows: its controls and their names, a scene file with changes, choices that exclude each
+// other, and skies that the window edits.
 #pragma once
 
 #include <dolp/dolp.hpp>
@@ -17,36 +17,36 @@ namespace dolp::explore {
 struct Parameter {
   const Key* key;
   std::string symbol;    ///< UTF-8
-  Scale slider;          ///< a part of the key's range; you can type the rest
-  const char* equation;  ///< UTF-8, with its number in the paper where it has one
-  /// True if the scene uses the parameter; null: every scene that has it uses it.
+  Scale slider;          ///< a part of the key's range; the user can type other values
+  const char* equation;  ///< in UTF-8, with its number in the paper if it has one
+  /// True if the scene uses the parameter. Null: every scene that has the parameter uses it.
   bool (*is_used)(const Scene& scene) = nullptr;
 
-  /// The scene's value; none if the window hides the control.
+  /// The scene's value; empty if the window hides the control.
   std::optional<double> value(const Scene& scene) const;
   /// "λ [µm]".
   std::string label() const;
 };
 
-/// A word of the scene that a list offers, or a flag that a box shows.
+/// A word of the scene, shown as a list, or a flag, shown as a box.
 struct Choice {
   const Key* key;
   const char* label;
   const char* equation;
 
-  /// Position in Key::words; none if the window hides the control.
+  /// Position in Key::words; empty if the window hides the control.
   std::optional<std::size_t> word(const Scene& scene) const;
   bool is_flag() const { return key->words.front() == "false"; }
 };
 
-/// The scene key of this name, which must exist.
+/// The scene key with this name. The key must exist.
 const Key& described(const std::string& key);
 
 /// All controls, in the order of the scene keys; the numbers of films come last.
 const std::vector<Parameter>& parameters();
 const std::vector<Choice>& choices();
 
-/// The parameter with this key, which must exist.
+/// The parameter with this key. It must exist.
 const Parameter& parameter(const std::string& key);
 
 /// The range of a parameter's slider, without the values that the scene's masking excludes.
@@ -55,40 +55,39 @@ Scale range_in(const Scene& scene, const Parameter& parameter);
 /// The table of a dotted key: "surface" of "surface.sigma", "surface.coating.1" of "surface.coating.1.n".
 std::string table_of(const std::string& key);
 
-/// The unit for readers: empty for 1, "°" for degree.
+/// The unit for display: empty for 1, "°" for degree.
 std::string unit_text(const Key& key);
 
 bool is_bistatic(const Scene& scene);
 
-/// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1". With `other` only the words of the
-/// shape that differ from it, or, where all of them and the material are common, the other numbers that differ; and the
-/// material.
+/// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1". With `other`, only the words of the
+/// shape that differ from it, and the material. If shape and material are equal, the other numbers that differ.
 std::string surface_name(const Scene& scene, const Scene* other = nullptr);
 
-/// A scene file with changes: the window computes what `dolp eval` computes with the same settings.
+/// A scene file with changes. The window computes what `dolp eval` computes with these settings.
 class SceneEdits {
  public:
   explicit SceneEdits(const Scene& opened);
-  /// A scene as it was opened, with changes. Errors: InputError, as set.
+  /// A scene as it was opened, with changes. Errors: the errors of set().
   SceneEdits(const Scene& opened, std::vector<Setting> changes) : SceneEdits(opened) { become(std::move(changes)); }
 
-  /// Changes keys together. An effect's table without a value removes the effect, and any of its keys brings it back.
+  /// Changes keys together. A table without a value removes its effect, and any of its keys restores the effect.
   /// Alternatives of a key (n and k, material, material file) are removed.
-  /// Errors: InputError; the scene stays as it was.
+  /// Errors: InputError; the scene then stays unchanged.
   void set(const std::vector<Setting>& changes);
 
-  /// Gives a key, or a whole table, the values of the scene as opened. Errors: InputError, as set.
+  /// Restores a key, or a whole table, from the scene as opened. Errors: the errors of set().
   void reset(const std::string& key);
   void reset_all() { become(given_); }
 
   const Scene& scene() const { return scene_; }
   const Scene& opened() const { return opened_; }
   bool is_changed() const { return changes_ != saved_; }
-  /// From now on the present scene counts as unchanged.
+  /// Declares the current scene unchanged.
   void note_saved() { saved_ = changes_; }
-  /// Goes to another state of this file or of another file; what was saved of this file stays known.
+  /// Goes to another state of this file, or to another file. Remembers the saved state of this file.
   void go_to(const SceneEdits& other);
-  /// True if both have the same changes of the same file.
+  /// True if both have equal changes of the same file.
   bool is_same_scene(const SceneEdits& other) const { return is_same_file(other) && changes_ == other.changes_; }
   const std::vector<Setting>& changes() const { return changes_; }
   std::vector<Setting> changes_without(const std::vector<std::string>& keys) const;
@@ -97,51 +96,50 @@ class SceneEdits {
   bool is_same_file(const SceneEdits& other) const;
   void become(std::vector<Setting> changes);
 
-  std::vector<Setting> given_;  ///< settings of the command line
+  std::vector<Setting> given_;  ///< settings from the command line
   std::vector<Setting> saved_;
   std::vector<Setting> changes_;
   Scene opened_;
   Scene scene_;
 };
 
-/// The keys of a film in its table: n and k, or material, or material_file; thickness_um.
+/// The keys of a film in its table: n and k, or material, or material_file; and thickness_um.
 using Film = std::vector<Setting>;
 /// The films of a scene from the outside in.
 std::vector<Film> films_of(const Scene& scene);
-/// The change of a scene that gives it these films.
+/// The setting that gives a scene these films.
 Setting coating_of(const std::vector<Film>& films);
 
 /// The word of a value, without quotes.
 std::string word_of(const Value& value);
 
-/// Further changes that `chosen` needs: each choice of the scene that excludes a chosen one gets a word that goes with
-/// it. Empty where nothing is in the way.
+/// More changes that `chosen` needs: each choice of the scene that excludes a chosen one is replaced by a compatible
+/// word. Empty if nothing conflicts.
 std::vector<Setting> needed_with(const Scene& scene, const std::vector<Setting>& chosen);
 
-/// The choices that a scene makes in one table, as settings.
+/// The choices of a scene in one table, as settings.
 std::vector<Setting> choices_of(const Scene& scene, const std::string& table);
 
-/// A sky whose brightness temperature is a straight line in zenith.
+/// A sky whose brightness temperature is linear in the zenith.
 struct SkyPair {
   double zenith_K = 220.0;
   double horizon_K = 285.0;
 
-  /// The file, two rows, that surroundings.profile names.
+  /// The text of its file, two rows, for surroundings.profile.
   std::string csv() const;
   friend bool operator==(const SkyPair&, const SkyPair&) = default;
 };
 
-/// Reads a file that SkyPair::csv wrote; none for any other file, and for one that cannot be read.
+/// Reads a file from SkyPair::csv. Empty for any other or unreadable file.
 std::optional<SkyPair> read_sky_pair(const std::filesystem::path& file);
 
-/// The file that a scene names as its sky; empty for a built-in sky and without a sky.
+/// The sky file that a scene names; empty for a built-in sky and without a sky.
 std::filesystem::path sky_file(const Scene& scene);
 
-/// Files of the skies that the window edits, because a scene names a sky by its file. Their folder is removed at the
-/// end.
+/// Files of the skies that the window edits; a scene names a sky by its file. The destructor removes their folder.
 class SkyFiles {
  public:
-  /// The path of a sky's file. If no file can be made, the scene refuses the path.
+  /// The path of a sky's file. If the file cannot be written, the scene refuses the path.
   std::string path(const SkyPair& sky);
   bool hold(const std::filesystem::path& file) const { return folder_ && file.parent_path() == folder_->path(); }
 

@@ -16,7 +16,7 @@ std::string text_of(const std::vector<Setting>& changes) {
   return join(texts);
 }
 
-/// A list of jobs, the most wanted first.
+/// A list of jobs in order of their rank.
 struct JobList {
   std::vector<Job> jobs;
 
@@ -26,11 +26,10 @@ struct JobList {
   void add(std::vector<Job> more) { std::ranges::move(more, std::back_inserter(jobs)); }
 };
 
-/// Gives an axis the range that was typed for it, or else the range in which the scene is known. False if that is
-/// one value.
+/// Gives an axis its typed range, or the range in which the scene is known. Returns false if that is only one value.
 bool find_range(const Scene& scene, const View& view, MapAxis& axis) {
   const auto typed = view.map_ranges.find(axis.label);
-  // The scene may have changed since the range was typed, and no longer take it.
+  // The scene may have changed since the user typed the range, and refuse it now.
   if (typed != view.map_ranges.end() && refusal(scene, axis, typed->second).empty()) {
     axis.scale = typed->second;
   } else if (axis.name == "wavelength") {
@@ -41,7 +40,7 @@ bool find_range(const Scene& scene, const View& view, MapAxis& axis) {
 
 constexpr const char* kWavelength = "spectrum.wavelength_um";
 
-/// The axis of this name, or, where the scene has none, another one than `other`.
+/// The axis with this name. If the scene lacks it, an axis other than `other`.
 MapAxis axis_or_another(const Scene& scene, const View& view, const std::string& name, const std::string& other) {
   std::vector<MapAxis> axes = map_axes(scene, view.theta_max_deg);
   const auto named = std::ranges::find(axes, name, &MapAxis::name);
@@ -294,7 +293,7 @@ void Session::follow() {
 
 void Session::estimate_influences() {
   const JobPart& curve = curve_.finished();
-  // The estimate takes as long as a coarse curve. In a drag neither curve nor zenith changes.
+  // The estimate takes as long as a coarse curve. During a drag neither curve nor zenith changes.
   std::pair<std::string, double> wanted{curve.key, theta_deg_};
   if (influences_of_ == wanted) return;
   influences_of_ = std::move(wanted);
@@ -314,12 +313,12 @@ void Session::follow_overlay(const std::string& content) {
     if (!overlay_) overlay_.emplace(other, "overlay");
     overlay_->follow(content, other, keeps_all());
   } catch (const InputError&) {
-    overlay_.reset();  // its sigma or q is outside the model
+    overlay_.reset();  // the sigma or q of the overlay is outside the model
   }
 }
 
 void Session::follow_map() {
-  if (is_dragged() && map_.is_arriving()) return;  // a drag goes from one complete map to the next
+  if (is_dragged() && map_.is_arriving()) return;  // during a drag only complete maps are shown
   const MapAxis x = axis_or_another(scene(), view_, view_.map_x, view_.map_y);
   const MapAxis y = axis_or_another(scene(), view_, view_.map_y, x.name);
   std::string key = content_key(scene(), edits_.changes_without({x.key, y.key}), keeps_all());
@@ -331,8 +330,8 @@ void Session::follow_map() {
 
 void Session::follow_sweeps(const std::string& content) {
   constexpr std::size_t kSpectrum = 121;
-  constexpr std::size_t kSmooth = 901;  // fringes of films, in closed form
-  constexpr double kWidth = 2.0;        // from half of the opened scene's wavelength to twice
+  constexpr std::size_t kSmooth = 901;  // enough for the fringes of films; the values are closed forms
+  constexpr double kWidth = 2.0;        // the axis goes from half to twice the wavelength of the opened scene
   const bool is_spectrum = view_.panel == Panel::kSpectrum;
   if (!is_spectrum && view_.panel != Panel::kSmooth) return;
   spectral_scene_ = at_one_wavelength(scene());

@@ -11,29 +11,29 @@
 
 namespace dolp::explore {
 
-/// A curve that stays while the scene changes.
+/// A curve that is kept while the scene changes.
 struct Pin {
-  std::string name = {};   ///< typed by the user; empty: the name of its surface
-  std::size_t colour = 0;  ///< position among the colours of pins
+  std::string name = {};   ///< name that the user typed; empty: the name of its surface
+  std::size_t colour = 0;  ///< position in the list of pin colours
   bool is_visible = true;
   Curve curve;
 };
 
-/// The displayed quantity, and how it is drawn.
+/// The quantity on display, and how it is drawn.
 struct View {
   Plotted quantity = Plotted::kDolp;
   bool is_log = false;
-  bool is_theta_log = false;    ///< curves over the logarithm of the zenith
+  bool is_theta_log = false;    ///< curves are drawn over the logarithm of the zenith
   bool has_overlay = true;      ///< the other slope distribution with the same D(0)
-  bool keeps_all = false;       ///< compute what the plan would drop, too
-  double theta_max_deg = 90.0;  ///< ends the plots and the search for the maximum
-  std::string map_x = "theta";  ///< name of an axis; the map has another one where the scene lacks it
+  bool keeps_all = false;       ///< computes also what the plan would drop
+  double theta_max_deg = 90.0;  ///< end of the plots and of the search for the maximum
+  std::string map_x = "theta";  ///< name of an axis; if the scene lacks it, the map has another one
   std::string map_y = "sigma";
   Zoom curve_zoom = {};
-  std::map<std::string, Scale> map_ranges = {};  ///< typed ranges, by the label of the axis
-  std::optional<Scale> map_colours = {};         ///< typed values of the first and the last colour
+  std::map<std::string, Scale> map_ranges = {};  ///< ranges that the user typed, by the label of the axis
+  std::optional<Scale> map_colours = {};         ///< values for the first and the last colour that the user typed
   Panel panel = Panel::kMap;
-  std::size_t mueller_row = 0;  ///< the element that the view of the pBRDF shows
+  std::size_t mueller_row = 0;  ///< position of the element that the view of the pBRDF shows
   std::size_t mueller_column = 0;
 
   friend bool operator==(const View&, const View&) = default;
@@ -68,7 +68,7 @@ struct SavedSession {
   FitMarks marked = {};
 };
 
-/// State and commands. A Worker computes the wanted jobs; drawing is elsewhere.
+/// State and commands of the window. A Worker computes the wanted jobs. Drawing is elsewhere.
 class Session {
  public:
   static constexpr std::size_t kMostPins = 6;
@@ -84,7 +84,7 @@ class Session {
   void reset_all() {
     attempt([&] { edits_.reset_all(); });
   }
-  /// Shows another state, or another scene; `undo` goes back.
+  /// Shows another state or another scene. `undo` goes back.
   void go_to(const SceneEdits& edits) {
     attempt([&] { edits_.go_to(edits); });
   }
@@ -93,11 +93,12 @@ class Session {
   void undo() { step(done_, undone_, "nothing to undo"); }
   void redo() { step(undone_, done_, "nothing to redo"); }
   void take_snapshot();
-  /// While the mouse button is held down, all changes are one step of `undo` and get only coarse results.
+  /// While the mouse button is down, all changes form one step of `undo` and only coarse results are computed.
   void hold(bool is_held);
   void note_saved() { edits_.note_saved(); }
   void pin();
-  /// Another quantity or kind of its axis ends typed ranges of values; another kind of zeniths ends ranges of zeniths.
+  /// Changes the view. A new quantity or a new scale of its axis removes typed ranges of values; a new scale of the
+  /// zenith removes typed ranges of zeniths.
   void set_view(const View& view);
   template <class T>
   void set_view(T View::*part, const std::type_identity_t<T>& value) {
@@ -106,15 +107,15 @@ class Session {
     set_view(view);
   }
   void set_theta(double theta_deg);
-  /// Moves the cursor of the map; the parameters of its axes follow. Positions from 0 to 1.
+  /// Moves the cursor of the map, and with it the parameters of its axes. Positions are 0 to 1.
   void set_map_cursor(double x, double y);
   void load_measured(const std::string& path);
   void clear_measured() { residuals_.clear(); }
-  /// Lets a number vary in fits, or not.
+  /// Selects whether a number varies in fits.
   void mark(const std::string& key, bool varies);
-  /// Lets a number vary in fits over a typed range. Returns why it is refused, or nothing.
+  /// Lets a number vary in fits over a typed range. Returns the reason if the range is refused, otherwise nothing.
   std::string set_fit_range(const std::string& key, const std::string& low, const std::string& high);
-  /// Shows a fit, and moves the parameters to the minimum nearest to the start of the job. Returns its position.
+  /// Shows a fit, and moves the parameters to the minimum that is nearest to the job's start. Returns its position.
   std::size_t take_fit(Fit fit, const FitJob& job);
   /// Moves the parameters to a minimum of the last fit; the rest of the scene becomes the fitted one.
   void visit_minimum(std::size_t position);
@@ -140,53 +141,54 @@ class Session {
   const std::vector<Snapshot>& snapshots() const { return snapshots_; }
   const HeatMap& map() const { return map_; }
   const SourceSky& source_sky() const { return source_sky_; }
-  /// The scene at one wavelength, and its axis of wavelengths; without a range where only one is known.
+  /// The scene at one wavelength, and its axis of wavelengths. The axis has no range if only one wavelength is known.
   const Scene& spectral_scene() const { return spectral_scene_; }
   const MapAxis& wavelengths() const { return wavelengths_; }
-  // At the cursor's zenith: the scene over wavelength, and the smooth surface over wavelength; and that over zenith.
+  // At the cursor's zenith: the scene over wavelength and the smooth surface over wavelength. Also the smooth surface
+  // over zenith.
   const Sweep& spectrum() const { return spectrum_; }
   const Sweep& smooth_spectrum() const { return smooth_spectrum_; }
   const Sweep& smooth() const { return smooth_; }
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
-  /// True for the scene of another file.
+  /// True if a scene comes from another file.
   bool is_foreign(const Scene& other) const { return other.name() != scene().name() || other.text() != scene().text(); }
   const FitMarks& marked() const { return marked_; }
   bool varies(const std::string& key) const { return marked_.contains(key); }
   /// The files of skies that the window edits.
   SkyFiles& skies() { return skies_; }
   const SkyFiles& skies() const { return skies_; }
-  /// True if the scene names one of these files.
+  /// True if the scene names a sky of the window.
   bool has_own_sky() const { return skies_.hold(sky_file(scene())); }
-  /// The fit of the marked parameters to the measured points; none without points, or without a marked parameter that
-  /// the scene has.
+  /// The fit of the marked parameters to the measured points. Empty without points, or if the scene has no marked
+  /// parameter.
   std::optional<FitJob> fit_job() const;
   const std::optional<Fit>& last_fit() const { return fit_; }
-  /// The minimum of the last fit that the scene shows; none once the scene has changed.
+  /// The minimum of the last fit that the scene shows; empty after the scene has changed.
   std::optional<std::size_t> minimum() const;
-  /// The result of the last fit for a number; null once the scene has changed.
+  /// The result of the last fit for a number; null after the scene has changed.
   const FitParameter* fitted(const std::string& key) const;
   const Message& message() const { return message_; }
   /// True while the mouse changes the scene.
   bool is_dragged() const { return is_held_ && is_in_gesture_; }
-  /// True if a curve belongs to an earlier scene that is not of the same drag.
+  /// True if a curve belongs to an earlier scene, but not to the current drag.
   bool is_outdated(const Curve& curve) const { return curve.is_stale() && !is_dragged(); }
   /// The effects of the last finished curve. For kept effects the influence is the one at the cursor's zenith.
   const std::vector<Effect>& effects() const { return effects_; }
   /// The position of the scene's value on an axis of the map.
   double map_cursor(const MapAxis& axis) const;
-  /// The point on display at the zenith nearest to the cursor's; null before there is one.
+  /// The point on display whose zenith is nearest to the cursor; null without points.
   const Point* at_cursor() const;
 
  private:
-  /// Runs a command, which may throw InputError, and notes what it changed.
+  /// Runs a command, which may throw InputError, and records its changes.
   void attempt(const std::function<void()>& command);
   void step(std::vector<SceneEdits>& from, std::vector<SceneEdits>& to, const char* nothing);
   bool keeps_all() const { return view_.keeps_all || described(view_.quantity).needs_rho; }
   void tell_remarks(const std::vector<std::string>& remarks);
   void tell_new_remarks_on_scene();
   void tell_needed(const std::string& chosen, const std::vector<Setting>& needed);
-  // Give curves, map and the rest the present scene.
+  // Pass the current scene to curves, map and other views.
   void follow();
   void follow_overlay(const std::string& content);
   void follow_map();
@@ -198,7 +200,7 @@ class Session {
 
   SkyFiles skies_;
   SceneEdits edits_;
-  std::vector<SceneEdits> done_, undone_;  ///< states before each gesture, and after each undone gesture
+  std::vector<SceneEdits> done_, undone_;  ///< states before each gesture; states after each undone gesture
   std::vector<Snapshot> snapshots_;
   bool is_held_ = false;
   bool is_in_gesture_ = false;
@@ -217,19 +219,19 @@ class Session {
   FitMarks marked_;
   std::optional<Fit> fit_;
   std::optional<SceneEdits> fit_edits_;  ///< the scene that was fitted
-  std::optional<SceneEdits> visited_;    ///< that scene with the minimum that was visited
+  std::optional<SceneEdits> visited_;    ///< the fitted scene at the minimum that the user visited
   std::size_t minimum_ = 0;
   std::vector<Effect> effects_;
   std::pair<std::string, double> influences_of_;  ///< key of the curve, zenith
   Message message_;
   std::vector<std::string> remarks_;  ///< remarks on the scene that message() has already shown
   bool is_changed_ = true;
-  // Whose turn it is in a drag.
+  // During a drag curve and map take turns.
   bool is_curve_next_ = true;
   bool is_map_next_ = false;
 };
 
-/// Identifies the results of a scene's file with changes.
+/// Identifies the results of a scene file with changes.
 std::string content_key(const Scene& scene, const std::vector<Setting>& changes, bool keep_all);
 
 }  // namespace dolp::explore

@@ -25,16 +25,17 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kWidth = 1440;
 constexpr int kHeight = 900;
-// A smaller window cuts texts of the controls.
+// A smaller window would cut off texts of the controls.
 constexpr int kLeastWidth = 800;
 constexpr int kLeastHeight = 560;
 constexpr double kBlink_s = 0.3;  // period of a text cursor
-// Chosen for frames of 33 ms, half of which is drawing. With twice as much, slow scenes have long frames; with half,
-// curves of a band lag behind the slider.
+// Tuned for frames of 33 ms, half of which is drawing. At double, slow scenes have long frames. At half, curves of a
+// band lag behind the slider.
 constexpr double kCatchUp_s = 0.03;
-// ImGui shows some answers to an event, for example an open list, only frames later.
+// ImGui shows some reactions, for example an open list, only some frames after the event.
 constexpr std::size_t kFramesAfterEvent = 4;
-constexpr std::size_t kFramesAfterNews = 2;  // after results: tables take the width of their text a frame later
+// after new results, because tables adapt to the width of their text one frame later
+constexpr std::size_t kFramesAfterNews = 2;
 
 std::string glfw_error() {
   const char* text = nullptr;
@@ -47,16 +48,16 @@ bool is_set(const char* variable) {
   return value != nullptr && *value != '\0';
 }
 
-/// Lengths of the window at a scale, in whole pixels.
+/// A length of the window in whole pixels at a scale.
 int scaled_length(int length, float scale) { return static_cast<int>(std::lround(scale * static_cast<float>(length))); }
 
-/// GLFW, started and ended once.
+/// Starts GLFW once and ends it.
 struct Library {
   Library() {
     if (!is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY"))
       throw DeviceError("no display for the window: neither DISPLAY nor WAYLAND_DISPLAY is set");
 #ifdef GLFW_PLATFORM
-    // Otherwise GLFW 3.4 tries Wayland first, whose library then prints a line of its own.
+    // Otherwise GLFW 3.4 tries Wayland first, and the Wayland library prints a line.
     if (!is_set("WAYLAND_DISPLAY")) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
 #endif
     if (glfwInit() == GLFW_FALSE) throw DeviceError("no display for the window: " + glfw_error());
@@ -132,7 +133,7 @@ struct Gui {
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
 
-  /// Applies theme and scale. True if the font has changed.
+  /// Applies theme and scale. Returns true if the font has changed.
   bool follow(const Preferences& wanted) {
     if (wanted.is_light != is_light()) set_theme(wanted.is_light);
     float display = 1.0F;
@@ -181,7 +182,7 @@ struct App::Impl {
         actions(session, options.device, options.command_line, options.preferences, glfwPostEmptyEvent),
         ui(session, actions, [this] { catch_up(); }) {}
 
-  /// Passes results in and wanted jobs out.
+  /// Passes results to the session and wanted jobs to the worker.
   void exchange() {
     actions.finish();
     is_all_taken = worker.is_idle();
@@ -192,7 +193,7 @@ struct App::Impl {
     worker.want(std::move(jobs));
   }
 
-  /// Waits a moment for the coarse curve in a drag, so that slider and curve move in the same frame.
+  /// During a drag, waits briefly for the coarse curve, so that slider and curve move in the same frame.
   void catch_up() {
     if (input.has_more() || !session.is_dragged()) return;
     const Clock::time_point start = Clock::now();
@@ -204,7 +205,7 @@ struct App::Impl {
     exchange();
   }
 
-  /// Draws a frame for each event, and shows the last one.
+  /// Draws a frame for each event, and presents the last one.
   void draw() {
     if (gui.follow(actions.preferences())) presenter.restart_imgui();
     for (;;) {
@@ -239,7 +240,7 @@ struct App::Impl {
   Input input;
   Presenter presenter;
   Evaluator evaluator;
-  std::atomic<bool> is_catching_up = false;  ///< then no event is needed to wake the window
+  std::atomic<bool> is_catching_up = false;  ///< while true, news need not wake the window by an event
   Worker worker;
   Actions actions;
   Ui ui;
@@ -277,7 +278,7 @@ bool App::answer(const AfterFrame& after_frame) {
     if (after_frame) after_frame(seconds_since(start));
     if (!is_open) return false;
     const bool has_news = impl_->input.take_news() || impl_->actions.has_picture_to_save();
-    if (impl_->session.is_dragged()) return true;  // one frame for each move leaves the processor to the curves
+    if (impl_->session.is_dragged()) return true;  // one frame per move leaves the processor to the curves
     left = has_news ? kFramesAfterEvent : left - 1;
   }
   return true;
@@ -292,7 +293,7 @@ void App::reopen() { glfwSetWindowShouldClose(impl_->window.get(), GLFW_FALSE); 
 
 void App::run(const AfterFrame& after_frame) {
   while (answer(after_frame)) {
-    // A note appears a little after the mouse has rested for its delay.
+    // A note appears slightly after the delay for the resting mouse.
     constexpr double kNote_s = static_cast<double>(kTooltipDelay_s) + 0.05;
     if (ImGui::GetIO().WantTextInput) {
       glfwWaitEventsTimeout(kBlink_s);
@@ -305,11 +306,11 @@ void App::run(const AfterFrame& after_frame) {
 }
 
 std::string App::run_frames(std::size_t count, const std::string& screenshot_path) {
-  std::vector<double> all_s, computing_s;  // from one frame's start to the next; those with a busy worker
+  std::vector<double> all_s, computing_s;  // time between the starts of frames: all, and while the worker was busy
   const bool wants_picture = !screenshot_path.empty();
   Clock::time_point start = Clock::now();
   for (std::size_t left = count; left > 0; --left) {
-    // The last frames show finished results, in a layout that has settled.
+    // Waits with the last frames until all results are there and the layout is stable.
     if (wants_picture && left <= kFramesAfterEvent) {
       impl_->wait_for_results();
       start = Clock::now();

@@ -11,7 +11,7 @@ namespace dolp::explore {
 struct AppOptions {
   std::string device;                      ///< its position or a part of its name
   std::string command_line;                ///< for the history of tables
-  std::filesystem::path preferences = {};  ///< file of the preferences; empty: none are kept
+  std::filesystem::path preferences = {};  ///< file of the preferences; empty: preferences are not stored
 };
 
 class App {
@@ -28,23 +28,23 @@ class App {
   const CurveView& curve_view() const;
   const MapView& map_view() const;
 
-  /// Takes input and news, and draws one frame. False when the user has closed the window.
-  /// Errors: DeviceError when the device is lost or the validation layer complains.
+  /// Takes input and results, and draws one frame. Returns false if the user has closed the window.
+  /// Errors: DeviceError if the device is lost or the validation layer reports an error.
   bool frame();
-  /// Handles the pending events and those that arrive meanwhile, and draws the result. False when the user has closed
-  /// the window.
+  /// Handles all pending events, and those that arrive meanwhile, and draws the result. Returns false if the user has
+  /// closed the window.
   bool answer(const AfterFrame& after_frame = {});
   /// Ends `run`. May be called from any thread.
   void close();
-  /// Lets `run` go on after `close`.
+  /// Lets `run` continue after `close`.
   void reopen();
-  /// Draws until the window is closed; nothing is drawn between events. `after_frame` gets the duration of each frame.
+  /// Draws until the window is closed. Draws nothing between events. `after_frame` gets the duration of each frame.
   void run(const AfterFrame& after_frame = {});
-  /// Draws this many frames and returns a summary of their durations, in all and while something was computed. With a
-  /// path for a picture of the last frame, the last frames wait until all results are there.
+  /// Draws this many frames. Returns a summary of their durations, in total and while something was computed. If there
+  /// is a path for a picture, the last frames wait for all results.
   std::string run_frames(std::size_t count, const std::string& screenshot_path);
 
-  /// True if nothing is left to compute, and all results are in the session.
+  /// True if nothing remains to be computed and the session has all results.
   bool is_idle() const;
   /// Draws until is_idle() returns true.
   void settle();
@@ -63,12 +63,12 @@ struct ProgramOptions {
   std::size_t frames = 0;              ///< number of frames to draw; 0: until the window is closed
   std::string screenshot_path;         ///< PNG of the last frame; empty: none
   std::string panel = {};              ///< name of the first panel; empty: the map
-  std::string session_path = {};       ///< a session that replaces the scene; empty: none
+  std::string session_path = {};       ///< session file that replaces the scene; empty: none
   std::vector<Setting> settings = {};  ///< changes of the session
 };
 
-/// Shows the window. With a number of frames, prints their durations.
-/// Errors: as in the public header; DeviceError, IoError.
+/// Shows the window. If the number of frames is given, prints their durations.
+/// Errors: the errors of the public header; DeviceError, IoError.
 void run_program(const Scene& scene, const ProgramOptions& options);
 
 }  // namespace dolp::explore

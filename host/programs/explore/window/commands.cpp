@@ -14,11 +14,11 @@
 namespace dolp::explore {
 namespace {
 
-constexpr auto kFading = std::chrono::milliseconds(300);  // a closed dialog fades for so long
+constexpr auto kFading = std::chrono::milliseconds(300);  // time for which a closed dialog remains visible
 
 constexpr const char* kOpenCommand = "Open";
 
-/// Names the area of a menu or its entry that is drawn next: an open menu is another item.
+/// Names the area of the menu, or of the menu entry, that is drawn next. An open menu is a different item.
 void name_next(const std::string& name, const char* text) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   name_area(name, {corner, {corner.x + ImGui::CalcTextSize(text).x, corner.y + ImGui::GetTextLineHeight()}});
@@ -40,7 +40,7 @@ Actions::Actions(Session& session, const std::string& device, std::string comman
     preferences_.load(preferences);
     const std::string file = session_.scene().name();
     std::error_code unknown;
-    if (!std::filesystem::exists(file, unknown)) return;  // a built-in text
+    if (!std::filesystem::exists(file, unknown)) return;  // the scene is a built-in text
     prefer([&](Preferences& kept) { kept.remember(file); });
   } catch (const std::exception& error) {
     session_.tell(error.what(), true);
@@ -131,13 +131,13 @@ bool Ui::Command::is_pressed(bool is_shift) const {
   if (shortcut.empty()) return false;
   const char key = shortcut.back();
   const bool needs_shift = shortcut.starts_with("Ctrl+Shift");
-  if (needs_shift != is_shift && key != '+') return false;       // many keyboards have + above =
+  if (needs_shift != is_shift && key != '+') return false;       // on many keyboards + is above =
   if (key == 'Z' && ImGui::GetIO().WantTextInput) return false;  // the field undoes its own text
   using explore::is_pressed;
   if (key == '+') return is_pressed('=') || is_pressed(GLFW_KEY_KP_ADD);
   if (key == '-') return is_pressed(key) || is_pressed(GLFW_KEY_KP_SUBTRACT);
   if (key == '0') return is_pressed(key) || is_pressed(GLFW_KEY_KP_0);
-  return is_pressed(key);  // GLFW's number of a letter's key is the letter
+  return is_pressed(key);  // GLFW numbers letter keys by their letters
 }
 
 std::string Ui::suggested_path(const std::string& ending) const {

@@ -14,8 +14,8 @@ namespace {
 
 constexpr const char* kSkyProfile = "surroundings.profile";
 constexpr const char* kUniformSky = "surroundings.temperature_K";
-constexpr double kUniformSky_K = 250.0;    // for a scene that was opened without a uniform sky
-constexpr Scale kSkySlider{150.0, 350.0};  // K; you can type other temperatures
+constexpr double kUniformSky_K = 250.0;    // for a scene that had no uniform sky when it was opened
+constexpr Scale kSkySlider{150.0, 350.0};  // in K; the user can type other temperatures
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
@@ -25,8 +25,8 @@ void heading(const char* text) {
   ImGui::Separator();
 }
 
-/// Draws the pieces of an interval as bars at the foot of the last item, a slider; an open end goes to the slider's
-/// end.
+/// Draws the pieces of an interval as bars at the bottom of the last item, a slider. An open end extends to the end of
+/// the slider.
 void draw_interval(const Parameter& parameter, const FitInterval& interval) {
   const ImVec2 corner = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
   const auto at = [&](const std::optional<double>& value, double otherwise) {
@@ -40,7 +40,7 @@ void draw_interval(const Parameter& parameter, const FitInterval& interval) {
   }
 }
 
-/// Meaning, equation and range of a parameter, its value as opened, and the intervals of the last fit.
+/// Meaning, equation and range of a parameter, its value as opened, and the intervals from the last fit.
 std::string note_on(const Parameter& parameter, const Session& session) {
   const Key& key = *parameter.key;
   std::string note = fmt::format("{} = {}\n{}\nallowed: {} {}", key.key, key.meaning, parameter.equation, key.allowed(),
@@ -61,7 +61,7 @@ bool has_effect(const Scene& scene, const std::string& table) {
   return scene.number(table + ".temperature_K").has_value();
 }
 
-/// n and k of the material of the surface or of a film, where the spectrum begins.
+/// n and k of the material of the surface or of a film, at the start of the spectrum.
 std::pair<double, double> index_of(const Scene& scene, const std::string& table) {
   Scene bare = scene.without("surface.coating");
   for (const char* name : {"material", "material_file"}) {
@@ -70,7 +70,7 @@ std::pair<double, double> index_of(const Scene& scene, const std::string& table)
   return bare.refractive_index(spectrum_um(scene).first);
 }
 
-/// The typed text as a value. The scene refuses text that is not a number, and names what is allowed.
+/// The typed text as a value. If it is not a number, the scene refuses it with the allowed values.
 Value value_of(const std::string& text) {
   const std::optional<double> number = parse_number(text);
   return number ? Value(*number) : Value(TomlText{text});
@@ -85,18 +85,18 @@ struct Controls {
   struct Slider {
     std::string id, label;
     std::string note;
-    std::string reset_key;  ///< Ctrl-click resets it
+    std::string reset_key;  ///< key that a Ctrl-click resets
     Scale scale;
     std::function<Setting(const std::string& text)> change;
   };
 
-  /// Changes the scene; returns why it is refused, or nothing.
+  /// Changes the scene. Returns the reason if the change is refused, otherwise nothing.
   std::string set(const Setting& change) {
     session.set({change});
     return session.message().is_error ? session.message().text : "";
   }
 
-  /// Draws fields, and removes the message about a text when the text is gone.
+  /// Draws fields. Removes the message about a text when the text is gone.
   void draw_fields(const std::string& id, const std::function<void()>& draw) {
     const std::string before = state.fields.reason(id);
     draw();
@@ -168,7 +168,7 @@ struct Controls {
   void draw_table(const std::string& table) {
     for (const Parameter& parameter : parameters()) {
       if (table_of(parameter.key->key) != table) continue;
-      // The value is read for each control, because the control before may have changed the scene.
+      // Each control reads the value again, because an earlier control may have changed the scene.
       if (const auto value = parameter.value(session.scene())) draw_parameter(parameter, *value);
     }
   }
@@ -199,13 +199,14 @@ struct Controls {
     }
   }
 
-  /// The list of materials for the surface or for a film. Returns the new keys of its table, none without a choice.
+  /// Draws the list of materials for the surface or for a film. Returns the new keys of its table; none if the user
+  /// chose nothing.
   std::vector<Setting> draw_material(const std::string& table) {
     static const std::vector<BuiltInMaterial> known = materials();
     const Scene& scene = session.scene();
     const bool is_typed = parameter(table + ".n").value(scene).has_value();
     const std::string current = is_typed ? "n and k as below" : scene.word(table + ".material").value_or("file");
-    // The entry before the built-in materials is 0; a file has no entry.
+    // Entry 0 comes before the built-in materials. A material from a file has no entry.
     const auto now = std::ranges::find(known, current, &BuiltInMaterial::name);
     std::optional<std::size_t> chosen;
     if (is_typed || now != known.end()) chosen = is_typed ? 0 : static_cast<std::size_t>(now - known.begin()) + 1;
@@ -271,7 +272,7 @@ struct Controls {
     if (const auto clicked = draw_list("source kind", -1.0F, kinds[now].text, "", now, entries)) set(changes[*clicked]);
   }
 
-  /// A box that removes an effect from the scene, and brings it back as it was opened or with first values.
+  /// A box that removes an effect from the scene. It restores the effect as opened, or with default values.
   void draw_effect_box(const std::string& table) {
     bool wanted = has_effect(session.scene(), table);
     if (!ImGui::Checkbox(table.c_str(), &wanted)) return;
@@ -297,7 +298,7 @@ struct Controls {
     const std::string current = session.scene().word(kSkyProfile).value_or("");
     const std::string opened = session.edits().opened().word(kSkyProfile).value_or("");
     std::vector<ListEntry> skies = {{"uniform"}, {"clear-sky"}, {"overcast"}, {"zenith and horizon"}};
-    // The file of the scene as opened stays among the choices.
+    // The sky file of the opened scene remains a choice.
     if (!sky_file(session.edits().opened()).empty()) skies.push_back({file_name(opened)});
     const std::string name = current.empty() ? "uniform" : state.sky ? "zenith and horizon" : file_name(current);
     const auto now = std::ranges::find(skies, name, &ListEntry::text);
@@ -320,7 +321,7 @@ struct Controls {
     SkyPair sky = *state.sky;
     const auto change = [&](const std::string& text) {
       const std::optional<double> typed = parse_number(text);
-      // Text that is no temperature is refused with the message for a uniform sky.
+      // Refuses text that is not a temperature, with the message for a uniform sky.
       if (!typed || !described(kUniformSky).range.contains(*typed)) return Setting{kUniformSky, TomlText{text}};
       sky.*part = *typed;
       return Setting{kSkyProfile, session.skies().path(sky)};

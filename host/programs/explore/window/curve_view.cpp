@@ -12,17 +12,17 @@ namespace {
 
 constexpr float kCurveWidth = 2.0F;
 // Heights in lines of text.
-constexpr float kRoomForTwo = 18.0F;        // for a legend of two lines
-constexpr float kRoomForResiduals = 17.0F;  // for residuals below the curve
+constexpr float kRoomForTwo = 18.0F;        // space for a legend of two lines
+constexpr float kRoomForResiduals = 17.0F;  // space for residuals below the curve
 constexpr float kLeastResiduals = 7.0F;
 
-/// A curve as it is drawn.
+/// A curve and how it is drawn.
 struct Shown {
   const Curve* curve;
   CurveStyle style;
 };
 
-/// The style of parts where the model fails.
+/// The style for parts in which the model fails.
 CurveStyle bad_style() { return {kBadColour, 4.0F, 4.0F}; }
 
 std::vector<Shown> shown_curves(const Session& session) {
@@ -34,12 +34,12 @@ std::vector<Shown> shown_curves(const Session& session) {
   for (const Pin& pin : session.pins()) {
     if (pin.is_visible) add(pin.curve, pin_style(pin.colour));
   }
-  // Last, so that it lies over the others.
+  // Added last, so it is drawn on top.
   add(session.curve(), current_style());
   return curves;
 }
 
-/// The maximum of polarisation where the plot marks it; null elsewhere.
+/// The maximum of polarisation if the plot marks it; otherwise null.
 const PeakAnswer* shown_peak(const Session& session) {
   const Plotted quantity = session.view().quantity;
   const bool is_marked = quantity == Plotted::kDolp || quantity == Plotted::kSignedDolp;
@@ -47,7 +47,7 @@ const PeakAnswer* shown_peak(const Session& session) {
   return is_marked && peak && session.curve().is_finished() ? &*peak : nullptr;
 }
 
-/// The values that the axis must show.
+/// The values that the axis must include.
 std::vector<double> values_to_show(const Session& session, const std::vector<Shown>& curves) {
   const Plotted quantity = session.view().quantity;
   std::vector<double> values;
@@ -66,14 +66,15 @@ std::vector<double> values_to_show(const Session& session, const std::vector<Sho
   return values;
 }
 
-/// Fills the range of DOLP with all bounces. Only the current curve has a band: overlapping bands are unreadable.
+/// Fills the range of the DOLP with all bounces. Only the current curve has such a band, because overlapping bands are
+/// unreadable.
 void draw_bracket(const Plot& plot, const Shown& shown) {
   const std::vector<Point> points = shown.curve->drawn();
   const ImU32 colour = band_colour(shown.style);
   const auto at = [&](const Point& point, Quantity limit) {
     return plot.at(point.theta_deg, std::max(described(Plotted::kDolp).scale() * point[limit], plot.y().from));
   };
-  // Smooth edges would show as seams.
+  // Anti-aliased edges would be visible as seams.
   const ImDrawListFlags flags = std::exchange(plot.list()->Flags, ImDrawListFlags_None);
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const Point& a = points[i];
@@ -86,7 +87,7 @@ void draw_bracket(const Plot& plot, const Shown& shown) {
   plot.list()->Flags = flags;
 }
 
-/// Draws the good parts in the curve's style over the others, thin and grey; a line to a bad point is bad.
+/// Draws all parts thin and grey, and over them the good parts in the curve's style. A line to a bad point is bad.
 void draw_curve(const Plot& plot, const Shown& shown, Plotted quantity) {
   const std::vector<Point> points = shown.curve->drawn();
   std::vector<ImVec2> good, bad;
@@ -103,8 +104,8 @@ void draw_curve(const Plot& plot, const Shown& shown, Plotted quantity) {
   draw_line(plot.list(), good, shown.style, kCurveWidth);
 }
 
-/// Takes room for a sample and a name, beside the entry before or in a new line, and draws the name. Returns where the
-/// sample goes.
+/// Reserves space for a sample and a name, beside the previous entry or in a new line, and draws the name. Returns the
+/// area for the sample.
 Area add_entry(const char* id, const std::string& name, ImU32 colour = kTextColour) {
   const float line = ImGui::GetTextLineHeight();
   const float width = 2.3F * line + ImGui::CalcTextSize(shown(name).c_str()).x;
@@ -116,7 +117,7 @@ Area add_entry(const char* id, const std::string& name, ImU32 colour = kTextColo
   return {at, {at.x + 2.0F * line, at.y + line}};
 }
 
-/// An entry with a line in a style. Returns true if the entry was clicked.
+/// An entry with a line in a style. Returns true if it was clicked.
 bool add_curve(const char* id, const std::string& name, const CurveStyle& style, ImU32 colour = kTextColour) {
   const Area sample = add_entry(id, name, colour);
   const bool is_clicked = ImGui::IsItemClicked();
@@ -154,8 +155,8 @@ void draw_legend(const std::vector<Shown>& curves, Session& session) {
     add_entry("measured", "o  points measured for another scene", kDimColour);
 }
 
-/// Returns the height of the legend. It does not depend on the entries, so that the plot stays where it is; more
-/// entries are scrolled to. In a drag names are longer for a moment.
+/// Draws the legend and returns its height, which does not depend on the entries, so that the plot does not move.
+/// Further entries can be scrolled to. During a drag names are longer for a short time.
 float draw_legend_above(const std::vector<Shown>& curves, Session& session, ImVec2 size) {
   const float lines = size.y > kRoomForTwo * ImGui::GetTextLineHeight() ? 2.0F : 1.0F;
   const float height = lines * ImGui::GetTextLineHeightWithSpacing();
@@ -191,7 +192,7 @@ void draw_peak(const Plot& plot, const Session& session) {
   const float side = is_low ? 1.0F : -1.0F;
   plot.list()->AddTriangleFilled({at.x, at.y + side * scaled(3.0F)}, {at.x - scaled(5.0F), at.y + side * scaled(12.0F)},
                                  {at.x + scaled(5.0F), at.y + side * scaled(12.0F)}, kTextColour);
-  // The label is beside the mark towards the middle, so that it stays inside.
+  // The label is on the side towards the middle, so that it stays inside the plot.
   const bool is_right = at.x > 0.5F * (plot.min().x + plot.max().x);
   const float line = ImGui::GetTextLineHeight();
   const float beside = std::max(std::min(at.y + side * scaled(8.0F), plot.max().y - line), plot.min().y + line);
@@ -266,11 +267,11 @@ void CurveView::choose_axes(const Session& session, Zoom& zoom, const Scale& zen
   if (has_zeniths) zoom.x = zoom.x->within(zeniths);
   x_ = has_zeniths ? *zoom.x : zeniths;
   const bool is_same = quantity_ == session.view().quantity && y_.is_log == values.is_log;
-  // Without a curve the axis of values is not logarithmic; the typed range waits until there is one.
+  // Without a curve the axis of values is linear. A typed range is kept until there is a curve.
   if (zoom.y && zoom.y->is_log == values.is_log) {
     values = *zoom.y;
   } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left) && is_same) {
-    // While a slider is dragged the axis only grows, so that the curve is what moves.
+    // While a slider is dragged the axis only grows, so that only the curve moves.
     values = {std::min(y_.from, values.from), std::max(y_.to, values.to), y_.is_log};
   }
   quantity_ = session.view().quantity;
@@ -306,7 +307,7 @@ void CurveView::draw(Session& session, ImVec2 size) {
                fmt::format("{:.2f}°, {:.4g}", x_.value(plot.mouse_x()), y_.value(plot.mouse_y())));
   }
   plot.unclip();
-  draw_peak(plot, session);  // not clipped: a mark at an end of the axis is as large as elsewhere
+  draw_peak(plot, session);  // not clipped, so that the mark is complete at an end of the axis
   area_ = plot.area();
   edit_axes(view, plot, values.label);
   if (view != session.view()) session.set_view(view);

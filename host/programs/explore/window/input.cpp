@@ -12,7 +12,7 @@ namespace dolp::explore {
 namespace {
 
 #if IMGUI_VERSION_NUM < 18700
-// The backend keeps Ctrl, Shift and Alt as of its last event.
+// The backend uses the state of Ctrl, Shift and Alt at its last event.
 void set_modifiers(int, int, int) {}
 
 void set_mouse(ImVec2 position, const std::array<bool, 5>& buttons) {
@@ -21,9 +21,10 @@ void set_mouse(ImVec2 position, const std::array<bool, 5>& buttons) {
   std::ranges::copy(buttons, io.MouseDown);
 }
 #else
-// The backend takes the present state of Ctrl, Shift and Alt, some events later.
+// The backend would use the current state of Ctrl, Shift and Alt, which may be some events later.
 void set_modifiers(int key, int action, int modifiers) {
-  if (key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER) {  // on X11 the modifiers are those before the event
+  // on X11 `modifiers` describes the state before the event
+  if (key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER) {
     const int modifier = 1 << (key - GLFW_KEY_LEFT_SHIFT) % 4;
     modifiers = action == GLFW_RELEASE ? modifiers & ~modifier : modifiers | modifier;
   }
@@ -35,7 +36,7 @@ void set_modifiers(int key, int action, int modifiers) {
 
 void set_mouse(ImVec2 position, const std::array<bool, 5>& buttons) {
   ImGuiIO& io = ImGui::GetIO();
-  io.ConfigInputTrickleEventQueue = false;  // a frame has one event anyway
+  io.ConfigInputTrickleEventQueue = false;  // each frame has only one event
   io.AddMousePosEvent(position.x, position.y);
   for (int i = 0; i < 5; ++i) io.AddMouseButtonEvent(i, buttons[static_cast<std::size_t>(i)]);
 }
@@ -84,7 +85,7 @@ Input::Input(GLFWwindow* window, std::function<void(const std::string&)> on_drop
   glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int focused) {
     push(w, [=] {
       ImGui_ImplGlfw_WindowFocusCallback(w, focused);
-      if (!focused && ImGui::GetIO().WantTextInput) ImGui::ClearActiveID();  // ends the typing in a field
+      if (!focused && ImGui::GetIO().WantTextInput) ImGui::ClearActiveID();  // ends typing in a field
     });
   });
   glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
@@ -102,7 +103,8 @@ void Input::begin_frame() {
     events_.pop_front();
   }
   ImGui_ImplGlfw_NewFrame();
-  // ImGui's backend takes the present state of the mouse, some events later. A drag may lead out of the window.
+  // The backend would use the current position of the mouse, which may be some events later. A drag may leave the
+  // window.
   constexpr float kNowhere = std::numeric_limits<float>::lowest();
   const bool is_seen = is_inside_ || glfwGetWindowAttrib(window_, GLFW_FOCUSED) != 0;
   set_mouse(is_seen ? mouse_ : ImVec2(kNowhere, kNowhere), buttons_);

@@ -1,4 +1,4 @@
-// Events of mouse and keyboard, which ImGui gets one by one, and where the named items are.
+// Events of mouse and keyboard, which ImGui gets one by one, and the areas of named items.
 #pragma once
 
 #include <imgui.h>
@@ -25,8 +25,8 @@ struct Area {
   ImVec2 at(float x, float y) const { return {min.x + x * width(), min.y + y * height()}; }
 };
 
-/// Queues the events of a window. ImGui looks at the state of keys and buttons once a frame, and misses those that go
-/// down and up between two frames. So each event gets its own frame; the window shows only some of these frames.
+/// Queues the events of a window. ImGui reads the state of keys and buttons once per frame, and would miss a key that
+/// goes down and up between two frames. So each event gets a frame; the window shows only some of these frames.
 class Input {
  public:
   /// Becomes the window's user pointer. `on_drop` gets the path of each file that is dropped on the window.
@@ -34,16 +34,16 @@ class Input {
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
 
-  /// Begins a frame of ImGui with the next event, if there is one.
+  /// Begins a frame of ImGui with the next event, if any.
   void begin_frame();
   bool has_more() const { return !events_.empty(); }
   /// GLFW's number of the key that goes down in this frame.
   int pressed_key() const { return pressed_key_; }
   /// True if there was anything to show since the last call.
   bool take_news() { return std::exchange(has_news_, false); }
-  /// Time since the last event.
+  /// Time since the last event, in seconds.
   double rest_s() const { return std::chrono::duration<double>(Clock::now() - last_event_).count(); }
-  /// The items of this frame that have a name, for hands that move the mouse there.
+  /// The named items of this frame, for tests that move the mouse.
   std::map<std::string, Area>& areas() { return areas_; }
 
  private:
@@ -61,15 +61,15 @@ class Input {
   bool has_news_ = false;
   Clock::time_point last_event_;
   std::map<std::string, Area> areas_;
-  // The state after the events so far.
+  // The state after the processed events.
   int pressed_key_ = 0;
   bool is_inside_ = false;
   ImVec2 mouse_;
   std::array<bool, 5> buttons_{};
 };
 
-/// True in the frame in which this key of GLFW goes down. ImGui's codes of keys depend on its version: up to 1.86 they
-/// are GLFW's, and ImGui::IsKeyPressed(ImGuiKey_Escape) asks for another key.
+/// True in the frame in which this key of GLFW goes down. ImGui's key codes depend on its version: up to 1.86 they
+/// equal GLFW's, and ImGui::IsKeyPressed(ImGuiKey_Escape) would check a different key.
 bool is_pressed(int key);
 
 /// Names the area of the item that was drawn last, or another area.

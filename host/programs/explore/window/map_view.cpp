@@ -10,13 +10,13 @@
 namespace dolp::explore {
 namespace {
 
-// Few enough that neighbours share a colour and are drawn as one, more than the eye tells apart.
+// More than the eye can distinguish, but few enough that neighbours with one colour are drawn together.
 constexpr double kColourSteps = 96.0;
-constexpr double kMostContrast = 1e3;  // largest value over least value of a logarithmic colour scale
+constexpr double kMostContrast = 1e3;  // largest over smallest value of a logarithmic colour scale
 constexpr std::size_t kMostLines = 7;
 constexpr ImU32 kLightLine = IM_COL32(255, 255, 255, 190);  // over the colours of a map, in both themes
 constexpr ImU32 kDarkLine = IM_COL32(0, 0, 0, 170);         // over the white of diverging colours
-constexpr float kBarRoom = 5.4F;                            // width right of the map, in lines of text
+constexpr float kBarRoom = 5.4F;                            // space right of the map, in lines of text
 
 Scale times(const Scale& range, double factor) { return {factor * range.from, factor * range.to, range.is_log}; }
 
@@ -60,7 +60,7 @@ Scale MapView::colour_range() const {
     const double largest = std::max(std::abs(field_.min), std::abs(field_.max));
     return {-largest, largest};
   }
-  // A logarithmic scale leaves out the smallest values, and needs a positive rest.
+  // A logarithmic scale leaves out the smallest values. The others must be positive.
   const double low = is_log_ && field_.max > 0.0 ? std::max(field_.min, field_.max / kMostContrast) : field_.min;
   return {low, field_.max, is_log_ && low > 0.0};
 }
@@ -77,7 +77,7 @@ void MapView::update(const Session& session) {
   is_log_ = is_log;
   typed_colours_ = session.view().map_colours;
   field_ = session.map().field(quantity);
-  // While a slider is dragged the colours keep their values, so that the map is what changes.
+  // While a slider is dragged the colour scale stays fixed, so that only the map changes.
   const bool is_held = session.is_dragged() && is_same && colour_scale_.from < colour_scale_.to;
   if (!is_held) colour_scale_ = typed_colours_.value_or(colour_range());
   colours_.clear();
@@ -111,7 +111,7 @@ std::vector<MapView::Run> MapView::runs_along(bool rows) const {
 
 void MapView::draw_cells(const Plot& plot) const {
   const auto edge = [&](std::size_t i) {
-    // Entries are at the ends too, so that the outer cells are half as wide.
+    // The outer entries lie on the border, so their cells are half as wide.
     return std::clamp((static_cast<double>(i) - 0.5) / static_cast<double>(field_.count - 1), 0.0, 1.0);
   };
   const ImVec2 white = ImGui::GetFontTexUvWhitePixel();
@@ -133,7 +133,7 @@ void MapView::draw_contours(const Plot& plot) const {
   std::vector<ImVec2> labels;
   for (const Contour& contour : contours_) {
     if (contour.segments.empty()) continue;
-    // The label is at the point that is farthest from the edges.
+    // The label is at the point farthest from the edges.
     const auto room = [](const Segment& s) { return std::min({s.x0, 1.0 - s.x0, s.y0, 1.0 - s.y0}); };
     const Segment& inner = *std::ranges::max_element(contour.segments, {}, room);
     const ImVec2 at = plot.at_position(inner.x0, inner.y0);

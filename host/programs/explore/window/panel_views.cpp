@@ -15,18 +15,18 @@ constexpr std::size_t kMaterialCount = 240;
 constexpr std::size_t kCutCount = 181;
 constexpr float kLineWidth = 2.0F;
 
-/// The range of the values of lines.
+/// The range of values of all lines.
 Scale values_range(const std::vector<NamedLine>& lines, bool is_log) {
   std::vector<double> all;
   for (const NamedLine& line : lines) all.insert(all.end(), line.values.begin(), line.values.end());
   return range_of(std::move(all), is_log);
 }
 
-/// Draws lines, with gaps where they have no value, and their names in the upper right corner or in a row above it.
+/// Draws lines with gaps where they have no value. Their names are in the upper right corner, or in a row above.
 void draw_lines(const Plot& plot, const std::vector<double>& xs, const std::vector<NamedLine>& lines,
                 bool is_above = false) {
   plot.clip();
-  for (const NamedLine& line : std::views::reverse(lines)) {  // the first lies over the others
+  for (const NamedLine& line : std::views::reverse(lines)) {  // so that the first line is on top
     std::vector<ImVec2> points;
     for (std::size_t i = 0; i < xs.size(); ++i)
       points.push_back(plot.can_show(xs[i], line.values[i]) ? plot.at(xs[i], line.values[i]) : kGap);
@@ -63,7 +63,7 @@ void mark_spectrum(const Plot& plot, const Scene& scene) {
   plot.unclip();
 }
 
-/// A quantity along a sweep, dim while the sweep belongs to an earlier scene, with gaps where the model fails.
+/// A quantity along a sweep, with gaps where the model fails. Dim while the sweep belongs to an earlier scene.
 NamedLine line_of(const Sweep& sweep, Plotted quantity, const CurveStyle& style, const std::string& name) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   NamedLine line{name, sweep.is_finished() ? style : stale(style), {}};
@@ -72,7 +72,7 @@ NamedLine line_of(const Sweep& sweep, Plotted quantity, const CurveStyle& style,
   return line;
 }
 
-/// The largest magnitude of an element in a cut.
+/// The largest magnitude of one element in a cut.
 double largest_magnitude(const ScatteringCut& cut, std::size_t element) {
   double largest = 0.0;
   for (const MuellerMatrix& matrix : cut.matrices) {
@@ -81,12 +81,12 @@ double largest_magnitude(const ScatteringCut& cut, std::size_t element) {
   return largest;
 }
 
-/// A half circle above the middle of a surface.
+/// A half circle above the centre of a surface.
 struct HalfCircle {
   ImVec2 middle;
   float radius;
 
-  /// The point at a part of the radius and an angle from the normal, positive to the right.
+  /// The point at a share of the radius and an angle from the normal. Positive angles are on the right.
   ImVec2 at(double part, double angle_deg) const {
     const double angle = angle_deg * kDegree;
     return {middle.x + radius * static_cast<float>(part * std::sin(angle)),
@@ -109,7 +109,7 @@ void draw_polar_grid(ImDrawList* list, const HalfCircle& circle, const Scale& ma
   }
 }
 
-/// The lobe of an element: positive parts full, negative parts dashed.
+/// The lobe of an element: solid where positive, dashed where negative.
 void draw_lobe(ImDrawList* list, const HalfCircle& circle, const ScatteringCut& cut, std::size_t element,
                double largest) {
   for (const bool is_negative : {false, true}) {
@@ -125,7 +125,7 @@ void draw_lobe(ImDrawList* list, const HalfCircle& circle, const ScatteringCut& 
 
 constexpr int kCells = 56;  // cells across a sphere, each a few pixels large
 
-/// A colour of the angle of polarisation, the same at 0 and 180 degrees.
+/// A colour for the angle of polarisation, equal at 0 and 180 degrees.
 ImU32 angle_colour(double angle_deg) {
   float r = 0.0F, g = 0.0F, b = 0.0F;
   ImGui::ColorConvertHSVtoRGB(static_cast<float>(angle_deg / 180.0), 0.65F, 0.95F, r, g, b);
@@ -143,7 +143,7 @@ struct Colours {
   }
 };
 
-/// The range of DOLP from 0, or from the least value.
+/// The range of DOLP. It begins at 0, or with `from_least` at the smallest value.
 Scale dolp_range(const std::vector<Point>& points, double theta_max_deg, bool from_least) {
   constexpr double kLeastRange = 1e-6;
   Scale range{1.0, 0.0};
@@ -173,14 +173,14 @@ void draw_sphere(const Session& session, ImVec2 middle, float radius, const Colo
   }
 }
 
-/// A square plate as seen from afar, with a line along its polarisation.
+/// A square plate seen from afar, with a line along its polarisation.
 void draw_plate(const Session& session, ImVec2 middle, float radius, double azimuth_deg, const Colours& colours) {
   const std::optional<ImagePolarisation> polarisation =
       polarisation_at(session.curve().points(), session.theta_deg(), azimuth_deg);
   const double azimuth = azimuth_deg * kDegree;
   const double shortened = std::max(0.02, std::cos(session.theta_deg() * kDegree));
   const auto at = [&](double along, double across) {
-    // The side along the tilt is shortened.
+    // Perspective shortens the side along the tilt.
     const double x = along * shortened * std::cos(azimuth) - across * std::sin(azimuth);
     const double y = along * shortened * std::sin(azimuth) + across * std::cos(azimuth);
     return ImVec2{middle.x + radius * static_cast<float>(x), middle.y - radius * static_cast<float>(y)};
@@ -197,7 +197,7 @@ void draw_plate(const Session& session, ImVec2 middle, float radius, double azim
                 scaled(2.0F));
 }
 
-/// A bar of the colours with its ends in words.
+/// A colour bar with a word at each end.
 void draw_bar(ImVec2 corner, float width, const Colours& colours) {
   const float line = ImGui::GetTextLineHeight();
   ImDrawList* const list = ImGui::GetWindowDrawList();
@@ -214,7 +214,7 @@ void draw_bar(ImVec2 corner, float width, const Colours& colours) {
   draw_text(list, {corner.x + 0.5F * width, below}, {0.5F, 0.0F}, kTextColour, colours.is_angle ? "angle" : "DOLP");
 }
 
-/// A sky as a disc: the zenith in the middle, azimuth 0, the side of the view, on the right.
+/// A sky as a disc. The zenith is in the centre; azimuth 0, the side of the view, is on the right.
 struct SkyDisc {
   ImVec2 middle;
   float radius;
@@ -228,7 +228,7 @@ struct SkyDisc {
 
 void draw_rings(const SourceSky& sky, const SkyDisc& at, const Colours& colours) {
   ImDrawList* const list = ImGui::GetWindowDrawList();
-  // Smooth edges would show as seams.
+  // Anti-aliased edges would be visible as seams.
   const ImDrawListFlags flags = std::exchange(list->Flags, ImDrawListFlags_None);
   const double half_deg = 0.5 * SourceSky::azimuth_deg(1);
   for (std::size_t i = 0; i < SourceSky::kAzimuths; ++i) {
@@ -246,7 +246,7 @@ void draw_rings(const SourceSky& sky, const SkyDisc& at, const Colours& colours)
   list->Flags = flags;
 }
 
-/// Circles of zeniths; a ring for the scene's source, a square for its view.
+/// Circles at some zeniths, a ring for the scene's source, a square for its view.
 void draw_sky_marks(const Scene& scene, double source_zenith_deg, const SkyDisc& at) {
   ImDrawList* const list = ImGui::GetWindowDrawList();
   for (const double zenith_deg : {30.0, 60.0, 90.0}) {
@@ -272,7 +272,7 @@ void cell(const std::string& text, ImU32 colour = kTextColour) {
   coloured_text(colour, text);
 }
 
-/// In points of DOLP: a bound for a dropped effect, an estimate for a kept one.
+/// The influence in points of DOLP: a bound for a dropped effect, an estimate for a kept one.
 std::string influence_text(const Effect& row) {
   if (!row.bound && !row.influence) return "";
   const double points = 100.0 * row.bound.value_or(row.influence.value_or(0.0));
@@ -287,7 +287,7 @@ bool is_stale(const Session& session) { return !session.effects().empty() && !se
 void draw_row(const Session& session, const Effect& row) {
   const bool is_absent = row.state == EffectState::kAbsent;
   const ImU32 colour = is_absent || is_stale(session) ? kDimColour : kTextColour;
-  // A surface without slopes is a smooth one.
+  // Without the slopes the surface is smooth.
   const bool is_slopes = row.name == "distribution";
   const std::string removed = is_slopes ? "roughness" : row.name;
   const std::string without = is_absent ? "" : without_text(session, removed);
@@ -300,7 +300,7 @@ void draw_row(const Session& session, const Effect& row) {
   if (!row.needs.empty()) tooltip("needs: " + row.needs);
 }
 
-/// A line for each minimum, and one for each kind of interval; returns the minimum that was clicked.
+/// One line per minimum and one per kind of interval. Returns the minimum that was clicked.
 std::optional<std::size_t> draw_minima(const Fit& fit, std::optional<std::size_t> current) {
   std::optional<std::size_t> clicked;
   const int columns = static_cast<int>(fit.parameters.size()) + 2;
@@ -327,7 +327,7 @@ std::optional<std::size_t> draw_minima(const Fit& fit, std::optional<std::size_t
   return clicked;
 }
 
-/// The lines of the report that interpret the result; the table above has the numbers.
+/// The lines of the report that interpret the result. The table above has the numbers.
 void draw_words(const Fit& fit) {
   constexpr std::array<std::string_view, 9> kShown = {"minimum",    "misfit",     "scale",  "scaled", "pieces",
                                                       "correlated", "degenerate", "status", "model"};
@@ -347,7 +347,7 @@ void draw_slopes(const Session& session, ImVec2 size) {
   try {
     other = scene.with(other_distribution(scene));
   } catch (const InputError&) {
-    // Its sigma or q is outside the model: the plot has one line.
+    // The sigma or q of the overlay is outside the model, so the plot has one line.
   }
   const std::vector<double> all_deg = zeniths(0.0, 89.5, kSlopeCount);
   const auto densities = [&](const Scene& one) {
@@ -462,7 +462,7 @@ void ScatteringView::draw(Session& session, ImVec2 size) {
   if (!(largest > 0.0)) return draw_reason("0 in all of these directions");
   draw_polar_grid(list, circle, {0.0, largest});
   draw_lobe(list, circle, cut_, element, largest);
-  // The source.
+  // The mark of the source.
   const ImVec2 source = circle.at(1.0, -session.theta_deg());
   list->AddLine(source, circle.middle, kCursorColour, scaled(1.0F));
   list->AddCircleFilled(source, scaled(4.0F), kCursorColour);
@@ -525,7 +525,7 @@ void draw_effects(const Session& session) {
   struct Column {
     const char* name;
     const char* meaning;
-    float width;  ///< in sizes of the font
+    float width;  ///< in units of the font size
   };
   const std::array<Column, 5> columns = {
       {{is_stale(session) ? "the scene before" : "effect", "a part of the scene", 6.8F},

@@ -11,7 +11,7 @@ std::vector<double> ticks_of(const Scale& scale, float pixels, float spacing) {
   return scale.ticks(static_cast<std::size_t>(std::max(3.0F, pixels / spacing)));
 }
 
-/// A line without gaps.
+/// Draws a line without gaps.
 void draw_piece(ImDrawList* list, const std::vector<ImVec2>& points, const CurveStyle& style, float width) {
   if (style.dash == 0.0F && points.size() > 1)
     return list->AddPolyline(points.data(), static_cast<int>(points.size()), style.colour, ImDrawFlags_None, width);
@@ -115,7 +115,7 @@ double Plot::mouse_y() const {
 
 void Plot::follow_mouse(Zoom& zoom, const Scale& all_x) const {
   constexpr float kPerNotch = 1.25F;
-  constexpr double kLeastPart = 1e-4;  // shortest axis, relative to the axis without a zoom
+  constexpr double kLeastPart = 1e-4;  // shortest axis, relative to the whole axis
   const ImGuiIO& io = ImGui::GetIO();
   if (is_hovered_ && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) zoom = {};
   if (is_shifted_ && (io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F)) {
@@ -159,7 +159,7 @@ void Plot::draw_y_axis(bool has_grid) const {
     list_->AddLine({min().x - 0.25F * line, at}, {min().x, at}, kDimColour);
     draw_text(list_, {min().x - 0.4F * line, at}, {1.0F, 0.5F}, kDimColour, tick_text(tick));
   }
-  // Above the axis, where the label needs no turned text.
+  // Above the axis, so that the text need not be rotated.
   draw_text(list_, {min().x - 2.6F * line, min().y - 0.6F * line}, {0.0F, 1.0F}, kTextColour, y_.label);
 }
 

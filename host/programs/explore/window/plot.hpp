@@ -1,4 +1,4 @@
-// Axes, curves and maps from ImGui's draw lists.
+// Axes, curves and maps, drawn with ImGui's draw lists.
 #pragma once
 
 #include <limits>
@@ -15,11 +15,11 @@ struct PlotAxis {
   Scale scale;
 };
 
-/// A rectangle of the screen with two axes.
+/// A rectangle on the screen with two axes.
 class Plot {
  public:
-  /// Takes `size` of the current ImGui window from its cursor, margins for ticks and labels included, and draws
-  /// background, grid and axes. `right` leaves room at the right side.
+  /// Takes an area of `size`, with margins for ticks and labels, at the cursor of the current ImGui window. Draws
+  /// background, grid and axes. `right` is free space on the right.
   Plot(const char* id, ImVec2 size, PlotAxis x, PlotAxis y, float right = 0.0F, bool has_grid = true);
 
   const Area& area() const { return area_; }
@@ -28,7 +28,7 @@ class Plot {
   const Scale& x() const { return x_.scale; }
   const Scale& y() const { return y_.scale; }
   ImDrawList* list() const { return list_; }
-  // The numbers beside the axes.
+  // The areas of the numbers beside the axes.
   Area x_numbers() const;
   Area y_numbers() const;
   /// True if both axes can show a point: it is finite, and positive along logarithmic axes.
@@ -36,13 +36,13 @@ class Plot {
 
   ImVec2 at(double x_value, double y_value) const { return at_position(x().position(x_value), y().position(y_value)); }
   ImVec2 at_position(double x, double y) const { return area_.at(static_cast<float>(x), 1.0F - static_cast<float>(y)); }
-  /// True while the left button, which was pressed inside, is held down.
+  /// True while the left button, pressed inside the plot, is down.
   bool is_dragged() const { return is_dragged_; }
   bool is_hovered() const { return is_hovered_; }
-  /// Follows the mouse of this frame: the wheel magnifies about the mouse (with Shift only along x, with Alt only along
-  /// y), the right button shifts, a double click shows all again. `all_x` bounds the x axis.
+  /// Applies the mouse of this frame: the wheel zooms around the mouse (with Shift only along x, with Alt only along
+  /// y), the right button moves the plot, a double click resets it. `all_x` limits the x axis.
   void follow_mouse(Zoom& zoom, const Scale& all_x) const;
-  /// The position of the mouse, or of the nearest point in the plot, from 0 to 1 along both axes.
+  /// The position of the mouse, or the nearest position in the plot, from 0 to 1 along both axes.
   double mouse_x() const;
   double mouse_y() const;
 
@@ -61,17 +61,18 @@ class Plot {
   bool is_hovered_ = false;
 };
 
-/// A line through points in a style; its width and dashes are scaled(). It breaks at points that are kGap.
+/// Draws a line through points in a style, with width and dashes scaled(). A point kGap interrupts the line.
 inline const ImVec2 kGap{std::numeric_limits<float>::quiet_NaN(), 0.0F};
 void draw_line(ImDrawList* list, const std::vector<ImVec2>& points, const CurveStyle& style, float width);
 
-/// Text whose point at a fraction of its size, `anchor`, is `at`: (0.5, 0) is centred below `at`.
+/// Draws text. `anchor` is the point of the text, as fractions of its size, that lies at `at`: with (0.5, 0) the text
+/// is centred below `at`.
 void draw_text(ImDrawList* list, ImVec2 at, ImVec2 anchor, ImU32 colour, const std::string& text);
 
-/// Text on a ground that hides curves behind it.
+/// Draws text on a background that hides curves behind it.
 void draw_label(ImDrawList* list, ImVec2 at, ImVec2 anchor, ImU32 colour, const std::string& text);
 
-/// A bar of colours for positions from 0 to 1, upwards or to the right.
+/// Draws a colour bar for positions from 0 to 1, upwards or to the right.
 void draw_colours(ImDrawList* list, const Area& bar, bool is_upright, const std::function<ImU32(double)>& colour_at);
 
 }  // namespace dolp::explore

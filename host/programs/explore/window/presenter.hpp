@@ -1,4 +1,4 @@
-// Draws ImGui's lists into a window, on the device that computes. For app.cpp.
+// Draws ImGui's lists into a window, on the device that also computes. Only for app.cpp.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -24,10 +24,11 @@
 
 namespace dolp::explore {
 
-/// Owns the surface and everything that draws on it, ImGui's Vulkan backend included. Needs an ImGui context.
+/// Owns the surface and everything that draws on it, with ImGui's Vulkan backend. Needs an ImGui context.
 class Presenter {
  public:
-  /// Takes `surface`, which must belong to the context's instance. `size` is the size of the window's framebuffer.
+  /// `surface` must belong to the context's instance; the object takes ownership. `size` is the size of the
+  /// framebuffer.
   Presenter(vulkan::Context& context, VkSurfaceKHR surface, VkExtent2D size)
       : context_(context), surface_(surface), size_(size) {
     VkBool32 is_supported = VK_FALSE;
@@ -51,9 +52,9 @@ class Presenter {
     vkDestroySurfaceKHR(context_.instance(), surface_, nullptr);
   }
 
-  /// Draws and presents; does nothing while the window has no area. Returns the frame as a PNG file if it is wanted and
-  /// was drawn, else nothing.
-  /// Errors: DeviceError when the device or the surface is lost.
+  /// Draws and presents. Does nothing while the window has no area. Returns the frame as a PNG file if that is wanted
+  /// and the frame was drawn; otherwise nothing.
+  /// Errors: DeviceError if the device or the surface is lost.
   std::string draw(ImDrawData* data, VkExtent2D size, bool wants_picture) {
     wait();
     std::uint32_t index = 0;
@@ -70,7 +71,7 @@ class Presenter {
     return png;
   }
 
-  /// Takes a new font of ImGui's context, between two frames.
+  /// Loads a new font of ImGui's context. Call it between two frames.
   void restart_imgui() {
     wait();
     ImGui_ImplVulkan_Shutdown();
@@ -89,7 +90,7 @@ class Presenter {
     VkImage image = VK_NULL_HANDLE;
     UniqueImageView view;
     UniqueFramebuffer framebuffer;
-    UniqueSemaphore drawn;  ///< signalled when the image may be presented
+    UniqueSemaphore drawn;  ///< signalled when the image is ready to be presented
   };
 
   static constexpr std::size_t kBytesPerPixel = 4;
@@ -98,7 +99,7 @@ class Presenter {
   static void check_imgui(VkResult result) { check(result, "drawing the window"); }
 
   static VkExtent2D extent_of(const VkSurfaceCapabilitiesKHR& capabilities, VkExtent2D wanted) {
-    constexpr std::uint32_t kOpenSize = UINT32_MAX;  // the window may choose
+    constexpr std::uint32_t kOpenSize = UINT32_MAX;  // the window can choose any size
     if (capabilities.currentExtent.width != kOpenSize) return capabilities.currentExtent;
     const VkExtent2D& least = capabilities.minImageExtent;
     const VkExtent2D& most = capabilities.maxImageExtent;
@@ -109,7 +110,8 @@ class Presenter {
   VkQueue queue() const { return context_.device().queue(); }
 
   void choose_format() {
-    constexpr std::array kFormats = {VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R8G8B8A8_UNORM};  // not sRGB, as ImGui assumes
+    // not sRGB, because ImGui expects linear formats
+    constexpr std::array kFormats = {VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R8G8B8A8_UNORM};
     format_ =
         ImGui_ImplVulkanH_SelectSurfaceFormat(context_.physical_device(), surface_, kFormats.data(),
                                               static_cast<int>(kFormats.size()), VK_COLOR_SPACE_SRGB_NONLINEAR_KHR);
@@ -160,7 +162,7 @@ class Presenter {
     return capabilities;
   }
 
-  /// True if the surface has a size to draw into: a minimised window has none.
+  /// True if the surface has an area. A minimised window has none.
   bool has_area(VkExtent2D size) const {
     if (size.width == 0 || size.height == 0) return false;
     const VkExtent2D extent = extent_of(capabilities(), size);
@@ -258,7 +260,7 @@ class Presenter {
     info.QueueFamily = context_.device().queue_family();
     info.Queue = queue();
     info.DescriptorPool = descriptors_.get();
-    info.MinImageCount = info.ImageCount = 2;  // the least that ImGui takes: buffers for this many frames
+    info.MinImageCount = info.ImageCount = 2;  // minimum of ImGui; it makes buffers for this many frames
     info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
     info.CheckVkResultFn = check_imgui;
     ImGui_ImplVulkan_Init(&info, pass_.get());
@@ -293,7 +295,7 @@ class Presenter {
   bool acquire(VkExtent2D size, std::uint32_t& image) {
     for (;;) {
       if (!has_area(size)) return false;
-      // Some drivers do not report that their images have an old size.
+      // Some drivers do not report an outdated image size.
       if (size.width != size_.width || size.height != size_.height) recreate_swapchain(size);
       const VkResult result =
           vkAcquireNextImageKHR(device(), swapchain_.get(), UINT64_MAX, acquired_.get(), VK_NULL_HANDLE, &image);
@@ -331,7 +333,7 @@ class Presenter {
         .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
         .image = image,
         .subresourceRange = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .levelCount = 1, .layerCount = 1}};
-    // The copy waits for the pass's implicit dependency and for the write itself.
+    // The copy waits for the render pass and for the write.
     vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr,
                          0, nullptr, 1, &barrier);
     const VkBufferImageCopy region{.imageSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
@@ -408,14 +410,15 @@ class Presenter {
 
   vulkan::Context& context_;
   VkSurfaceKHR surface_;
-  VkExtent2D size_;  ///< size of the window when the swapchain was made
+  VkExtent2D size_;  ///< size of the window when the swapchain was created
   VkSurfaceFormatKHR format_{};
   UniqueRenderPass pass_;
   VkExtent2D extent_{};
   UniqueSwapchain swapchain_;
   std::vector<Image> images_;
   vulkan::UniqueDescriptorPool descriptors_;
-  // For the frame that is being drawn. The next frame is laid out meanwhile, and waits for it before it is recorded.
+  // For the frame that is being drawn. The next frame is laid out at the same time, and waits for this one before it is
+  // recorded.
   vulkan::UniqueCommandPool pool_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
   vulkan::UniqueFence done_;

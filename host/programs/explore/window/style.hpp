@@ -1,4 +1,4 @@
-// The window's look: colours that people with any colour vision tell apart, and the font.
+// The window's look: colours that people with any colour vision can distinguish, and the font.
 #pragma once
 
 #include <imgui.h>
@@ -12,14 +12,14 @@ namespace dolp::explore {
 bool is_light();
 void set_theme(bool light);
 
-/// A colour in the dark theme and in the light one.
+/// A colour for the dark theme and one for the light theme.
 struct Themed {
   ImU32 dark, light;
   // NOLINTNEXTLINE(google-explicit-constructor): for ImGui it is a colour
   operator ImU32() const { return is_light() ? light : dark; }
 };
 
-/// The colour map "viridis" from dark at 0 to light at 1; outside it has the colours of the ends.
+/// The colour map "viridis" from dark at 0 to light at 1. Positions outside get the colours of the ends.
 /// Source: S. van der Walt, N. Smith, viridis of Matplotlib (CC0), at seventeen equal steps, linear in between.
 ImU32 viridis(double position);
 
@@ -27,14 +27,14 @@ ImU32 viridis(double position);
 /// Source: C. Brewer, ColorBrewer (Apache License 2.0), linear between its eleven colours.
 ImU32 diverging(double position);
 
-/// The style of a curve: colour is never the only distinction.
+/// The style of a curve. Curves never differ only in colour.
 struct CurveStyle {
   ImU32 colour;
-  float dash;  ///< length of dashes in pixels; 0 for a full line
+  float dash;  ///< length of dashes in pixels; 0 for a solid line
   float gap;
 };
 
-/// The styles of the current curve, the overlay, and pins by their number.
+/// The styles of the current curve, of the overlay, and of pins by number.
 /// Source: M. Okabe, K. Ito, Color Universal Design (2008).
 CurveStyle current_style();
 CurveStyle overlay_style();
@@ -43,7 +43,7 @@ CurveStyle pin_style(std::size_t pin);
 /// The style of a curve that belongs to an earlier scene.
 CurveStyle stale(const CurveStyle& style);
 
-/// The fill colour of the band around a curve in a style.
+/// The fill colour of the band around a curve.
 ImU32 band_colour(const CurveStyle& style);
 
 inline constexpr Themed kTextColour{IM_COL32(225, 228, 232, 255), IM_COL32(24, 26, 30, 255)};
@@ -52,43 +52,43 @@ inline constexpr Themed kGridColour{IM_COL32(62, 66, 72, 255), IM_COL32(214, 217
 inline constexpr Themed kPlotColour{IM_COL32(20, 21, 24, 255), IM_COL32(255, 255, 255, 255)};
 inline constexpr Themed kBackground{IM_COL32(28, 31, 33, 255), IM_COL32(240, 241, 243, 255)};
 inline constexpr Themed kLabelGround{IM_COL32(20, 21, 24, 215), IM_COL32(255, 255, 255, 215)};
-/// Entries with a status.
+/// Colour of entries with a status.
 inline constexpr Themed kBadColour{IM_COL32(110, 112, 116, 255), IM_COL32(150, 152, 156, 255)};
 /// Messages.
 inline constexpr Themed kErrorColour{IM_COL32(255, 150, 110, 255), IM_COL32(178, 40, 0, 255)};
-/// Ground of a field with refused text.
+/// Background of a field with refused text.
 inline constexpr Themed kRefusedColour{IM_COL32(110, 48, 34, 255), IM_COL32(255, 200, 186, 255)};
-/// Over a stale map.
+/// Colour over an outdated map.
 inline constexpr Themed kStaleVeil{IM_COL32(20, 21, 24, 150), IM_COL32(255, 255, 255, 150)};
-/// Intervals of a fit.
+/// Colour of a fit's intervals.
 inline constexpr Themed kIntervalColour{IM_COL32(90, 205, 130, 255), IM_COL32(0, 130, 60, 255)};
 inline constexpr Themed kHeadingColour{IM_COL32(230, 179, 0, 255), IM_COL32(148, 98, 0, 255)};
 inline constexpr Themed kCursorColour{IM_COL32(255, 255, 255, 200), IM_COL32(40, 40, 40, 200)};
 
-/// Loads DejaVu Sans at `pixels`, or, where it is not installed, ImGui's font, which has only ASCII. Needs an ImGui
+/// Loads DejaVu Sans at `pixels`. If it is not installed, loads ImGui's font, which has only ASCII. Needs an ImGui
 /// context.
 void load_font(float pixels);
-inline constexpr float kFontPixels = 15.0F;  ///< usual size of the font
+inline constexpr float kFontPixels = 15.0F;  ///< default size of the font
 
-/// A length of this many pixels at the usual size of text; it grows with the text.
+/// A length of this many pixels at the default text size. It grows with the text.
 float scaled(float pixels);
 
-/// A UTF-8 text as the font can show it: Greek letters and signs by name without DejaVu Sans.
+/// A UTF-8 text for display. Without DejaVu Sans it has names instead of Greek letters and signs.
 std::string shown(std::string_view text);
 
 /// A UTF-8 text in ASCII.
 std::string ascii(std::string_view text);
 
-/// A text with its lines broken only at spaces, so that numbers and paths stay whole where a line has room for them.
+/// Breaks the lines of a text only at spaces, so that numbers and paths stay whole if they fit in a line.
 std::string in_lines(std::string text, float width);
 
 /// Text in a colour at ImGui's cursor, wrapped at the edge of the window.
 void coloured_text(ImU32 colour, const std::string& text);
 
-/// How long the mouse rests before a note appears.
+/// Delay before a note appears at a resting mouse, in seconds.
 inline constexpr float kTooltipDelay_s = 0.5F;
 
-/// A note beside the item that was drawn last, while the mouse rests on it.
+/// Shows a note beside the last drawn item while the mouse rests on it.
 void tooltip(const std::string& text);
 
 }  // namespace dolp::explore

@@ -28,7 +28,7 @@ void continue_row(float width) {
   if (ImGui::GetContentRegionAvail().x < width * ImGui::GetFontSize()) ImGui::NewLine();
 }
 
-/// The result of a task, or, while it runs, its progress and a button to cancel it.
+/// Draws the result of a task. While it runs, draws its progress and a button to cancel it.
 void draw_task(const std::string& name, BackgroundTask& task) {
   ImGui::PushID(name.c_str());
   if (task.is_running()) {
@@ -45,7 +45,7 @@ void draw_task(const std::string& name, BackgroundTask& task) {
   ImGui::PopID();
 }
 
-/// Draws a title and a row for each kept thing, with a button that removes it. `id` keeps the rows of two lists apart.
+/// Draws a title, and for each thing a row with a button that removes it. `id` distinguishes the rows of two lists.
 template <class Things, class DrawRow>
 void draw_removable(const char* title, const char* id, Things& things, const DrawRow& draw_row) {
   if (things.empty()) return;
@@ -119,7 +119,7 @@ void Ui::draw_map_axes(View& view) {
   for (const auto& [id, axis, other] : {std::tuple{"map x", &x, &y}, {"map y", &y, &x}}) {
     const auto position = static_cast<std::size_t>(std::ranges::find(axes, axis->name, &MapAxis::name) - axes.begin());
     if (const auto clicked = draw_list(id, 5.5F * ImGui::GetFontSize(), axis->label, "", position, entries)) {
-      // The two axes swap if the other one is this.
+      // Swaps the axes if the other axis has this name.
       const std::string& name = axes[*clicked].name;
       const std::string& left = name == other->name ? axis->name : other->name;
       view.map_x = axis == &x ? name : left;
@@ -132,7 +132,7 @@ void Ui::draw_map_axes(View& view) {
 void Ui::draw_fit() {
   if (!session_.residuals().data()) return;
   ImGui::Spacing();
-  // The bar stands where the button was, and the result goes elsewhere, so that the sliders below stay where they are.
+  // The progress bar replaces the button, and the result is elsewhere, so that the sliders below do not move.
   if (actions_.fit_task().is_running()) return draw_task("fit", actions_.fit_task());
   const bool is_ready = session_.fit_job().has_value();
   ImGui::BeginDisabled(!is_ready);
@@ -282,7 +282,7 @@ void Ui::draw() {
   ImGui::SetNextWindowPos(viewport->WorkPos);
   ImGui::SetNextWindowSize(viewport->WorkSize);
   ImGui::Begin("dolp", nullptr, kFixed);
-  ImGui::PushItemFlag(ImGuiItemFlags_NoTabStop, true);  // Tab goes to fields
+  ImGui::PushItemFlag(ImGuiItemFlags_NoTabStop, true);  // the Tab key goes to the text fields
   const ImVec2 all = ImGui::GetContentRegionAvail();
   const float em = ImGui::GetFontSize();
   const float left = std::clamp(0.36F * all.x, 19.0F * em, 22.0F * em);
@@ -315,7 +315,7 @@ void Ui::draw_right(float window_height) {
     draw_one_page();
     ImGui::EndChild();
   } else {
-    // The panels below scroll; the plots keep more than half of the height.
+    // The panels below can scroll. The plots keep more than half of the height.
     draw_plots({room.x, height - std::min(std::max(0.33F * window_height, 15.0F * ImGui::GetTextLineHeight()),
                                           0.45F * height)});
   }

@@ -1,5 +1,4 @@
-// The window's views of a session: the controls of the scene, curves, map, effects, and the views that can replace the
-// map.
+// The window's views of a session: controls, curves, map, effects, and the views that can replace the map.
 #pragma once
 
 #include "explore/session.hpp"
@@ -8,31 +7,31 @@
 
 namespace dolp::explore {
 
-// Each view fills the current ImGui window, or `size` of it.
+// Each view fills the current ImGui window, or `size` in it.
 
-/// What the controls keep from frame to frame.
+/// State of the controls between frames.
 struct ControlsState {
   NumberFields fields;
-  std::string sky_file;  ///< the scene's sky, which `sky` describes
+  std::string sky_file;  ///< sky file of the scene, whose content is `sky`
   std::optional<SkyPair> sky;
 };
 
-/// Fills the current ImGui window with the controls of a scene. Areas have the key of their control as name, "vary KEY"
-/// for the box that lets a number vary in fits, "field KEY" for a field, "field fit KEY 0" and "1" for the ends of its
-/// range in fits, "sky", "sky zenith" and "sky horizon".
+/// Fills the current ImGui window with the controls of a scene. Names of areas: the key of a control; "vary KEY" for
+/// the box that lets a number vary in fits; "field KEY" for a field; "field fit KEY 0" and "field fit KEY 1" for the
+/// ends of its range in fits; "sky", "sky zenith" and "sky horizon".
 void draw_controls(Session& session, ControlsState& state);
-/// Draws tolerance and precision, which stand beside their cost.
+/// Draws the controls of tolerance and precision, which are beside the cost.
 void draw_accuracy_controls(Session& session, ControlsState& state);
 
-/// The values of a line over positions that all lines of a plot share.
+/// The values of a line. All lines of a plot share their positions.
 struct NamedLine {
   std::string name;
   CurveStyle style;
   std::vector<double> values;
 };
 
-/// The current curve, the overlay, pins and measured points, below a legend that switches them. A click or drag moves
-/// the cursor, and the zoom follows the mouse.
+/// The current curve, the overlay, pins and measured points, below a legend that shows or hides them. A click or drag
+/// moves the cursor. The mouse controls the zoom.
 class CurveView {
  public:
   void draw(Session& session, ImVec2 size);
@@ -43,7 +42,7 @@ class CurveView {
   const AxisEditor& axis_editor() const { return axis_editor_; }
 
  private:
-  /// Applies the zoom, or else the automatic axes: `zeniths` and `values`.
+  /// Applies the zoom, or without a zoom the automatic axes: `zeniths` and `values`.
   void choose_axes(const Session& session, Zoom& zoom, const Scale& zeniths, Scale& values);
   void edit_axes(View& view, const Plot& plot, const std::string& values);
 
@@ -53,17 +52,18 @@ class CurveView {
   Plotted quantity_ = Plotted::kDolp;
 };
 
-/// The plan's treatment of each effect, its influence and the reason.
+/// Draws how the plan treats each effect, the influence of the effect, and the reason.
 void draw_effects(const Session& session);
 
-/// The slope distribution and the other distribution with the same D(0).
+/// Draws the slope distribution, and the other distribution with an equal D(0).
 void draw_slopes(const Session& session, ImVec2 size);
 
-/// n and k of the material over wavelength, the scene's spectrum marked.
+/// Draws n and k of the material over wavelength, with the scene's spectrum marked.
 void draw_material(const Session& session, ImVec2 size);
 
-/// The curve over wavelength at the cursor's zenith; and R_s and R_p of the smooth surface over the local angle of
-/// incidence, and over wavelength where that is the cursor's zenith. A drag along wavelengths changes the scene's.
+/// The curve over wavelength at the cursor's zenith; R_s and R_p of the smooth surface over the local angle of
+/// incidence; and over wavelength at the angle that equals the cursor's zenith. A drag along wavelengths changes the
+/// scene's wavelength.
 class SweepViews {
  public:
   void draw_spectrum(Session& session, ImVec2 size);
@@ -76,7 +76,7 @@ class SweepViews {
   AxisEditor axis_editor_;
 };
 
-/// One element of the Mueller pBRDF in the plane of incidence, as a polar plot for the cursor's zenith.
+/// Draws one element of the Mueller pBRDF in the plane of incidence, as a polar plot at the cursor's zenith.
 class ScatteringView {
  public:
   void draw(Session& session, ImVec2 size);
@@ -87,30 +87,30 @@ class ScatteringView {
   Evaluator evaluator_{EvaluatorOptions{.evaluator = "cpu"}};
   std::string key_;
   ScatteringCut cut_;
-  std::string reason_;  ///< why there is no cut
+  std::string reason_;  ///< reason why there is no cut
 };
 
-/// A sphere and a tilted plate as a camera sees them under the scene's radiation: DOLP and angle of polarisation.
+/// A sphere and a tilted plate as a camera would see them under the scene's radiation: DOLP and angle of polarisation.
 class ShapeView {
  public:
-  /// A drag tilts the plate, and moves the cursor to its zenith.
+  /// A drag tilts the plate and moves the cursor to its zenith.
   void draw(Session& session, ImVec2 size);
 
  private:
   double azimuth_deg_ = 30.0;  ///< direction of the tilt from the image's horizontal
 };
 
-/// The minima of the last fit, which a click visits, its intervals, and the words of `dolp fit`. The areas of the
-/// minima are named "minimum N", from 1.
+/// Draws the minima of the last fit, its intervals, and the explanations of `dolp fit`. A click visits a minimum. The
+/// areas of the minima are named "minimum N", from 1.
 void draw_fit_result(Session& session);
 
-/// DOLP of a bistatic scene over the direction of the source, as a polar map.
+/// Draws DOLP of a bistatic scene over the direction of the source, as a polar map.
 void draw_sky(const Session& session, ImVec2 size);
 
-/// Map, contour lines, colour bar and cursor. A click or drag moves the cursor, which the scene follows.
-/// Changes the typed range of an axis of wavelengths or of a map.
+/// Changes the typed range of a wavelength axis or of a map axis.
 void set_range(Session& session, const MapAxis& axis, const AxisEditor::Change& change);
 
+/// Map, contour lines, colour bar and cursor. A click or drag moves the cursor, and the scene follows.
 class MapView {
  public:
   void draw(Session& session, ImVec2 size);
@@ -118,20 +118,20 @@ class MapView {
   const Area& area() const { return area_; }
 
  private:
-  /// Neighbouring cells of one colour in a row or a column.
+  /// Neighbouring cells of one colour in a row or column.
   struct Run {
     std::size_t column, row;
     std::size_t columns, rows;
     ImU32 colour;
   };
-  /// The lines of one value.
+  /// The contour lines of one value.
   struct Contour {
     double level;
     std::vector<Segment> segments;
   };
   const PlottedDescription& quantity() const { return described(quantity_); }
   void update(const Session& session);
-  /// The values of the first and the last colour.
+  /// The values of the first and of the last colour.
   Scale colour_range() const;
   ImU32 colour(double position) const;
   void edit_axes(Session& session, const Plot& plot);
@@ -141,7 +141,7 @@ class MapView {
   void draw_contours(const Plot& plot) const;
   void draw_bar(const Plot& plot) const;
 
-  // What the members below were made from.
+  // The inputs of the members below.
   std::size_t version_ = 0;
   Plotted quantity_ = Plotted::kDolp;
   bool is_log_ = false;

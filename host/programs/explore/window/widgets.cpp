@@ -20,7 +20,7 @@ constexpr const char* kPopup = "###path";
 constexpr const char* kUp = "../";
 constexpr float kListLines = 12.0F;
 
-/// Reads the ends of a range. Returns why they are refused, or nothing.
+/// Reads the ends of a range. Returns the reason if they are refused, otherwise nothing.
 std::string parse_range(const std::string& low, const std::string& high, Scale& range) {
   const std::optional<double> from = parse_number(low), to = parse_number(high);
   if (!from || !to) return fmt::format("{}: must be a number", one_line(from ? high : low));

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Masking table of one shape per invocation.
+// Each invocation computes the masking table of one shape.
 
 #include "physics/prelude.glsl"
 #include "interface.glsl"

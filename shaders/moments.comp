@@ -1,16 +1,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Contribution of one piece of the slope axis to the moments of a row of entries, per invocation; the width of a row is
-// a compile-time constant.
+// Each invocation computes the contribution of one piece of the slope axis to the moments of a row of entries. The
+// width of a row is a compile-time constant.
 
-// Grooves have slope samples; without them drivers have less to read.
+// Grooves use slope samples instead. Without them drivers have less code to read.
 #define DOLP_SINGLE_SCATTERING
 #include "physics/prelude.glsl"
 #include "interface.glsl"
 #include "physics/buffers.glsl"
 
 #if DOLP_MOST_COLUMNS > 0
-// Behind all MomentsNodes: DOLP_COLUMN_PARTS numbers for each column of each member.
+// Numbers after all MomentsNodes: DOLP_COLUMN_PARTS for each column of each member.
 layout(std430, binding = DOLP_BINDING_MOMENTS) writeonly buffer ColumnsOut { real columns_out[]; };
 
 void store_column(uint place, real value) {

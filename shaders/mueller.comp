@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Mueller pBRDF of one entry per invocation.
+// Each invocation computes the Mueller pBRDF of one entry.
 
 #include "physics/prelude.glsl"
 #include "interface.glsl"

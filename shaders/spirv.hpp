@@ -18,7 +18,7 @@ DOLP_ENTRY_POINT(slopes_sky);
 DOLP_ENTRY_POINT(slopes_responses);
 DOLP_ENTRY_POINT(masking_table);
 DOLP_ENTRY_POINT(mueller);
-// Entry points of bench/, which have no double.
+// Entry points of bench/, which exist only in float.
 DOLP_ENTRY_POINT(product_rule);
 DOLP_ENTRY_POINT(arithmetic_peak);
 #undef DOLP_ENTRY_POINT

@@ -15,11 +15,11 @@ using std::numbers::pi;
 
 namespace {
 
-// Beyond this slope gamma is pi/2 to the last bit of a double.
+// Beyond this slope gamma equals pi/2 in double precision.
 constexpr double kVerticalSlope = 1e17;
 
-// Integral of p(t) weight(t) dt over slopes in [low, high], in the variable v of t = width sinh(v), in which both
-// densities and their algebraic tails are smooth on the scale of 1.
+// Integral of p(t) weight(t) dt over slopes in [low, high]. With t = width sinh(v), both densities and their algebraic
+// tails are smooth in v on a scale of 1.
 template <class Weight>
 double integrate_slopes(const Slopes& slopes, double low, double high, double tolerance, const Weight& weight) {
   const double width = slopes.width();

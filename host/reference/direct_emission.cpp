@@ -20,21 +20,21 @@ using std::numbers::pi;
 namespace {
 
 constexpr double kRounding = 256.0 * std::numeric_limits<double>::epsilon();
-// Facets steeper by this factor than the slopes that the view and the widths resolve count as vertical; the relative
-// error is the inverse.
+// Facets that are steeper by this factor than the slopes of view and widths count as vertical. The relative error is
+// its inverse.
 constexpr double kVertical = 1e10;
 constexpr double kSmallestSine = 1e-12;
-// Share of the slopes that contributes less than rounding.
+// A share of the slopes whose contribution is below rounding.
 constexpr double kNoShare = 1e-19;
 constexpr int kHalvings = 60;
 
 enum Component : std::size_t { kIntensity, kPolarised, kCount };
 using Emitted = Values<kCount>;
 
-/// Absorptances of facets, by the cosine of the local angle.
+/// Absorptances of facets as a function of the cosine of the local angle.
 using Absorption = std::function<FresnelCoefficients(double cos_beta)>;
 
-// The facets of one surface, visible from one direction. `is_response`: errors are relative to cos(theta).
+// The facets of one surface that are visible from one direction. `is_response`: errors are relative to cos(theta).
 class Facets {
  public:
   Facets(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants, Absorption absorption,
@@ -59,7 +59,7 @@ class Facets {
                                      },
                                  .steepest = steepest,
                                  .bends_end = steepest,
-                                 .thin_weight = 0.0,  // rows may grow with t
+                                 .thin_weight = 0.0,  // rows may become larger with t
                                  .work = [] { return 0.0; },
                                  .most_work = 1.0};
     const Integral<2 * kCount> integral = integrate_slopes_of<kCount>(task, slopes_, scan, refinement, {});
@@ -76,7 +76,8 @@ class Facets {
   }
 
  private:
-  // e, the facet's area across the view per area of its horizontal projection; `side` is 1 for A, -1 for B.
+  // e, the facet's area perpendicular to the view over the area of its horizontal projection. `side` is 1 for A and -1
+  // for B.
   double facing(const SlopePoint& point, double side) const {
     return view_.cos + side * point.t * view_.sin * point.sin_chi;
   }
@@ -115,13 +116,13 @@ class Facets {
     return number;
   }
 
-  // The slope beyond which facets are vertical, or beyond which there are none.
+  // The slope beyond which facets count as vertical, or beyond which there are none.
   double end() const {
     const double vertical = kVertical * std::max(1.0, slopes_.width()) / std::max(view_.sin, kSmallestSine);
     return std::min(vertical, slopes_.quantile(kNoShare));
   }
 
-  // Emission of vertical facets: e G_1 grows with t under smith masking, and has a limit under v-cavity.
+  // Emission of vertical facets: e G_1 grows with t under smith masking and has a limit under v-cavity.
   Emitted tail(double t, const Refinement& refinement) {
     const double share = masking_ == Masking::kVCavity ? slopes_.share_above(t) : slopes_.length_above(t) / t;
     if (share < kNoShare) return {};
@@ -161,7 +162,7 @@ Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg,
 Moments direct_response(const Slopes& slopes, Masking masking, double theta_deg,
                         const std::function<double(double cos_beta)>& curve, double bend,
                         const Refinement& refinement) {
-  const FacetOptics bent{1.0 / bend, 0.0};  // its Brewster angle is where the curve bends
+  const FacetOptics bent{1.0 / bend, 0.0};  // has its Brewster angle where the curve bends
   const auto absorption = [&](double cos_beta) -> FresnelCoefficients {
     const double sin2_beta = (1.0 - cos_beta) * (1.0 + cos_beta);
     const double f = curve(cos_beta);

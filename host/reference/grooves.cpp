@@ -22,38 +22,39 @@ namespace {
 using Vector3 = Vector<double>;
 
 constexpr double kRounding = 256.0 * std::numeric_limits<double>::epsilon();
-// Light of less intensity is taken as absorbed.
+// Light of lower intensity counts as absorbed.
 constexpr double kDark = 1e-24;
-// Most bounces that are followed; the rest of the light may or may not leave the groove.
+// Largest number of bounces that are followed. The rest of the light may or may not leave the groove.
 constexpr int kMostFollowed = 2000;
 constexpr double kSteepest = 1e15;
 constexpr double kSteeper = 1.5;
-// Steeper grooves reflect less, apart from the steps between bounces, for which this leaves room.
+// Steeper grooves reflect less, except for the steps between numbers of bounces. This factor allows for the steps.
 constexpr double kTailRoom = 2.0;
 constexpr double kTailShare = 0.01;  // share of the tolerance
-// Beams change their bounces over angles of the order of the groove's half-angle gamma.
+// The number of bounces of a beam changes over angles of about the groove's half-angle gamma.
 constexpr double kStepsPerGamma = 3.0;
-// The search for bends ends at the slope where this share of the integral is left, and at kSteepestBends: in steeper
-// grooves bends are many and small.
+// The search for bends ends at kSteepestBends, or at the slope beyond which this share of the integral remains. Steeper
+// grooves have many small bends.
 constexpr double kBendShare = 1e-2;
 constexpr double kSteepestBends = 10.0;
-// Bounces that an attempt may take, some two seconds. An attempt that takes more is abandoned for a less ambitious
-// attempt; the last attempt ends with what it has reached.
+// Limit of the bounces in an attempt; they take about two seconds. An attempt beyond the limit is abandoned for a
+// coarser one. The last attempt returns the accuracy that it has reached.
 constexpr double kMostBounces = 2e7;
 constexpr double kLessAmbitious = 100.0;
 constexpr double kLeastAmbition = 1e-5;
-// Rows of less weight may be as far off as rows of this weight; integrals below this share of the albedo are zero but
-// for rounding.
+// Rows of less weight may have the absolute error of rows of this weight. Integrals below this share of the albedo are
+// zero except for rounding.
 constexpr double kThinWeight = 0.02;
 constexpr double kNegligible = 1e-12;
-// In panels that still have bends, the distance of two rules is about the error, and may be less by chance.
+// Factor for panels that still have bends: there the distance of two rules is about the error, and may be smaller by
+// chance.
 constexpr double kBentErrors = 6.0;
-// Quantiles and azimuths of the first look at a surface.
+// Numbers of quantiles and azimuths for a first estimate of a surface.
 constexpr int kLookShares = 16;
 constexpr int kLookAzimuths = 16;
 constexpr double kLookSteepest = 50.0;
 
-// Components of the integrals. Lost light, which may or may not leave the groove, counts as reflected.
+// Components of the integrals. Lost light may or may not leave the groove; it counts as reflected.
 enum Component : std::size_t {
   kAlbedo,
   kReflected,
@@ -105,7 +106,7 @@ void follow(const Groove<double>& groove, const SlopePoint& point, const Vector3
   }
 }
 
-// Code of the history of the beam that meets `first` first: after each bounce none, some or all of it leaves.
+// Encodes the history of the beam that meets `first` first: whether none, some or all of it leaves after each bounce.
 std::uint64_t history(const SlopePoint& point, const Vector3& omega, Facet first, const SpecialAngles& special,
                       const SkyFunction* sky) {
   constexpr std::uint64_t kPrime = 1099511628211U;
@@ -139,7 +140,7 @@ GrooveValues values_of(const GrooveLight& light) {
           light.lost,   light.sky_reflected,          light.sky_polarised};
 }
 
-// The grooves of one surface, seen from one direction.
+// Integrates over the grooves of one surface, seen from one direction.
 class Surveyor {
  public:
   Surveyor(const Slopes& slopes, double theta_deg, const FacetOptics& constants, const Refinement& refinement,
@@ -152,7 +153,7 @@ class Surveyor {
         sky_(sky),
         may_abandon_(may_abandon) {}
 
-  /// Undefined where the attempt is abandoned.
+  /// Undefined if the attempt is abandoned.
   Moments moments() {
     const GrooveValues expected = look_at_all();
     const auto [bends_end, end] = ends(expected);
@@ -172,7 +173,7 @@ class Surveyor {
     const Integral<2 * kCount> integral = integrate_slopes_of<kCount>(
         task, slopes_, scan, {refinement_.relative_tolerance / kBentErrors, refinement_.subdivisions}, expected);
 
-    // Beyond the end: reflected between 0 and kTailRoom times what the share of slope `end` does.
+    // Beyond the end: the reflected share is between 0 and kTailRoom times the share at slope `end`.
     const double share = slopes_.share_above(end);
     const double tail_weight = share * view_.cos;
     const GrooveValues at_end = look(end);
@@ -190,7 +191,7 @@ class Surveyor {
     m.r_q = integral.value[kPolarised];
     m.deficit = integral.value[kAbsorbed] + (tail_weight - 0.5 * tail_most) + half_lost;
     m.albedo_error = error_of(kAlbedo) + kRounding * tail_weight;
-    // Amplitudes carry an absolute error, which shows in their squares where they are small: N near 1.
+    // Amplitudes have an absolute error. It matters in their squares if they are small, as for N near 1.
     const double amplitude_error = kRounding * (std::sqrt(m.r_i * m.albedo) + kRounding * m.albedo);
     m.r_i_error = error_of(kReflected) + unknown + amplitude_error;
     m.r_q_error = std::max(error_of(kPolarised), error_of(kReflected)) + 2.0 * unknown + amplitude_error;
@@ -214,7 +215,7 @@ class Surveyor {
     evaluations_ += 1.0;
     return values_of(light);
   }
-  // Mean over the azimuths, by few of them.
+  // Mean over a few azimuths.
   GrooveValues look(double t) {
     GrooveValues mean{};
     for (int i = 0; i < kLookAzimuths; ++i) {
@@ -235,10 +236,10 @@ class Surveyor {
 
   /// Slopes beyond which less work is done.
   struct Ends {
-    double bends;  ///< the slope beyond which bends are not looked for
-    double all;    ///< the slope beyond which nothing is followed
+    double bends;  ///< the slope beyond which bends are not searched
+    double all;    ///< the slope beyond which no beam is followed
   };
-  // Slopes beyond which the rest is negligible or has too many bounces.
+  // Slopes beyond which the rest is negligible, or has too many bounces.
   Ends ends(const GrooveValues& expected) {
     const double scale = std::min(expected[kReflected], expected[kAbsorbed]);
     Ends ends{kSteepestBends, kSteepest};

@@ -23,32 +23,34 @@ namespace {
 
 constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// The absorbed part is only added to cos(theta) - albedo, so that less of it than this share of the albedo needs
-// no relative accuracy.
+// The absorbed part is only added to cos(theta) - albedo. If it is below this share of the albedo, it needs no relative
+// accuracy.
 constexpr double kSmallAbsorbed = 1e-2;
-// Directions are elevations above the horizon, known to a few ulps of themselves at any size, and so is
-// everything proportional to them (test ReferenceMoments_NextToGrazing_KeepTheirDigits).
+// Directions are elevations above the horizon with an error of a few ulps at any size. So is everything proportional to
+// them (test ReferenceMoments_NextToGrazing_KeepTheirDigits).
 constexpr double kElevationRounding = 32.0 * std::numeric_limits<double>::epsilon();
-// At theta = 90 degrees the running direction is integrated up to this distance from the horizon; the rest is a power.
+// At theta = 90 degrees the running direction is integrated up to this distance from the horizon. The rest follows a
+// power law.
 constexpr double kHorizonGap = 1e-30;
-// Below this elevation of the fixed direction the masking changes over running elevations of its size, a layer so thin
-// beside the slopes that panels could step over it; break points then come ever closer to the horizon.
+// If the fixed direction is lower than this, the masking changes over running elevations of about its elevation. Panels
+// could step over this thin layer, so break points become denser towards the horizon.
 constexpr double kNearHorizon_rad = 1e-3;
 constexpr double kLayerGrowth = 10.0;
-// Errors of the nested integrals, relative to the one around them.
+// Errors of the inner integrals, relative to the error of the integral around them.
 constexpr double kInnerShare = 0.02;
 // Smallest relative error to which an azimuth integral can be refined: the rounding of a Kronrod panel is 1e-15 of its
 // magnitude.
 constexpr double kInnerFloor = 4e-15;
-// Integrals below this share of the albedo are not refined: they are zero except for rounding.
+// Integrals below this share of the albedo are zero except for rounding, so they are not refined.
 constexpr double kNegligible = 1e-12;
 
-// Absolute error of G, which is of order 1: below what the azimuth could take for structure, above rounding.
+// Absolute error of G, which is of order 1. It is too small to look like structure in the azimuth, and larger than
+// rounding.
 double masking_tolerance_for(const Refinement& refinement) {
   return std::max(1e-14, 1e-3 * kInnerShare * refinement.relative_tolerance);
 }
 
-// Components of the integrals; after them K responses of the reflected part, and K of the polarised one.
+// Components of the integrals, followed by K responses of the reflected part and K responses of the polarised part.
 enum Component : std::size_t { kAlbedo, kReflected, kPolarised, kAbsorbed, kMomentCount };
 template <std::size_t N>
 Values<N> moment_scales(const Values<N>& value) {
@@ -60,8 +62,8 @@ Values<N> moment_scales(const Values<N>& value) {
   return scales;
 }
 
-// M00 and M01 of eq. (7) from the Jones matrix of eq. (4). The rotation by eta_r only turns its columns, whose squared
-// lengths are all that M00 and M01 need.
+// M00 and M01 of eq. (7) from the Jones matrix of eq. (4). They need only the squared lengths of its columns, which the
+// rotation by eta_r does not change.
 struct MuellerRow {
   double m00;
   double m01;
@@ -72,12 +74,12 @@ MuellerRow mueller_row(const FresnelCoefficients& r, double cos_eta, double sin_
   return {0.5 * (from_s + from_p), 0.5 * (from_s - from_p)};
 }
 
-// The moments of one direction: holds the data of all nested integrands.
+// The moments of one direction. Holds the data of all nested integrands.
 template <std::size_t K>
 class Hemisphere {
  public:
-  // The moments without and with a function of the sky, and then the errors of their azimuth integrals, which are only
-  // carried along.
+  // The moments without and with a function of the sky, then the errors of their azimuth integrals, which the outer
+  // rule only sums.
   static constexpr std::size_t kAzimuthCount = kMomentCount + 2 * K;
   static constexpr std::size_t kSkyReflected = kAzimuthCount;
   static constexpr std::size_t kSkyPolarised = kAzimuthCount + 1;
@@ -103,8 +105,8 @@ class Hemisphere {
     if (fixed_.cos > 0.0) {
       return integrate<kCount>([this](double u) { return row_values(u); }, breaks, goal, both_scales);
     }
-    // At theta = 90 degrees u runs up to 0, where the integrand is |u|^(2q - 4) for q < 2: integrated in log |u|, with
-    // what lies beyond the gap added as that power.
+    // At theta = 90 degrees u ends at 0, where the integrand is |u|^(2q - 4) for q < 2. So the variable is log |u|, and
+    // the power law gives the part beyond the gap.
     const auto in_log = [this](double x) {
       BothValues values = row_values(-std::exp(x));
       for (double& value : values) value *= std::exp(x);
@@ -126,7 +128,7 @@ class Hemisphere {
   double evaluations() const { return evaluations_; }
 
  private:
-  // One running zenith angle with what it shares with the fixed one.
+  // One running zenith angle, with values that depend on both zenith angles.
   struct Row {
     double t;
     double cos2_mean;
@@ -134,8 +136,8 @@ class Hemisphere {
     Zenith running;
     Attenuation attenuation;
   };
-  // Break points in u of tan((theta_r - theta)/2) = width sinh(u): the specular direction, and where the break points
-  // of the azimuth enter or leave at Delta_phi = 180 or 0 degrees.
+  // Break points in u of tan((theta_r - theta)/2) = width sinh(u): the specular direction, and the angles at which
+  // break points of the azimuth enter or leave, at Delta_phi = 180 or 0 degrees.
   Breaks zenith_breaks() const {
     const double width = slopes_.width();
     Breaks breaks(std::asinh(-std::tan(0.5 * theta_rad_) / width),
@@ -167,9 +169,8 @@ class Hemisphere {
     return breaks;
   }
 
-  // Break points in s2, at the special angles of beta and where the masking bends:
-  //   v-cavity: (cos theta + cos theta_r) min(cos theta, cos theta_r) = cos^2 beta
-  //   integral: alpha = 2 max(theta, theta_r) - pi/2, above which b = pi/2
+  // Break points in s2: the special angles of beta, and the bends of the masking: v-cavity: (cos theta + cos theta_r)
+  // min(cos theta, cos theta_r) = cos^2 beta integral: alpha = 2 max(theta, theta_r) - pi/2, above which b = pi/2
   Breaks azimuth_breaks(const Row& row, double width) const {
     Breaks breaks(0.0, std::asinh(1.0 / width));
     const auto add_s2 = [&](double s2) {
@@ -194,7 +195,7 @@ class Hemisphere {
     return breaks;
   }
 
-  // In v of tan(delta/4) = width sinh(v), width being where D has fallen off: 4 tan^2(delta/4) is about s2.
+  // Integrates over v of tan(delta/4) = width sinh(v). D has fallen off at `width`: 4 tan^2(delta/4) is about s2.
   Integral<kAzimuthCount> integrate_azimuth(const Row& row) {
     const double t2 = row.t * row.t;
     const double scale2 =
@@ -235,7 +236,7 @@ class Hemisphere {
     const Row row{t, cos_mean * cos_mean, fixed_.sin * running.sin, running,
                   Attenuation(slopes_, masking_, fixed_, running, masking_tolerance_for(refinement_))};
     const auto inner = integrate_azimuth(row);
-    // Twice: delta runs over half of the azimuth.
+    // twice, because delta covers only half of the azimuth
     const double jacobian = 2.0 * running.sin * 2.0 * slopes_.width() * std::cosh(u) / (1.0 + t * t);
     BothValues both;
     for (std::size_t k = 0; k < inner.value.size(); ++k) {
@@ -250,7 +251,7 @@ class Hemisphere {
     return both;
   }
 
-  // D G M / 4, the reduced form of cos(theta) f cos(theta_r), and the same with R = 1 and with 1 - R.
+  // D G M / 4, the reduced form of cos(theta) f cos(theta_r), with R, with R = 1 and with 1 - R.
   AzimuthValues integrand(const Row& row, double delta) const {
     const double sin_half = std::sin(0.5 * delta);
     const double cos_half = std::cos(0.5 * delta);
@@ -262,8 +263,8 @@ class Hemisphere {
 
     const double cos_beta = std::sqrt(cos2_beta);
     const FresnelCoefficients r = fresnel(constants_, cos_beta);
-    // h is (omega_i + omega_r) / (2 cos beta); its parts across and along the plane of omega_i and z, over sin beta.
-    // The retro direction, beta = 0, has no eta and no polarisation: r_p = -r_s.
+    // h = (omega_i + omega_r) / (2 cos beta). These are its parts across and along the plane of omega_i and z, over sin
+    // beta. The retro direction (beta = 0) has no eta and no polarisation: r_p = -r_s.
     const double sin_2beta = 2.0 * std::sqrt(cos2_beta * sin2_beta);
     MuellerRow m{0.5 * (std::norm(r.r_s) + std::norm(r.r_p)), 0.0};
     double cos_2eta = 1.0;
@@ -303,7 +304,7 @@ class Hemisphere {
   double evaluations_ = 0.0;
 };
 
-// The amplitudes r_s and r_p carry an absolute error, which shows in their squares where they are small: N near 1.
+// The amplitudes r_s and r_p have an absolute error. It matters in their squares if they are small, as for N near 1.
 double amplitude_rounding(double reflected, double albedo) {
   return kRounding * (2.0 * std::sqrt(reflected * albedo) + kRounding * albedo);
 }
@@ -315,9 +316,8 @@ double error_of(const Integral<N>& integral, std::size_t k, double magnitude, co
   return integral.error[k] + integral.value[N / 2 + k] + (masking_error + kRounding + kElevationRounding) * magnitude;
 }
 
-// The limits theta -> 90 degrees of a cauchy distribution whose vertical facets, which then reflect into the hemisphere
-// all together, are too many: r grows without bound. They turn the plane of incidence by 90 degrees, so r_q is
-// negative.
+// The limits theta -> 90 degrees for a Cauchy distribution with so many vertical facets that r grows without bound. All
+// vertical facets then reflect into the hemisphere. They turn the plane of incidence by 90 degrees, so r_q is negative.
 Moments divergent_moments(const FacetOptics& constants) {
   const bool is_vacuum = constants == FacetOptics(1.0, 0.0);
   const double grown = is_vacuum ? 0.0 : kInfinity;
@@ -360,7 +360,8 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   moments.albedo_error = error_at(kAlbedo);
   moments.r_i_error = error_at(kReflected) + amplitude_error;
   moments.r_q_error = error_at(kPolarised) + amplitude_error;
-  // cos(theta) - r_i loses least where little is reflected, (cos(theta) - albedo) + absorbed where little is absorbed.
+  // cos(theta) - r_i is more accurate if little light is reflected, (cos(theta) - albedo) + absorbed if little is
+  // absorbed.
   const double direct_error = moments.r_i_error + kRounding * cos_theta;
   const double split_error = moments.albedo_error + error_at(kAbsorbed) + kRounding * cos_theta;
   const bool is_split = split_error < direct_error;
@@ -378,7 +379,7 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
 
 std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking masking, double theta_deg,
                                                 const Curves& curves, double bend, const Refinement& refinement) {
-  const FacetOptics bent{1.0 / bend, 0.0};  // its Brewster angle is where the curves bend
+  const FacetOptics bent{1.0 / bend, 0.0};  // has its Brewster angle where the curves bend
   const auto integral =
       Hemisphere<kCurves>(slopes, masking, theta_deg, bent, refinement, nullptr, &curves).integrate_zenith();
   std::vector<ColumnMoments> columns;

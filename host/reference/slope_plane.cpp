@@ -9,19 +9,19 @@ namespace {
 constexpr int kBisections = 60;
 constexpr int kMostSteps = 150;
 constexpr int kPlainSteps = 12;
-// More bends than this lie so close together that each is small, and plain refinement does as well.
+// More bends than this lie so close together that each is small; then plain refinement is as good.
 constexpr std::size_t kMostBends = 40;
-// Equal steps of 1/gamma, in which the bends of grooves are equally far apart, and equal steps of log t.
+// Equal steps of 1/gamma, because the bends of grooves have equal distances in it, and equal steps of log t.
 constexpr double kStepInverse = 0.04;
 constexpr double kMostInverse = 10.0;
 constexpr int kStepsPerDecade = 16;
-// Slopes below this share of the width contribute less than rounding.
+// Slopes below this share of the width contribute less than rounding does.
 constexpr double kSmallestShare = 1e-7;
-// A layer thinner than this needs break points of its own, each so many times farther out.
+// A layer thinner than this needs additional break points; each is farther out by a constant factor.
 constexpr double kThinLayer = 0.05;
 constexpr double kPlaneLayerGrowth = 8.0;
 
-// The places where `regime` changes between sorted points: each change once, to the last bits.
+// The positions at which `regime` changes between sorted points: each change once, to the last bits.
 std::vector<double> changes(const std::vector<double>& points, const std::function<std::uint64_t(double)>& regime) {
   std::vector<double> found;
   std::uint64_t below = regime(points.front());

@@ -26,19 +26,19 @@ READINGS = {
 # What the paper does not print and a user may set; both readings choose the masking themselves.
 UNPRINTED = ("surface.q", "surface.specular", "surface.diffuse", "surface.diffuse_exponent",
              "source.relative_irradiance")
-VIEW_DEG = 60.0  # of the bistatic mode
+VIEW_DEG = 60.0  # zenith of the view in bistatic mode
 PAPER_ANGLES_DEG = [*range(0, 60, 6), *range(60, 91, 3)]
 STEPS_PER_DEGREE = 10
 ANGLES_DEG = np.arange(90 * STEPS_PER_DEGREE + 1) / STEPS_PER_DEGREE
-MODEL_FAILS = 1 | 4 | 8  # status bits
+MODEL_FAILS = 1 | 4 | 8  # status bits with which the model fails
 
 FIGURE4_SIGMA, FIGURE4_Q, FIGURE4_THETA_I_DEG = 0.3, 2.0, 30.0
-GRAZING_THETA_I_DEG = 85.0  # where the corner of `integral` itself is large
-GRAZING_DEG = 90.0 - 1e-6  # stands for 90, where the pBRDF diverges and G, a ratio of two, does not
+GRAZING_THETA_I_DEG = 85.0  # at this angle the corner of `integral` itself is large
+GRAZING_DEG = 90.0 - 1e-6  # used instead of 90 degrees, where the pBRDF diverges but G, a ratio of two, does not
 
 
 class CannotRun(Exception):
-    """The program is missing or has refused; `status` is the exit status to pass on."""
+    """The program is missing or failed; `status` is the exit status to return."""
 
     def __init__(self, status, line):
         super().__init__(line)
@@ -47,14 +47,14 @@ class CannotRun(Exception):
 
 @dataclasses.dataclass
 class Program:
-    """dolp, and the unprinted values that replace those of both readings."""
+    """Runs dolp with the values that the paper does not print; they replace the values of both readings."""
 
     path: pathlib.Path
     evaluator: str | None = None
     changes: dict = dataclasses.field(default_factory=dict)
 
     def columns(self, command, scene, settings, points, options=()):
-        """Columns that `dolp COMMAND` writes for `points`, a dict of columns; errors: CannotRun."""
+        """Columns that `dolp COMMAND` writes for `points`, a dict of columns. Errors: CannotRun."""
         rows = [",".join(points), *(",".join(map(repr, row)) for row in zip(*(map(float, c) for c in points.values())))]
         line = [str(self.path), command, str(ROOT / "host" / "scenes" / f"{scene}.toml"), "--points", "-", "-o", "-",
                 "--quiet", *options, *(("--evaluator", self.evaluator) if self.evaluator else ())]
@@ -83,7 +83,7 @@ class Curve:
     distribution: str
     sigma: float
     dolp: np.ndarray  # percent, at ANGLES_DEG
-    bound: np.ndarray  # of the numerical error of `dolp`, percent
+    bound: np.ndarray  # bound of the numerical error of `dolp`, percent
     status: np.ndarray
 
     def holds(self):
@@ -93,32 +93,32 @@ class Curve:
         return float(self.dolp[round(theta_deg * STEPS_PER_DEGREE)])
 
     def peak(self):
-        """Angle and height of the largest DOLP, or None where it still rises when the model fails or at 90 degrees."""
+        """Angle and height of the largest DOLP. None if DOLP still rises where the model fails, or at 90 degrees."""
         held = np.where(self.holds(), self.dolp, -np.inf)
         top = int(np.argmax(held))
         is_inside = 0 < top < held.size - 1 and np.isfinite(held[top + 1])
         return (float(ANGLES_DEG[top]), float(held[top])) if is_inside else None
 
     def fails_from(self):
-        """First angle with a status that says that the model fails, or None."""
+        """First angle with a status for a failure of the model, or None."""
         failing = np.flatnonzero(~self.holds())
         return float(ANGLES_DEG[failing[0]]) if failing.size else None
 
 
 def scene_value(sample, settings, key):
-    """Value of a scene key such as surface.q: that of `settings`, else the sample scene's."""
+    """Value of a scene key such as surface.q: from `settings`, otherwise from the sample scene."""
     table, name = key.split(".")
     with open(ROOT / "host" / "scenes" / f"{SAMPLES[sample]}.toml", "rb") as file:
         return settings.get(key, tomllib.load(file)[table][name])
 
 
 def width(sigma, q, distribution):
-    """The sigma to use: a gaussian gets that of equal D(0)."""
+    """The sigma to use. A Gaussian distribution gets the sigma with equal D(0)."""
     return sigma / math.sqrt(q - 1.0) if distribution == "gaussian" else sigma
 
 
 def curve(program, sample, reading, mode, distribution, roughness_of=None):
-    """The curve of a sample; `roughness_of` names the sample whose sigma it gets instead of its own."""
+    """The curve of a sample. `roughness_of` names the sample whose sigma it gets; the default is its own."""
     settings = READINGS[reading] | program.changes
     q = scene_value(sample, settings, "surface.q")
     sigma = width(scene_value(roughness_of or sample, settings, "surface.sigma"), q, distribution)
@@ -131,7 +131,7 @@ def curve(program, sample, reading, mode, distribution, roughness_of=None):
 
 
 def dolp_curves(program, samples, roughened=False):
-    """Curves of figures 5-7; `roughened` adds the first sample with the roughness of the second."""
+    """Curves of figures 5-7. `roughened` adds the first sample with the roughness of the second."""
     result = []
     for reading in READINGS:
         for mode in MODES:
@@ -143,7 +143,8 @@ def dolp_curves(program, samples, roughened=False):
 
 
 def largest_difference(one, other, low, high):
-    """Angle in [low, high] and points where the DOLP of two curves differs most, where the model holds for both."""
+    """The angle in [low, high] at which the DOLP of two curves differs most, and the difference, where the model
+    holds for both."""
     where = (ANGLES_DEG >= low) & (ANGLES_DEG <= high) & one.holds() & other.holds()
     apart = np.where(where, one.dolp - other.dolp, 0.0)
     worst = int(np.argmax(np.abs(apart)))
@@ -151,7 +152,8 @@ def largest_difference(one, other, low, high):
 
 
 def ranges_above(one, other):
-    """Ranges [from, to] of angles where `one` exceeds `other` by more than the numerical errors and the model holds."""
+    """Ranges [from, to] of angles in which `one` exceeds `other` by more than the numerical errors and the model
+    holds."""
     is_above = (one.dolp - other.dolp > one.bound + other.bound) & one.holds() & other.holds()
     above = np.concatenate([[False], is_above, [False]])
     edges = np.flatnonzero(above[1:] != above[:-1])
@@ -175,7 +177,7 @@ class Attenuation:
         return np.diff(self.g) / np.radians(1.0 / STEPS_PER_DEGREE)
 
     def corner(self):
-        """Angle and size in 1/rad of the largest jump of slope, from one-sided differences of second order."""
+        """Angle of the largest jump of slope, and its size in 1/rad, from one-sided differences of second order."""
         g, step = self.g, np.radians(1.0 / STEPS_PER_DEGREE)
         right = (-3.0 * g[2:-2] + 4.0 * g[3:-1] - g[4:]) / (2.0 * step)
         left = (3.0 * g[2:-2] - 4.0 * g[1:-3] + g[:-4]) / (2.0 * step)

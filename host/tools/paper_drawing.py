@@ -12,15 +12,15 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
 import paper_curves as model  # noqa: E402
 import picture_file  # noqa: E402
 
-# Colours of Okabe and Ito, which colour-blind readers tell apart.
+# Colours of Okabe and Ito, which colour-blind readers can tell apart.
 BLUE, VERMILION, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#777777"
 LOOKS = {"cauchy": ("-", "o"), "gaussian": ("--", "s")}
 SAMPLE_COLOURS = {"steel": BLUE, "aluminium": VERMILION}
-FRAMED_UP_TO_DEG = 80.0  # the curves that rise without end toward 90 degrees leave the frame
-HEADROOM = {5: 1.4, 6: 1.4, 7: 1.7}  # for the legend
+FRAMED_UP_TO_DEG = 80.0  # curves that rise without end toward 90 degrees leave the frame there
+HEADROOM = {5: 1.4, 6: 1.4, 7: 1.7}  # room for the legend
 SMALLEST_SPAN_PERCENT = 0.01  # rounding noise must not look like a signal
 DOTS_PER_INCH = 110
-PALETTE = 96  # colours; keeps the file small
+PALETTE = 96  # number of colours; few colours keep the file small
 SAMPLE_NAMES = {"steel": "stainless steel", "aluminium": "aviation aluminium"}
 
 

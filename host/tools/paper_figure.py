@@ -14,7 +14,7 @@ import json
 import pathlib
 import sys
 
-sys.dont_write_bytecode = True  # no folder of caches in the source tree
+sys.dont_write_bytecode = True  # writes no cache folder among the sources
 
 import paper_curves as model  # noqa: E402
 import paper_report  # noqa: E402
@@ -28,7 +28,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def unprinted(text):
-    """KEY=VALUE of --set as a pair."""
+    """Splits KEY=VALUE of --set into a pair."""
     key, _, value = text.partition("=")
     if key not in model.UNPRINTED:
         raise argparse.ArgumentTypeError(f"{text}: the key must be one of {', '.join(model.UNPRINTED)}")
@@ -73,7 +73,7 @@ def compute(options):
 
 
 def draw(curves, options):
-    import paper_drawing  # here, because Matplotlib takes its time and the tables do without
+    import paper_drawing  # imported here, because Matplotlib loads slowly and the tables do not need it
     if options.figure == 4:
         paper_drawing.draw_attenuation(curves, options.output)
     else:

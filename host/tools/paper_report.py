@@ -11,7 +11,7 @@ DIGITS = 6
 
 
 def plain(value):
-    """A float that JSON can hold; NaN is null."""
+    """A float for JSON; NaN becomes null."""
     return round(float(value), DIGITS) if math.isfinite(value) else None
 
 
@@ -82,7 +82,7 @@ def corner_text(corner):
 
 
 def dolp_markdown(report):
-    """Peaks, Cauchy against Gaussian, rough against smooth, and DOLP at the paper's angles."""
+    """Peaks, Cauchy against Gaussian slopes, rough against smooth, and DOLP at the paper's angles."""
     curves = report["curves"]
     column = {angle: i for i, angle in enumerate(model.PAPER_ANGLES_DEG)}
     heads = ["masking", "mode", "sample", "distribution", "peak", *(f"{angle}°" for angle in KEY_ANGLES_DEG),

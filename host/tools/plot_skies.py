@@ -2,9 +2,9 @@
 """Draws the DOLP of paint over zenith under a uniform, a clear and an overcast sky, and the skies.
 
 Usage: plot_skies.py DOLP OUT.png [--band FROM TO]
-DOLP is the program. The uniform sky has the brightness temperature with which its irradiance is that of the clear one.
+DOLP is the program. The uniform sky has the brightness temperature that gives it the irradiance of the clear sky.
 Needs python3-numpy and python3-matplotlib.
-Exit status: 0 done, 2 usage, that of DOLP where it fails.
+Exit status: 0 done, 2 usage; if DOLP fails, the status of DOLP.
 """
 import argparse
 import csv
@@ -19,12 +19,12 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend has to be chosen first)
 import numpy as np  # noqa: E402
 
-sys.dont_write_bytecode = True  # leaves no folder among the sources
+sys.dont_write_bytecode = True  # writes no cache folder among the sources
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
 import picture_file  # noqa: E402
 
 SCENE = pathlib.Path(__file__).resolve().parent.parent / "scenes" / "clear_sky.toml"
-# Colours of Okabe and Ito, which colour-blind readers tell apart.
+# Colours of Okabe and Ito, which colour-blind readers can tell apart.
 SKIES = {"uniform": "#777777", "clear": "#0072B2", "overcast": "#D55E00"}
 PROFILES = {"clear": "clear-sky", "overcast": "overcast"}
 MIRROR = ["surface.n=1e6", "surface.k=1e6", "surface.specular=1", "surface.diffuse=0", "emission=none"]
@@ -47,12 +47,12 @@ def results(program, settings, sigma):
 
 
 def sky_exitance(program, sky, band):
-    """pi L of a sky over the zenith: what a mirror that reflects everything shows."""
+    """pi L of a sky over the zenith, as a perfect mirror reflects it."""
     return results(program, MIRROR + [sky, band], 0)
 
 
 def uniform_temperature(program, band, wanted):
-    """The temperature of the uniform sky with an irradiance, by bisection."""
+    """The temperature of the uniform sky with a given irradiance, by bisection."""
     low, high = 100.0, 400.0
     while high - low > 0.01:
         middle = 0.5 * (low + high)

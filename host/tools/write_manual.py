@@ -23,11 +23,11 @@ PART = re.compile(r"<!-- generated: (.+?) -->\n(.*?)<!-- end of generated -->", 
 
 
 class CannotGenerate(Exception):
-    """A command fails, or a mark has no end."""
+    """A command failed, or a mark has no end."""
 
 
 def markdown_files():
-    """Those of the sources: no build folder, no hidden one."""
+    """The Markdown files among the sources, without build folders and hidden folders."""
     return sorted(path for path in ROOT.rglob("*.md")
                   if not any(part == "build" or part.startswith(".") for part in path.relative_to(ROOT).parts))
 
@@ -46,7 +46,7 @@ def output_of(command, build):
 
 
 def regenerated(text, build):
-    """The text with all parts current, and the commands of those that were not."""
+    """The text with all parts current, and the commands whose parts were not."""
     if text.count("<!-- generated: ") != len(PART.findall(text)):
         raise CannotGenerate("a mark <!-- generated: COMMAND --> has no <!-- end of generated -->")
     stale = []

@@ -1,5 +1,5 @@
-// The azimuths at one slope: the lines that split [0, pi] into arcs on which the integrand is smooth, and the place of
-// a rule's node on an arc.
+// The azimuths at one slope: the lines that split [0, pi] into arcs on which the integrand is smooth, and the position
+// of a rule's node on an arc.
 //
 // Azimuths are half angles (cos(phi/2), sin(phi/2)), which keep their digits at 0 and pi and need no arc cosine.
 
@@ -29,8 +29,8 @@ real2 clamp_half_angle(real2 phi, real2 from, real2 to) {
   return is_before(above, to) ? above : to;
 }
 
-// An arc of azimuths phi = centre + psi, psi = 4 atan(extent * abscissa), on which the integrand is smooth. Its extent
-// is negative when the centre is its end.
+// An arc of azimuths phi = centre + psi, psi = 4 atan(extent * abscissa), on which the integrand is smooth. If its
+// centre is its end, the extent is negative.
 struct Arc {
   real2 from;
   real2 to;
@@ -38,11 +38,11 @@ struct Arc {
   real centre_sin;
   real extent;
   real quarter;     // tan of a quarter of its length
-  real origin;      // phi of its beginning; of the symmetry or singularity at one of its ends where its rule has one
+  real origin;      // phi of its beginning, or of the end at which its rule has a symmetry or a singularity
   real span;        // length in phi
   int section;      // section of the rule nodes
-  bool is_critical; // true if w vanishes at or beside its centre
-  real resolution;  // width of the square root at its centre that absorption has smoothed, see place_on_arc; 0: it is sharp
+  bool is_critical; // true if w vanishes at or near its centre
+  real resolution;  // width of the square root at its centre that absorption smooths, see place_on_arc; 0: not smoothed
 };
 
 // The arc between two azimuths.
@@ -61,7 +61,7 @@ Arc make_arc(real2 from, real2 to) {
   arc.is_critical = false;
   arc.resolution = real(0.0);
   arc.span = real(4.0) * arc_tangent(arc.quarter);
-  // Even about an end at 0 or pi; the whole half circle begins and ends there.
+  // Even about an end at 0 or pi. The whole half circle has both ends there.
   bool is_half = starts_at_0 || ends_at_pi;
   bool is_circle = starts_at_0 && ends_at_pi;
   arc.origin = choose(is_half, choose(starts_at_0, real(0.0), kPi), phase(from));
@@ -73,7 +73,7 @@ Arc make_arc(real2 from, real2 to) {
   return arc;
 }
 
-// The arc with a square root, or another singularity, at its end or its beginning, if `has_root`.
+// The arc; if `has_root`, with a square root or another singularity at its end or its beginning.
 Arc with_root(Arc arc, bool at_end, bool has_root) {
   real2 root = choose(at_end, arc.to, arc.from);
   arc.centre_cos = choose(has_root, cosine(root), arc.centre_cos);
@@ -84,15 +84,15 @@ Arc with_root(Arc arc, bool at_end, bool has_root) {
   return arc;
 }
 
-// An azimuth of an arc as (cos(phi), sin(phi)), and dphi for its rule's weight.
+// An azimuth of an arc as (cos(phi), sin(phi)), and dphi for the weight of the rule.
 struct Azimuth {
   real x;
   real sin_phi;
   real weight;
 };
 
-// A node of an arc's rule where the square root at its centre is smoothed: the cluster's v^2 becomes (sinh(a v) /
-// sinh(a))^2, a = asinh(1 / sqrt(resolution)), which spaces the nodes by ratios down to the resolution and by squares
+// A node of an arc's rule if the square root at its centre is smoothed. The cluster's v^2 becomes (sinh(a v) /
+// sinh(a))^2, a = asinh(1 / sqrt(resolution)). Nodes are then spaced by ratios down to the resolution, and by squares
 // below.
 real2 place_on_arc(Arc arc, real2 node) {
   if (!kTotalReflection) return node;
@@ -117,13 +117,13 @@ Azimuth azimuth(Arc arc, real2 node) {
   return at;
 }
 
-// The azimuths, as half angles, that split [0, pi] into arcs on which the integrand is smooth, in ascending order; and
-// the critical one, anywhere among them.
+// The azimuths, as half angles, that split [0, pi] into arcs on which the integrand is smooth, in ascending order. The
+// critical azimuth lies anywhere among them.
 struct SplitLines {
   real2 end[DOLP_MAX_ARCS];  // end of each arc; the first begins at phi = 0
   int arcs;
-  int leaving;     // number of arcs whose reflected ray leaves
-  real2 horizon;   // theta_r = 90 degrees: beyond it the reflected ray does not leave
+  int leaving;     // number of arcs whose reflected ray leaves the surface
+  real2 horizon;   // theta_r = 90 degrees; beyond this line the reflected ray does not leave
   real2 critical;  // cos(beta) = critical_cos: a square root on either side
 };
 
@@ -135,7 +135,7 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
   real st = max(theta.s * t, real(1e-30));
   real sec2 = real(1.0) + t * t;
   real2 same_zenith = line_at(c * t * t, st);  // theta_r = theta
-  real2 facing = line_at(-c, st);  // beyond it facets face away
+  real2 facing = line_at(-c, st);  // beyond this line facets face away
   if (kHasDirect) {
     lines.end[1] = facing;
     lines.arcs = 2;
@@ -155,7 +155,7 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
   }
   if (kMasking == DOLP_MASKING_V_CAVITY) {
     // G = 1 between the lines 2 cos(alpha) cos(theta) = cos(beta) and 2 cos(alpha) cos(theta_r) = cos(beta), which meet
-    // at t = 1. The first is the line of G1 of theta, which continues below the horizon beyond t = sqrt(3).
+    // at t = 1. The first one is the line of G1(theta), which continues below the horizon beyond t = sqrt(3).
     real2 shaded = line_at(c, st);
     real level = c * (real(3.0) * t * t - real(1.0)) / (real(3.0) - t * t);
     lines.end[0] = t < real(1.0) ? shaded : same_zenith;
@@ -177,16 +177,16 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
   return lines;
 }
 
-// Lines of a groove: where the number of bounces or the width of the beam changes its law. With psi the zenith of theta
-// in the plane across the groove, tan(psi) = tan(theta) cos(phi), and gamma = pi/2 - alpha these are
-// psi = pi/2 - j gamma down to gamma, j <= RuleNode::split_bounces; gamma; the three below it unless there are more
-// above; and -gamma, beyond which facets face away.
+// Lines of a groove, at which the number of bounces or the width of the beam changes its law. With gamma = pi/2 -
+// alpha, and psi the zenith of theta in the plane across the groove, tan(psi) = tan(theta) cos(phi), the lines are psi
+// = pi/2 - j gamma down to gamma, j <= RuleNode::split_bounces; psi = gamma; the three lines below it, unless more lie
+// above; and psi = -gamma, beyond which facets face away.
 real2 groove_line(ThetaNode theta, real cos_psi, real sin_psi) {
   return line_at(theta.c * sin_psi / max(cos_psi, real(1e-30)), max(theta.s, real(1e-30)));
 }
 
-// Slopes that carry so little that a few digits suffice are split only at the line between facets that face the ray and
-// back-facing ones. Steep grooves are not split at the lines of their bounces, which are too many.
+// Slopes with such a small share that few digits suffice are split only at the line between facets that face the ray
+// and facets that face away. Steep grooves are not split at the lines of their bounces, because these are too many.
 CONST real kDigitsOfLines = real(3.0);
 
 SplitLines groove_lines(RuleNode rule, ThetaNode theta, real t, real digits, SplitLines lines) {

@@ -1,9 +1,9 @@
 // Sums over the azimuths at one slope: Gauss rules over the smooth arcs.
 
-// One slope of a piece, and what its arcs share.
+// One slope of a piece, with the values that its arcs share.
 struct Slope {
   real t;
-  real digits;        // wanted of the sum over the azimuths
+  real digits;        // digits required of the sum over the azimuths
   MaskingTerms masking_in;
   bool has_split_line;
   int most_azimuths;
@@ -15,8 +15,8 @@ struct Slope {
 // A sum over azimuths, for each member of a row.
 struct AzimuthSums {
   real4 member[DOLP_WIDTH];
-  Columns columns[DOLP_WIDTH];  // those given, and more
-  real2 direct;       // direct emission of the facets, as (I, Q), before smith's masking
+  Columns columns[DOLP_WIDTH];  // the given columns, with sums added
+  real2 direct;       // direct emission of the facets as (I, Q), before smith masking
   real behind;        // MomentsNode::behind
   real evaluations;
 };
@@ -33,7 +33,8 @@ AzimuthSums no_azimuths(Columns columns[DOLP_WIDTH]) {
   return sums;
 }
 
-// sin(theta_r). A diverging G changes where 1 - cos(theta_r) has lost its digits: there it is the ray's horizontal part.
+// sin(theta_r). A diverging G varies in a range in which 1 - cos(theta_r) has lost its digits. There it is the
+// horizontal part of the ray.
 real sine_of_ray(ThetaNode theta, Row row, Facet f, real t, Azimuth at) {
   if (!is_diverging(row.shape[0])) return sqrt((real(1.0) - f.cos_r) * (real(1.0) + f.cos_r));
   real turned = real(2.0) * f.e * t / (real(1.0) + t * t);
@@ -42,7 +43,7 @@ real sine_of_ray(ThetaNode theta, Row row, Facet f, real t, Azimuth at) {
   return sqrt(along * along + across * across);
 }
 
-// What a column's function is multiplied with, for each of the two moments.
+// Factors of a column's function for each of the two moments.
 real2 column_factors(Slope slope, Facet f) {
   if (kColumns == DOLP_COLUMNS_SKY) return real2(f.m00, f.m01);
   real sky = (kColumns == DOLP_COLUMNS_SKY_RESPONSE) ? sky_function(slope.sky, 0, f.cos_r) : real(1.0);
@@ -85,15 +86,15 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, S
   return sums;
 }
 
-// The azimuth at which cos(theta_r), which falls with phi, reaches a corner of the sky.
+// The azimuth at which cos(theta_r), which decreases with phi, reaches a corner of the sky.
 real2 corner_line(ThetaNode theta, Slope slope, int corner) {
   real t = slope.t;
   real level = real(0.5) * (cos_of_corner(slope.sky, corner) + theta.c) * (real(1.0) + t * t) - theta.c;
   return line_at(level, max(theta.s * t, real(1e-30)));
 }
 
-// Integral over the azimuths from 0 to pi. Each zone is an arc, or two with the critical line of total reflection
-// between them, and the corners of a sky divide arcs further.
+// Integral over the azimuths from 0 to pi. Each zone is one arc, or two with the critical line of total reflection
+// between them. Corners of a sky divide arcs further.
 AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope, SplitLines lines,
                          Columns columns[DOLP_WIDTH]) {
   AzimuthSums sums = no_azimuths(columns);
@@ -117,8 +118,9 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
     for (int corner = 0; corner <= slope.sky.corners; ++corner) {
       real2 stop = to;
       if (corner < slope.sky.corners) stop = clamp_half_angle(corner_line(theta, slope, corner), start, to);
-      // Devices that run invocations in lockstep compute both sides of an `if`; they skip a loop of one turn where no
-      // invocation needs it. It counts as an iteration, see worst_iterations of host/compute/plan/kernel_data.hpp.
+      // Devices that run invocations in lockstep compute both branches of an `if`, but skip a loop of one turn if no
+      // invocation needs it. The turn counts as an iteration, see worst_iterations of
+      // host/compute/plan/kernel_data.hpp.
       for (bool run_once = is_before(start, stop); run_once; run_once = false) {
         bool is_first = !is_before(from, start);
         Arc arc = masked_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits,
@@ -148,7 +150,7 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
 }
 
 // Sums over all facets of a slope. Facets whose ray does not leave lose their projection toward theta, which is
-// negative for back-facing ones; from a groove every ray leaves.
+// negative for facets that face away. From a groove every ray leaves.
 AzimuthSums slope_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope,
                        Columns columns[DOLP_WIDTH]) {
   SplitLines lines = split_lines(rule, theta, index, slope.t, slope.has_split_line, slope.digits);

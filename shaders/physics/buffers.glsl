@@ -1,4 +1,5 @@
-// The data that the kernel source reads, for the GLSL entry points; the C++ class that includes it has members instead.
+// The data that the kernel source reads, for the GLSL entry points. The C++ class that includes the source has members
+// instead.
 layout(local_size_x_id = DOLP_SPEC_LOCAL_SIZE) in;
 layout(constant_id = DOLP_SPEC_DISTRIBUTION) const uint kDistribution = DOLP_CAUCHY;
 layout(constant_id = DOLP_SPEC_MASKING) const uint kMasking = DOLP_MASKING_NONE;
@@ -24,8 +25,8 @@ layout(push_constant) uniform PushConstants { DOLP_PUSH_CONSTANTS } push;
 layout(std430, binding = DOLP_BINDING_SHAPES) readonly buffer Shapes { ShapeNode shapes[]; };
 layout(std430, binding = DOLP_BINDING_MASKING_TABLE) writeonly buffer MaskingTable { real4 masking_table[]; };
 
-// Data that each invocation reads at places of its own are texel buffers: processors without AVX-512 read a storage buffer
-// so in a loop over the lanes, each of which waits for a store to the stack.
+// Data that each invocation reads at different positions are in texel buffers. For such reads from a storage buffer,
+// processors without AVX-512 loop over the lanes and wait for a store to the stack in each turn.
 #ifdef DOLP_DOUBLE
 layout(binding = DOLP_BINDING_RULE_NODES) uniform usamplerBuffer rule_nodes;
 layout(binding = DOLP_BINDING_MASKING_NODES) uniform usamplerBuffer masking_nodes;

@@ -1,4 +1,4 @@
-// Columns: further sums over the facets. kColumnCount is their number, kColumns their kind:
+// Columns: additional sums over the facets. kColumnCount is their number, kColumns their kind:
 //
 //   sky        the moments with functions g of the zenith of the reflected ray, |g| <= 1: what a sky that changes with
 //              the zenith adds to its mean (README.md beside this file, section 11);
@@ -10,9 +10,10 @@
 // corners too: straight lines in cells of one width, (value at the start, change over the cell), after the nodes of the
 // rules. host/compute/plan/sky_table.cpp fills it.
 
-// The tables among the rule nodes: read once, because devices read push constants again in each turn of a loop.
+// Position of the tables among the rule nodes. It is read once, because devices read push constants again in each turn
+// of a loop.
 struct SkyPlace {
-  int cells;  // cells of a function
+  int cells;  // number of cells of a function
   int start;  // position of the first cell
   int corners;
 };
@@ -22,7 +23,7 @@ struct ColumnValues {
   real f[DOLP_MOST_COLUMNS];
 };
 
-// Sums with each function f, of the moments from (R_s + R_p) / 2 and from (R_s - R_p) / 2.
+// Sums of the moments from (R_s + R_p) / 2 and from (R_s - R_p) / 2, with each function f.
 struct Columns {
   real i[DOLP_MOST_COLUMNS];
   real q[DOLP_MOST_COLUMNS];
@@ -67,7 +68,7 @@ ColumnValues chebyshev_at(RuleNode rule, real cos_beta) {
   return values;
 }
 
-// The functions at a facet that reflects.
+// The functions at a facet that reflects light.
 ColumnValues column_values(RuleNode rule, SkyPlace table, real cos_beta, real cos_r) {
   if (kColumns == DOLP_COLUMNS_SKY) return sky_at(table, cos_r);
   return chebyshev_at(rule, cos_beta);
@@ -116,7 +117,7 @@ void store_columns(int member, bool is_coarse, Columns sums) {
 
 SkyPlace sky_place() { return SkyPlace(sky_cells(), sky_start(), pushed_corners()); }
 
-// cos(theta_r) of a corner, which splits the azimuths; they ascend in the zenith.
+// cos(theta_r) of a corner, which splits the azimuths. Corners are in ascending order of the zenith.
 real cos_of_corner(SkyPlace table, int i) { return rule_node(table.start + sky_functions() * table.cells + i).x; }
 #else
 struct ColumnValues {

@@ -1,22 +1,22 @@
-// Elementary functions from +, *, / and sqrt. The builtins of GLSL are too coarse (a driver may return sinh with an error
-// of several percent near 0) and do not exist in double.
-// Accuracy: tests/compute/kernel_source_test.cpp, a few units in the last place for the ranges stated here.
+// Elementary functions from +, *, / and sqrt. The builtins of GLSL are too coarse (a driver may return sinh with an
+// error of several percent near 0) and do not exist in double.
+// Accuracy: a few units in the last place in the ranges stated here (tests/compute/kernel_source_test.cpp).
 
 CONST real kPi = real(3.14159265358979323846);
-CONST real kLn2High = real(0.693145751953125);             // exact in a float; times an exponent it stays exact
+CONST real kLn2High = real(0.693145751953125);             // exact in a float; products with an exponent are exact, too
 CONST real kLn2Low = real(1.42860682030941723212e-6);      // ln 2 - kLn2High
 CONST real kInverseLn2 = real(1.44269504088896340736);
 CONST real kSqrtHalf = real(0.70710678118654752440);
 
-// One of two values, both of which are computed. `c ? a : b` is a branch unless a and b are names or constants, and some
-// drivers analyse a loop in a time that doubles with every branch in it.
+// One of two values, both of which are computed. `c ? a : b` is a branch unless a and b are names or constants. For
+// some drivers each branch in a loop doubles the time of their analysis.
 real choose(bool condition, real yes, real no) { return condition ? yes : no; }
 real2 choose(bool condition, real2 yes, real2 no) { return condition ? yes : no; }
 
 // The product of two complex numbers.
 real2 multiply(real2 a, real2 b) { return real2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x); }
 
-// sum of r^j / (j+2)!, so that e^r = 1 + r + r^2 * this, for |r| <= ln(2)/2.
+// Sum of r^j / (j+2)!, so that e^r = 1 + r + r^2 * sum, for |r| <= ln(2)/2.
 real exp_series(real r) {
 #ifdef DOLP_DOUBLE
   real p = real(1.0) / real(6227020800.0);
@@ -46,7 +46,7 @@ real expm1_real(real x) {
   return power * fraction + (power - real(1.0));
 }
 
-// Where exp_real gives way to 0: e^x and its products must stay above the smallest normal number.
+// Below this exponent exp_real returns 0: e^x and its products must stay above the smallest normal number.
 #ifdef DOLP_DOUBLE
 CONST real kLowestExponent = real(-690.0);
 #else
@@ -62,7 +62,7 @@ real exp_real(real x) {
   return x < kLowestExponent ? real(0.0) : power;
 }
 
-// atanh(z)/z - 1 over z^2, for z^2 <= 0.03.
+// (atanh(z)/z - 1) / z^2, for z^2 <= 0.03.
 real atanh_series(real z2) {
 #ifdef DOLP_DOUBLE
   real p = real(1.0) / real(23.0);
@@ -81,7 +81,7 @@ real atanh_series(real z2) {
   return p * z2 + real(1.0) / real(3.0);
 }
 
-// ln(1 + u) for u >= 0, relative accuracy kept near 0.
+// ln(1 + u) for u >= 0, with full relative accuracy near 0.
 real log1p_real(real u) {
   precise real v = real(1.0) + u;
   precise real above_one = v - real(1.0);
@@ -98,17 +98,17 @@ real log1p_real(real u) {
   return k * kLn2High + (series + (k * kLn2Low + choose(u < real(1.0), lost_of_u, lost_of_one) / v));
 }
 
-// ln(x) for 0 < x <= 1, coarse below 1e-30.
+// ln(x) for 0 < x <= 1. It is coarse below 1e-30.
 real log_unit(real x) { return -log1p_real((real(1.0) - x) / max(x, real(1e-30))); }
 
-// ln(1 + u^2) for u >= 0, also if u^2 overflows: there it is 2 ln(u).
+// ln(1 + u^2) for u >= 0. If u^2 overflows, it is 2 ln(u).
 real log1p_square(real u) {
   bool is_large = u > real(1e9);
   real logarithm = log1p_real(choose(is_large, u - real(1.0), u * u));
   return choose(is_large, real(2.0) * logarithm, logarithm);
 }
 
-// asinh(y) for y >= 0; ln(2 y) where y^2 might overflow.
+// asinh(y) for y >= 0. If y^2 might overflow, it is ln(2 y).
 real asinh_real(real y) {
   real y2 = y * y;
   return log1p_real(choose(y > real(1e9), real(2.0) * y - real(1.0), y + y2 / (real(1.0) + sqrt(real(1.0) + y2))));
@@ -146,7 +146,7 @@ real2 cos_sin(real x) {
   return real2(real(1.0) + z * (real(0.5) + z * c), x + x * z * (real(1.0) / real(6.0) + z * s));
 }
 
-// atan(y) for 0 <= y <= 1: the argument is halved twice, then the Taylor series.
+// atan(y) for 0 <= y <= 1: halves the argument twice, then sums the Taylor series.
 real atan_unit(real y) {
   real y1 = y / (real(1.0) + sqrt(real(1.0) + y * y));
   real y2 = y1 / (real(1.0) + sqrt(real(1.0) + y1 * y1));

@@ -12,7 +12,7 @@
 // reflected: masked, absorbed, or sent below the horizon.
 
 struct Facet {
-  real e;         // projected area toward theta over the area of the facet's base
+  real e;         // projected area toward theta divided by the area of the facet's base
   real cos_beta;
   real rotation;  // sin^2(beta) cos(2 eta)
   real cos_r;     // cosine of the reflected ray's zenith
@@ -46,8 +46,8 @@ Facet facet(ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   return result;
 }
 
-// The facet's projection as the part that masking leaves, e G, and the part that it hides, e (1 - G): each is computed
-// on its own, because either may be the difference of two nearly equal numbers.
+// The facet's projection in two parts: e G, which masking leaves, and e (1 - G), which it hides. Each is computed
+// directly, because either may be the difference of two nearly equal numbers.
 struct Projection {
   real visible;
   real hidden;
@@ -58,13 +58,13 @@ real4 reflected(Facet f, Projection part) {
   return real4(part.visible * f.m00, part.visible * f.m01, part.visible, part.hidden + part.visible * f.absorbed);
 }
 
-// A facet's projection toward the viewer, masked for theta only.
+// A facet's projection toward the viewer, masked only for theta.
 real seen_directly(ThetaNode theta, Facet f) {
   return (kMasking == DOLP_MASKING_V_CAVITY) ? min(f.e, real(2.0) * theta.c) : f.e;
 }
 
-// Emission of a facet straight to the viewer per unit of azimuth, as (I, Q): e G1 (1 - M00) and -e G1 M01 with the
-// masking of theta only; smith's masking, equal for all facets, is multiplied later.
+// Emission of a facet straight to the viewer per unit of azimuth, as (I, Q): e G1 (1 - M00) and -e G1 M01, masked only
+// for theta. The factor of smith masking, equal for all facets, is applied later.
 real2 emitted(ThetaNode theta, Facet f) {
   real visible = seen_directly(theta, f);
   return real2(visible * f.absorbed, -visible * f.m01);

@@ -24,7 +24,7 @@ real2 sqrt_upper(real re, real im) {
 
 // From N^2 - 1, c, w, c + w and N^2 c + w.
 Fresnel fresnel_of_sums(real2 n2m1, real cos_beta, real2 w, real2 s_sum, real2 p_sum) {
-  // Without a floor N = 1 at grazing incidence would be 0/0 where the squares underflow.
+  // Without the lower limit, N = 1 at grazing incidence would give 0/0 if the squares underflow.
   real inverse_b = real(1.0) / max(s_sum.x * s_sum.x + s_sum.y * s_sum.y, kSmallestSquare);
   real a = (n2m1.x * n2m1.x + n2m1.y * n2m1.y) * inverse_b;
   real transmitted = real(4.0) * cos_beta * w.x;

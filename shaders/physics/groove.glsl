@@ -10,21 +10,21 @@
 // the beam min(e, 2c) that meets the facet first, (min(X_k, X_1) - X_0) / (X_1 - X_0) goes on to bounce k, X_0 = max(a
 // sin(psi - gamma), 0).
 
-// For a ray with many bounces, 2, 4, 8 ... are taken as one at their middle, the fewer the closer they are to its
-// first or last, which may be grazing. The error of that is bounded in host/compute/plan/error_bounds.cpp.
+// A ray with many bounces: 2, 4, 8 ... bounces are combined into one at their middle. Fewer are combined near the ray's
+// first and last bounce, which may be grazing. The error is bounded in host/compute/plan/error_bounds.cpp.
 struct Fan {
-  real2 turn;    // (cos, sin) of gamma times the bounces taken as one
-  real gamma;    // gamma and the next members serve rays with many bounces
-  real left;     // bounces, (pi/2 - psi) / gamma of them at first
+  real2 turn;    // (cos, sin) of gamma times the combined bounces
+  real gamma;    // this and the next members are for rays with many bounces
+  real left;     // remaining bounces; (pi/2 - psi) / gamma at first
   real done;
-  real slant;    // psi over gamma, no more than 1
-  real taken;    // bounces taken as one, 2^doublings
+  real slant;    // psi / gamma, at most 1
+  real taken;    // number of combined bounces, 2^doublings
   int doublings;
   bool is_steep;
-  bool is_black;  // true after so many bounces that no light leaves
+  bool is_black;  // true after so many bounces that no light is left
 };
 
-// The fan of a groove of slope t, for a ray with the projections c and u on the vertical and across.
+// The fan of a groove of slope t, for a ray with vertical component c and component u across the groove.
 Fan fan(real t, real c, real u) {
   real r = real(1.0) / sqrt(real(1.0) + t * t);
   Fan f;
@@ -37,7 +37,7 @@ Fan fan(real t, real c, real u) {
   f.doublings = 0;
   f.is_steep = false;
   f.is_black = false;
-  // A ray has at most pi/gamma < pi t + 2 bounces; the loop is one that devices skip.
+  // A ray has at most pi/gamma < pi t + 2 bounces. Devices skip a loop that no invocation needs.
   for (bool may_be = t > real(DOLP_MOST_BOUNCES) / kPi; may_be; may_be = false) {
     real to_horizon = arc_tangent(c / max(abs(u), real(1e-30)));
     f.gamma = arc_tangent(real(1.0) / t);
@@ -50,13 +50,14 @@ Fan fan(real t, real c, real u) {
   return f;
 }
 
-// Share of a ray with many bounces that goes on to one more bounce, with the sines of small angles for the angles.
+// Share of a ray with many bounces that continues to one more bounce. Uses the sines of small angles instead of the
+// angles.
 real last_share(Fan f) {
   real sum = max(real(1.0) + f.slant, real(1e-30));
   return (real(2.0) * f.left + f.slant - real(1.0)) / sum;
 }
 
-// The next bounces of a ray with many: takes as many as one as their distance from its first and last bounce allows.
+// The next bounces of a ray with many. Combines as many as their distance from the first and the last bounce allows.
 Fan next_bounces(Fan f) {
   real distance = min(f.done, f.left) * (real(1.0) / real(DOLP_GROUPS_PER_DISTANCE));
   if (real(2.0) * f.taken <= distance) {
@@ -76,7 +77,7 @@ struct Bounce {
   real m00;
   real m01;
   real absorbed;  // 1 - m00
-  real2 cross;    // r_s r_p*, with the r_p that is r_s at normal incidence
+  real2 cross;    // r_s r_p*; here r_p equals r_s at normal incidence
 };
 
 // r_p / r_s = (cos(beta) w - sin^2(beta)) / (cos(beta) w + sin^2(beta)).
@@ -109,7 +110,7 @@ Bounce bounce(IndexNode index, real cos_beta, real sin2_beta, int doublings) {
   return one;
 }
 
-// A Stokes vector after a bounce whose plane of incidence is turned by eta; `twice` is (cos, sin) of 2 eta.
+// A Stokes vector after a bounce whose plane of incidence is turned by eta. `twice` is (cos, sin) of 2 eta.
 real4 bounced(Bounce by, real2 twice, real4 stokes) {
   real q = twice.x * stokes.y + twice.y * stokes.z;
   real u = twice.x * stokes.z - twice.y * stokes.y;
@@ -125,21 +126,21 @@ real2 doubled_angle(real x, real y) {
   return real2((x - y) * (x + y) * inverse, real(2.0) * x * y * inverse);
 }
 
-// a (sin, cos) of an angle, a step on.
+// a (sin, cos) of an angle, advanced by one step.
 real2 further_on(real2 at, real2 step) {
   return real2(at.x * step.x + at.y * step.y, at.y * step.x - at.x * step.y);
 }
 
-// Light that leaves a groove: part of it one bounce before the rest.
+// Light that leaves a groove. A part of it leaves one bounce earlier than the rest.
 struct GrooveLight {
   real4 moments;    // as in facet.glsl
-  real2 before;     // r_i and r_q of that part,
-  real cos_before;  // and cos(theta_r)
+  real2 before;     // r_i and r_q of the part that leaves earlier
+  real cos_before;  // cos(theta_r) of that part
   real2 last;
   real cos_last;
 };
 
-// Integrand of the moments per unit of azimuth of the rays that meet the facet (t, phi) first. After k bounces
+// Integrand of the moments per unit of azimuth, for the rays that meet the facet (t, phi) first. After k bounces
 // cos(theta_r) is -a cos(psi + 2 k gamma).
 GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   real c = theta.c;
@@ -148,15 +149,15 @@ GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index,
   real inverse_a2 = real(1.0) / max(c * c + u * u, kSmallestSquare);
   Fan f = fan(t, c, u);
   real first = c * f.turn.y + u * f.turn.x;  // X_1
-  // X_1 - X_0 and X_k - X_1 are differences of nearly equal numbers next to the horizon: X_(k+1) - X_k is 2 sin(gamma)
-  // times a cos(psi + 2 k gamma).
+  // Near the horizon X_1 - X_0 and X_k - X_1 are differences of nearly equal numbers. So X_(k+1) - X_k is computed as 2
+  // sin(gamma) times a cos(psi + 2 k gamma).
   real width = (u * f.turn.x > c * f.turn.y) ? real(2.0) * c * f.turn.y : first;
   real inverse_width = real(1.0) / max(width, real(1e-30));
   real rise = real(0.0);        // X_k - X_1
   real2 between = real2(u, c);  // a (sin, cos) of psi + 2 k gamma
-  real share = f.is_black ? real(0.0) : real(1.0);  // share of the beam that goes on
+  real share = f.is_black ? real(0.0) : real(1.0);  // share of the beam that continues
   real absorbed = real(1.0) - share;
-  // Rays of intensity 1 and of Q = 1 as the surface sees it.
+  // Stokes vectors of rays with intensity 1 and with Q = 1, in the frame of the surface.
   real4 natural = real4(share, real(0.0), real(0.0), real(0.0));
   real2 seen = doubled_angle(-x, c * sin_phi);
   real4 polarised = real4(real(0.0), share * seen.x, share * seen.y, real(0.0));

@@ -1,13 +1,13 @@
-// G of `integral` and smith masking at one geometry, by Gauss rules over the in-plane slopes tau; no table, because a
-// pBRDF needs G once or twice where the moments need it thousands of times. With mu = cot(theta):
+// G of `integral` and smith masking at one geometry, by Gauss rules over the in-plane slopes tau. It uses no table,
+// because a pBRDF needs G only once or twice; the moments need it thousands of times. With mu = cot(theta):
 //   smith, height-correlated:  L(theta) = (1 / mu) int_mu^inf p(tau) (tau - mu) dtau.
 //   `integral`:  1 - G1 = int_mu^inf p(tau) min(1, kappa (tau - mu) / sqrt(1 + tau^2)) dtau, eqs. (9)-(12)
-//   of the paper with tau = tan(gamma); kappa and the slope tb at which the minimum switches are those of masking.glsl.
-// In X = asinh(tau / scale), scale = min(m / sqrt(max(1, q)), 1), the singularities lie pi/2 off the real axis or
-// farther. Far out p is a power law (cauchy), and the rest has a closed form. All terms are positive.
+//   of the paper with tau = tan(gamma). masking.glsl defines kappa and the slope tb at which the minimum switches.
+// In X = asinh(tau / scale), scale = min(m / sqrt(max(1, q)), 1), the singularities are at least pi/2 away from the
+// real axis. At large X the cauchy's p is a power law, and the rest has a closed form. All terms are positive.
 
 #ifdef DOLP_DOUBLE
-CONST int kInPlaneOrder = 16;  // order of a panel of length 1 or less in X
+CONST int kInPlaneOrder = 16;  // order on a panel whose length in X is at most 1
 CONST real kPowerLawSlope = real(1e7);
 #else
 CONST int kInPlaneOrder = 8;
@@ -15,11 +15,11 @@ CONST real kPowerLawSlope = real(1e4);
 #endif
 
 CONST real kSmallestSine = real(1e-18);
-CONST real kLargestSwitch = real(1e20);  // tb where the minimum hardly switches at all
+CONST real kLargestSwitch = real(1e20);  // largest tb; beyond it the minimum hardly switches
 
-// Weights of p.
+// Weights of p in the integrals.
 CONST uint kWeightOne = 0u;
-CONST uint kWeightVisible = 1u;  // tau - mu, over sqrt(1 + tau^2) for `integral`
+CONST uint kWeightVisible = 1u;  // tau - mu; for `integral` divided by sqrt(1 + tau^2)
 
 real in_plane_end(ShapeNode shape) { return min(shape.cut, kPowerLawSlope * max(shape.m, real(1.0))); }
 
@@ -44,7 +44,7 @@ real in_plane_sum(ShapeNode shape, uint weight, real mu, real from, real to) {
   return sum * length * shape.scale;
 }
 
-// Integral over all slopes beyond `from`, which lies where p ~ tau^(1 - 2q); the gaussian's is negligible.
+// Integral over all slopes beyond `from`, where p ~ tau^(1 - 2q). For the Gaussian it is negligible.
 real power_law_sum(ShapeNode shape, uint weight, real mu, real from) {
   if (kDistribution == DOLP_GAUSSIAN) return real(0.0);
   real a = real(2.0) * shape.q_minus_1;
@@ -59,7 +59,7 @@ real in_plane_beyond(ShapeNode shape, uint weight, real mu, real from) {
   return in_plane_sum(shape, weight, mu, from, end) + power_law_sum(shape, weight, mu, max(from, end));
 }
 
-// Smith's L of a direction; at 90 degrees a number so large that G is 0.
+// Smith's L of a direction. At 90 degrees it is so large that G is 0.
 real in_plane_lambda(ShapeNode shape, real cos_theta, real sin_theta) {
   real mu = max(cos_theta / max(sin_theta, kSmallestSine), real(1e-30));
   return in_plane_beyond(shape, kWeightVisible, mu, mu) / mu;

@@ -1,5 +1,5 @@
-// Geometric attenuation G (shaders/physics/README.md, section 2): v-cavity in closed form, `integral` and smith from a
-// table of one-dimensional integrals of the in-plane slope density p, one table for each shape.
+// Geometric attenuation G (shaders/physics/README.md, section 2). v-cavity has a closed form. `integral` and smith use
+// a table of one-dimensional integrals of the in-plane slope density p, one table per shape.
 //
 // With Pt(x) = int_x^inf p, C(x) = int_x^inf g p and l(x) = int_x^inf g(tau) p(tau) (tau - x) dtau, where g = 1 for
 // smith and 1 / sqrt(1 + tau^2) for `integral`:   l' = -C,  C' = -g p,  Pt' = -p.
@@ -18,7 +18,7 @@ CONST uint kMaskingNodes = DOLP_MASKING_NODES(kCellBits);
 CONST uint kUnusedBits = 23u - kCellBits;
 CONST uint kFirstNodeBits = 0x3f800000u >> kUnusedBits;  // exponent and leading mantissa bits of v = 1.0f
 
-// v of a node: its float has the node's number in the exponent and the first bits of the mantissa.
+// v of a node. The float v has the number of the node in its exponent and the first bits of its mantissa.
 real masking_node_v(uint node) { return real(uintBitsToFloat((node + kFirstNodeBits) << kUnusedBits)); }
 
 real masking_node_tau(ShapeNode shape, uint node) { return (masking_node_v(node) - real(1.0)) * shape.table_scale; }
@@ -41,18 +41,18 @@ real weight_decay(real tau) {
   return (kMasking == DOLP_MASKING_SMITH) ? real(0.0) : tau / (real(1.0) + tau * tau);
 }
 
-// Place of tau in the tables of one scale, and the weights of values (f), first (d) and second derivatives (e) at the
-// cell's ends in a quintic Hermite interpolation there. Beyond the table's end the value at the end is used: only
-// facets within 1e-5 of the line d = 0 and directions within 2e-5 of the normal look there.
+// Position of tau in the tables of one scale. The weights of values (f), first (d) and second derivatives (e) at the
+// ends of the cell are for quintic Hermite interpolation. Beyond the table's end its last value is used. Only facets
+// within 1e-5 of the line d = 0 and directions within 2e-5 of the normal need values there.
 struct TableCell {
-  uint node;  // the one before tau
+  uint node;  // the last node at or before tau
   real f0;
   real f1;
   real d0;
   real d1;
   real e0;
   real e1;
-  real g0;  // the weight at the ends
+  real g0;  // the weight g at the ends
   real g1;
 };
 
@@ -88,7 +88,8 @@ real masking_height(TableCell cell, uint table) {
          (cell.e0 * cell.g0 * n0.w + cell.e1 * cell.g1 * n1.w);
 }
 
-// Places in the tables for 1 - G1(theta, alpha) of a direction and a facet slope t, equal for all tables of one scale.
+// Positions in the tables for 1 - G1(theta, alpha) of a direction and a facet slope t. They are equal for all tables of
+// one scale.
 struct ShadowPlace {
   real kappa;
   bool is_limited;  // d > 0, with
@@ -96,7 +97,7 @@ struct ShadowPlace {
   real gap;         // tau_b - mu
 };
 
-// cot(theta), where l is looked up.
+// cot(theta), the argument of l.
 real shadow_cot(real cos_theta, real sin_theta) { return cos_theta / max(sin_theta, real(1e-10)); }
 
 ShadowPlace shadow_place(ShapeNode shape, real cos_theta, real sin_theta, real t) {
@@ -115,9 +116,9 @@ ShadowPlace shadow_place(ShapeNode shape, real cos_theta, real sin_theta, real t
   return place;
 }
 
-// Term that the limit b < pi/2 adds to kappa l(mu): Pt(tb) - kappa [l(tb) + (tb - mu) C(tb)], as a sum over the
-// values at the ends of the cell that tau_b lies in, with C'' = g p (-p'/p - g'/g) and Pt'' = p (-p'/p): only -p'/p and
-// the values depend on the shape.
+// The term that the limit b < pi/2 adds to kappa l(mu): Pt(tb) - kappa [l(tb) + (tb - mu) C(tb)]. It is a sum over the
+// values at the ends of the cell that contains tau_b, with C'' = g p (-p'/p - g'/g) and Pt'' = p (-p'/p). Only -p'/p
+// and the values depend on the shape.
 struct LimitTerms {
   real l0;
   real l1;

@@ -1,10 +1,10 @@
-// Builds the masking table of one shape, from its far end inwards. All terms are positive, so that the relative
-// accuracy is kept down to the smallest tails.
+// Builds the masking table of one shape, from its far end inwards. All terms are positive, so the smallest tails have
+// full relative accuracy, too.
 
-CONST int kTableOrder = 4;  // Gauss order on one cell, in which v grows by a sixteenth or less
+CONST int kTableOrder = 4;  // Gauss order on one cell, in which v grows by at most a sixteenth
 
-// Contribution of one cell [tau0, tau1] to the tails: added to those at tau1 it gives (l, C, Pt, p) at tau0; p is
-// whole.
+// Contribution of one cell [tau0, tau1] to the tails. Added to the tails at tau1 it gives (l, C, Pt, p) at tau0; p is
+// complete.
 real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
   real h = tau1 - tau0;
   real height = real(0.0);
@@ -23,8 +23,8 @@ real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
   return real4(h * beyond.y + height, first, probability, marginal_density(shape, tau0));
 }
 
-// The tails at the table's end. The cauchy's p is a power law tau^(1-2q) there; where the end lies below slope 1 next
-// to nothing is left, and the factor keeps l and C of the right order. The tails of the gaussian are negligible.
+// The tails at the table's end. The cauchy's p is a power law tau^(1-2q) there. If the end lies below slope 1, almost
+// nothing is left, and the factor keeps the order of magnitude of l and C. The tails of the Gaussian are negligible.
 real4 masking_table_end(ShapeNode shape, real tau) {
   real p = marginal_density(shape, tau);
   if (kDistribution == DOLP_GAUSSIAN) return real4(real(0.0), real(0.0), real(0.0), p);
@@ -35,8 +35,8 @@ real4 masking_table_end(ShapeNode shape, real tau) {
   return real4(tail * tau * weight / (a + real(1.0)), tail * a * weight / (a + real(1.0)), tail, p);
 }
 
-// Fills the table that starts at node `table`. The sums are compensated (Kahan 1965): a heavy tail adds hundreds of
-// nearly equal terms.
+// Fills the table that starts at node `table`. The sums are compensated (Kahan 1965), because a heavy tail adds
+// hundreds of nearly equal terms.
 void build_masking_table(ShapeNode shape, uint table) {
   real tau1 = masking_node_tau(shape, kMaskingNodes - 1u);
   real4 tails = masking_table_end(shape, tau1);

@@ -1,6 +1,6 @@
-// The moments of a row of entries, piece by piece of the slope axis: a Gauss rule over the slopes of the piece, and the
-// sums over the azimuths at each. Everything is summed twice, by rules of two orders: the
-// finer sum is the result, its distance from the coarser one bounds the error (host/compute/plan/error_bounds.cpp).
+// The moments of a row of entries, piece by piece of the slope axis: a Gauss rule over the slopes of the piece, and at
+// each slope the sums over the azimuths. Everything is summed twice, by rules of two orders. The finer sum is the
+// result; its distance from the coarser sum bounds the error (host/compute/plan/error_bounds.cpp).
 
 CONST real kNearRoot = real(0.2);
 
@@ -25,7 +25,7 @@ Piece make_piece(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task 
   piece.root_at_a = task.root_at_start;
   bool ends_before_cut = b < shape.cut;
   piece.root_at_b = ends_before_cut && task.root_at_end;
-  // A root beside an end that is near, measured by the piece, counts as the end's own.
+  // A root outside the piece, but near an end compared with its length, counts as a root at the end.
   real end = piece.start + piece.extent;
   real before = asinh_real(task.before / shape.scale);
   bool is_near_a = piece.start - before < kNearRoot * piece.extent;
@@ -54,7 +54,7 @@ real2 place_on_piece(Piece piece, real v) {
   return choose(has_both, both, one_or_none);
 }
 
-// Sums over the slopes of a piece by one rule, for each member of a row.
+// Sums over the slopes of a piece by one rule, per member of a row.
 struct PieceSums {
   real4 member[DOLP_WIDTH];
   Columns columns[DOLP_WIDTH];
@@ -84,7 +84,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
   for (int g = 0; g < DOLP_WIDTH; ++g) mass[g] = real(0.0);
   int fewer = min(coarse_order(piece.order), largest_order());
   int order = is_coarse ? fewer : piece.order;
-  if (task.start >= shape.cut) order = 0;  // beyond the cut of the row
+  if (task.start >= shape.cut) order = 0;  // the piece lies beyond the cut of the row
   real all = weight_of_shape(theta, shape);
   int first_node = rule_offset(kSectionGauss, order);
   for (int i = 0; i < order; ++i) {
@@ -147,7 +147,7 @@ RowMoments piece_moments(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
   MaskingTerms masking_in = masking_of_direction(row, theta.c, theta.s);
   PieceSums coarse = no_slopes();
   PieceSums fine = no_slopes();
-  int passes = min(task.members + 1, 2);  // 2, computed so that drivers do not unroll the loop
+  int passes = min(task.members + 1, 2);  // always 2, but drivers cannot know it and do not unroll the loop
   for (int pass = 0; pass < passes; ++pass) {
     coarse = fine;
     fine = piece_sums(rule, theta, row, index, task, piece, masking_in, pass == 0);

@@ -1,23 +1,25 @@
-// Number of nodes for a piece of the slope axis or an arc of the azimuth: a policy, independent of the sums.
+// Number of nodes for a piece of the slope axis or an arc of the azimuth. The sums do not depend on this file.
 //
-// A Gauss rule of n nodes on [0, 1] is wrong by e^(-2 n mu) where the integrand's next singularity y0 lies on the
-// ellipse with the interval's ends as foci and cosh(mu) = |y0| + |y0 - 1| (Trefethen 2013, chapter 19): a decimal digit
-// costs ln(10) / (2 mu) nodes. Where the singularities of the azimuth lie is known exactly; RuleNode scales the law
-// with fitted numbers (host/compute/plan/rule.hpp). The less a piece carries, the fewer digits it needs.
+// A Gauss rule of n nodes on [0, 1] has the error e^(-2 n mu) if the nearest singularity y0 of the integrand lies on
+// the ellipse with the interval's ends as foci and cosh(mu) = |y0| + |y0 - 1| (Trefethen 2013, chapter 19). So a
+// decimal digit costs ln(10) / (2 mu) nodes. The positions of the singularities in the azimuth are known exactly.
+// RuleNode scales the law with fitted numbers (host/compute/plan/rule.hpp). The less a piece contributes, the fewer
+// digits it needs.
 
 CONST real kHalfLn10 = real(1.15129254649702284);
 CONST real kLn10 = real(2.30258509299404568402);
 CONST real kInverseLn10 = real(0.43429448190325182765);
-CONST real kWideResolution = real(0.1);   // a root beside an arc with a larger resolution is a singularity like others
+// a root beside an arc with a larger resolution counts as an ordinary singularity
+CONST real kWideResolution = real(0.1);
 CONST real kSharpResolution = real(1e-6);
-CONST real kMoreDigits = real(0.3);  // further digits on the slope axis for each digit beyond kPlainDigits
+CONST real kMoreDigits = real(0.3);  // additional digits on the slope axis for each digit beyond kPlainDigits
 CONST real kPlainDigits = real(7.0);
-CONST real kLeastWeight = real(1e-20);  // so that at 90 degrees all slopes weigh the same
+CONST real kLeastWeight = real(1e-20);  // gives all slopes equal weight at 90 degrees
 
 // acosh(1 + gap), without cancellation.
 real acosh_above_1(real gap) { return log1p_real(gap + sqrt(gap) * sqrt(gap + real(2.0))); }
 
-// |y| + |y - 1| - 1 for y = a + i b, without cancellation: how far y is from [0, 1].
+// |y| + |y - 1| - 1 for y = a + i b, without cancellation. It measures the distance of y from [0, 1].
 real gap_beside_unit(real a, real b) {
   real to_0 = sqrt(a * a + b * b);
   real to_1 = sqrt((a - real(1.0)) * (a - real(1.0)) + b * b);
@@ -25,7 +27,7 @@ real gap_beside_unit(real a, real b) {
   return off_axis + real(2.0) * (max(a - real(1.0), real(0.0)) + max(-a, real(0.0)));
 }
 
-// A singularity of the integrand, in the upper half plane of its variable.
+// A singularity of the integrand in the upper half plane of its variable.
 struct Singularity {
   real re;
   real im;
@@ -49,8 +51,8 @@ real nodes_per_digit(real mu) { return kHalfLn10 / max(mu, real(1e-3)); }
 
 int order_between(real nodes, int limit) { return int(clamp(floor(nodes + real(0.5)), real(1.0), real(limit))); }
 
-// The coarser rule of a pair, whose distance from the finer one bounds the error. Below three nodes two rules may agree
-// by chance more often than not: there it is the finer one.
+// Order of the coarser rule of a pair, whose distance from the finer rule bounds the error. Below three nodes two rules
+// often agree by chance; there it is the order of the finer rule.
 int coarse_order(int order) {
   int fewer = (8 * order + 5) / 10;
   int more = order + 1;
@@ -59,13 +61,14 @@ int coarse_order(int order) {
 
 // ---- Slope axis ----------------------------------------------------------------------------------------------------
 
-// Contribution of facets of slope t to the albedo, c + s t without masking. The cavities let through no more than 2 c.
+// Contribution of facets of slope t to the albedo: c + s t without masking. Cavities let through at most 2 c.
 real weight_of_slope(ThetaNode theta, real t) {
   real bare = theta.c + theta.s * t;
   return kMasking == DOLP_MASKING_V_CAVITY ? min(bare, max(real(2.0) * theta.c, kLeastWeight)) : bare;
 }
 
-// Contribution of all facets: facets up to slope t1 send every ray up, facets between t1 and t2 about half of them.
+// Contribution of all facets. Facets up to slope t1 reflect every ray upwards, facets between t1 and t2 about half of
+// the rays.
 real weight_of_shape(ThetaNode theta, ShapeNode shape) {
   real t1 = theta.c / (real(1.0) + theta.s);
   real t2 = (real(1.0) + theta.s) / max(theta.c, real(1e-15));
@@ -89,14 +92,14 @@ real digits_of_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, real a, re
   return digits_of_share(rule, mass * typical / weight_of_shape(theta, shape));
 }
 
-// Digits required of the azimuths at slope t, one of `order` slopes of a piece, that represents `mass` of the facets:
-// fewer than the piece's digits if it carries less than its part. `all` is weight_of_shape.
+// Digits required of the azimuths at slope t, which is one of `order` slopes of a piece and represents `mass` of the
+// facets. It is fewer than the piece's digits if the slope contributes less than its share. `all` is weight_of_shape.
 real digits_of_slope(RuleNode rule, ThetaNode theta, real all, real digits, int order, real t, real mass) {
   return min(digits_of_share(rule, real(order) * mass * weight_of_slope(theta, t) / all), digits);
 }
 
-// Nodes for each digit on a piece, from a singularity at X = re + i im. A root at an end makes the abscissa the root of
-// the distance from it.
+// Nodes per digit on a piece, because of a singularity at X = re + i im. With a root at an end, the abscissa is the
+// root of the distance from that end.
 real piece_cost(Piece piece, real re, real im) {
   real2 z = real2((re - piece.start) / piece.extent, im / piece.extent);
   bool is_nearer_to_a = z.x < real(0.5);
@@ -107,18 +110,18 @@ real piece_cost(Piece piece, real re, real im) {
   return nodes_per_digit(acosh_above_1(gap_beside_unit(y.x, y.y)));
 }
 
-// An essential singularity exp(-1/x^2) at an end costs a rule nodes in proportion to the square of the digits that it
-// is felt at.
+// An essential singularity exp(-1/x^2) at an end. Its nodes are proportional to the square of the digits at which it
+// matters.
 real essential_nodes(ShapeNode shape, real digits) {
   real wanted = max(digits - kInverseLn10 / (shape.m * shape.m), real(0.0));
   return real(0.25) * wanted * wanted;
 }
 
-// acosh(y) for y >= 1, 0 below: the real part of asinh(i y), whose imaginary part is pi/2 then.
+// acosh(y) for y >= 1, otherwise 0: the real part of asinh(i y), whose imaginary part is then pi/2.
 real real_part_of_asinh(real y) { return acosh_above_1(max(y - real(1.0), real(0.0))); }
 
-// Nodes per digit from one of Fresnel's coefficients in the plane of incidence, cos(beta) = re + i im: at t = (cos(beta) - c)
-// / s, as long as that is small.
+// Nodes per digit because of one of Fresnel's coefficients in the plane of incidence, cos(beta) = re + i im. The
+// singularity is at t = (cos(beta) - c) / s if that is small.
 real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, real im) {
   real unit = max(theta.s, real(1e-6)) * shape.scale;
   real x = (re - theta.c) / unit;
@@ -126,8 +129,9 @@ real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, 
   return piece_cost(piece, choose(x < real(0.0), -bent, bent), im / (unit * max(abs(x), real(1.0))));
 }
 
-// Nodes per digit from Fresnel's branch point cos(beta) = b on a line where arcs end: the horizon, sec(alpha) = 2 b / c, or
-// theta_r = theta, sec(alpha) = b / c; `ratio` is the 2 or the 1. Total reflection has breakpoints at these slopes.
+// Nodes per digit because of Fresnel's branch point cos(beta) = b on a line where arcs end: the horizon, sec(alpha) = 2
+// b / c, or theta_r = theta, sec(alpha) = b / c. `ratio` is the 2 or the 1. Total reflection has breakpoints at these
+// slopes.
 real line_piece_cost(ThetaNode theta, ShapeNode shape, IndexNode index, Piece piece, real ratio) {
   real stretch = ratio / max(theta.c, real(1e-12));
   real2 sec = real2(stretch * index.branch_re, stretch * index.branch_im);
@@ -137,9 +141,9 @@ real line_piece_cost(ThetaNode theta, ShapeNode shape, IndexNode index, Piece pi
   return piece_cost(piece, x.im, x.re - real(0.5) * kPi);
 }
 
-// Where smith's mean slope is about to diverge, L is about m tan(theta) / (pi (2q - 3)): G falls within the width
-// tan(theta) + pi (2q - 3) / m beside theta_r = 0, as from a pole so far beyond the cusp. The pole carries the width's
-// share.
+// If smith's mean slope is about to diverge, L is about m tan(theta) / (pi (2q - 3)). G then falls within the width
+// tan(theta) + pi (2q - 3) / m beside theta_r = 0, as if there were a pole at this distance beyond the cusp. The pole
+// contributes in proportion to the width.
 real diverging_nodes(ThetaNode theta, ShapeNode shape, Piece piece) {
   real t = theta.s / (real(1.0) + theta.c);
   real cusp = asinh_real(t / shape.scale);
@@ -150,10 +154,10 @@ real diverging_nodes(ThetaNode theta, ShapeNode shape, Piece piece) {
   return max(piece.digits + kInverseLn10 * log_unit(min(beside / piece.extent, real(1.0))), real(0.0)) * cost;
 }
 
-// Singularities of the integrand over the slopes: the cauchy's density at t = i m; the geometry at t = i; those of
-// Fresnel's coefficients; and the square roots at the breakpoints beyond the piece's ends that face it. Before a rule
-// converges it must resolve how the density falls over the piece, for which it takes nodes in proportion to the
-// logarithm; a root and the map that takes it up make the integrand a polynomial of two degrees more.
+// Nodes because of the singularities of the integrand over the slopes: the cauchy's density at t = i m, the geometry at
+// t = i, Fresnel's coefficients, and the square roots at the breakpoints beyond the ends of the piece. Before a rule
+// converges, it must resolve the fall of the density over the piece; this takes nodes in proportion to the logarithm of
+// the fall. A root, together with its map, raises the degree of the integrand by two.
 real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, Piece piece) {
   real cost = piece_cost(piece, real_part_of_asinh(real(1.0) / shape.scale), real(0.5) * kPi);
   if (kDistribution == DOLP_CAUCHY) {
@@ -172,13 +176,13 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
   bool has_two_roots = piece.root_at_a && piece.root_at_b;
   cost = max(cost, choose(has_two_roots, nodes_per_digit(acosh_above_1(real(1.0))), real(0.0)));
   real roots = (piece.root_at_a ? real(1.0) : real(0.0)) + (piece.root_at_b ? real(1.0) : real(0.0));
-  // The gaussian falls ever faster in X: all of it in the last unit.
+  // The Gaussian falls faster and faster in X, mostly in the last unit.
   real steepest = (kDistribution == DOLP_GAUSSIAN) ? max(piece.extent, real(1.0)) : real(1.0);
   real resolved = min(piece.fall, piece.digits * kLn10) * steepest;
-  // The poles' order, and weaker singularities, come to count with the digits.
+  // The order of the poles, and weaker singularities, matter if many digits are required.
   real digits = piece.digits + kMoreDigits * max(piece.digits - kPlainDigits, real(0.0));
   real nodes = rule.t_nodes + roots + rule.t_fall * resolved + (digits + rule.t_digits) * cost;
-  // Split at smith's cusp, the gaussian's L has an essential singularity at an end: see line_nodes.
+  // If pieces are split at smith's cusp, the Gaussian's L has an essential singularity at an end: see line_nodes.
   if (kMasking == DOLP_MASKING_SMITH && kDistribution == DOLP_GAUSSIAN) {
     nodes = max(nodes, choose(has_split_line, rule.t_nodes + essential_nodes(shape, piece.digits), real(0.0)));
   }
@@ -191,8 +195,9 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
 
 // ---- Azimuth -------------------------------------------------------------------------------------------------------
 
-// Nodes for each digit on an arc, from the singularity's place in the abscissa of the arc's rule. Rules that are even
-// about the arc's centre converge as one of half the nodes in the square of their abscissa, clusters are in its root.
+// Nodes per digit on an arc, from the position of the singularity in the abscissa of the arc's rule. A rule that is
+// even about the arc's centre converges like a rule of half the nodes in the square of its abscissa. A cluster
+// converges like a rule in the root of its abscissa.
 real arc_cost(Arc arc, Singularity at) {
   real re = abs(at.re - arc.origin) / arc.span;
   real im = at.im / arc.span;
@@ -203,9 +208,9 @@ real arc_cost(Arc arc, Singularity at) {
   return nodes_per_digit(choose(arc.section == kSectionCircle, at.im, mu));
 }
 
-// The singularities of Fresnel's coefficients: R_p's pole, at cos(beta) = -1 / sqrt(N^2 + 1), and the branch point of
-// w, at cos^2(beta) = 1 - N^2, at the bounce whose facet is turned by (cos, sin) from the vertical: cos(beta) = c sin +
-// s x cos.
+// The singularities of Fresnel's coefficients: R_p's pole at cos(beta) = -1 / sqrt(N^2 + 1), and the branch point of w
+// at cos^2(beta) = 1 - N^2. They hold for the bounce whose facet is turned by (cos, sin) from the vertical: cos(beta) =
+// c sin + s x cos.
 real bounce_cost(ThetaNode theta, IndexNode index, real2 facet, Arc arc) {
   real slant = theta.s * facet.x;
   real size = max(abs(slant), real(1e-15));
@@ -216,8 +221,8 @@ real bounce_cost(ThetaNode theta, IndexNode index, real2 facet, Arc arc) {
   return max(arc_cost(arc, pole), arc_cost(arc, branch));
 }
 
-// Beside a critical line w goes as the abscissa v of the cluster and the pole w = -N^2 cos(beta) lies at v = -N^2
-// critical_cos / w of the arc's other end; beyond the line w is imaginary.
+// Beside a critical line w is proportional to the abscissa v of the cluster. The pole w = -N^2 cos(beta) lies at v =
+// -N^2 critical_cos / w, with w at the arc's other end. Beyond the line w is imaginary.
 real critical_cost(ThetaNode theta, IndexNode index, real t, Arc arc) {
   real sec = sqrt(real(1.0) + t * t);
   real2 end = choose(arc.extent < real(0.0), arc.from, arc.to);
@@ -234,7 +239,7 @@ real fresnel_cost(RuleNode rule, ThetaNode theta, IndexNode index, real t, Arc a
   real2 turn = real2(t * r, r);
   real cost = bounce_cost(theta, index, turn, arc);
   if (kIsMultiple) {
-    // All bounces of the rays in the arc's middle.
+    // All bounces of the rays in the middle of the arc.
     real2 step = multiply(turn, turn);
     real2 facet = turn;
     real2 middle = arc.from + arc.to;
@@ -249,7 +254,7 @@ real fresnel_cost(RuleNode rule, ThetaNode theta, IndexNode index, real t, Arc a
   return kTotalReflection ? choose(arc.is_critical, critical_cost(theta, index, t, arc), cost) : cost;
 }
 
-// Singularities of the masking of the reflected ray: the in-plane slopes' density at cot(theta_r) = +- i m, and for
+// Singularities of the masking of the reflected ray: the density of in-plane slopes at cot(theta_r) = +- i m, and for
 // `integral` the pole of kappa at cot(theta_r) = -t.
 real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
   if (kMasking != DOLP_MASKING_SMITH && kMasking != DOLP_MASKING_INTEGRAL) return real(0.0);
@@ -271,10 +276,10 @@ real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
   return cost;
 }
 
-// Smith's L goes as |theta_r|^(2q - 2) near the facet (tan(theta/2), phi = 0), where theta_r = 0: not smooth unless q
-// is an integer, and the less so the smaller q. For the arc from phi = 0, theta_r = 0 lies at cosh(i phi) = 1 + (1 + c)
-// (t - tan(theta/2))^2 / (2 s t). The gaussian's L is smooth, but grows beyond bounds toward imaginary theta_r: by the
-// digits wanted at 1 / (m sqrt(digits ln 10)).
+// Near the facet (tan(theta/2), phi = 0), where theta_r = 0, Smith's L is proportional to |theta_r|^(2q - 2). It is
+// smooth only if q is an integer, and less smooth for smaller q. For the arc from phi = 0, theta_r = 0 lies at cosh(i
+// phi) = 1 + (1 + c) (t - tan(theta/2))^2 / (2 s t). The Gaussian's L is smooth, but grows without bound toward
+// imaginary theta_r. For the required digits it matters at 1 / (m sqrt(digits ln 10)).
 real cusp_nodes(ThetaNode theta, ShapeNode shape, real t, real digits, Arc arc) {
   if (kMasking != DOLP_MASKING_SMITH) return real(0.0);
   real away = t - theta.s / (real(1.0) + theta.c);
@@ -289,7 +294,7 @@ real cusp_nodes(ThetaNode theta, ShapeNode shape, real t, real digits, Arc arc) 
   return choose(shape.cusp_digits < real(-100.0), real(0.0), nodes);
 }
 
-// The first arc of a zone, with the singularity that the masking has at its beginning.
+// The first arc of a zone, with the singularity of the masking at its beginning.
 Arc masked_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_line, real t, real digits, Arc arc,
                int zone, bool is_first) {
   bool has_root = is_first && has_split_line;
@@ -299,7 +304,7 @@ Arc masked_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_l
     return with_root(arc, false, has_root && is_cusp);
   }
   if (kMasking == DOLP_MASKING_INTEGRAL && kDistribution == DOLP_CAUCHY) {
-    // Where the limit b meets pi/2, G goes as the distance to the power 2q - 1.
+    // Where the limit b meets pi/2, G is proportional to the distance to the power 2q - 1.
     bool is_rough = shape.q_minus_1 + real(1.0) < rule.cluster_below_q;
     bool is_line = zone == 2 && is_rough;
     return with_root(arc, false, has_root && is_line);
@@ -307,9 +312,9 @@ Arc masked_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_l
   return arc;
 }
 
-// An arc that may lie on one side of the critical line. w^2 = cos^2(beta) - critical_cos^2 + i Im N^2 vanishes at or
-// beside its end, as far away as w^2 there is of its range on the arc. Where that is far, the arc is like any other;
-// where it is negligible, the root counts as sharp: the change by it is of the order of the resolution to the power 3/2.
+// An arc that may end at the critical line. w^2 = cos^2(beta) - critical_cos^2 + i Im N^2 vanishes at or near its end.
+// The distance is the share of w^2 there in its range on the arc. If it is large, the arc is like any other. If it is
+// negligible, the root counts as sharp; the error is of the order of the distance to the power 3/2.
 Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc, bool at_end, bool is_beside) {
   real level = index.critical_cos * index.critical_cos;
   real r2 = real(1.0) / (real(1.0) + t * t);
@@ -321,7 +326,7 @@ Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc,
   bool is_narrow = resolution <= kWideResolution;
   arc.is_critical = is_beside && is_narrow;
   arc = with_root(arc, at_end, arc.is_critical);
-  // Rounding leaves the line itself a little beside its place.
+  // Rounding displaces the line slightly.
   bool is_smoothed = resolution > kSharpResolution;
   bool is_felt = digits + real(1.5) * kInverseLn10 * log_unit(resolution) > real(0.0);
   bool is_resolved = is_smoothed && is_felt;
@@ -330,7 +335,7 @@ Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc,
   return arc;
 }
 
-// The gaussian's G goes as exp(-1/distance^2) there.
+// There the Gaussian's G behaves like exp(-1/distance^2).
 real line_nodes(ShapeNode shape, bool has_split_line, real digits, int zone) {
   if (kMasking != DOLP_MASKING_INTEGRAL || kDistribution != DOLP_GAUSSIAN) return real(0.0);
   bool is_line = has_split_line && zone == 2;
@@ -338,7 +343,7 @@ real line_nodes(ShapeNode shape, bool has_split_line, real digits, int zone) {
 }
 
 // A smoothed square root has singularities at v = asinh(sqrt(+-i)) / a = (0.76 +- 0.57 i) / a in the abscissa of
-// place_on_arc; they carry resolution^(3/2) of the whole.
+// place_on_arc. They contribute a share of resolution^(3/2).
 real resolution_nodes(real digits, real resolution) {
   real wanted = max(digits + real(1.5) * kInverseLn10 * log_unit(resolution), real(0.0));
   real a = asinh_real(real(1.0) / sqrt(resolution));
@@ -346,15 +351,16 @@ real resolution_nodes(real digits, real resolution) {
   return choose(resolution <= real(0.0), real(0.0), nodes);
 }
 
-// Nodes of an arc. With fewer than two on the whole half circle cos(2 phi) would not average out.
+// Number of nodes of an arc. With fewer than two on the whole half circle cos(2 phi) would not average out.
 real arc_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, real t, real digits,
                Arc arc, int zone) {
   real map = nodes_per_digit(asinh_real(real(1.0) / max(abs(arc.extent), real(1e-9))));  // dphi = 4 dtau / (1 + tau^2)
   map = choose(arc.section == kSectionHalf, real(0.5) * map, map);
   map = choose(arc.section == kSectionCircle, real(0.0), map);
   real cost = max(max(map, fresnel_cost(rule, theta, index, t, arc)), masking_cost(theta, shape, t, arc, zone));
-  // Before a rule converges it must resolve cos(phi) to cos(3 phi), for which it takes nodes in proportion to the arc,
-  // and how place_on_arc spreads its nodes, e^(2 a v); a cluster's dphi goes as its abscissa, half a node more.
+  // Before a rule converges, it must resolve cos(phi) to cos(3 phi), which takes nodes in proportion to the arc. It
+  // must also resolve how place_on_arc spreads its nodes, e^(2 a v). In a cluster dphi is proportional to the abscissa,
+  // which costs half a node.
   real base = rule.phi_nodes * arc.span + choose(arc.section == kSectionCluster, real(1.0), real(0.5));
   if (kTotalReflection) {
     real spread = real(0.5) * asinh_real(real(1.0) / sqrt(arc.resolution));

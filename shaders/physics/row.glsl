@@ -1,13 +1,13 @@
-// Entries that one invocation computes together: they differ only in the exponent q and share nodes, facets and
-// reflection. The masking differs from member to member.
+// Entries that one invocation computes together. They differ only in the exponent q, and share nodes, facets and
+// reflection. Each member has a separate masking.
 
-// In ascending order of q. All shapes have the scale, cut and cusp that the most demanding shape needs.
+// In ascending order of q. All shapes have the scale, cut and cusp of the most demanding shape.
 struct Row {
   ShapeNode shape[DOLP_WIDTH];
   uint table[DOLP_WIDTH];  // first node of its masking table
 };
 
-// For maskings that do not depend on the shape.
+// A row for maskings that do not depend on the shape.
 Row no_row() {
   Row row;
   for (int g = 0; g < DOLP_WIDTH; ++g) {
@@ -30,7 +30,7 @@ MaskingTerms unmasked() {
   return masked;
 }
 
-// The part independent of the slope: Smith's L, at 90 degrees a number so large that G is 0, and l of `integral`.
+// The part that does not depend on the slope: Smith's L (at 90 degrees so large that G is 0), or l of `integral`.
 MaskingTerms masking_of_direction(Row row, real cos_theta, real sin_theta) {
   MaskingTerms heights = unmasked();
   if (kMasking == DOLP_MASKING_SMITH) {
@@ -46,8 +46,8 @@ MaskingTerms masking_of_direction(Row row, real cos_theta, real sin_theta) {
   return heights;
 }
 
-// The shadows of a direction on facets of slope t. Look-ups are done for every invocation: those that need none wait
-// for their neighbours anyway.
+// The shadows of a direction on facets of slope t. Every invocation looks them up: an invocation that needs none would
+// wait for its neighbours anyway.
 MaskingTerms shadows(Row row, MaskingTerms heights, real cos_theta, real sin_theta, real t) {
   ShadowPlace place = shadow_place(row.shape[0], cos_theta, sin_theta, t);
   TableCell cell = table_cell(row.shape[0], place.far);
@@ -60,7 +60,7 @@ MaskingTerms shadows(Row row, MaskingTerms heights, real cos_theta, real sin_the
   return masked;
 }
 
-// Masking of the reflected ray; on its first arcs `integral` uses theta instead.
+// Masking of the reflected ray. On its first arcs `integral` uses the masking of theta instead.
 MaskingTerms masking_of_ray(Row row, real cos_r, real sin_r, real t, int zone) {
   if (kMasking == DOLP_MASKING_SMITH) return masking_of_direction(row, cos_r, sin_r);
   MaskingTerms masked = unmasked();
@@ -70,11 +70,11 @@ MaskingTerms masking_of_ray(Row row, real cos_r, real sin_r, real t, int zone) {
   return masked;
 }
 
-// The part of a facet's direct emission that smith's masking leaves, by its value for theta.
+// The share of a facet's direct emission that smith masking leaves. `masking_in` is the value for theta.
 real smith_g1(real masking_in) { return (kMasking == DOLP_MASKING_SMITH) ? real(1.0) / (real(1.0) + masking_in) : real(1.0); }
 
-// A facet's projection, by the masking of theta and of the reflected ray. `zone` numbers the arcs from phi = 0;
-// in the first, theta_r < theta, so that `integral` uses theta.
+// A facet's projection with the masking of theta and of the reflected ray. `zone` counts the arcs from phi = 0. In the
+// first one theta_r < theta, so `integral` uses theta.
 Projection project(ThetaNode theta, Facet f, int zone, real masking_in, real masking_out) {
   if (kMasking == DOLP_MASKING_NONE) return Projection(f.e, real(0.0));
   if (kMasking == DOLP_MASKING_V_CAVITY) {

@@ -4,11 +4,11 @@ struct Task {
   int piece;
   bool root_at_start;
   bool root_at_end;
-  bool root_before_start;  // at the breakpoint before, facing the piece
+  bool root_before_start;  // root at the breakpoint before the piece, on the piece's side
   bool root_after_end;
   bool has_split_line;
   int most_azimuths;
-  real before;  // slopes: the breakpoints before the piece, at its ends and after it, and the last of the direction
+  real before;  // slopes of breakpoints: before the piece, at its ends, after it, and the last one of the direction
   real start;
   real end;
   real after;
@@ -30,8 +30,8 @@ Task task_of(uint word) {
   return task;
 }
 
-// The task with its slopes. moments.comp reads them one by one: a copy of all of a direction's costs a driver half a
-// second of compilation.
+// The task with its slopes. moments.comp reads them one by one, because a copy of all slopes of a direction costs a
+// driver half a second of compilation.
 Task with_slopes(Task task, ThetaNode theta) {
   task.before = theta.end[max(task.piece - 1, 0)];
   task.start = theta.end[task.piece];
@@ -41,17 +41,17 @@ Task with_slopes(Task task, ThetaNode theta) {
   return task;
 }
 
-// A piece [a, b] of the slope axis. X = asinh(t/scale) is linear in y(v), which takes up square-root ends:
+// A piece [a, b] of the slope axis. X = asinh(t/scale) is linear in y(v). The map y removes square roots at the ends:
 // v, v^2 (at a), 1 - (1-v)^2 (at b), v^2 (3 - 2v) (both).
 struct Piece {
   real start;   // X at a
   real extent;  // in X
   bool root_at_a;
   bool root_at_b;
-  real root_before;       // X of a root at the breakpoint before a that faces the piece; none: X at a
-  real root_after;        // X of a root at the breakpoint after b that faces the piece; none: X at b
+  real root_before;       // X of the root at the breakpoint before a, if it is on the piece's side; otherwise X at a
+  real root_after;        // X of the root at the breakpoint after b, if it is on the piece's side; otherwise X at b
   real mass[DOLP_WIDTH];  // share of the facets
-  real fall;              // logarithm of the fall, from a to b, of the share of steeper facets
-  real digits;            // required by the most demanding member
+  real fall;              // logarithm of the ratio of the shares of steeper facets at a and b
+  real digits;            // digits that the most demanding member requires
   int order;
 };

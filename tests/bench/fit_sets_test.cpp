@@ -1,4 +1,4 @@
-// The sets of the study of fits whose valleys bend: intervals hold what the data do not exclude.
+// Sets of the study of fits with bent valleys: their intervals contain the values that the data do not exclude.
 #include <gtest/gtest.h>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
@@ -10,7 +10,7 @@ namespace {
 using namespace dolp;
 using namespace dolp::bench;
 
-// A profile that follows the branch of the minimum alone leaves out a truth that lies on another one.
+// A profile that follows only the branch of the minimum would miss a truth on another branch.
 TEST(FitSets, BentValley_IntervalsHoldATruthThatTheDataDoNotExclude) {
   CpuEvaluator evaluator;
   for (const std::size_t number : {1005U, 1029U}) {
@@ -20,8 +20,8 @@ TEST(FitSets, BentValley_IntervalsHoldATruthThatTheDataDoNotExclude) {
   }
 }
 
-// Single scattering with its bracket holds the truth of all bounces, and leaves much; the model of all bounces leaves
-// little.
+// Single scattering with its bracket contains the truth of all bounces in a wide interval. The model with all bounces
+// has a narrow one.
 TEST(FitSets, AllBounces_IntervalsOfTheBracketHoldTheTruth) {
   constexpr std::size_t kFewPoints = 6;  // the study has 15
   CpuEvaluator evaluator;

@@ -1,4 +1,5 @@
-// The methods that dolp is compared with are right, each converges as it should, and times are taken as promised.
+// The methods that dolp is compared with give right results, converge at the expected rate, and measure times as
+// documented.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +21,7 @@ namespace {
 using namespace dolp;
 using namespace dolp::bench;
 
-/// Tolerance of the reference, relative to r_i: below every tolerance here, and reached with digits to spare.
+/// Tolerance of the reference, relative to r_i: below every tolerance here, with digits to spare.
 constexpr double kReferenceTolerance = 1e-9;
 
 std::unique_ptr<Solver> solver_of(const std::string& name) {
@@ -53,15 +54,15 @@ double worst_error(Solver& solver, const MomentsRequest& request, double setting
   return worst;
 }
 
-/// A cheap setting, and the largest error there for each case.
+/// A cheap setting, and the largest allowed error for each case.
 struct Expected {
   double setting = 0.0;
   std::map<std::string, double> tolerance;
 };
 
-// Rules: the error measured once at this setting, times 2 to 3. Second order at the corners for midpoint; spectral for
-// Gauss where nothing has a kink. Monte Carlo: four standard errors of 1e5 samples. Libcubature: ten times
-// the tolerance it was given, since it only estimates its errors. The others: the tolerance itself.
+// Rules: the error measured once at this setting, times 2 to 3. The midpoint rule is of second order at corners; Gauss
+// is spectral without kinks. Monte Carlo: four standard errors of 1e5 samples. Libcubature: ten times its tolerance,
+// because it only estimates its errors. Other methods: the tolerance itself.
 const std::map<std::string, Expected> kExpected = {
     {"midpoint", {256, {{"easy", 8e-6}, {"median", 6e-6}, {"rough", 6e-5}, {"hard", 2e-3}, {"worst", 2e-2}}}},
     {"gauss", {64, {{"easy", 2e-9}, {"median", 4e-5}, {"rough", 2e-9}, {"hard", 1.5e-4}, {"worst", 2e-5}}}},
@@ -84,7 +85,7 @@ class BenchMethod : public testing::TestWithParam<std::string> {};
 TEST_P(BenchMethod, EveryCase_CheapSetting_AgreesWithReference) {
   const std::unique_ptr<Solver> solver = solver_of(GetParam());
   const Expected& expected = kExpected.at(GetParam());
-  const std::size_t entries = GetParam() == "dblquad" ? 1 : 2;  // it takes its own times, which takes time
+  const std::size_t entries = GetParam() == "dblquad" ? 1 : 2;  // one entry for dblquad, whose separate timing is slow
   for (const Case& one : cases()) {
     if (!expected.tolerance.contains(one.name)) {
       EXPECT_THROW(worst_error(*solver, neighbourhood(one, entries), expected.setting), Unavailable) << one.name;
@@ -109,7 +110,8 @@ std::string test_name(const testing::TestParamInfo<std::string>& tested) {
 }
 INSTANTIATE_TEST_SUITE_P(Registry, BenchMethod, testing::ValuesIn(method_names()), test_name);
 
-// The tables of both maskings and the horizon of the integration region hold far beyond the tolerances above.
+// The tables of both maskings and the horizon of the integration region are far more accurate than the tolerances
+// above.
 TEST(BenchFormulas, AdaptiveCubature_TightTolerance_AgreesWithReferenceForBothDistributions) {
   const std::unique_ptr<Solver> hcubature = solver_of("hcubature");
   for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
@@ -126,7 +128,7 @@ TEST(BenchFormulas, AdaptiveCubature_TightTolerance_AgreesWithReferenceForBothDi
   }
 }
 
-// Reflectances beyond the critical angle, where the integrand has a square root that adaptive rules take long to find.
+// Reflectances beyond the critical angle. The integrand has a square root there, which adaptive rules find slowly.
 TEST(BenchFormulas, AdaptiveCubature_TotalReflection_AgreesWithReference) {
   MomentsRequest request = neighbourhood(case_of("easy"), 1);
   request.optics = {{0.8, 0.0}};
@@ -156,7 +158,7 @@ TEST(BenchRules, MonteCarlo_Repeats_ScatterAsStatedAboutTheTruth) {
     sum_2 += deviation * deviation;
     stated_2 += *answer.stated_error * *answer.stated_error;
   }
-  // The scatter of 64 repeats is known to 9 %, their mean to an eighth of the scatter: four standard errors each.
+  // The scatter of 64 repeats is known to 9 %, their mean to an eighth of the scatter. Both allow four standard errors.
   EXPECT_NEAR(std::sqrt(sum_2 / stated_2), 1.0, 0.36);
   EXPECT_LE(std::abs(sum / kRepeats), 4.0 * std::sqrt(stated_2 / kRepeats) / std::sqrt(kRepeats));
 }
@@ -180,7 +182,7 @@ TEST(BenchTiming, MedianAndSpread_OddAndEven_AreThoseOfTheList) {
   EXPECT_DOUBLE_EQ(spread({1.0, 1.5, 9.0}), 0.5);
 }
 
-/// A study of one result, measured under the best conditions.
+/// A study with one result, measured in the best conditions.
 nlohmann::ordered_json quiet_study() {
   return {
       {"study", "test"},

@@ -14,7 +14,7 @@ using namespace dolp;
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-// Studies that take a second.
+// Each of these studies takes about a second.
 const std::string kAccuracy = "accuracy --quick --entries 16 ";
 const std::string kEffects = "effects --quick --entries 9 ";
 
@@ -169,7 +169,7 @@ TEST_F(BenchProgram, StudiesOfTheDevice_WithoutOne_AreExit3) {
 
 struct Plotted {
   std::string study;
-  std::string row;  ///< of the table in Markdown
+  std::string row;  ///< a row of the table in Markdown
 };
 
 TEST_F(BenchProgram, Plot_OfEveryStudy_GivesFigureAndTable) {
@@ -192,7 +192,7 @@ TEST_F(BenchProgram, Plot_OfEveryStudy_GivesFigureAndTable) {
     EXPECT_NE(table.out.find(plotted.row), std::string::npos) << table.out;
     EXPECT_EQ(plot({study, "r.json", "-o", "none/r.png"}).status, 4);
   }
-  EXPECT_EQ(plot({"accuracy", "r.json", "--markdown"}).status, 2);  // results of peers
+  EXPECT_EQ(plot({"accuracy", "r.json", "--markdown"}).status, 2);  // the file has results of peers
   const Outcome missing = plot({"accuracy", "none.json", "-o", "r.png"});
   EXPECT_EQ(missing.status, 2);
   EXPECT_NE(missing.err.find("none.json"), std::string::npos) << missing.err;

@@ -48,9 +48,10 @@ TEST_F(BenchThroughput, Json_GridsAndArithmetic_HaveTheirRows) {
   }
 }
 
-/// A part that runs the kernels in processes of their own, on lavapipe; on other devices it says why not.
+/// Checks a part that runs the kernels in separate processes on lavapipe. On other devices it must state why it did not
+/// run.
 void expect_processes(const json& result) {
-  constexpr std::size_t kMaskings = 2;  // of a quick study
+  constexpr std::size_t kMaskings = 2;  // maskings in a quick study
   const json& rows = result["results"];
   if (!result["context"]["device"]["name"].get<std::string>().starts_with("llvmpipe")) {
     ASSERT_EQ(rows.size(), 1U);
@@ -84,7 +85,7 @@ TEST_F(BenchProgram, Json_Rows_ReachTheToleranceAndCompareWithTheKernels) {
     expect_keys(row, {"method", "case", "tolerance"});
     EXPECT_EQ(row["case"], "integral");
     if (row["method"] == "monte-carlo") {
-      EXPECT_TRUE(row.contains("not_run")) << row.dump();  // a million samples have three digits
+      EXPECT_TRUE(row.contains("not_run")) << row.dump();  // a million samples give only three digits
       continue;
     }
     expect_keys(row, {"setting", "error", "time_s", "time_min_s", "raw_times_s", "entries", "ratio", "table_ratio"});

@@ -1,4 +1,4 @@
-// Foundations of the speed studies: nested grids, the native and the counting build of the text, the device's peak.
+// Parts of the speed studies: nested grids, the native and the counting build of the kernel source, the device's peak.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ double largest_difference(const std::vector<Answer>& a, const std::vector<Answer
   return largest;
 }
 
-// Directions side by side take the largest of their orders, which on this coarse grid are far apart.
+// Neighbouring directions use the largest of their orders. On this coarse grid their orders differ much.
 TEST(BenchNative, Grid_HasTheDevicesNodesOrMoreAndItsMoments) {
   constexpr double kTolerance = 1e-4;
   const std::unique_ptr<Solver> native = solver_of("native-float");
@@ -54,10 +54,10 @@ TEST(BenchNative, Grid_HasTheDevicesNodesOrMoreAndItsMoments) {
   }
 }
 
-// So many nodes that an entry is spread over several invocations.
+// So many nodes that several invocations share an entry.
 TEST(BenchDeviceRule, ManyNodes_EveryMasking_GivesTheSumOfTheHost) {
   constexpr double kNodes = 256;
-  constexpr double kRounding = 2e-5;  // of geometry in float, on the smoothest surface
+  constexpr double kRounding = 2e-5;  // of geometry in float on the smoothest surface
   const std::vector<NestedGrid::Place> places = NestedGrid::sample(3);
   const std::unique_ptr<Solver> device = solver_of("vulkan-gauss");
   const std::unique_ptr<Solver> host = solver_of("gauss");
@@ -74,7 +74,7 @@ TEST(BenchOperations, WholeRequest_CountsWhatTheKernelDoes) {
   const KernelWork work = count_operations(request, 1'000'000, 8);
   const Solution solution = solver_of("vulkan-float")->solve(request, request.tolerance);
   EXPECT_NEAR(work.evaluations / *solution.evaluations, 1.0, 1e-3);
-  // 3 square roots a sample, and those of the pieces; Fresnel alone takes about 40 multiplications.
+  // Each sample has 3 square roots, and the pieces have more. Fresnel's formulas take about 40 multiplications.
   EXPECT_GT(static_cast<double>(work.counts.square_root), 3.0 * work.evaluations);
   EXPECT_GT(static_cast<double>(work.counts.multiply), 40.0 * work.evaluations);
   EXPECT_LT(static_cast<double>(work.counts.flops()), 5000.0 * work.evaluations);

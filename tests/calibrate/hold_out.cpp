@@ -15,11 +15,11 @@ namespace {
 constexpr double kFinerBy = 1e-5;
 constexpr double kFinest = 1e-13;
 constexpr double kReferenceTolerance = 1e-9;
-constexpr std::size_t kAtOnce = 2000;  // entries whose masking tables are in memory
+constexpr std::size_t kAtOnce = 2000;  // entries with masking tables in memory at the same time
 constexpr std::size_t kClimbSteps = 40;
-constexpr std::size_t kNeighbours = 16;  // of each step
+constexpr std::size_t kNeighbours = 16;  // neighbours per step
 
-/// The entries of a domain with the rules' results and stated errors.
+/// The entries of a domain with the results of both rules and the stated errors.
 struct Answers {
   std::vector<Moments> stated;
   std::vector<Moments> exact;
@@ -82,7 +82,7 @@ double error_over_bound(const Moments& stated, const Moments& exact) {
   return worst;
 }
 
-/// A number near `value`, `low` being the end of its range.
+/// A number near `value`. `low` is the end of its range.
 double moved(Draw& draw, double value, double low, double width) {
   return low + (value - low) * std::exp(width * draw.uniform(-1.0, 1.0));
 }
@@ -97,7 +97,7 @@ MomentsPoint neighbour(Draw& draw, const MomentsPoint& entry, Domain domain, dou
   return next;
 }
 
-/// True if `entry` lies in the region from which the domain's entries are drawn.
+/// True if `entry` lies in the region from which the entries of the domain are drawn.
 bool is_in(Domain domain, const MomentsPoint& entry, double q_end) {
   if (domain == Domain::kCorners) return entry.shape.sigma <= 10.0 && entry.shape.q <= q_end + 20.0;
   return entry.shape.sigma >= 0.01 && entry.shape.sigma <= 2.0 && entry.shape.q >= q_end + 0.1 &&

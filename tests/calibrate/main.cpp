@@ -25,7 +25,7 @@ dolp::MomentsRequest integrand(dolp::Masking masking, dolp::Scattering scatterin
   return request;
 }
 
-/// The integrands that rules are made for: a masking, or all bounces in its grooves.
+/// The integrands that have rules: the maskings, and all bounces in grooves.
 const std::map<std::string, dolp::MomentsRequest> kIntegrands = {
     {"none", integrand(dolp::Masking::kNone)},
     {"v-cavity", integrand(dolp::Masking::kVCavity)},
@@ -58,7 +58,7 @@ std::string entry_text(const dolp::CheckedEntry& checked) {
                      e.shape.sigma, e.shape.q, e.index.index.n, e.index.index.k);
 }
 
-/// A line for each tolerance, masking and distribution. Returns true if all bounds hold.
+/// Prints a line for each tolerance, masking and distribution. Returns true if all bounds hold.
 bool check(const CheckArguments& arguments) {
   std::size_t understated = 0;
   for (const double tolerance : arguments.tolerances) {

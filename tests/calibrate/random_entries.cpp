@@ -25,7 +25,7 @@ double corner_theta_deg(Draw& draw) {
 
 OpticalConstants corner_index(Draw& draw, double theta_deg) {
   const double kind = draw.uniform(0.0, 1.0);
-  if (kind < 0.1) {  // next to the critical angle
+  if (kind < 0.1) {  // near the critical angle
     const double beside = (draw.chance(0.5) ? 1.0 : -1.0) * draw.log_uniform(1e-6, 0.1);
     return {std::max(std::sin(theta_deg * std::numbers::pi / 180.0) * (1.0 + beside), 0.02), 0.0};
   }

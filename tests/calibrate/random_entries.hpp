@@ -1,4 +1,4 @@
-// Random entries of the model's domain, the same on every machine.
+// Random entries of the model's domain, equal on every machine.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,10 @@ namespace dolp {
 
 enum class Domain {
   kOrdinary,  ///< theta < 85 degrees, sigma 0.01 to 2, q 0.1 to 10 above its lower end, dielectrics and metals
-  kCorners,   ///< next to the horizon and the normal, total reflection, indices next to 1, q next to its end, sigma to
-              ///< 10
+  kCorners,   ///< near the horizon, the normal, total reflection, n = 1 and the end of q; sigma up to 10
 };
 
-/// Draws that are the same on every machine.
+/// Random draws, equal on every machine.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : engine_(seed) {}
@@ -29,7 +28,7 @@ class Draw {
 
 MomentsPoint random_entry(Draw& draw, Domain domain, Distribution distribution, Masking masking);
 
-/// The lower end of q.
+/// The lower end of q for a distribution and masking.
 double least_q(Distribution distribution, Masking masking);
 
 }  // namespace dolp

@@ -21,10 +21,10 @@ namespace {
 
 constexpr std::array kTolerances = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8};
 constexpr double kCornerShare = 0.25;
-// Between 1, what computing a scattered point again costs, and 30, what it costs in a dense table: interpolation spares
-// all but a thirtieth of the entries, and none of those that are computed again by themselves.
+// Cost of computing an entry again, over its first cost. It is 1 for a scattered point. In a dense table it is 30,
+// because interpolation saves 29 of 30 entries, but none that is computed again. This value lies between.
 constexpr double kAgainWeight = 8.0;
-// The DOLP of what is reflected, r_q / r_i, is wrong by up to two of their relative errors.
+// The DOLP of reflected light, r_q / r_i, has up to twice the relative error of r_q and r_i.
 constexpr double kErrorsOfDolp = 2.0;
 constexpr int kMostLevels = 8;
 constexpr double kLeastTolerance = 1e-13;
@@ -59,7 +59,7 @@ std::vector<Moments> computed(const MomentsRequest& request, const RuleModel& mo
   return moments;
 }
 
-/// Sum over the entries of the logarithm of the evaluations until each meets `tolerance`.
+/// Sum over the entries of the logarithm of the evaluations that each needs to meet `tolerance`.
 double log_work(const MomentsRequest& all, double tolerance, const RuleModel& model) {
   std::vector<double> work(all.size(), 0.0);
   std::vector<std::uint32_t> wanted(all.size());
@@ -87,7 +87,7 @@ double log_work(const MomentsRequest& all, double tolerance, const RuleModel& mo
   return sum;
 }
 
-/// A number of a model, and how far from it the search looks first.
+/// A number of a model, and the first step of its search.
 struct Parameter {
   double RuleModel::*value;
   double step;
@@ -134,7 +134,7 @@ RuleModel fit_rule(const MomentsRequest& integrand, const RuleFitOptions& option
           least = work;
           note(best, least);
         }
-        if (least < before) break;  // the other direction is where the search came from
+        if (least < before) break;  // the opposite direction leads back
       }
     }
   }

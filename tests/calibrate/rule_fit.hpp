@@ -1,4 +1,4 @@
-// Search for the numbers of plan/rule.hpp: those with which random entries take the least work.
+// Search for the numbers of plan/rule.hpp that minimise the work for random entries.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,13 @@
 namespace dolp {
 
 struct RuleFitOptions {
-  std::size_t entries = 300;  ///< of each distribution and tolerance
+  std::size_t entries = 300;  ///< number of entries for each distribution and tolerance
   std::uint64_t seed = 1;
-  int rounds = 4;  ///< of the search, each with steps half as wide as the one before
+  int rounds = 4;  ///< rounds of the search; each halves the steps
 };
 
-/// Mean of the logarithm of the integrand evaluations that an entry takes, over both distributions and tolerances from
-/// 1e-2 to 1e-8: entries that miss their tolerance are computed again, as a run would.
+/// Mean logarithm of the integrand evaluations per entry, over both distributions and tolerances from 1e-2 to 1e-8.
+/// Entries that miss their tolerance are computed again, as in a run.
 /// `integrand` is a request without entries.
 double mean_log_work(const MomentsRequest& integrand, const RuleModel& model, const RuleFitOptions& options);
 
@@ -30,12 +30,12 @@ inline constexpr RuleModel kFitStart = {.margin_digits = 2.0,
                                         .phi_digits = 0.0,
                                         .cluster_stretch = 5.0};
 
-/// The model with the least work, searched from kFitStart one number at a time. `note` is told of each step that gains.
-/// The same arguments give the same result on every machine.
+/// The model with the least work. The search starts at kFitStart and varies one number at a time. Calls `note` after
+/// each improvement. Equal arguments give equal results on every machine.
 RuleModel fit_rule(const MomentsRequest& integrand, const RuleFitOptions& options,
                    const std::function<void(const RuleModel&, double)>& note);
 
-/// A model as it stands in plan/rule.cpp.
+/// A model in the syntax of plan/rule.cpp.
 std::string rule_text(const RuleModel& model);
 
 }  // namespace dolp

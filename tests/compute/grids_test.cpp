@@ -1,6 +1,6 @@
 // Entries of a grid share work: slope samples, rows along q, interpolation between slope distributions, a few indices
-// for many. What an entry states of its error holds against the same entry by itself. DOLP_PROPERTY_DRAWS in the
-// environment sets the number of grids of each model.
+// for many. The stated error of an entry must cover its distance from the entry computed separately. The environment
+// variable DOLP_PROPERTY_DRAWS sets the number of grids per model.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace dolp {
 namespace {
 
 constexpr std::uint64_t kSeed = 20261123;
-constexpr std::size_t kChecked = 30;  // entries of each grid
+constexpr std::size_t kChecked = 30;  // entries checked per grid
 
 /// The variables that the entries of a grid share.
 enum class Sharing { kSlopes, kRows, kShapes, kIndices };
@@ -40,7 +40,7 @@ std::vector<FacetOptics> many_indices(Random& random) {
   return indices;
 }
 
-/// Ranges of sigma and q of any width up to a factor of 60 and 30, directions and indices as Random draws them.
+/// Ranges of sigma and q with any ratio up to 60 and 30, directions and indices from Random.
 MomentsRequest random_grid(Random& random, const Model& model, Scattering scattering, Sharing sharing) {
   MomentsRequest request;
   request.distribution = model.distribution;
@@ -50,7 +50,7 @@ MomentsRequest random_grid(Random& random, const Model& model, Scattering scatte
   request.wants_direct = has_direct && scattering == Scattering::kSingle && random.chance(0.5);
   request.tolerance = random.log_uniform(1e-6, 1e-2);
   request.may_interpolate = sharing == Sharing::kShapes;
-  // At 90 degrees the moments of none and integral may be infinite.
+  // At 90 degrees the moments with the maskings none and integral may be infinite.
   request.theta_deg = {random.uniform(0.0, 89.9), random.chance(0.5) ? std::min(random.theta_deg(), 89.999) : 60.0};
   request.optics = {random.index()};
   if (sharing == Sharing::kSlopes) request.optics.push_back(random.index());
@@ -74,7 +74,7 @@ MomentsRequest random_grid(Random& random, const Model& model, Scattering scatte
 
 class Grids : public testing::TestWithParam<std::tuple<Kernel, Sharing>> {
  protected:
-  /// Compares entries with themselves at a hundredth of the tolerance, in double.
+  /// Compares entries with a separate computation at a hundredth of the tolerance, in double.
   void expect_like_alone(const MomentsRequest& request, const std::vector<Moments>& moments, Random& random) {
     MomentsRequest alone;
     alone.distribution = request.distribution;
@@ -107,7 +107,7 @@ TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
   for (const Scattering scattering : {Scattering::kSingle, Scattering::kMultiple}) {
     for (const Model& model : kModels) {
       const bool is_multiple = scattering == Scattering::kMultiple;
-      // Several bounces are no combination of those of other indices.
+      // The moments of several bounces are not sums of responses.
       if (is_multiple && (model.masking != Masking::kVCavity || sharing == Sharing::kIndices)) continue;
       Random random(kSeed + 10 * static_cast<std::uint64_t>(kernel) + static_cast<std::uint64_t>(sharing));
       for (std::size_t grid = 0; grid < grids; ++grid) {
@@ -120,7 +120,7 @@ TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
       }
     }
   }
-  // The draw decides if many indices have a basis.
+  // The draw decides whether many indices have a basis.
   if (sharing == Sharing::kShapes) {
     EXPECT_GT(2 * work.interpolated, entries);
   } else if (sharing != Sharing::kIndices) {
@@ -136,7 +136,7 @@ std::string case_name(const testing::TestParamInfo<std::tuple<Kernel, Sharing>>&
 INSTANTIATE_TEST_SUITE_P(Kernels, Grids, testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kSharings)),
                          case_name);
 
-// Models a second pass over some entries of a grid: among light tails one heavy one, of a width between theirs.
+// Imitates a second pass over some entries of a grid: one heavy tail among light ones, with a width between theirs.
 TEST(SecondPass, SomeShapesOfAGrid_HeaviestTailIsNotLost) {
   for (const Masking masking : {Masking::kNone, Masking::kVCavity}) {
     MomentsRequest request;

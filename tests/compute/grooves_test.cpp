@@ -1,5 +1,5 @@
-// All bounces in V-grooves and the direct emission, on every kernel: against stored values and against the reference,
-// and what must hold whatever the inputs, on seeded random draws of the whole range that scenes allow.
+// All bounces in V-grooves and the direct emission, on every kernel: against stored values, against the reference, and
+// properties that hold for all inputs, on random draws with fixed seeds from the whole range of scenes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -128,7 +128,7 @@ TEST_P(Grooves, WithoutAndWithTheDirectEmission_TheOtherMomentsAgree) {
     const Moments b = evaluator->evaluate(without, {}).front();
     expect_within_bounds(a, b, name_of({Distribution::kCauchy, masking}));
     EXPECT_TRUE(std::isnan(b.direct_i));
-    // The emission of the facets alone is the lower bound; the loss of single scattering is the upper one.
+    // Direct emission of the facets is the lower bound; the loss of single scattering is the upper bound.
     EXPECT_LE(a.direct_i, a.deficit);
   }
 }
@@ -191,7 +191,7 @@ TEST_P(Grooves, TowardTheMirrorDirection_NoMatrixIsDefined) {
 INSTANTIATE_TEST_SUITE_P(EveryKernel, Grooves, testing::ValuesIn(kKernels),
                          [](const auto& test) { return name_of(test.param); });
 
-/// Directions toward the mirror direction of 40 degrees, from all sides, 1e-6 to 1 degree away.
+/// Directions 1e-6 to 1 degree from the mirror direction of 40 degrees, on all sides.
 std::vector<BeamAngles> toward_the_mirror() {
   std::vector<BeamAngles> angles;
   for (const double away_deg : {1.0, 1e-2, 1e-6}) {
@@ -213,7 +213,8 @@ int most_bounces_toward_the_mirror(Distribution distribution, const OpticalConst
   return most;
 }
 
-// One bounce takes about 50 ns. Two beams of up to 1,000 bounces, each number of bounces computed anew, take 1e6.
+// One bounce takes about 50 ns. Two beams with up to 1,000 bounces take 1e6 bounces, because each number of bounces is
+// computed from the start.
 TEST(GroovesMueller, TowardTheMirrorDirection_WorkIsBounded) {
   for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
     const int paint = most_bounces_toward_the_mirror(distribution, {1.5, 0.1});
@@ -225,7 +226,7 @@ TEST(GroovesMueller, TowardTheMirrorDirection_WorkIsBounded) {
 }
 
 TEST(GroovesMueller, TowardTheMirrorDirection_SumsAreThoseOfTheReference) {
-  constexpr double kPrinted = 1e-15;  // of the angles in radians, over |h|
+  constexpr double kPrinted = 1e-15;  // rounding of the angles in radians, divided by |h|
   for (const OpticalConstants& index : {OpticalConstants{1.5, 0.1}, OpticalConstants{3.0, 4.0}}) {
     std::vector<ScatteringPoint> points;
     for (const BeamAngles& angles : toward_the_mirror()) points.push_back({angles, {0.3, 2.02}, index});
@@ -289,7 +290,7 @@ TEST(GrooveScenes, RandomEntriesUpToTheHorizon_ArePhysical) {
   }
 }
 
-// README.md: not 0.114 and 3.8 % as with single scattering.
+// These are the values in README.md. Single scattering would give 0.114 and 3.8 %.
 TEST(GrooveScenes, RoughMetal_HasTheEmissivityAndDolpOfTheManual) {
   const PointResult r = result_at(multiple(Distribution::kGaussian), {60.0, {0.3, 2.0}, {10.0, 60.0}});
   EXPECT_NEAR(mean_emissivity(r), 0.01635, 1e-5);
@@ -320,7 +321,7 @@ TEST(GrooveScenes, SmoothSurface_IsThatOfSingleScattering) {
   }
 }
 
-// The bracket follows from the emissivities of both ends (section 4 of the model), and all bounces lie in it.
+// The bracket follows from the emissivities of both ends (section 4 of the model). All bounces lie in it.
 TEST(GrooveScenes, Bracket_IsWhatItsEndsSayAndHoldsAllBounces) {
   const std::vector<std::string> grid = {"grid.theta_deg=[0, 30, 60, 80]", "surroundings.temperature_K=250"};
   const auto with = [&](std::vector<std::string> more) {
@@ -342,7 +343,7 @@ TEST(GrooveScenes, Bracket_IsWhatItsEndsSayAndHoldsAllBounces) {
     if (i == 0) continue;  // nothing is polarised
     const double direct_q = 0.5 * std::abs(direct[i][Quantity::kEmissivityS] - direct[i][Quantity::kEmissivityP]);
     const double slack = mean_emissivity(single[i]) - mean_emissivity(direct[i]);
-    // Q = N eps_Q with the same N for all: that of single scattering gives it.
+    // Q = N eps_Q with one N for all cases, which single scattering gives.
     const double net = std::abs(single[i][Quantity::kStokesQ] / single[i][Quantity::kRhoQ]);
     EXPECT_NEAR(high, net * (direct_q + slack) / single[i][Quantity::kStokesI], kAccuracy);
     EXPECT_NEAR(low, net * std::max(direct_q - slack, 0.0) / single[i][Quantity::kStokesI], kAccuracy);

@@ -1,6 +1,6 @@
-// Estimates are honest over the whole range that scenes allow, and beside the values at which a rule changes: what a
-// coarse rule states of its error holds against a rule of four digits more. DOLP_PROPERTY_DRAWS in the environment sets
-// the number of points per kernel and model.
+// Error estimates are honest over the whole range of scenes, and beside the values at which a rule changes: the stated
+// error of a coarse rule must cover its distance from a rule with four more digits. The environment variable
+// DOLP_PROPERTY_DRAWS sets the number of points per kernel and model.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,27 +16,26 @@
 namespace dolp {
 namespace {
 
-// Smith's moments vanish at exactly 90 degrees; scenes ask for their limit just before it.
+// Smith's moments vanish at exactly 90 degrees. Scenes use the limit just below.
 constexpr double kNothing = 1e-28;
 constexpr std::uint64_t kSeed = 20260402;
 constexpr std::size_t kDraws = 60;
 constexpr double kCoarse = 1e-2;
 constexpr double kFine = 1e-6;
-constexpr double kLeastShare = 0.1;  // of the tolerance: no bound is below it (shaders/physics/README.md, section 9)
+constexpr double kLeastShare = 0.1;  // of the tolerance; no bound is smaller (shaders/physics/README.md, section 9)
 
 std::uint64_t seed_of(const Model& model) {
   return kSeed + 2 * static_cast<std::uint64_t>(model.masking) + static_cast<std::uint64_t>(model.distribution);
 }
 
-/// Draws with one parameter, or two, a little below or above a value at which the plan, the kernel or the model
-/// changes.
+/// Draws with one or two parameters slightly below or above a value at which the plan, the kernel or the model changes.
 class Switches {
  public:
   Switches(const Model& model, std::uint64_t seed) : model_(model), random_(seed) {}
 
   std::vector<Point> points() {
-    // 30, 45 and 18 degrees: split lines meet; 12.857 = 90/7: those of `integral`; 12.9, 18.05, 30.2: nearly so; 65,
-    // 80, 88, 89: orders.
+    // At 30, 45 and 18 degrees split lines meet; at 12.857 = 90/7 the lines of `integral`; at 12.9, 18.05 and 30.2 they
+    // nearly meet. At 65, 80, 88 and 89 the orders change.
     for (const double theta_deg :
          {12.857142857142858, 12.9, 18.0, 18.05, 22.5, 30.0, 30.2, 36.0, 44.9, 45.0, 60.0, 65.0, 80.0, 88.0, 89.0}) {
       add([&](Point& p) { p.theta_deg = beside(theta_deg); });
@@ -59,17 +58,17 @@ class Switches {
     points_.push_back(point);
   }
   double beside(double value) {
-    constexpr double kStep = 1e-7;  // relative; a float still tells the two sides apart
+    constexpr double kStep = 1e-7;  // relative; a float can still distinguish both sides
     return value * (random_.chance(0.5) ? 1.0 - kStep : 1.0 + kStep);
   }
   double least_q() const {
     return model_.masking == Masking::kSmith && model_.distribution == Distribution::kCauchy ? 1.501 : 1.001;
   }
-  // Total reflection begins at sin(beta) = n; its line meets phi = 0, the horizon and theta_r = theta where theta is
-  // the critical angle, its complement, and twice the critical angle less 90 degrees; it ends where n reaches 1, and
-  // with 2 n k.
+  // Total reflection begins at sin(beta) = n. Its line meets phi = 0, the horizon and theta_r = theta if theta is the
+  // critical angle, its complement, or twice the critical angle minus 90 degrees. Total reflection ends if n reaches 1,
+  // and with growing 2 n k.
   void add_total_reflection(double n) {
-    constexpr double kSoftCriticalLine = 0.3;  // 2 n k above which the plan takes total reflection for smooth
+    constexpr double kSoftCriticalLine = 0.3;  // 2 n k above which the plan treats total reflection as smooth
     const double critical_deg = std::asin(n) * 180.0 / std::numbers::pi;
     for (const double theta_deg : {critical_deg, 90.0 - critical_deg, std::abs(2.0 * critical_deg - 90.0)}) {
       add([&](Point& p) { p.theta_deg = beside(theta_deg), p.index = {n, 0.0}; });
@@ -104,8 +103,8 @@ TEST_P(CoarseRule, CoarseAndFineRule_DifferByNoMoreThanTheyState) {
 INSTANTIATE_TEST_SUITE_P(Kernels, CoarseRule, testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kModels)),
                          kernel_and_model_name);
 
-// Entries of which pairs of rules once agreed by chance, or of which both rules missed the same: what stands behind the
-// least share of the tolerance that no bound goes below, and behind the pairs' factor.
+// Entries for which both rules of a pair once agreed by chance, or made equal errors. They justify the least share of
+// the tolerance for bounds, and the pairs' factor.
 struct HardEntry {
   Model model;
   double tolerance;
@@ -114,7 +113,7 @@ struct HardEntry {
 
 constexpr Model kCauchySmith{Distribution::kCauchy, Masking::kSmith};
 constexpr std::array<HardEntry, 9> kHardEntries{{
-    // Where smith's mean slope is about to diverge.
+    // Smith's mean slope is about to diverge.
     {kCauchySmith, 1e-4, {0.0, {4.4985874, 1.505362511}, {4.483711324, 9.059458356}}},
     {kCauchySmith, 1e-4, {0.0, {6.854371606, 1.507915401}, {1.035031297, 0.01023949105}}},
     {kCauchySmith, 1e-4, {0.0130314, {7.418917168, 1.508037519}, {3.801393770, 0.0}}},
@@ -145,7 +144,7 @@ TEST(HardEntries, Moments_AreWithinTheirBoundsOfFinerRulesAndOfTheReference) {
       const Moments fine = FixedPrecision(Precision::kDouble).evaluate(finest, {}).at(0);
       expect_within_bounds(stated, fine, where);
       expect_within_bounds(stated, ReferenceEvaluator().evaluate(finest, {}).at(0), where);
-      // A run looks again at what does not claim its tolerance; what claims it has it.
+      // A run computes an entry again if it does not claim its tolerance. An entry that claims it must meet it.
       const double asked = entry.tolerance * fine.r_i;
       const bool claims = std::max(stated.r_i_error, stated.r_q_error) <= asked;
       const double error = std::max(std::abs(stated.r_i - fine.r_i), std::abs(stated.r_q - fine.r_q));
@@ -154,7 +153,7 @@ TEST(HardEntries, Moments_AreWithinTheirBoundsOfFinerRulesAndOfTheReference) {
   }
 }
 
-// smith's mean slope is about to diverge, and L rises from 0 to thousands within a fraction of a degree.
+// Smith's mean slope is about to diverge; L rises from 0 to thousands within a fraction of a degree.
 constexpr std::size_t kDivergingDraws = 150;
 
 std::vector<Point> diverging_points(std::size_t count) {
@@ -186,7 +185,7 @@ TEST(DivergingSlope, Moments_AreWithinTheirBoundsOfTheReference) {
   }
 }
 
-// The DOLP asks the most of rho where hardly anything is emitted: next to the horizon.
+// The DOLP needs the most accurate rho if hardly anything is emitted: near the horizon.
 class NextToTheHorizon : public testing::TestWithParam<Masking> {
  protected:
   static constexpr std::size_t kPoints = 300;

@@ -1,4 +1,4 @@
-// Plans of requests for moments, carried out with an invented evaluator whose moments are known.
+// Plans of requests for moments, carried out by an artificial evaluator with known moments.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace dolp;
 
-/// Moments that are a function of the slope distribution, with a bound of their own.
+/// Moments that are a given function of the slope distribution, with a given bound.
 class Invented final : public MomentsOnly {
  public:
   using Function = double (*)(const SlopeShape&);

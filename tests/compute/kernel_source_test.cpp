@@ -1,5 +1,5 @@
-// The shaders' elementary functions and Fresnel reflection, in float and in double, against
-// evaluations in higher precision. Each row prints its worst error, also when it passes.
+// The shaders' elementary functions and Fresnel reflection, in float and in double, against evaluations in higher
+// precision. Each row prints its worst error, even if it passes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,11 +30,11 @@
 namespace dolp {
 namespace {
 
-/// The number that a source computes with.
+/// The number type of a source.
 template <class Source>
 using RealOf = std::remove_const_t<decltype(Source::kPi)>;
 
-/// Spacing of its numbers at 1.
+/// Distance of 1 from the next number of the type.
 template <class Source>
 constexpr double kEpsilon = static_cast<double>(std::numeric_limits<RealOf<Source>>::epsilon());
 
@@ -54,7 +54,7 @@ typename Source::IndexNode index_in(const kernel::IndexNode& node) {
   return convert_reals<RealOf<Source>, typename Source::IndexNode, double>(node);
 }
 
-/// The largest value of what a test measures, and where.
+/// The largest value that a test finds, and its position.
 struct Worst {
   double value = 0.0;
   std::string where;
@@ -72,7 +72,7 @@ constexpr int kSamples = 20000;
 
 // ---- Elementary functions ------------------------------------------------------------------------------------------
 
-// Distance of `value` from `exact` in units of the last place that `exact` has in the precision Real.
+// Distance of `value` from `exact`, in units of the last place of `exact` in the precision Real.
 template <class Real>
 double ulps(Real value, long double exact) {
   using Limits = std::numeric_limits<Real>;
@@ -89,7 +89,7 @@ struct Range {
   Spacing spacing;
 };
 
-// One function: its source, its reference, the ranges of its argument, and the largest error allowed, in ulps.
+// One function: its source, its reference, the ranges of its argument, and the largest allowed error in ulps.
 template <class Source>
 struct Row {
   using Real = RealOf<Source>;
@@ -127,10 +127,10 @@ template <class Source>
 class Elementary : public ::testing::Test {};
 TYPED_TEST_SUITE(Elementary, Sources, SourceNames);
 
-// Allowed: half an ulp for each of the last two or three roundings, and what reducing the argument adds; the source
+// Allowed: half an ulp for each of the last two or three roundings, and the error of reducing the argument. The source
 // promises "a few units in the last place".
 constexpr double kFewUlps = 3.0;
-constexpr double kRootUlps = 6.0;  // up to three roots and quotients on the way to the series, a rounding each
+constexpr double kRootUlps = 6.0;  // up to three roots and quotients before the series, with one rounding each
 
 TYPED_TEST(Elementary, Functions_OverTheirDomain_AreAFewUlpsFromExact) {
   using enum Spacing;
@@ -219,7 +219,8 @@ TYPED_TEST(Elementary, EndsOfTheDomains_AreExact) {
 using Wide = boost::multiprecision::cpp_bin_float_50;
 using WideComplex = boost::multiprecision::cpp_complex_50;
 
-// The textbook form in 50 digits, whose cancellations (27 digits at the worst here) leave more than a double has.
+// The textbook form with 50 digits. Its cancellations cost at most 27 digits here, so more digits remain than a double
+// has.
 struct ExactFresnel {
   Wide r_s;
   Wide r_p;
@@ -240,7 +241,7 @@ double relative_error(double value, const Wide& exact) {
   return static_cast<double>(abs(Wide(value) - exact) / abs(exact));
 }
 
-// The index as the source's precision holds it: the source is not to blame for the rounding of its input.
+// The index in the precision of the source, which is not responsible for the rounding of its input.
 template <class Source>
 kernel::IndexNode rounded_index(const OpticalConstants& index) {
   MomentsRequest request;
@@ -261,7 +262,7 @@ template <class Source>
 class FresnelSource : public ::testing::Test {};
 TYPED_TEST_SUITE(FresnelSource, Sources, SourceNames);
 
-// About twenty roundings in a row, none of them amplified.
+// About twenty roundings in a row. None is amplified.
 constexpr double kFresnelUlps = 12.0;
 
 TYPED_TEST(FresnelSource, AllIndices_AgreeWithTheTextbookFormIn50Digits) {
@@ -303,7 +304,8 @@ TYPED_TEST(FresnelSource, NormalIncidence_HasTheLimitOfTheQuotient) {
   for (const OpticalConstants& optical : {OpticalConstants{1.508, 0.0}, OpticalConstants{27.0, 90.0}}) {
     const kernel::IndexNode index = rounded_index<TypeParam>(optical);
     const auto f = source.fresnel(index_in<TypeParam>(index), Real(1));
-    // 1e-20 from normal incidence the quotient differs from its limit by as little, and 50 digits leave 30 of it.
+    // At a distance of 1e-20 from normal incidence the quotient differs from its limit by about 1e-20; 50 digits leave
+    // 30.
     const Wide c = 1 - Wide(1e-20);
     const Wide sin2 = 1 - c * c;
     const WideComplex n2(Wide(index.n2m1_re) + 1, Wide(index.n2m1_im));
@@ -321,7 +323,8 @@ TYPED_TEST(FresnelSource, TotalReflection_AbsorbsExactlyNothing) {
   for (const double n : {0.1, 0.5, 0.9, 0.999}) {
     const kernel::IndexNode index = rounded_index<TypeParam>({n, 0.0});
     ASSERT_GT(index.critical_cos, 0.0);
-    const double roundoff = 8.0 * kEpsilon<TypeParam>;  // of re = n^2 - 1 + cos^2(beta), which must be below 0
+    // relative to re = n^2 - 1 + cos^2(beta), which must be negative
+    const double roundoff = 8.0 * kEpsilon<TypeParam>;
     for (int i = 0; i < 100; ++i) {
       const Real cos_beta = static_cast<Real>(index.critical_cos * (1.0 - roundoff) * (i + 0.5) / 100.0);
       const auto f = source.fresnel(index_in<TypeParam>(index), cos_beta);
@@ -332,7 +335,7 @@ TYPED_TEST(FresnelSource, TotalReflection_AbsorbsExactlyNothing) {
     const Real above = static_cast<Real>(index.critical_cos + 0.5 * (1.0 - index.critical_cos));
     const auto f = source.fresnel(index_in<TypeParam>(index), above);
     const ExactFresnel exact = exact_fresnel(index, static_cast<double>(above));
-    // n^2 - 1 + cos^2(beta) cancels, half way to normal incidence by a factor of 2 to 3.
+    // n^2 - 1 + cos^2(beta) cancels; half way to normal incidence it loses a factor of 2 to 3.
     EXPECT_LE(relative_error(f.absorbed_s, 1 - exact.r_s), 3.0 * kFresnelUlps * kEpsilon<TypeParam>) << n;
     EXPECT_GT(f.absorbed_s, Real(0));
   }

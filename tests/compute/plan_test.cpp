@@ -1,4 +1,4 @@
-// Exact directions, and loops that stay below what drivers allow.
+// Exact directions, and loops below the limits of drivers.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -24,7 +24,8 @@ TEST(CosSinDeg, MultiplesOf90_AreExact) {
 }
 
 TEST(CosSinDeg, OtherAngles_AgreeWithTheLibrary) {
-  constexpr double kTolerance = 5e-16;  // pi times the rounding of an angle over 180 degrees, and that of the result
+  // pi times the rounding of an angle over 180 degrees, plus the rounding of the result
+  constexpr double kTolerance = 5e-16;
   for (double angle_deg = -90.0; angle_deg <= 360.0; angle_deg += 0.37) {
     const long double angle = angle_deg * std::numbers::pi_v<long double> / 180.0L;
     EXPECT_NEAR(cos_sin_deg(angle_deg).cos, static_cast<double>(std::cos(angle)), kTolerance) << angle_deg;
@@ -34,7 +35,7 @@ TEST(CosSinDeg, OtherAngles_AgreeWithTheLibrary) {
 
 // ---- Loops ---------------------------------------------------------------------------------------------------------
 
-// An invocation of lavapipe stops without notice after this many loop iterations, all loops together.
+// lavapipe stops an invocation without notice after this many iterations of all its loops.
 constexpr double kDriverLimit = 65535.0;
 
 TEST(Loops, HardDirectionsAndIndicesAtEveryTolerance_StayBelowTheDriversLimit) {
@@ -48,7 +49,7 @@ TEST(Loops, HardDirectionsAndIndicesAtEveryTolerance_StayBelowTheDriversLimit) {
       for (const double n : {0.999, 0.8, std::numbers::sqrt2 / 2.0, 0.5, 0.1}) request.optics.push_back({n, 0.0});
     }
     for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
-      for (int masking = 0; masking <= 4; ++masking) {  // and all bounces
+      for (int masking = 0; masking <= 4; ++masking) {  // the last one: all bounces
         request.distribution = distribution;
         request.masking = masking == 4 ? Masking::kVCavity : static_cast<Masking>(masking);
         request.scattering = masking == 4 ? Scattering::kMultiple : Scattering::kSingle;
@@ -60,12 +61,12 @@ TEST(Loops, HardDirectionsAndIndicesAtEveryTolerance_StayBelowTheDriversLimit) {
       }
     }
   }
-  // The masking table: one loop over the nodes, in each of which a small Gauss rule.
+  // The masking table: one loop over the nodes, with a small Gauss rule in each.
   constexpr double kTableOrderAtMost = 8.0;
   EXPECT_LT(DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_DOUBLE) * (1.0 + kTableOrderAtMost), kDriverLimit);
 }
 
-// Chebyshev polynomials are of size 1, so that no degree hides behind another.
+// Chebyshev polynomials have a size of 1, so no degree hides another.
 TEST(GaussLegendre, Orders_IntegratePolynomialsOfDegree2nMinus1AndNoMore) {
   for (const int order : {1, 2, 3, 7, 20, DOLP_MAX_ORDER}) {
     for (int degree = 0; degree <= 2 * order; degree += 2) {

@@ -1,5 +1,5 @@
-// Properties that hold for all inputs, on seeded random draws of the whole range that scenes allow: energy, and
-// independence of how a request is laid out.
+// Properties that hold for all inputs, on random draws with fixed seeds from the whole range of scenes: conservation of
+// energy, and results that do not depend on the layout of a request.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -71,7 +71,7 @@ bool same(const Moments& a, const Moments& b) {
          same_work;
 }
 
-/// A grid of random axes, of which a third is wanted.
+/// A grid of random axes; a third of its entries is wanted.
 MomentsRequest random_grid(const Model& model, Random& random) {
   MomentsRequest request = request_of(model, {}, 1e-3);
   for (int i = 0; i < 6; ++i) request.theta_deg.push_back(random.theta_deg());
@@ -101,7 +101,7 @@ std::vector<Value> permuted(const std::vector<Value>& values, const std::vector<
   return result;
 }
 
-/// Axes in another order, and where each entry of the request then is.
+/// Axes in another order, and the new position of each entry of the request.
 struct Reordered {
   MomentsRequest request;
   std::vector<std::size_t> place_of;
@@ -140,7 +140,8 @@ TEST_P(KernelProperties, OrderOfAxes_TilesAndBlocks_ChangeNoBit) {
     const Reordered other = reordered(request, random);
     VulkanOptions options;
     options.max_tile_invocations = static_cast<std::uint32_t>(random.uniform(1.0, 20.0));
-    options.max_block_shapes = round == 0 ? 1 : static_cast<std::uint32_t>(random.uniform(1.0, 6.0));  // 1: below a row
+    // 1: less than a row
+    options.max_block_shapes = round == 0 ? 1 : static_cast<std::uint32_t>(random.uniform(1.0, 6.0));
     options.staged_uploads = random.chance(0.5);
     const std::vector<Moments> actual = make_evaluator(kernel, options)->evaluate(other.request, {});
     ASSERT_EQ(actual.size(), expected.size());
@@ -151,7 +152,7 @@ TEST_P(KernelProperties, OrderOfAxes_TilesAndBlocks_ChangeNoBit) {
   }
 }
 
-// More shapes than have masking tables at the same time.
+// More shapes than fit into the masking tables at one time.
 TEST(CpuEvaluator, ManyShapes_HaveTheBitsOfEachByItself) {
   constexpr std::size_t kShapes = 9000;
   MomentsRequest request{.masking = Masking::kSmith,

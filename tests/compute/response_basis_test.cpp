@@ -1,4 +1,4 @@
-// Response bases: reflectances as sums of Chebyshev polynomials, against the reference's Fresnel equations.
+// Response bases: reflectances as sums of Chebyshev polynomials, compared with the reference's Fresnel equations.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ double sum_at(const ResponseBasis& basis, const Eigen::VectorXd& coefficients, d
   return sum;
 }
 
-// At far more angles than the basis looks at, for indices of the run and others.
+// At far more angles than the basis uses, for indices of the run and for others.
 TEST(ResponseBasis, CombinedReflectances_StayWithinTheirBounds) {
   constexpr int kAngles = 4000;
   Random random(1);
@@ -96,7 +96,7 @@ TEST(ResponseBasis, CombinedReflectances_StayWithinTheirBounds) {
 TEST(ResponseBasis, FewIndices_HaveNone) {
   EXPECT_FALSE(ResponseBasis::of({}, 1e-4, 1));
   EXPECT_FALSE(ResponseBasis::of({{1.5, 0.1}}, 1e-4, 1));
-  // One pass pays for three indices, three passes for seven.
+  // One pass pays from three indices, three passes from seven.
   const std::vector<FacetOptics> three = {{1.5, 0.1}, {1.6, 0.1}, {1.7, 0.2}};
   EXPECT_TRUE(ResponseBasis::of(three, 1e-4, 1));
   EXPECT_FALSE(ResponseBasis::of(three, 1e-4, 3));

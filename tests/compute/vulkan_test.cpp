@@ -1,5 +1,5 @@
-// The Vulkan evaluator on a real device (lavapipe where there is no GPU), under the validation layer: a machine without
-// a device or without the layer fails these tests.
+// The Vulkan evaluator on a real device (lavapipe without a GPU), under the validation layer. These tests fail on a
+// machine without a device or without the layer.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -25,7 +25,7 @@ namespace {
 
 constexpr unsigned kSeed = 20240817;
 
-// Every distinct exit of a child process, so that a crash is not taken for success.
+// Each kind of exit of a child process has a separate status, so that a crash does not count as success.
 constexpr int kChildPassed = 42;
 constexpr int kChildFailed = 43;
 
@@ -38,7 +38,7 @@ VulkanOptions validated(Precision precision = Precision::kFloat) {
   return options;
 }
 
-// All combinations of a few directions, shapes and indices, in an order that is none.
+// All combinations of a few directions, shapes and indices, in no particular order.
 MomentsRequest small_request(Distribution distribution, Masking masking) {
   MomentsRequest request;
   request.distribution = distribution;
@@ -60,7 +60,7 @@ bool same(const Moments& a, const Moments& b) {
          a.deficit_error == b.deficit_error && a.evaluations == b.evaluations;
 }
 
-/// Calls a function that says whether all is as it should be, in a process of its own.
+/// Calls a function in a separate process. The function returns whether its checks passed.
 void expect_true_in_a_child(bool (*call)()) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(std::_Exit(call() ? kChildPassed : kChildFailed), testing::ExitedWithCode(kChildPassed), "");
@@ -114,7 +114,7 @@ TEST(VulkanDeathTest, TileThatExceedsItsTime_IsADeviceErrorAndNoCrash) {
 
 TEST(VulkanDeathTest, ThreadsRefused_IsAMemoryErrorAndNoWait) {
   expect_true_in_a_child([] {
-    // The limit does not bind root.
+    // The limit does not apply to root.
     const bool is_bound = ::geteuid() != 0 || ::setuid(kNobody) == 0;
     const ::rlimit none{};
     const bool is_set = ::setrlimit(RLIMIT_NPROC, &none) == 0;
@@ -170,8 +170,8 @@ TEST(VulkanEvaluator, PointsAndMasks_SayTheSameAsTheGrid) {
   }
 }
 
-// The request says in which precision, and one evaluator computes both; what the one leaves behind does not reach the
-// other.
+// A request selects the precision; one evaluator computes both. A request in one precision must not affect a request in
+// the other.
 TEST(VulkanEvaluator, RequestsInBothPrecisions_AreThoseOfEvaluatorsOfTheirOwn) {
   for (const Masking masking : {Masking::kVCavity, Masking::kIntegral}) {
     MomentsRequest request = small_request(Distribution::kCauchy, masking);
@@ -248,7 +248,7 @@ TEST(VulkanEvaluator, CancelledRequest_LeavesTheEvaluatorUsable) {
 namespace vulkan {
 namespace {
 
-// An instance, a device and what runs on it, under validation until the test looks at the log.
+// An instance, a device and its objects, under validation until the test reads the log.
 struct Session {
   explicit Session(ValidationLog& log)
       : instance(&log), device(instance.physical_devices().at(0), false), kernels(device, false), stream(device) {}
@@ -273,10 +273,10 @@ TEST(Validation, CopyBeyondABuffer_IsReported) {
 }
 
 constexpr double kSentinel = -12'345.0;
-constexpr std::uint32_t kFirst = 3;   // entries left out at the start
-constexpr std::uint32_t kCount = 70;  // more than one workgroup, and not a multiple of its size
+constexpr std::uint32_t kFirst = 3;   // number of entries that are left out at the start
+constexpr std::uint32_t kCount = 70;  // more than one workgroup, but not a multiple of its size
 
-// The buffers of a request, with room for one more workgroup of sentinels after each output.
+// The buffers of a request, each with a workgroup of sentinels after its output.
 class SentinelRun {
  public:
   SentinelRun(Session& session, const MomentsRequest& request) : session_(session), data_(kernel_data(request)) {
@@ -301,7 +301,7 @@ class SentinelRun {
     session.kernels.bind(bindings);
   }
 
-  /// The first pieces of `count` entries from `first` on.
+  /// Runs the first pieces of `count` entries, starting with entry `first`.
   void run(std::uint32_t first, std::uint32_t count) {
     CommandStream& stream = session_.stream;
     stream.begin();
@@ -314,7 +314,7 @@ class SentinelRun {
     stream.submit_and_wait(kTimeout_s);
   }
 
-  /// The numbers of an output buffer.
+  /// The content of an output buffer.
   std::vector<float> numbers(std::uint32_t binding, std::size_t count) const {
     std::vector<float> values(count);
     buffers_[binding].read(std::as_writable_bytes(std::span(values)));

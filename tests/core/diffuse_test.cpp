@@ -1,4 +1,4 @@
-// Polarised diffuse reflection against sums over directions that share no code with it.
+// Polarised diffuse reflection, against sums over directions that share no code with it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -42,7 +42,7 @@ TEST(DiffuseReflection, RhoIsTheHemisphericalSumOfTheBeams) {
       const auto [out_s, out_p] = transmittances(n, cosine);
       double i = 0.0, q = 0.0;
       constexpr int kSteps = 200000;
-      for (int step = 0; step < kSteps; ++step) {  // mu = x^5: no root at either end
+      for (int step = 0; step < kSteps; ++step) {  // substitution mu = x^5: no root at either end
         const double x = (step + 0.5) / kSteps, mu = std::pow(x, 5.0);
         const auto [in_s, in_p] = transmittances(n, mu);
         const double f = 0.3 / kPi * std::pow(mu * cosine, own.c) * 0.5 * (in_s + in_p) / (normal * normal);
@@ -96,7 +96,7 @@ TEST(DiffuseReflection, GrazingView_HasALimit) {
   EXPECT_TRUE(diffuse_diverges(paint(1.5, 0.0, -0.9, DiffusePolarisation::kNone)));
   const DiffuseReflection diffuse(surface, surface.material.constant);
   EXPECT_EQ(diffuse.rho(0.0).i, 0.0);
-  EXPECT_NEAR(diffuse.rho(1e-8).i / diffuse.rho(1e-6).i, std::pow(1e-2, 0.1), 1e-4);  // as cos^(c + 1)
+  EXPECT_NEAR(diffuse.rho(1e-8).i / diffuse.rho(1e-6).i, std::pow(1e-2, 0.1), 1e-4);  // proportional to cos^(c + 1)
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The ratio of gamma functions against fifty digits.
+// The ratio of gamma functions, against values with fifty digits.
 #include "model/gamma_ratio.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Interpolation in a table: made-up tables with known values between the entries, and their stated errors.
+// Interpolation in artificial tables with known values between the entries, and the stated errors.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace {
 
 using namespace dolp;
-/// A made-up table: smooth in theta, ln sigma and ln(q - 1), with a Q that changes sign.
+/// An artificial table: smooth in theta, ln sigma and ln(q - 1), with a Q that changes its sign.
 struct Truth {
   double i, q, rho_i, rho_q, albedo;
 };
@@ -238,8 +238,8 @@ TEST(MaskingKinks, BistaticBeams_LieWhereTheLowerDirectionChanges_AndWhereNothin
       {Mode::kBistatic, Masking::kSmith, 33.0, 120.0, {}},
       {Mode::kBistatic, Masking::kNone, 33.0, 120.0, {}},
       {Mode::kHemispherical, Masking::kIntegral, 33.0, 120.0, {}},
-      // On the specular side 2 cos(alpha) cos(theta_low) = cos(beta) at 3 theta - view = 180 and at view - theta =
-      // 180 - 2 view, where one of the two is the view.
+      // On the specular side 2 cos(alpha) cos(theta_low) = cos(beta) at 3 theta - view = 180 and at view - theta = 180
+      // - 2 view; theta_low is theta or the view.
       {Mode::kBistatic, Masking::kVCavity, 70.0, 180.0, {30.0, 60.0 + 70.0 / 3.0}},
       {Mode::kBistatic, Masking::kVCavity, 30.0, 180.0, {70.0}},
       {Mode::kBistatic, Masking::kVCavity, 65.0, 0.0, {65.0}},
@@ -248,7 +248,7 @@ TEST(MaskingKinks, BistaticBeams_LieWhereTheLowerDirectionChanges_AndWhereNothin
     SceneModel scene;
     scene.surface.masking = row.masking;
     scene.geometry = {row.mode, row.view_deg, row.azimuth_deg};
-    EXPECT_TRUE(masking_kinks(scene).empty());  // without a source
+    EXPECT_TRUE(masking_kinks(scene).empty());  // a scene without a source
     scene.source.emplace();
     const std::vector<double> kinks_deg = masking_kinks(scene);
     ASSERT_EQ(kinks_deg.size(), row.kinks_deg.size()) << row.view_deg;

@@ -1,4 +1,4 @@
-// Materials, the sun and the data files a scene can name.
+// Materials, the sun, and the data files that a scene can name.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -17,7 +17,7 @@ namespace dolp {
 namespace {
 
 constexpr Spectrum kCo2Line{10.6, 10.6};
-// Accuracy of the digits below, which were copied from the file by hand.
+// Accuracy of the digits below, which were copied by hand.
 constexpr double kDigits = 1e-9;
 
 void expect_near(const OpticalConstants& index, const OpticalConstants& expected, const std::string& what) {
@@ -57,7 +57,7 @@ TEST(Material_BuiltIn, IsLinearBetweenTheRowsOfTheFile) {
       {"iron", 20.0, {13.13127, 53.12441}},            // the last row
       {"sapphire o", 10.0, {0.89, 0.094}},             // a row
       {"Kapton", 13.36, {1.749865, 0.03707}},          // half way from 13.34 to 13.38
-      {"carbon", 1.24, {2.204, 1.04}},                 // beyond 2 to 20 um
+      {"carbon", 1.24, {2.204, 1.04}},                 // outside of 2 to 20 um
   };
   for (const Case& row : cases) {
     const double um = row.wavelength_um;
@@ -69,12 +69,12 @@ TEST(Material_BuiltIn, IsLinearBetweenTheRowsOfTheFile) {
 }
 
 TEST(Material_BuiltIn, IsWithinTheThinningOfTheWholeRecord) {
-  constexpr double kThinning = 1e-3;  // of |N|, as host/data/materials.csv says
+  constexpr double kThinning = 1e-3;  // of |N|, as documented in host/data/materials.csv
   struct Case {
     const char* name;
     double n, k;
   };
-  // The records of the database at 10.6 um, linear between their own neighbouring rows, to five digits.
+  // The records of the database at 10.6 um, interpolated by hand between the neighbouring rows, to five digits.
   const std::vector<Case> cases = {
       {"iron", 7.3703, 29.487},
       {"iron (Querry)", 5.5281, 30.891},
@@ -198,7 +198,8 @@ std::string formula(const std::string& range, const std::string& coefficients, i
          "\n    coefficients: " + coefficients + "\n";
 }
 
-// Published coefficients of every formula, and the index by hand from the equation; where one is well known, beside it.
+// Published coefficients of every formula, with the index computed by hand from the equation. A well-known index stands
+// beside its row.
 TEST(Dispersion_Formulas, HaveThePublishedValues) {
   struct Case {
     int number;
@@ -223,7 +224,7 @@ TEST(Dispersion_Formulas, HaveThePublishedValues) {
       // LiB3O5, Chen 1989: 1.5656; TiO2, DeVore 1951: 2.613
       {4, "2.4542 0.01125 0 0.01135 1 0 0 0 1 -0.01388 2", 1.0, 1.5657903},
       {4, "5.913 0.2441 0 0.0803 1", 0.5893, 2.6129140},
-      // BK7 of the textbooks
+      // BK7 with textbook coefficients
       {5, "1.5046 0.0042 -2", 0.5893, 1.5166942},
       // air, Ciddor 1996: 1.000277
       {6, "0 0.05792105 238.0185 0.00167917 57.362", 0.5893, 1.0002771},
@@ -234,7 +235,7 @@ TEST(Dispersion_Formulas, HaveThePublishedValues) {
       // urea, Rosker 1985
       {9, "2.51527 0.0240 0.0300 0.0202 1.52 0.8771", 0.5893, 1.6062783},
   };
-  constexpr double kShownDigits = 1e-7;  // of the values above
+  constexpr double kShownDigits = 1e-7;  // number of digits in the values above
   for (const Case& row : cases) {
     const double um = row.wavelength_um;
     const std::string range = std::to_string(0.99 * um) + " " + std::to_string(1.01 * um);
@@ -318,7 +319,7 @@ TEST(MaterialFile_Wrong, NamesFileAndLine) {
   }
 }
 
-// Everything a record of the database may have beyond two tidy columns.
+// Everything that a record of the database may have in addition to two tidy columns.
 TEST(MaterialFile_UntidyRecord, IsTheTidyOne) {
   const OpticalConstants half_way{1.75, 0.2};
   const std::string nk = "DATA:\n  - type: tabulated nk\n    data: |\n";
@@ -347,7 +348,7 @@ TEST(MaterialFile_KBelowZeroByNoise, CountsAsZero) {
   EXPECT_EQ(material.least_k, -2e-7);
 }
 
-// A formula with a pole at 11 um, and no real n from 11 / sqrt(1.5) = 8.98 um to it.
+// A formula with a pole at 11 um. Between 11 / sqrt(1.5) = 8.98 um and the pole n is not real.
 TEST(MaterialFile_FormulaWithAPole, HoldsWhereTheSpectrumHasNone) {
   const TemporaryFile file("f.yml", formula("20 0.05", "0 0.5 11"));
   const std::string set = "surface.material_file=" + file.path();
@@ -359,7 +360,7 @@ TEST(MaterialFile_FormulaWithAPole, HoldsWhereTheSpectrumHasNone) {
 }
 
 TEST(Sun_At10p6, IsTheReferenceSpectrum) {
-  // host/data/sun.csv: 0.179 to three digits.
+  // host/data/sun.csv has 0.179 here, to three digits.
   constexpr double kThreeDigits = 0.01;
   EXPECT_NEAR(sun_irradiance().at(10.6), 0.179, 0.179 * kThreeDigits);
 }

@@ -1,4 +1,4 @@
-// The loop over ranges on all cores: each item once, the same ranges whatever the machine, and errors that arrive.
+// The loop over ranges on all cores visits each item once, has equal ranges on all machines, and passes errors on.
 #include "base/parallel_ranges.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The points reader: accepted spellings, every error, and numbers that come back as they were.
+// The points reader: accepted spellings, every error, and numbers that read back unchanged.
 #include "scene/points.hpp"
 #include "error_text.hpp"
 

@@ -36,7 +36,7 @@ TEST(Radiometry, MomentsOffByTheirErrors_StayWithinTheEstimates) {
     off.deficit_error = std::max(off.deficit_error, std::abs(off.deficit - exact.deficit));
     const PointResult truth = evaluate(scene, direction, exact);
     const PointResult result = evaluate(scene, direction, off);
-    if (truth[Quantity::kStokesI] == 0.0) continue;  // no radiation, no DOLP
+    if (truth[Quantity::kStokesI] == 0.0) continue;  // without radiation there is no DOLP
     ASSERT_LE(std::abs(result[Quantity::kDolp] - truth[Quantity::kDolp]), result[Quantity::kErrorEstimate])
         << "scene " << i;
     const double rho_error = std::max(std::abs(result[Quantity::kRhoI] - truth[Quantity::kRhoI]),
@@ -55,7 +55,8 @@ TEST(Radiometry, ErrorOfTheDeficit_CancelsInIsothermalIntensityWhereItCannotMatt
   const PointResult cold = evaluate(scene, direction, moments);
   scene.surroundings->temperature_K = 289.0;
   const PointResult warm = evaluate(scene, direction, moments);
-  // I = pi B + (X - pi B) rho: 1 K apart instead of 50 K makes the error of rho matter 30 times less, and Q too.
+  // I = pi B + (X - pi B) rho. With 1 K instead of 50 K between the temperatures, the error of rho matters 30 times
+  // less.
   EXPECT_LT(warm[Quantity::kErrorEstimate], 1e-3 * cold[Quantity::kErrorEstimate]);
 }
 
@@ -159,7 +160,7 @@ TEST(Radiometry, GrazingWithDivergingReflectance_GivesTheLimitOfDolp) {
   EXPECT_TRUE(std::isnan(limit[Quantity::kRhoI]) && std::isnan(limit[Quantity::kStokesI]) &&
               std::isnan(limit[Quantity::kStokesU]));
   const PointResult near_limit = evaluate(scene, {89.9999, 1e-14}, grazing_moments());
-  // The diffuse part, cos^-0.3 against 1/cos, is what is left.
+  // The rest is the diffuse part, cos^-0.3 compared with 1/cos.
   EXPECT_NEAR(std::abs(near_limit[Quantity::kDolp]), limit[Quantity::kDolp], 1e-8);
 }
 
@@ -228,10 +229,10 @@ TEST(Radiometry, GrazingWithFiniteReflectance_UsesTheFormulasAtATinyCosine) {
   EXPECT_DOUBLE_EQ(smith[Quantity::kRhoI], 0.35);
   EXPECT_DOUBLE_EQ(smith[Quantity::kRhoQ], 0.15);
   EXPECT_EQ(smith.status, 0u);
-  scene.surface.masking = Masking::kIntegral;  // a mirror: sigma = 0 has no masking
+  scene.surface.masking = Masking::kIntegral;  // a mirror: at sigma = 0 the masking has no effect
   EXPECT_EQ(evaluate(scene, {90.0, cos_theta}, moments_of({1.0, 1.0}, cos_theta)).status, 0u);
   scene.surface.diffuse = 0.1;
-  scene.surface.diffuse_exponent = 0.0;  // Lambertian: finite at grazing
+  scene.surface.diffuse_exponent = 0.0;  // Lambertian: finite at grazing incidence
   EXPECT_DOUBLE_EQ(evaluate(scene, {90.0, cos_theta}, moments)[Quantity::kRhoI], 0.45);
 }
 

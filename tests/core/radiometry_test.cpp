@@ -31,7 +31,7 @@ TEST(Radiometry, RandomScenes_AgreeWithPrintedFormulas) {
       expected.i = integral(ends, [&](Real um) { return at(um).i; });
       expected.q = integral(ends, [&](Real um) { return at(um).q; });
     }
-    // Terms of either sign: the scale is their sum without signs, which |rho| <= 3 next to a positive I bounds.
+    // Terms have either sign, so the scale is the sum of their magnitudes. For positive I, |rho| <= 3 bounds it.
     const double scale = std::abs(static_cast<double>(expected.i)) + std::abs(static_cast<double>(expected.q));
     const double cancelled = 10.0 * kAgreement * Radiometry(scene).rule().samples[0].emitted;
     ASSERT_NEAR(actual[Quantity::kStokesI], static_cast<double>(expected.i), kAgreement * scale + cancelled)
@@ -41,12 +41,12 @@ TEST(Radiometry, RandomScenes_AgreeWithPrintedFormulas) {
     ASSERT_EQ(actual[Quantity::kStokesU], 0.0);
     ASSERT_EQ(actual[Quantity::kStokesV], 0.0);
     if (actual[Quantity::kStokesI] ==
-        0.0) {  // total reflection of nothing, next to a smooth surface that does not emit
+        0.0) {  // total reflection without radiation to reflect, on a smooth surface that does not emit
       ASSERT_TRUE(std::isnan(actual[Quantity::kDolp]));
       continue;
     }
     const auto expected_dolp = static_cast<double>(std::abs(expected.q) / expected.i);
-    // The printed 1 - R of total reflection leaves a rounding error of the emission where the program has 0.
+    // With total reflection the printed 1 - R leaves a rounding error of the emission; the program has exactly 0.
     const double printed_rounding = 16.0 * static_cast<double>(std::numeric_limits<Real>::epsilon()) *
                                     Radiometry(scene).rule().samples[0].emitted / std::abs(actual[Quantity::kStokesI]);
     const double bound =
@@ -114,7 +114,7 @@ TEST(Radiometry, IsothermalSurroundingsWithoutSource_HaveNoPolarisation) {
     scene.surroundings = Surroundings{scene.emission->temperature_K};
     const Direction direction = direction_of(random.uniform(0.0, 89.9));
     const PointResult result = evaluate(scene, direction, moments_of(random.reflectance(), direction.cos_theta));
-    if (result[Quantity::kStokesI] == 0.0) continue;  // radiances below the range of double
+    if (result[Quantity::kStokesI] == 0.0) continue;  // radiances below the range of a double
     ASSERT_EQ(result[Quantity::kStokesQ], 0.0);
     ASSERT_FALSE(std::signbit(result[Quantity::kStokesQ]));
     ASSERT_EQ(result[Quantity::kDolp], 0.0);
@@ -174,7 +174,7 @@ TEST(Radiometry, MetalWithoutSurroundings_KeepsTheDigitsOfItsEmission) {
   scene.surroundings.reset();
   const Direction direction = direction_of(0.0);
   Moments moments;
-  moments.deficit = 3e-12;  // 1 - r_i would keep four digits of it
+  moments.deficit = 3e-12;  // 1 - r_i would keep only four of its digits
   moments.r_i = 1.0 - moments.deficit;
   moments.r_q = 1e-12;
   const PointResult result = evaluate(scene, direction, moments);

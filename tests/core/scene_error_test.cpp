@@ -1,4 +1,4 @@
-// The scene reader: every way to get a scene wrong, and overrides.
+// The scene reader: every possible error in a scene, and overrides.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,8 @@ const std::string kHostDir = DOLP_HOST_DIR;
 
 // ---- Errors --------------------------------------------------------------------------------------------------------
 
-/// A scene that is wrong: what is appended to the minimal one (whose last line is 7), and what the message must hold.
+/// A wrong scene: text that is appended to the minimal scene (whose last line is 7), and text that the message must
+/// contain.
 struct ErrorCase {
   const char* appended;
   std::vector<std::string> expected;
@@ -111,7 +112,7 @@ TEST(SceneError_KeysThatDoNotGoTogether, AreNamed) {
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface.masking=smith", "surface.q=1.5"}), "--set surface.q=1.5: "));
 }
 
-/// All that has to change is told at once.
+/// One message names everything that must change.
 TEST(SceneError_SeveralKeysThatDoNotGoTogether, AreNamedInOneMessage) {
   const std::string sea =
       "surface.n = 1.2\nsurface.sigma = 0.1\nsurface.masking = \"smith\"\nsurface.distribution = \"gaussian\"\n"
@@ -196,7 +197,7 @@ TEST(SceneError_RandomBytes, IsAlwaysOneLineAndAlwaysAnInputError) {
     EXPECT_FALSE(contains(error, "\n")) << error;
     if (error != "no error") ++refused;
   }
-  // Three random bytes in a scene of 92 leave it valid only where they fall on digits and the like.
+  // Three random bytes in a scene of 92 bytes leave it valid only if they hit digits or similar characters.
   EXPECT_GT(refused, kTrials / 2);
 }
 
@@ -212,7 +213,7 @@ TEST(SceneOverride_Malformed, IsRefused) {
   EXPECT_TRUE(contains(error_of(kMinimal, {"grid.thta=1"}), "the nearest known key is grid.theta_deg"));
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface.n.x=1"}), "--set surface.n.x=1: surface.n is not a table"));
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface=3"}), "--set surface=3: must be a table, [surface]"));
-  // A value may not bring further keys with it.
+  // A value must not smuggle in more keys.
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface.n=1\nsurface.k=2"}), "must be a number"));
 }
 
@@ -259,7 +260,7 @@ TEST(SceneOverride_OfAnAlternative, ReplacesTheFilesChoice) {
   const std::string gaussian = "surface.distribution=gaussian";
   const SceneValues sea = parse(kMinimal + "[grid]\nsigma = [0.1, 0.2]\n", {gaussian, "surface.wind_m_s=5"});
   EXPECT_EQ(sea.grid[Axis::kSigma].size(), 1U);
-  // A later change replaces an earlier one, and the scene stays that of its text and settings.
+  // A later change replaces an earlier one. The scene still follows from its text and settings.
   const SceneValues changed = with_settings(sea, {{"grid.sigma", 0.4}});
   EXPECT_EQ(changed.grid[Axis::kSigma], std::vector<double>{0.4});
   EXPECT_TRUE(changed.wind_m_s.empty());

@@ -69,7 +69,7 @@ TEST(Scene_Described, DefaultsAreTheRealOnes) {
   }
 }
 
-/// One row for each key: a value that is not the default, and a test of where it went.
+/// One row per key: a value other than the default, and a check of the member that received it.
 struct KeyCase {
   const char* key;
   const char* value;
@@ -151,14 +151,14 @@ const std::vector<KeyCase>& key_cases() {
 bool is_wind(const std::string& key) { return key.ends_with(".wind_m_s"); }
 bool is_of_layer(const std::string& key) { return key.starts_with("surface.coating."); }
 
-/// The keys without those of further layers, which are the same as those of the first.
+/// The keys without the keys of later layers, which equal the keys of the first.
 std::vector<Key> listed_keys() {
   std::vector<Key> keys;
   std::ranges::copy_if(dolp::keys(), std::back_inserter(keys), [](const Key& key) { return key.layer <= 1; });
   return keys;
 }
 
-/// What a key needs beside it.
+/// Other settings that a key needs.
 std::vector<std::string> companions_of(const std::string& key) {
   if (key == "source.scale") return {"source.irradiance=1"};
   if (is_wind(key)) return {"surface.distribution=gaussian"};
@@ -209,7 +209,7 @@ TEST(Scene_EveryKey, CanBeWrittenInTheFile) {
   const TemporaryFile reflectance("reflectance.csv", "beta_deg,r_s,r_p\n0,0.1,0.1\n90,1,1\n");
   for (const KeyCase& row : key_cases()) {
     const std::string key = row.key;
-    // Dotted keys at the top make a scene whose parts can be left out one by one.
+    // Dotted keys at the top level, so that parts of the scene can be left out one by one.
     std::string text = "accuracy.tolerance = 1e-5\n";
     if (key == "accuracy.tolerance") text.clear();
     const bool gives_optics =
@@ -333,7 +333,7 @@ TEST(SceneAxis_Linear, IsExactForWholeDegreesAndDescends) {
 
 TEST(SceneAxis_Log, HasExactEndsAndEqualRatios) {
   const SceneValues scene = parse(kMinimal + "[grid]\nsigma = { from = 0.01, to = 1, count = 3, spacing = \"log\" }\n");
-  // pow is correct to 1 ulp, and two of them are multiplied.
+  // pow is accurate to 1 ulp; two of them are multiplied.
   constexpr double kTwoPowers = 3.0 * 2.3e-16;
   ASSERT_EQ(scene.grid[Axis::kSigma].size(), 3U);
   EXPECT_EQ(scene.grid[Axis::kSigma][0], 0.01);

@@ -1,4 +1,4 @@
-// Profiles of a sky: files, built-in skies, and the basis of functions that stands for them.
+// Profiles of a sky: files, built-in skies, and the basis of functions that represents them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -110,7 +110,7 @@ TEST(SkyProfile, BuiltInSkies_FollowTheirFormulas) {
   for (const BuiltInSky& sky : built_in_skies()) EXPECT_TRUE(built_in_sky(sky.name)) << sky.name;
 }
 
-// The mean of mu^p that cos^c sees is (c + 2) / (c + 2 + p), the distance to the horizon included.
+// The mean of mu^p with the weight cos^c is (c + 2) / (c + 2 + p), also with the distance to the horizon.
 TEST(SkyNodes, Means_OfPowersOfTheCosine_AreTheirClosedForms) {
   const SkyNodes nodes({0.0, 25.0, 60.0, 85.0, 90.0});
   for (const double c : {-0.9, -0.5, 0.0}) {
@@ -154,7 +154,7 @@ TEST(SceneReader, Profile_TakesThePlaceOfATemperature) {
   EXPECT_TRUE(contains(error_of(sky + "profile = \"cloudy\"\n"), "s.toml:9: surroundings.profile = \"cloudy\""));
 }
 
-// Of one temperature it is no profile any more.
+// A sky of one temperature is no longer a profile.
 TEST(SceneReader, ProfileKnownAtOtherWavelengths_IsRefused) {
   for (const std::string horizon_K : {"250", "260"}) {
     std::string rows = "wavelength_um,zenith_deg,temperature_K\n";

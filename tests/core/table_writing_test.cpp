@@ -1,4 +1,4 @@
-// Files are whole or not there, whatever stops their writing.
+// Files are complete or absent, whatever stops their writing.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -25,7 +25,7 @@ namespace {
 using namespace dolp;
 namespace fs = std::filesystem;
 
-/// A limit of the process, for as long as the object lives.
+/// A limit of the process, valid while the object exists.
 class Limit {
  public:
   Limit(__rlimit_resource resource, rlim_t value) : resource_(resource) {
@@ -42,7 +42,7 @@ class Limit {
   rlimit before_{};
 };
 
-/// Limits the size of files the process writes, as a full disk would.
+/// Limits the size of files that the process writes, like a full disk.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)), limit_(RLIMIT_FSIZE, bytes) {}
@@ -69,7 +69,7 @@ TEST_F(TableFiles, CheckOutputPath_WrongPaths_AreRefusedBeforeAnyWork) {
   EXPECT_EQ(names(), std::vector<std::string>{"folder.nc"});
 }
 
-// Its parts would be in files with longer names.
+// The files of its parts would have longer names.
 TEST_F(TableFiles, TableOutput_NameTooLongForAPartialFile_IsRefusedBeforeAnyWork) {
   const TableValues table = sample_table(2, 1, 1);
   const TableLayout layout{table, table.quantities(), true};
@@ -86,7 +86,7 @@ TEST_F(TableFiles, TableOutput_NameTooLongForAPartialFile_IsRefusedBeforeAnyWork
 TEST_F(TableFiles, CheckWritable_ReadOnlyFolder_IsRefused) {
   fs::create_directory(at("locked"));
   fs::permissions(at("locked"), fs::perms::owner_read | fs::perms::owner_exec);
-  // Root may write anywhere but here.
+  // Root may write anywhere except here.
   const fs::path folder = ::geteuid() == 0 ? fs::path("/proc/self") : at("locked");
   for (const char* name : {"t.nc", "t.csv", "t.npy"}) {
     EXPECT_THROW(write_table(sample_table(1, 1, 1), folder / name), IoError) << name;
@@ -186,7 +186,7 @@ TEST_F(TableFiles, WriteText_Killed_LeavesNothing) {
   const pid_t writer = ::fork();
   ASSERT_GE(writer, 0);
   if (writer == 0) {
-    // Writing beyond the limit ends the process, without its destructors.
+    // Writing beyond the limit ends the process without calling destructors.
     const FullDisk full(100'000);
     std::signal(SIGXFSZ, SIG_DFL);
     write_text_atomically(at("t.csv"), std::string(200'000, 'x'));
@@ -207,7 +207,7 @@ TEST_F(TableFiles, UnderWay_AnotherProcessHasIt_IsRefused) {
   EXPECT_EQ(names(), std::vector<std::string>{"t.csv"});
 }
 
-/// A resumable table of two parts, the first of which is that of `one_part`.
+/// A resumable table of two parts. The first part is equal to the first part of `one_part`.
 TableOutput::Job resumable_job(const fs::path& path, const TableValues& one_part) {
   const TableHead& head = one_part;
   TableHead whole = head;
@@ -235,7 +235,7 @@ TEST_F(TableFiles, PartialFile_NoMemoryForItsWriter_IsNotLeft) {
       const TableOutput output(std::move(own));
       has_failed = failing.has_failed();
     } catch (const std::bad_alloc&) {
-      // Where calls do without the memory there is none.
+      // Calls that can do without this memory throw nothing.
     }
     ASSERT_EQ(names(), std::vector<std::string>{}) << before;
   }

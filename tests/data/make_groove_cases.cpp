@@ -1,5 +1,5 @@
-// make_groove_cases FILE.csv: writes reference moments of all bounces in V-grooves, of hard cases and of random entries
-// of the whole domain, which every kernel is compared with. Takes minutes.
+// make_groove_cases FILE.csv: writes reference moments of all bounces in V-grooves, for hard cases and for random
+// entries of the whole domain. Tests compare every kernel with them. Takes minutes.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -17,12 +17,12 @@ namespace {
 
 using namespace dolp;
 
-// A tenth of the tightest tolerance that the kernels are compared at. With q next to 1 the reference stops before.
+// A tenth of the tightest tolerance at which kernels are compared. Near q = 1 the reference stops earlier.
 constexpr double kTolerance = 1e-7;
-// Random entries whose rho the reference knows worse than this are not stored.
+// Random entries are not stored if the reference error of rho is larger than this.
 constexpr double kLeastKnown = 1e-3;
 constexpr std::uint64_t kSeed = 20261122;
-constexpr int kOrdinary = 12;  // random entries of each distribution
+constexpr int kOrdinary = 12;  // random entries per distribution
 constexpr int kCorners = 18;
 
 struct Case {

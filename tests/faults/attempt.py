@@ -1,4 +1,4 @@
-"""A run of dolp with a fault in a folder of its own, and what must hold after it."""
+"""A run of dolp with a fault, in a separate folder, and the rules that it must obey."""
 import contextlib
 import operator
 import os
@@ -15,7 +15,7 @@ SEED = 19
 TIMEOUT_S = 120
 OLD = b"kept\n"
 DONE, INPUT, DEVICE, IO, MEMORY, INTERRUPTED = 0, 2, 3, 4, 6, 130
-# A C library without memory ends the program itself, or says that its file or device is no good.
+# A C library without memory ends the program, or reports that its file or device is bad.
 LIBRARY = (INPUT, DEVICE, IO, 255, -signal.SIGABRT, -signal.SIGSEGV, -signal.SIGBUS)
 SCENE = (pathlib.Path(__file__).resolve().parents[1] / "data/scene.toml").read_text(encoding="utf-8")
 POINTS = "theta_deg,sigma,q\n0,0.1,2\n60.0,0.4,3.5\n80.5,0.1,2\n"
@@ -23,27 +23,27 @@ COMMANDS = {"table": (["table", "scene.toml"], "out.nc"),
             "eval": (["eval", "scene.toml", "--points", "points.csv"], "out.csv"),
             "lookup": (["lookup", "in.nc", "--points", "points.csv"], "out.csv")}
 CPU = ("--evaluator", "cpu")
-# Many tiles, and on one core about a second.
+# Many tiles; takes about a second on one core.
 LARGE = ("--set", "grid.theta_deg={from=0, to=89, count=60}", "--set", "grid.sigma={from=0.05, to=1, count=20}")
 SLOW = (*CPU, "--tolerance", "1e-6", "--precision", "double", *LARGE)
-# More than one part of a run, in a second.
+# More than one part per run; takes a second.
 PARTS = (*CPU, "--tolerance", "1e-2", "--set", "surface.masking=none", "--set", "surface.distribution=gaussian",
          "--set", "grid.theta_deg={from=0, to=89, count=90}", "--set", "grid.sigma={from=0.05, to=1, count=400}",
          "--set", "grid.q={from=2, to=4, count=90}")
-# HDF5 says at length that it found no memory to begin with; nobody can ask it not to before it has.
+# HDF5 prints long messages if it has no memory to start; they cannot be switched off before it has started.
 OF_HDF5 = re.compile(r"^(HDF5-DIAG: |  #\d+: |    (major|minor): ).*\n", re.MULTILINE)
-# Of a process that ended while it gave the finished file its name, killed or out of memory.
+# Left by a process that ended while it renamed the finished file, killed or out of memory.
 LEFT_BY_THE_KILLED = re.compile(r"\.dolp-\d+-\d+\.tmp")
-# Where to sync takes no time.
+# A file system on which syncing takes no time.
 FOLDERS = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
 
 
 class Broken(Exception):
-    """A try after which something is not as it must be."""
+    """A try that broke a rule."""
 
 
 class Driver:
-    """The program, its inputs, and what it makes of them where nothing fails."""
+    """The program, its inputs, and its results without faults."""
 
     def __init__(self, build, is_quick, inputs):
         self.program = str(build / "dolp")
@@ -60,16 +60,17 @@ class Driver:
         return {"LD_PRELOAD": str(self.faults / f"libfail_{name}.so"), **environment}
 
     def values(self, output):
-        """What a finished output says, without what differs from run to run; nothing of one that is not whole."""
+        """The content of a finished output, without parts that differ between runs; nothing if the output is
+        incomplete."""
         if output.suffix == ".nc":
             read = [self.program, "lookup", output.name, "--points", "points.csv", "-o", "-", "--quiet"]
             looked_up = subprocess.run(read, cwd=output.parent, capture_output=True, check=False).stdout
-            # The hash is of all bits, and lookup has compared it with the values.
+            # The hash covers all bits, and lookup has checked it against the values.
             return looked_up, re.findall(rb"placed64:[0-9a-f]{16}", output.read_bytes())
         return output.read_bytes()
 
     def expect(self, command, options=()):
-        """Has the command once do its work undisturbed; the seconds that this takes."""
+        """Runs the command once without faults. Returns the seconds that it takes."""
         with self.attempt(command, options) as attempt:
             start = time.monotonic()
             status, err = attempt.run()
@@ -85,7 +86,7 @@ class Driver:
             yield Attempt(self, command, options, pathlib.Path(folder), **settings)
 
     def numbers(self, most, quick):
-        """1 to `most`, or in a quick run so many of them, the ends included."""
+        """The numbers 1 to `most`; in a quick run only this many of them, with both ends."""
         if not self.is_quick or most <= quick:
             return list(range(1, most + 1))
         return sorted({1, most, *(self.random.randint(1, most) for _ in range(quick - 2))})
@@ -108,7 +109,7 @@ class Driver:
 
 
 class Attempt:
-    """A run in a folder with the inputs and an output from before."""
+    """A run in a folder with the inputs and an old output."""
 
     def __init__(self, driver, command, options, folder, environment=None, limit=None, prefix=(), is_same=operator.eq):
         self.driver, self.command, self.options, self.folder = driver, command, options, folder
@@ -124,7 +125,8 @@ class Attempt:
 
     def start(self):
         def prepare():
-            for number in (signal.SIGINT, signal.SIGHUP):  # a shell in the background has others ignore them
+            # a shell starts background processes with some of these ignored
+            for number in (signal.SIGINT, signal.SIGHUP):
                 signal.signal(number, signal.SIG_DFL)
             if self.limit:
                 which, most = self.limit
@@ -142,7 +144,7 @@ class Attempt:
         return process.returncode, OF_HDF5.sub("", err.decode(errors="replace"))
 
     def check(self, status, err, allowed, may_stay=None):
-        """Raises Broken unless the run ended in a way that is allowed and the files are as they must be."""
+        """Raises Broken unless the run ended in an allowed way and the files obey the rules."""
         fault = {name: value for name, value in self.environment.items() if name.startswith("DOLP_")}
         what = f"{self.words[1:]}, {fault}, exit status {status}, {err!r}"
         if status not in allowed:

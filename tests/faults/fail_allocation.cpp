@@ -1,6 +1,7 @@
-// Preloaded into a program, lets one of its allocations fail, or all from one on. Environment:
-//   DOLP_FAIL_ALLOCATION   which one, counted from 1 since the program was loaded, e.g. 17; 17+ is that one and all
-//   after DOLP_COUNT_ALLOCATIONS a file that gets their number when the program ends
+// Preloaded into a program, makes one of its allocations fail, or all from one onwards. Environment:
+//   DOLP_FAIL_ALLOCATION   number of the allocation, counted from 1 at the program's start, for example 17; 17+ also
+//                          fails all later ones
+//   DOLP_COUNT_ALLOCATIONS a file that receives the number of allocations when the program ends
 #include <dlfcn.h>
 
 #include <atomic>

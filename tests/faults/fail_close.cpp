@@ -1,5 +1,5 @@
-// Preloaded into a program, lets each close of a table that was read report an error, as that of a file server that is
-// gone.
+// Preloaded into a program, makes each close of a table that was read report an error, as after the loss of a file
+// server.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
-// Preloaded into a program, limits the threads that it may have at a time, as `ulimit -u` does. Environment:
-//   DOLP_MOST_THREADS   how many beside the first, e.g. 3; another one fails with EAGAIN
+// Preloaded into a program, limits the number of its threads, as `ulimit -u` does. Environment:
+//   DOLP_MOST_THREADS allowed threads in addition to the first, for example 3; more fail with EAGAIN
 #include <dlfcn.h>
 #include <pthread.h>
 
@@ -17,7 +17,7 @@ long most_threads() {
   return most != nullptr ? std::strtol(most, nullptr, 10) : -1;
 }
 
-/// Counts a thread until it ends, by pthread_exit too.
+/// Counts a thread until it ends, also if it ends by pthread_exit.
 struct Counted {
   Counted() = default;
   Counted(const Counted&) = delete;

@@ -1,9 +1,10 @@
-// Preloaded into a program, lets its calls of Vulkan fail. Environment:
-//   DOLP_FAIL_VULKAN     FUNCTION:N:RESULT, the N-th call, or FUNCTION:N+:RESULT, that and all after; e.g.
-//                        vkQueueSubmit:3:-4 loses the device at the third submission; RESULT never: it does not return
-//   DOLP_VULKAN_MEMORY   bytes: every larger piece of device memory is refused
-//   DOLP_VULKAN_WITHOUT  float64, compute or version: devices that lack double precision, compute queues or Vulkan 1.2
-//   DOLP_COUNT_SUBMISSIONS a file that gets the number of submissions when the program ends
+// Preloaded into a program, makes Vulkan calls fail. Environment:
+//   DOLP_FAIL_VULKAN     FUNCTION:N:RESULT fails the N-th call, FUNCTION:N+:RESULT also all later ones. For example
+//                        vkQueueSubmit:3:-4 loses the device at the third submission. With RESULT never the call does
+//                        not return.
+//   DOLP_VULKAN_MEMORY   bytes: larger pieces of device memory are refused
+//   DOLP_VULKAN_WITHOUT  float64, compute or version: devices lack double precision, compute queues or Vulkan 1.2
+//   DOLP_COUNT_SUBMISSIONS a file that receives the number of submissions when the program ends
 #include <dlfcn.h>
 #include <unistd.h>
 #include <vulkan/vulkan.h>
@@ -42,7 +43,7 @@ struct Fault {
 
 std::atomic<unsigned long> submissions{0};
 
-/// VK_SUCCESS, or what this call of the function is to return.
+/// VK_SUCCESS, or the result that this call of the function must return.
 VkResult fault_of(const char* function) {
   static const Fault fault;
   static std::atomic<unsigned long> calls{0};
@@ -120,7 +121,7 @@ extern "C" VKAPI_ATTR VkResult VKAPI_CALL vkQueueSubmit(VkQueue queue, uint32_t 
   return fault == VK_SUCCESS ? next<PFN_vkQueueSubmit>("vkQueueSubmit")(queue, count, submits, fence) : fault;
 }
 
-// Nothing may be in flight on a device that is lost.
+// A lost device must have no work in flight.
 extern "C" VKAPI_ATTR VkResult VKAPI_CALL vkWaitForFences(VkDevice device, uint32_t count, const VkFence* fences,
                                                           VkBool32 all, uint64_t timeout) {
   const VkResult result = next<PFN_vkWaitForFences>("vkWaitForFences")(device, count, fences, all, timeout);

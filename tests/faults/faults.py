@@ -1,14 +1,13 @@
 #!/usr/bin/env python3
-"""Drives dolp into faults, and counts how it takes them.
+"""Exposes dolp to faults, and counts how its runs end.
 
 Usage: faults.py BUILD [--quick] [--json FILE] [KIND...]    BUILD is the folder that has dolp and tests/faults
        faults.py --table FILE      what is in such a FILE, as a table for the manual
-Each try has a folder of its own with an output from before. After it that output is as it was, or a whole new one is in
-its place, and no other file is left; a run that failed says so in one line and with the exit status of its fault, but
-where a C library ends it for lack of memory.
-With --quick only some of the allocations fail, and less of all else. Exit status: 0, or 1 after a try that broke one of
-these rules.
-The result has the rows of all kinds that were driven into it, in one run or several.
+Each try has a separate folder with an old output. After the try the old output is unchanged or replaced by a complete
+new one, and no other file is left. A failed run reports one line and the exit status of its fault, unless a C library
+ends it for lack of memory.
+With --quick there are fewer tries of each kind. Exit status: 0, or 1 after a try that broke one of these rules.
+The result has the rows of all kinds that were tried, in one run or several.
 """
 import argparse
 import collections
@@ -19,7 +18,7 @@ import sys
 import tempfile
 import time
 
-sys.dont_write_bytecode = True  # leaves no folder among the sources
+sys.dont_write_bytecode = True  # writes no cache folder among the sources
 
 import of_devices  # noqa: E402
 import of_files  # noqa: E402
@@ -43,14 +42,14 @@ def markdown(results):
 
 
 def rows_of(path):
-    """What is in a result, by fault; nothing where there is none yet."""
+    """The content of a result by fault; empty if there is no result yet."""
     if not path or not path.exists():
         return {}
     return {row["fault"]: row for row in json.loads(path.read_text(encoding="utf-8"))["kinds"]}
 
 
 def drive(driver, kinds, path):
-    """Writes the result after each kind, since all of them take hours; rows of other kinds stay."""
+    """Writes the result after each kind, because all kinds together take hours. Rows of other kinds stay."""
     version = subprocess.run([driver.program, "--version"], capture_output=True, text=True, check=True).stdout.strip()
     for kind in kinds:
         start = time.monotonic()

@@ -46,7 +46,8 @@ def kill_and_resume(driver):
 
 
 def damage(driver, folder, victim):
-    """Damages one of the files that a killed run left, if it left one; the link that it is then, or nothing."""
+    """Damages one of the files that a killed run left, if there is one. Returns the link that replaces it, or
+    nothing."""
     left = sorted(folder.glob("out.nc.partial*"))
     how = driver.random.choice(("cut", "overwritten", "replaced", "removed", "symbolic link", "hard link"))
     if not left:

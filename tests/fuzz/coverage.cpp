@@ -1,4 +1,4 @@
-// Counts where instrumented code passes, for libFuzzer, which reads the counters of this section.
+// Counts which instrumented code runs. libFuzzer reads the counters in this section.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +10,7 @@ constexpr std::size_t kCounters = 1U << 16U;
 
 }  // namespace
 
-// Called in place of __sanitizer_cov_trace_pc, which libFuzzer has only to refuse it.
+// Called instead of __sanitizer_cov_trace_pc: libFuzzer has that function only to refuse it.
 extern "C" void __wrap___sanitizer_cov_trace_pc() {
   const auto place = reinterpret_cast<std::uintptr_t>(__builtin_return_address(0));
   ++counters[place % kCounters];

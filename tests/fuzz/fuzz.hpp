@@ -1,5 +1,4 @@
-// Common part of the fuzzers: each gives bytes to a public reader, which accepts them or refuses them with an
-// InputError.
+// Common part of the fuzzers. Each passes bytes to a public reader, which accepts them or throws an InputError.
 #pragma once
 
 #include <unistd.h>
@@ -11,7 +10,7 @@
 
 namespace dolp::fuzz {
 
-/// The reader of one fuzzer. Anything but a return is a finding.
+/// The reader of one fuzzer. Anything except a normal return is a finding.
 void read(const std::string& text);
 
 template <class Reader>
@@ -19,11 +18,11 @@ void refused(const Reader& reader) {
   try {
     reader();
   } catch (const InputError&) {
-    // A hostile file must be refused.
+    // A bad file must be refused.
   }
 }
 
-/// A file that is written anew with each input.
+/// A file that is rewritten with each input.
 class InputFile {
  public:
   explicit InputFile(const std::string& suffix)

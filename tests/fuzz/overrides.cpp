@@ -1,4 +1,4 @@
-// Overrides of a scene, as `--set` has them, a line each.
+// Overrides of a scene as in `--set`, one per line.
 #include <sstream>
 #include <string>
 #include <vector>

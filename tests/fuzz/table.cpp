@@ -2,7 +2,7 @@
 #include "fuzz.hpp"
 #include "table/table_file.hpp"
 
-/// HDF5 1.10 loses memory of its own on some damaged files.
+/// HDF5 1.10 leaks memory on some damaged files.
 extern "C" const char* __lsan_default_suppressions();
 const char* __lsan_default_suppressions() { return "leak:libhdf5"; }
 

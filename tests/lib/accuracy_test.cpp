@@ -1,5 +1,5 @@
-// The promise of the program: 2,000 random points through the Vulkan evaluator and the radiometry, as `dolp eval` does
-// them, at each tolerance; against stored values of the independent reference.
+// The promise of the program: computes 2,000 random points with the Vulkan evaluator and the radiometry, as `dolp eval`
+// does, at each tolerance, and compares them with stored values of the independent reference.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,15 +22,15 @@
 namespace dolp {
 namespace {
 
-// Share of the points that no level brings to the tolerance: next to rounding and to the most nodes at 1e-9.
+// Share of the points that no level brings to the tolerance, because of rounding and of the largest order at 1e-9.
 constexpr double kMissedShare = 0.01;
 constexpr double kTightMissedShare = 0.04;
 constexpr double kTight = 1e-8;
-// The bound is a multiple of the distance from a rule of a fifth fewer digits: at six digits one and a half of them,
-// and half a digit for the multiple.
+// The bound is a multiple of the distance from a rule with a fifth fewer digits. At six digits this is one and a half
+// digits, and half a digit for the multiple.
 constexpr double kMedianPessimism = 100.0;
-// Errors below this are rounding, whose bound must hold for the worst sum of signs and is far above the typical one:
-// sixteen units in the last place of a float's 24 bits. In double the reference's own bound, 1e-12, times ten.
+// Errors below this are rounding. Its bound must cover the worst sum of signs and is far above a typical error: sixteen
+// units in the last place of a float's 24 bits. In double ten times the reference's bound, 1e-12.
 constexpr double kFloatRounding = 1e-6;
 constexpr double kDoubleRounding = 1e-11;
 
@@ -55,7 +55,7 @@ SceneValues scene_of(Distribution distribution, Masking masking, const Setting& 
   return scene;
 }
 
-/// One point: its result, the reference's, and what both are about.
+/// One point: its result, the result of the reference, and the inputs of both.
 struct Compared {
   StoredCase point;
   PointResult result;
@@ -145,7 +145,7 @@ void expect_moderate_estimates(const Sweep& sweep) {
 
 class RandomPoints : public testing::TestWithParam<Setting> {};
 
-// In one test: CTest runs each by itself, and the points take the time.
+// In one test, because CTest runs each test separately and computing the points takes most of the time.
 TEST_P(RandomPoints, EveryPoint_MeetsItsToleranceOrSaysSo_WithinItsEstimate) {
   const Sweep sweep = sweep_of(GetParam());
   std::map<std::string, int> counts;

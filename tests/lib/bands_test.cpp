@@ -1,4 +1,4 @@
-// Bands over materials with total reflection inside, against integrals in 20 digits of the smooth surface.
+// Bands of materials with total reflection in a part of the band, against integrals of the smooth surface in 20 digits.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,8 +18,9 @@
 namespace dolp {
 namespace {
 
-// Emission of a smooth surface at 300 K, 8-14 um. n rises evenly from 0.90 to 0.98, so that at each of these zeniths
-// but the last total reflection ends inside of the band. DOLP by adaptive quadrature split there (mpmath, 20 digits).
+// Emission of a smooth surface at 300 K, 8-14 um. n rises linearly from 0.90 to 0.98, so total reflection ends inside
+// the band at each of these zeniths except the last. DOLP by adaptive quadrature, split at that wavelength (mpmath, 20
+// digits).
 struct Case {
   double theta_deg;
   double dolp;
@@ -59,7 +60,7 @@ TEST(Bands, GlassWhoseIndexPassesOneNearGrazing_IsWithinItsEstimate) {
   EXPECT_NEAR(result[Quantity::kDolp], kDolp, result[Quantity::kErrorEstimate] + 1e-12);
 }
 
-/// A table of the mirror with the errors that it states; `dolp`: what its first entry has instead.
+/// A check of a table of the mirror with the errors that it states. `dolp` replaces the value of its first entry.
 TableCheck check_with(std::optional<double> dolp) {
   SceneValues scene = scene_with("0", "1e-4");
   scene.grid[Axis::kTheta] = {66.0, 70.0, 75.0};
@@ -74,7 +75,7 @@ TableCheck check_with(std::optional<double> dolp) {
 }
 
 TEST(Bands, Verify_SeesAnErrorOfTheSpectralRule) {
-  constexpr double kFewNodes = 0.0178396;  // with nodes for three zeniths only
+  constexpr double kFewNodes = 0.0178396;  // the value with nodes for three zeniths only
   const TableCheck right = check_with({});
   for (const CheckedValue& failure : right.failures) ADD_FAILURE() << failure.quantity << ": " << failure.complaint;
   const TableCheck wrong = check_with(kFewNodes);

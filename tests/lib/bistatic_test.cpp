@@ -1,4 +1,4 @@
-// The bistatic mode against the formula of shaders/physics/README.md, section 4, written out once more, with f from
+// The bistatic mode against the formula of shaders/physics/README.md, section 4, implemented a second time, with f from
 // explicit vectors and the moments of the independent reference.
 #include <gtest/gtest.h>
 
@@ -87,7 +87,7 @@ Radiance model_radiance(const SceneValues& scene, double theta_i_deg) {
   return l;
 }
 
-/// The kernels, and the reference.
+/// Runs each test with the kernels and with the reference.
 class BistaticByEvaluator : public testing::TestWithParam<std::optional<Kernel>> {};
 
 INSTANTIATE_TEST_SUITE_P(Bistatic, BistaticByEvaluator,
@@ -106,7 +106,7 @@ TEST_P(BistaticByEvaluator, RandomScenes_AgreeWithTheModelWrittenOut) {
     const SlopeShape shape{scene.surface.sigma, scene.surface.q};
     const PointResult r = evaluate_scene(scene, {{theta_i_deg, shape, {}}}, *evaluator, {}).front();
     const Radiance l = model_radiance(scene, theta_i_deg);
-    // The stated error of DOLP is relative to I and covers Q and U; I itself is good to the same order.
+    // The stated error of DOLP is relative to I and covers Q and U. I has an error of this order, too.
     const double bound = 2.0 * r[Quantity::kErrorEstimate] + 1e-9;
     EXPECT_NEAR(r[Quantity::kStokesQ] / l.i, l.q / l.i, bound) << n;
     EXPECT_NEAR(r[Quantity::kStokesU] / l.i, l.u / l.i, bound) << n;
@@ -121,7 +121,7 @@ TEST_P(BistaticByEvaluator, RandomScenes_AgreeWithTheModelWrittenOut) {
   std::printf("worst DOLP difference %.1e\n", worst);
 }
 
-/// Says that every beam is off by a little more than the text's own bound.
+/// An evaluator that states an error of 1 % of m00 for every beam in float.
 class BiasedBeams final : public ModelEvaluator {
  public:
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
@@ -142,7 +142,7 @@ class BiasedBeams final : public ModelEvaluator {
   CpuEvaluator own_;
 };
 
-// The bound of the beam is part of the stated error, and a level in double computes the beam in double too.
+// The stated error includes the bound of the beam. A level in double computes the beam in double, too.
 TEST(Bistatic, BeamWithALargeError_IsTriedAgainInDouble) {
   RandomScenes random;
   SceneValues scene = random.scene();
@@ -214,7 +214,7 @@ TEST(Bistatic, SourceAngles_ShareTheMomentsOfTheView) {
   const double three = evaluator.report().evaluations;
   evaluate_scene(scene, {{10.0, shape, {}}}, evaluator, {});
   EXPECT_GT(three, 0.0);
-  EXPECT_EQ(2.0 * three, evaluator.report().evaluations);  // of both calls
+  EXPECT_EQ(2.0 * three, evaluator.report().evaluations);  // sum over both calls
   EXPECT_EQ(results[0][Quantity::kRhoI], results[2][Quantity::kRhoI]);
   EXPECT_EQ(results[2].status, 0U);  // a source at 90 degrees adds nothing
 }

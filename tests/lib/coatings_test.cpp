@@ -1,4 +1,4 @@
-// Films and measured reflectances: the closed forms that they must meet, the independent reference, and scenes.
+// Films and measured reflectances, against closed forms and the independent reference, and in scenes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,7 +34,7 @@ FacetOptics coated(const OpticalConstants& medium, std::vector<Film> films) {
   return optics;
 }
 
-/// One to three films on a dielectric, a metal or water; some absorb, some are thick.
+/// One to three films on a dielectric, a metal or water. Some absorb, some are thick.
 FacetOptics random_coating(Random& random) {
   FacetOptics optics(random.chance(0.4) ? OpticalConstants{random.uniform(2.0, 30.0), random.uniform(10.0, 90.0)}
                                         : OpticalConstants{random.uniform(1.1, 3.5), random.log_uniform(1e-3, 0.5)});
@@ -97,7 +97,7 @@ TEST(Films, Amplitudes_AgreeWithCharacteristicMatrices) {
 
 // ---- Moments and beams ---------------------------------------------------------------------------------------------
 
-/// Compares random coatings, one for each model in turn.
+/// Compares random coatings with the reference, one for each model in turn.
 void expect_within_bounds_of_reference(Precision precision, double tolerance, std::uint64_t seed, std::size_t draws) {
   Random random(seed);
   FixedPrecision evaluator(precision);
@@ -211,7 +211,7 @@ TEST(Coatings, GridOfIndices_KeepsItsFilms) {
   }
 }
 
-// Mirrors have closed forms at each wavelength, so that the band's integral can be summed finely.
+// A mirror has a closed form at each wavelength, so the integral over the band can be a fine sum.
 TEST(Coatings, BandWithThickFilms_IsWithinItsBoundOfAFineSum) {
   for (const char* thickness : {"0.5", "5", "20"}) {
     const std::vector<std::string> film = {

@@ -1,4 +1,4 @@
-// What a run says of single scattering and of its effects, from a few entries.
+// Estimates by a run of the effect of single scattering and of its effects, from a few entries.
 #include "run/estimates.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace dolp {
 namespace {
 
 const std::string kScene = kRoughMetal + "[grid]\ntheta_deg = [30, 60]\n";
-// Both models to 1e-3 each, against results that are better.
+// Both models have an error of 1e-3, compared with better results.
 constexpr double kAccuracy = 2e-3;
 
 using Overrides = std::vector<std::string>;

@@ -1,4 +1,4 @@
-// Fits: known truths found again, intervals against closed forms and against synthetic measurements.
+// Fits: they find known truths, and intervals agree with closed forms and with synthetic measurements.
 #include "fit/fit.hpp"
 #include "error_text.hpp"
 #include "scene/scene_reader.hpp"
@@ -40,7 +40,7 @@ constexpr double kQuantile95 = 31.410432844;
 
 FitRange number(const std::string& key, double low, double high) { return {key, low, high, {}}; }
 
-/// Q/I of the scene at zeniths up to 80 degrees, exact but for `noise` times the deviates of a seed.
+/// Q/I of the scene at zeniths up to 80 degrees, exact except for `noise` times random deviates of a seed.
 class FitTest : public testing::Test {
  protected:
   MeasuredData measured(double noise, const std::vector<std::string>& overrides = {}, bool has_uncertainties = true,
@@ -59,7 +59,7 @@ class FitTest : public testing::Test {
     const Prediction exact = model.predict({truth}, 1e-8, evaluator_, {}).front();
     std::mt19937_64 engine(seed);
     for (std::size_t i = 0; i < data.measurements.size(); ++i) {
-      double deviate = -6.0;  // the sum of twelve uniform numbers is normal enough
+      double deviate = -6.0;  // the sum of twelve uniform numbers is close enough to normal
       for (int j = 0; j < 12; ++j) deviate += static_cast<double>(engine() >> 11U) * 0x1p-53;
       data.measurements[i].value = exact.components(static_cast<Eigen::Index>(i), 0) + noise * deviate;
     }
@@ -76,11 +76,11 @@ class FitTest : public testing::Test {
   CpuEvaluator evaluator_;
 };
 
-// Beside parameters that leave the bounds, which go half the way there, the others are at their least squares. A scale
-// of next to nothing damps no step.
+// If a step takes parameters out of the bounds, they go half the way, and the other parameters are solved again for
+// least squares. A tiny scale damps no step.
 TEST(PredictStep, ParametersLeaveTheBounds_OthersAreSolvedAgain) {
   constexpr double kScale = 1e-14;
-  constexpr double kRounding = 1e-6;  // of normal equations whose columns agree to a tenth
+  constexpr double kRounding = 1e-6;  // of normal equations whose columns agree to within a tenth
   std::mt19937_64 engine(5);
   const auto uniform = [&] { return static_cast<double>(engine() >> 11U) * 0x1p-53; };
   int checked = 0;
@@ -113,8 +113,8 @@ bool contains(const FitInterval& one, double value) {
   return !one.is_empty && (!one.low || *one.low <= value) && (!one.high || value <= *one.high);
 }
 
-// Data between both ends, nearer to the other one at some points: the residual counts from the nearer end, for Q/I and
-// for DOLP, and is 0 inside.
+// Data between both ends, at some points nearer to the other one. The residual is the distance from the nearer end, for
+// Q/I and for DOLP, and 0 inside.
 TEST_F(FitTest, ModelErrorOfTheBracket_ResidualIsTheDistanceFromTheInterval) {
   const SceneValues scene = parse_scene(kScene, "scene");
   const std::vector<FitRange> n = {number("surface.n", 1.1, 4.0)};
@@ -142,7 +142,7 @@ TEST_F(FitTest, ModelErrorOfTheBracket_ResidualIsTheDistanceFromTheInterval) {
   }
 }
 
-// An end of n lies where chi^2 itself, least over sigma, is the quantile of 20 degrees of freedom.
+// An end of n lies where chi^2, minimised over sigma, is the quantile for 20 degrees of freedom.
 TEST_F(FitTest, ModelErrorOfTheBracket_IntervalsEndAtTheQuantileOfChiSquared) {
   const SceneValues scene = parse_scene(kScene, "scene");
   const FitRange sigma = number("surface.sigma", 0.05, 0.5);
@@ -174,7 +174,7 @@ TEST_F(FitTest, ModelErrorOfTheBracket_IntervalsEndAtTheQuantileOfChiSquared) {
                InputError);
 }
 
-// Data far from both ends: no value is left, but some with larger uncertainties.
+// Data far from both ends exclude all values; with larger uncertainties some values remain.
 TEST_F(FitTest, ModelErrorOfTheBracket_ThatExplainsNothing_LeavesEmptyIntervals) {
   MeasuredData data = measured(0.0);
   for (std::size_t i = 0; i < 20; i += 2) data.measurements[i].value += 20.0 * kNoise;
@@ -197,7 +197,7 @@ TEST(FitQuality, IsAWordForTheP_Value) {
   }
 }
 
-// The scaled intervals are the plain ones of data whose uncertainties are sqrt(reduced chi^2) times as large.
+// The scaled intervals equal the plain intervals for data with uncertainties multiplied by sqrt(reduced chi^2).
 TEST_F(FitTest, DoubtfulFit_ScaledIntervalsAreThoseOfLargerUncertainties) {
   const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0)};
   MeasuredData data = measured(kNoise, {"surface.sigma=0.26"});
@@ -206,7 +206,7 @@ TEST_F(FitTest, DoubtfulFit_ScaledIntervalsAreThoseOfLargerUncertainties) {
   for (Measurement& one : data.measurements) *one.uncertainty *= std::sqrt(*result.reduced_chi_square);
   const FitResult wider = fitted(data, parameters);
   EXPECT_EQ(fit_quality(wider.p_value), "good");
-  constexpr double kRoot = 0.02;  // of a half-width: both ends are met to 0.5 % of the root of the growth
+  constexpr double kRoot = 0.02;  // share of a half-width: both ends are found to 0.5 % of the root of the growth
   for (std::size_t j = 0; j < 2; ++j) {
     const FitParameter &one = result.parameters[j], &other = wider.parameters[j];
     ASSERT_TRUE(one.scaled_68 && one.scaled_95 && !other.scaled_68 && !other.scaled_95);
@@ -224,7 +224,8 @@ TEST_F(FitTest, ExactData_GiveTheTruth) {
                                                   number("surface.sigma", 0.02, 1.0)});
   const double truth[] = {1.6, 0.5, 0.2};
   for (std::size_t j = 0; j < 3; ++j) {
-    // Without noise the minimum is at the truth; what is left is the model's own error, far below an uncertainty.
+    // Without noise the minimum is at the truth. The remaining difference is the model's numerical error, far below an
+    // uncertainty.
     EXPECT_NEAR(result.parameters[j].value, truth[j], 0.02 * *result.parameters[j].standard_error);
     EXPECT_FALSE(result.parameters[j].is_at_bound);
   }
@@ -235,13 +236,13 @@ TEST_F(FitTest, ExactData_GiveTheTruth) {
 }
 
 TEST_F(FitTest, LinearParameter_IntervalsAreThoseOfTheCovariance) {
-  // rho is linear in k_s, and with the emission of a black body's temperature nearly so is Q/I.
+  // rho is linear in k_s. With the emission of a body at the same temperature, Q/I is nearly linear, too.
   const FitResult result =
       fitted(measured(kNoise), {number("surface.specular", 0.2, 1.0)}, {}, {"surface.specular=0.6"});
   const FitParameter& one = result.parameters.front();
   ASSERT_TRUE(one.interval_68.low && one.interval_95.low && one.interval_68.high && one.interval_95.high);
   const double error = *one.standard_error;
-  constexpr double kCurvature = 0.05;  // of Q/I in k_s, over the interval
+  constexpr double kCurvature = 0.05;  // relative curvature of Q/I in k_s over the interval
   EXPECT_NEAR(one.value - *one.interval_68.low, error, kCurvature * error);
   EXPECT_NEAR(*one.interval_68.high - one.value, error, kCurvature * error);
   EXPECT_NEAR(one.value - *one.interval_95.low, 1.96 * error, 2.0 * kCurvature * error);
@@ -258,14 +259,14 @@ TEST_F(FitTest, IntervalEnds_LieWhereTheBestOfTheOthersHasGrownSo) {
       ASSERT_TRUE(end.has_value());
       const FitResult held =
           fitted(data, {number("surface.n", 1.1, 4.0)}, {}, {"surface.sigma=" + std::to_string(*end)});
-      // The profile's root is met to 0.5 %, hence its square to 1 %; to_string keeps six digits.
+      // The profile's root is found to 0.5 %, so its square to 1 %; to_string keeps six digits.
       EXPECT_NEAR(held.chi_square - result.chi_square, is_95 ? 3.841 : 1.0, 0.015 * (is_95 ? 3.841 : 1.0));
     }
   }
 }
 
-/// The least growth over the third parameter at coordinates of two, by brute force: scans of its range, and of the
-/// neighbourhood of what was least before.
+/// The smallest growth over the third parameter at given coordinates of two others, by brute force: scans its range,
+/// and the neighbourhood of the previous minimum.
 std::vector<double> brute_growth(Residuals& residuals, const FitResult& result, const std::array<std::size_t, 2>& pair,
                                  const std::vector<Eigen::Vector2d>& places) {
   constexpr int kSteps = 40;
@@ -295,7 +296,8 @@ std::vector<double> brute_growth(Residuals& residuals, const FitResult& result, 
 
 class FitContours : public FitTest {
  protected:
-  /// Contours of n, k and sigma from a few points, compared with brute force: the root of the growth is `off` at most.
+  /// Compares contours of n, k and sigma from a few points with brute force. `off` is the largest allowed error of the
+  /// root of the growth.
   void expect_true(int points, std::uint64_t seed, double off) {
     const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0),
                                               number("surface.sigma", 0.02, 1.0)};
@@ -322,7 +324,7 @@ class FitContours : public FitTest {
     const std::vector<double> right = brute_growth(residuals, result, pair, places);
     for (std::size_t i = 0; i < places.size(); ++i)
       EXPECT_NEAR(roots[i], std::sqrt(std::max(0.0, right[i])), off) << places[i].transpose();
-    // Nothing that is well below the higher level lies around the contours.
+    // Outside the contours nothing may lie well below the higher level.
     places.clear();
     for (int i = 0; i < 225; ++i) places.emplace_back(i % 15 / 14.0, i / 15 / 14.0);
     const std::vector<double> growths = brute_growth(residuals, result, pair, places);
@@ -334,10 +336,10 @@ class FitContours : public FitTest {
   }
 };
 
-// Residuals bend between nodes, and descents end before the bottom of the valley.
+// Residuals bend between nodes, and descents stop before the bottom of the valley.
 TEST_F(FitContours, EightPoints_AreWhereTheLeastOfTheThirdParameterSays) { expect_true(8, 7, 0.1); }
 
-// n, k and sigma cannot be told apart: the valley bends, and the grid that it can pay for is coarse.
+// The data cannot distinguish n, k and sigma. The valley bends, and the affordable grid is coarse.
 TEST_F(FitContours, FourPoints_AreWhereTheLeastOfTheThirdParameterSays) { expect_true(4, 7, 0.4); }
 
 TEST_F(FitTest, NoUncertainties_TheResidualsGiveTheScale) {
@@ -355,8 +357,8 @@ TEST_F(FitTest, NoUncertainties_TheResidualsGiveTheScale) {
   }
 }
 
-// At each k below the minimum's there are two minima of n: one at its bound, and a lower one inside. What k's interval
-// misses without the other branch is most of it.
+// At each k below the minimum there are two minima of n: one at its bound and a lower one inside. Without the other
+// branch, most of k's interval would be missing.
 TEST_F(FitTest, MinimumAtABound_IntervalHasTheOtherBranch) {
   MeasuredData data;
   data.name = "paint";
@@ -392,7 +394,7 @@ TEST_F(FitTest, ParameterWithoutInfluence_IsNamedAndOpen) {
 }
 
 TEST_F(FitTest, FactorsOfOneProduct_AreNamedAsAPair) {
-  // Nothing but the source: I and Q are both proportional to k_s times its irradiance, and Q/I depends on neither.
+  // Only a source: I and Q are both proportional to k_s times its irradiance, and Q/I depends on neither.
   const std::vector<std::string> source_alone = {"emission=none", "surroundings=none", "source.irradiance=1"};
   const MeasuredData data = measured(kNoise, source_alone);
   const FitResult result = fitted(
@@ -464,7 +466,8 @@ TEST_F(FitTest, Intervals_HoldTheTruthAsOftenAsTheySay) {
       options.starts = 1;
       const FitResult result =
           fitted(measured(kNoise, {}, has_uncertainties, 5, static_cast<std::uint64_t>(draw)), parameters, options);
-      const std::size_t j = static_cast<std::size_t>(draw) % 2;  // one a draw: those of a draw are correlated
+      // one parameter per draw, because the parameters of a draw are correlated
+      const std::size_t j = static_cast<std::size_t>(draw) % 2;
       const auto holds = [&](const FitInterval& interval) {
         return interval.low.value_or(0.0) <= truth[j] && truth[j] <= interval.high.value_or(10.0);
       };
@@ -499,7 +502,7 @@ TEST_F(FitTest, Jacobian_IsThatOfFinerDifferences) {
   Residuals exact(model, 1e-10, Differences::kCentral, evaluator_, {});
   const Eigen::VectorXd point = Eigen::Vector2d(0.3, 0.6);
   Linearisation found = residuals.at({point}).front();
-  for (int i = 0; i < 2; ++i) residuals.linearise({&found});  // the first finds its steps
+  for (int i = 0; i < 2; ++i) residuals.linearise({&found});  // the first call determines its steps
   constexpr double kStep = 1e-4;
   for (Eigen::Index j = 0; j < 2; ++j) {
     Eigen::VectorXd below = point, above = point;

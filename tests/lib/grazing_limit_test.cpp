@@ -1,5 +1,5 @@
-// The quotients of diverging moments at 90 degrees: against an independent integral, and against the kernel just
-// before.
+// The quotients of diverging moments at 90 degrees, against an independent integral and against the kernel just below
+// 90 degrees.
 #include "run/closed_forms.hpp"
 
 #include <gtest/gtest.h>
@@ -25,14 +25,14 @@ constexpr std::array kAllIndices = {
     OpticalConstants{1e6, 1e6},   OpticalConstants{0.2, 3.0},   OpticalConstants{0.6, 0.0},
     OpticalConstants{0.6, 1e-4},  OpticalConstants{0.01, 0.0},  OpticalConstants{0.51444802339652151, 4.4e-12}};
 
-// The accuracy that the header promises.
+// The accuracy stated in the header.
 constexpr double kRelativeAccuracy = 1e-12;
 constexpr double kAlbedoAccuracy = 2e-15;
-// Just before 90 degrees the quotients differ from their limit by a series in c^(3 - 2q). Its first term, at most 2% of
-// the quotient at q = 1.3, is extrapolated away; the second is its square.
+// Just below 90 degrees the quotients differ from their limit by a series in c^(3 - 2q). Extrapolation removes its
+// first term, at most 2 % of the quotient at q = 1.3. The second term is the square of the first.
 constexpr double kExtrapolationAccuracy = 4e-4;
 
-/// Ends of panels that shrink by half toward both ends of [from, to].
+/// Ends of panels that halve toward both ends of [from, to].
 std::vector<Real> graded_panels(Real from, Real to) {
   constexpr int kHalvings = 60;
   const Real middle = 0.5L * (from + to);
@@ -84,7 +84,7 @@ TEST(GrazingLimit_EveryIndex, AgreesWithAnotherQuadrature) {
       const Moments limit = grazing_limit_moments(index, q);
       const Real albedo = integral(q, index, [](const auto&) { return 1.0L; });
       const Real r_i = integral(q, index, [](const SmoothReflectance& r) { return 0.5L * (r.s + r.p); });
-      // cos(2 eta) = -1: the facets stand upright.
+      // cos(2 eta) = -1, because the facets are vertical.
       const Real r_q = integral(q, index, [](const SmoothReflectance& r) { return -0.5L * (r.s - r.p); });
       const double bound = kRelativeAccuracy * limit.r_i + kAlbedoAccuracy * limit.albedo;
       EXPECT_NEAR(limit.albedo, static_cast<double>(albedo), kRelativeAccuracy * limit.albedo);
@@ -97,7 +97,7 @@ TEST(GrazingLimit_EveryIndex, AgreesWithAnotherQuadrature) {
   }
 }
 
-/// r_q / r_i of the kernel in double at an angle short of 90 degrees.
+/// r_q / r_i of the kernel in double at a zenith slightly below 90 degrees.
 double quotient_before(Masking masking, const OpticalConstants& index, double q, double short_deg) {
   MomentsRequest request;
   request.masking = masking;

@@ -121,7 +121,7 @@ TEST(GridAxes, FileReadBack_HasItsLabelsAndVerifiesWithoutTheMaterials) {
   EXPECT_TRUE(check.passed());
   EXPECT_EQ(check.checked, 6U);
 
-  // The position of a label in a part of the table is another than in its scene.
+  // A label has another position in a part of the table than in its scene.
   TableHead part = reader.head();
   part.axes[Axis::kMaterial] = {0.0};
   part.labels[Axis::kMaterial] = {"PET"};
@@ -191,7 +191,7 @@ TEST(GridAxes, AllMaterials_AreThoseThatCoverTheSpectrum) {
   const SceneValues scene = scene_with({"grid.material=all", "grid.band_um=[[2, 3]]"});
   const std::vector<std::string>& names = scene.labels[Axis::kMaterial];
   EXPECT_GT(names.size(), 5U);
-  EXPECT_EQ(std::ranges::find(names, "SiO2 amorphous quartz"), names.end());  // known from 7 um
+  EXPECT_EQ(std::ranges::find(names, "SiO2 amorphous quartz"), names.end());  // n and k are known only from 7 um
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The hard cases of the model: what is stored, and every evaluator against it.
+// The hard cases of the model: the stored values, and every evaluator against them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ std::string label(const StoredCase& c) {
 
 TEST(HardCases, References_AreAsGoodAsStated) {
   constexpr double kRelative = 1.5e-13;
-  // r_i is 3e-9 there, and the amplitudes r_s and r_p carry rounding of 1e-16 beside 5e-5.
+  // There r_i is 3e-9, and the amplitudes r_s and r_p of 5e-5 have rounding errors of 1e-16.
   constexpr double kAlmostVacuum = 3e-11;
   for (const StoredCase& c : hard_cases()) {
     const Moments& m = c.moments;
@@ -49,7 +49,7 @@ Moments recomputed(const StoredCase& c, const ReferenceOptions& options) {
   return ReferenceEvaluator(options).evaluate(request, {}).at(0);
 }
 
-// All cases but those of the slow masking, of which every tenth.
+// All cases, but of the slow masking only every tenth.
 TEST(HardCases, AnotherRefinement_StaysWithinTheErrors) {
   std::size_t slow = 0;
   for (const StoredCase& c : hard_cases()) {
@@ -81,7 +81,7 @@ using Setting = std::tuple<Kernel, double>;
 
 class HardCasesOn : public testing::TestWithParam<Setting> {};
 
-// `dolp verify --hard-cases --precision double` and `dolp devices` say in which precision they examine a device.
+// `dolp verify --hard-cases --precision double` and `dolp devices` report the precision in which they test a device.
 TEST(Qualify, EvaluatorInDouble_IsExaminedInDouble) {
   CpuEvaluator evaluator;
   qualify(cases_of(hard_cases(), Distribution::kCauchy, Masking::kNone), evaluator, {1e-2, Precision::kDouble}, {});
@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(Double, HardCasesOn,
                                           testing::Values(1e-4, 1e-6, 1e-9)),
                          setting_name);
 
-// An evaluator that is wrong must be found out.
+// A wrong evaluator must be detected.
 class BiasedEvaluator final : public MomentsOnly {
  public:
   explicit BiasedEvaluator(const std::vector<StoredCase>& cases) : stored_(cases) {}
@@ -139,7 +139,7 @@ class BiasedEvaluator final : public MomentsOnly {
 
 TEST(Qualify, BiasedEvaluator_IsFoundOutCaseByCase) {
   std::vector<StoredCase> cases = cases_of(hard_cases(), Distribution::kCauchy, Masking::kIntegral);
-  // Mirrors do not ask the evaluator; next to grazing rounding of the cosine counts.
+  // Mirrors do not call the evaluator. Near grazing incidence rounding of the cosine matters.
   std::erase_if(cases, [](const StoredCase& c) { return c.shape.sigma == 0.0 || c.theta_deg > 89.9; });
   BiasedEvaluator evaluator(cases);
   for (const double bias : {0.0, 5e-7, 2e-6}) {
@@ -162,8 +162,8 @@ TEST(Qualify, OrdinaryCases_MeetTheToleranceInDouble) {
   }
 }
 
-// rho at 90 degrees under v-cavity and smith masking is the limit of the stored value 1e-9 degrees before it, which it
-// approaches like the cosine, 2e-11, times a logarithm.
+// Under v-cavity and smith masking rho at 90 degrees is the limit of the stored value 1e-9 degrees below. rho
+// approaches the limit like the cosine, 2e-11, times a logarithm.
 TEST(HardCases, RightAngle_IsTheLimitOfTheStoredValue) {
   constexpr double kApproach = 1e-8;
   for (const StoredCase& c : hard_cases()) {

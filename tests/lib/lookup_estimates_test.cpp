@@ -1,5 +1,5 @@
-// The errors that a lookup states, in random tables, coarse ones too, against the model at random points between the
-// entries. DOLP_PROPERTY_DRAWS and DOLP_PROPERTY_SEED choose how many tables, and which.
+// The errors that a lookup states, in random tables (some of them coarse), against the model at random points between
+// the entries. DOLP_PROPERTY_DRAWS sets the number of tables, DOLP_PROPERTY_SEED their seed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,10 +19,10 @@ using namespace scene_run_support;
 
 constexpr std::size_t kTables = 40;
 constexpr std::uint64_t kSeed = 2;
-constexpr std::size_t kPoints = 80;  // of each table
-constexpr double kExact = 1e-7;      // tolerance of what the lookup is compared with
+constexpr std::size_t kPoints = 80;  // points per table
+constexpr double kExact = 1e-7;      // tolerance of the values for comparison
 
-/// Values from an origin in equal steps, or in equal ratios.
+/// Values of an axis in equal steps or in equal ratios.
 std::vector<double> axis(double first, double last, std::size_t count, double origin, bool in_ratios) {
   std::vector<double> values;
   for (std::size_t i = 0; i < count; ++i) {
@@ -34,7 +34,7 @@ std::vector<double> axis(double first, double last, std::size_t count, double or
   return values;
 }
 
-/// A scene with a grid of 4 to some 60 values an axis, sometimes with n and k or the wavelength among the axes.
+/// A scene with a grid of 4 to about 60 values per axis. Sometimes n, k or the wavelength is an axis.
 SceneValues random_scene(Draws& draw) {
   const Distribution distribution = draw.chance(0.75) ? Distribution::kCauchy : Distribution::kGaussian;
   const bool is_metal = draw.chance(0.3);
@@ -76,7 +76,7 @@ TableValues table_of(const SceneValues& scene) {
                     evaluate_scene(scene, grid, *make_evaluator(Evaluator::kFloat), {}));
 }
 
-/// Points within the grid, even in the coordinates of a lookup.
+/// Points in the grid, uniform in the coordinates of a lookup.
 std::vector<TableLookup::Point> random_points(const Axes& grid, Draws& draw) {
   std::vector<TableLookup::Point> points(kPoints);
   for (TableLookup::Point& point : points) {
@@ -109,21 +109,22 @@ std::vector<PointResult> exact_at(const SceneValues& scene, const std::vector<Ta
   }
   SceneValues exact = scene;
   exact.accuracy.tolerance = kExact;
-  return evaluate_scene(exact, {entries, variants_of(axes_of({}, {}, {}, wavelengths))}, *make_evaluator(Evaluator::kDouble), {});
+  return evaluate_scene(exact, {entries, variants_of(axes_of({}, {}, {}, wavelengths))},
+                        *make_evaluator(Evaluator::kDouble), {});
 }
 
 /// Totals over all points.
 struct Tally {
   std::size_t points = 0;
-  std::size_t flagged = 0;  ///< status 2
-  std::size_t missed = 0;   ///< the error with the entries' own bounds exceeds the tolerance
-  double worst = 0.0;       ///< error over what is stated
+  std::size_t flagged = 0;  ///< number of points with status 2
+  std::size_t missed = 0;   ///< number of points whose error, with the bounds of the entries, exceeds the tolerance
+  double worst = 0.0;       ///< largest error over stated error
   std::vector<double> stated = {};
 };
 
 using NextScene = SceneValues (*)(Draws&);
 
-/// Looks up random points of one table of a seed, and adds them to the totals.
+/// Looks up random points in one table of a seed and adds them to the totals.
 void expect_honest(NextScene next_scene, std::uint64_t seed, std::size_t table_number, Tally& tally) {
   Draws draw(seed * 1000003 + table_number);
   const SceneValues scene = next_scene(draw);
@@ -168,7 +169,7 @@ void expect_honest(NextScene next_scene) {
             << " %; median of the stated errors " << tally.stated[tally.stated.size() / 2] << "\n";
 }
 
-/// A beam that passes through the specular direction, or beside it, over surfaces of few sigmas.
+/// A beam that passes through the specular direction or beside it, over surfaces with few values of sigma.
 SceneValues bistatic_scene(Draws& draw) {
   SceneValues scene = random_scene(draw);
   scene.surroundings = Surroundings{.temperature_K = 280.0};
@@ -201,15 +202,15 @@ TEST(LookupEstimates, RandomPointsAcrossTotalReflection_ErrorsAreWithinThem) {
   expect_honest(scene_across_total_reflection);
 }
 
-// Tables with lookups that erred by 1.8 to 5.7 times what was stated, before kinks were known and changes that are
-// small by chance were distrusted.
+// Tables with lookups whose error was once 1.8 to 5.7 times the stated error, before lookups knew kinks and distrusted
+// changes that are small by chance.
 TEST(LookupEstimates, TablesWithKinksOrShortAxes_ErrorsAreWithinThem) {
   const struct {
     NextScene next_scene;
     std::uint64_t seed;
     std::size_t table;
   } rows[] = {
-      // A kink of V-cavities in one of the last two cells of theta.
+      // A kink of v-cavity masking in one of the last two cells of theta.
       {bistatic_scene, 101, 207},
       {bistatic_scene, 203, 65},
       {bistatic_scene, 211, 159},

@@ -29,7 +29,7 @@ SceneValues scene_with(Masking masking, std::size_t thetas, std::size_t sigmas, 
   return scene;
 }
 
-/// The share of random points in a table of the scene's grid that a lookup flags.
+/// The share of random points that a lookup flags in a table of the scene's grid.
 double flagged_share(const SceneValues& scene) {
   const SceneEntries grid = grid_entries(scene);
   const EffectPlan plan = keep_everything(scene);

@@ -1,4 +1,4 @@
-// The bit of the status that says that single scattering is not enough.
+// The status bit for cases in which single scattering is not enough.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -51,7 +51,7 @@ TEST(ModelChange, RoughMetalWithAnyMasking_HasBit32UnlessAllBouncesAreFollowed) 
   const PointResult all = result_of({"surface.masking=v-cavity", "surface.scattering=multiple"});
   EXPECT_EQ(all.status, 0U);
   EXPECT_EQ(all.model_change, 0.0);
-  // The figures of README, Limits.
+  // The figures of section "Limits" in README.md.
   EXPECT_NEAR(result_of({"surface.masking=integral"})[kDolp], 0.154, 5e-4);
   EXPECT_NEAR(result_of({"surface.masking=smith"})[kDolp], 0.108, 5e-4);
   EXPECT_NEAR(all[kDolp], 0.519, 5e-4);
@@ -69,7 +69,7 @@ TEST(ModelChange, EmissionAndSurroundings_IsTheLostLightTimesTheDifferenceOfThei
                              {"surface.masking=none", "surroundings.temperature_K=280", "surface.specular=0.6"}};
   for (Overrides overrides : cases) {
     const PointResult result = result_of(overrides);
-    // Black: 1 - rho is 1.
+    // A black surface: 1 - rho is 1.
     overrides.insert(overrides.end(), {"surface.material={}", "surface.n=1", "surface.k=0"});
     const double emitted = result_of(overrides)[kStokesI];
     ASSERT_GT(emitted, 0.0);

@@ -1,4 +1,4 @@
-// The rules of `dolp mueller` about a scene: diffuse part, k_s, mirrors, 90 degrees, precision and wavelength.
+// The rules of `dolp mueller` for a scene: diffuse part, k_s, mirrors, 90 degrees, precision and wavelength.
 #include "run/mueller_run.hpp"
 #include "error_text.hpp"
 

@@ -1,4 +1,4 @@
-// Weights of response tables: against a rule of another kind, against the reference, and where they have closed forms.
+// Weights of response tables, against a rule of another kind, against the reference, and against closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,8 +40,8 @@ double error_at(const EntryResponses& all, std::size_t entry) {
   return all.responses[ResponseVariable::kResponseError][entry];
 }
 
-/// The largest distance of the weights of any point over both bounds, which must be at most 1. `step`: entries of `a`
-/// from one point to the next.
+/// The largest distance of the weights of any point, divided by both bounds. It must be at most 1. `step`: entries of
+/// `a` per point.
 double expect_within_bounds(const EntryResponses& a, const EntryResponses& b, const std::vector<Point>& points,
                             std::size_t step = 1) {
   double worst = 0.0;
@@ -92,7 +92,7 @@ TEST_P(ResponsesOf, SomeEntries_AreThoseOfTheReference) {
 INSTANTIATE_TEST_SUITE_P(Models, ResponsesOf, testing::ValuesIn(kModels),
                          [](const auto& test) { return name_of(test.param); });
 
-// At 90 degrees a direction of the grid may have nothing to compute.
+// At 90 degrees a direction of the grid may need no computation.
 TEST(Responses, OfADevice_AreThoseOfTheCpu) {
   std::vector<Point> points;
   for (const double theta_deg : {0.0, 60.0, 90.0}) {

@@ -1,4 +1,4 @@
-// Exact identities (shaders/physics/README.md, section 6), on results of whole runs.
+// Exact identities (shaders/physics/README.md, section 6) in results of whole runs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,9 +14,9 @@ namespace {
 
 using namespace scene_run_support;
 
-// A dozen roundings, next to grazing incidence with the cosine's own on top.
+// A dozen roundings; near grazing incidence the rounding of the cosine is added.
 constexpr double kFresnelRounding = 4e-15;
-// The 180 x 180 Gauss points of the independent integral resolve slopes of width 0.3 and more far beyond this.
+// The 180 x 180 Gauss points of the independent integral are far more accurate for slopes of width 0.3 and more.
 constexpr double kGgxAccuracy = 1e-9;
 
 double radians(double angle_deg) { return angle_deg * std::numbers::pi / 180.0; }
@@ -38,8 +38,8 @@ struct GgxMoments {
   double albedo = 0.0;
 };
 
-/// Source: Walter et al. 2007, eq. (33); Heitz 2014, eqs. (72), (99). Microfacet term of GGX at one pair of directions
-/// times cos(theta_r), and its parts with the reflectances of the smooth facet.
+/// Source: Walter et al. 2007, eq. (33); Heitz 2014, eqs. (72), (99). Microfacet term of GGX for one pair of
+/// directions, times cos(theta_r), and its parts with the reflectances of the smooth facet.
 GgxMoments ggx_terms(double alpha_g, Masking masking, const OpticalConstants& index, double theta, double theta_r,
                      double phi) {
   const double a2 = alpha_g * alpha_g;

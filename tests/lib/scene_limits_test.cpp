@@ -1,5 +1,5 @@
-// Whole runs where the model or the arithmetic ends: 90 degrees, normal incidence, extreme slopes, metals, and the
-// status that says so.
+// Whole runs at the limits of the model or of the arithmetic: 90 degrees, normal incidence, extreme slopes, metals; and
+// the status for these limits.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,7 +59,8 @@ TEST(Limits_RightAngle, DivergingReflectanceLeavesOnlyTheDolp) {
 }
 
 TEST(Limits_RightAngle, DivergingSpecularDolpIsTheQuotientJustBefore) {
-  // Short of 90 degrees the emission still counts beside the surroundings, as the cosine, 2e-8, over the moments.
+  // Slightly below 90 degrees the emission still adds to the surroundings, in proportion to the cosine, 2e-8, over the
+  // moments.
   constexpr double kChange = 1e-4;
   for (const Masking masking : {Masking::kNone, Masking::kIntegral}) {
     for (const Distribution distribution : kDistributions) {
@@ -152,7 +153,7 @@ std::vector<SceneEntry> hard_entries(Distribution distribution, Masking masking)
   return entries;
 }
 
-/// Checks that a result consists of numbers, or has the status that revokes them.
+/// Checks that a result consists of numbers, or has the status for results without a value.
 void expect_sound(const PointResult& r, double tolerance, const std::string& name) {
   const bool outside = (r.status & kOutsideModelDomain) != 0;
   EXPECT_EQ(outside, std::isnan(r[Quantity::kStokesI])) << name;
@@ -226,7 +227,7 @@ TEST(Limits_Metals, DolpIsThatOfTheReferenceOrSaysThatItIsNot) {
   });
 }
 
-/// The first zenith angle from which the reflectance is unphysical up to 90 degrees.
+/// The smallest zenith from which the reflectance is unphysical up to 90 degrees.
 double unphysical_from_deg(Masking masking, const OpticalConstants& index, double sigma, Evaluator evaluator) {
   SceneValues scene = make_scene(Distribution::kCauchy, masking, index);
   scene.grid = axes_of({}, {sigma}, {2.0});

@@ -1,4 +1,4 @@
-// The shards of a table in the moments between two openings of their files.
+// The shards of a table if their files change between two openings.
 #include <gtest/gtest.h>
 
 #include <dolp/errors.hpp>
@@ -23,7 +23,7 @@ class ReplacedShards : public testing::Test {
  protected:
   fs::path at(const std::string& name) const { return folder_.path() / name; }
 
-  /// One of two shards, of a surface with a diffuse part.
+  /// Makes one of two shards, for a surface with a diffuse part.
   void make(const std::string& name, std::size_t number, double diffuse) const {
     const SceneValues scene = parse_scene(
         "[surface]\nn = 1.5\nsigma = 0.3\nspecular = 0.4\n[emission]\ntemperature_K = 300\n[spectrum]\n"

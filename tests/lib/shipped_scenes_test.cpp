@@ -1,4 +1,4 @@
-// The DOLP that the shipped scenes state in their comments, recomputed to the digits given.
+// The DOLP that comments in the shipped scenes state, recomputed to the given digits.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -21,16 +21,16 @@ using namespace scene_run_support;
 
 std::string scene_path(const std::string& name) { return DOLP_HOST_DIR "/scenes/" + name + ".toml"; }
 
-/// A comment's statement: the DOLP in percent, the side it is on, and the change in points for each effect dropped.
+/// A statement of a comment: the DOLP in percent, its sign, and the change in points for each dropped effect.
 struct Statement {
-  std::vector<std::string> overrides;  ///< the surface that it is about
+  std::vector<std::string> overrides;  ///< settings for the surface of the statement
   double theta_deg = 0.0;
   std::string dolp;
   std::string side;
   std::map<std::string, std::string> changes;
 };
 
-/// The scene's comment on one line.
+/// The comment of the scene in one line.
 std::string comment_of(const std::string& name) {
   std::ifstream file(scene_path(name));
   std::string text;
@@ -107,7 +107,7 @@ TEST(RoughMetalScene, Comment_StatesTheEmissivities) {
   EXPECT_NE(comment_of("rough_metal").find(statement), std::string::npos) << statement;
 }
 
-/// The part of the sums that a comment names; none for the roughness, which is no effect.
+/// The part that a comment names; none for the roughness, which is no effect.
 std::optional<Part> part_of(const std::string& effect) {
   static const std::map<std::string, Part> kParts = {{"source", Part::kSource},
                                                      {"surroundings", Part::kSurroundings},
@@ -117,9 +117,9 @@ std::optional<Part> part_of(const std::string& effect) {
   return found == kParts.end() ? std::nullopt : std::optional(found->second);
 }
 
-// The comment states changes of DOLP, which those of (Q/I, U/I) are not below.
+// The comment states changes of DOLP. Changes of (Q/I, U/I) are at least as large.
 TEST_P(ShippedScene, Plan_EstimatesTheChangesThatTheCommentStates) {
-  constexpr double kAccuracy = 0.2;  // points: 1e-3 of each of the two
+  constexpr double kAccuracy = 0.2;  // in points: 1e-3 for each of the two values
   const auto [name, statement_count] = GetParam();
   for (const Statement& statement : statements_of(name)) {
     const SceneValues scene = read_scene(scene_path(name), settings_from_text(statement.overrides));

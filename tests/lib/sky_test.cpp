@@ -1,5 +1,5 @@
 // Skies that change with the zenith, from scene to DOLP: values of the model, and random scenes against the independent
-// reference, which integrates the profile itself.
+// reference, which integrates the profile directly.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ SkyProfile profile_of(std::vector<double> zenith_deg, std::vector<double> values
   return profile;
 }
 
-/// The sky of section 11 of shaders/physics/README.md, T = 290 - 80 mu + 10 mu^2, at equal steps of the zenith.
+/// The sky of section 11 of shaders/physics/README.md, T = 290 - 80 mu + 10 mu^2, in equal steps of the zenith.
 SkyProfile quadratic_sky(int steps) {
   SkyProfile sky;
   for (int i = 0; i <= steps; ++i) {
@@ -69,7 +69,7 @@ Reflected reflected_of(const SceneValues& scene, const PointResult& result) {
   return {result[kStokesI] / pi - emitted * (1.0 - result[kRhoI]), result[kStokesQ] / pi + emitted * result[kRhoQ]};
 }
 
-// The digits that are given, and what straight lines between 361 rows change.
+// The given digits, and the error of straight lines between 361 rows.
 constexpr double kDigits = 6e-6;
 
 TEST(Sky, QuadraticProfile_GivesTheValuesOfTheModel) {
@@ -95,8 +95,8 @@ TEST(Sky, QuadraticProfile_GivesTheValuesOfTheModel) {
   }
 }
 
-/// Temperatures that jump about, that rise toward the horizon as those of skies do, that differ much between two rows,
-/// or a built-in sky.
+/// A sky whose temperatures jump, rise toward the horizon as in real skies, or differ much between two rows; or a
+/// built-in sky.
 SkyProfile random_sky(Draws& random) {
   if (random.chance(0.1)) return *built_in_sky(random.chance(0.5) ? "clear-sky" : "overcast");
   if (random.chance(0.1))
@@ -140,10 +140,10 @@ SceneValues random_scene(Draws& random) {
   return scene;
 }
 
-// DOLP_PROPERTY_DRAWS in the environment sets the number of scenes.
+// The environment variable DOLP_PROPERTY_DRAWS sets the number of scenes.
 TEST(Sky, RandomScenes_AgreeWithTheReferenceWithinTheirBounds) {
   const int scenes = static_cast<int>(draws_wanted(250));
-  // 0.129 of 1,000: grooves, skies of jumps whose corners do not all split, grazing directions.
+  // Measured: 0.129 of 1,000 scenes: grooves, skies with jumps whose corners do not all split, grazing directions.
   constexpr double kMostMissed = 0.2;
   Draws random(20261124);
   CpuEvaluator evaluator;
@@ -169,7 +169,7 @@ TEST(Sky, RandomScenes_AgreeWithTheReferenceWithinTheirBounds) {
   EXPECT_LT(missed, kMostMissed * scenes);
 }
 
-// Requests on their way: grids between nodes, many indices from a few, a band, bistatic beams, devices.
+// Different kinds of requests: grids between nodes, many indices from a few, a band, bistatic beams, devices.
 TEST(Sky, DenseGridsAndBands_OnTheDevice_AgreeWithTheReferenceWithinTheirBounds) {
   struct Case {
     const char* name;
@@ -229,7 +229,7 @@ TEST(Sky, WideRangeOfTemperaturesBetweenTwoRows_IsWithinItsEstimate) {
   EXPECT_NEAR(result_of(scene, 81.94349105196471, reference)[kDolp], kRight, 1e-8);
 }
 
-/// DOLP between all bounces and the bracket of one, at each sky and zenith.
+/// Checks that the DOLP with all bounces lies in the bracket of single scattering, for each sky and zenith.
 TEST(Sky, Bracket_HoldsAllBouncesAndIsThatOfAUniformSkyOfOneTemperature) {
   constexpr double kAccuracy = 1e-4;
   CpuEvaluator cpu;
@@ -268,7 +268,7 @@ TEST(Sky, Band_IsTheIntegralOfItsWavelengths) {
   const PointResult band = result_of(scene, 70.0, cpu);
   double i = 0.0;
   double q = 0.0;
-  constexpr int kSteps = 24;  // Simpson's rule: to 1e-6
+  constexpr int kSteps = 24;  // Simpson's rule, accurate to 1e-6
   for (int step = 0; step <= kSteps; ++step) {
     const double wavelength_um = 8.0 + 6.0 * step / kSteps;
     scene.spectrum = {wavelength_um, wavelength_um};

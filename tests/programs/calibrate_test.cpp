@@ -1,4 +1,4 @@
-// Tests of dolp-calibrate and its two halves: the search for the numbers of the rules, and the check of their bounds.
+// dolp-calibrate and its two halves: the search for the numbers of the rules, and the check of their bounds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,8 +32,8 @@ HoldOutOptions few_entries() {
   return options;
 }
 
-// Errors are a tenth of their bounds in the median: of bounds a thousand times too low most are found out, and the
-// worst ratio rises by as much.
+// The median error is a tenth of its bound. If all bounds are a thousand times too small, most are detected, and the
+// worst ratio rises by this factor.
 TEST(HoldOut, PlantedUnderstatement_IsFound) {
   HoldOutOptions options = few_entries();
   const HoldOut honest = held_out(options);
@@ -47,7 +47,7 @@ TEST(HoldOut, PlantedUnderstatement_IsFound) {
   EXPECT_GT(planted.understated, options.entries / 2);
   EXPECT_LE(planted.understated, options.entries);
   EXPECT_GT(planted.worst.ratio, 100.0 * honest.worst.ratio);
-  // An understatement of the one worst entry alone is found too.
+  // Detects bounds that are too small only for the worst entry, too.
   options.bound_share = 0.9 * honest.worst.ratio;
   const HoldOut lowered = held_out(options);
   EXPECT_GE(lowered.understated, 1U);

@@ -1,4 +1,4 @@
-// The program from outside: exit statuses, messages, and what a run that fails leaves behind.
+// The program from outside: exit statuses, messages, and the files that a failed run leaves.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 enum Status { kDone = 0, kAccuracy = 1, kInput = 2, kDevice = 3, kIo = 4, kMemory = 6, kInterrupted = 130 };
 
 const std::vector<std::string> kInputFiles = {"points.csv", "scene.toml"};
-/// Half a million entries at a tight tolerance: minutes of work, so that an interrupt always comes in time.
+/// Half a million entries at a tight tolerance take minutes, so an interrupt always comes in time.
 const std::vector<std::string> kLongRun = split_at(
     "--evaluator cpu --tolerance 1e-9 --precision double --set grid.theta_deg={from=0,to=89,count=5000} "
     "--set grid.sigma={from=0.05,to=1,count=100}",
@@ -35,7 +35,7 @@ std::string scene_with(const std::string& text, const std::string& replacement) 
 
 struct Mistake {
   std::string line;
-  std::vector<std::string> message;  ///< parts of it
+  std::vector<std::string> message;  ///< parts of the message
   Status status = kInput;
   std::string scene = kScene;
   std::string points = kPoints;
@@ -80,7 +80,7 @@ const std::vector<Mistake> kMistakes = {
     {"eval scene.toml --points none.csv -o o.csv", {"none.csv"}},
     {kEvalLine, {"points.csv:1", "angle", "theta_deg"}, kInput, kScene, "angle\n10\n"},
     {kEvalLine, {"theta_deg"}, kInput, kScene, "sigma\n0.1\n"},
-    // Outputs; even root can make no file in /proc.
+    // Outputs. Even root cannot create a file in /proc.
     {"table scene.toml -o none/out.nc", {"none/out.nc"}, kIo},
     {"table scene.toml -o /proc/out.nc", {"/proc/out.nc"}, kIo},
     {"table scene.toml -o " + kLongName + ".nc", {".nc: cannot create the file: File name too long"}, kIo},
@@ -178,7 +178,7 @@ TEST_F(CommandLine, CpuAndReference_NoDriver_Work) {
 }
 
 TEST_F(CommandLine, Strict_FloatAtTightTolerance_Exit1WithTheResults) {
-  // Float rounding alone, 6e-8 of each term, is far above this tolerance.
+  // Float rounding, 6e-8 of each term, is far above this tolerance.
   const std::vector<std::string> hard = joined(kEval, {"--tolerance", "1e-10", "--precision", "float"});
   EXPECT_EQ(dolp(hard).status, kDone);
   const Outcome outcome = dolp(joined(hard, {"--strict"}));
@@ -245,7 +245,7 @@ TEST_F(CommandLine, Interrupt_LongRun_Exit130AndNothingLeft) {
   put("out.nc", "kept\n");
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     TerminalProcess process(command(joined(kTable, kLongRun)));
-    ASSERT_TRUE(process.wait_for_output());  // the progress bar: the work has begun
+    ASSERT_TRUE(process.wait_for_output());  // the progress bar appears, so the work has begun
     process.send_signal(signal);
     const Outcome outcome = process.finish();
     EXPECT_EQ(outcome.status, kInterrupted);

@@ -12,7 +12,7 @@ namespace dolp::cli {
 
 /// The values of the command line. A missing option has an empty text.
 struct Options {
-  int (*run)(const Options&) = nullptr;  ///< the command; null if none was given
+  int (*run)(const Options&) = nullptr;  ///< the command; null without a command
   std::string command_line;              ///< for the table's history
   std::string scene_path, points_path, table_path, output_path, measured_path, plot_path, screenshot_path;
   std::vector<std::string> overrides;  ///< KEY=VALUE of --set

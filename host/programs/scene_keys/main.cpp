@@ -1,4 +1,4 @@
-// Prints the table of the scene keys as Markdown, for host/core/scene/README.md.
+// Prints the table of scene keys as Markdown, for host/core/scene/README.md.
 #include <fmt/format.h>
 
 #include <string>
@@ -38,7 +38,7 @@ std::string code_or_dash(const std::string& text) { return text.empty() ? "—" 
 int main() {
   fmt::print("| key | unit | values | default | meaning |\n|---|---|---|---|---|\n");
   for (const Key& key : dolp::keys()) {
-    if (key.layer > 1) continue;  // as the first
+    if (key.layer > 1) continue;  // later layers have the keys of the first
     const std::string fallback = key.fallback == "required" ? key.fallback : code_or_dash(key.fallback);
     fmt::print("| `{}` | {} | {} | {} | {} |\n", key.key, key.unit, values(key), fallback, key.meaning);
   }

@@ -16,14 +16,14 @@
 namespace dolp {
 namespace {
 
-/// A thread without a stack is one of these.
+/// True if the cause is lack of memory. A thread that gets no stack reports such an error.
 bool is_of_memory(const std::system_error& error) {
   return error.code() == std::errc::not_enough_memory || error.code() == std::errc::resource_unavailable_try_again;
 }
 
 }  // namespace
 
-// fmt::print would throw where stderr cannot be written to.
+// fmt::print would throw if stderr cannot be written.
 int fail(const std::string& program, int status, const std::string& message) {
   std::fputs((program + ": " + printable_line(message) + "\n").c_str(), stderr);
   return status;
@@ -39,7 +39,7 @@ int fail_out_of_memory(const char* program) noexcept {
   std::array<char, 128> line{};
   const int length = std::snprintf(line.data(), line.size(), "%.40s: out of memory: more than %ld MiB wanted\n",
                                    program, used.ru_maxrss / 1024);
-  // There is nothing left to say where even this cannot be written.
+  // If even this fails, nothing more can be reported.
   if (length > 0) static_cast<void>(!::write(STDERR_FILENO, line.data(), static_cast<std::size_t>(length)));
   return kExitMemory;
 }

@@ -1,4 +1,4 @@
-// The only place where errors become exit statuses.
+// Converts errors to exit statuses. Nothing else does.
 #pragma once
 
 #include <functional>
@@ -7,16 +7,16 @@
 
 namespace dolp {
 
-/// One line on stderr that begins with the program's name; returns `status`.
+/// Prints one line on stderr, with the program's name first. Returns `status`.
 int fail(const std::string& program, int status, const std::string& message);
 
-/// One line on stderr for each remark: a warning, after which the program goes on.
+/// Prints a warning line on stderr for each remark. The program then continues.
 void warn(const std::string& program, const std::vector<std::string>& remarks);
 
-/// The line of a program that is out of memory, which needs none; returns kExitMemory.
+/// Prints the line for lack of memory, without using memory. Returns kExitMemory.
 int fail_out_of_memory(const char* program) noexcept;
 
-/// Returns the result of `body`, or the exit status of the error that it threw, after a message of one line.
+/// Returns the result of `body`. If it throws, prints one line and returns the error's exit status.
 int guarded(const std::string& program, const std::function<int()>& body);
 
 }  // namespace dolp

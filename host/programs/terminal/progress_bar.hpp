@@ -8,10 +8,10 @@
 
 namespace dolp {
 
-/// A bar with rate and time left, drawn on stderr when that is a terminal and `quiet` is off.
+/// A bar with rate and remaining time on stderr, if stderr is a terminal and `quiet` is false.
 ///
-/// From the first call of its callback on SIGINT, SIGTERM and SIGHUP only ask the run to stop (base/interrupt.hpp).
-/// Before, while inputs are read, they end the program as usual.
+/// After the first call of its callback, SIGINT, SIGTERM and SIGHUP only request the end of the run
+/// (base/interrupt.hpp). Before that, while inputs are read, they end the program as usual.
 class ProgressBar {
  public:
   explicit ProgressBar(bool quiet);
@@ -19,11 +19,11 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Draws, and returns false after an interrupt. Refers to this object, which ends its line when it is destroyed: a
-  /// temporary one at the end of the call that it is passed to.
+  /// Draws the bar; returns false after an interrupt. The callback refers to this object, whose destructor ends the
+  /// line. So pass a temporary object's callback: it lives until the call ends.
   Progress callback();
 
-  /// Begins again, and counts these, not entries.
+  /// Restarts the bar, which then counts these items instead of entries.
   void count(const std::string& what);
 
  private:

@@ -62,7 +62,7 @@ bool is_device_or_pipe(const fs::path& path) {
   return fs::is_character_file(status) || fs::is_fifo(status) || fs::is_block_file(status) || fs::is_socket(status);
 }
 
-/// Writes all bytes with write(bytes, size), which returns the number of bytes that it wrote, or -1.
+/// Writes all bytes with write(bytes, size), which returns the number of bytes written, or -1.
 template <class Write>
 void write_all(const fs::path& path, std::string_view content, const Write& write) {
   while (!content.empty()) {
@@ -107,10 +107,10 @@ std::pair<fs::path, int> with_new_name(const fs::path& target, const Make& make)
   fail(target, "too many temporary files in its folder; remove .dolp-*.tmp");
 }
 
-/// A file that has no name yet, or a temporary one, with the permissions that the target has or would get.
+/// A file without a name yet, or with a temporary one, that has the permissions of the target.
 struct NewFile {
   File file;
-  fs::path name;  ///< empty: it has none
+  fs::path name;  ///< empty: the file has no name
 };
 
 NewFile create_temporary(const fs::path& target) {
@@ -127,7 +127,7 @@ NewFile create_temporary(const fs::path& target) {
 void keep_permissions(const File& file, const fs::path& target) {
   struct stat existing {};
   const bool exists = ::stat(target.c_str(), &existing) == 0;
-  // Permissions that cannot be kept are no reason to lose the result.
+  // A result is more important than its permissions.
   if (exists) static_cast<void>(!::fchmod(file.get(), existing.st_mode & kPermissionBits));
 }
 
@@ -174,7 +174,7 @@ void check_writable(const fs::path& path) {
   struct stat existing {};
   const bool exists = ::stat(target.c_str(), &existing) == 0;
   if (!exists && errno != ENOENT) fail_errno(path, "cannot create the file");
-  // Root may write to read-only files, but did not ask for it.
+  // Root may write to read-only files, but the user did not ask for that.
   if (exists && (existing.st_mode & kWriteBits) == 0) {
     fail(path, "is read-only; remove it first, or write to another file");
   }
@@ -185,7 +185,7 @@ struct AtomicFile::Impl {
   fs::path path;    // for messages
   fs::path target;  // with symbolic links resolved
   NewFile own;
-  bool is_kept = false;  // keeps its own name if it is never complete
+  bool is_kept = false;  // keeps its name even if it is never complete
   std::uint64_t size = 0;
 
   Impl(fs::path of_user, fs::path of_file, NewFile file)
@@ -198,7 +198,7 @@ struct AtomicFile::Impl {
 
   int descriptor() const { return own.file.get(); }
 
-  /// Gives a file without a name a temporary one.
+  /// Gives a temporary name to a file without a name.
   void link() {
     const std::string open_file = std::string(kOpenFiles) + '/' + std::to_string(descriptor());
     own.name = with_new_name(target, [&](const fs::path& free_name) {
@@ -231,7 +231,7 @@ AtomicFile::AtomicFile(const fs::path& path) {
 
 AtomicFile::AtomicFile(const fs::path& path, const fs::path& under_way) {
   check_writable(path);
-  // Made before the file, which would stay behind if there were no memory for it.
+  // Created before the file, which would remain if there were no memory for this object.
   impl_ = std::make_unique<Impl>(path, follow_links(path), NewFile{File(-1), under_way});
   impl_->is_kept = true;
   File& file = impl_->own.file;
@@ -241,7 +241,7 @@ AtomicFile::AtomicFile(const fs::path& path, const fs::path& under_way) {
   const bool is_locked = ::flock(file.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
   struct stat found {};
   if (::fstat(file.get(), &found) != 0 || !S_ISREG(found.st_mode)) fail(under_way, "is not a regular file");
-  // If the file no longer has this name, its writer has just finished it.
+  // If the file has lost this name, its writer has just finished it.
   if (!is_locked || !has_name(found, under_way)) throw InputError(under_way.string() + ": another run writes it");
   if (found.st_nlink > 1) fail(under_way, "is a file that has other names too; remove it");
   keep_permissions(file, impl_->target);
@@ -283,7 +283,7 @@ void AtomicFile::commit() {
   if (interrupted()) throw Cancelled();
   if (::fsync(own.file.get()) != 0) fail_errno(impl_->path, "cannot write");
   if (own.name.empty()) impl_->link();
-  // Closed, and unlocked, only after it has its name: no other run takes it for one under way.
+  // The file is closed and unlocked only after it has its final name, so no other run takes it for unfinished.
   if (::rename(own.name.c_str(), impl_->target.c_str()) != 0)
     fail_errno(impl_->path, "cannot rename the finished file");
   own.name.clear();

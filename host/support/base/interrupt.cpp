@@ -6,12 +6,12 @@
 namespace dolp {
 namespace {
 
-volatile std::sig_atomic_t is_interrupted = 0;  // the only state that a signal handler may touch
+volatile std::sig_atomic_t is_interrupted = 0;  // a signal handler may touch no other state
 
 }  // namespace
 
 void watch_for_interrupts() {
-  struct sigaction action {};  // without SA_RESTART
+  struct sigaction action {};  // no SA_RESTART, so that waiting calls end
   action.sa_handler = [](int number) {
     if (is_interrupted) {
       std::signal(number, SIG_DFL);

@@ -7,15 +7,15 @@
 
 namespace dolp {
 
-/// Calls body(first, last) for ranges of at most `grain` items, in any order. Together the ranges cover [0, count)
-/// once. They do not depend on the number of threads, so a result does not either if each item or range writes to a
-/// place of its own. Errors: the first exception of `body` stops the loop and is thrown from here.
+/// Calls body(first, last) for ranges of at most `grain` items, in any order. The ranges cover [0, count) exactly once
+/// and do not depend on the number of threads. So a result does not depend on it either, if each item or range writes
+/// to a separate place. Errors: the first exception of `body` stops the loop and is thrown from here.
 void parallel_ranges(std::size_t count, std::size_t grain,
                      const std::function<void(std::size_t first, std::size_t last)>& body);
 
-/// Calls body(i) once for each i < count, in ranges of `grain` items, and `progress` after each range, from one thread
-/// at a time.
-/// Errors: the first exception of `body`, and Cancelled if `progress` returns false; either stops the loop.
+/// Calls body(i) once for each i < count, in ranges of `grain` items. Calls `progress` after each range, from one
+/// thread at a time.
+/// Errors: the first exception of `body`; Cancelled if `progress` returns false. Both stop the loop.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, const Progress& progress,
                   std::size_t grain = 64);
 

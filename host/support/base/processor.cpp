@@ -26,7 +26,7 @@ const std::string& processor_name() {
 std::size_t peak_resident_bytes() {
   rusage used{};
   getrusage(RUSAGE_SELF, &used);
-  return static_cast<std::size_t>(used.ru_maxrss) * 1024;  // which is in kilobytes
+  return static_cast<std::size_t>(used.ru_maxrss) * 1024;  // ru_maxrss is in kilobytes
 }
 
 }  // namespace dolp

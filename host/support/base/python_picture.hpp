@@ -1,12 +1,12 @@
-// Pictures that scripts in Python draw.
+// Runs Python scripts that draw pictures.
 #pragma once
 
 #include <string>
 
 namespace dolp {
 
-/// Runs a script of /usr/bin/python3 with `input` as its standard input and the suffix of `path` as its argument, and
-/// writes what it prints, a picture, to `path`.
+/// Runs a script with /usr/bin/python3. The script gets `input` on standard input and the suffix of `path` as its
+/// argument. The picture that it prints is written to `path`.
 /// Errors: IoError if Python or Matplotlib is missing; the errors of write_text_atomically().
 void draw_with_python(const char* script, const std::string& input, const std::string& path);
 

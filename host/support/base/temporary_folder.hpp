@@ -1,4 +1,4 @@
-// Places for temporary files.
+// Folders for temporary files.
 #pragma once
 
 #include <cstdlib>
@@ -9,7 +9,7 @@
 
 namespace dolp {
 
-/// The system's folder for temporary files, TMPDIR or /tmp. Errors: IoError when it is not there.
+/// The system's folder for temporary files: TMPDIR or /tmp. Errors: IoError if it does not exist.
 inline std::filesystem::path temporary_files() {
   std::filesystem::path folder = "/tmp";
   for (const char* const name : {"TEMPDIR", "TEMP", "TMP", "TMPDIR"}) {
@@ -21,10 +21,10 @@ inline std::filesystem::path temporary_files() {
   throw IoError(folder.string() + ": there is no such folder for temporary files; set TMPDIR to another");
 }
 
-/// A new folder among the system's temporary ones, removed with all that is in it at the end.
+/// A new folder in temporary_files(). The destructor removes it with its content.
 class TemporaryFolder {
  public:
-  /// `name`: begins the folder's name. Errors: IoError.
+  /// `name` is the beginning of the folder's name. Errors: IoError.
   explicit TemporaryFolder(const std::string& name = "dolp") {
     std::string path = (temporary_files() / (name + "-XXXXXX")).string();
     if (::mkdtemp(path.data()) == nullptr) throw IoError(path + ": cannot create the folder");

@@ -23,7 +23,7 @@ namespace {
 constexpr std::string_view kBlanks = " \t";
 constexpr std::size_t kMessageBytes = 80;
 
-/// A character, and the number of its bytes; 0 bytes where the text does not begin with UTF-8.
+/// A character, and its number of bytes; 0 bytes if the text does not begin with UTF-8.
 struct Character {
   std::uint32_t code = 0;
   std::size_t bytes = 0;
@@ -92,7 +92,7 @@ std::string lower_case(std::string_view text) {
 
 std::optional<double> parse_number(std::string_view text) {
   text = trim(text);
-  // from_chars knows no leading plus sign.
+  // from_chars does not accept a leading plus sign.
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -102,7 +102,7 @@ std::optional<double> parse_number(std::string_view text) {
 
 void append_number(std::string& text, double value) {
   std::array<char, 32> digits;
-  if (std::isnan(value)) value = kNan;  // without its sign
+  if (std::isnan(value)) value = kNan;  // a NaN without a sign
   text.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
 }
 
@@ -157,7 +157,7 @@ std::string one_line(std::string_view text) {
     if (!is_space) line += c;
     if (is_space && !line.empty() && line.back() != ' ') line += ' ';
     if (line.size() > kMessageBytes) {
-      // A cut inside a UTF-8 sequence, up to three bytes after its first, would leave an invalid byte.
+      // A cut inside a UTF-8 sequence, up to three bytes after its first byte, would leave an invalid byte.
       for (int i = 0; i < 3 && (static_cast<unsigned char>(line.back()) & 0xC0U) == 0x80U; ++i) line.pop_back();
       line.pop_back();
       return line + "...";
@@ -207,7 +207,8 @@ void check_named_file(const std::string& path, const std::string& prefix) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   const bool may_be_read =
-      is_regular_file(status) || is_directory(status) || !exists(status);  // for read_text's message
+      // read_text reports missing files and folders
+      is_regular_file(status) || is_directory(status) || !exists(status);
   if (path == "-" || !may_be_read) throw InputError(prefix + "is not a regular file");
 }
 

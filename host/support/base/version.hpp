@@ -6,7 +6,8 @@ namespace dolp {
 /// "0.2.0".
 const char* program_version();
 
-/// The commit that it was built from, with "-changed" where files differ from it; "unknown" outside of a repository.
+/// The commit from which the program was built, with "-changed" if files differ from it; "unknown" outside a
+/// repository.
 const char* program_commit();
 
 }  // namespace dolp

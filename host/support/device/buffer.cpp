@@ -9,7 +9,7 @@
 namespace dolp::vulkan {
 namespace {
 
-// Vulkan has no empty buffers, and no structure of the kernels is larger than this.
+// Vulkan has no empty buffers. No structure of the kernels is larger than this.
 constexpr VkDeviceSize kSmallestBuffer = 256;
 
 }  // namespace

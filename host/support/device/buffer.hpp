@@ -9,19 +9,19 @@
 
 namespace dolp::vulkan {
 
-/// A storage buffer with memory of its own, never empty.
+/// A storage buffer with separate memory, never empty.
 class Buffer {
  public:
-  /// With a format, kernels may read it as texels too.
+  /// With a format, kernels may also read the buffer as texels.
   Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, VkFormat texels = VK_FORMAT_UNDEFINED);
 
   VkBuffer get() const { return buffer_.get(); }
   VkBufferView texels() const { return texels_.get(); }
   VkDeviceSize size() const { return size_; }
 
-  /// Writes to the start of a mapped buffer; the next submission sees it.
+  /// Writes to the start of a mapped buffer. The next submission reads the new bytes.
   void write(std::span<const std::byte> bytes);
-  /// Reads from the start of a mapped buffer after the submission that wrote it (and its barrier) has finished.
+  /// Reads from the start of a mapped buffer. The submission that wrote it (and its barrier) must have finished.
   void read(std::span<std::byte> bytes) const;
 
  private:

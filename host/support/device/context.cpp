@@ -16,7 +16,8 @@ constexpr std::array kValidationExtensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
 constexpr const char* kNoDriver =
     "no Vulkan driver was found (on Debian, mesa-vulkan-drivers has one that needs no GPU; VK_DRIVER_FILES and "
     "VK_ICD_FILENAMES override the search)";
-// Message for a result that the loader calls out of memory; a program that short of memory would end by itself.
+// Message for a result that the loader reports as lack of memory. With truly little memory the program would end by
+// itself.
 constexpr const char* kDriverNotLoaded =
     "no Vulkan driver could be loaded: its file (VK_DRIVER_FILES, VK_ICD_FILENAMES, vulkan/icd.d) is malformed";
 
@@ -124,7 +125,7 @@ Instance::~Instance() {
 std::vector<VkPhysicalDevice> Instance::physical_devices() const {
   std::uint32_t count = 0;
   const VkResult result = vkEnumeratePhysicalDevices(instance_, &count, nullptr);
-  // The loader reports drivers that found no hardware either way.
+  // The loader reports drivers without hardware in either of these ways.
   if (result == VK_ERROR_INITIALIZATION_FAILED || (result == VK_SUCCESS && count == 0)) fail_without_driver();
   check(result, "listing the devices");
   std::vector<VkPhysicalDevice> devices(count);

@@ -14,7 +14,7 @@
 
 namespace dolp::vulkan {
 
-/// Collects the validation layer's warnings and errors; the layer may call from any thread.
+/// Collects warnings and errors of the validation layer, which may call from any thread.
 class ValidationLog {
  public:
   void add(std::string message);
@@ -28,9 +28,9 @@ class ValidationLog {
 /// A Vulkan 1.2 instance.
 class Instance {
  public:
-  /// Without `log` there is no validation; with it the Khronos layer reports to it, synchronization included, until
-  /// the instance is destroyed. `extensions` are those that a window needs.
-  /// Errors: DeviceError without any Vulkan driver, or when the validation layer is wanted and not installed.
+  /// Without `log` there is no validation. With `log` the Khronos layer reports to it, with checks of synchronization,
+  /// until the instance is destroyed. `extensions` are the ones that a window needs.
+  /// Errors: DeviceError without a Vulkan driver, or if the validation layer is requested but not installed.
   explicit Instance(ValidationLog* log, const std::vector<const char*>& extensions = {});
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;
@@ -48,18 +48,18 @@ class Instance {
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
 };
 
-/// Requirements of a window on instance and device.
+/// What a window needs from instance and device.
 struct Presentation {
   std::vector<const char*> instance_extensions;
   /// True if a queue family of a device can show images on the display.
   std::function<bool(VkInstance, VkPhysicalDevice, std::uint32_t family)> can_present;
 };
 
-/// A device of an instance, chosen as wished; with `presentation` one that can show a window.
+/// A device of an instance, chosen by `wish`. With `presentation` it can show a window.
 class Context {
  public:
-  /// Errors: DeviceError when no usable device matches, it has no double precision and that is needed, or the
-  /// validation layer is wanted and missing.
+  /// Errors: DeviceError if no usable device matches, if double precision is needed and missing, or if the validation
+  /// layer is requested and missing.
   explicit Context(const DeviceSelector& wish, const Presentation* presentation = nullptr);
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
@@ -70,7 +70,7 @@ class Context {
   const Device& device() const { return *device_; }
 
   std::vector<std::string> validation_messages() const { return log_.messages(); }
-  /// Errors: DeviceError with the first message of the validation layer, if there is one.
+  /// Errors: DeviceError with the first message of the validation layer, if any.
   void check_validation() const;
 
  private:

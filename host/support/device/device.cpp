@@ -78,7 +78,7 @@ void add_properties_1_2(VkPhysicalDevice physical, dolp::Device& description) {
   description.subgroup_size = subgroup.subgroupSize;
 }
 
-// On a CPU device a workgroup fills one vector, because a small dispatch would waste the other invocations.
+// On a CPU device a workgroup fills one vector. A larger one would waste invocations in small dispatches.
 std::uint32_t local_size_of(const dolp::Device& device) {
   if (device.type != dolp::Device::Type::kCpu || device.subgroup_size == 0) return kLocalSize;
   return std::min(device.subgroup_size, kLocalSize);
@@ -161,7 +161,7 @@ MemoryType Device::memory_type(std::uint32_t allowed, MemoryUse use) const {
   VkMemoryPropertyFlags required = 0;
   VkMemoryPropertyFlags preferred = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
   if (use != MemoryUse::kDeviceOnly) required = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT;
-  // The host reads uncached memory a hundred times slower, which outweighs where the device writes to.
+  // The host reads uncached memory a hundred times slower. This costs more than slower writes by the device.
   if (use == MemoryUse::kReadback) preferred = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
 
   std::optional<MemoryType> best;

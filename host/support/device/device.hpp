@@ -10,10 +10,10 @@
 
 namespace dolp::vulkan {
 
-/// Storage buffers that a kernel binds, and texel buffers after them.
+/// Number of storage buffers that a kernel binds. Texel buffers follow them.
 constexpr std::uint32_t kStorageCount = 7;
 constexpr std::uint32_t kTexelCount = 2;
-/// Most invocations of a workgroup; every device allows 128.
+/// Largest number of invocations in a workgroup. Every device allows 128.
 constexpr std::uint32_t kLocalSize = 64;
 
 /// Description of a device, including the reason if dolp cannot run on it.
@@ -41,8 +41,8 @@ std::optional<std::uint32_t> presenting_family(VkInstance instance, VkPhysicalDe
 /// A logical device with one queue.
 class Device {
  public:
-  /// `float64` enables double precision in shaders, which the device must have. `window_family`: the family of a queue
-  /// that also draws and presents; without it, the queue only computes.
+  /// `float64` enables double precision in shaders, which the device must support. `window_family` is the family of a
+  /// queue that also draws and presents; without it, the queue only computes.
   Device(VkPhysicalDevice physical, bool float64, std::optional<std::uint32_t> window_family = {});
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -56,10 +56,10 @@ class Device {
   VkDeviceSize heap_bytes() const { return heap_bytes_; }
   /// Invocations of a workgroup.
   std::uint32_t local_size() const { return local_size_; }
-  /// Valid bits of the queue's timestamps; 0: it has none.
+  /// Valid bits of the queue's timestamps; 0: the queue has no timestamps.
   std::uint32_t timestamp_bits() const { return timestamp_bits_; }
 
-  /// The best of the memory types in `allowed` (a bit mask) for a use. Errors: DeviceError if none fits.
+  /// The best memory type for a use among the types in `allowed` (a bit mask). Errors: DeviceError if none fits.
   MemoryType memory_type(std::uint32_t allowed, MemoryUse use) const;
 
  private:

@@ -7,7 +7,7 @@
 
 namespace dolp {
 
-/// The Khronos validation layer, for tests.
+/// Use of the Khronos validation layer, for tests.
 enum class ValidationMode {
   kFromEnvironment,  ///< on when the environment variable DOLP_VALIDATION is 1
   kOff,
@@ -21,20 +21,20 @@ struct DeviceSelector {
   ValidationMode validation = ValidationMode::kFromEnvironment;
 };
 
-/// All devices in the order of the Vulkan loader; without any, the reason.
+/// All devices in the order of the Vulkan loader; without devices, the reason.
 struct DeviceList {
   std::vector<Device> devices;
   std::string why_empty;
 };
 
-/// Looks for Vulkan devices; never throws if there is none.
+/// Searches for Vulkan devices. Does not throw if there are none.
 DeviceList list_devices();
 
-/// The position of the device that `choice` means: empty is the default, digits are a position, anything else (and
+/// The position of the device that `choice` means. Empty is the default; digits are a position; anything else (and
 /// digits beyond the list) is a part of the name, in any case.
 /// Among several devices, the choice is the first usable device (with double precision if `float64`) in the order
 /// discrete GPU, integrated GPU, virtual GPU, CPU, other.
-/// Errors: DeviceError that lists the devices when nothing matches, or names the features that the matching ones lack.
+/// Errors: DeviceError that lists the devices if nothing matches, or names the features that the matching devices lack.
 std::size_t choose_device(const std::vector<Device>& devices, const std::string& choice, bool float64);
 
 }  // namespace dolp

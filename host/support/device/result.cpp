@@ -43,7 +43,7 @@ std::string result_name(VkResult result) {
 }
 
 bool lacks_addresses() {
-  constexpr std::size_t kDriverBytes = 256U << 20U;  // room for a driver with its compiler
+  constexpr std::size_t kDriverBytes = 256U << 20U;  // memory for a driver with its compiler
   void* const room = ::mmap(nullptr, kDriverBytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (room == MAP_FAILED) return true;
   ::munmap(room, kDriverBytes);
@@ -51,8 +51,8 @@ bool lacks_addresses() {
 }
 
 bool lacks_threads() {
-  // lavapipe starts two for each core, of 32 at most, one for its queue and two for its cache of kernels. It waits
-  // without end for those that it could not start.
+  // lavapipe starts two threads per core, for at most 32 cores, one for its queue and two for its cache of kernels. It
+  // waits forever for threads that it could not start.
   const std::size_t needed = 2 * std::clamp(std::thread::hardware_concurrency(), 1U, 32U) + 3;
   std::promise<void> end;
   const std::shared_future<void> ended = end.get_future().share();
@@ -61,9 +61,9 @@ bool lacks_threads() {
     threads.reserve(needed);
     while (threads.size() < needed) threads.emplace_back([ended] { ended.wait(); });
   } catch (const std::system_error&) {
-    // The system refused a thread; the loop has ended.
+    // the system refused to start a thread
   } catch (...) {
-    end.set_value();  // the threads are joined before `end` goes
+    end.set_value();  // `end` must outlive the threads
     throw;
   }
   end.set_value();

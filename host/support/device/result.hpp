@@ -1,4 +1,4 @@
-// Results of Vulkan calls as exceptions, and unique ownership of what they create.
+// Converts results of Vulkan calls to exceptions, and owns the objects that these calls create.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -15,8 +15,7 @@ struct DeviceTimeout : DeviceError {
   explicit DeviceTimeout(const std::string& message);
 };
 
-/// True after a DeviceTimeout. The program must end without cleaning up, which would pull the driver from under its
-/// threads.
+/// True after a DeviceTimeout. The program must then end without cleaning up, because the driver's threads still run.
 bool driver_is_busy();
 
 /// The device is unusable. A new one may work, even on the same hardware.
@@ -24,7 +23,7 @@ struct DeviceLost : DeviceError {
   using DeviceError::DeviceError;
 };
 
-/// The name of a result, e.g. "VK_ERROR_DEVICE_LOST".
+/// The name of a result, for example "VK_ERROR_DEVICE_LOST".
 std::string result_name(VkResult result);
 
 /// True if the process has too little address space left for a driver.
@@ -33,7 +32,7 @@ bool lacks_addresses();
 /// True if the process may not start the threads that a driver waits for.
 bool lacks_threads();
 
-/// Throws unless `result` is VK_SUCCESS; `action` is a gerund phrase.
+/// Throws unless `result` is VK_SUCCESS. `action` is a phrase such as "creating a buffer".
 /// Errors: DeviceLost; MemoryError if the device or its driver is out of memory; otherwise DeviceError "Vulkan: ACTION
 /// failed: RESULT".
 void check(VkResult result, const std::string& action);
@@ -60,7 +59,7 @@ class Handle {
   T object_ = VK_NULL_HANDLE;
 };
 
-/// The object that a create function of Vulkan makes; `action` is a gerund phrase. Errors: the errors of check().
+/// Creates an object with a create function of Vulkan. `action` as in check(). Errors: the errors of check().
 template <class Owner, class Info, class T>
 Owner created(VkDevice device, VkResult (*create)(VkDevice, const Info*, const VkAllocationCallbacks*, T*),
               const Info& info, const std::string& action) {

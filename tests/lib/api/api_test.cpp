@@ -1,4 +1,4 @@
-// The library as its users see it: of the library this file includes the public header alone.
+// The library as its users see it: this file includes only its public header.
 #include <gtest/gtest.h>
 #include <dolp/dolp.hpp>
 
@@ -305,7 +305,7 @@ TEST_F(Library, AProgressThatReturnsFalse_Cancels_AndLeavesNoFile) {
   EXPECT_TRUE(std::filesystem::is_empty(at("")));
 }
 
-// A file that is there is read in parts; the second part never is.
+// An existing file is read in parts; here the second part is never read.
 TEST_F(Library, Cancelled_WhileAKeptShardIsRead_IsHonoured) {
   const dolp::Scene scene =
       scene_.with({{"surface.masking", "none"}, {"surface.distribution", "gaussian"}, {"accuracy.tolerance", 1e-2}})
@@ -322,7 +322,7 @@ TEST_F(Library, Cancelled_WhileAKeptShardIsRead_IsHonoured) {
   EXPECT_EQ(std::filesystem::last_write_time(shard), written);
 }
 
-// An exception, or what it held: a moved-from object is as good as any other.
+// A moved-from object throws an exception or has its old content.
 TEST_F(Library, MovedFromObjects_KeepTheirValueOrSayWhatTheyAre) {
   dolp::Scene scene = scene_;
   const dolp::Scene taken_scene = std::move(scene);  // NOLINT(performance-move-const-arg): likewise
@@ -398,7 +398,7 @@ TEST_F(Library, EvaluatorInItsOwnCallback_IsAnInputError_AndServesAgain) {
       [&] { evaluator_.write_table(scene_, at("t.nc"), options); },
       [&] {
         evaluator_.write_table(scene_, at("t.nc"), options, {1, 2});
-      },  // one that is there already
+      },  // one that exists already
       [&] { evaluator_.write_points(scene_, at("points.csv"), at("results.csv"), options); },
       [&] { evaluator_.write_mueller(scene_, at("pairs.csv"), at("matrices.csv"), options); },
       [&] { evaluator_.fit(scene_, {data}, fit); }};
@@ -461,7 +461,7 @@ TEST_F(Library, TableOfContentsThatDoNotFit_IsAnInputError) {
   refuses([](dolp::TableValues& table) { table.attributes.push_back(table.attributes.front()); });
 }
 
-// A table cut at one value of k, with that value lost, must not be taken for one at the scene's k.
+// A table cut at one value of k, with that value lost, must not count as a table at the scene's k.
 TEST_F(Library, LookupInATableThatLostAnAxis_IsAnInputError) {
   dolp::TableValues values = evaluator_.table(scene_.with_grid({{"k", {0.2}}})).values();
   const std::vector<double> theta = {30}, sigma = {0.1}, q = {2};

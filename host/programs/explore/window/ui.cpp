@@ -22,7 +22,7 @@ void label(const char* text) {
   ImGui::SameLine();
 }
 
-/// Continues beside the last item, or in a new line where the room is narrower than `width` sizes of the font.
+/// Continues beside the last item, or in a new line if the free space is narrower than `width` font sizes.
 void continue_row(float width) {
   ImGui::SameLine();
   if (ImGui::GetContentRegionAvail().x < width * ImGui::GetFontSize()) ImGui::NewLine();

@@ -33,7 +33,7 @@ std::string parse_range(const std::string& low, const std::string& high, Scale& 
 
 void NumberFields::draw(const std::string& id, double value, const Apply& apply) {
   const auto found = typed_.find(id);
-  // Text for another value is dropped.
+  // Drops text that was typed for another value.
   if (found != typed_.end() && !found->second.is_active && found->second.value != value) typed_.erase(found);
   const std::string unedited = fmt::format("{:.6g}", value);
   const bool is_refused = !reason(id).empty();
@@ -90,7 +90,7 @@ std::optional<std::size_t> draw_list(const std::string& id, float width, const s
                                      const std::string& note, std::optional<std::size_t> chosen,
                                      const std::function<std::vector<ListEntry>()>& entries) {
   ImGui::SetNextItemWidth(width);
-  const ImVec2 corner = ImGui::GetCursorScreenPos();  // an open list is another item
+  const ImVec2 corner = ImGui::GetCursorScreenPos();  // taken before the list, because an open list is a different item
   name_area(id, {corner, {corner.x + ImGui::CalcItemWidth(), corner.y + ImGui::GetFrameHeight()}});
   std::optional<std::size_t> clicked;
   if (!ImGui::BeginCombo(("##" + id).c_str(), shown(current).c_str(), ImGuiComboFlags_HeightLarge)) {
@@ -110,7 +110,7 @@ std::optional<std::size_t> draw_list(const std::string& id, float width, const s
 void row_label(const std::string& text) {
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(shown(text).c_str());
-  // The column is as wide as the longest text that is not cut.
+  // The column is as wide as the longest text that is not cut off.
   const float longest = ImGui::CalcTextSize(shown("λ1, λ2 [µm]").c_str()).x;
   ImGui::SameLine(std::max(6.2F * ImGui::GetTextLineHeight(), longest + 2.0F * ImGui::GetStyle().ItemSpacing.x));
 }
@@ -167,7 +167,7 @@ std::optional<AxisEditor::Change> AxisEditor::draw(const std::string& label, con
   constexpr ImGuiWindowFlags kEditorFlags = ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse;
   std::optional<Change> change;
   if (ImGui::Begin(shown(label).c_str(), &is_open, kEditorFlags)) change = draw_content(now, check);
-  // The first Escape restores the value in a field, the next one closes the window.
+  // The first Escape restores the value in a field; the next one closes the window.
   if (ImGui::IsWindowFocused() && !was_typed && is_pressed(GLFW_KEY_ESCAPE)) is_open = false;
   ImGui::End();
   if (!is_open) shown_.clear();
@@ -256,7 +256,7 @@ void PathDialog::draw() {
     enter(fs::absolute(path()).lexically_normal());
     name_.clear();
   }
-  // A name that cannot be accepted stays for correction.
+  // A refused name stays in the field, so that the user can correct it.
   wants_focus_ = is_accepted && (is_folder || is_missing);
   is_accepted = is_accepted && !wants_focus_ && !name_.empty();
   if (is_accepted || is_cancelled) ImGui::CloseCurrentPopup();

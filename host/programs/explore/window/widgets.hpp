@@ -1,4 +1,4 @@
-// Widgets that ImGui lacks: number fields that keep refused text, lists, names, the editor of an axis, and a dialog for
+// Widgets that ImGui lacks: number fields that keep refused text, lists, names, an editor for axes, and a dialog for
 // paths.
 #pragma once
 
@@ -9,23 +9,23 @@
 
 namespace dolp::explore {
 
-/// Fields that lose no text: Enter, Tab, a click elsewhere and the loss of the window's focus apply it. Refused text
-/// stays in its field, marked, until the user corrects it or Escape restores the value.
+/// Fields that never lose text. Enter, Tab, a click elsewhere or the loss of the window's focus apply the text. Refused
+/// text stays in its field, marked, until the user corrects it or Escape restores the value.
 class NumberFields {
  public:
-  /// Applies a text; returns why it is refused, in one line, or nothing.
+  /// Applies a text. Returns the reason if it is refused, in one line, otherwise nothing.
   using Apply = std::function<std::string(const std::string& text)>;
   /// Applies the texts of the two ends of a range.
   using ApplyEnds = std::function<std::string(const std::string& low, const std::string& high)>;
 
-  /// Draws a field at ImGui's cursor, with `value` or with the typed text. Its area is named "field ID".
+  /// Draws a field at ImGui's cursor with `value` or with the typed text. The name of its area is "field ID".
   void draw(const std::string& id, double value, const Apply& apply);
-  /// Draws field `end`, 0 or 1, "ID 0" or "ID 1", of a range. Both texts are applied together, so that an end that was
-  /// refused is tried again with the other.
+  /// Draws field `end` (0 or 1) of a range; its ID ends in " 0" or " 1". Both texts are applied together, so a refused
+  /// end is tried again when the other end changes.
   void draw_end(const std::string& id, std::size_t end, const std::array<double, 2>& ends, const ApplyEnds& apply);
-  /// The text in a field that was not applied; empty: none.
+  /// The text of a field that is not applied yet; empty: none.
   std::string text(const std::string& id) const;
-  /// Why the text of a field was refused; empty if it was not.
+  /// The reason why the text of a field was refused; empty if it was not.
   std::string reason(const std::string& id) const;
   /// Draws the reason below the fields.
   void draw_reason(const std::string& id) const;
@@ -47,30 +47,30 @@ struct ListEntry {
   bool is_enabled = true;
 };
 
-/// A list of a width, as in ImGui, that shows `current` while it is closed, with a note; its area has the name `id`.
-/// Returns the position of the entry that the user clicks, unless it is `chosen`.
+/// Draws a list with a width, as in ImGui. While closed it shows `current`; it has a note. The name of its area is
+/// `id`. Returns the position of the entry that the user clicks, unless it is `chosen`.
 std::optional<std::size_t> draw_list(const std::string& id, float width, const std::string& current,
                                      const std::string& note, std::optional<std::size_t> chosen,
                                      const std::function<std::vector<ListEntry>()>& entries);
 
-/// Text in the column of labels; the control follows beside it.
+/// Draws text in the column of labels. The control follows beside it.
 void row_label(const std::string& text);
 
-/// A field for the name of the last item, which a right click opens. Returns the name typed in this frame.
+/// Draws a field for a name, which a right click on the last item opens. Returns the name typed in this frame.
 std::optional<std::string> typed_name(std::string name, const std::string& hint = {});
 
-/// A small window for one axis at a time, which a double click on the numbers of an axis opens.
+/// A small window for one axis. A double click on the numbers of the axis opens it.
 class AxisEditor {
  public:
-  /// A change of the axis: typed ends, or none for ends that follow from the data.
+  /// A change of the axis: typed ends, or none if the ends follow from the data.
   struct Change {
     std::optional<Scale> range;
     bool is_log = false;
   };
-  /// Why a range is refused, or nothing.
+  /// Returns the reason why a range is refused, or nothing.
   using Check = std::function<std::string(const Scale& range)>;
 
-  /// Draws the window if it belongs to the axis with this label, whose numbers are in an area.
+  /// Draws the window if it belongs to the axis with this label. `numbers` is the area of the axis's numbers.
   std::optional<Change> draw(const std::string& label, const Area& numbers, const Scale& now, const Check& check);
 
   bool is_open() const { return !shown_.empty(); }
@@ -89,21 +89,21 @@ class PathDialog {
   struct Request {
     std::string title;
     std::string path;                   ///< suggested
-    std::vector<std::string> suffixes;  ///< the list shows files with these
+    std::vector<std::string> suffixes;  ///< suffixes of the files in the list
     bool must_exist = false;
     std::function<void(const std::string& path)> accept;
   };
 
   void open(Request request);
-  /// Draws the dialog if it is open: a field for the name and a list of the folder. The areas of the entries have their
-  /// names; folders end with a slash.
+  /// Draws the dialog if it is open: a field for the name, and a list of the folder. The areas are named after the
+  /// entries; folders end with a slash.
   void draw();
 
  private:
   void enter(const std::filesystem::path& folder);
-  /// True if the chosen file is clicked again.
+  /// Returns true if the user clicks the chosen file again.
   bool draw_list();
-  /// The typed path; a relative one begins in the folder.
+  /// The typed path. A relative path begins in the folder.
   std::filesystem::path path() const { return folder_ / name_; }
 
   Request request_;

@@ -25,9 +25,9 @@ struct Integral {
 
 /// Stop criterion of a quadrature.
 struct Goal {
-  double relative = 1e-9;        ///< error of each integral over its scale
-  std::size_t max_panels = 400;  ///< the quadrature ends here with the error reached so far
-  int subdivisions = 1;          ///< equal parts of each first panel: more of them is a different, finer rule
+  double relative = 1e-9;        ///< error of each integral divided by its scale
+  std::size_t max_panels = 400;  ///< the quadrature stops at this number and returns the error reached
+  int subdivisions = 1;          ///< equal parts of each first panel; more parts give a different, finer rule
 };
 
 /// First panels of a quadrature: the end points and every break point between them.
@@ -47,8 +47,8 @@ class Breaks {
   std::vector<double> points_;
 };
 
-/// One panel by the 21-point Kronrod rule, the error being its distance to the 10-point Gauss rule inside it. Where the
-/// integrand is smooth that is very pessimistic; the usual sharpening of it fails where the integrand is not.
+/// One panel by the 21-point Kronrod rule. The error is the distance to the 10-point Gauss rule inside it. For smooth
+/// integrands this is very pessimistic, but the usual sharper estimate fails for other integrands.
 /// Source: nodes and weights of Boost.Math.
 template <std::size_t N, class Integrand>
 Integral<N> kronrod_panel(const Integrand& integrand, double low, double high) {
@@ -81,8 +81,8 @@ Integral<N> kronrod_panel(const Integrand& integrand, double low, double high) {
   return result;
 }
 
-/// The stretch between two break points as the image of [0, 1] under s -> s^2 (3 - 2 s), which turns square roots and
-/// 3/2 powers of the distance to a break point into smooth functions of s.
+/// The interval between two break points, as the image of [0, 1] under s -> s^2 (3 - 2 s). Square roots and 3/2 powers
+/// of the distance to a break point become smooth functions of s.
 struct Stretch {
   double low;
   double high;
@@ -93,7 +93,7 @@ struct Stretch {
   double derivative(double s) const { return 6.0 * (high - low) * s * (1.0 - s); }
 };
 
-/// A part of a stretch, in s.
+/// A part of an interval, in s.
 template <std::size_t N>
 struct Panel {
   Stretch stretch;
@@ -124,7 +124,7 @@ Integral<N> sum_of(const std::vector<Panel<N>>& panels) {
   return total;
 }
 
-/// Largest of the N errors, each over its scale. A component of infinite scale is never refined.
+/// Largest of the N errors, each divided by its scale. A component with infinite scale is never refined.
 template <std::size_t N>
 double scaled_error(const Values<N>& error, const Values<N>& scale) {
   double worst = 0.0;
@@ -134,7 +134,7 @@ double scaled_error(const Values<N>& error, const Values<N>& scale) {
   return worst;
 }
 
-/// Integrates N functions over the panels between `breaks`, halving the worst panel until every error is within
+/// Integrates N functions over the panels between `breaks`. Halves the worst panel until every error is within
 /// `goal.relative` times `scale(values)`.
 template <std::size_t N, class Integrand, class Scale>
 Integral<N> integrate(const Integrand& integrand, const Breaks& breaks, const Goal& goal, const Scale& scale) {

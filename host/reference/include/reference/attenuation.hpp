@@ -7,7 +7,7 @@
 
 namespace dolp::reference {
 
-/// A zenith angle, with its elevation above the horizon, so that nothing cancels at grazing incidence.
+/// A zenith angle and its elevation above the horizon. With both, nothing cancels at grazing incidence.
 struct Zenith {
   double elevation_rad = 0.0;
   double cos = 1.0;  ///< cosine of the zenith angle
@@ -21,10 +21,10 @@ double smith_lambda(const Slopes& slopes, const Zenith& zenith);
 /// G_1 of the paper's masking, by direct numerical integration over the in-plane tilt gamma.
 /// Equation: G_1 = P(gamma < a) + int_a^b p (1 + cos(theta + gamma)/cos(theta - alpha)), a = pi/2 - theta,
 ///   b = min(pi/2, pi - 2 theta + alpha). Source: eqs. (9)-(12).
-/// Accuracy: `tolerance` absolute.
+/// Accuracy: `tolerance`, absolute.
 class IntegralMasking {
  public:
-  /// Fixes the zenith angle and integrates the terms that do not depend on alpha.
+  /// Fixes the zenith angle. Integrates the terms that do not depend on alpha.
   IntegralMasking(const Slopes& slopes, const Zenith& zenith, double tolerance);
   double operator()(double alpha_rad) const;
 
@@ -44,7 +44,7 @@ class Attenuation {
 
  private:
   Masking masking_;
-  double v_cavity_;  ///< (cos a + cos b) min(cos a, cos b), over cos^2 beta
+  double v_cavity_;  ///< (cos a + cos b) min(cos a, cos b); G needs it over cos^2 beta
   double smith_ = 1.0;
   std::optional<IntegralMasking> integral_;
 };

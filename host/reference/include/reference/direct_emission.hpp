@@ -1,4 +1,4 @@
-// Emission of the facets straight to the viewer.
+// Emission of the facets that goes straight to the viewer.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@
 
 namespace dolp::reference {
 
-/// The direct emission of a rough surface (sigma > 0): direct_i, direct_q and their errors, the rest 0.
+/// The direct emission of a rough surface (sigma > 0): direct_i, direct_q and their errors. All other members are 0.
 ///
 /// Equation: cos(theta) eps = int P t dt dphi e G_1 (1 - |r|^2) in the view's frame, e = cos(theta) + sin(theta) t
 ///   cos(phi), over all facets with e > 0, G_1 being the masking of the view.
@@ -18,8 +18,8 @@ namespace dolp::reference {
 Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
                         const Refinement& refinement);
 
-/// The direct emission with a curve instead of 1 - (R_s + R_p) / 2 and (R_p - R_s) / (2 sin^2), to an accuracy relative
-/// to cos(theta). `bend`: cosine at which the curve bends.
+/// The direct emission with a curve instead of 1 - (R_s + R_p) / 2 and (R_p - R_s) / (2 sin^2). The accuracy is
+/// relative to cos(theta). `bend` is the cosine at which the curve bends.
 Moments direct_response(const Slopes& slopes, Masking masking, double theta_deg,
                         const std::function<double(double cos_beta)>& curve, double bend, const Refinement& refinement);
 

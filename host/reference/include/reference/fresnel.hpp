@@ -9,7 +9,7 @@
 
 namespace dolp::reference {
 
-/// Amplitude coefficients and absorptances, without cancellation.
+/// Amplitude coefficients, and absorptances without cancellation.
 struct FresnelCoefficients {
   std::complex<double> r_s;
   std::complex<double> r_p;
@@ -23,9 +23,10 @@ FresnelCoefficients fresnel(const FacetOptics& optics, double cos_beta);
 
 /// Amplitudes of a medium under films from their characteristic matrices, in the number type of the caller.
 ///
-/// Equation: the tangential fields (E, H) above a film are [cos d, -i sin d / y; -i y sin d, cos d] times those below
-/// it, d = 2 pi q thickness, with y = q for s and q / N^2 for p; r = (y_0 E - H) / (y_0 E + H), starting with (1, y) of
-/// the medium. Each matrix is scaled with e^(i d), which cancels in r and keeps thick absorbing films finite.
+/// Equation: the tangential fields (E, H) above a film are [cos d, -i sin d / y; -i y sin d, cos d] times the fields
+/// below it, with d = 2 pi q thickness, with y = q for s and q / N^2 for p; r = (y_0 E - H) / (y_0 E + H), starting
+/// with (1, y) of the medium. Each matrix is scaled with e^(i d), which cancels in r and keeps thick absorbing films
+/// finite.
 /// Source: Born and Wolf, Principles of Optics, section 1.6.2.
 template <class Number, class Real>
 Amplitudes<Number> stack_amplitudes(const FacetOptics& optics, const Real& cos_beta, const Real& sin2_beta) {

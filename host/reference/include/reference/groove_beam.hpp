@@ -21,16 +21,16 @@ enum class Facet { kA, kB };
 
 /// The part of a parallel beam that enters through the whole aperture and meets one facet first.
 ///
-/// Its flux is that across its width per length of groove: A's and B's first together have 2 cos(alpha) cos(theta). On
-/// a facet the beam covers a stretch, of which the edge nearer to the apex is followed as a ray; the other edge is flux
-/// / cos(beta) away from it, because reflection keeps the flux. What lies above the rim misses the facet.
+/// Its flux is the flux through its width, per length of groove: the beams that meet A and B first have 2 cos(alpha)
+/// cos(theta) together. On a facet the beam covers an interval. Its edge nearer to the apex is followed as a ray. The
+/// other edge is flux / cos(beta) away, because reflection keeps the flux. The part above the rim misses the facet.
 template <class Real>
 class GrooveBeam {
  public:
   /// `omega`: unit vector toward the source, omega[2] > 0.
   GrooveBeam(const Groove<Real>& groove, const Vector<Real>& omega, Facet first)
       : groove_(groove), side_(first == Facet::kA ? Real(-1) : Real(1)), k_(scaled(Real(-1), omega)) {
-    // Where the ray to the apex crosses the aperture; A's side of it meets A first.
+    // The point where the ray to the apex crosses the aperture. Rays on A's side of it meet A first.
     const Real to_apex = groove.sin_alpha * omega[0] / omega[2];
     const Real inside = std::clamp<Real>(to_apex, -groove.cos_alpha, groove.cos_alpha);
     meets_apex_ = inside == to_apex;
@@ -40,14 +40,14 @@ class GrooveBeam {
     if (land() <= 0) flux_ = 0;
   }
 
-  /// Flux on the present facet; 0 when all has left.
+  /// Flux on the current facet; 0 when all light has left.
   const Real& flux() const { return flux_; }
-  /// Direction of propagation toward the present facet or, when all has left, away from the groove.
+  /// Direction of propagation toward the current facet or, when all light has left, away from the groove.
   const Vector<Real>& direction() const { return k_; }
-  /// Outward normal of the present facet.
+  /// Outward normal of the current facet.
   Vector<Real> normal() const { return {-side_ * groove_.sin_alpha, Real(0), groove_.cos_alpha}; }
 
-  /// Reflects the beam into `k_out` and goes to the other facet; returns the flux that leaves the groove instead.
+  /// Reflects the beam into `k_out` and moves to the other facet. Returns the flux that leaves the groove instead.
   Real reflect(const Vector<Real>& k_out) {
     const Real before = flux_;
     k_ = k_out;
@@ -57,7 +57,7 @@ class GrooveBeam {
   }
 
  private:
-  // Moves the edge nearer to the apex on to the facet on `side_`; returns the flux that fits between it and the rim.
+  // Moves the edge nearer to the apex on to the facet on `side_`. Returns the flux that fits between edge and rim.
   Real land() {
     const Vector<Real> n = normal();
     const Real cos_beta = -dot(k_, n);

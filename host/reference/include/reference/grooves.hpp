@@ -1,4 +1,4 @@
-// The hemispherical moments of V-grooves with all bounces, by following beams and their electric vectors in space.
+// The hemispherical moments of V-grooves with all bounces. Follows beams and their electric vectors in space.
 #pragma once
 
 #include "model/moments.hpp"
@@ -21,18 +21,18 @@ namespace dolp::reference {
 Moments groove_moments(const Slopes& slopes, double theta_deg, const FacetOptics& constants,
                        const Refinement& refinement, const SkyFunction* sky = nullptr);
 
-/// Balance of the light that enters one groove, over both facets. All values are per width of the aperture, so that the
+/// Balance of the light that enters one groove, over both facets. All values are per width of the aperture, so the
 /// albedo is cos(theta).
 struct GrooveLight {
   double albedo = 0.0;          ///< flux that leaves if nothing is absorbed
   double reflected = 0.0;       ///< I that leaves, for unpolarised light
-  double polarised = 0.0;       ///< Q: half of the light that leaves for s light less half of that for p light
-  double absorbed = 0.0;        ///< by all bounces
-  double lost = 0.0;            ///< I of light after the last bounce followed, neither reflected nor absorbed
+  double polarised = 0.0;       ///< Q: half the difference of the light that leaves for s light and for p light
+  double absorbed = 0.0;        ///< absorbed by all bounces
+  double lost = 0.0;            ///< I after the last followed bounce; it counts as neither reflected nor absorbed
   double once_reflected = 0.0;  ///< I that leaves after one bounce
-  double once_absorbed = 0.0;   ///< by first bounces
-  double sky_reflected = 0.0;   ///< `reflected` and
-  double sky_polarised = 0.0;   ///< `polarised`, with the function of the sky
+  double once_absorbed = 0.0;   ///< absorbed by the first bounce
+  double sky_reflected = 0.0;   ///< `reflected` with the function of the sky
+  double sky_polarised = 0.0;   ///< `polarised` with the function of the sky
   double bounces = 0.0;         ///< followed
 };
 

@@ -9,14 +9,14 @@ namespace dolp {
 
 using ReferenceMueller = std::array<std::array<double, 4>, 4>;
 
-/// f_s cos(theta_i) cos(theta_r) with k_s = 1, its Jones matrix built from the s and p vectors of the beams and of the
-/// facet in quadruple precision: no angle eta, no care for cancellation.
+/// f_s cos(theta_i) cos(theta_r) with k_s = 1. Its Jones matrix comes from the s and p vectors of the beams and of the
+/// facet, in quadruple precision. So it needs no angle eta, and cancellation does no harm.
 /// Equation: (4), (7), (15); a surface whose scattering is kMultiple has the sum of reference_all_bounces.
 /// Units: sr^-1.
 /// Conventions: Delta_phi = 180 degrees is the specular side; s = k x z, p = k x s for both beams, at zenith 0 the
 /// limit
 ///   at the beam's azimuth; Q = I_s - I_p, U = 2 Re(E_s* E_p), V = 2 Im(E_s* E_p).
-/// Domain: zeniths in [0, 90] degrees, not 90 both; sigma > 0.
+/// Domain: zeniths in [0, 90] degrees, but not both 90; sigma > 0.
 /// Accuracy: 1e-12 of m00.
 ReferenceMueller reference_scattering(const Surface& surface, const FacetOptics& constants, double theta_i_deg,
                                       double theta_r_deg, double delta_phi_deg);
@@ -32,8 +32,8 @@ ReferenceMueller reference_scattering(const Surface& surface, const FacetOptics&
 ReferenceMueller reference_bounces(const Surface& surface, const FacetOptics& constants, double theta_i_deg,
                                    double theta_r_deg, double delta_phi_deg, int bounces);
 
-/// The sum over all bounces, and a bound of its truncation error: 0 except for theta_i close to theta_r, where beams of
-/// any number of bounces contribute.
+/// The sum over all bounces, and a bound of its truncation error. The error is 0 unless theta_i is close to theta_r,
+/// where beams with any number of bounces contribute.
 struct BouncesSum {
   ReferenceMueller matrix{};
   double error = 0.0;
@@ -41,7 +41,7 @@ struct BouncesSum {
 BouncesSum reference_all_bounces(const Surface& surface, const FacetOptics& constants, double theta_i_deg,
                                  double theta_r_deg, double delta_phi_deg);
 
-/// reference_scattering without the cosines: f_s. Domain: zeniths below 90 degrees.
+/// reference_scattering divided by the cosines: f_s. Domain: zeniths below 90 degrees.
 ReferenceMueller reference_pbrdf(const Surface& surface, const FacetOptics& constants, double theta_i_deg,
                                  double theta_r_deg, double delta_phi_deg);
 

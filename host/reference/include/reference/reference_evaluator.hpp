@@ -11,31 +11,31 @@
 namespace dolp {
 
 struct ReferenceOptions {
-  /// Relative to r_i (also for r_q), albedo and absorbed part.
+  /// Relative to r_i (for r_i and r_q), to the albedo and to the absorbed part.
   double relative_tolerance = 1e-9;
-  /// Equal parts of each first panel of the quadratures: 2 recomputes with other nodes.
+  /// Equal parts of each first panel of the quadratures. A value of 2 repeats the computation with other nodes.
   int subdivisions = 1;
 };
 
 /// The independent reference: moments by nested adaptive Gauss-Kronrod quadrature in double, over zenith and azimuth of
-/// the other direction, the masking `integral` integrated over the facet tilt at every point.
-/// Scattering::kMultiple gives the moments of V-grooves (reference/grooves.hpp), wants_direct adds the direct emission
+/// the other direction. The masking `integral` is integrated over the facet tilt at every point. Scattering::kMultiple
+/// gives the moments of V-grooves (reference/grooves.hpp), wants_direct adds the direct emission
 /// (reference/direct_emission.hpp); both are integrated over the slopes of the facets.
 /// Equation: (4), (7), (9)-(13), (15), (16).
 /// Accuracy: relative_tolerance or, if that is larger, a hundredth of the request's tolerance; never more than half of
-///   the request's tolerance. Tolerance 0 means relative_tolerance. With all bounces of steep metal grooves the
-///   quadratures may end before, with larger errors. The errors returned are the errors of the quadratures plus
-///   rounding (test ReferenceMoments_CoarseQuadrature_StaysWithinItsErrors).
+/// the request's tolerance. Tolerance 0 means relative_tolerance. With all bounces in steep metal grooves the
+/// quadratures may end earlier, with larger errors. The returned errors are the errors of the quadratures plus rounding
+/// (test ReferenceMoments_CoarseQuadrature_StaysWithinItsErrors).
 /// Domain: theta in [0, 90] degrees; sigma >= 0; cauchy q > 1, with smith masking q > 3/2; n > 0, k >= 0. At 90 degrees
-///   all four moments are the limits: 0 for v-cavity and smith, finite for the others but infinite (with infinite
-///   errors; r_q and the absorbed part negative) for cauchy with q <= 3/2.
-///   Multiple scattering is for v-cavity masking, direct emission for v-cavity and smith.
+/// all four moments are limits: 0 for v-cavity and smith. For the other maskings they are finite, except for cauchy
+/// with q <= 3/2: there they are infinite with infinite errors, and r_q and the absorbed part are negative. Multiple
+/// scattering is for v-cavity masking, direct emission for v-cavity and smith.
 /// Errors: InputError outside the domain; Cancelled when `progress` returns false.
 class ReferenceEvaluator final : public ModelEvaluator {
  public:
   explicit ReferenceEvaluator(ReferenceOptions options = {}) : options_(options) {}
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
-  /// pBRDFs from explicit vectors (reference/mueller.hpp), to kScatteringErrorDouble.
+  /// pBRDFs from explicit vectors (reference/mueller.hpp), with the accuracy kScatteringErrorDouble.
   std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override;
   bool computes_each_entry() const override { return true; }
   EvaluationReport report() const override { return report_; }

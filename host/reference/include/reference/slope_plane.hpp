@@ -1,9 +1,9 @@
 // Integrals over the slopes of the facets, for integrands that bend along unknown curves.
 //
 // A slope has the length t and the angle chi from the normal of the plane of incidence, sin(chi) = cos(phi). A facet
-// that faces A at phi faces B at phi + 180 degrees, and both sides of the plane of incidence are alike, so chi runs
-// over a quarter of a turn. The bends of the integrand are not computed but detected: its `regime`, a number that
-// encodes the history of the beams, changes there, and bisection finds the place.
+// that faces A at phi faces B at phi + 180 degrees, and both sides of the plane of incidence are equal. So chi covers a
+// quarter of a turn. The bends of the integrand are not computed but detected: a number `regime`, which encodes the
+// history of the beams, changes there, and bisection finds the position.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,7 @@ struct SlopePoint {
   double cos_chi;  ///< sin(phi)
 };
 
-/// Equal slopes of every direction: chi = 0 ... pi/2.
+/// The slope of length t at the angle chi, from 0 to pi/2.
 inline SlopePoint slope_point(double t, double chi_rad) { return {t, std::sin(chi_rad), std::cos(chi_rad)}; }
 
 using Electric = std::array<std::complex<double>, 3>;
@@ -44,7 +44,7 @@ inline Vector<double> toward_view(const SlopePoint& point, const Zenith& view) {
   return {view.sin * point.sin_chi, -view.sin * point.cos_chi, view.cos};
 }
 
-/// A wave of unit amplitude for each of the view's polarisations, s = k x z (at theta = 0 its limit) and p = k x s.
+/// Waves of unit amplitude for the two polarisations of the view: s = k x z (at theta = 0 its limit) and p = k x s.
 struct UnitLight {
   Electric from_s;
   Electric from_p;
@@ -56,7 +56,7 @@ inline UnitLight unit_light(const SlopePoint& point, const Vector<double>& k) {
   return {{s[0], s[1], s[2]}, {p[0], p[1], p[2]}};
 }
 
-/// Reflects a wave of a beam; returns its absorbed part.
+/// Reflects a wave of a beam. Returns its absorbed part.
 inline double reflect(const Bounce<double>& b, const FresnelCoefficients& r, Electric& e) {
   const Amplitudes<std::complex<double>> incident = components(b, e);
   e = reflected(b, incident, {r.r_s, r.r_p});
@@ -70,7 +70,7 @@ class SpecialAngles {
       : brewster_(1.0 / std::hypot(1.0, constants.index.n, constants.index.k)),
         critical_(constants.index.n < 1.0 ? std::sqrt(1.0 - constants.index.n * constants.index.n) : 0.0) {}
 
-  /// Code of the special angles below which cos(beta) lies: 0 to 3.
+  /// Encodes the interval between special angles that contains cos(beta): 0 to 3.
   std::uint64_t side(double cos_beta) const {
     return (cos_beta < brewster_ ? 1U : 0U) + (cos_beta < critical_ ? 2U : 0U);
   }
@@ -80,23 +80,24 @@ class SpecialAngles {
   double critical_;
 };
 
-/// Numbers that differ where the integrand is on different sides of a bend.
+/// Returns different numbers for points on different sides of a bend.
 using Regime = std::function<std::uint64_t(const SlopePoint&)>;
 
 /// Steps of the scan of chi, in addition to a dozen equal steps.
 struct ScanSteps {
-  double per_gamma = 0.0;  ///< equal steps of the view's angle in the plane across the groove, per its half-angle gamma
-  int halvings = 0;        ///< steps toward chi = 0, each half of the one before
+  /// equal steps of the view's angle in the plane across the groove, per half-angle gamma of the groove
+  double per_gamma = 0.0;
+  int halvings = 0;  ///< steps toward chi = 0, each half as long as the previous one
 };
 
-/// Finds the bends of the integrands of a view, by scanning and bisecting a regime.
+/// Finds the bends of the integrands of a view: scans a regime, then bisects.
 class RegimeScan {
  public:
   RegimeScan(const Zenith& view, double theta_rad, const ScanSteps& steps, Regime regime)
       : view_(view), theta_rad_(theta_rad), steps_(steps), regime_(std::move(regime)) {}
-  /// Break points of chi in (0, pi/2) at one t; none if there are too many to be worth it.
+  /// Break points of chi in (0, pi/2) at one t. Empty if there are too many to be useful.
   std::vector<double> chi_breaks(double t) const;
-  /// Break points of t up to `end`, where bends enter at chi = 0 or pi/2.
+  /// Break points of t up to `end`, at which bends enter at chi = 0 or pi/2.
   std::vector<double> t_breaks(double width, double end) const;
 
  private:
@@ -112,19 +113,19 @@ struct SlopeTask {
   std::function<Values<N>(const SlopePoint&)> integrand;
   std::function<Values<N>(const Values<N>&)> scales;  ///< scales of the integrals, for the goal
   double steepest;                                    ///< upper end of t
-  double bends_end;                                   ///< t up to which bends are looked for, at most the upper end
-  double thin_weight;            ///< rows of less weight per v need no smaller errors than rows of this weight
-  std::function<double()> work;  ///< done so far, in any unit
-  double most_work;              ///< beyond it no integral is refined
+  double bends_end;                                   ///< t up to which bends are searched, at most `steepest`
+  double thin_weight;            ///< rows with less weight per v may have the errors of rows with this weight
+  std::function<double()> work;  ///< work done so far, in any unit
+  double most_work;              ///< after this much work no integral is refined
 };
 
-/// int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi of N functions; the errors of the inner integrals follow as N
-/// values more.
+/// int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi of N functions. N more values follow: the errors of the inner
+/// integrals.
 template <std::size_t N>
 Integral<2 * N> integrate_slopes_of(const SlopeTask<N>& task, const Slopes& slopes, const RegimeScan& scan,
                                     const Refinement& refinement, const Values<N>& expected) {
   constexpr double kInnerShare = 0.02;
-  constexpr double kInnerFloor = 4e-15;  // a Kronrod panel's own rounding is 1e-15 of its magnitude
+  constexpr double kInnerFloor = 4e-15;  // the rounding of a Kronrod panel is 1e-15 of its magnitude
   const auto is_tired = [&] { return task.work() > task.most_work; };
   Values<N> boundless;
   boundless.fill(std::numeric_limits<double>::infinity());

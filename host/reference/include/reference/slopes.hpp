@@ -20,17 +20,17 @@ class Slopes {
   /// p(t), t = tan(gamma): the density of the slope in one vertical plane.
   double in_plane_density(double slope) const;
 
-  /// Share of in-plane slopes above `slope`, for slopes so large that p is its leading power.
+  /// Share of in-plane slopes above `slope`, if `slope` is so large that p equals its leading power.
   /// Domain: slope >= 1e8 m.
   double in_plane_tail(double slope) const;
 
-  /// Share of the slopes of any azimuth above t.
+  /// Share of all slopes that exceed t, at any azimuth.
   double share_above(double t) const;
 
-  /// The slope that a share of all slopes is above.
+  /// The slope that a share of all slopes exceeds.
   double quantile(double share) const;
 
-  /// int 2 pi P t^2 dt above t. Domain: cauchy q > 3/2; t >= 1e8 m, where P is its leading power.
+  /// int 2 pi P t^2 dt above t. Domain: cauchy q > 3/2; t >= 1e8 m, where P equals its leading power.
   double length_above(double t) const;
 
   /// The integration variable v of t = width sinh(v), and the density 2 pi P t dt/dv, whose integral over v is 1.
@@ -38,7 +38,7 @@ class Slopes {
   double coordinate_of(double t) const { return std::asinh(t / width_); }
   double density_at(double v) const;
 
-  /// Slope over which the densities fall off: the natural unit of t.
+  /// Slope at which the densities fall off: the natural unit of t.
   double width() const { return width_; }
   double m() const { return m_; }
   double q() const { return q_; }

@@ -1,4 +1,4 @@
-// Vectors in space, and a plane wave at a facet by explicit cross products. `Real` is double or of more digits.
+// Vectors in space, and a plane wave at a facet by explicit cross products. `Real` is double or more precise.
 #pragma once
 
 #include <array>
@@ -36,7 +36,7 @@ Vector<Real> unit(const Vector<Real>& a) {
   return scaled(Real(1) / sqrt(dot(a, a)), a);
 }
 
-/// A reflection at a facet: s normal to both beams, p_in = k x s and p_out = k' x s.
+/// A reflection at a facet. s is normal to both beams; p_in = k x s and p_out = k' x s.
 template <class Real>
 struct Bounce {
   Real cos_beta;
@@ -44,11 +44,11 @@ struct Bounce {
   Vector<Real> k_out;
 };
 
-/// Reflection of the direction k at a facet. At normal incidence, where any s will do because r_p = -r_s, it is
-/// `s_at_normal`, a unit vector in the facet.
+/// Reflection of the direction k at a facet. At normal incidence s is `s_at_normal`, a unit vector in the facet; any s
+/// would do, because r_p = -r_s.
 template <class Real>
 Bounce<Real> bounce(const Vector<Real>& k, const Vector<Real>& normal, const Vector<Real>& s_at_normal) {
-  constexpr double kNormal = 1e-30;  // sin^2 beta below which only rounding turns s
+  constexpr double kNormal = 1e-30;  // below this sin^2 beta the direction of s is only rounding
   Bounce<Real> b;
   b.cos_beta = -dot(k, normal);
   b.k_out = sum(k, scaled(Real(2 * b.cos_beta), normal));

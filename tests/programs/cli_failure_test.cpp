@@ -258,7 +258,7 @@ TEST_F(CommandLine, Interrupt_LongRun_Exit130AndNothingLeft) {
 TEST_F(CommandLine, Interrupt_WhileWriting_Exit130) {
   ASSERT_EQ(dolp(kTable).status, kDone);
   std::string points = "theta_deg,sigma,q\n";
-  for (int i = 0; i < 2000; ++i) points += "60,0.1,2\n";  // results for more than a pipe holds
+  for (int i = 0; i < 2000; ++i) points += "60,0.1,2\n";  // more results than a pipe holds
   put("many.csv", points);
   ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
   for (const std::vector<std::string>& arguments :
@@ -310,7 +310,7 @@ TEST_F(CommandLine, Interrupt_WaitingForInput_Ends) {
   TerminalProcess process(command({"eval", "scene.toml", "--points", "pipe", "-o", "out.csv"}));
   const Descriptor writer(::open(at("pipe").c_str(), O_WRONLY | O_CLOEXEC));  // waits until the program reads
   process.send_signal(SIGINT);
-  EXPECT_EQ(process.finish().status, -SIGINT);  // which a shell shows as 130
+  EXPECT_EQ(process.finish().status, -SIGINT);  // a shell shows this as 130
   EXPECT_FALSE(fs::exists(at("out.csv")));
 }
 

@@ -1,4 +1,4 @@
-// The program from outside: what its commands write and report.
+// The program from outside: the output of its commands.
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <sys/stat.h>
@@ -21,10 +21,10 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr std::size_t kSceneEntries = 16;
-// Debian's own Python, to which python3-netcdf4 and python3-numpy belong.
+// Debian's Python, for which python3-netcdf4 and python3-numpy are installed.
 const std::string kPython = "/usr/bin/python3";
 
-/// NaN equals NaN here, and 0 is not -0.
+/// Compares NaN as equal to NaN, and 0 as different from -0.
 bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
 }
@@ -218,7 +218,7 @@ TEST_F(CommandLine, Evaluators_SamePoints_AgreeWithinTheirStatedErrors) {
       const auto sum = [&](const char* name) { return vulkan.at(name)[i] + other->at(name)[i]; };
       const auto difference = [&](const char* name) { return std::abs(vulkan.at(name)[i] - other->at(name)[i]); };
       EXPECT_LE(difference("dolp"), sum("error_estimate")) << i;
-      // Each error is relative to its own rho_i; the two differ by less than their mean error.
+      // Each error is relative to rho_i of its entry. The two values differ by less than their mean error.
       EXPECT_LE(difference("rho_i"), sum("rho_error_estimate") * 0.5 * sum("rho_i")) << i;
       EXPECT_LE(difference("rho_q"), sum("rho_error_estimate") * 0.5 * sum("rho_i")) << i;
     }
@@ -251,7 +251,7 @@ TEST_F(CommandLine, Json_EachEvaluator_HasTheContractsKeys) {
   }
 }
 
-// A rough metal, of few entries: the summary says how much DOLP single scattering may be off.
+// A rough metal with few entries: the summary states how wrong DOLP may be with single scattering.
 TEST_F(CommandLine, Summary_MaskingWithADirectEmission_SaysWhatSingleScatteringLeavesOpen) {
   const std::vector<std::string> metal = {"--set", "surface.masking=smith", "--set", "surface.n=10",
                                           "--set", "surface.k=60"};
@@ -268,14 +268,14 @@ TEST_F(CommandLine, Summary_MaskingWithADirectEmission_SaysWhatSingleScatteringL
     EXPECT_NE(text.out.find("direct emission differs by up to "), std::string::npos) << text.out;
     options.push_back("--json");
     EXPECT_GT(json::parse(with(options).out)["scattering_gap"], 0.01);
-    EXPECT_TRUE(json::parse(with({"--json"}).out)["scattering_gap"].is_null());  // masking integral
+    EXPECT_TRUE(json::parse(with({"--json"}).out)["scattering_gap"].is_null());  // null for masking integral
     EXPECT_EQ(with({}).out.find("  scattering "), std::string::npos);
   }
 }
 
 TEST_F(CommandLine, Json_WallTime_CountsTheWriting) {
   ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
-  // Until somebody reads the pipe, nobody can write to it.
+  // A pipe can be opened for writing only when it has a reader.
   const std::jthread reader([this] {
     std::this_thread::sleep_for(std::chrono::milliseconds(1500));
     content("pipe");
@@ -416,7 +416,7 @@ TEST_F(CommandLine, Materials_List_HasNameRangeAndSource) {
 }
 
 TEST_F(CommandLine, Materials_OneAtAWavelength_HasNAndKOfItsTable) {
-  // The row of host/data/materials.csv. A name may be cut at a blank and written in any case.
+  // This row is in host/data/materials.csv. A name may be cut at a blank and written in any case.
   constexpr double kWaterN = 1.218;
   constexpr double kWaterK = 0.0508;
   const Outcome text = dolp({"materials", "WATER", "--at", "10"});

@@ -1,4 +1,4 @@
-// Dense tables from outside: the interpolated entries, their report, and a check that its promises hold.
+// Dense tables from outside: interpolated entries, the report about them, and a check of their stated errors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ const std::vector<std::string> kDense = split_at(
     ' ');
 constexpr std::size_t kDenseEntries = std::size_t{2} * 40 * 36;
 const std::vector<std::string> kOff = {"--set", "accuracy.interpolation=off"};
-// Sampling error of estimates for all directions from some of them.
+// Sampling error of estimates for all directions that come from only some of them.
 constexpr double kSampling = 0.2;
 
 class DenseTable : public CommandLine {

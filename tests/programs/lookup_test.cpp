@@ -1,4 +1,4 @@
-// `dolp lookup` from outside: its promises against `dolp eval` at the same points, and its messages.
+// `dolp lookup` from outside: its stated errors against `dolp eval` at the same points, and its messages.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -81,7 +81,7 @@ TEST_F(Lookup, AbsentColumns_ComeFromTheScene) {
   EXPECT_EQ(few.at("dolp"), looked_up().at("dolp"));
 }
 
-// Its text exceeds what an attribute may hold.
+// The text of the scene is longer than an attribute can be.
 TEST_F(Lookup, TableWithALongProfile_HasItsScene) {
   std::ostringstream text;
   text << "wavelength_um,zenith_deg,temperature_K\n";
@@ -103,7 +103,7 @@ TEST_F(Lookup, CoarseTable_SaysThatItMissesTheTolerance) {
   make_table({});
   put("points.csv", "theta_deg,sigma,q\n70,0.2,2.5\n");
   const Columns found = looked_up();
-  // DOLP and rho miss the tolerance; the table's own entries have status 32.
+  // DOLP and rho miss the tolerance, and the table's entries have status 32.
   EXPECT_EQ(found.at("status")[0], 2.0 + 16.0 + 32.0);
   EXPECT_GT(found.at("error_estimate")[0], 1e-3);
   EXPECT_EQ(lookup({"--strict"}).status, 1);

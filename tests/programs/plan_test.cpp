@@ -15,13 +15,13 @@ using nlohmann::json;
 const std::vector<std::string> kIsothermal = {"--set", "surroundings.temperature_K=300"};
 const std::vector<std::string> kBistatic = {"--set", "geometry.mode=bistatic", "--set",
                                             "source.relative_irradiance=0.5"};
-// Emission and surroundings of one temperature are unpolarised whatever the moments are.
+// If emission and surroundings have one temperature, their sum is unpolarised for any moments.
 const std::vector<std::string> kBeamAlone = {"--set", "surroundings.temperature_K=300",
                                              "--set", "geometry.mode=bistatic",
                                              "--set", "source.relative_irradiance=0.5"};
-// A float on the device may round an order the other way than on the CPU, which changes a circle of nodes or two.
+// A float on the device may round an order differently than the CPU. This changes one or two circles of nodes.
 constexpr double kOrderRounding = 0.05;
-// Sampling error of estimates for all entries from 256 of them.
+// Sampling error of estimates for all entries that come from 256 of them.
 constexpr double kSampling = 0.1;
 
 std::vector<std::string> names_in(const json& rows) {
@@ -45,7 +45,7 @@ class Plan : public CommandLine {
   }
 };
 
-// The self-check computes a few entries of such a grid again; only their shapes have masking tables.
+// The self-check computes a few entries of such a grid again. Only their shapes have masking tables.
 TEST_F(Plan, MillionValuesOfAnAxis_FitIntoTwoGigabytes) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "AddressSanitizer takes terabytes of addresses";
@@ -86,8 +86,10 @@ TEST_F(Plan, Memory_IsAboutThatOfTheTable) {
   const std::string peak =
       "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True); "
       "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)";
-  constexpr double kAbout = 1.7;  // drivers differ, and parts overlap in memory as the machine is busy
-  for (const char* count : {"200", "1200", "6000"}) {  // a part of a table, two, and six, from which on it stays
+  // allows for different drivers, and for parts that overlap in memory on a busy machine
+  constexpr double kAbout = 1.7;
+  // one, two and six parts of a table; with more parts the memory stays constant
+  for (const char* count : {"200", "1200", "6000"}) {
     const std::vector<std::string> grid =
         split_at(fmt::format("scene.toml --tolerance 1e-2 --set surface.masking=none --set grid={{theta_deg={{from=0,"
                              "to=80,count={}}},sigma={{from=0.1,to=0.5,count=1000}},q=[2]}}",
@@ -203,7 +205,7 @@ TEST_F(Plan, FewEntries_PredictsTheCpuRunExactly) {
 
 TEST_F(Plan, Bistatic_PredictsMomentsAndBeams) {
   const json predicted = plan(kBistatic);
-  EXPECT_EQ(predicted["moments"], 4);  // of one view and four surfaces
+  EXPECT_EQ(predicted["moments"], 4);  // for one view and four surfaces
   EXPECT_EQ(predicted["beams"], 16);
   EXPECT_TRUE(predicted["first_attempt"]["is_exact"]);
   EXPECT_EQ(predicted["evaluations"], table(joined(kBistatic, {"--evaluator", "cpu"}))["evaluations"]);
@@ -220,7 +222,7 @@ TEST_F(Plan, Bistatic_PredictsMomentsAndBeams) {
 }
 
 TEST_F(Plan, Device_PredictsEvaluationsAndDispatches) {
-  // Cases that need no second attempt.
+  // Cases whose entries are computed only once.
   for (const char* masking : {"none", "v-cavity", "smith"}) {
     const std::vector<std::string> easy = split_at(
         fmt::format("--tolerance 1e-4 --set surface.masking={} --set grid.theta_deg=[65,40,10] --set grid.sigma=0.4 "
@@ -244,7 +246,7 @@ TEST_F(Plan, ManyEntries_PredictionFromSomeIsNearly) {
   const json spent = table(joined(grid, {"--evaluator", "cpu"}));
   EXPECT_FALSE(predicted["first_attempt"]["is_exact"]);
   const double evaluations = spent["evaluations"];
-  EXPECT_NEAR(predicted["evaluations"], evaluations, 2.0 * kSampling * evaluations);  // directions differ
+  EXPECT_NEAR(predicted["evaluations"], evaluations, 2.0 * kSampling * evaluations);  // directions differ in their cost
 }
 
 TEST_F(Plan, NoDevice_PlansAllTheSame) {

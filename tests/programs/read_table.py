@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The other reader: compares a NetCDF table with the CSV that `dolp eval` wrote for entries of its grid.
+"""Compares a NetCDF table with the CSV that `dolp eval` wrote for entries of its grid, without dolp's own reader.
 
 Usage: read_table.py TABLE.nc EVAL.csv
 Each row of the CSV names an entry by theta_deg, sigma and q (an axis of one value may be left out). The columns that
@@ -25,7 +25,7 @@ def read_csv(path):
 
 
 def positions(dataset, columns, row_count):
-    """The entry of each row along each axis."""
+    """The position of each row's entry along each axis."""
     result = []
     for column, axis in AXES.items():
         values = np.asarray(dataset[axis][:])

@@ -1,4 +1,4 @@
-// Tables in parts: shards and their merge, runs that are killed and go on, and axes of wavelength, n and k.
+// Tables in parts: shards and their merge, runs that are killed and continued, and axes of wavelength, n and k.
 #include <signal.h>
 
 #include <bit>
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Sigma and q dense enough to be interpolated, axes scattered and descending.
+// Sigma and q are dense enough for interpolation. Axes are uneven and descending.
 const std::string kGrid = R"(title = "in parts"
 [surface]
 k = 0.2
@@ -31,7 +31,7 @@ sigma = { from = 0.8, to = 0.05, count = 20 }
 q = { from = 1.6, to = 6, count = 20 }
 )";
 
-// More than one part of a run.
+// More than one part per run.
 const std::vector<std::string> kLarge = split_at(
     "--set grid.theta_deg={from=0,to=89,count=320} --set grid.sigma={from=0.1,to=0.8,count=64} --set "
     "grid.q={from=1.8,to=6,count=64} --set grid.wavelength_um=[10.0,8.0] --set grid.n=[1.5] --tolerance 1e-2",
@@ -84,7 +84,7 @@ TEST_F(Shards, MergedAgain_AreTheTableOfOneRun_WithEveryMasking) {
   }
 }
 
-// More shards than directions: wavelengths and n are cut too.
+// There are more shards than directions, so wavelengths and n are cut, too.
 TEST_F(Shards, OfSeveralAxes_MergeIntoTheTableAndItsCsv) {
   ASSERT_EQ(dolp({"table", "grid.toml", "-o", "one.csv"}).status, 0);
   for (int i = 1; i <= 14; ++i) {
@@ -149,7 +149,7 @@ TEST_F(Shards, BadNumbers_OneLineEach) {
   }
 }
 
-// submit.sh of host/cluster relies on the name.
+// submit.sh in host/cluster relies on this name.
 TEST_F(Shards, OneOfOne_HasTheNameOfAShard_AndMerges) {
   ASSERT_EQ(dolp({"table", "grid.toml", "-o", "t.nc", "--shard", "1/1"}).status, 0);
   EXPECT_FALSE(fs::exists(at("t.nc")));
@@ -159,7 +159,7 @@ TEST_F(Shards, OneOfOne_HasTheNameOfAShard_AndMerges) {
   expect_same("one.nc", "t.nc");
 }
 
-// Files that a scene names, and options, that are not in its text.
+// Files that a scene names, and options, which are not in the scene's text.
 class Inputs : public Shards {
  protected:
   void SetUp() override {
@@ -221,7 +221,7 @@ TEST_F(Inputs, OtherEvaluatorOrOptions_AreNamed_AndAShardOfThemIsNotKept) {
   }
 }
 
-/// Changes a shard as another program does: `edit` is Python, in which `table` is the open file.
+/// Changes a shard as another program might. `edit` is Python code in which `table` is the open file.
 class Edited : public Inputs {
  protected:
   void edit(const std::string& name, const std::string& text) {
@@ -239,7 +239,7 @@ TEST_F(Edited, HashOfValuesMissing_IsRefusedByMergeAndLookup) {
     put("p.csv", "theta_deg,sigma,q\n60,0.1,2\n");
     expect_refused(dolp({"lookup", "t.2-of-2.nc", "--points", "p.csv", "-o", "l.csv"}),
                    "t.2-of-2.nc: has no text attribute values_hash");
-    // Neither is it kept.
+    // It must not be kept either.
     EXPECT_EQ(shard(2).out.find("is there already"), std::string::npos);
     EXPECT_EQ(merge().status, 0);
   }
@@ -273,7 +273,7 @@ class Resume : public Shards {
 
   void make_whole() { ASSERT_EQ(dolp(joined({"table", "grid.toml", "-o", "one.nc"}, kLarge)).status, 0); }
 
-  /// Runs until a first part is there, then sends the signal.
+  /// Runs until the first part is written, then sends the signal.
   Outcome interrupted(int signal) { return interrupted(signal, command_); }
   Outcome interrupted(int signal, const std::vector<std::string>& words) {
     TerminalProcess process(command(words));
@@ -304,7 +304,7 @@ TEST_F(Resume, AfterCtrlC_SaysHowToGoOn_AndGivesTheSameBits) {
   EXPECT_NE(resumed.out.find("2621440"), std::string::npos) << resumed.out;
 }
 
-// The rest of an interrupted run, damaged in several ways.
+// The files of an interrupted run, damaged in several ways.
 TEST_F(Resume, OverADamagedPartialFile_GivesTheSameBits) {
   make_whole();
   ASSERT_EQ(interrupted(SIGINT).status, 130);
@@ -316,8 +316,8 @@ TEST_F(Resume, OverADamagedPartialFile_GivesTheSameBits) {
       {"", progress},                                         // removed
       {values.substr(0, 1000), progress},                     // cut
       {values.substr(0, 5'000'000), progress},                //
-      {content("one.nc") + values, progress},                 // another file, longer than it will be
-      {overwritten(values, 400'000), progress},               // inside of its first part
+      {content("one.nc") + values, progress},                 // another file, longer than the finished table
+      {overwritten(values, 400'000), progress},               // inside its first part
       {values, overwritten(progress, 30)},                    // the identity
       {values, overwritten(progress, progress.size() - 80)},  // the summary of the last part
       {values, progress.substr(0, progress.size() - 3)},
@@ -330,7 +330,8 @@ TEST_F(Resume, OverADamagedPartialFile_GivesTheSameBits) {
     const Outcome resumed = dolp(command_);
     ASSERT_EQ(resumed.status, 0) << resumed.err;
     expect_same("t.nc", "one.nc");
-    EXPECT_EQ(fs::file_size(at("t.nc")) / 10'000, fs::file_size(at("one.nc")) / 10'000);  // but for times and the like
+    // equal except for times and similar attributes
+    EXPECT_EQ(fs::file_size(at("t.nc")) / 10'000, fs::file_size(at("one.nc")) / 10'000);
     EXPECT_FALSE(fs::exists(at("t.nc.partial")) || fs::exists(at("t.nc.partial.txt")));
   }
 }

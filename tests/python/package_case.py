@@ -1,4 +1,4 @@
-"""A scene in a folder of its own, for the tests of the package."""
+"""A scene in a separate folder, for tests of the package."""
 import pathlib
 import tempfile
 import unittest

@@ -1,5 +1,5 @@
-// The reference's V-grooves with all bounces and its direct emission: exact results of the model, and its beams and
-// quadratures against plainer ones.
+// The reference's V-grooves with all bounces and its direct emission, against exact results of the model and against
+// simpler beams and quadratures.
 #include "reference/grooves.hpp"
 
 #include <gtest/gtest.h>
@@ -97,7 +97,7 @@ TEST(ReferenceGrooves, Albedo_IsOne_AndNothingIsLost) {
   }
 }
 
-// Counts rays by their bounces, each ray followed by looking for the nearest facet.
+// Counts rays by their number of bounces. Follows each ray by a search for the nearest facet.
 std::vector<double> counted_shares(double alpha, const reference::Vector<double>& omega, int rays) {
   std::vector<double> shares(40);
   const double c = std::cos(alpha), s = std::sin(alpha);
@@ -126,7 +126,7 @@ std::vector<double> counted_shares(double alpha, const reference::Vector<double>
 
 TEST(GrooveBeam, Fluxes_MatchCountedRays) {
   constexpr int kRays = 20000;
-  constexpr double kTolerance = 3.0 / kRays;  // of a ray at each end of up to three beams
+  constexpr double kTolerance = 3.0 / kRays;  // one ray at each end of up to three beams
   for (const double alpha_deg : {10.0, 35.0, 60.0, 80.0, 85.0}) {
     for (const double theta_deg : {0.0, 20.0, 55.0, 80.0, 89.0}) {
       for (const double phi_deg : {0.0, 40.0, 89.0, 130.0}) {
@@ -180,14 +180,15 @@ TEST(ReferenceGrooves, LimitsOfTheMaterial) {
   EXPECT_EQ(vacuum.r_i, 0.0);
   EXPECT_EQ(vacuum.r_q, 0.0);
   EXPECT_NEAR(vacuum.deficit, 0.5, kRounding);
-  // 1 - R is 4e-12 at normal incidence, and more only for p within 1e-6 of grazing; few bounces.
+  // 1 - R is 4e-12 at normal incidence. It is larger only for p polarisation within 1e-6 of grazing, where there are
+  // few bounces.
   const Moments mirror = all_bounces({kGaussian, 60.0, {0.3, 2.0}, {1.0, 1e6}}, {.relative_tolerance = 1e-6});
   EXPECT_NEAR(mirror.r_i, 0.5, 1e-5);
 }
 
 TEST(ReferenceGrooves, SmoothSurface_IsFresnels) {
   constexpr double kSigma = 1e-3;
-  constexpr double kTolerance = 2e-4;  // slopes of variance 2 sigma^2 times a logarithm for q = 2
+  constexpr double kTolerance = 2e-4;  // slopes of variance 2 sigma^2, times a logarithm for q = 2
   for (const OpticalConstants index : {kPaint, kMetal}) {
     for (const double theta_deg : {0.0, 60.0}) {
       const Moments mirror = all_bounces({kCauchy, theta_deg, {0.0, 2.0}, index});
@@ -246,7 +247,7 @@ TEST(ReferenceDirect, BracketsTheEmission) {
     EXPECT_LT(0.0, multiple.direct_i);
     EXPECT_LT(multiple.direct_i, multiple.deficit);
     EXPECT_LT(multiple.deficit, single.deficit);
-    // Further bounces add no more polarisation than light.
+    // The later bounces add no more polarisation than light.
     EXPECT_LE(std::abs(-multiple.r_q - multiple.direct_q), multiple.deficit - multiple.direct_i);
   }
 }
@@ -266,7 +267,8 @@ TEST(ReferenceDirect, Vacuum_EmitsAll) {
   }
 }
 
-// Over facets by their angle beta from the view and their azimuth eta around it, of which Fresnel needs beta alone.
+// Integrates over facets by their angle beta from the view and their azimuth eta around it. Fresnel's formulas need
+// only beta.
 TEST(ReferenceDirect, PlainQuadratureAroundTheView_Agrees) {
   constexpr double kPlainTolerance = 1e-6;
   constexpr unsigned kDepth = 9;

@@ -1,5 +1,5 @@
-// dolp-reference-values: writes reference moments of the hard cases and of random points, which every evaluator is
-// compared with.
+// dolp-reference-values: writes reference moments of the hard cases and of random points. Tests compare every evaluator
+// with them.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -35,15 +35,15 @@ constexpr double kNegligible = 1e-12;
 // Rounding of a closed form: fewer than 16 operations.
 constexpr double kClosedFormRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
-/// Two settings of the quadrature; the finer one's values are stored.
+/// Two settings of the quadrature. The values of the finer one are stored.
 struct Refinements {
   dolp::ReferenceOptions coarse;
   dolp::ReferenceOptions fine;
 };
-// The finest settings at which rounding in double still lets the nested quadratures agree.
+// The finest settings at which the nested quadratures still agree within rounding in double.
 constexpr Refinements kForHardCases{{.relative_tolerance = 3e-13, .subdivisions = 1},
                                     {.relative_tolerance = 1e-13, .subdivisions = 2}};
-// A thousandth of the tightest tolerance that random points are compared at, 1e-9.
+// A thousandth of 1e-9, the tightest tolerance at which random points are compared.
 constexpr Refinements kForRandomPoints{{.relative_tolerance = 1e-11, .subdivisions = 1},
                                        {.relative_tolerance = 1e-12, .subdivisions = 2}};
 
@@ -65,7 +65,7 @@ dolp::MomentsRequest request_of(const Group& group, const std::vector<Case>& cas
   return request;
 }
 
-/// The finer of two quadratures, its errors no less than the distance between the two.
+/// The finer of two results. Its errors are at least the distance of both.
 Moments compared(const Moments& coarse, const Moments& fine) {
   Moments result = fine;
   result.r_i_error = std::max(fine.r_i_error, std::abs(coarse.r_i - fine.r_i));
@@ -80,8 +80,8 @@ void replace(double& value, double& error, double exact) {
   error = kClosedFormRounding * std::abs(exact);
 }
 
-/// Equation: at theta = 0 without masking A = 1 - (m^2/(1 + m^2))^(q - 1), gaussian 1 - exp(-1/m^2); with smith
-/// masking, q = 2 and sigma = 1/sqrt(2) A = 1 - ln 2.
+/// Equation: at theta = 0 without masking A = 1 - (m^2/(1 + m^2))^(q - 1) (cauchy) or 1 - exp(-1/m^2) (gaussian). With
+/// smith masking, q = 2 and sigma = 1/sqrt(2), A = 1 - ln 2.
 bool put_normal_albedo(const Row& row, Moments& moments) {
   const double m2 = 2.0 * row.input.shape.sigma * row.input.shape.sigma;
   const double q = row.input.shape.q;
@@ -96,7 +96,7 @@ bool put_normal_albedo(const Row& row, Moments& moments) {
   return is_ln2;
 }
 
-/// Replaces quadratures by closed forms where there are any, and says so.
+/// Replaces results of quadratures by closed forms if they exist. The row names its source.
 void put_closed_forms(Row& row) {
   Moments& moments = row.moments;
   if (row.input.shape.sigma == 0.0) {
@@ -116,7 +116,7 @@ void put_closed_forms(Row& row) {
       put_normal_albedo(row, moments) ? "; r_q albedo closed form: theta = 0" : "; r_q closed form: theta = 0";
 }
 
-/// Larger of the relative errors of r_i and r_q, over r_i.
+/// The larger error of r_i and r_q, relative to r_i.
 double relative_error(const Moments& moments) {
   const double scale = std::max(moments.r_i, kNegligible * moments.albedo);
   return scale > 0.0 ? std::max(moments.r_i_error, moments.r_q_error) / scale : 0.0;
@@ -156,14 +156,14 @@ std::string csv_line(const Row& row) {
   }
   for (const double error : {m.r_i_error, m.r_q_error, m.albedo_error, m.deficit_error}) {
     std::array<char, 32> text{};
-    // Rounded to three digits, and up.
+    // Three digits, rounded up.
     std::snprintf(text.data(), text.size(), ",%.2e", 1.01 * error);
     line += text.data();
   }
   return line + "," + c.name + "," + row.origin + "\n";
 }
 
-// A reader never sees half a file.
+// Readers see either the old or the complete new file.
 void write(const std::filesystem::path& path, const std::string& command, const std::vector<Row>& rows) {
   const std::filesystem::path part = path.string() + ".part";
   std::ofstream file(part);

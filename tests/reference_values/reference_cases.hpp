@@ -1,4 +1,4 @@
-// The points at which reference values are stored: the model's hard cases, and seeded random points.
+// The points with stored reference values: the model's hard cases, and random points with a fixed seed.
 #pragma once
 
 #include <array>
@@ -36,10 +36,10 @@ inline constexpr std::array<Group, 8> kGroups{{{Distribution::kCauchy, Masking::
                                                {Distribution::kGaussian, Masking::kVCavity},
                                                {Distribution::kGaussian, Masking::kSmith}}};
 
-/// The hard cases of a group: ends of every range, split lines that coincide, indices that reflect nothing or all.
+/// The hard cases of a group: ends of every range, coinciding split lines, indices that reflect nothing or everything.
 ///
-/// v-cavity and smith moments vanish at 90 degrees, so that those groups have the case just before ("grazing-limit")
-/// and not the one at 90.
+/// Moments with v-cavity and smith masking vanish at 90 degrees. So these groups have a case just below
+/// ("grazing-limit") instead of the case at 90 degrees.
 std::vector<Case> hard_cases(const Group& group);
 
 /// Random points: `count_a` of domain A ("random-a": sigma 0.01-1.2, q 1.06-13, theta to 89.5 degrees) and `count_b` of

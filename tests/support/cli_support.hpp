@@ -1,4 +1,4 @@
-// A scene, points and a folder for the tests that run the program itself.
+// A scene, points and a folder, for tests that run the program.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ inline const std::vector<std::string> kResultColumns = {
     "stokes_u",     "stokes_v",     "dolp",     "error_estimate", "rho_error_estimate",
     "emissivity_s", "emissivity_p", "q_over_i", "status"};
 
-/// Neither variable may name a driver, so that the loader finds none.
+/// With neither variable naming a driver, the loader finds none.
 inline const std::vector<std::pair<std::string, std::string>> kNoDriver = {{"VK_DRIVER_FILES", "/nonexistent.json"},
                                                                            {"VK_ICD_FILENAMES", "/nonexistent.json"}};
 
@@ -34,21 +34,21 @@ inline std::vector<std::string> joined(std::vector<std::string> a, const std::ve
   return a;
 }
 
-/// A message of one line that says `part`.
+/// Expects a message of one line that contains `part`.
 inline void expect_one_line(const std::string& err, const std::string& part = "") {
   EXPECT_EQ(std::ranges::count(err, '\n'), 1) << err;
   EXPECT_TRUE(err.starts_with("dolp: ") && err.ends_with('\n')) << err;
   EXPECT_NE(err.find(part), std::string::npos) << err;
 }
 
-/// Wrong input: nothing but such a message.
+/// Expects that wrong input produces only such a message.
 inline void expect_refused(const Outcome& outcome, const std::string& part, int status = 2) {
   EXPECT_EQ(outcome.status, status);
   EXPECT_EQ(outcome.out, "");
   expect_one_line(outcome.err, part);
 }
 
-/// Columns of a CSV file by name; lines that begin with # are left out.
+/// Columns of a CSV file by name, without lines that begin with #.
 using Columns = std::map<std::string, std::vector<double>>;
 
 inline std::vector<std::string> split_at(const std::string& text, char separator) {
@@ -58,7 +58,7 @@ inline std::vector<std::string> split_at(const std::string& text, char separator
   return parts;
 }
 
-/// The lines that hold data: a table's attributes, with its time and command line, are left out.
+/// The lines with data. Leaves out the attributes of a table, which contain time and command line.
 inline std::vector<std::string> data_lines(const std::string& csv) {
   std::vector<std::string> lines = split_at(csv, '\n');
   std::erase_if(lines, [](const std::string& line) { return line.starts_with('#'); });
@@ -82,7 +82,7 @@ inline Columns parse_csv(const std::string& csv) {
   return columns;
 }
 
-/// Each test has a folder with scene.toml and points.csv, in which the program runs.
+/// Each test has a folder with scene.toml and points.csv. The program runs in it.
 class CommandLine : public testing::Test {
  protected:
   void SetUp() override {
@@ -113,7 +113,7 @@ class CommandLine : public testing::Test {
     wanted.input = input;
     return run(wanted);
   }
-  /// The same on a machine without a Vulkan device.
+  /// Runs the program as on a machine without a Vulkan device.
   Outcome without_device(const std::vector<std::string>& arguments) const {
     Command wanted = command(arguments);
     wanted.environment = kNoDriver;

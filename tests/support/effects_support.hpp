@@ -18,7 +18,7 @@ namespace effects_support {
 
 using namespace dolp;
 
-/// Scenes with and without each effect, many of them with an effect that hardly counts.
+/// Scenes with and without each effect. Many have an effect that is almost negligible.
 class RandomScenes {
  public:
   explicit RandomScenes(std::uint64_t seed) : random_(seed) {}

@@ -1,4 +1,4 @@
-// Messages of what is thrown.
+// Messages of exceptions.
 #pragma once
 
 #include <dolp/errors.hpp>
@@ -6,7 +6,7 @@
 
 namespace dolp {
 
-/// The message of the Error that a call throws.
+/// The message of the exception of type Error that a call throws.
 template <class Error = InputError, class Call>
 std::string error_text(const Call& call) {
   try {

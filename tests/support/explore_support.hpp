@@ -1,4 +1,4 @@
-// A scene, and a session that a worker on the CPU serves.
+// A scene, and a session with a worker on the CPU.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ class Driver {
  public:
   explicit Driver(SceneEdits edits) : session(std::move(edits)), worker_(on_the_cpu(evaluator_), [] {}) { settle(); }
 
-  /// Takes what has been computed, and asks for what is wanted; false if there is no more to come.
+  /// Takes finished results and requests wanted ones. Returns false if nothing remains.
   bool frame() {
     const bool was_idle = worker_.is_idle();
     session.take(worker_.take_news());
@@ -78,14 +78,14 @@ inline std::vector<Point> truth(const Scene& scene, const PointList& list) {
   return points_of(list, evaluator.evaluate(scene, list.columns()));
 }
 
-/// The same at the zeniths of a curve.
+/// The exact results at the zeniths of a curve.
 inline std::vector<Point> truth(const Scene& scene, const std::vector<Point>& points) {
   std::vector<double> theta_deg;
   for (const Point& point : points) theta_deg.push_back(point.theta_deg);
   return truth(scene, points_at(scene, theta_deg));
 }
 
-/// A worker's answer to a job of one part, at its tolerance.
+/// A worker's result for a job of one part, at the job's tolerance.
 inline JobPart done(const Job& job) {
   return {.key = job.key, .scene = job.scene, .points = truth(job.scene, job.parts.front()), .is_last = true};
 }

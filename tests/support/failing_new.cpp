@@ -17,7 +17,7 @@ void* operator new(std::size_t size) {
   throw std::bad_alloc();
 }
 
-// All that `operator delete` frees, since the address sanitizer has others of its own.
+// Replaces every form that `operator delete` frees, because the address sanitizer has different ones.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   try {
     return ::operator new(size);

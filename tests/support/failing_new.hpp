@@ -1,9 +1,9 @@
-// Lets an allocation of C++ fail, in programs that link failing_new.cpp.
+// Makes an allocation of C++ fail, in programs that link failing_new.cpp.
 #pragma once
 
 namespace dolp {
 
-/// While the object lives, one allocation of its thread throws std::bad_alloc: the one after `before` others.
+/// While the object exists, one allocation of its thread throws std::bad_alloc: the one after `before` others.
 class FailingNew {
  public:
   explicit FailingNew(long before);

@@ -1,4 +1,4 @@
-// An evaluator in one precision, whatever requests say.
+// An evaluator with one precision, whatever precision requests have.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace dolp {
 
-/// Scenes ask for float first and for double where that misses; this is asked in one of them alone.
+/// Scenes request float first, and double for entries that miss. This evaluator computes everything in one of them.
 class FixedPrecision final : public ModelEvaluator {
  public:
   explicit FixedPrecision(Precision precision,

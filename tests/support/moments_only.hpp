@@ -1,4 +1,4 @@
-// A base of evaluators that tests give moments of their own.
+// Base class of evaluators whose moments tests define.
 #pragma once
 
 #include <stdexcept>
@@ -8,7 +8,7 @@
 
 namespace dolp {
 
-/// Nothing asks it for matrices.
+/// An evaluator without pBRDFs; no test requests them from it.
 class MomentsOnly : public ModelEvaluator {
  public:
   std::vector<ScatteringMatrix> scatter(const ScatteringRequest&, const Progress&) override {

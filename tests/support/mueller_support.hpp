@@ -1,4 +1,4 @@
-// Random surfaces and pairs of beams for the tests of the pBRDF, hard ones among them.
+// Random surfaces and pairs of beams for tests of the pBRDF, including hard ones.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace dolp {
 
-/// One entry, spelled out.
+/// One entry with all its values.
 struct ScatteringPoint {
   BeamAngles angles;
   SlopeShape shape;
@@ -78,14 +78,14 @@ class RandomPoints : public Draws {
     }
   }
 
-  // Half of the pairs are near the specular direction, by some widths of the slope distribution.
+  // Half of the pairs are near the specular direction, within some widths of the slope distribution.
   BeamAngles angles(double sigma, const OpticalConstants& index) {
     BeamAngles a{zenith(), zenith(), uniform(-180.0, 180.0)};
     const double width_deg = 60.0 * std::min(sigma, 0.5);
     switch (static_cast<int>(uniform(0.0, 10.0))) {
       case 0:
         return a;
-      case 1:  // retro, exactly or nearly
+      case 1:  // retro direction, exactly or nearly
         return {a.theta_i_deg, clamped(a.theta_i_deg + nearly_zero()), nearly_zero()};
       case 2:  // normal
         return {0.0, clamped(uniform(0.0, width_deg)), a.delta_phi_deg};

@@ -35,7 +35,7 @@ int open_partner(const Descriptor& terminal) {
   return open_file(::ptsname(terminal.number()), O_RDWR);
 }
 
-/// Arguments and environment of a program as the kernel takes them.
+/// Arguments and environment of a program in the form that the kernel needs.
 class Image {
  public:
   explicit Image(const Command& command) : texts_(command.arguments) {
@@ -60,7 +60,7 @@ class Image {
 };
 
 pid_t start(const Command& command, const Descriptor& in, const Descriptor& out, const Descriptor& err) {
-  // Made before the fork: a thread that is not in the child may hold the lock of the memory there.
+  // Made before the fork: another thread, which the child lacks, may hold the lock of the allocator.
   const Image image(command);
   const pid_t process = ::fork();
   require(process >= 0, "cannot fork");
@@ -91,7 +91,7 @@ Descriptor::Descriptor(int number) : number_(number) { require(number_ >= 0, "ca
 Descriptor::~Descriptor() { ::close(number_); }
 
 Outcome run(const Command& command) {
-  // Files, because nobody has to empty them while the program runs.
+  // Files instead of pipes, because nobody must read them while the program runs.
   const TemporaryFolder folder;
   const fs::path in_path = folder.path() / "in";
   const fs::path out_path = command.out_path.empty() ? folder.path() / "out" : command.out_path;

@@ -1,4 +1,4 @@
-// Runs programs for tests: arguments, folder and environment in; exit status and both outputs out.
+// Runs programs for tests with arguments in a folder. Returns exit status and both outputs.
 #pragma once
 
 #include <sys/types.h>
@@ -12,7 +12,7 @@
 
 namespace dolp {
 
-/// An open file, closed with the object.
+/// An open file. The destructor closes it.
 class Descriptor {
  public:
   explicit Descriptor(int number);
@@ -25,12 +25,12 @@ class Descriptor {
   int number_;
 };
 
-/// A command to run. The program is looked up on PATH.
+/// A command to run. The program is searched on PATH.
 struct Command {
   std::vector<std::string> arguments;
   std::filesystem::path folder;
   std::string input = {};
-  std::filesystem::path out_path = {};  ///< where standard output goes instead of Outcome::out
+  std::filesystem::path out_path = {};  ///< file for standard output; if given, Outcome::out stays empty
   std::vector<std::pair<std::string, std::string>> environment = {};
 };
 
@@ -40,10 +40,10 @@ struct Outcome {
   std::string err;
 };
 
-/// Runs a program to its end. One that takes longer than a minute is ended by SIGALRM.
+/// Runs a program to its end. SIGALRM ends a program that takes longer than a minute.
 Outcome run(const Command& command);
 
-/// A running program whose standard error is a terminal; its standard output goes nowhere, its input is empty.
+/// A running program whose standard error is a terminal. Its standard output is discarded, its input is empty.
 class TerminalProcess {
  public:
   explicit TerminalProcess(const Command& command);
@@ -52,10 +52,10 @@ class TerminalProcess {
   TerminalProcess(const TerminalProcess&) = delete;
   TerminalProcess& operator=(const TerminalProcess&) = delete;
 
-  /// Waits until the program has written something to the terminal. False if it ended without.
+  /// Waits until the program writes to the terminal. Returns false if it ends without output.
   bool wait_for_output();
   void send_signal(int number) const;
-  /// Waits for the end; `err` is all that the terminal showed.
+  /// Waits for the end. `err` contains everything that the terminal showed.
   Outcome finish();
 
  private:

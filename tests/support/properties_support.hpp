@@ -1,4 +1,4 @@
-// Random points of the whole range that scenes allow, and evaluators to compute them, for tests of properties.
+// Random points of the whole range of scenes, and evaluators to compute them, for tests of properties.
 #pragma once
 
 #include <fmt/format.h>
@@ -67,7 +67,7 @@ class Random : public Draws {
  public:
   using Draws::Draws;
 
-  /// A direction; one in five each next to the normal and next to grazing incidence, a few exactly there.
+  /// A direction. One in five is near the normal, one in five near grazing incidence, a few exactly there.
   double theta_deg() {
     const double kind = uniform(0.0, 1.0);
     if (kind < 0.02) return 0.0;
@@ -106,7 +106,7 @@ class Random : public Draws {
   }
 };
 
-/// Each point as an entry of its own, in order.
+/// A request with each point as a separate entry, in order.
 inline MomentsRequest request_of(const Model& model, const std::vector<Point>& points, double tolerance) {
   MomentsRequest request;
   request.distribution = model.distribution;
@@ -116,7 +116,7 @@ inline MomentsRequest request_of(const Model& model, const std::vector<Point>& p
   return request;
 }
 
-/// The kernel source in one of its four forms.
+/// The four builds of the kernel source.
 enum class Kernel { kCpuFloat, kCpuDouble, kVulkanFloat, kVulkanDouble };
 
 inline constexpr std::array kKernels{Kernel::kCpuFloat, Kernel::kCpuDouble, Kernel::kVulkanFloat,
@@ -137,14 +137,14 @@ inline std::unique_ptr<ModelEvaluator> make_evaluator(Kernel kernel, VulkanOptio
   return std::make_unique<FixedPrecision>(precision, std::make_unique<VulkanEvaluator>(options));
 }
 
-/// The parameter of tests of each kernel with each model.
+/// The parameter of tests that run each kernel with each model.
 using KernelAndModel = std::tuple<Kernel, Model>;
 
 inline std::string kernel_and_model_name(const testing::TestParamInfo<KernelAndModel>& test) {
   return name_of(std::get<0>(test.param)) + name_of(std::get<1>(test.param));
 }
 
-/// One of the four results beside its stated error.
+/// One of the four results and its stated error.
 struct MomentField {
   const char* name;
   double Moments::*value;
@@ -156,12 +156,12 @@ inline constexpr std::array<MomentField, 4> kMomentFields{{{"r_i", &Moments::r_i
                                                            {"albedo", &Moments::albedo, &Moments::albedo_error},
                                                            {"deficit", &Moments::deficit, &Moments::deficit_error}}};
 
-/// The largest distance of two results over the bounds of both; beyond 1 it is a failure.
+/// The largest distance of two results, divided by the sum of their bounds. A value above 1 is a failure.
 inline double expect_within_bounds(const Moments& a, const Moments& b, const std::string& where, double slack = 0.0) {
   double worst = 0.0;
   for (const auto& [value, error] : kMomentMembers) {
     const bool is_direct = value == &Moments::direct_i || value == &Moments::direct_q;
-    if (is_direct && std::isnan(b.*value)) continue;  // not asked for
+    if (is_direct && std::isnan(b.*value)) continue;  // not requested
     const double distance = std::abs(a.*value - b.*value);
     const double bound = a.*error + b.*error + slack;
     EXPECT_TRUE(distance <= bound) << where << ": " << a.*value << " states " << a.*error << ", " << b.*value

@@ -1,5 +1,5 @@
-// The formulas of radiometry as shaders/physics/README.md, section 4, prints them, written out again in long double,
-// and scenes and moments to try them on.
+// The formulas of radiometry as printed in shaders/physics/README.md, section 4, implemented a second time in long
+// double; and scenes and moments to test them.
 #pragma once
 
 #include <algorithm>
@@ -23,9 +23,10 @@ using Real = long double;
 inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 inline constexpr unsigned kSeed = 20250811;
 inline constexpr int kRandomScenes = 2000;
-// Double sums of a few terms against long double: Planck's exponent (below 50 in these scenes) times an ulp dominates.
+// Double sums of a few terms against long double: the largest error is Planck's exponent (below 50 in these scenes)
+// times an ulp.
 inline constexpr double kAgreement = 1e-12;
-// The accuracy that the band rule promises for tabulated materials.
+// The stated accuracy of the band rule for tabulated materials.
 inline constexpr double kBandAgreement = 1e-9;
 
 // ---- The printed formulas -------------------------------------------------------------------------------------------
@@ -57,8 +58,8 @@ struct PrintedStokes {
   Real q = 0.0L;
 };
 
-/// Equation (18) in the reading of shaders/physics/README.md, section 4, at one wavelength; `specular` holds rho_s,
-/// rho_p for k_s = 1.
+/// Equation (18) as shaders/physics/README.md, section 4, reads it, at one wavelength. `specular` has rho_s and rho_p
+/// for k_s = 1.
 inline PrintedStokes printed_stokes(const SceneValues& scene, Real wavelength_um, Real c,
                                     const PrintedReflectance& specular) {
   const Real pi = std::numbers::pi_v<Real>;
@@ -94,7 +95,7 @@ inline PrintedStokes printed_stokes(const SceneValues& scene, Real wavelength_um
   return stokes;
 }
 
-/// Integral over the segments between ascending points, on which `f` is analytic.
+/// Integral over the segments between ascending points. `f` must be analytic on each segment.
 inline Real integral(const std::vector<double>& points, const std::function<Real(Real)>& f) {
   boost::math::quadrature::tanh_sinh<Real> rule;
   Real sum = 0.0L;
@@ -177,7 +178,7 @@ class RandomScenes {
   std::mt19937_64 generator_;
 };
 
-/// Index falling through a resonance-like shape, on an uneven grid.
+/// An index that falls through a resonance-like shape, on an uneven grid.
 inline Material tabulated_material() {
   Material material;
   material.name = "test glass";
@@ -188,7 +189,7 @@ inline Material tabulated_material() {
   return material;
 }
 
-/// All wavelengths where something has a corner, for the reference integrals.
+/// All wavelengths at which something has a corner, for the reference integrals.
 inline std::vector<double> corners(const SceneValues& scene) {
   std::vector<double> points = {scene.spectrum.min_um, scene.spectrum.max_um};
   const auto add = [&](const SpectralTable& table) {

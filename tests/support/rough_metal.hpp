@@ -1,4 +1,4 @@
-// A rough metal, at which several bounces matter most.
+// A rough metal, for which several bounces matter most.
 #pragma once
 
 #include <string>

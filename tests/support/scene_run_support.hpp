@@ -1,4 +1,4 @@
-// Scenes and evaluators that the tests of whole runs share.
+// Scenes and evaluators for tests of whole runs.
 #pragma once
 
 #include <array>
@@ -49,7 +49,7 @@ inline std::unique_ptr<ModelEvaluator> make_evaluator(Evaluator evaluator) {
   return std::make_unique<FixedPrecision>(evaluator == Evaluator::kFloat ? Precision::kFloat : Precision::kDouble);
 }
 
-/// Runs in the evaluator's precision alone: no entry that misses is computed again in the other.
+/// Runs only in the evaluator's precision: an entry that misses is not computed again in the other precision.
 inline std::vector<PointResult> run(const SceneValues& scene, const SceneEntries& entries, Evaluator evaluator) {
   SceneValues own = scene;
   if (evaluator == Evaluator::kFloat) own.accuracy.precision = Precision::kFloat;
@@ -83,14 +83,14 @@ inline SmoothReflectance smooth_reflectance(const OpticalConstants& index, long 
   return {std::norm((cosine - w) / (cosine + w)), std::norm((square * cosine - w) / (square * cosine + w))};
 }
 
-/// All numbers of a result, so that NaNs compare too.
+/// The bits of all numbers of a result, so that NaNs are comparable.
 inline std::vector<std::uint64_t> bits_of(const PointResult& result) {
   std::vector<std::uint64_t> bits = {result.status};
   for (const Quantity quantity : kAllQuantities) bits.push_back(std::bit_cast<std::uint64_t>(result[quantity]));
   return bits;
 }
 
-/// Text for messages: the scene and the entry that a check is about.
+/// Text for messages: the scene and the entry of a check.
 inline std::string text_of(const SceneValues& scene, const SceneEntry& entry) {
   const OpticalConstants index = entry.index.value_or(scene.surface.material.constant);
   return std::string(name_of(scene.surface.distribution)) + " " + name_of(scene.surface.masking) + " theta " +

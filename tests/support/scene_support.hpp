@@ -1,4 +1,4 @@
-// A scene that the tests of the reader change.
+// A scene for tests of the scene reader.
 #pragma once
 
 #include <dolp/setting.hpp>
@@ -10,7 +10,7 @@
 
 namespace dolp {
 
-/// A scene that is valid and leaves every default alone. [surface] is line 1, [emission] 4, [spectrum] 6.
+/// A valid scene that sets no optional key. [surface] is line 1, [emission] 4, [spectrum] 6.
 inline const std::string kMinimal =
     "[surface]\n"
     "n = 1.5\n"

@@ -1,4 +1,4 @@
-// Stored reference moments behind the interface of the evaluators, so that any scene has its reference results.
+// Stored reference moments behind the interface of evaluators, so that any scene can have its reference results.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 
 namespace dolp {
 
-/// Gives back the moments of stored cases of one distribution and masking; anything else is a failure of the test.
+/// Returns the moments of stored cases of one distribution and masking. Any other request is a failure of the test.
 class StoredEvaluator final : public MomentsOnly {
  public:
   explicit StoredEvaluator(const std::vector<StoredCase>& cases) {

@@ -15,7 +15,7 @@ inline std::string read_file(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// A file in a folder of its own.
+/// A file in a separate folder.
 class TemporaryFile {
  public:
   TemporaryFile(const std::string& name, const std::string& content) : path_((folder_.path() / name).string()) {

@@ -126,7 +126,7 @@ TEST(HeatMap, Axes_FollowTheScene) {
   session.set_view(&View::map_x, "n");
   session.set("surface.material", "water 25C");
   EXPECT_EQ(session.map().x().label, "θ [°]");
-  // Wavelengths that the material knows.
+  // The wavelengths for which the material is known.
   session.set_view(&View::map_x, "wavelength");
   session.set("surface.material", "oxidised Al mirror");
   EXPECT_EQ(session.map().x().scale, (Scale{2.0, 12.5}));
@@ -148,11 +148,11 @@ class Axes : public Window {
     xdotool({"click", "--repeat", "2", "--delay", "20", "1"});
     frames(2 * kFrames);
   }
-  /// Types both ends of an axis; "" leaves an end as it is.
+  /// Types both ends of an axis. "" leaves an end unchanged.
   void type_ends(ImVec2 numbers, const std::string& from, const std::string& to) {
     double_click(numbers);
     if (!from.empty()) type(from);
-    xdotool({"key", "Tab"});  // a key that is held down goes on to further fields
+    xdotool({"key", "Tab"});  // a key that stays down would move on to more fields
     frames();
     if (!to.empty()) type(to);
     keys("Return");
@@ -188,7 +188,7 @@ TEST_F(Axes, NumbersDoubleClicked_TakeTypedEnds_AndCloseAfterARefusedEndIsTakenB
 
 TEST_F(Axes, RangeOfTheMap_IsComputedAnew_AndARefusedEndGoesWithTheOther) {
   double_click(beside(app_->map_view().area()));
-  type("2.5");  // above the other end
+  type("2.5");  // larger than the other end
   xdotool({"key", "Tab"});
   frames();
   EXPECT_NE(app_->session().map().y().scale.from, 2.5);

@@ -18,7 +18,7 @@ class ExploreFiles : public testing::Test {
  protected:
   std::string at(const std::string& name) const { return (folder_.path() / name).string(); }
   void put(const std::string& name, const std::string& text) const { std::ofstream(at(name)) << text; }
-  /// The line that refuses a file; empty if it is opened.
+  /// The line that refuses a file; empty if the file is opened.
   std::string refusal(const std::string& name) const {
     Session session(paint());
     try {
@@ -35,7 +35,7 @@ class ExploreFiles : public testing::Test {
   TemporaryFolder folder_;
 };
 
-/// Gives a session something of everything that a file holds.
+/// Gives a session one element of everything that a file stores.
 void fill(Session& session, const std::string& measured) {
   session.load_measured(measured);
   session.mark("surface.n", true);
@@ -57,7 +57,7 @@ void fill(Session& session, const std::string& measured) {
             .panel = Panel::kSlopes,
             .mueller_row = 1,
             .mueller_column = 3};
-  session.set_view(view);  // resets ranges
+  session.set_view(view);  // this resets ranges
   view.curve_zoom = {Scale{20.0, 70.0}, Scale{0.01, 0.4, true}};
   view.map_ranges = {{"σ", {0.05, 0.5, true}}, {"θ [°]", {10.0, 60.0}}};
   view.map_colours = Scale{0.0, 0.3};
@@ -99,7 +99,7 @@ TEST_F(ExploreFiles, Session_SavedAndOpened_IsTheSame) {
   EXPECT_EQ(b.marked().at("surface.k")->high, 2.0);
   EXPECT_EQ(b.view(), a.view());
   EXPECT_EQ(b.theta_deg(), 42.5);
-  // The file names no folder of the machine, and saving it again changes nothing.
+  // The file names no folder of this machine. Saving it again changes nothing.
   const std::string text = read_file(at("all.toml"));
   EXPECT_EQ(text.find(at("")), std::string::npos) << text;
   save_session(opened.session, at("again.toml"));
@@ -221,7 +221,7 @@ TEST(ExplorePlots, Json_HasTheVisibleCurvesAndTheMap) {
   EXPECT_EQ(plots["map"]["rows"].size(), field.count);
   EXPECT_EQ(plots["map"]["rows"][2][5], 100.0 * field.values[2 * field.count + 5]);
   EXPECT_TRUE(plots["map"]["colours"].is_null() && !plots["map"]["is_signed"]);
-  // A pin of the same surface is named by its radiation.
+  // A pin with an equal surface is named after its radiation.
   driver.session.pins()[0].name = "";
   driver.session.set({{"surface.sigma", 0.15}, {"emission.temperature_K", 310.0}});
   driver.settle();
@@ -259,7 +259,7 @@ TEST_F(ExploreFiles, Preferences_KeepThemeZoomAndRecentFilesThatExist) {
   EXPECT_LT(second.zoom(), 2.2);
   second.zoom_by(-100);
   EXPECT_GT(second.zoom(), 0.45);
-  // Without a file nothing is kept, and a bad file is refused.
+  // Without a file nothing is stored. A bad file is refused.
   second.load("");
   EXPECT_NO_THROW(second.save());
   put("bad.toml", "light = [\n");

@@ -1,4 +1,4 @@
-// Fits in the window: the chosen minimum, the other ones, and the words about them.
+// Fits in the window: the chosen minimum, the other minima, and their texts.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -53,7 +53,7 @@ TEST(ExploreSession, Minimum_IsVisitedInTheSceneThatWasFitted) {
 }
 
 TEST(ExploreSession, RangeOfAFit_IsTheSlidersAsFarAsTheSceneTakesIt_OrTyped) {
-  // k runs along its logarithm, from 0 too; q of smith masking begins above 1.5.
+  // k is logarithmic, also from 0. q of smith masking begins above 1.5.
   for (const auto& [key, value, low, high, start] : {std::tuple{"surface.k", 0.0, 0.001, 100.0, 0.001},
                                                      {"surface.k", 0.22, 0.001, 100.0, 0.22},
                                                      {"surface.k", 200.0, 0.001, 200.0, 200.0},
@@ -92,7 +92,7 @@ using namespace dolp::explore_test;
 
 class FitWindow : public Window {
  protected:
-  /// Loads DOLP of the scene with another value of a key, as if measured.
+  /// Loads the DOLP of the scene with another value of a key, as measured data.
   void measure(const std::string& setting) {
     put("points.csv", "theta_deg\n20\n30\n40\n50\n60\n70\n80\n");
     std::string csv = "theta_deg,dolp,uncertainty\n";

@@ -1,4 +1,4 @@
-// The parts behind the window: edits of the scene, choices that exclude one another, the worker, measured points.
+// The parts behind the window: edits of the scene, choices that exclude each other, the worker, measured points.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ TEST(Parameters, EndsOfEverySlider_AreAccepted) {
 
 using Changes = std::vector<Setting>;
 
-/// The value of a key as text; "-" where the scene has none.
+/// The value of a key as text; "-" if the scene has none.
 std::string value_of(const Scene& scene, const std::string& key) {
   if (described(key).type == Key::Type::kPair)
     return scene.numbers(key).empty() ? "-" : Value(scene.numbers(key)).text();
@@ -50,10 +50,10 @@ std::string value_of(const Scene& scene, const std::string& key) {
 }
 
 struct EditCase {
-  std::vector<std::string> opened;    ///< settings of the command line
-  std::vector<std::string> steps;     ///< settings that are set together, or "reset KEY", or "reset"
+  std::vector<std::string> opened;    ///< settings from the command line
+  std::vector<std::string> steps;     ///< settings that are set together; or "reset KEY" or "reset"
   std::vector<std::string> expected;  ///< settings
-  std::string message = "";           ///< a part of it; empty: there is none
+  std::string message = "";           ///< a part of the message; empty: there is no message
   bool is_error = false;
 };
 
@@ -63,7 +63,7 @@ const std::vector<EditCase> kEditCases = {
     {{}, {"surface.sigma=99", "surface.sigma=0.2"}, {"surface.sigma=0.2"}},
     {{"surface.sigma=0.3"}, {"surface.sigma=0.5", "reset surface.sigma"}, {"surface.sigma=0.3"}},
     {{"surface.sigma=0.3"}, {"surface.sigma=0.5", "surface.n=2", "reset"}, {"surface.sigma=0.3", "surface.n=1.5"}},
-    // Alternatives replace one another.
+    // Alternatives replace each other.
     {{}, {"surface.material=gold (Ordal)"}, {"surface.material=gold (Ordal)", "surface.n=-"}},
     {{"surface.material=gold (Ordal)"}, {"surface.n=1.6;surface.k=0.2"}, {"surface.material=-", "surface.k=0.2"}},
     {{},
@@ -75,12 +75,12 @@ const std::vector<EditCase> kEditCases = {
      {"surface.n=1.5"},
      "known at 2 to 12.5 um",
      true},
-    // Effects go and come back.
+    // Effects can be removed and restored.
     {{}, {"surroundings=none"}, {"surroundings.temperature_K=-"}},
     {{"emission.bracket=true", "emission.temperature_K=310"},
      {"emission=none", "reset emission"},
      {"emission.temperature_K=310", "emission.bracket=true"}},
-    // Choices that exclude one another.
+    // Choices that exclude each other.
     {{"surface.masking=smith", "emission.bracket=true"},
      {"surface.scattering=multiple"},
      {"surface.masking=v-cavity", "emission.bracket=false"},
@@ -91,13 +91,13 @@ const std::vector<EditCase> kEditCases = {
      {"emission=none", "surface.masking=integral", "reset emission"},
      {"emission.model=direct", "surface.masking=v-cavity"},
      "emission = as opened also sets surface.masking = v-cavity"},
-    // A wind replaces sigma; slopes of another distribution begin with its sigma.
+    // A wind replaces sigma. Slopes of another distribution start with its sigma.
     {{"surface.distribution=gaussian", "surface.wind_m_s=8"}, {"surface.wind_m_s=12"}, {"surface.wind_m_s=12"}},
     {{"surface.distribution=gaussian", "surface.wind_m_s=10"},
      {"surface.distribution=cauchy"},
      {"surface.wind_m_s=-", "surface.sigma=0.1646207763315433"},
      "surface.sigma = 0.16462"},
-    // A whole coating replaces its films; their numbers and materials change one by one.
+    // A new coating replaces all films. Numbers and materials of films change one by one.
     {{"surface.coating=[{n=1.4,thickness_um=2}]"},
      {"surface.coating.1.k=0.3", "surface.coating=[{n=1.6,thickness_um=3},{n=1.4,k=0.3,thickness_um=2}]",
       "surface.coating.2.thickness_um=5", "surface.coating.1.n=1.7"},
@@ -148,7 +148,7 @@ bool is_accepted(const SceneEdits& edits, const Changes& changes) {
   }
 }
 
-/// Every combination of the words of some choices that the scene reader accepts.
+/// Every combination of words of some choices that the scene reader accepts.
 std::vector<Changes> accepted_combinations(const std::vector<std::string>& keys) {
   std::vector<Changes> all = {{}};
   for (const std::string& key : keys) {
@@ -211,7 +211,7 @@ TEST(SceneToml, NamedFiles_AreFoundFromTheNewFolder) {
   EXPECT_EQ(again.refractive_index(10.0), scene.refractive_index(10.0));
 }
 
-/// An evaluator whose calls wait until it is opened.
+/// An evaluator whose calls wait until the test opens it.
 class SlowEvaluator {
  public:
   Evaluate evaluate() {
@@ -234,7 +234,7 @@ class SlowEvaluator {
     is_open_ = true;
     changed_.notify_all();
   }
-  /// Waits until a call has begun, or has been cancelled.
+  /// Waits until a call has begun or has been cancelled.
   void wait_for(bool is_cancelled) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return (is_cancelled ? cancelled : calls_) > 0; });
@@ -261,7 +261,7 @@ std::vector<JobPart> finish(Worker& worker) {
 
 TEST(ExploreWorker, RunningJob_EndsWhenItIsNoLongerWantedUnlessItIsBrief) {
   using Keys = std::vector<std::string>;
-  // The keys that are wanted while the job "first" runs, and the keys of the results in order.
+  // The keys that are wanted while the job "first" runs, and the keys of the results in their order.
   for (const auto& [is_brief, next, expected, cancelled] : {std::tuple{false, Keys{"new"}, Keys{"new"}, 1},
                                                             {false, Keys{"new", "first"}, Keys{"first", "new"}, 0},
                                                             {true, Keys{"new"}, Keys{"first", "new"}, 0},
@@ -276,7 +276,7 @@ TEST(ExploreWorker, RunningJob_EndsWhenItIsNoLongerWantedUnlessItIsBrief) {
     for (const std::string& key : next) jobs.push_back(job_of(key));
     worker.want(std::move(jobs));
     if (cancelled > 0) evaluator.wait_for(true);
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // a wrong cancellation would come now
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // time for a wrong cancellation
     evaluator.open();
     std::vector<std::string> keys;
     for (const JobPart& part : finish(worker)) keys.push_back(part.key);

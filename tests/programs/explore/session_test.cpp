@@ -53,7 +53,7 @@ TEST(ExploreSession, Results_AreStaleUntilTheSceneIsComputed_AndKeepTheirParamet
   EXPECT_NE(cursor_text(session).find("σ = 0.4:"), std::string::npos) << cursor_text(session);
 }
 
-/// A point on display agrees, within both bounds, with the model of the scene that the window names.
+/// Checks that a point on display agrees, within both bounds, with the model of the scene that the window names.
 void expect_point_of(const Curve& curve, std::size_t position) {
   if (curve.points().empty()) return;
   const Point& shown = curve.points()[position % curve.points().size()];
@@ -64,7 +64,7 @@ void expect_point_of(const Curve& curve, std::size_t position) {
       << surface_name(curve.shown_scene()) << " at " << shown.theta_deg;
 }
 
-/// One thing that a user may do.
+/// Does one thing that a user may do.
 void act(Session& session, std::mt19937_64& random) {
   const double share = std::generate_canonical<double, 53>(random);
   const bool is_even = share < 0.5;
@@ -83,7 +83,7 @@ void act(Session& session, std::mt19937_64& random) {
   acts[random() % std::size(acts)]();
 }
 
-// A minute of 16 frames a second.
+// One minute with 16 frames per second.
 TEST(ExploreSession, RandomUse_NamesAndCurvesAgreeInEveryFrame) {
   constexpr int kFrames = 960;
   std::mt19937_64 random(20261124);
@@ -139,7 +139,7 @@ TEST(ExploreSession, Drag_GetsCoarseResultsInTurn_AndSaysSoOnce) {
     EXPECT_TRUE(curve_name(session).ends_with(", coarse"));
     EXPECT_NE(std::exchange(maps, session.map().version()), session.map().version());
   }
-  // The results of another kind come between two of the curve.
+  // The results of another kind arrive between two results of the curve.
   session.set("surface.sigma", 0.4);
   std::vector<Job> jobs = session.wanted();
   ASSERT_EQ(jobs.size(), 3U);
@@ -186,7 +186,7 @@ TEST(ExploreSession, UndoAndRedo_GoThroughGestures_AndASavedSceneIsUnchanged) {
   session.hold(false);
   session.note_saved();
   EXPECT_FALSE(session.edits().is_changed());
-  session.set("surface.sigma", -1.0);  // refused: no change to undo
+  session.set("surface.sigma", -1.0);  // refused, so there is no change to undo
   session.hold(false);
   session.set("surroundings", Value{});
   EXPECT_TRUE(session.edits().is_changed());
@@ -279,7 +279,7 @@ TEST(ExploreSession, AllBounces_PeakIsComparedWithSingleScattering) {
   const auto named = [&](const std::string& name) {
     return std::ranges::find(peak.without(), name, &WithoutEffect::effect);
   };
-  EXPECT_EQ(named("masking"), peak.without().end());  // the bounces need it
+  EXPECT_EQ(named("masking"), peak.without().end());  // the bounces need v-cavity masking
   ASSERT_NE(named("scattering"), peak.without().end());
   const Point& result = named("scattering")->result.value();
   const Scene& scene = driver.session.scene();
@@ -297,7 +297,7 @@ TEST(ExploreSession, AllBounces_PeakIsComparedWithSingleScattering) {
   EXPECT_EQ(without_text(driver.session, "masking") + without_words(driver.session, "masking"), "");
 }
 
-/// DOLP of the paint with another sigma and n, as if measured.
+/// The DOLP of the paint with another sigma and n, as measured data.
 std::string as_if_measured() {
   const Scene scene = paint({"surface.sigma=0.25", "surface.n=1.7", "accuracy.tolerance=1e-6"}).scene();
   std::string csv = "theta_deg,dolp,uncertainty\n";
@@ -337,7 +337,7 @@ TEST(ExploreSession, MapCursor_DrivesTheCurveAndDoesNotChangeTheMap) {
   driver.session.set_map_cursor(0.5, 0.5);
   driver.settle();
   EXPECT_DOUBLE_EQ(driver.session.theta_deg(), 45.0);
-  EXPECT_NEAR(*driver.session.scene().number("surface.sigma"), 0.2, 1e-4);  // the grid's 0.1 .. 0.4
+  EXPECT_NEAR(*driver.session.scene().number("surface.sigma"), 0.2, 1e-4);  // the grid has 0.1 to 0.4
   EXPECT_FALSE(driver.session.curve().is_stale());
   EXPECT_NEAR(driver.session.map_cursor(driver.session.map().y()), 0.5, 1e-3);
   EXPECT_EQ(driver.session.map().version(), version);
@@ -365,7 +365,7 @@ TEST(ExploreSession, Peak_IsTheLargestOfTheCurve_IsDrawn_AndItsCausesAddUp) {
   const Point at = peak.answer()->at;
   double sum = 0.0;
   for (const WithoutEffect& one : peak.without()) sum += one.radiates ? peak.contribution(one) : 0.0;
-  EXPECT_NEAR(sum, at[Quantity::kQOverI], 2e-3);  // two runs at a tolerance of 1e-3
+  EXPECT_NEAR(sum, at[Quantity::kQOverI], 2e-3);  // difference of two runs with a tolerance of 1e-3
   for (const Point& result : session.curve().points()) {
     if (!result.is_good()) continue;
     EXPECT_LE(result[Quantity::kDolp], at[Quantity::kDolp] + result[Quantity::kErrorEstimate]);

@@ -1,4 +1,4 @@
-// Skies between two temperatures: their files, the scene that is saved with them, and the editor of the window.
+// Skies with two temperatures: their files, the scenes that are saved with them, and their editor in the window.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -63,7 +63,7 @@ namespace {
 using namespace dolp;
 using namespace dolp::explore_test;
 
-/// Chooses an entry of the list of skies, whose places are in heights of the closed list.
+/// Chooses an entry in the list of skies. Positions are in heights of the closed list.
 class Skies : public Window {
  protected:
   void choose(float place) {
@@ -79,7 +79,7 @@ class Skies : public Window {
 
 TEST_F(Skies, Editor_MakesASkyBetweenTwoTemperatures_WhichTheSavedSceneKeeps) {
   const explore::Session& session = app_->session();
-  choose(4.3F);  // the fourth of the list
+  choose(4.3F);  // the fourth in the list
   ASSERT_EQ(sky(), explore::SkyPair());
   drag_slider("sky zenith", kPartOfSlider);
   frames();

@@ -1,4 +1,4 @@
-// Files that the window's user opens, saves and goes back to.
+// Files that a user opens, saves and reopens in the window.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -21,14 +21,14 @@ class WindowFiles : public Window {
     put("folder/other.toml", other);
     put("folder/notes.txt", "");
   }
-  /// Presses a shortcut, types a path, or accepts the suggested one.
+  /// Presses a shortcut, then types a path or accepts the suggested one.
   void answer(const std::string& shortcut, const std::string& path = "") {
     keys(shortcut);
     if (!path.empty()) type(path);
     keys("Return");
     app_->settle();
   }
-  /// Opens a file from the list of the dialog: the first click chooses, the second opens.
+  /// Opens a file from the list of the dialog: the first click selects it, the second one opens it.
   void open_listed(const std::string& folder, const std::string& file) {
     keys("ctrl+o");
     frames();

@@ -1,4 +1,4 @@
-// The window itself on a virtual display, moved by real events of mouse and keyboard.
+// The window on a virtual display, with real events of mouse and keyboard.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -70,7 +70,7 @@ TEST_F(Window, Curve_WheelAndRightButton_ZoomAndShift_ADoubleClickShowsAll) {
   frames();
   EXPECT_LT(view.x().to - view.x().from, 0.9 * (x.to - x.from));
   EXPECT_LT(view.y().to - view.y().from, 0.9 * (y.to - y.from));
-  EXPECT_NEAR(view.x().value(0.4), 36.0, 0.3);  // the place of the mouse stays
+  EXPECT_NEAR(view.x().value(0.4), 36.0, 0.3);  // the value under the mouse does not change
   const explore::Scale zoomed = view.x();
   xdotool({"mousedown", "3"});
   frames();
@@ -110,7 +110,7 @@ TEST_F(Window, Legend_PinClicked_HidesIt) {
   drag_slider("surface.sigma", kPartOfSlider);
   const Area area = app_->curve_view().area();
   const float line = ImGui::GetTextLineHeight();
-  // The pin's entry is somewhere in the two lines above the plot.
+  // The pin's entry is in one of the two lines above the plot.
   const auto is_visible = [&] { return app_->session().pins()[0].is_visible; };
   ASSERT_TRUE(is_visible());
   for (float x = area.min.x; x < area.max.x && is_visible(); x += 3.0F * line) {
@@ -165,7 +165,7 @@ TEST_F(Window, Resized_DrawsAtTheNewSize) {
     frames(2 * kFrames);
     app_->save_picture(at("picture.png").string());
     frames();
-    // Width and height are the first numbers of a PNG's first chunk.
+    // A PNG file has width and height as the first numbers of its first chunk.
     const std::string png = content("picture.png");
     ASSERT_GT(png.size(), 24U);
     const auto number = [&](std::size_t first) {
@@ -213,7 +213,7 @@ TEST_F(Window, EventsBetweenTwoFrames_AllCount) {
   xdotool({"key", "--delay", "12", "ctrl+p", "ctrl+p"});
   frames();
   EXPECT_EQ(app_->session().pins().size(), 2U);
-  // A mouse that moves on at once clicks where it was.
+  // A mouse that moves on at once still clicks at its old position.
   const ImVec2 box = app_->control_area("emission.bracket").at(0.5F, 0.5F);
   xdotool({"mousemove", "--window", window_, std::to_string(std::lround(box.x)), std::to_string(std::lround(box.y)),
            "click", "1", "mousemove", "--window", window_, "700", "300"});
@@ -254,7 +254,7 @@ TEST_F(Window, TypedNumber_IsTakenWhereverTypingEnds_AndStaysWhereItIsRefused) {
 TEST_F(Window, EndsOfABand_OfWhichOneWasRefused_AreTakenTogether) {
   click_control("field spectrum.band_um 0");
   xdotool({"type", "15"});
-  xdotool({"key", "Tab"});  // one that is held down goes on to further fields
+  xdotool({"key", "Tab"});  // a key that stays down would move on to more fields
   EXPECT_TRUE(is_marked("field spectrum.band_um 0"));
   xdotool({"type", "20"});
   keys("Return");
@@ -262,7 +262,7 @@ TEST_F(Window, EndsOfABand_OfWhichOneWasRefused_AreTakenTogether) {
   EXPECT_FALSE(is_marked("field spectrum.band_um 0"));
 }
 
-/// The area of the curve in a window that opens on a display.
+/// The area of the curve in a window on a display of this size.
 Area plot_on(const std::string& size, const std::string& dots_per_inch) {
   const VirtualDisplay display(size);
   EXPECT_EQ(run({.arguments = {"xprop", "-root", "-f", "RESOURCE_MANAGER", "8s", "-set", "RESOURCE_MANAGER",

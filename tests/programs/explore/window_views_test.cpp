@@ -19,7 +19,7 @@ using explore::paint;
 using explore::Scale;
 
 double projected(const Scene& scene) {
-  // Midpoint rule in tan(alpha) = m t / (1 - t), which takes steep facets in; the integrand is smooth there.
+  // Midpoint rule in tan(alpha) = m t / (1 - t). It includes steep facets, and the integrand is smooth.
   constexpr int kCount = 200'000;
   const double m = std::numbers::sqrt2 * *scene.number("surface.sigma");
   double sum = 0.0;
@@ -35,7 +35,7 @@ double projected(const Scene& scene) {
 }
 
 TEST(ExplorePanels, SlopeDensity_IsNormalised_AndTheOtherOneHasTheSameD0) {
-  constexpr double kRule = 1e-6;  // error of the rule: twice as many points change less
+  constexpr double kRule = 1e-6;  // error of the rule: doubling the points changes less
   for (const char* distribution : {"cauchy", "gaussian"}) {
     for (const double sigma : {0.05, 0.3, 1.0}) {
       const Scene scene = paint().scene().with({{"surface.distribution", distribution}, {"surface.sigma", sigma}});
@@ -60,7 +60,7 @@ TEST(ExplorePanels, MaterialCurve_HasTheScenesIndex_FromEndToEnd) {
   EXPECT_EQ(explore::material_curve(paint().scene(), 5).n, std::vector<double>(5, 1.5));
 }
 
-/// The points of a sweep as a view would get them.
+/// The points of a sweep, as a view receives them.
 std::vector<explore::Point> swept(explore::Sweep& sweep) {
   sweep.take(explore::done(sweep.wanted().value()));
   EXPECT_TRUE(sweep.is_finished());
@@ -80,7 +80,8 @@ TEST(ExplorePanels, SmoothSurface_HasFresnelsReflectances_AndAQuarterWaveFilmRef
   EXPECT_NEAR(reflectance(kS, bare[0]), 0.04, 1e-12);
   EXPECT_NEAR(reflectance(kP, bare[1]), 0.0, 1e-12);
   EXPECT_NEAR(reflectance(kS, bare[1]), std::pow((1.0 - 2.25) / (1.0 + 2.25), 2), 1e-12);
-  // At normal incidence a film of index sqrt(n) reflects nothing where it is a quarter or three quarters of a wave.
+  // At normal incidence a film of index sqrt(n) reflects nothing if its optical thickness is a quarter or three
+  // quarters of a wavelength.
   const double n = std::sqrt(1.5);
   const Scene coated = glass.with({explore::coating_of({{{"n", n}, {"thickness_um", 2.0}}})});
   explore::PointList list = explore::points_at(coated, {0.0, 0.0, 0.0});
@@ -106,7 +107,7 @@ TEST(ExplorePanels, Spectrum_IsTheCurveOverWavelengthAtTheCursor_AndIsComputedWh
   session.set_theta(70.0);
   driver.settle();
   ASSERT_TRUE(session.spectrum().is_finished());
-  EXPECT_EQ(session.wavelengths().scale, (Scale{4.0, 20.0}));  // from half of 8 um to the end of what is known
+  EXPECT_EQ(session.wavelengths().scale, (Scale{4.0, 20.0}));  // from half of 8 um to the end of the known range
   const std::size_t at = 40;
   const Scene scene = session.spectral_scene().with("spectrum.wavelength_um", session.spectrum().at()[at]);
   const explore::Point truth = explore::truth(scene, explore::points_at(scene, {70.0})).front();
@@ -191,7 +192,7 @@ TEST_F(Window, Panels_ClickedOneByOne_AreDrawn_AndTheMapIsComputedWhileItIsShown
 
 TEST_F(Window, Films_AreAddedOutside_ChangedRemovedAndSaved_AndUndoBringsThemBack) {
   const auto films = [&] { return explore::films_of(app_->session().scene()); };
-  app_->session().set_view(&explore::View::panel, explore::Panel::kSlopes);  // the map of films would take long
+  app_->session().set_view(&explore::View::panel, explore::Panel::kSlopes);  // a map with films would take long
   app_->session().set({explore::coating_of({{{"material", "PMMA acrylic"}, {"thickness_um", 2.0}}})});
   app_->settle();
   frames();
@@ -200,7 +201,7 @@ TEST_F(Window, Films_AreAddedOutside_ChangedRemovedAndSaved_AndUndoBringsThemBac
   EXPECT_EQ(word("surface.coating.2.material"), "PMMA acrylic");
   EXPECT_THROW(app_->control_area("surface.coating.2.n"), std::out_of_range);
   drag_slider("surface.coating.1.thickness_um", kPartOfSlider);
-  // From 0.001 to 100 um the slider is logarithmic.
+  // The slider is logarithmic from 0.001 to 100 um.
   const double expected = std::pow(10.0, -3.0 + 5.0 * static_cast<double>(kPartOfSlider));
   EXPECT_NEAR(std::log10(*number("surface.coating.1.thickness_um") / expected), 0.0, 5.0 * kGrab / 2.0);
   const Columns truth = evaluated();
@@ -209,7 +210,7 @@ TEST_F(Window, Films_AreAddedOutside_ChangedRemovedAndSaved_AndUndoBringsThemBac
   explore::save_scene(app_->session(), at("coated.toml"));
   EXPECT_EQ(explore::films_of(Scene::from_file(at("coated.toml"))), films());
   click_control("surface.coating.1.material");
-  click(app_->control_area("surface.coating.1.material").at(0.5F, 2.6F));  // the first material of the list
+  click(app_->control_area("surface.coating.1.material").at(0.5F, 2.6F));  // the first material in the list
   EXPECT_TRUE(word("surface.coating.1.material"));
   EXPECT_EQ(number("surface.coating.1.thickness_um"), before.number("surface.coating.1.thickness_um"));
   keys("ctrl+z");

@@ -209,7 +209,7 @@ struct MomentsNode {
   real r_q;
   real albedo;
   real deficit;
-  real behind;               // facets that face away from theta; the absorbed part counts them twice: once each way
+  real behind;               // facets that face away from theta; the absorbed part counts them once in each direction
   real many;                 // part of r_i from grooves in which rays bounce more often than DOLP_MOST_BOUNCES
   real direct_i;             // direct emission
   real direct_q;

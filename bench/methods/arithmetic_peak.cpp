@@ -14,7 +14,7 @@ namespace {
 // arithmetic_peak.comp
 constexpr double kChains = 12.0;
 constexpr double kSteps = 8.0 * DOLP_PEAK_TURNS;
-constexpr double kFlops = 2.0 * kChains * kSteps;  // of an invocation
+constexpr double kFlops = 2.0 * kChains * kSteps;  // flops per invocation
 
 constexpr std::uint32_t kInvocations = 1U << 15U;
 constexpr double kEnoughTime = 0.02;  // seconds per run

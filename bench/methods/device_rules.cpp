@@ -30,7 +30,7 @@ constexpr double kTimeout = 600.0;                   // seconds for one dispatch
 constexpr std::size_t kMostIterations = 1U << 14U;   // per invocation: drivers stop one after 65,535
 constexpr std::size_t kMostSamples = 1U << 26U;      // per dispatch, so that a time limit is noticed
 constexpr std::size_t kMostShapes = 1U << 12U;       // masking tables of 4 kB
-constexpr std::size_t kMostInvocations = 1U << 22U;  // of a call
+constexpr std::size_t kMostInvocations = 1U << 22U;  // limit per call
 constexpr std::uint32_t kZenithUnit = 1U << 16U;
 
 /// The number of zeniths, then the zeniths, then the azimuths.

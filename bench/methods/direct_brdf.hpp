@@ -77,7 +77,7 @@ class DirectSurface {
   double sin_theta_;
   double m_;
   std::unique_ptr<MaskingTails> tails_;
-  double fixed_masking_ = 0.0;  ///< of the fixed beam. smith: Lambda; integral: height integral
+  double fixed_masking_ = 0.0;  ///< term of the fixed beam: Lambda (smith) or height integral (integral)
 };
 
 /// The integrand over the running beam, by the plain formulas.

@@ -58,11 +58,11 @@ struct SolverOptions {
 
 /// One row of the list of methods.
 struct Method {
-  std::string name;                    ///< as on the command line and in results
+  std::string name;                    ///< name on the command line and in results
   std::string label;                   ///< for figures and tables
   std::string what;                    ///< one sentence: rule, coordinates, language
   std::string cores;                   ///< "1", or "all" for the evaluators of dolp
-  std::string setting_name;            ///< what `settings` count: nodes, samples, tolerance
+  std::string setting_name;            ///< meaning of `settings`: nodes, samples, tolerance
   std::vector<double> settings;        ///< from coarse to fine
   std::vector<double> quick_settings;  ///< the subset that --quick runs
   /// meant for many entries per call: its time is the time of a call over the number of entries

@@ -9,7 +9,7 @@ namespace dolp::bench {
 
 /// Operations of the float kernels for one request, masking tables included.
 struct KernelWork {
-  OperationCounts counts;  ///< of all entries, extrapolated from the counted invocations
+  OperationCounts counts;  ///< operations for all entries, extrapolated from the counted invocations
   double evaluations = 0.0;
   /// Useful share of the operations if `lanes` neighbouring invocations run in lockstep and wait for the slowest. An
   /// upper bound, because lanes also wait within loops.

@@ -18,10 +18,10 @@ from scipy.integrate import dblquad
 from scipy.interpolate import CubicHermiteSpline
 from scipy.special import betainc, gammaln
 
-STEP = 1 / 64  # of asinh(tau/width)
+STEP = 1 / 64  # step in asinh(tau/width)
 FAR = 1e5  # beyond this the tails of the slope density are powers
 MOST_REPEATS = 3
-ENOUGH_S = 1.5  # of repeats
+ENOUGH_S = 1.5  # seconds of repeats that are enough
 
 
 class MaskingTails:

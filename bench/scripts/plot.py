@@ -5,9 +5,9 @@ Usage: plot.py accuracy RESULT.json -o FIGURE.png    error against time per entr
        plot.py accuracy RESULT.json --markdown       time per entry at given errors, as a Markdown table on stdout
        plot.py effects RESULT.json -o FIGURE.png     time per entry of each effect
        plot.py effects RESULT.json --markdown        time per entry of each effect, as Markdown tables on stdout
-       plot.py throughput|peers|scale|fit RESULT.json -o FIGURE.png | --markdown    likewise, of those studies
-RESULT.json is what `dolp-bench STUDY --json RESULT.json` writes. Figures need python3-matplotlib (and with it Pillow).
-Exit status: 0 done, 2 usage or a file that is not such a result, 4 the figure could not be written.
+       plot.py throughput|peers|scale|fit RESULT.json -o FIGURE.png | --markdown    figure or tables of these studies
+`dolp-bench STUDY --json RESULT.json` writes RESULT.json. Figures need python3-matplotlib, which installs Pillow.
+Exit status: 0 done, 2 wrong usage or a file that is not a result of the study, 4 the figure could not be written.
 """
 import argparse
 import json
@@ -29,7 +29,7 @@ from plot_style import style, time_text  # noqa: E402
 
 STUDIES = {"effects": plot_effects, "throughput": plot_throughput, "peers": plot_peers,
            "scale": plot_scale, "fit": plot_fit_sets}  # all studies except accuracy
-NEEDED = {"context", "methods", "cases", "results"}  # of accuracy
+NEEDED = {"context", "methods", "cases", "results"}  # fields of a result of the study of accuracy
 WANTED_ERRORS = (1e-3, 1e-6, 1e-9)
 PANEL_COLUMNS = 3
 LABEL_GAP_POINTS = 9.0

@@ -21,7 +21,7 @@ constexpr double kSunAtTenUm = 0.18;  // the sun at 10.6 um above the atmosphere
 constexpr double kSunInVisible = 1800.0;
 constexpr double kVisible_um = 0.55;
 constexpr double kColdSky = 250.0;    // K
-constexpr double kOnePercent = 1e-2;  // of DOLP: roughly what a thermal camera resolves
+constexpr double kOnePercent = 1e-2;  // a tolerance of DOLP that suits a thermal camera
 
 Axes grid_of(std::size_t entries) {
   const auto side = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(entries))));

@@ -18,7 +18,7 @@ constexpr std::size_t kPoints = 12;
 constexpr double kFirstDeg = 2.0;
 constexpr double kLastDeg = 80.0;         // beyond this, `integral` masking creates energy and Q/I has poles
 constexpr double kExactTolerance = 1e-8;  // tolerance of the data without noise: far below the noise
-constexpr double kSameObjective = 0.01;   // of chi^2
+constexpr double kSameObjective = 0.01;   // differences of chi^2 below this do not count
 
 constexpr const char* kSceneText = R"([surface]
 n = 1.5

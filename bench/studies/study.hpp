@@ -1,4 +1,4 @@
-// The studies of dolp-bench; each is one function in a file of its own.
+// The studies of dolp-bench. Each is one function in a separate file.
 #pragma once
 
 #include <cstddef>

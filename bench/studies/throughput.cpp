@@ -51,7 +51,7 @@ constexpr std::size_t kQuickRepeats = 2;
 constexpr double kLongTime = 1.0;  // seconds: a longer call is repeated as seldom as in a quick study
 constexpr std::size_t kFullWorkgroups = 48;
 constexpr std::size_t kQuickWorkgroups = 6;
-constexpr std::size_t kFullRounds = 3;  // of processes
+constexpr std::size_t kFullRounds = 3;  // rounds of processes
 constexpr std::size_t kQuickRounds = 1;
 constexpr std::size_t kPeakRepeats = 9;
 const TimingPolicy kFullTiming{.min_repeats = 5, .max_repeats = 15, .enough_s = 1.0, .most_s = 4.0};

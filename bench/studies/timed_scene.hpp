@@ -21,7 +21,7 @@ class TimedScene {
   const SceneEntries& entries() const { return entries_; }
   const EffectPlan& plan() const { return plan_; }
   const std::vector<PointResult>& results() const { return results_; }
-  const Work& work() const { return work_; }  ///< of the last call
+  const Work& work() const { return work_; }  ///< work of the last call
   /// Raw times per entry in seconds, of calls and of their kernels.
   std::vector<double> times_s() const;
   std::vector<double> kernel_times_s() const;

@@ -14,7 +14,7 @@ namespace {
 struct Timed {
   Solution solution;
   double time_s = 0.0;    ///< time per call
-  double kernel_s = 0.0;  ///< likewise
+  double kernel_s = 0.0;  ///< time in kernels per call
 };
 
 Timed timed(Solver& solver, const MomentsRequest& request, double setting, std::size_t calls) {

@@ -133,7 +133,7 @@ real2 further_on(real2 at, real2 step) {
 
 // Light that leaves a groove. A part of it leaves one bounce earlier than the rest.
 struct GrooveLight {
-  real4 moments;    // as in facet.glsl
+  real4 moments;    // in the order of facet.glsl
   real2 before;     // r_i and r_q of the part that leaves earlier
   real cos_before;  // cos(theta_r) of that part
   real2 last;

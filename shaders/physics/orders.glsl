@@ -286,7 +286,7 @@ real cusp_nodes(ThetaNode theta, ShapeNode shape, real t, real digits, Arc arc) 
   real beside = real(0.0);
   if (kDistribution == DOLP_GAUSSIAN) {
     real zenith = real(1.0) / (shape.m * sqrt(max(digits, real(1.0)) * kLn10));
-    beside = zenith / (real(1.0) + theta.c);  // as a slope
+    beside = zenith / (real(1.0) + theta.c);  // expressed as a slope
   }
   real rise = (real(1.0) + theta.c) * (away * away + beside * beside) / (real(2.0) * max(theta.s * t, real(1e-30)));
   real wanted = max(digits + shape.cusp_digits, real(0.0));

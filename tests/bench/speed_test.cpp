@@ -57,7 +57,7 @@ TEST(BenchNative, Grid_HasTheDevicesNodesOrMoreAndItsMoments) {
 // So many nodes that several invocations share an entry.
 TEST(BenchDeviceRule, ManyNodes_EveryMasking_GivesTheSumOfTheHost) {
   constexpr double kNodes = 256;
-  constexpr double kRounding = 2e-5;  // of geometry in float on the smoothest surface
+  constexpr double kRounding = 2e-5;  // rounding of geometry in float on the smoothest surface
   const std::vector<NestedGrid::Place> places = NestedGrid::sample(3);
   const std::unique_ptr<Solver> device = solver_of("vulkan-gauss");
   const std::unique_ptr<Solver> host = solver_of("gauss");

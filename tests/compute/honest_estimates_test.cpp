@@ -22,7 +22,8 @@ constexpr std::uint64_t kSeed = 20260402;
 constexpr std::size_t kDraws = 60;
 constexpr double kCoarse = 1e-2;
 constexpr double kFine = 1e-6;
-constexpr double kLeastShare = 0.1;  // of the tolerance; no bound is smaller (shaders/physics/README.md, section 9)
+constexpr double kLeastShare =
+    0.1;  // no bound is below this share of the tolerance (shaders/physics/README.md, section 9)
 
 std::uint64_t seed_of(const Model& model) {
   return kSeed + 2 * static_cast<std::uint64_t>(model.masking) + static_cast<std::uint64_t>(model.distribution);

@@ -69,7 +69,7 @@ TEST(Material_BuiltIn, IsLinearBetweenTheRowsOfTheFile) {
 }
 
 TEST(Material_BuiltIn, IsWithinTheThinningOfTheWholeRecord) {
-  constexpr double kThinning = 1e-3;  // of |N|, as documented in host/data/materials.csv
+  constexpr double kThinning = 1e-3;  // error relative to |N|, documented in host/data/materials.csv
   struct Case {
     const char* name;
     double n, k;

@@ -22,7 +22,7 @@
 namespace dolp {
 namespace {
 
-// Share of the points that no level brings to the tolerance, because of rounding and of the largest order at 1e-9.
+// Share of the points that miss the tolerance at every level, because of rounding or the largest order (at 1e-9).
 constexpr double kMissedShare = 0.01;
 constexpr double kTightMissedShare = 0.04;
 constexpr double kTight = 1e-8;

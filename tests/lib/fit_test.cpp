@@ -35,7 +35,7 @@ wavelength_um = 10
 )";
 
 constexpr double kNoise = 0.002;
-constexpr double kQuantile68 = 22.436339987;  // of chi^2 with 20 degrees of freedom
+constexpr double kQuantile68 = 22.436339987;  // quantile of chi^2 with 20 degrees of freedom
 constexpr double kQuantile95 = 31.410432844;
 
 FitRange number(const std::string& key, double low, double high) { return {key, low, high, {}}; }
@@ -80,7 +80,7 @@ class FitTest : public testing::Test {
 // least squares. A tiny scale damps no step.
 TEST(PredictStep, ParametersLeaveTheBounds_OthersAreSolvedAgain) {
   constexpr double kScale = 1e-14;
-  constexpr double kRounding = 1e-6;  // of normal equations whose columns agree to within a tenth
+  constexpr double kRounding = 1e-6;  // rounding of normal equations whose columns agree to a tenth
   std::mt19937_64 engine(5);
   const auto uniform = [&] { return static_cast<double>(engine() >> 11U) * 0x1p-53; };
   int checked = 0;

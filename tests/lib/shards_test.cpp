@@ -1,4 +1,4 @@
-// The shards of a table if their files change between two openings.
+// Merging notices if the files of shards change between two openings.
 #include <gtest/gtest.h>
 
 #include <dolp/errors.hpp>

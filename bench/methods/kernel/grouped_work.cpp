@@ -3,7 +3,7 @@
 namespace dolp::bench {
 namespace {
 
-constexpr double kUnitRoundoff = 0x1p-24;  // of float
+constexpr double kUnitRoundoff = 0x1p-24;  // relative rounding error of float
 
 }  // namespace
 

@@ -47,7 +47,7 @@ void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   add(a.cos / (2.0 * critical), 0.0);
   add(a.cos / critical, 0.0);
   if (masking != Masking::kVCavity || a.cos <= 0.0) return;
-  const double at_slope_1 = std::sqrt(0.5);  // where the lines of v-cavity end
+  const double at_slope_1 = std::sqrt(0.5);  // the lines of v-cavity end at this slope
   add(0.5 * critical / a.cos, at_slope_1);
   add(critical / (std::hypot(a.cos, 2.0 * critical) - a.cos), at_slope_1);
 }

@@ -40,9 +40,9 @@ std::vector<EntriesExtent> extents_of(const SceneEntries& entries);
 /// emission and surroundings have one temperature and no source illuminates the hemisphere. A profile of the sky adds
 /// at most its largest distance from its mean to S, in any direction. The fresnel emission is at least E (1 - R_s) / 2;
 /// the direct emission has no known lower bound. A path multiplies all by its transmittance and adds to I. |q| <= 1
-/// where A <= 1, which bounds rho_s and rho_p: then every part has a degree of polarisation of at most 1. All Stokes
-/// parameters are in the units of the exitances, bistatic ones times pi; sums over a band are sums over the spectral
-/// rule's samples.
+/// where A <= 1, which bounds rho_s and rho_p: in this case every part has a degree of polarisation of at most 1. All
+/// Stokes parameters are in the units of the exitances, bistatic ones times pi; sums over a band are sums over the
+/// spectral rule's samples.
 class EffectBounds {
  public:
   EffectBounds(const SceneModel& scene, const EntriesExtent& extent);

@@ -10,7 +10,7 @@
 namespace dolp {
 namespace {
 
-constexpr double kLeastDoubleTolerance = 1e-15;  // as kLeastFloatTolerance
+constexpr double kLeastDoubleTolerance = 1e-15;  // the counterpart of kLeastFloatTolerance
 
 bool may_use_double(const Accuracy& accuracy, bool has_double) {
   return has_double && accuracy.precision != Precision::kFloat;

@@ -56,7 +56,7 @@ struct TableCheckOptions {
 /// Options for the check of a device.
 struct DeviceCheckOptions {
   std::string evaluator = "vulkan";  ///< vulkan; cpu: the kernel source compiled as C++
-  std::string device = {};           ///< as in EvaluatorOptions
+  std::string device = {};           ///< same meaning as in EvaluatorOptions
   std::string precision = "auto";    ///< float, double; auto is both
   double tolerance = 1e-4;           ///< requested tolerance
   bool all = false;                  ///< report every case, not only those that fail

@@ -24,7 +24,7 @@ struct PointResult {
 /// Results of many entries: one column per quantity, and the status.
 struct ResultColumns {
   QuantityArray<std::vector<double>> columns;  ///< empty if a quantity was not computed
-  std::vector<std::uint32_t> status;           ///< likewise
+  std::vector<std::uint32_t> status;           ///< empty if it was not computed
 
   std::vector<double>& operator[](Quantity quantity) { return columns[quantity]; }
   const std::vector<double>& operator[](Quantity quantity) const { return columns[quantity]; }

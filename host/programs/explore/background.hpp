@@ -106,7 +106,7 @@ class Sweep {
   void follow(Job job, const std::string& column = "theta_deg");
   std::optional<Job> wanted() const { return is_finished() ? std::nullopt : job_; }
   bool take(const JobPart& news);
-  /// True if the points on display are those of the last job.
+  /// True if the points on display belong to the last job.
   bool is_finished() const { return job_ && shown_key_ == job_->key; }
   // The points on display, and their values in the column.
   const std::vector<Point>& points() const { return points_; }

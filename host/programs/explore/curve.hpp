@@ -79,7 +79,7 @@ struct PeakAnswer {
 
 /// The peak without one effect.
 struct WithoutEffect {
-  std::string effect;  ///< as in Effect::name, or "roughness"
+  std::string effect;  ///< Effect::name, or "roughness"
   bool radiates;       ///< the effect is a term of the sum of radiances
   Scene scene;
   std::optional<Point> result = {};  ///< empty until it is computed

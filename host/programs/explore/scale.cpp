@@ -9,7 +9,7 @@
 namespace dolp::explore {
 namespace {
 
-constexpr double kRounding = 1e-9;  // as a share of a step: an end may miss a tick by this much
+constexpr double kRounding = 1e-9;  // an end may miss a tick by this share of a step
 
 std::vector<double> linear_ticks(double low, double high, std::size_t most) {
   const double rough = (high - low) / static_cast<double>(most);

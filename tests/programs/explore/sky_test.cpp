@@ -112,7 +112,7 @@ TEST_F(Skies, List_OffersUniformAndBuiltInSkies_AndTheFileOfTheSceneAsOpened) {
     choose(place);
     EXPECT_EQ(word("surroundings.profile").value_or(""), name);
   }
-  EXPECT_EQ(number("surroundings.temperature_K"), 240.0);  // as opened
+  EXPECT_EQ(number("surroundings.temperature_K"), 240.0);  // the value in the opened scene
   put("sky.csv", "zenith_deg,temperature_K\n0,220\n70,240\n90,285\n");
   open({{"surroundings.profile", "sky.csv"}});
   for (const auto& [place, name] : {std::pair{3.4F, "overcast"}, {5.2F, "sky.csv"}}) {

@@ -22,8 +22,8 @@ using MaskingNode = std::array<double, 4>;
 /// Buffer bytes per invocation (a piece of a row, a slope or a beam) and per shape.
 struct TileCosts {
   std::uint64_t invocation_bytes = 0;  ///< in all buffers that grow with the invocations of a tile
-  std::uint64_t shape_bytes = 1;       ///< of the masking table and node of a shape; 1 without them
-  std::uint64_t shape_texels = 0;      ///< of the masking table
+  std::uint64_t shape_bytes = 1;       ///< bytes of the masking table and node of a shape; 1 without them
+  std::uint64_t shape_texels = 0;      ///< texels of the masking table
 };
 
 /// Invocations per dispatch, and shapes bound at a time; at least one each.

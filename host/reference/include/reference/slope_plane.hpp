@@ -27,7 +27,7 @@
 
 namespace dolp::reference {
 
-/// One azimuth of slopes of length t.
+/// A facet slope of length t at the angle chi.
 struct SlopePoint {
   double t;
   double sin_chi;  ///< cos(phi)

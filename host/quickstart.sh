@@ -3,8 +3,8 @@
 #
 # Installs the packages that are missing, and builds the program, its Python package and its pages into build/release, from
 # which `cmake --install` works. Then writes the table of SCENE to OUT, prints the summary and draws OUT with the suffix .png.
-# Default SCENE: night_paint.toml with 36 roughnesses. Default OUT: dolp.nc in the current folder. An OUT with another suffix
-# than .nc has no picture.
+# Default SCENE: night_paint.toml with 36 roughnesses. Default OUT: dolp.nc in the current folder. Only an OUT with the suffix
+# .nc gets a picture.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -27,6 +27,6 @@ if [[ $table != *.nc ]]; then
   exit 0
 fi
 picture=${table%.nc}.png
-# Debian's own Python: the packages above belong to it, and another one may come first on PATH.
+# Debian's Python, for which the packages above are installed. PATH may have another one first.
 /usr/bin/python3 "$root/host/plot_table.py" "$table" "$picture"
 echo "picture: $(realpath -- "$picture")"

@@ -1,5 +1,5 @@
 # Writes the C++ source OUTPUT, in which the assembler puts the SPIR-V file MODULE as the span dolp::spirv::SYMBOL that
-# spirv.hpp declares. A compiler takes seconds to read the same words as numbers.
+# spirv.hpp declares. A compiler would take seconds to read the words as numbers.
 file(SIZE ${MODULE} size)
 math(EXPR count "${size} / 4")  # SPIR-V is a stream of 32-bit words
 file(WRITE ${OUTPUT} "#include \"spirv.hpp\"

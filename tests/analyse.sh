@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Static analysis: cppcheck of host/, clang-tidy of all C++ sources: analyse.sh
 #
-# Configures build/analysis, where each source has a compile command of its own. Prints what is found; the exit status is
-# not 0 then. The checks of clang-tidy are in .clang-tidy. Needs cppcheck and clang-tidy 16 or later: the package
+# Configures build/analysis, where each source has a separate compile command. Prints all findings; with findings the exit
+# status is not 0. The checks of clang-tidy are in .clang-tidy. Needs cppcheck and clang-tidy 16 or later: the package
 # clang-tidy-16 of Debian 12, clang-tidy of Debian 13.
 set -euo pipefail
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # clang-format 14 of the C++ files that differ from a commit: format.sh [--fix] [COMMIT]
 #
-# COMMIT, origin/main when not given, else the last commit, is where the change began. With --fix the files are formatted;
-# otherwise those that are not are listed, and the exit status is 1 if there are any, or where there is no clang-format 14:
-# other versions break lines elsewhere.
+# COMMIT is the commit before the change; the default is origin/main, or the last commit if there is no origin/main. With
+# --fix the script formats the files. Otherwise it lists files that are not formatted, and then exits with 1. It also exits
+# with 1 without clang-format 14, because other versions break lines differently.
 set -euo pipefail
 
 version=14

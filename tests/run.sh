@@ -3,7 +3,7 @@
 #
 # Environment:
 #   DOLP_BUILD_TYPE   Release (default) in build/release, Debug in build/debug, AsanUbsan in build/asan-ubsan;
-#                     Tsan in build/tsan has the tests of the host's threads alone, since drivers are not instrumented
+#                     Tsan in build/tsan has only the tests of the host's threads, because drivers are not instrumented
 #   DOLP_TEST_DEVICE  a part of the file name of another Vulkan driver (in vulkan/icd.d), e.g. nvidia or radeon
 #   DOLP_VALIDATION   1 (default): messages of the Vulkan validation layers fail a test; 0: without the layers
 # Arguments go to ctest, e.g. -R Eval. With AsanUbsan the suite has a minute of fuzzing, `-L fuzz`; after that build,
@@ -29,14 +29,14 @@ esac
 
 bash "$root/host/tools/install_packages.sh" build picture bench test
 
-# The loader's own search would prefer a GPU where there is one.
+# The loader's search would prefer a GPU if there is one.
 shopt -s nullglob
 driver_files=({/usr/share,/usr/local/share,/etc}/vulkan/icd.d/*"$driver"*.json)
 ((${#driver_files[@]} > 0)) || fail "there is no Vulkan driver file vulkan/icd.d/*$driver*.json"
 driver_file=${driver_files[0]}
 export VK_DRIVER_FILES=$driver_file VK_ICD_FILENAMES=$driver_file
 export DOLP_VALIDATION=${DOLP_VALIDATION:-1}
-# Mesa and the validation layers keep memory to the end, and are unloaded by the time a suppression would need their names.
+# Mesa and the validation layers keep memory until the end. They are unloaded before a suppression could use their names.
 export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=0}
 
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE="$build_type" -DBUILD_TESTING=ON -DDOLP_BENCH=ON \

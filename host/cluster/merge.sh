@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The last job that submit.sh makes: merge.sh FILE.nc SHARDS. The shards go when the table is there.
+# The last job that submit.sh makes: merge.sh FILE.nc SHARDS. Removes the shards when the table is complete.
 set -euo pipefail
 
 file=$1 shards=$2

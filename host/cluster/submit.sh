@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# A table as a Slurm job array, one task a shard, and a job that merges the shards when all are there:
+# Computes a table as a Slurm job array with one task per shard, and submits a job that merges the complete shards:
 #
 #   submit.sh SCENE FILE.nc SHARDS [option of dolp table]...
 #
-# A task that fails is queued again, up to three times, and goes on where it stopped; wrong input (exit status 2) ends
-# it at once. Environment: DOLP, the program (dolp); SBATCH_..., what sbatch reads (SBATCH_PARTITION, SBATCH_TIMELIMIT).
+# A task that fails is queued again, up to three times, and continues where it stopped. Wrong input (exit status 2) ends it
+# at once. Environment: DOLP, the program (default dolp); SBATCH_PARTITION, SBATCH_TIMELIMIT and other variables of sbatch.
 # Prints the numbers of the two jobs.
 set -euo pipefail
 

@@ -6,7 +6,7 @@
 #   bench    dolp-bench and its figures
 #   test     the test suite
 #
-# Nothing is changed, and no root is needed, when everything is there. Otherwise apt-get runs, through sudo when needed.
+# If all packages are installed, the script changes nothing and needs no root. Otherwise it runs apt-get, with sudo if needed.
 set -euo pipefail
 
 declare -A packages

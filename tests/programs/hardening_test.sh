@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Whether a program is protected as CMakeLists.txt asks for: hardening_test.sh PROGRAM
+# Checks that a program has the protections of CMakeLists.txt: hardening_test.sh PROGRAM
 set -euo pipefail
 export LC_ALL=C
 

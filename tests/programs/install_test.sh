@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What is installed works anywhere, without the build: install_test.sh BUILD SOURCES
+# An installation works in any folder without the build: install_test.sh BUILD SOURCES
 set -euo pipefail
 
 build=$1

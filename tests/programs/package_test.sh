@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The Debian package, installed and used in a root of its own above this machine's: package_test.sh BUILD
+# Installs and uses the Debian package in a separate root over this machine's: package_test.sh BUILD
 set -euo pipefail
 
 build=$1
@@ -25,7 +25,7 @@ dpkg --remove dolp > log
 test ! -e /usr/bin/dolp
 END
 
-# Nothing of it reaches the machine: what is written goes to memory that ends with the name space.
+# The machine does not change: all writes go to memory that vanishes with the namespace.
 mkdir "$work/memory" "$work/root"
 "${as_root[@]}" env -u PYTHONPATH HOME=/empty unshare --mount bash -euo pipefail -c '
   cd "$1"

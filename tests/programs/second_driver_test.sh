@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs dolp on SwiftShader, a Vulkan driver of another kind than lavapipe: second_driver_test.sh DOLP SOURCE
+# Runs dolp on SwiftShader, a Vulkan driver other than lavapipe: second_driver_test.sh DOLP SOURCE
 #
 # Debian's package chromium-common has the driver. The test downloads it and installs nothing. Exit status 77: this system
 # has no such package.

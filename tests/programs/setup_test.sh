@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The scripts of a system that is not the expected one end with a line that says what is needed: setup_test.sh SOURCES
+# On an unexpected system the scripts end with a line that names what is missing: setup_test.sh SOURCES
 set -euo pipefail
 
 sources=$1
@@ -25,7 +25,7 @@ chmod +x "$folder/clang-format"
 for command in git dirname; do ln -s "$(command -v $command)" "$folder/"; done
 expect "another clang-format" 1 "it takes clang-format 14" env PATH="$folder" "$bash" "$sources/tests/format.sh"
 
-# A compiler that says that it is another one.
+# A compiler that reports another version.
 printf '#!%s\nexec c++ -U__GNUC__ -D__GNUC__=11 -Wno-builtin-macro-redefined "$@"\n' "$bash" > "$folder/c++-11"
 chmod +x "$folder/c++-11"
 out=$(cmake -S "$sources" -B "$folder/build" -G Ninja -DCMAKE_CXX_COMPILER="$folder/c++-11" 2>&1) && exit 1

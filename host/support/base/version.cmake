@@ -1,4 +1,4 @@
-# Writes OUTPUT from TEMPLATE with VERSION and the commit of SOURCES, which GIT finds where there is a repository.
+# Writes OUTPUT from TEMPLATE with VERSION and the commit of SOURCES. GIT finds the commit if there is a repository.
 set(COMMIT unknown)
 if(GIT)
   execute_process(COMMAND ${GIT} -C ${SOURCES} describe --always --dirty=-changed --abbrev=12 --exclude=*

@@ -31,7 +31,7 @@ import picture_file  # noqa: E402
 COLOURS = "viridis"
 MOST_CURVES = 6
 CONTOURS_PERCENT = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50)
-SHOWN_SHARE_PERCENT = 97  # share of the entries, without peaks, in the scale: a rise at grazing incidence must not fill it
+SHOWN_SHARE_PERCENT = 97  # share of the entries in the scale, without peaks: a grazing rise must not fill the scale
 FEW_ANGLES = 25  # with at most this many zeniths each entry gets a dot
 # least number of values of theta and of sigma; a smaller map would show structure that the table lacks
 FEWEST_OF_MAP = 6

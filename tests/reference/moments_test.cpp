@@ -162,8 +162,8 @@ double bend_deg(double theta_i_deg, double theta_r_deg) {
 }
 
 TEST(ReferenceMoments, PlainQuadratureOfTheMuellerMatrix_Agrees) {
-  // Tolerances relative to the integral of absolute values, which is r_i. kInner is for the azimuths; each zenith gets a
-  // share of it. kOuter is for the zeniths and is larger than the error from the azimuths.
+  // Tolerances relative to the integral of absolute values, which is r_i. kInner is for the azimuths; each zenith gets
+  // a share of it. kOuter is for the zeniths and is larger than the error from the azimuths.
   constexpr double kInner = 1e-6;
   constexpr double kOuter = 5e-6;
   constexpr unsigned kDepth = 8;

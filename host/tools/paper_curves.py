@@ -1,7 +1,7 @@
-"""The model's curves behind figures 4-7 of the paper, computed by dolp, and the numbers its statements are about.
+"""The model's curves for figures 4-7 of the paper, computed by dolp, and the numbers behind the paper's statements.
 
-The paper prints neither k_s, k_d, c, q and E0 nor the masking of its gaussian curves. So each figure is computed for
-two readings: `integral`, the sample scenes as they are shipped, and `smith`. A gaussian is compared at equal D(0), with
+The paper does not print k_s, k_d, c, q, E0, and the masking of its Gaussian curves. So each figure is computed for two
+readings: `integral`, with the unchanged sample scenes, and `smith`. A Gaussian has the same D(0) as the Cauchy curve:
 sigma_G = sigma / sqrt(q - 1). Angles in degrees, DOLP in percent.
 """
 import csv

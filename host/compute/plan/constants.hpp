@@ -149,8 +149,8 @@ inline constexpr double kFirstShapeNodes = 3.0;  // 1.87, 1.87, 2.44; 1.70, 1.81
 /// Interpolation needs this many values per node of an axis, and this many entries per node of a direction and index.
 inline constexpr double kLeastAxisGain = 1.25;     // 1.87, 1.87, 3.84; 1.81, 1.81, 2.66
 inline constexpr std::size_t kLeastShapeGain = 2;  // 1.87, 1.87, 3.84; 1.81, 1.81, 2.66
-/// Tolerance of the nodes over the tolerance of the request; it is smaller because bounds grow by the interpolant's
-/// weights. The second value: digits of the interpolation beyond the tolerance of the request.
+/// Tolerance of the nodes over the tolerance of the request. It is below 1 because the interpolant's weights increase
+/// bounds. The second value: digits of the interpolation beyond the tolerance of the request.
 inline constexpr double kShapeNodeTolerance = 0.125;  // 2.03, 1.87, 1.75; 1.86, 1.81, 1.78
 inline constexpr double kExtraShapeDigits = 1.0;      // 1.84, 1.87, 2.33; 1.75, 1.81, 2.32
 /// Error bound over the largest of the last kLastShapeCoefficients coefficients, if these fall fast. kSlowestShapeFall

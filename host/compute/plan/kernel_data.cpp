@@ -40,7 +40,7 @@ Loops single_loops(const KernelData& data) {
 }
 
 // Loop iterations of a ray with `bounces` bounces: one for each bounce, or for each group of bounces that next_bounces
-// of groove.glsl takes as one.
+// in groove.glsl combines.
 double turns_of(double bounces) {
   double turns = 2.0;
   double taken = 1.0;

@@ -59,9 +59,9 @@ std::uint32_t tolerance_status(const PointResult& result, double tolerance) {
   return (dolp_missed ? std::uint32_t{kToleranceNotMet} : 0U) | (rho_missed ? std::uint32_t{kRhoToleranceNotMet} : 0U);
 }
 
-/// Estimated change of I by light that single scattering loses at a second facet, or that a masking creates. The estimate
-/// compares rho_I with rho_I / A, for which every facet counts once. With direct emission the lost light is neither
-/// emitted nor reflected.
+/// Estimated change of I by light that single scattering loses at a second facet, or that a masking creates. The
+/// estimate compares rho_I with rho_I / A, for which every facet counts once. With direct emission the lost light is
+/// neither emitted nor reflected.
 double change_by_model(const SceneModel& scene, const SpectralRule& rule, std::span<const Moments> moments,
                        std::span<const Reflectance> reflectances, std::span<const Emissivity> emissivities,
                        double cos_theta) {

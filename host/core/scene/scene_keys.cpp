@@ -270,7 +270,7 @@ std::vector<SceneKey> radiation_keys() {
            [](auto& s) { return &s.names.profile; }),
       number(
           "surroundings.vapour_cm", "cm", kVapourRange, "",
-          "precipitable water of the air of clear-sky or overcast; 1.27 cm without it, the standard atmosphere's",
+          "precipitable water of the air of clear-sky or overcast; without it 1.27 cm, or all that colder air holds",
           [](const SceneValues& s) {
             return s.surroundings && s.surroundings->air.vapour_cm ? &*s.surroundings->air.vapour_cm : nullptr;
           },

@@ -268,6 +268,20 @@ std::vector<SceneKey> radiation_keys() {
            "a sky over zenith: clear-sky, overcast or your own CSV of zenith_deg, temperature_K or radiance, "
            "wavelength_um; instead of temperature_K",
            [](auto& s) { return &s.names.profile; }),
+      number(
+          "surroundings.vapour_cm", "cm", kVapourRange, "",
+          "precipitable water of the air of clear-sky or overcast; without it 1.27 cm, or all that colder air holds",
+          [](const SceneValues& s) {
+            return s.surroundings && s.surroundings->air.vapour_cm ? &*s.surroundings->air.vapour_cm : nullptr;
+          },
+          [](SceneValues& s, const KeyValue& v) { s.surroundings->air.vapour_cm = v.number; }),
+      number(
+          "surroundings.air_temperature_K", "K", kAirTemperatureRange, "",
+          "temperature of the air at the ground under clear-sky or overcast; 288.15 K without it",
+          [](const SceneValues& s) {
+            return s.surroundings && s.surroundings->air.temperature_K ? &*s.surroundings->air.temperature_K : nullptr;
+          },
+          [](SceneValues& s, const KeyValue& v) { s.surroundings->air.temperature_K = v.number; }),
       number("path.transmittance", "1", kFractionRange, "1", "transmittance tau of the path to the sensor",
              [](auto& s) { return s.path ? &s.path->transmittance : nullptr; }),
       number(

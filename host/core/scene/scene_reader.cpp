@@ -302,6 +302,7 @@ void load_axis_materials(SceneValues& scene, const SceneDocument& document, cons
     labels.push_back(material.name);
   }
   scene.surface.material = materials.front();
+  scene.names.material = labels.front();
   scene.materials = std::make_shared<const std::vector<Material>>(std::move(materials));
 }
 
@@ -351,7 +352,10 @@ void load_profile(SceneValues& scene, const SceneDocument& document, const std::
                   const KnownData* known) {
   if (!document.find("surroundings.profile")) return;
   const std::string prefix = document.prefix("surroundings.profile");
-  std::optional<SkyProfile> profile = built_in_sky(scene.names.profile);
+  const char* const air_key =
+      document.find("surroundings.vapour_cm") ? "surroundings.vapour_cm" : "surroundings.air_temperature_K";
+  std::optional<SkyProfile> profile = built_in_sky(scene.names.profile, scene.surroundings->air,
+                                                   document.find(air_key) ? document.prefix(air_key) : prefix);
   if (!profile && known && known->profile) profile = known->profile;
   std::error_code unknown;
   const std::filesystem::file_status file =
@@ -459,6 +463,12 @@ void check_scattering(const SceneValues& scene, const SceneDocument& document) {
 }
 
 void check_radiation(const SceneValues& scene, const SceneDocument& document) {
+  for (const char* key : {"surroundings.vapour_cm", "surroundings.air_temperature_K"}) {
+    if (document.find(key))
+      check_needs(
+          document, key,
+          {{built_in_sky(scene.names.profile).has_value(), "surroundings.profile = \"clear-sky\" or \"overcast\""}});
+  }
   if (!scene.emission && !scene.source && !scene.surroundings) {
     document.fail("emission", "missing; nothing radiates without one of the tables emission, source, surroundings");
   }

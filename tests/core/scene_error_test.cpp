@@ -222,7 +222,6 @@ TEST(SceneOverride_OfAnAxis, IsNamedWhereItLacksAnEnd) {
             "--set grid.theta_deg={from=0, count=3}: to: missing; must be a number in [0, 90]");
   const std::string axis = kMinimal + "[grid]\ntheta_deg = { from = 0, to = 30, count = 3 }\n";
   EXPECT_TRUE(contains(error_of(axis, {"grid.theta_deg.spacing=log"}), "--set grid.theta_deg.spacing=log: "));
-  EXPECT_TRUE(contains(error_of(axis + "n = 1.5\n", {"surface.material=iron"}), "--set surface.material=iron: "));
 }
 
 TEST(SceneOverride_ThatTakesAnUnknownKeyAway, IsRefused) {

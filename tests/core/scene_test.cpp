@@ -104,6 +104,8 @@ const std::vector<KeyCase>& key_cases() {
       {"surface.specular", "0.5", [](At s) { return s.surface.specular == 0.5; }},
       {"surface.diffuse", "0.25", [](At s) { return s.surface.diffuse == 0.25; }},
       {"surface.diffuse_exponent", "-0.25", [](At s) { return s.surface.diffuse_exponent == -0.25; }},
+      {"surface.diffuse_polarisation", "\"transmission\"",
+       [](At s) { return s.surface.diffuse_polarisation == DiffusePolarisation::kTransmission; }},
       {"surface.coating.1.n", "1.25", [](At s) { return s.surface.coating[0].material.constant.n == 1.25; }},
       {"surface.coating.1.k", "0.25", [](At s) { return s.surface.coating[0].material.constant.k == 0.25; }},
       {"surface.coating.1.material", "\"iron\"", [](At s) { return s.surface.coating[0].material.name == "iron"; }},
@@ -122,6 +124,8 @@ const std::vector<KeyCase>& key_cases() {
       {"source.scale", "0.75", [](At s) { return s.source->scale == 0.75; }},
       {"surroundings.temperature_K", "0", [](At s) { return s.surroundings->temperature_K == 0.0; }},
       {"surroundings.profile", "\"overcast\"", [](At s) { return s.surroundings->profile != nullptr; }},
+      {"surroundings.vapour_cm", "1", [](At s) { return *s.surroundings->air.vapour_cm == 1.0; }},
+      {"surroundings.air_temperature_K", "280", [](At s) { return s.surroundings->profile->air_K == 280.0; }},
       {"path.transmittance", "0.5", [](At s) { return s.path->transmittance == 0.5; }},
       {"path.temperature_K", "280", [](At s) { return *s.path->temperature_K == 280.0; }},
       {"path.radiance", "2.5", [](At s) { return *s.path->radiance == 2.5; }},
@@ -137,6 +141,11 @@ const std::vector<KeyCase>& key_cases() {
          return is(s.grid[Axis::kSigma], std::sqrt(0.003 / 2), std::sqrt(0.0286 / 2)) && is(s.wind_m_s, 0.0, 5.0) &&
                 s.surface.sigma == s.grid[Axis::kSigma][0];
        }},
+      {"grid.material", "[\"iron\", \"silver\"]",
+       [](At s) { return is(s.grid[Axis::kMaterial], 0.0, 1.0) && s.materials->at(1).name == "silver"; }},
+      {"grid.band_um", "[[8, 9], [10, 12]]",
+       [](At s) { return is(s.grid[Axis::kBand], 0.0, 1.0) && s.bands[1].max_um == 12.0 && s.spectrum.max_um == 9.0; }},
+      {"grid.temperature_K", "[280, 300]", [](At s) { return is(s.grid[Axis::kTemperature], 280.0, 300.0); }},
       {"grid.q", "[1.5, 2]", [](At s) { return is(s.grid[Axis::kQ], 1.5, 2.0); }},
       {"grid.wavelength_um", "[8, 10]", [](At s) { return is(s.grid[Axis::kWavelength], 8.0, 10.0); }},
       {"grid.n", "[1.3, 2]", [](At s) { return is(s.grid[Axis::kN], 1.3, 2.0); }},
@@ -161,6 +170,8 @@ std::vector<Key> listed_keys() {
 /// Other settings that a key needs.
 std::vector<std::string> companions_of(const std::string& key) {
   if (key == "source.scale") return {"source.irradiance=1"};
+  if (key == "surroundings.air_temperature_K") return {"surroundings.profile=clear-sky"};
+  if (key == "surroundings.vapour_cm") return {"surroundings.profile=clear-sky", "surroundings.air_temperature_K=330"};
   if (is_wind(key)) return {"surface.distribution=gaussian"};
   if (key.starts_with("surface.coating.1.material")) return {"surface.coating=[{thickness_um=1}]"};
   if (is_of_layer(key)) return {"surface.coating=[{n=1.5,thickness_um=1}]"};
@@ -213,12 +224,14 @@ TEST(Scene_EveryKey, CanBeWrittenInTheFile) {
     std::string text = "accuracy.tolerance = 1e-5\n";
     if (key == "accuracy.tolerance") text.clear();
     const bool gives_optics =
-        key == "surface.n" || key.starts_with("surface.material") || key == "surface.reflectance_file";
-    if (!gives_optics) text += "surface.n = 1.5\n";
+        key == "surface.n" || key.find("material") != std::string::npos || key == "surface.reflectance_file";
+    if (!gives_optics || is_of_layer(key)) text += "surface.n = 1.5\n";
     if (is_wind(key)) text += "surface.distribution = \"gaussian\"\n";
     if (key != "surface.sigma" && !is_wind(key)) text += "surface.sigma = 0.3\n";
     if (key != "emission.temperature_K") text += "emission.temperature_K = 300\n";
-    if (!key.starts_with("spectrum")) text += "spectrum.wavelength_um = 10.6\n";
+    if (key == "surroundings.vapour_cm" || key == "surroundings.air_temperature_K")
+      text += "surroundings.profile = \"clear-sky\"\n";
+    if (!key.starts_with("spectrum") && key != "grid.band_um") text += "spectrum.wavelength_um = 10.6\n";
     if (key == "source.scale") text += "source.irradiance = 1\n";
     if (is_of_layer(key)) {
       const std::string name = key.substr(key.rfind('.') + 1);

@@ -156,7 +156,7 @@ def _value(key: str, value: Any) -> Any:
     if isinstance(value, Mapping):
         return {name: str(item) if name == "spacing" else whole_number(f"{key}.count", item) if name == "count"
                 else float(floats(f"{key}.{name}", item)) for name, item in value.items()}
-    if isinstance(value, (list, tuple)) and any(isinstance(item, (str, list, tuple)) for item in value):
+    if key in ("grid.material", "grid.band_um"):
         return label_values(value)
     numbers = floats(key, value)
     return float(numbers) if numbers.ndim == 0 else axis_values(key, numbers)

@@ -42,7 +42,8 @@ def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all
         whole = table_dataset(*native_evaluator(evaluator, device).table(on_axes, flag("keep_all", keep_all)))
         warn_of_model(scene, whole.get("status", 0), whole.attrs.get("model_change"))
         return whole
-    _check_varied("axes", [key], [column for column, *_ in _native.axes()])
+    columns = [column for column, *_ in _native.axes() if column != "temperature_K" or column in axes]
+    _check_varied("axes", [key], columns)
     others = {name: values for name, values in axes.items() if name != key}
     values = np.array(axis_values(key, axes[key]))
     return concatenated([table(scene.with_({key: value}), evaluator=evaluator, device=device, keep_all=keep_all, **others)

@@ -1,11 +1,10 @@
-#include "scene/scene_values.hpp"
+#include "scene/scene_keys.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 
 #include "base/text.hpp"
 
@@ -161,35 +160,27 @@ KeyValue read_word(const SceneDocument& document, const Key& description, const 
 
 KeyValue read_value(const SceneDocument& document, const Key& description) {
   const toml::node& node = *document.find(description.key);
-  KeyValue value;
   switch (description.type) {
     case Type::kNumber:
-      value.number = read_number(document, description.key, node, description.range, description.allowed());
-      break;
+      return {.number = read_number(document, description.key, node, description.range, description.allowed())};
     case Type::kWord:
       return read_word(document, description, node);
     case Type::kFlag:
       if (!node.is_boolean()) document.fail(description.key, "must be " + description.allowed());
-      value.is_set = node.value_or(false);
-      break;
+      return {.word = node.value_or(false) ? 1U : 0U};
     case Type::kText:
       if (!node.is_string()) document.fail(description.key, "must be a text");
-      value.text = node.value_or(std::string());
-      break;
+      return {.text = node.value_or(std::string())};
     case Type::kPair:
-      value.numbers = read_pair(document, description, node);
-      break;
+      return {.numbers = read_pair(document, description, node)};
     case Type::kNames:
-      value.names = read_names(document, description, node);
-      break;
+      return {.names = read_names(document, description, node)};
     case Type::kPairs:
-      value.numbers = read_pairs(document, description, node);
-      break;
+      return {.numbers = read_pairs(document, description, node)};
     case Type::kAxis:
-      value.numbers = read_axis(document, description, node);
-      break;
+      return {.numbers = read_axis(document, description, node)};
   }
-  return value;
+  return {};
 }
 
 }  // namespace dolp

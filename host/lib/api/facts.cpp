@@ -7,7 +7,6 @@
 #include <optional>
 
 #include <dolp/number_range.hpp>
-#include <dolp/status.hpp>
 #include "api/impl.hpp"
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"

@@ -81,7 +81,7 @@ std::vector<Linearisation> Residuals::at(const std::vector<Eigen::VectorXd>& poi
 }
 
 void Residuals::linearise(const std::vector<Linearisation*>& points) {
-  const std::size_t count = differences_ == Differences::kCentral ? 2 : 1;  // of points beside, for each parameter
+  const std::size_t count = differences_ == Differences::kCentral ? 2 : 1;  // points beside, for each parameter
   std::vector<Eigen::VectorXd> beside;
   for (Linearisation* const point : points) {
     if (point->steps.size() == 0) point->steps.setConstant(point->at.size(), kFirstStep);

@@ -1,7 +1,6 @@
 #include "report/fit_report.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <span>

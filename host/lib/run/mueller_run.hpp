@@ -1,7 +1,6 @@
 // The Mueller pBRDF of a scene's surface at scattered geometries.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "model/evaluator.hpp"
@@ -33,7 +32,7 @@ Precision mueller_precision(const Accuracy& accuracy, bool has_double);
 /// Domain: at 90 degrees the limits, which v-cavity and smith have with one beam there. Where f has no finite value all
 /// 16 are NaN: at 90 degrees otherwise, and for a mirror (sigma = 0) in its specular direction; in others its f is the
 /// diffuse part. So they are where more bounces count than are followed (plan/further_bounces.cpp).
-/// Errors: those of the evaluator.
+/// Errors: errors of the evaluator.
 std::vector<MuellerMatrix> evaluate_mueller(const SceneValues& scene, const std::vector<MuellerPoint>& points,
                                             ModelEvaluator& evaluator, const Progress& progress);
 

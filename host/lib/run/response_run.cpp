@@ -20,7 +20,6 @@
 #include "run/closed_forms.hpp"
 #include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
-#include "table/table_box.hpp"
 
 namespace dolp {
 namespace {
@@ -49,7 +48,7 @@ Eigen::VectorXd chebyshev_at(double x) {
 /// The angles of a table.
 struct Nodes {
   Eigen::MatrixXd polynomials;  ///< T_m(x_j): polynomials x angles
-  Eigen::ArrayXd sin2;          ///< of beta
+  Eigen::ArrayXd sin2;          ///< sin^2 of beta
   std::vector<double> beta_deg;
 
   Nodes() : polynomials(kBetaAngles, kBetaAngles), sin2(kBetaAngles) {
@@ -261,8 +260,7 @@ ResponseOutcome run_responses(const SceneValues& scene, const TableLayout& layou
     TableBox box{{}, layout.head.counts()};
     box.first[Axis::kTheta] = first;
     box.count[Axis::kTheta] = std::min(at_once, axes[Axis::kTheta].size() - first);
-    TableValues part;
-    static_cast<TableHead&>(part) = head_of(layout.head, box);
+    TableValues part{head_of(layout.head, box)};
     MomentsRequest request = response_request(scene.surface);
     request.theta_deg = part.axes[Axis::kTheta];
     request.sigma = part.axes[Axis::kSigma];

@@ -1,7 +1,6 @@
 // Stored reference moments, and how an evaluator compares with them, through the radiometry, as `dolp eval` computes.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>

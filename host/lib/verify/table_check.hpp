@@ -2,11 +2,9 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <dolp/options.hpp>
 #include <dolp/results.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "model/evaluator.hpp"
@@ -58,7 +56,7 @@ struct TableCheck {
 /// The values of the axes at an entry of a table.
 std::vector<AxisValue> position_of(std::size_t entry, const TableHead& table);
 
-/// Positions of `samples` distinct entries out of `entries`, ascending; the same for the same seed everywhere.
+/// Positions of `samples` distinct entries out of `entries`, ascending. They depend only on the seed.
 std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckOptions& options);
 
 /// Some entries of a table: its variables have one value for each of the ascending positions.

@@ -134,6 +134,10 @@ struct MaterialAxes {
   std::optional<OpticalConstants> index = {};  ///< instead of the scene's
   std::vector<Layer> coating = {};
   std::size_t over = 0;  ///< position of the case whose kernels are the unit
+  std::vector<Spectrum> bands = {};
+  std::vector<double> temperature_K = {};
+  bool has_all_materials = false;
+  double polarised_diffuse = 0.0;  ///< k_d
 };
 
 Layer layer(const OpticalConstants& index, double thickness_um) { return {{.constant = index}, thickness_um}; }
@@ -159,7 +163,24 @@ std::vector<MaterialAxes> material_axes() {
            .index = kAluminium,
            .coating = {layer(kPaint, 3.0), layer(kOxide, 1.0)},
            .over = 4},
-          {.name = "aluminium, 20 um paint", .index = kAluminium, .coating = {layer(kPaint, 20.0)}, .over = 4}};
+          {.name = "aluminium, 20 um paint", .index = kAluminium, .coating = {layer(kPaint, 20.0)}, .over = 4},
+          {.name = "all built-in materials", .over = 4, .has_all_materials = true},
+          {.name = "30 temperatures", .temperature_K = spaced(270.0, 330.0, 30)},
+          {.name = "4 bands of one index", .bands = {{3.0, 4.0}, {4.5, 5.0}, {8.0, 10.0}, {10.0, 12.0}}},
+          {.name = "polarised diffuse part", .polarised_diffuse = 0.2}};
+}
+
+/// An axis of the built-in materials that are known at the scene's wavelength.
+void add_all_materials(SceneValues& scene) {
+  std::vector<Material> materials;
+  for (const Material& material : built_in_materials()) {
+    const Spectrum known = known_range(material);
+    if (known.min_um > scene.spectrum.min_um || known.max_um < scene.spectrum.max_um) continue;
+    scene.grid[Axis::kMaterial].push_back(static_cast<double>(materials.size()));
+    materials.push_back(fit_to_spectrum(material, scene.spectrum, "all materials: "));
+  }
+  scene.surface.material = materials.front();
+  scene.materials = std::make_shared<const std::vector<Material>>(std::move(materials));
 }
 
 ordered_json grid_row(Masking masking, const GridRun& run) {
@@ -308,6 +329,15 @@ void Study::run_materials(Masking masking) {
     }
     if (axes.index) scene.surface.material.constant = *axes.index;
     scene.surface.coating = axes.coating;
+    scene.surface.diffuse = axes.polarised_diffuse;
+    scene.surface.diffuse_polarisation = DiffusePolarisation::kTransmission;
+    if (axes.has_all_materials) add_all_materials(scene);
+    for (const Spectrum& band : axes.bands) {
+      scene.grid[Axis::kBand].push_back(static_cast<double>(scene.bands.size()));
+      scene.bands.push_back(band);
+      scene.spectrum = scene.bands.front();
+    }
+    scene.grid[Axis::kTemperature] = axes.temperature_K;
     scene.grid[Axis::kN] = axes.n;
     scene.grid[Axis::kK] = axes.k;
     scene.grid[Axis::kWavelength] = axes.wavelength_um;

@@ -28,7 +28,7 @@ using Columns = std::map<std::string, Array>;
 
 constexpr auto kSignalsEvery = std::chrono::milliseconds(50);
 
-/// Calls `body(progress)` in another thread, while Python's other threads run, and ends it when a signal asks for that.
+/// Calls `body(progress)` in another thread, while Python's other threads run, and ends it when a signal arrives.
 template <class Body>
 auto interruptible(const Body& body) {
   std::atomic<bool> goes_on = true;
@@ -96,7 +96,7 @@ void add_error(py::module_& module, const std::string& name, PyObject* base, con
   module.attr(name.c_str()) = py::reinterpret_steal<py::object>(type);
 }
 
-/// The position of a word among those that an argument may be. Errors: InputError.
+/// The position of a word in the allowed words of an argument. Errors: InputError.
 std::size_t position_of(const std::string& argument, const std::string& word, const std::vector<std::string>& words) {
   const auto found = std::ranges::find(words, word);
   if (found != words.end()) return static_cast<std::size_t>(found - words.begin());

@@ -126,6 +126,33 @@ TEST(SkyNodes, Means_OfPowersOfTheCosine_AreTheirClosedForms) {
   }
 }
 
+// Vapour of 1 cm at 290 K has 290 / 46.5 hPa.
+TEST(BuiltInSky, VapourAndTemperature_GiveTheEmittancesOfIdso) {
+  const SkyProfile sky = *built_in_sky("clear-sky", {1.0, 290.0});
+  const double vapour = std::pow(290.0 / 46.5, 2.0) * std::exp(3000.0 / 290.0);
+  const double mean = 0.24 + 2.98e-8 * vapour, window = 0.10 + 3.53e-8 * vapour;
+  EXPECT_NEAR(sky.at(11.5, 0.0).share, window, 1e-12);
+  EXPECT_NEAR((2.0 * sky.at(11.5, 0.0).share + 4.0 * sky.at(9.0, 0.0).share) / 6.0, mean, 1e-12);
+  EXPECT_NEAR(sky.at(13.5, 0.0).share, sky.at(9.0, 0.0).share, 1e-15);
+  EXPECT_NEAR(sky.at(5.0, 0.0).share, mean, 1e-12);
+  EXPECT_NEAR(sky.at(11.5, 60.0).share, 1.0 - std::pow(1.0 - window, 2.0), 1e-12);
+  EXPECT_EQ(sky.at(11.5, 0.0).first_K, 290.0);
+  EXPECT_EQ(sky.at(4.3, 0.0).share, 1.0);
+  EXPECT_LT(built_in_sky("overcast", {1.0, 290.0})->at(11.5, 0.0).share, window);
+}
+
+TEST(BuiltInSky, WithoutVapourAndTemperature_IsTheStandardAtmosphere) {
+  const SkyProfile sky = *built_in_sky("clear-sky");
+  EXPECT_EQ(sky.at(11.5, 0.0).share, sky.at(9.0, 0.0).share);
+  EXPECT_NEAR(sky.at(9.0, 0.0).share, 0.24 + 2.98e-8 * 7.85 * 7.85 * std::exp(3000.0 / 288.15), 1e-12);
+}
+
+TEST(BuiltInSky, MoreVapourThanTheAirHolds_IsRefused) {
+  EXPECT_THROW(built_in_sky("clear-sky", {2.0, 273.15}), InputError);
+  EXPECT_NO_THROW(built_in_sky("clear-sky", {1.0, 273.15}));  // 6.11 hPa are 1.04 cm
+  EXPECT_THROW(parse(kMinimal + "[surroundings]\ntemperature_K = 240\nvapour_cm = 1\n"), InputError);
+}
+
 TEST(SkyBasis, FewFunctions_StandForAllWavelengths) {
   SceneValues scene = parse(kMinimal + "[surroundings]\nprofile = \"clear-sky\"\n");
   std::vector<double> wavelengths;

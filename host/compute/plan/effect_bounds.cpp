@@ -329,6 +329,9 @@ bool EffectBounds::adds_nothing(Part part, const KeptEffects& kept) const {
 
 double EffectBounds::bound(Part part, const KeptEffects& kept) const {
   if (!is_kept(kept, part) || adds_nothing(part, kept)) return 0.0;
+  // The bounds take the diffuse part to be unpolarised.
+  if (scene_.surface.diffuse > 0.0 && scene_.surface.diffuse_polarisation != DiffusePolarisation::kNone)
+    return kInfinity;
   const Sums added = added_by(part, kept);
   const Sums left = sums(without(kept, part));
   if (!(left.least_i > 0.0)) return kInfinity;

@@ -22,7 +22,7 @@ class SkyBasis;
 /// The tightest tolerance of a rule in float; rounding dominates tighter ones.
 inline constexpr double kLeastFloatTolerance = 2e-6;
 
-/// Variables of a moment besides the model.
+/// A point at which moments are computed.
 struct MomentsPoint {
   double theta_deg = 0.0;
   SlopeShape shape;
@@ -30,8 +30,7 @@ struct MomentsPoint {
   friend bool operator==(const MomentsPoint&, const MomentsPoint&) = default;
 };
 
-/// The responses to the local angle of incidence that a request wants instead of the functions of its sky
-/// (response_basis.hpp).
+/// Responses to the local angle of incidence (response_basis.hpp). In a request they replace the functions of its sky.
 struct Response {
   enum class Of : std::uint8_t {
     kReflected,  ///< the light reflected
@@ -58,8 +57,8 @@ struct MomentsRequest {
   bool may_interpolate = true;                  ///< between slope distributions, to the same tolerance
   bool has_extra_splits = false;                ///< a rule of another kind, to check others with
   std::shared_ptr<const ResponseBasis> basis;   ///< combines the moments of all optics; null: none
-  std::shared_ptr<const SkyBasis> sky;          ///< Moments::columns are those with its functions; null: none
-  std::optional<Response> response;             ///< Moments::columns are the responses
+  std::shared_ptr<const SkyBasis> sky;          ///< its functions give Moments::columns; null: none
+  std::optional<Response> response;             ///< the responses give Moments::columns
   Layout layout = Layout::kGrid;
   std::vector<double> theta_deg;
   std::vector<FacetOptics> optics;  ///< bare facets, or facets with films

@@ -32,8 +32,8 @@ class ResponseBasis {
   static std::shared_ptr<const ResponseBasis> of(const std::vector<FacetOptics>& indices, double tolerance,
                                                  std::size_t passes);
 
-  /// The index integrated along with the responses: sums relative to it have less noise. It is the one with the
-  /// smallest reflectance or absorptance.
+  /// The index integrated along with the responses: sums relative to it have less noise. It has the smallest
+  /// reflectance or absorptance.
   const FacetOptics& reference() const { return reference_; }
   std::size_t count() const { return count_; }
   double c0() const { return c0_; }

@@ -94,7 +94,7 @@ class SceneEntries {
     return std::views::iota(std::size_t{0}, size()) |
            std::views::transform([this](std::size_t i) { return (*this)[i]; });
   }
-  /// At least one. A grid has all combinations of kVariantAxes, a list those among its points.
+  /// At least one variant. A grid has all combinations of kVariantAxes; a list has the variants of its points.
   const std::vector<SceneVariant>& variants() const { return variants_; }
 
   // For a grid.

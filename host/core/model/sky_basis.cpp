@@ -16,7 +16,7 @@ namespace {
 // Points of a part between two ends. Chosen: Planck's function of a linear temperature needs fewer.
 constexpr Eigen::Index kPoints = 17;
 
-// Distances between nodes exceed those at the nodes by no more than this: the functions are smooth between the ends.
+// Largest factor between the distances off the nodes and at the nodes: the functions are smooth between the ends.
 constexpr double kBetweenNodes = 1.5;
 constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
@@ -67,7 +67,7 @@ Eigen::RowVectorXd SkyNodes::at(double zenith_deg, const Eigen::MatrixXd& values
   const double start = *(above - 1);
   const double x = std::clamp((end - zenith_deg + (start - zenith_deg)) / (end - start), -1.0, 1.0);
   const Eigen::Index first = (above - ends_deg_.begin() - 1) * kPoints;
-  // As cardinal_values, without its allocations: tables of a sky ask for some 10,000 zeniths.
+  // cardinal_values without its allocations, because tables of a sky need some 10,000 zeniths.
   Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(values.cols());
   double total = 0.0;
   for (Eigen::Index i = 0; i < kPoints; ++i) {

@@ -96,6 +96,7 @@ struct Source {
 
 struct Surroundings {
   double temperature_K = 0.0;                           ///< if there is no profile
+  SkyAir air = {};                                      ///< air of a built-in profile
   std::shared_ptr<const SkyProfile> profile = nullptr;  ///< null for a uniform sky
 };
 

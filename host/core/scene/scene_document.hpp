@@ -32,7 +32,7 @@ class SceneDocument {
   const toml::node* find(std::string_view key) const;
   bool is_set(std::string_view key) const { return origin_of(key) != nullptr; }
 
-  /// The first of these keys that a setting gave, else the first: the one to name where they do not go together.
+  /// The first of these keys that a setting gave, else the first key. A message about a contradiction names it.
   std::string first_set(std::initializer_list<std::string> keys) const;
 
   /// Throws InputError with the place of the key's value, the key, its value and the problem. For an absent key it

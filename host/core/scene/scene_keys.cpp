@@ -62,33 +62,44 @@ SceneKey key_at(Key description, Place place, IsThere is_there) {
           [place, is_there](const SceneValues& s) { return is_there(s) ? value_at(place(s)) : std::nullopt; }};
 }
 
+Key described(const std::string& key, Type type, const char* unit, const NumberRange& range, const char* fallback,
+              const char* meaning, std::vector<std::string> words = {}) {
+  return {key, type, unit, range, std::move(words), fallback, meaning};
+}
+
+/// A key that changes more of a scene than the number at its place.
+SceneKey with_set(SceneKey key, std::function<void(SceneValues& scene, const KeyValue& value)> set) {
+  key.set = std::move(set);
+  return key;
+}
+
 template <class Place, class IsThere = decltype(&always)>
 SceneKey number(const std::string& key, const char* unit, const NumberRange& range, const char* fallback,
                 const char* meaning, Place place, IsThere is_there = always) {
-  return key_at({key, Type::kNumber, unit, range, {}, fallback, meaning}, place, is_there);
+  return key_at(described(key, Type::kNumber, unit, range, fallback, meaning), place, is_there);
 }
 
 template <class Choice, class Place>
 SceneKey choice(const char* key, Choice fallback, const char* meaning, Place place) {
   const auto words = words_of(fallback);
-  return key_at({key, Type::kWord, "", {}, {words.begin(), words.end()}, name_of(fallback), meaning}, place, always);
+  return key_at(described(key, Type::kWord, "", {}, name_of(fallback), meaning, {words.begin(), words.end()}), place,
+                always);
 }
 
 template <class Place>
 SceneKey flag(const char* key, const char* meaning, Place place) {
-  return key_at({key, Type::kFlag, "", {}, {"false", "true"}, "false", meaning}, place, always);
+  return key_at(described(key, Type::kFlag, "", {}, "false", meaning, {"false", "true"}), place, always);
 }
 
 template <class Place, class IsThere = decltype(&always)>
 SceneKey text(const std::string& key, const char* meaning, Place place, IsThere is_there = always) {
-  return key_at({key, Type::kText, "", {}, {}, "", meaning}, place, is_there);
+  return key_at(described(key, Type::kText, "", {}, "", meaning), place, is_there);
 }
 
 SceneKey grid_axis(Axis axis, const char* fallback, const char* meaning) {
-  const AxisDescription& described = description_of(axis);
-  const std::string key = std::string("grid.") + described.column;
+  const AxisDescription& of_axis = description_of(axis);
   return key_at(
-      {key, Type::kAxis, described.units, described.range, {}, fallback, meaning},
+      described(std::string("grid.") + of_axis.column, Type::kAxis, of_axis.units, of_axis.range, fallback, meaning),
       [axis](auto& s) { return &s.grid[axis]; }, always);
 }
 
@@ -100,16 +111,28 @@ bool has_own_index(const SceneValues& s) {
   return s.names.material.empty() && s.names.material_file.empty() && s.labels[Axis::kMaterial].empty();
 }
 
-/// One of the keys that give E0, and with it the kind of the source.
+void set_sigma(SceneValues& s, const KeyValue& v) {
+  s.surface.sigma = v.number;
+  s.surface.wind_m_s.reset();
+}
+
+void set_wind(SceneValues& s, const KeyValue& v) {
+  s.surface.sigma = sigma_of_wind(v.number);
+  s.surface.wind_m_s = v.number;
+}
+
+/// A key that gives E0, and with it the kind of the source.
 SceneKey source_number(const char* key, const char* unit, const char* meaning, Source::Kind kind,
-                       double Source::*number) {
+                       double Source::*number_of) {
+  const auto is_kind = [kind](const SceneValues& s) { return s.source && s.source->kind == kind; };
   const auto set = [=](SceneValues& s, const KeyValue& v) {
     s.source->kind = kind;
-    (*s.source).*number = v.number;
+    (*s.source).*number_of = v.number;
   };
-  return {{key, Type::kNumber, unit, kNonNegativeRange, {}, "", meaning}, set, [=](const SceneValues& s) {
-            return s.source && s.source->kind == kind ? value_at(&((*s.source).*number)) : std::nullopt;
-          }};
+  return with_set(
+      number(
+          key, unit, kNonNegativeRange, "", meaning, [=](auto& s) { return &((*s.source).*number_of); }, is_kind),
+      set);
 }
 
 SceneKey wind_axis() {
@@ -118,9 +141,11 @@ SceneKey wind_axis() {
     s.grid[Axis::kSigma].clear();
     std::ranges::transform(v.numbers, std::back_inserter(s.grid[Axis::kSigma]), sigma_of_wind);
   };
-  return {{"grid.wind_m_s", Type::kAxis, kWind.units, kWind.range, {}, "", "winds of the table, instead of grid.sigma"},
-          set,
-          [](const SceneValues& s) { return value_at(&s.wind_m_s); }};
+  return with_set(key_at(
+                      described("grid.wind_m_s", Type::kAxis, kWind.units, kWind.range, "",
+                                "winds of the table, instead of grid.sigma"),
+                      [](auto& s) { return &s.wind_m_s; }, always),
+                  set);
 }
 
 /// The layer of a key, counted from 1 in its name; made if a scene that changes has fewer.
@@ -184,30 +209,16 @@ std::vector<SceneKey> surface_keys() {
            [](auto& s) { return &s.names.reflectance_file; }),
       choice("surface.distribution", Surface().distribution, "slope distribution D",
              [](auto& s) { return &s.surface.distribution; }),
-      {{"surface.sigma",
-        Type::kNumber,
-        "1",
-        kSigmaRange,
-        {},
-        "required",
-        "slope width sigma (m^2 = 2 sigma^2); may be absent with grid.sigma, whose first value it then is"},
-       [](SceneValues& s, const KeyValue& v) {
-         s.surface.sigma = v.number;
-         s.surface.wind_m_s.reset();
-       },
-       [](const SceneValues& s) { return value_at(&s.surface.sigma); }},
-      {{"surface.wind_m_s",
-        Type::kNumber,
-        "m s-1",
-        kWindRange,
-        {},
-        "",
-        "wind over a sea, instead of sigma, with distribution gaussian: m^2 = 0.003 + 0.00512 times the wind"},
-       [](SceneValues& s, const KeyValue& v) {
-         s.surface.sigma = sigma_of_wind(v.number);
-         s.surface.wind_m_s = v.number;
-       },
-       [](const SceneValues& s) { return value_at(&s.surface.wind_m_s); }},
+      with_set(
+          number("surface.sigma", "1", kSigmaRange, "required",
+                 "slope width sigma (m^2 = 2 sigma^2); may be absent with grid.sigma, whose first value it then is",
+                 [](auto& s) { return &s.surface.sigma; }),
+          set_sigma),
+      with_set(
+          number("surface.wind_m_s", "m s-1", kWindRange, "",
+                 "wind over a sea, instead of sigma, with distribution gaussian: m^2 = 0.003 + 0.00512 times the wind",
+                 [](auto& s) { return &s.surface.wind_m_s; }),
+          set_wind),
       number("surface.q", "1", kQRange, "2", "tail exponent q of the cauchy distribution; 2 is GGX",
              [](auto& s) { return &s.surface.q; }),
       choice("surface.masking", Surface().masking, "geometric attenuation G; smith with cauchy needs every q > 1.5",
@@ -247,13 +258,8 @@ std::vector<SceneKey> radiation_keys() {
                     "e = E0/(pi B(T)) at each wavelength, T of the emission; instead of irradiance",
                     Source::Kind::kRelative, &Source::relative_irradiance),
       key_at(
-          {"source.preset",
-           Type::kWord,
-           "",
-           {},
-           {"sun"},
-           "",
-           "E0 of the sun at the top of the atmosphere; instead of irradiance"},
+          described("source.preset", Type::kWord, "", {}, "",
+                    "E0 of the sun at the top of the atmosphere; instead of irradiance", {"sun"}),
           [](auto& s) { return &s.names.source_preset; }, always),
       text("source.file", "your own E0: CSV of wavelength_um, irradiance; instead of irradiance",
            [](auto& s) { return &s.names.source_file; }),
@@ -268,6 +274,12 @@ std::vector<SceneKey> radiation_keys() {
            "a sky over zenith: clear-sky, overcast or your own CSV of zenith_deg, temperature_K or radiance, "
            "wavelength_um; instead of temperature_K",
            [](auto& s) { return &s.names.profile; }),
+      number("surroundings.vapour_cm", "cm", kVapourRange, "",
+             "precipitable water of the air of clear-sky or overcast; without it 1.27 cm, or all that colder air holds",
+             [](auto& s) { return s.surroundings ? &s.surroundings->air.vapour_cm : nullptr; }),
+      number("surroundings.air_temperature_K", "K", kAirTemperatureRange, "",
+             "temperature of the air at the ground under clear-sky or overcast; 288.15 K without it",
+             [](auto& s) { return s.surroundings ? &s.surroundings->air.temperature_K : nullptr; }),
       number("path.transmittance", "1", kFractionRange, "1", "transmittance tau of the path to the sensor",
              [](auto& s) { return s.path ? &s.path->transmittance : nullptr; }),
       number("path.temperature_K", "K", kBackgroundTemperatureRange, "",
@@ -308,13 +320,8 @@ std::vector<SceneKey> geometry_keys() {
       grid_axis(Axis::kSigma, "surface.sigma", "slope widths sigma of the table"),
       wind_axis(),
       key_at(
-          {"grid.material",
-           Type::kNames,
-           "",
-           {},
-           {},
-           "",
-           "materials of the table instead of n and k: names, or \"all\""},
+          described("grid.material", Type::kNames, "", {}, "",
+                    "materials of the table instead of n and k: names, or \"all\""),
           [](auto& s) { return &s.labels[Axis::kMaterial]; }, always),
       {{"grid.band_um", Type::kPairs, "um", kWavelengthUmRange, {}, "", "bands of the table instead of a spectrum"},
        [](SceneValues& s, const KeyValue& v) {
@@ -339,14 +346,10 @@ std::vector<SceneKey> geometry_keys() {
              [](auto& s) { return &s.accuracy.tolerance; }),
       choice("accuracy.precision", Accuracy().precision, "arithmetic of the device",
              [](auto& s) { return &s.accuracy.precision; }),
-      {{"accuracy.interpolation",
-        Type::kWord,
-        "",
-        {},
-        {"auto", "off"},
-        "auto",
-        "between slope distributions of a dense grid and over many indices by responses, within the tolerance; off: "
-        "every entry is integrated by itself"},
+      {described("accuracy.interpolation", Type::kWord, "", {}, "auto",
+                 "between slope distributions of a dense grid and over many indices by responses, within the "
+                 "tolerance; off: every entry is integrated by itself",
+                 {"auto", "off"}),
        [](SceneValues& s, const KeyValue& v) { s.accuracy.may_interpolate = v.word == 0; },
        [](const SceneValues& s) -> std::optional<KeyValue> {
          const bool is_auto = s.accuracy.may_interpolate;

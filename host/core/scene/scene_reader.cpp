@@ -110,7 +110,7 @@ void check_choice(const SceneDocument& document, const KeyChoice& choice) {
                                            find_scene_key(heads.front())->description.allowed(), join(heads)));
 }
 
-/// Refuses a key whose needs are not all met, and names those that are not.
+/// Refuses a key with unmet needs, and names all of them.
 struct Needs {
   bool are_met;
   const char* text;
@@ -259,7 +259,7 @@ void load_material(SceneValues& scene, const SceneDocument& document, const std:
   check_axis(material);
 }
 
-/// The names of built-in materials that a grid's axis means, in full; "all" are those that cover the spectrum.
+/// The full names of the built-in materials on a grid's axis; "all" means the materials that cover the spectrum.
 std::vector<std::string> axis_names(const SceneValues& scene, const std::string& prefix) {
   std::vector<std::string> names;
   const std::vector<std::string>& given = scene.labels[Axis::kMaterial];
@@ -346,7 +346,10 @@ void load_source(SceneValues& scene, const SceneDocument& document, const KnownD
 void load_profile(SceneValues& scene, const SceneDocument& document, const KnownData* known) {
   if (!document.find("surroundings.profile")) return;
   const std::string prefix = document.prefix("surroundings.profile");
-  std::optional<SkyProfile> profile = built_in_sky(scene.names.profile);
+  const char* const air_key =
+      document.find("surroundings.vapour_cm") ? "surroundings.vapour_cm" : "surroundings.air_temperature_K";
+  std::optional<SkyProfile> profile = built_in_sky(scene.names.profile, scene.surroundings->air,
+                                                   document.find(air_key) ? document.prefix(air_key) : prefix);
   if (!profile && known && known->profile) profile = known->profile;
   std::error_code unknown;
   const std::filesystem::file_status file =
@@ -454,6 +457,12 @@ void check_scattering(const SceneValues& scene, const SceneDocument& document) {
 }
 
 void check_radiation(const SceneValues& scene, const SceneDocument& document) {
+  for (const char* key : {"surroundings.vapour_cm", "surroundings.air_temperature_K"}) {
+    if (document.find(key))
+      check_needs(
+          document, key,
+          {{built_in_sky(scene.names.profile).has_value(), "surroundings.profile = \"clear-sky\" or \"overcast\""}});
+  }
   if (!scene.emission && !scene.source && !scene.surroundings) {
     document.fail("emission", "missing; nothing radiates without one of the tables emission, source, surroundings");
   }

@@ -36,8 +36,32 @@ constexpr double kColdestShare = 1.0 / 256.0;
 // Air at sea level of the US Standard Atmosphere, 1976: 15 degrees C, and 5.9 g m-3 of water vapour, 7.85 hPa.
 constexpr double kAir_K = 288.15;
 constexpr double kVapour_hPa = 7.85;
-// Idso, Water Resources Research 17, 295 (1981): emittance of a cloudless sky at 8-14 um.
-double clear_emissivity() { return 0.24 + 2.98e-8 * kVapour_hPa * kVapour_hPa * std::exp(3000.0 / kAir_K); }
+// Prata, Q. J. R. Meteorol. Soc. 122, 1127 (1996): precipitable water in cm over vapour pressure in hPa, times kelvins.
+constexpr double kWater_cmK_hPa = 46.5;
+constexpr double kWindowFrom_um = 10.5;
+constexpr double kWindowTo_um = 12.5;
+constexpr double kBandFrom_um = 8.0;
+constexpr double kBandTo_um = 14.0;
+
+// Idso, Water Resources Research 17, 295 (1981): emittance of a cloudless sky at 8-14 um and at 10.5-12.5 um.
+double clear_emissivity(double vapour_hPa, double air_K) {
+  return std::min(0.24 + 2.98e-8 * vapour_hPa * vapour_hPa * std::exp(3000.0 / air_K), 1.0);
+}
+double window_emissivity(double vapour_hPa, double air_K) {
+  return std::min(0.10 + 3.53e-8 * vapour_hPa * vapour_hPa * std::exp(3000.0 / air_K), 1.0);
+}
+
+// Alduchov and Eskridge, J. Appl. Meteorol. 35, 601 (1996): vapour pressure of saturated air.
+double saturated_hPa(double air_K) { return 6.1094 * std::exp(17.625 * (air_K - 273.15) / (air_K - 30.11)); }
+
+/// The pressure of the water vapour in hPa. Errors: InputError for more than the air holds.
+double vapour_pressure(const SkyAir& air, double air_K, const std::string& prefix) {
+  if (!air.vapour_cm) return air.temperature_K ? std::min(kVapour_hPa, saturated_hPa(air_K)) : kVapour_hPa;
+  const double vapour_hPa = *air.vapour_cm * air_K / kWater_cmK_hPa;
+  const double most_cm = saturated_hPa(air_K) * kWater_cmK_hPa / air_K;
+  if (*air.vapour_cm <= most_cm) return vapour_hPa;
+  throw InputError(fmt::format("{}air at {} K holds at most {:.3g} cm of water vapour", prefix, air_K, most_cm));
+}
 // The band of carbon dioxide at 4.3 um, in which a few metres of air are opaque: an idealisation with sharp edges.
 constexpr double kOpaqueFrom_um = 4.17;
 constexpr double kOpaqueTo_um = 4.45;
@@ -119,7 +143,10 @@ SkyProfile::Emission SkyProfile::at(double at_um, double at_deg) const {
   if (kind == Kind::kLayers) {
     const bool is_opaque = at_um >= kOpaqueFrom_um && at_um <= kOpaqueTo_um;
     const double cosine = cos_sin_deg(at_deg).cos;
-    const double passed = is_opaque || cosine <= 0.0 ? 0.0 : std::pow(1.0 - emissivity, 1.0 / cosine);
+    double vertical = emissivity;
+    if (at_um >= kBandFrom_um && at_um <= kBandTo_um) vertical = beside_window.value_or(vertical);
+    if (at_um >= kWindowFrom_um && at_um <= kWindowTo_um) vertical = window.value_or(vertical);
+    const double passed = is_opaque || cosine <= 0.0 ? 0.0 : std::pow(1.0 - vertical, 1.0 / cosine);
     return {1.0 - passed, air_K, beyond_K, 0.0};
   }
   const Between zenith = between(zenith_deg, at_deg);
@@ -166,6 +193,8 @@ std::vector<double> SkyProfile::ends_deg() const {
 }
 
 std::vector<double> SkyProfile::breaks_um() const {
+  if (kind == Kind::kLayers && window)
+    return {kOpaqueFrom_um, kOpaqueTo_um, kBandFrom_um, kWindowFrom_um, kWindowTo_um, kBandTo_um};
   if (kind == Kind::kLayers) return {kOpaqueFrom_um, kOpaqueTo_um};
   return wavelength_um;
 }
@@ -191,7 +220,7 @@ std::string SkyProfile::text() const {
 std::uint64_t SkyProfile::hash() const {
   std::uint64_t hash = hashed(kHashStart, static_cast<std::uint64_t>(kind));
   for (const std::vector<double>* list : {&zenith_deg, &wavelength_um, &values}) hash = hashed(hash, std::span(*list));
-  return hashed(hash, std::span<const double>(std::array{air_K, beyond_K, emissivity}));
+  return hashed(hash, std::span<const double>(std::array{air_K, beyond_K, emissivity, window.value_or(0.0)}));
 }
 
 const std::vector<BuiltInSky>& built_in_skies() {
@@ -204,19 +233,23 @@ const std::vector<BuiltInSky>& built_in_skies() {
   return skies;
 }
 
-std::optional<SkyProfile> built_in_sky(std::string_view name) {
+std::optional<SkyProfile> built_in_sky(std::string_view name, const SkyAir& air, const std::string& prefix) {
+  const bool is_overcast = name == "overcast";
+  if (name != "clear-sky" && !is_overcast) return std::nullopt;
   SkyProfile sky;
   sky.kind = SkyProfile::Kind::kLayers;
-  sky.air_K = kAir_K;
-  if (name == "clear-sky") {
-    sky.emissivity = clear_emissivity();
-  } else if (name == "overcast") {
-    const double below = -std::expm1(-kCloudBase_km / kVapourHeight_km);  // share of the vapour
-    sky.beyond_K = kAir_K - kLapse_K_km * kCloudBase_km;
-    sky.emissivity = 1.0 - std::pow(1.0 - clear_emissivity(), below);
-  } else {
-    return std::nullopt;
-  }
+  sky.air_K = air.temperature_K.value_or(kAir_K);
+  if (is_overcast) sky.beyond_K = sky.air_K - kLapse_K_km * kCloudBase_km;
+  const double vapour_hPa = vapour_pressure(air, sky.air_K, prefix);
+  const double below = is_overcast ? -std::expm1(-kCloudBase_km / kVapourHeight_km) : 1.0;  // share of the vapour
+  const auto visible = [&](double vertical) { return is_overcast ? 1.0 - std::pow(1.0 - vertical, below) : vertical; };
+  const double mean = clear_emissivity(vapour_hPa, sky.air_K);
+  sky.emissivity = visible(mean);
+  if (air.is_standard()) return sky;
+  const double window = std::min(window_emissivity(vapour_hPa, sky.air_K), mean);
+  const double share = (kWindowTo_um - kWindowFrom_um) / (kBandTo_um - kBandFrom_um);
+  sky.window = visible(window);
+  sky.beside_window = visible(std::min((mean - share * window) / (1.0 - share), 1.0));
   return sky;
 }
 

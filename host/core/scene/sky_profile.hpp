@@ -15,6 +15,9 @@ namespace dolp {
 ///
 /// Equation: of layers L = t^(1 / cos(zenith)) B(beyond_K) + (1 - t^(1 / cos(zenith))) B(air_K), t = 1 - emissivity.
 /// Source: Granqvist and Hjortsberg, J. Appl. Phys. 52, 4205 (1981): a plane-parallel atmosphere of one temperature.
+/// The emissivities of clear air in the vertical, at 8-14 um and in the window at 10.5-12.5 um, are those of Idso,
+/// Water Resources Research 17, 295 (1981); the rest of 8-14 um has what leaves the mean, other wavelengths have the
+/// mean.
 struct SkyProfile {
   enum class Kind { kTemperature, kRadiance, kLayers };
   Kind kind = Kind::kTemperature;
@@ -23,7 +26,9 @@ struct SkyProfile {
   std::vector<double> values;         ///< K or W m-2 sr-1 um-1: wavelength x zenith
   double air_K = 0.0;
   double beyond_K = 0.0;
-  double emissivity = 0.0;  ///< of the air in the vertical, outside of the band where it is opaque
+  double emissivity = 0.0;                   ///< of the air in the vertical, where it is not opaque
+  std::optional<double> window = {};         ///< the same at 10.5-12.5 um; none: as elsewhere
+  std::optional<double> beside_window = {};  ///< the same in the rest of 8-14 um
 
   /// Two black bodies, of which the surroundings are a mixture; or a radiance.
   struct Emission {
@@ -54,8 +59,16 @@ struct BuiltInSky {
 };
 const std::vector<BuiltInSky>& built_in_skies();
 
-/// A built-in profile; none of that name: nullopt.
-std::optional<SkyProfile> built_in_sky(std::string_view name);
+/// Air of a built-in sky. Without either value: the sky of the US Standard Atmosphere 1976, without the window.
+struct SkyAir {
+  std::optional<double> vapour_cm = {};  ///< precipitable water
+  std::optional<double> temperature_K = {};
+  bool is_standard() const { return !vapour_cm && !temperature_K; }
+};
+
+/// A built-in profile; none of that name: nullopt. Errors: InputError for more vapour than air of this temperature
+/// holds; it begins with `prefix`.
+std::optional<SkyProfile> built_in_sky(std::string_view name, const SkyAir& air = {}, const std::string& prefix = {});
 
 /// Reads a CSV file: columns zenith_deg, temperature_K or radiance, and maybe wavelength_um; rows by wavelength, then
 /// by zenith from 0 to 90. Errors: InputError with file, line, column, value and what is allowed.

@@ -61,14 +61,14 @@ struct SpectralRule {
 /// Spectral rule of a scene: one sample at a single wavelength or for a constant index, Gauss nodes on each segment of
 /// the material otherwise, as many as the reflectances of the smooth surface require.
 ///
-/// Accuracy: band sums to 1e-9 relative (tests SpectralRule_*Band*) but for panels.
+/// Accuracy: band sums to 1e-9 relative (tests SpectralRule_*Band*), except for panels.
 SpectralRule spectral_rule(const SceneModel& scene);
 
 /// Error of a sum over the panels of a rule. `term(j, m)`: the part of sample j, with the moments of sample m.
 ///
-/// Every other value of a panel is predicted from the rest; the error is the sum of what the predictions miss. For a
-/// square root that begins at any place among the nodes, this is 2.3 times the error and more, in the median 6 times
-/// (tests Bands_*).
+/// Every second value of a panel is predicted from the other values; the error is the sum of the predictions' errors.
+/// For a square root that begins at any place among the nodes, this is 2.3 times the error and more, in the median 6
+/// times (tests Bands_*).
 template <typename Term>
 double panel_error(const SpectralRule& rule, const Term& term) {
   double error = 0.0;

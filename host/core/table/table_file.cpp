@@ -158,9 +158,8 @@ std::string result_rows(const ResultColumns& results, std::size_t rows, const Qu
 
 Quantities in_csv_order(const Quantities& quantities) {
   Quantities ordered;
-  for (const Quantity quantity : kCsvOrder) {
-    if (std::ranges::find(quantities, quantity) != quantities.end()) ordered.push_back(quantity);
-  }
+  std::ranges::copy_if(kCsvOrder, std::back_inserter(ordered),
+                       [&](Quantity quantity) { return std::ranges::count(quantities, quantity) > 0; });
   return ordered;
 }
 

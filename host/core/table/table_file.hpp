@@ -23,7 +23,7 @@ std::string result_header(const Quantities& quantities, bool has_status = true);
 std::string result_rows(const ResultColumns& results, std::size_t rows, const Quantities& quantities,
                         const RowStart& start);
 
-/// Some quantities in the order of CSV files of points.
+/// The quantities in the order of CSV files of points.
 Quantities in_csv_order(const Quantities& quantities);
 
 /// Writer of points and their results as CSV. The file is complete or absent. Rows go to a file as they come, and to
@@ -33,7 +33,7 @@ class ResultCsv {
   /// `columns`: the names of the cells that `start` appends. Errors: IoError.
   ResultCsv(const std::filesystem::path& path, const std::string& columns, const Quantities& quantities,
             RowStart start);
-  /// Results of the points after those before. Errors: IoError; Cancelled when interrupted().
+  /// Adds the results of the next points. Errors: IoError; Cancelled when interrupted().
   void append(std::span<const PointResult> results);
   /// Completes the file. Errors: IoError; Cancelled when interrupted().
   void commit();

@@ -48,7 +48,7 @@ bool has_error(Quantity quantity) {
   return std::ranges::find(kWithout, quantity) == kWithout.end();
 }
 
-/// Quantities that every table has, besides the status.
+/// Quantities that lookup needs; it also needs the status.
 constexpr std::array kNeeded = {kDolp, kStokesI, kStokesQ, kStokesU, kStokesV, kErrorEstimate};
 
 const std::vector<double>& checked(const std::vector<double>& values, const char* axis, const std::string& name) {
@@ -140,7 +140,7 @@ struct TableLookup::Window {
     return places[axis].is_value ? places[axis].next : places[axis].next - 1;
   }
 
-  /// The positions of the corners of the point's cell, but for the part of one axis.
+  /// The positions of the corners of the point's cell, without the part of one axis.
   using Corners = boost::container::static_vector<std::size_t, std::size_t{1} << kAxisCount>;
   Corners corners(const TableLookup& lookup, std::size_t without) const {
     Corners corners = {0};

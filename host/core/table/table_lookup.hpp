@@ -12,7 +12,7 @@
 
 namespace dolp {
 
-/// Zenith angles of the source, in degrees, at which the masking of a bistatic beam has a kink, whatever sigma and q.
+/// Zenith angles of the source, in degrees, at which the masking of a bistatic beam has a kink, for all sigma and q.
 ///
 /// Method: `integral` and V-cavities take the lower of the two directions, which changes where the source stands as
 /// high as the view; V-cavities have another kink where G reaches 1 (shaders/physics/README.md, section 2).

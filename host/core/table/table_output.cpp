@@ -125,7 +125,7 @@ struct TableOutput::Impl {
     return parts_done > 0 ? taken : 0;
   }
 
-  /// The hash that the progress file has of the part after those done.
+  /// The hash of the next part in the progress file.
   std::uint64_t part_hash(const ValueSums& of_part) const {
     std::uint64_t hash = hashed(hashed(kHashStart, job.identity), std::uint64_t{parts_done});
     for (const std::uint64_t sum : of_part) hash = hashed(hash, sum);

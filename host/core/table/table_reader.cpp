@@ -45,8 +45,8 @@ class Reader {
   }
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
-  /// HDF5 keeps half of a file that fails to be closed, as where a server is gone, and crashes at exit. So it gets
-  /// another one to close; dup2 closes its own whatever happens.
+  /// If a file cannot be closed, for example because a server is gone, HDF5 keeps half of it and crashes at exit. So
+  /// HDF5 gets another file to close; dup2 always closes the real one.
   ~Reader() {
     void* own = nullptr;
     const int other = ::open("/dev/null", O_RDONLY | O_CLOEXEC);

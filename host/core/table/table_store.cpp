@@ -64,7 +64,7 @@ class MemoryFile {
   int descriptor_;
 };
 
-/// What the last call of HDF5 failed for.
+/// Why the last call of HDF5 failed.
 struct Hdf5Failure {
   std::string reason;      ///< in HDF5's words; empty where it has no memory for them
   bool is_memory = false;  ///< lack of memory
@@ -83,7 +83,7 @@ class Writer {
   explicit Writer(const MemoryFile& memory) : memory_(memory) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // messages are ours
     const Hdf5Handle access = take(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    check(H5Pset_fapl_stdio(access.id()));  // HDF5's usual driver asks for the file's own name, and this has none
+    check(H5Pset_fapl_stdio(access.id()));  // HDF5's usual driver needs the name of a file
     check(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18));
     const Hdf5Handle creation = take(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     // Without an order of creation the netCDF library opens a file for reading only.
@@ -120,7 +120,7 @@ class Writer {
     const hsize_t one = 1;
     put(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, take(H5Screate_simple(1, &one, nullptr), H5Sclose), &value);
   }
-  // CF-1.8 has no unsigned int, and wants masks of the variable's own type.
+  // CF-1.8 has no unsigned int; the masks must have the type of the variable.
   void put_status_bits(const Hdf5Handle& object) const {
     std::array<int, kStatusBits.size()> masks{};
     std::array<const char*, kStatusBits.size()> meanings{};
@@ -133,7 +133,7 @@ class Writer {
   }
 
   /// A variable without values, which has its place in the file. Uncompressed: zlib saves half of the file and takes
-  /// longer than all the rest of a table. In one piece: what points to pieces has no checksum.
+  /// longer than everything else of a table. In one piece, because pointers to pieces have no checksum.
   Hdf5Handle define(const char* name, hid_t type, const std::vector<hsize_t>& shape, const void* fill,
                     H5D_alloc_time_t allocation = H5D_ALLOC_TIME_EARLY) const {
     const Hdf5Handle creation = take(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
@@ -170,7 +170,7 @@ class Writer {
   Hdf5Handle file_;
 };
 
-/// A text as a variable over a dimension of its own.
+/// Writes a text as a variable over its length.
 void put_long_text(const Writer& writer, const std::string& name, const std::string& text) {
   const std::vector<hsize_t> shape = {text.size()};
   const Hdf5Handle length =  // never written, so that it takes no place in the file
@@ -248,7 +248,7 @@ AxisVariables put_axes(const Writer& writer, const TableHead& head) {
   return axes;
 }
 
-/// `beta`: the coordinate that the variable has besides the axes, if it has one.
+/// `beta`: the last coordinate of the variable, after the axes; null for most variables.
 Hdf5Handle define_over_axes(const Writer& writer, const TableHead& head, const AxisVariables& axes, const char* name,
                             hid_t type, const void* fill, const Hdf5Handle* beta = nullptr) {
   std::vector<hsize_t> shape;
@@ -317,7 +317,7 @@ std::uint64_t bytes_of(const std::vector<Attribute>& attributes) {
   return bytes;
 }
 
-/// No file of this layout is longer.
+/// Upper bound of the length of a file with this layout.
 std::uint64_t most_bytes(const TableLayout& layout) {
   const TableHead& head = layout.head;
   const std::size_t of_entry =
@@ -331,7 +331,7 @@ std::uint64_t most_bytes(const TableLayout& layout) {
   return numbers * sizeof(double) + bytes_of(head.attributes) + spectral_data_of(head).size() + kMostOverhead;
 }
 
-/// Refuses files that may not be so long: HDF5 does not survive one of its own that may not grow.
+/// Refuses a file longer than the system allows, because HDF5 does not survive a file that cannot grow.
 void check_room(const AtomicFile& file, std::uint64_t bytes) {
   rlimit limit{};
   if (::getrlimit(RLIMIT_FSIZE, &limit) != 0 || bytes <= limit.rlim_cur) return;

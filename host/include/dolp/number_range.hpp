@@ -18,6 +18,8 @@ inline constexpr NumberRange kFractionRange{0.0, 1.0};
 inline constexpr NumberRange kDiffuseExponentRange{-1.0, 0.0, NumberRange::Ends::kOpenBelow};
 inline constexpr NumberRange kEmissionTemperatureRange{0.0, 1e4, NumberRange::Ends::kOpenBelow};
 inline constexpr NumberRange kBackgroundTemperatureRange{0.0, 1e4};
+inline constexpr NumberRange kVapourRange{0.0, 10.0};
+inline constexpr NumberRange kAirTemperatureRange{180.0, 330.0};
 inline constexpr NumberRange kNonNegativeRange{0.0, std::numeric_limits<double>::infinity()};
 inline constexpr NumberRange kPositiveRange{0.0, std::numeric_limits<double>::infinity(),
                                             NumberRange::Ends::kOpenBelow};

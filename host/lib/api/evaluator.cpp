@@ -167,15 +167,11 @@ Table Evaluator::response(const Scene& scene, const RunOptions& of_call) {
   return impl().exclusively(scene, of_call, [&](const SceneValues& whole, const RunOptions& options) {
     const SceneValues values = surface_of(whole);
     const TableLayout layout = response_layout(values);
-    TableValues table;
-    static_cast<TableHead&>(table) = layout.head;
+    TableValues table{layout.head};
     const auto take = [&](const TableValues& part, const PerAxis&) {
-      const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
-        to.insert(to.end(), from.begin(), from.end());
-      };
-      append(table[Quantity::kAlbedo], part[Quantity::kAlbedo]);
-      for (const ResponseVariable variable : layout.responses)
-        append(table.responses[variable], part.responses[variable]);
+      for_each_variable(layout, [&](const auto& of, std::size_t) {
+        of(table).insert(of(table).end(), of(part).begin(), of(part).end());
+      });
     };
     const ResponseOutcome run = run_responses(values, layout, options, *impl_->begin(values), take);
     table.attributes.insert(table.attributes.end(), run.attributes.begin(), run.attributes.end());

@@ -193,7 +193,7 @@ class Fit {
     total_ = total;
   }
 
-  /// With a model error the parameters only choose the bracket: each point is a condition of its own.
+  /// With a model error the parameters only choose the bracket: each point is a separate condition.
   std::size_t freedom() const {
     return model_.observation_count() - (model_.has_model_error() ? 0 : model_.parameters().size());
   }

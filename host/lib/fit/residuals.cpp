@@ -16,7 +16,7 @@ std::array<double, 2> offsets_at(double at, double step) {
   return {inward, has_both_sides ? -step : 2.0 * inward};
 }
 
-/// The derivative of the line through a point and the one beside it, or of the parabola through it and two of them.
+/// The derivative of the line through a point and its neighbour, or of the parabola through it and two neighbours.
 Eigen::MatrixX2d derivative(const Eigen::MatrixX2d& centre, const Prediction* beside, std::size_t count,
                             const std::array<double, 2>& offsets) {
   const auto [a, b] = offsets;

@@ -26,11 +26,11 @@ struct SearchOptions {
 /// each round, a descent that has reached the path of a lower one ends. `coarse` has a wider tolerance than `fine`: it
 /// finds the minima, and `fine` goes to the bottom of each that lies less than 30 standard deviations of the objective
 /// above the lowest. A point from which the floor of a valley leads down to a minimum, or that only a rise of less than
-/// a standard deviation separates from it, is not a minimum of its own. Empty when no descent converged. Errors:
+/// a standard deviation separates from it, is not a separate minimum. Empty when no descent converged. Errors:
 /// errors of the evaluator; Cancelled.
 std::vector<Minimum> find_minima(Residuals& coarse, Residuals& fine, const SearchOptions& options);
 
-/// Coordinates that the data do not exclude. At 0 and 1 the range ends before they do.
+/// An interval of coordinates that the data do not exclude. At 0 and 1 the range ends.
 struct Stretch {
   double low = 0.0;
   double high = 1.0;
@@ -48,7 +48,7 @@ struct Profiles {
   /// For each parameter and rise, where the objective, least over all others, lies below. Apart, ascending.
   std::vector<std::array<std::vector<Stretch>, 2>> stretches;
   std::vector<Minimum> points = {};  ///< known points of the profiles
-  /// A point below the best minimum: there is another one, and the rest is not complete.
+  /// A point below the best minimum. Then there is another minimum, and the profiles are not complete.
   std::optional<Minimum> lower = {};
 };
 
@@ -57,7 +57,7 @@ struct Profiles {
 /// Each side follows the valley from a minimum: at each coordinate of the parameter, the other parameters descend from
 /// where the derivatives at the nearest point lead, until the root of the growth is met to 0.5 %. A bent valley has
 /// several branches. Beyond each end, the ends of the other sides descend too, unless a straight way leads to them: if
-/// one comes below the rise, the profile goes on from there. Errors: errors of the evaluator; Cancelled.
+/// one comes below the rise, the profile continues from there. Errors: errors of the evaluator; Cancelled.
 Profiles profiles_of(Residuals& residuals, const std::vector<Minimum>& minima, const ProfileOptions& options);
 
 }  // namespace dolp::fit

@@ -19,7 +19,7 @@ namespace dolp {
 /// with the axes of a grid.
 std::vector<std::size_t> drawn_positions(std::size_t size, std::size_t count);
 
-/// All entries where there are at most `count`, else those at drawn positions.
+/// All entries if there are at most `count`, else the entries at drawn positions.
 SceneEntries drawn_entries(const SceneEntries& entries, std::size_t count);
 
 /// The entries that an estimate has looked at.

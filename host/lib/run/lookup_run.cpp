@@ -234,9 +234,9 @@ class Forecast {
 
 std::vector<PointResult> lookup_points(const TableLookup& lookup, const SceneValues& scene, const Points& points,
                                        const Progress& progress) {
-  check_shapes(scene, points);
-  check_index(lookup, scene, points);
   check_no_films(points);
+  check_surface(scene, points);
+  check_index(lookup, scene, points);
   const std::vector<TableLookup::Point> at = coordinates(lookup, scene, points);
   std::vector<PointResult> results(points.size());
   parallel_for(

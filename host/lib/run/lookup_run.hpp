@@ -15,7 +15,7 @@
 namespace dolp {
 
 /// Looks up a table at points. If points lack sigma, q or wavelength, the values of the table's `scene` are used.
-/// An axis of one value needs no column; n, k and wavelength, where the table has no axis of them, must be the table's.
+/// An axis of one value needs no column. n, k and wavelength must be the table's if it has no axis of them.
 /// Errors: InputError that names the point, column, value and what the table has; Cancelled when `progress` returns
 /// false.
 std::vector<PointResult> lookup_points(const TableLookup& lookup, const SceneValues& scene, const Points& points,
@@ -29,7 +29,7 @@ struct AxisForecast {
   /// with fewer than four values.
   double error = 0.0;
   double wanted = 0.0;            ///< share of the tolerance that the axis may take
-  std::size_t needed_values = 0;  ///< values that keep the error about there; 0: none up to kMostForecastValues do
+  std::size_t needed_values = 0;  ///< values that reach this share; 0: more than kMostForecastValues
 };
 inline constexpr std::size_t kMostForecastValues = 10'000;
 

@@ -78,7 +78,7 @@ bool is_inaccurate(const ScatteringMatrix& specular, Precision precision) {
   return specular.error > (1.0 + kRounding) * accuracy * specular.m[0];
 }
 
-/// `specular` is null for a point that the evaluator is not asked for.
+/// `specular` is null for a point that needs no evaluator.
 MuellerMatrix elements(const Surface& surface, const MuellerPoint& point, const ScatteringMatrix* specular,
                        Precision precision) {
   MuellerMatrix f{};
@@ -99,7 +99,7 @@ MuellerMatrix elements(const Surface& surface, const MuellerPoint& point, const 
 }  // namespace
 
 std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points& points) {
-  check_shapes(scene, points);
+  check_surface(scene, points);
   const Surface& surface = scene.surface;
   const bool has_own_index = points[Axis::kN] && points[Axis::kK];
   const bool needs_one_wavelength = !surface.coating.empty() || (!surface.material.is_constant() && !has_own_index);
@@ -117,7 +117,6 @@ std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points&
                     "give n and k, or a material and a coating",
                     scene.path_name));
   }
-  check_films(scene, points);
   Surface own = surface;
   FacetOptics optics = surface.optics_at(scene.spectrum.min_um);
   std::vector<MuellerPoint> result;

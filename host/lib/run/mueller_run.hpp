@@ -22,8 +22,8 @@ struct MuellerPoint {
 /// on the wavelength, unless the points have n and k both; q <= 3/2 with smith masking and the cauchy distribution.
 std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points& points);
 
-/// The precision of a scene's pBRDFs: what it says, and for kAuto float where kScatteringErrorFloat meets the tolerance
-/// (or the evaluator has nothing better), double elsewhere.
+/// The precision of a scene's pBRDFs. kAuto becomes float if kScatteringErrorFloat meets the tolerance or the evaluator
+/// has no double, else double.
 Precision mueller_precision(const Accuracy& accuracy, bool has_double);
 
 /// f of eq. (15) with k_s and the diffuse part, in the order of `points`.

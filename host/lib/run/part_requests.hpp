@@ -63,25 +63,25 @@ class PartRequests {
   const ScatteringRequest& beams() const { return beams_; }
 
   /// The position of a member's moments in the answer: `first + j * stride` for spectral sample j.
-  struct Place {
+  struct MomentsSpan {
     std::size_t first = 0;
     std::size_t stride = 0;
   };
-  Place moments_of(std::size_t member) const;
+  MomentsSpan moments_of(std::size_t member) const;
   /// For a grid: the request's direction from which a member has its moments.
   std::size_t direction_of(std::size_t member) const;
   /// The first of its beams, one for each sample.
   std::size_t beams_of(std::size_t member) const { return first_beam_[member]; }
 
  private:
-  void ask_grid(const Selection& selection);
-  void ask_indices(const SceneEntries& grid, const std::vector<char>& is_used);
-  void mask(const Selection& selection);
+  void request_grid(const Selection& selection);
+  void request_indices(const SceneEntries& grid, const std::vector<char>& is_used);
+  void mark_wanted(const Selection& selection);
   std::size_t index_set(const SceneEntries& grid, const PerAxis& place) const;
   std::vector<FacetOptics> samples_of(const SceneEntries& grid, std::size_t set) const;
   bool has_films() const { return !samples_.front().front().is_bare(); }
-  void ask_points(const Selection& selection);
-  void ask_beams(const Selection& selection);
+  void request_points(const Selection& selection);
+  void request_beams(const Selection& selection);
 
   const SceneValues& scene_;
   const SpectralIndices& samples_;
@@ -90,9 +90,9 @@ class PartRequests {
   MomentsRequest moments_;
   ScatteringRequest beams_;
   // For a grid: the position in the request of each value of the part's axes, and of the first index of each set: the
-  // indices of a wavelength, or the one of n and k.
+  // indices of a variant, or one index of n and k.
   std::vector<std::uint32_t> theta_at_, sigma_at_, q_at_, index_set_offset_;
-  std::vector<Place> places_;  ///< places of points
+  std::vector<MomentsSpan> spans_of_points_;  ///< one for each point of a list
   std::vector<std::size_t> first_beam_;
 };
 

@@ -22,9 +22,9 @@ inline constexpr std::size_t kCountedDirections = 6;
 struct RunPrediction {
   std::size_t entries = 0;
   std::size_t spectral_samples = 0;
-  std::size_t moments = 0;         ///< that the first level computes: entries that share them count once
+  std::size_t moments = 0;         ///< moments that the first level computes; shared moments count once
   std::size_t interpolated = 0;    ///< moments that it interpolates between others
-  std::size_t beams = 0;           ///< that the first level asks for: f of one geometry and index each
+  std::size_t beams = 0;           ///< values of f in the first level, for one geometry and index each
   RefinementLevel first;           ///< precision and tolerance of the first level
   double first_evaluations = 0.0;  ///< integrand evaluations of the first level
   double again_share =

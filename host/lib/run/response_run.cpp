@@ -83,7 +83,7 @@ Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error
         (m == 0 ? 1.0 : 2.0) / kBetaAngles * nodes().polynomials.row(static_cast<Eigen::Index>(m));
     own.i += sum.i * share;
     own.q += sum.q * share / nodes().sin2;
-    // The rules of q may agree by chance too, so that the bound of i is added to its own.
+    // The rules of q may agree by chance too, so that the bound of i is added to the bound of q.
     const double of_i = std::abs(sum.i_apart) + sum.relative_error * std::abs(sum.i) + sum.error;
     const double of_q = std::abs(sum.q_apart) + sum.relative_error * std::abs(sum.q) + sum.error;
     own.error += std::ldexp(std::max(of_i, whole_error) + of_q, -static_cast<int>(m));
@@ -106,7 +106,7 @@ Moments mirror_of(const MomentsRequest& request, const Direction& direction, con
 
 bool has_emission(Masking masking) { return keeps_projected_area(masking); }
 
-/// Stores an entry where its bound is below the one that is there.
+/// Stores an entry if its bound is below the known bound.
 void take_better(const Moments& reflected, const Moments* direct, double cosine, std::size_t entry,
                  EntryResponses& to) {
   const Weights weights = weights_of(reflected.columns, reflected.albedo_error);

@@ -63,7 +63,7 @@ struct RunSummary {
   void add(const RunSummary& other);
 
   std::size_t count(std::uint32_t bit) const;
-  /// True if no entry says that DOLP or rho misses the tolerance.
+  /// True if DOLP and rho of all entries meet the tolerance.
   bool meets_tolerance() const { return count(kToleranceNotMet) + count(kRhoToleranceNotMet) == 0; }
 
   /// Writes the summary in one line, and reads it back. A line of another kind gives nothing.

@@ -68,7 +68,7 @@ class MemberResults {
 
   PointResult operator()(std::size_t member) {
     const SceneEntry entry = selection_[member];
-    const Direction direction = seen(entry);
+    const Direction direction = view_direction(entry);
     const std::vector<FacetOptics>& samples = context_.spectra.indices[entry.variant];
     if (moments_.size() != samples.size()) {
       moments_.assign(samples.size(), {});
@@ -91,7 +91,7 @@ class MemberResults {
 
  private:
   /// Neighbours in a grid mostly have one direction, and all of them one way to treat it.
-  const Direction& seen(const SceneEntry& entry) {
+  const Direction& view_direction(const SceneEntry& entry) {
     const Surface& surface = context_.scene.surface;
     const double theta_deg = moment_zenith_deg(context_.scene, entry.theta_deg);
     const Treatment treatment = treatment_of(surface.distribution, surface.masking, theta_deg, entry.shape);
@@ -112,11 +112,11 @@ class MemberResults {
       }
       return moments_;
     }
-    const PartRequests::Place place = requests_.moments_of(member);
-    if (place.stride == 1 || moments_.size() == 1) {
-      return std::span(evaluated_.moments).subspan(place.first, moments_.size());
+    const PartRequests::MomentsSpan span = requests_.moments_of(member);
+    if (span.stride == 1 || moments_.size() == 1) {
+      return std::span(evaluated_.moments).subspan(span.first, moments_.size());
     }
-    for (std::size_t j = 0; j < moments_.size(); ++j) moments_[j] = evaluated_.moments[place.first + j * place.stride];
+    for (std::size_t j = 0; j < moments_.size(); ++j) moments_[j] = evaluated_.moments[span.first + j * span.stride];
     return moments_;
   }
 

@@ -28,13 +28,10 @@ SceneEntries grid_entries(const SceneValues& scene);
 /// wavelength; q <= 3/2 with smith masking and the cauchy distribution.
 SceneEntries point_entries(const SceneValues& scene, const Points& points);
 
-/// Refuses points with a q that the scene's masking does not support, q <= 3/2 with smith and the cauchy distribution,
-/// and winds for another distribution than the gaussian; the scene's own values have passed the same check.
+/// Refuses points that do not fit the scene's surface: q <= 3/2 with smith masking and the cauchy distribution, winds
+/// without the gaussian distribution, numbers of films that the scene lacks, n and k of a film that has a material.
 /// Errors: InputError that names the points' file and line, column, value and what is allowed.
-void check_shapes(const SceneValues& scene, const Points& points);
-
-/// Refuses numbers of films that the scene does not have, and n and k of a film that has a material.
-void check_films(const SceneValues& scene, const Points& points);
+void check_surface(const SceneValues& scene, const Points& points);
 
 /// Destination of results, part by part.
 class Sink {

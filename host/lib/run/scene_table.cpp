@@ -179,7 +179,7 @@ TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const
 
 namespace {
 
-/// A hash of n, k and E0, from files or from wherever the scene has them.
+/// A hash of all data of the scene: n, k, E0, films, reflectances and the sky.
 std::uint64_t data_hash(const SceneValues& scene) {
   std::uint64_t hash = kHashStart;
   const auto add = [&hash](const SpectralTable& table) {

@@ -250,7 +250,7 @@ bool is_there(const SceneValues& scene, const TableJob& job) {
     const TableHead& head = reader.head();
     if (difference(text_of(head, kIdentity), identity_of(scene, job)) || text_of(head, kShard) != shard_text(job.shard))
       return false;
-    // Refuses values that are not those that were written.
+    // Refuses values that differ from the written ones.
     static_cast<void>(reader.read_entries({}, job.options.progress));
     return head.axes == shard_entries(scene, job.shard).axes();
   } catch (const InputError&) {

@@ -35,8 +35,8 @@ enum class NamedData {
 
 /// The scene of a table, whose settings are applied.
 ///
-/// Errors: InputError that begins with `name`: no scene in the table, one that is not the one the table was made of, or
-/// one that the reader refuses.
+/// Errors: InputError that begins with `name`: no scene in the table, a scene that was changed after the table was
+/// made, or a scene that the reader refuses.
 SceneValues table_scene(const TableHead& table, const std::string& name, NamedData named_data = NamedData::kOfTable);
 
 /// The scene's position of a value on an axis with labels, by its label.

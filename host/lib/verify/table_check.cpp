@@ -52,7 +52,7 @@ constexpr std::array<Compared, 13> kCompared{{
 /// that it is a sum of.
 constexpr double kUnstatedOverStated = 10.0;
 
-/// What bounds depend on besides the entry.
+/// Properties of a variant that bounds depend on.
 struct BoundTerms {
   double tolerance = 0.0;
   double radiation = 0.0;  ///< emitted plus reflected radiation with rho = 1, in the units of Stokes I
@@ -88,7 +88,7 @@ double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const Po
     case Bound::kPolarisedRadiation:
       return radiation;
     case Bound::kRadiation:
-      // Toward DOLP = 0 its estimate says nothing of I.
+      // Toward DOLP = 0 its estimate does not bound the error of I.
       return std::min(dolp > 0.0 ? radiation / dolp : kInfinity, unstated * terms.radiation);
     case Bound::kEmissivity:
       return unstated;

@@ -11,6 +11,7 @@
 #include "run/lookup_run.hpp"
 #include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
+#include "run/table_run.hpp"
 #include "run/table_scene.hpp"
 #include "scene/scene_reader.hpp"
 #include "table/table_file.hpp"
@@ -129,6 +130,23 @@ TEST(GridAxes, FileReadBack_HasItsLabelsAndVerifiesWithoutTheMaterials) {
   EXPECT_EQ(part.axes[Axis::kMaterial], std::vector<double>{2.0});
   part.labels[Axis::kMaterial] = {"lead", "PET", "lead"};
   EXPECT_THROW(use_scene_labels(part, again, "part"), InputError);
+}
+
+TEST(GridAxes, ShardsOfOneMaterialEach_MergeToTheTable) {
+  const TemporaryFolder folder;
+  const SceneValues scene = scene_with({"grid.theta_deg=[30]", "grid.sigma=[0.2]", "grid.q=[3]"});
+  CpuEvaluator evaluator;
+  std::vector<std::string> paths;
+  for (std::size_t number = 1; number <= 6; ++number) {
+    paths.push_back((folder.path() / fmt::format("{}.nc", number)).string());
+    const TableJob job{.path = paths.back(), .shard = {number, 6}, .options = {}, .evaluator = "cpu"};
+    write_table(scene, job, [&] { return &evaluator; });
+    EXPECT_TRUE(is_there(scene, job));
+  }
+  EXPECT_EQ(read_table(paths[1]).labels[Axis::kMaterial], std::vector<std::string>{"SiO2 amorphous quartz"});
+  const std::filesystem::path merged = folder.path() / "t.nc";
+  EXPECT_EQ(ShardSet(paths).merge(merged, "test"), 24U);
+  EXPECT_EQ(read_table(merged)[kDolp], table_of(scene)[kDolp]);
 }
 
 TEST(GridAxes, Lookup_FindsNamesAndInterpolatesTemperatures) {

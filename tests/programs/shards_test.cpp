@@ -94,7 +94,7 @@ TEST_F(Shards, OfSeveralAxes_MergeIntoTheTableAndItsCsv) {
   EXPECT_EQ(data_lines(read_file(at("m.csv"))), data_lines(read_file(at("one.csv"))));
   const Outcome refused = dolp({"table", "grid.toml", "-o", "t.nc", "--shard", "1/11"});
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.err.find("7 values of theta, 2 of wavelength, 2 of n and 1 of k cannot be cut into 11 parts"),
+  EXPECT_NE(refused.err.find("the values of the axes, 7 of theta, 2 of wavelength, 2 of n, cannot be cut into 11 parts"),
             std::string::npos)
       << refused.err;
 }

@@ -299,6 +299,7 @@ void load_axis_materials(SceneValues& scene, const SceneDocument& document, cons
     labels.push_back(material.name);
   }
   scene.surface.material = materials.front();
+  scene.names.material = labels.front();
   scene.materials = std::make_shared<const std::vector<Material>>(std::move(materials));
 }
 

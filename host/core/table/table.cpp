@@ -165,12 +165,12 @@ std::string values_hash(const TableLayout& layout, const ValueSums& sums) {
   const TableHead& head = layout.head;
   std::uint64_t hash = kHashStart;
   for (const Axis axis : kAllAxes) {
-    // The hash of a file without an axis that earlier files could not have is the hash that they have.
-    const bool is_absent = head.axes[axis].empty() && (description_of(axis).has_labels || axis == Axis::kTemperature);
-    if (!is_absent) hash = hashed(hash, std::span(head.axes[axis]));
-  }
-  for (const std::vector<std::string>& names : head.labels) {
-    for (const std::string& name : names) hash = hashed(hash, name);
+    const std::vector<double>& values = head.axes[axis];
+    if (description_of(axis).has_labels) {  // positions differ between a table and its parts
+      for (const double value : values) hash = hashed(hashed(hash, head.label(axis, value)), std::uint64_t{0});
+    } else if (axis != Axis::kTemperature || !values.empty()) {  // files that could not have it keep their hash
+      hash = hashed(hash, std::span(values));
+    }
   }
   for (const std::vector<double>* values : {&head.wind_m_s, &head.beta_deg}) {
     if (!values->empty()) hash = hashed(hash, std::span(*values));

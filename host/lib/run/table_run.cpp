@@ -25,7 +25,8 @@ constexpr std::size_t kMergedAtOnce = std::size_t{1} << 19U;  // entries
 constexpr const char* kShard = "shard";                       // attribute of a table that is one
 
 // The axes that are cut. Sigma and q are not cut, because entries share work along them.
-constexpr std::array kCutAxes = {Axis::kTheta, Axis::kWavelength, Axis::kN, Axis::kK};
+constexpr std::array kCutAxes = {Axis::kTheta,       Axis::kMaterial, Axis::kBand, Axis::kWavelength,
+                                 Axis::kTemperature, Axis::kN,        Axis::kK};
 using Cuts = std::array<std::size_t, kCutAxes.size()>;
 
 /// Parts of each axis whose product is `count`, most of the first axes; false where there are none.
@@ -37,6 +38,12 @@ bool find_cuts(const PerAxis& counts, std::size_t count, std::size_t number, Cut
     if (find_cuts(counts, count / parts, number + 1, cuts)) return true;
   }
   return false;
+}
+
+/// The axes of a table, which may be a part of one, with the scene's positions of labels.
+Axes scene_axes(TableHead table, const SceneValues& scene, const std::string& name) {
+  use_scene_labels(table, scene, name);
+  return table.axes;
 }
 
 std::string shard_text(const Shard& shard) { return fmt::format("{}/{}", shard.number, shard.count); }
@@ -198,10 +205,12 @@ SceneEntries shard_entries(const SceneValues& scene, const Shard& shard) {
   PerAxis count = whole.counts();
   Cuts cuts{};
   if (!find_cuts(count, shard.count, 0, cuts)) {
-    throw InputError(
-        fmt::format("shard {}: {} values of theta, {} of wavelength, {} of n and {} of k cannot be cut into {} parts",
-                    shard_text(shard), count[Axis::kTheta], count[Axis::kWavelength], count[Axis::kN], count[Axis::kK],
-                    shard.count));
+    std::vector<std::string> values;
+    for (const Axis axis : kCutAxes)
+      if (count[axis] > 1) values.push_back(fmt::format("{} of {}", count[axis], description_of(axis).name));
+    throw InputError(fmt::format("shard {}: the values of the axes, {}, cannot be cut into {} parts", shard_text(shard),
+                                 values.empty() ? "1 of theta" : fmt::format("{}", fmt::join(values, ", ")),
+                                 shard.count));
   }
   PerAxis first{};
   std::size_t rest = shard.number - 1;
@@ -252,7 +261,7 @@ bool is_there(const SceneValues& scene, const TableJob& job) {
       return false;
     // Refuses values that differ from the written ones.
     static_cast<void>(reader.read_entries({}, job.options.progress));
-    return head.axes == shard_entries(scene, job.shard).axes();
+    return scene_axes(head, scene, job.path.string()) == shard_entries(scene, job.shard).axes();
   } catch (const InputError&) {
     return false;
   }
@@ -283,6 +292,7 @@ void ShardSet::begin(const TableReader& first, const std::string& path) {
   scene_ = table_scene(first.head(), path);
   layout_ = first.layout();
   layout_.head.axes = scene_.grid;
+  layout_.head.labels = scene_.labels;
   fill_used(layout_.head, scene_);
   count_ = shard->count;
 }
@@ -302,7 +312,7 @@ std::size_t ShardSet::checked_number(const TableReader& reader, const std::strin
     throw InputError(fmt::format("{}: is shard {}, of another table than {}: it has other variables or units", path,
                                  shard_text(*shard), paths_.begin()->second));
   }
-  if (head.axes != axes_of_shard(scene_, *shard, path))
+  if (scene_axes(head, scene_, path) != axes_of_shard(scene_, *shard, path))
     throw InputError(fmt::format("{}: does not have the axes of shard {}", path, shard_text(*shard)));
   return shard->number;
 }

@@ -12,12 +12,17 @@ namespace {
 Scene with_grid(const Scene& scene, const PointList& list) {
   std::vector<Setting> axes;
   for (const auto& [name, values] : list.values) axes.push_back({name, values});
-  for (const auto& [axis, key] :
-       {std::pair{"wavelength_um", "spectrum.wavelength_um"}, {"n", "surface.n"}, {"k", "surface.k"}}) {
+  for (const auto& [axis, key] : {std::pair{"wavelength_um", "spectrum.wavelength_um"},
+                                  {"temperature_K", "emission.temperature_K"},
+                                  {"n", "surface.n"},
+                                  {"k", "surface.k"}}) {
     const bool is_listed = std::ranges::count(axes, axis, &Setting::key) > 0;
     if (!is_listed && !scene.numbers(std::string("grid.") + axis).empty())
       axes.push_back({axis, scene.number(key).value()});
   }
+  const AxisLabels& labels = scene.labels();
+  if (!labels[Axis::kMaterial].empty()) axes.push_back({"material", scene.word("surface.material").value()});
+  if (!labels[Axis::kBand].empty()) axes.push_back({"band_um", scene.numbers("spectrum.band_um")});
   return scene.with_grid(axes);
 }
 

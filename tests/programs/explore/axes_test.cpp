@@ -71,21 +71,28 @@ TEST(ExploreSession, TypedRangeOfTheMap_IsTakenIfTheSceneTakesIt) {
 
 TEST(HeatMap, EachPairOfAxes_HasTheValuesOfTheScene) {
   const SceneEdits oxide = paint({"surface.coating=[{n=1.3,k=0.1,thickness_um=1},{n=2,thickness_um=0.5}]"});
+  const SceneEdits many = paint({"grid.material=[\"PET\", \"gold (Ordal)\"]", "grid.temperature_K=[280, 300]"});
   Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
-  for (const auto& [x, y] : {std::pair{"theta", "sigma"},
-                             {"sigma", "theta"},
-                             {"theta", "temperature"},
-                             {"temperature", "film 1"},
-                             {"film 2", "theta"},
-                             {"film 1", "film 2"},
-                             {"wavelength", "temperature"},
-                             {"n", "k"},
-                             {"q", "wavelength"}}) {
+  struct Case {
+    const char *x, *y;
+    const SceneEdits& scene;
+  };
+  for (const auto& [x, y, edits] : {Case{"theta", "sigma", oxide},
+                                    {"sigma", "theta", oxide},
+                                    {"theta", "temperature", oxide},
+                                    {"temperature", "film 1", oxide},
+                                    {"film 2", "theta", oxide},
+                                    {"film 1", "film 2", oxide},
+                                    {"wavelength", "temperature", oxide},
+                                    {"n", "k", oxide},
+                                    {"q", "wavelength", oxide},
+                                    {"theta", "sigma", many},
+                                    {"temperature", "theta", many}}) {
     SCOPED_TRACE(std::string(x) + ' ' + y);
     View view;
     view.map_x = x;
     view.map_y = y;
-    Session session(oxide);
+    Session session(edits);
     session.set_view(view);
     const std::vector<Job> jobs = session.wanted();
     const Job& job = *std::ranges::find_if(jobs, [](const Job& one) { return one.key.starts_with("map 16 "); });

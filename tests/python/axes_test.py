@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+"""Axes of materials, bands and temperatures, and lookups over keys: axes_test.py, with the package on PYTHONPATH."""
+import unittest
+import warnings
+
+import numpy as np
+import xarray as xr
+
+import dolp
+from package_case import PackageCase
+
+MATERIALS = ["gold (Ordal)", "SiO2 amorphous quartz", "PET"]
+AXES = {"theta_deg": [0, 20, 40, 60], "sigma": 0.2, "q": 3, "evaluator": "cpu"}
+
+
+class Axes(PackageCase):
+    def setUp(self):
+        super().setUp()
+        warnings.simplefilter("ignore", dolp.ModelWarning)
+
+    def test_a_table_of_materials_bands_and_temperatures_has_names_as_coordinates(self):
+        table = dolp.table(self.scene, material=["gold (Ordal)", "quartz", "PET"], band_um=[(8, 9), (10, 12)],
+                           temperature_K=[280, 300, 320, 340], **AXES)
+        self.assertEqual(table.dolp.dims[:3], ("material", "band", "temperature"))
+        self.assertEqual(table.material.values.tolist(), MATERIALS)
+        self.assertEqual(table.band.values.tolist(), ["8-9", "10-12"])
+        for material, band, ends in (("PET", "8-9", (8, 9)), ("gold (Ordal)", "10-12", (10, 12))):
+            alone = self.scene.with_({"surface.material": material, "spectrum.band_um": ends, "emission.temperature_K": 320})
+            right = dolp.table(alone, **AXES)
+            own = table.sel(material=material, band=band, temperature=320)
+            bound = own.error_estimate + right.error_estimate
+            self.assertTrue(bool((abs(own.dolp - right.dolp) <= bound).all()))
+        path = self.folder / "t.nc"
+        table.to_netcdf(path)
+        again = xr.load_dataset(path)
+        for source in (table, again, table.isel(material=[2, 1]), table.sel(material="PET")):
+            found = dolp.lookup(source, material="pet", band_um="10-12", temperature_K=300, theta_deg=40)
+            self.assertEqual(float(found.dolp), float(table.dolp.sel(material="PET", band="10-12", temperature=300, theta=40)))
+        found = dolp.lookup(table, material=["PET", "quartz"], band_um="8-9", temperature_K=310, theta_deg=40)
+        self.assertEqual(found.material.values.tolist(), ["PET", "SiO2 amorphous quartz"])
+        with self.assertRaisesRegex(dolp.InputError, "material = 'lead': must be one of gold"):
+            dolp.lookup(table, material="lead", band_um="8-9", temperature_K=310, theta_deg=40)
+
+    def test_points_take_names_and_temperatures(self):
+        scene = self.scene.with_({"grid.material": MATERIALS})
+        found = dolp.evaluate(scene, material=["PET", "gold"], temperature_K=[280, 320], theta_deg=50, evaluator="cpu")
+        for i, (name, kelvin) in enumerate((("PET", 280), ("gold (Ordal)", 320))):
+            alone = self.scene.with_({"surface.material": name, "emission.temperature_K": kelvin})
+            right = dolp.evaluate(alone, theta_deg=50, evaluator="cpu")
+            self.assertLessEqual(abs(float(found.dolp[i] - right.dolp)), float(found.error_estimate[i] + right.error_estimate))
+
+    def test_a_key_is_looked_up_between_its_values_with_an_error(self):
+        key, kelvins = "surroundings.temperature_K", [200, 220, 240, 260, 270, 280]
+        table = dolp.table(self.scene, **{key: kelvins}, **AXES)
+        for kelvin in (207, 230, 266.5, 279):
+            found = dolp.lookup(table, theta_deg=[20, 60], **{key: kelvin})
+            right = dolp.evaluate(self.scene.with_({key: kelvin}), theta_deg=[20, 60], sigma=0.2, q=3, evaluator="cpu")
+            for quantity, error in (("dolp", "error_estimate"), ("rho_i", "rho_error_estimate")):
+                distance = abs(found[quantity] - right[quantity])
+                self.assertTrue(bool((distance <= found[error] + right[error]).all()), (kelvin, quantity))
+            self.assertLess(float(found.error_estimate.max()), 0.01)
+        self.assertEqual(float(dolp.lookup(table, theta_deg=20, **{key: 240}).dolp),
+                         float(table.dolp.sel({key: 240, "theta": 20})))
+        two = dolp.lookup(table.sel({key: [220, 240]}), theta_deg=20, **{key: 230})
+        self.assertTrue(np.isinf(two.error_estimate) and two.status & 2)
+        with self.assertRaisesRegex(dolp.InputError, "= 300.0: outside the table, which has"):
+            dolp.lookup(table, theta_deg=20, **{key: 300})
+
+
+if __name__ == "__main__":
+    unittest.main()

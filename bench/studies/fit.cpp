@@ -10,7 +10,7 @@
 
 #include "base/stopwatch.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
-#include "scene/scene_writer.hpp"
+#include "scene/scene_reader.hpp"
 #include "studies/child.hpp"
 #include "studies/fit_sets.hpp"
 #include "studies/study.hpp"

@@ -31,7 +31,7 @@ struct PeerCase {
 };
 std::vector<PeerCase> peer_cases() {
   std::vector<PeerCase> cases;
-  for (const char* name : Names<Masking>::kAll) cases.push_back({name, *named<Masking>(name)});
+  for (const char* name : words_of(Masking{})) cases.push_back({name, *named<Masking>(name)});
   return cases;
 }
 

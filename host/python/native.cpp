@@ -12,6 +12,7 @@
 #include <exception>
 #include <future>
 #include <map>
+#include <ranges>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -27,7 +28,7 @@ using Columns = std::map<std::string, Array>;
 
 constexpr auto kSignalsEvery = std::chrono::milliseconds(50);
 
-/// Calls `body(progress)` in another thread, while Python's other threads run, and ends it when a signal asks for that.
+/// Calls `body(progress)` in another thread, while Python's other threads run, and ends it when a signal arrives.
 template <class Body>
 auto interruptible(const Body& body) {
   std::atomic<bool> goes_on = true;
@@ -95,7 +96,7 @@ void add_error(py::module_& module, const std::string& name, PyObject* base, con
   module.attr(name.c_str()) = py::reinterpret_steal<py::object>(type);
 }
 
-/// The position of a word among those that an argument may be. Errors: InputError.
+/// The position of a word in the allowed words of an argument. Errors: InputError.
 std::size_t position_of(const std::string& argument, const std::string& word, const std::vector<std::string>& words) {
   const auto found = std::ranges::find(words, word);
   if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
@@ -128,7 +129,7 @@ dolp::Value value_of(const std::string& key, const py::handle& value) {
                          range.at("count").cast<std::size_t>(), word == "log"};
 }
 
-using Values = std::vector<std::pair<py::str, py::object>>;  // of keys
+using Values = std::vector<std::pair<py::str, py::object>>;  // values of keys
 
 std::vector<dolp::Setting> settings_of(const Values& values) {
   std::vector<dolp::Setting> settings;
@@ -139,7 +140,7 @@ std::vector<dolp::Setting> settings_of(const Values& values) {
   return settings;
 }
 
-/// The reverse of value_of. Text of TOML appears on command lines alone.
+/// The reverse of value_of. Only command lines have text of TOML.
 py::object object_of(const dolp::Value& value) {
   const auto object = [](const auto& content) -> py::object {
     using Content = std::decay_t<decltype(content)>;
@@ -219,6 +220,14 @@ std::vector<dolp::FitRange> ranges_of(const std::vector<std::pair<std::string, s
   return ranges;
 }
 
+/// A list of of(element) for each element.
+template <class Range, class Of>
+py::list list_of(Range&& range, const Of& of) {
+  py::list all;
+  for (const auto& element : range) all.append(of(element));
+  return all;
+}
+
 /// An array that owns `values`.
 template <class Value>
 py::array_t<Value> array_of(std::vector<Value> values) {
@@ -256,9 +265,8 @@ py::tuple contents_of(const dolp::Table& table) {
   for (const dolp::Axis axis : dolp::kAllAxes) {
     const char* const name = dolp::description_of(axis).name;
     if (!values.labels[axis].empty()) {
-      py::list labels;
-      for (const double value : values.axes[axis]) labels.append(text_of(values.label(axis, value)));
-      axes.append(py::make_tuple(name, labels));
+      const auto label = [&](double value) { return text_of(values.label(axis, value)); };
+      axes.append(py::make_tuple(name, list_of(values.axes[axis], label)));
     } else if (!values.axes[axis].empty()) {
       axes.append(py::make_tuple(name, array_of(values.axes[axis])));
     }
@@ -290,16 +298,15 @@ py::dict labels_of(const dolp::AxisLabels& labels) {
   py::dict all;
   for (const dolp::Axis axis : dolp::kAllAxes) {
     if (!dolp::description_of(axis).has_labels) continue;
-    py::list own;
-    for (const std::string& label : labels[axis]) own.append(text_of(label));
-    all[dolp::description_of(axis).column] = own;
+    all[dolp::description_of(axis).column] = list_of(labels[axis], text_of);
   }
   return all;
 }
 
 /// A table of the axes, curves, columns and attributes that are there, by name.
-dolp::Table table_of(const Columns& columns, const std::map<std::string, std::vector<std::string>>& labels, const py::array_t<std::uint32_t, py::array::forcecast>& status,
-                     const std::string& stokes_units, const py::dict& attributes, const std::string& name) {
+dolp::Table table_of(const Columns& columns, const std::map<std::string, std::vector<std::string>>& labels,
+                     const py::array_t<std::uint32_t, py::array::forcecast>& status, const std::string& stokes_units,
+                     const py::dict& attributes, const std::string& name) {
   dolp::TableValues table;
   if (!stokes_units.empty()) table.stokes_units = stokes_units;
   const auto take = [&](const std::string& variable, std::vector<double>& values) {
@@ -317,7 +324,7 @@ dolp::Table table_of(const Columns& columns, const std::map<std::string, std::ve
   for (const dolp::Quantity quantity : dolp::kAllQuantities) take(dolp::description_of(quantity).name, table[quantity]);
   for (const dolp::TableCurve& known : dolp::kTableCurves) {
     dolp::Curve& curve = table.*known.curve;
-    take(known.name + std::string("_wavelength"), curve.wavelength_um);  // of a file of dolp 0.2
+    take(known.name + std::string("_wavelength"), curve.wavelength_um);  // in files of dolp 0.2
     take(known.name, curve.wavelength_um.empty() ? curve.used : curve.values);
   }
   table.status.assign(status.data(), status.data() + status.size());
@@ -457,50 +464,32 @@ PYBIND11_MODULE(_native, module) {
     const dolp::Report plan = dolp::plan(scene, device, keep_all);
     return py::make_tuple(text_of(plan.text), text_of(plan.json));
   });
-  module.def("devices", [] {
-    py::list all;
-    for (const dolp::Device& device : dolp::devices()) all.append(description(device));
-    return all;
-  });
+  module.def("devices", [] { return list_of(dolp::devices(), description); });
   module.def("materials", [] {
-    py::list all;
-    for (const dolp::BuiltInMaterial& material : dolp::materials()) {
-      all.append(py::make_tuple(material.name, material.from_um, material.to_um, material.source));
-    }
-    return all;
+    return list_of(dolp::materials(), [](const dolp::BuiltInMaterial& material) {
+      return py::make_tuple(material.name, material.from_um, material.to_um, material.source);
+    });
   });
   module.def("keys", [] {
-    py::list all;
-    for (const dolp::Key& key : dolp::keys()) {
-      if (key.layer > 1) continue;  // as the first
-      all.append(py::make_tuple(key.key, key.unit, key.allowed(), key.fallback, key.meaning));
-    }
-    return all;
+    const auto is_first = [](const dolp::Key& key) { return key.layer <= 1; };  // all layers have these keys
+    return list_of(dolp::keys() | std::views::filter(is_first), [](const dolp::Key& key) {
+      return py::make_tuple(key.key, key.unit, key.allowed(), key.fallback, key.meaning);
+    });
   });
   module.def("axes", [] {
-    py::list all;
-    for (const dolp::Axis axis : dolp::kColumnOrder) {
-      const dolp::AxisDescription& known = dolp::description_of(axis);
-      all.append(py::make_tuple(known.column, known.name, known.long_name, known.units));
-    }
-    all.append(py::make_tuple(dolp::kWind.column, dolp::kWind.name, dolp::kWind.long_name, dolp::kWind.units));
+    const auto described = [](const dolp::AxisDescription& axis) {
+      return py::make_tuple(axis.column, axis.name, axis.long_name, axis.units);
+    };
+    py::list all = list_of(dolp::kColumnOrder, [&](dolp::Axis axis) { return described(dolp::description_of(axis)); });
+    all.append(described(dolp::kWind));
     return all;
   });
-  module.def("table_axes", [] {
-    std::vector<std::string> names;
-    for (const dolp::Axis axis : dolp::kAllAxes) names.emplace_back(dolp::description_of(axis).name);
-    return names;
-  });
+  const auto name = [](auto described) { return dolp::description_of(described).name; };
+  module.def("table_axes", [name] { return list_of(dolp::kAllAxes, name); });
   module.def("status_bits", [] {
-    py::list all;
-    for (const dolp::StatusBit& bit : dolp::kStatusBits) all.append(py::make_tuple(bit.mask, bit.meaning));
-    return all;
+    return list_of(dolp::kStatusBits, [](const dolp::StatusBit& bit) { return py::make_tuple(bit.mask, bit.meaning); });
   });
-  module.def("quantities", [] {
-    std::vector<std::string> names;
-    for (const dolp::Quantity quantity : dolp::kAllQuantities) names.emplace_back(dolp::description_of(quantity).name);
-    return names;
-  });
+  module.def("quantities", [name] { return list_of(dolp::kAllQuantities, name); });
   module.attr("most_attribute_bytes") = dolp::kMostAttributeBytes;
   module.def("version", &dolp::version);
   module.def("commit", &dolp::commit);

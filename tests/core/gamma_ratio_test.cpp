@@ -1,5 +1,5 @@
 // The ratio of gamma functions, against values with fifty digits.
-#include "model/gamma_ratio.hpp"
+#include "model/slopes.hpp"
 
 #include <gtest/gtest.h>
 

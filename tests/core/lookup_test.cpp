@@ -9,7 +9,6 @@
 #include <dolp/status.hpp>
 #include "draws.hpp"
 #include "error_text.hpp"
-#include "table/masking_kinks.hpp"
 #include "table/table_lookup.hpp"
 
 namespace {

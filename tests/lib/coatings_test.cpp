@@ -17,7 +17,6 @@
 #include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
 #include "scene/scene_reader.hpp"
-#include "scene/scene_writer.hpp"
 #include "temporary_file.hpp"
 
 namespace dolp {

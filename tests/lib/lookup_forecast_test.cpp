@@ -1,5 +1,5 @@
 // Compares the plan's advice on the density of axes with tables that follow it.
-#include "run/lookup_forecast.hpp"
+#include "run/lookup_run.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "model/choices.hpp"
-#include "model/optical_constants.hpp"
+#include "model/facet_optics.hpp"
 #include "model/slopes.hpp"
 
 namespace dolp::reference {

@@ -11,7 +11,7 @@
 
 #include "base/numbers.hpp"
 #include "model/angles.hpp"
-#include "model/gamma_ratio.hpp"
+#include "model/slopes.hpp"
 #include "model/smooth_surface.hpp"
 #include "plan/rule.hpp"
 

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "model/kept_effects.hpp"
 #include "model/scene_entry.hpp"
 #include "plan/constants.hpp"
 #include "scene/scene.hpp"

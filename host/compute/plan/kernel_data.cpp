@@ -11,8 +11,8 @@
 
 #include "base/numbers.hpp"
 #include "model/angles.hpp"
-#include "model/gamma_ratio.hpp"
 #include "model/response_basis.hpp"
+#include "model/slopes.hpp"
 #include "model/smooth_surface.hpp"
 #include "plan/breakpoints.hpp"
 #include "plan/constants.hpp"

@@ -11,7 +11,7 @@
 
 #include "base/numbers.hpp"
 #include "base/parallel_ranges.hpp"
-#include "model/gamma_ratio.hpp"
+#include "model/slopes.hpp"
 #include "plan/constants.hpp"
 
 namespace dolp {

@@ -26,49 +26,27 @@ enum class Mode { kHemispherical, kBistatic };
 enum class Precision { kAuto, kFloat, kDouble };
 
 /// The words of an enumeration, in its order.
-template <class Choice>
-struct Names;
-template <>
-struct Names<Distribution> {
-  static constexpr std::array kAll{"cauchy", "gaussian"};
-};
-template <>
-struct Names<Masking> {
-  static constexpr std::array kAll{"none", "v-cavity", "integral", "smith"};
-};
-template <>
-struct Names<Scattering> {
-  static constexpr std::array kAll{"single", "multiple"};
-};
-template <>
-struct Names<EmissionModel> {
-  static constexpr std::array kAll{"moments", "fresnel", "direct"};
-};
-template <>
-struct Names<DiffusePolarisation> {
-  static constexpr std::array kAll{"none", "transmission"};
-};
-template <>
-struct Names<Mode> {
-  static constexpr std::array kAll{"hemispherical", "bistatic"};
-};
-template <>
-struct Names<Precision> {
-  static constexpr std::array kAll{"auto", "float", "double"};
-};
+constexpr auto words_of(Distribution) { return std::array{"cauchy", "gaussian"}; }
+constexpr auto words_of(Masking) { return std::array{"none", "v-cavity", "integral", "smith"}; }
+constexpr auto words_of(Scattering) { return std::array{"single", "multiple"}; }
+constexpr auto words_of(EmissionModel) { return std::array{"moments", "fresnel", "direct"}; }
+constexpr auto words_of(DiffusePolarisation) { return std::array{"none", "transmission"}; }
+constexpr auto words_of(Mode) { return std::array{"hemispherical", "bistatic"}; }
+constexpr auto words_of(Precision) { return std::array{"auto", "float", "double"}; }
 
 template <class Choice>
 constexpr const char* name_of(Choice choice) requires requires {
-  Names<Choice>::kAll;
+  words_of(choice);
 }
-{ return Names<Choice>::kAll[static_cast<std::size_t>(choice)]; }
+{ return words_of(choice)[static_cast<std::size_t>(choice)]; }
 
 /// The choice of that name, nullopt for another word.
 template <class Choice>
 constexpr std::optional<Choice> named(std::string_view word) {
-  const auto found = std::ranges::find(Names<Choice>::kAll, word);
-  if (found == Names<Choice>::kAll.end()) return std::nullopt;
-  return static_cast<Choice>(found - Names<Choice>::kAll.begin());
+  const auto words = words_of(Choice{});
+  const auto found = std::ranges::find(words, word);
+  if (found == words.end()) return std::nullopt;
+  return static_cast<Choice>(found - words.begin());
 }
 
 }  // namespace dolp

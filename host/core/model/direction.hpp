@@ -1,4 +1,4 @@
-// Treatment of one direction and one slope distribution, decided in one place.
+// Decides how to compute the moments of one direction and one slope distribution.
 #pragma once
 
 #include "model/choices.hpp"
@@ -8,15 +8,15 @@ namespace dolp {
 
 /// Method that gives the moments.
 enum class Treatment {
-  kIntegrated,      ///< by an evaluator
-  kMirror,          ///< sigma so small that the slopes' density overflows a float: R at the direction itself
-  kDivergentLimit,  ///< at 90 degrees those of a heavy tail diverge, and only their quotients have a limit
+  kIntegrated,      ///< an evaluator computes them
+  kMirror,          ///< R at the direction itself: sigma is so small that the slopes' density overflows a float
+  kDivergentLimit,  ///< at 90 degrees moments of a heavy tail diverge, and only their quotients have a limit
 };
 
 /// A direction with the treatment of its moments.
 struct Direction {
   double theta_deg = 0.0;
-  double cos_theta = 1.0;  ///< that the moments are computed with: exact but for limits at 90 degrees
+  double cos_theta = 1.0;  ///< cosine for the moments: exact, except for limits at 90 degrees
   double used_deg = 0.0;   ///< passed to an evaluator: `theta_deg`, or just before 90 degrees for a limit there
   Treatment treatment = Treatment::kIntegrated;
 };

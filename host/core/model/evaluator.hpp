@@ -13,12 +13,12 @@ namespace dolp {
 
 /// The cost of some evaluations.
 struct Work {
-  double evaluations = 0.0;  ///< of the integrand
+  double evaluations = 0.0;  ///< number of evaluations of the integrand
   double kernel_s = 0.0;     ///< time on the device (timestamps), or of the loop on the CPU
-  double sums_s = 0.0;       ///< of the host: sums over slopes, and between slope distributions or indices
+  double sums_s = 0.0;       ///< time of the host for sums over slopes, and between slope distributions or indices
   std::uint64_t dispatches = 0;
   std::uint64_t interpolated = 0;         ///< moments that were interpolated or combined from others
-  std::uint64_t interpolation_nodes = 0;  ///< moments computed for that
+  std::uint64_t interpolation_nodes = 0;  ///< moments from which these follow
 
   Work& operator+=(const Work& other) {
     evaluations += other.evaluations;
@@ -39,7 +39,7 @@ struct EvaluationReport : Work {
   std::string precision;           ///< float | double | float and double, as used
   std::uint32_t devices_lost = 0;  ///< devices lost and replaced by a new one
   double setup_s = 0.0;            ///< creation of pipelines, and of the device since clear_report
-  double pipelines_s = 0.0;        ///< creation of pipelines alone
+  double pipelines_s = 0.0;        ///< creation of pipelines only
 };
 
 /// Adds a precision to EvaluationReport::precision.

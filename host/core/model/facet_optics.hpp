@@ -2,13 +2,17 @@
 #pragma once
 
 #include <compare>
-#include <complex>
 #include <memory>
 #include <vector>
 
-#include "model/optical_constants.hpp"
-
 namespace dolp {
+
+/// Complex refractive index n + ik; time factor e^(-i omega t), so k >= 0.
+struct OpticalConstants {
+  double n = 1.0;
+  double k = 0.0;
+  friend auto operator<=>(const OpticalConstants&, const OpticalConstants&) = default;
+};
 
 /// A film of a coating, at one wavelength.
 struct Film {
@@ -27,7 +31,7 @@ struct MeasuredReflectance {
 
 /// A medium, bare or under films, or measured reflectances instead of both.
 struct FacetOptics {
-  OpticalConstants index;   ///< of the medium
+  OpticalConstants index;   ///< n and k of the medium
   std::vector<Film> films;  ///< from the outside in; they interfere
   std::shared_ptr<const MeasuredReflectance> measured;
 
@@ -38,22 +42,5 @@ struct FacetOptics {
   friend auto operator<=>(const FacetOptics&, const FacetOptics&) = default;
   friend bool operator==(const FacetOptics&, const FacetOptics&) = default;
 };
-
-/// Amplitudes that a facet reflects.
-struct ReflectedAmplitudes {
-  std::complex<double> s;
-  std::complex<double> p;
-};
-
-/// Amplitudes of a medium under films.
-///
-/// Equation: the recursion r = (r_j + r e^(2 i delta)) / (1 + r_j r e^(2 i delta)) from the medium outward,
-/// delta = 2 pi d q / lambda, q = sqrt(N^2 - sin^2 beta).
-/// Source: Born and Wolf, Principles of Optics, section 1.6. Conventions: r_p = -r_s at normal incidence.
-/// Domain: cosine in (0, 1].
-ReflectedAmplitudes film_amplitudes(const FacetOptics& optics, double cosine);
-
-/// Fringes that the films add between grazing and normal incidence: periods of e^(2 i delta).
-double fringe_count(const FacetOptics& optics);
 
 }  // namespace dolp

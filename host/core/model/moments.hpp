@@ -22,7 +22,7 @@ class SkyBasis;
 /// The tightest tolerance of a rule in float; rounding dominates tighter ones.
 inline constexpr double kLeastFloatTolerance = 2e-6;
 
-/// Variables of a moment besides the model.
+/// A point at which moments are computed.
 struct MomentsPoint {
   double theta_deg = 0.0;
   SlopeShape shape;
@@ -30,8 +30,7 @@ struct MomentsPoint {
   friend bool operator==(const MomentsPoint&, const MomentsPoint&) = default;
 };
 
-/// The responses to the local angle of incidence that a request wants instead of the functions of its sky
-/// (response_basis.hpp).
+/// Responses to the local angle of incidence (response_basis.hpp). In a request they replace the functions of its sky.
 struct Response {
   enum class Of : std::uint8_t {
     kReflected,  ///< the light reflected
@@ -53,42 +52,42 @@ struct MomentsRequest {
   Masking masking = Masking::kIntegral;
   Scattering scattering = Scattering::kSingle;  ///< kMultiple: with v-cavity
   bool wants_direct = false;                    ///< direct_i and direct_q too; with v-cavity or smith
-  double tolerance = 1e-4;                      ///< of the rule, relative to r_i
+  double tolerance = 1e-4;                      ///< tolerance of the rule, relative to r_i
   Precision precision = Precision::kAuto;       ///< kAuto: float
   bool may_interpolate = true;                  ///< between slope distributions, to the same tolerance
   bool has_extra_splits = false;                ///< a rule of another kind, to check others with
   std::shared_ptr<const ResponseBasis> basis;   ///< combines the moments of all optics; null: none
-  std::shared_ptr<const SkyBasis> sky;          ///< Moments::columns are those with its functions; null: none
-  std::optional<Response> response;             ///< Moments::columns are the responses
+  std::shared_ptr<const SkyBasis> sky;          ///< its functions give Moments::columns; null: none
+  std::optional<Response> response;             ///< the responses give Moments::columns
   Layout layout = Layout::kGrid;
   std::vector<double> theta_deg;
   std::vector<FacetOptics> optics;  ///< bare facets, or facets with films
   std::vector<double> sigma;
   std::vector<double> q;
-  std::vector<char> wanted;  ///< of each entry of a grid; empty: all. The moments of the others are undefined
+  std::vector<char> wanted;  ///< flag of each entry of a grid; empty: all. The moments of other entries are undefined
 
   std::size_t size() const;
   bool is_wanted(std::size_t entry) const { return wanted.empty() || wanted[entry] != 0; }
   std::size_t wanted_count() const;
-  /// A share of the tolerance, as far as the rules of the precision go.
+  /// A share of the tolerance, but no less than the precision allows.
   double finer_tolerance(double share) const;
-  /// Of a grid: slope distributions of one direction and index.
+  /// Slope distributions of one direction and index of a grid.
   std::size_t shapes() const { return sigma.size() * q.size(); }
   MomentsPoint operator[](std::size_t entry) const;
-  /// The same of some directions of a grid, by their positions.
+  /// The request for some directions of a grid, by their positions.
   MomentsRequest of_directions(std::span<const std::size_t> directions) const;
   /// Adds a point, which makes it a request for points.
   void append(const MomentsPoint& point);
 };
 
-/// The moments with a function g of each facet, |g| <= 1. Of a sky it is a function of the zenith of the reflected ray,
-/// and multiplies r_i and r_q; of responses it is one of the local angle of incidence, in place of (R_s + R_p) / 2 and
-/// of (R_s - R_p) / (2 sin^2).
+/// The moments with a function g of each facet, |g| <= 1. For a sky, g depends on the zenith of the reflected ray and
+/// multiplies r_i and r_q. For responses, g depends on the local angle of incidence and replaces (R_s + R_p) / 2 and
+/// (R_s - R_p) / (2 sin^2).
 struct ColumnMoments {
   double i = 0.0;
   double q = 0.0;
-  double error = 0.0;  ///< bound of the absolute error of either; of a response, what the next three do not cover
-  // Of a response: bounds of the error that sums over responses share, with its sign, and relative to the sum.
+  double error = 0.0;  ///< bound of the absolute error of both; for a response, without the next three
+  // For a response: bounds of the error that sums over responses share, with its sign, and relative to the sum.
   double i_apart = 0.0;
   double q_apart = 0.0;
   double relative_error = 0.0;
@@ -120,7 +119,7 @@ struct MomentMember {
   double Moments::*value;
   double Moments::*error;
 };
-/// All of them, the two of the direct emission last.
+/// All members; the two of the direct emission come last.
 inline constexpr std::array<MomentMember, 6> kMomentMembers = {{{&Moments::r_i, &Moments::r_i_error},
                                                                 {&Moments::r_q, &Moments::r_q_error},
                                                                 {&Moments::albedo, &Moments::albedo_error},

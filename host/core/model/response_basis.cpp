@@ -14,16 +14,16 @@ namespace {
 
 // Cosines at which the polynomials bend: metals need the smallest, at the pole of R_p, dielectrics the largest.
 constexpr std::array<double, 5> kScales = {1.0, 0.3, 0.1, 0.03, 0.01};
-constexpr Eigen::Index kCoefficients = 65;  // of a curve, known
+constexpr Eigen::Index kCoefficients = 65;  // known coefficients of a curve
 constexpr Eigen::Index kLastOfCurve = 4;
-constexpr double kReach = 0.25;  // largest error of a combined curve, of the tolerance
+constexpr double kReach = 0.25;  // largest error of a combined curve over the tolerance
 // Time of a pass without responses, and what each response adds.
 constexpr double kTimeOfResponse = 0.08;
-constexpr double kLeastGain = 1.25;  // what the passes must spare, as a factor
-// Numbers of responses: of each a driver compiles kernels.
+constexpr double kLeastGain = 1.25;  // least factor that the passes must save
+// Numbers of responses. A driver compiles kernels for each of them.
 constexpr std::array<std::size_t, 3> kCounts = {8, 16, kMostResponses};
-constexpr std::size_t kMostCandidates = 256;  // of the run's indices, to which the basis is fitted
-constexpr std::size_t kMostTried = 32;        // of the run's indices, for which scale and count are chosen
+constexpr std::size_t kMostCandidates = 256;  // indices of the run to which the basis is fitted
+constexpr std::size_t kMostTried = 32;        // indices of the run for which scale and count are chosen
 
 /// All known coefficients of the curves of an index; columns: absorbed, split.
 using CurveCoefficients = Eigen::Matrix<double, kCoefficients, 2>;
@@ -56,7 +56,7 @@ std::size_t needed(const FacetOptics& index, double c0, double tolerance) {
   return count;
 }
 
-/// At most so many different ones of the indices, spread evenly.
+/// At most `most` different indices, spread evenly.
 std::vector<FacetOptics> candidates_of(const std::vector<FacetOptics>& indices, std::size_t most) {
   std::vector<FacetOptics> candidates;
   const std::size_t count = std::min(indices.size(), most);
@@ -110,7 +110,7 @@ std::shared_ptr<const ResponseBasis> ResponseBasis::of(const std::vector<FacetOp
   for (const FacetOptics& index : candidates_of(indices, kMostCandidates)) {
     if (needed(index, basis->c0_, tolerance) > basis->count_) continue;
     basis->bend_ = std::min(basis->bend_, distance_of_bend(index));
-    // Not one of total reflection: its kink would add to the errors of responses, which have none.
+    // Without total reflection, whose kink would add to the errors of responses.
     if (critical_cosine(index) > 0.0 || reflectance_level(index) >= lowest) continue;
     lowest = reflectance_level(index);
     basis->reference_ = index;

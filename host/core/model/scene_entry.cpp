@@ -1,38 +1,10 @@
 #include "model/scene_entry.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <numeric>
 
 namespace dolp {
 namespace {
-
-/// A list cut into pieces of at most `most`.
-std::vector<std::vector<SceneEntry>> cut(const std::vector<SceneEntry>& list, std::size_t most) {
-  std::vector<std::vector<SceneEntry>> pieces;
-  for (std::size_t first = 0; first < list.size(); first += most) {
-    const auto begin = list.begin() + static_cast<std::ptrdiff_t>(first);
-    pieces.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(std::min(most, list.size() - first)));
-  }
-  return pieces;
-}
-
-/// Points with only those variants that are among them.
-SceneEntries with_own_variants(std::vector<SceneEntry> points, const std::vector<SceneVariant>& variants) {
-  constexpr std::uint32_t kUnused = 0xffffffffU;
-  std::vector<std::uint32_t> number(variants.size(), kUnused);
-  std::vector<SceneVariant> own;
-  for (SceneEntry& point : points) {
-    std::uint32_t& of_variant = number[point.variant];
-    if (of_variant == kUnused) {
-      of_variant = static_cast<std::uint32_t>(own.size());
-      own.push_back(variants[point.variant]);
-    }
-    point.variant = of_variant;
-  }
-  if (own.empty()) own = {{}};
-  return {std::move(points), std::move(own)};
-}
 
 // A direction of all materials, wavelengths and indices stays together as long as possible, so that shared work is done
 // once.
@@ -41,6 +13,44 @@ constexpr std::array kCuttingOrder = {Axis::kTheta, Axis::kMaterial,    Axis::kB
 static_assert(kCuttingOrder.size() == kAxisCount);
 
 }  // namespace
+
+Axes axes_of(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q,
+             std::vector<double> wavelength_um, std::vector<double> n, std::vector<double> k) {
+  Axes axes;
+  axes[Axis::kWavelength] = std::move(wavelength_um);
+  axes[Axis::kN] = std::move(n);
+  axes[Axis::kK] = std::move(k);
+  axes[Axis::kTheta] = std::move(theta_deg);
+  axes[Axis::kSigma] = std::move(sigma);
+  axes[Axis::kQ] = std::move(q);
+  return axes;
+}
+
+Axes part_of(const Axes& axes, const PerAxis& first, const PerAxis& count) {
+  Axes part;
+  for (const Axis axis : kAllAxes) {
+    const auto begin = axes[axis].begin() + static_cast<std::ptrdiff_t>(first[axis]);
+    if (!axes[axis].empty()) part[axis] = {begin, begin + static_cast<std::ptrdiff_t>(count[axis])};
+  }
+  return part;
+}
+
+PerAxis place_of(std::size_t position, const PerAxis& counts) {
+  PerAxis place = {};
+  for (std::size_t i = kAxisCount; i-- > 0 && position > 0; position /= counts[i]) place[i] = position % counts[i];
+  return place;
+}
+
+PerAxis counts_of(const Axes& axes) {
+  PerAxis counts;
+  std::ranges::transform(axes, counts.begin(),
+                         [](const auto& values) { return std::max<std::size_t>(values.size(), 1); });
+  return counts;
+}
+
+std::size_t size_of(const PerAxis& counts) {
+  return std::accumulate(counts.begin(), counts.end(), std::size_t{1}, std::multiplies<>());
+}
 
 void set_value(SceneVariant& variant, Axis axis, double value) {
   if (axis == Axis::kMaterial) variant.material = static_cast<std::uint32_t>(value);
@@ -104,15 +114,10 @@ SceneEntry SceneEntries::operator[](std::size_t entry) const {
 }
 
 SceneEntries SceneEntries::part(const PerAxis& first, const PerAxis& count) const {
-  SceneEntries part;
-  part.is_grid_ = true;
-  part.index_ = index_;
-  part.counts_ = count;
+  SceneEntries part = of_grid(part_of(axes_, first, count), index_);
   part.whole_ = whole_;
   part.whole_axes_ = whole_axes_;
   for (const Axis axis : kAllAxes) part.first_[axis] = first_[axis] + first[axis];
-  part.axes_ = part_of(axes_, first, count);
-  part.variants_ = variants_of(part.axes_);
   return part;
 }
 
@@ -126,22 +131,41 @@ std::optional<std::size_t> SceneEntries::position_of(std::size_t in_whole) const
   return position;
 }
 
+PerAxis SceneEntries::first_in(const SceneEntries& whole) const {
+  PerAxis first = first_;
+  for (std::size_t i = 0; i < first.size(); ++i) first[i] -= whole.first_[i];
+  return first;
+}
+
 SceneEntries SceneEntries::chosen(std::span<const std::size_t> positions) const {
+  constexpr std::uint32_t kUnused = 0xffffffffU;
+  std::vector<std::uint32_t> number(variants_.size(), kUnused);
+  std::vector<SceneVariant> variants;
   std::vector<SceneEntry> points;
   points.reserve(positions.size());
-  for (const std::size_t position : positions) points.push_back((*this)[position]);
-  return with_own_variants(std::move(points), variants_);
+  for (const std::size_t position : positions) {
+    SceneEntry& point = points.emplace_back((*this)[position]);
+    std::uint32_t& of_variant = number[point.variant];
+    if (of_variant == kUnused) {
+      of_variant = static_cast<std::uint32_t>(variants.size());
+      variants.push_back(variants_[point.variant]);
+    }
+    point.variant = of_variant;
+  }
+  if (variants.empty()) variants = {{}};
+  return {std::move(points), std::move(variants)};
 }
 
 std::vector<SceneEntries> SceneEntries::parts(std::size_t most) const {
   if (empty()) return {};
   if (size() <= most) return {*this};
   std::vector<SceneEntries> parts;
-  if (!is_grid_) {
-    for (std::vector<SceneEntry>& points : cut(points_, most))
-      parts.push_back(with_own_variants(std::move(points), variants_));
-    return parts;
+  for (std::size_t first = 0; !is_grid_ && first < size(); first += most) {
+    std::vector<std::size_t> positions(std::min(most, size() - first));
+    std::iota(positions.begin(), positions.end(), first);
+    parts.push_back(chosen(positions));
   }
+  if (!is_grid_) return parts;
   const std::function<void(PerAxis, PerAxis, std::size_t)> cut_along = [&](PerAxis first, PerAxis count,
                                                                            std::size_t number) {
     const Axis axis = kCuttingOrder[number];

@@ -1,10 +1,11 @@
-// The entries of a scene: a grid or scattered points.
+// Axes of grids and tables, and the entries of a scene: a grid or scattered points.
 #pragma once
 
 #include <array>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <dolp/axis.hpp>
 #include <functional>
 #include <initializer_list>
 #include <memory>
@@ -14,13 +15,25 @@
 #include <utility>
 #include <vector>
 
-#include "model/axes.hpp"
-#include "model/optical_constants.hpp"
+#include "model/facet_optics.hpp"
 #include "model/slopes.hpp"
 
 namespace dolp {
 
-/// One point of a table or of a list of points. Without an `index` of its own it has the scene's material.
+Axes axes_of(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q,
+             std::vector<double> wavelength_um = {}, std::vector<double> n = {}, std::vector<double> k = {});
+
+/// The values first[axis], ..., first[axis] + count[axis] - 1 of each axis that is not empty.
+Axes part_of(const Axes& axes, const PerAxis& first, const PerAxis& count);
+
+/// Index on each axis of the entry at a position of a table.
+PerAxis place_of(std::size_t position, const PerAxis& counts);
+
+/// Number of values on each axis, 1 for an empty axis; and the product of these numbers.
+PerAxis counts_of(const Axes& axes);
+std::size_t size_of(const PerAxis& counts);
+
+/// One point of a table or of a list of points. Without an `index` it has the scene's material.
 struct SceneEntry {
   double theta_deg = 0.0;
   SlopeShape shape;
@@ -28,7 +41,7 @@ struct SceneEntry {
   std::uint32_t variant = 0;  ///< position in SceneEntries::variants
 };
 
-/// A number of a film that an entry has instead of the scene's.
+/// A number of a film that replaces the scene's number.
 struct FilmValue {
   enum class Part : std::uint8_t { kN, kK, kThickness };
   std::size_t layer = 0;  ///< from 0, from the outside in
@@ -37,11 +50,11 @@ struct FilmValue {
   friend auto operator<=>(const FilmValue&, const FilmValue&) = default;
 };
 
-/// What else entries change in the scene. Neighbours mostly share it, and it has a radiometry of its own.
+/// Other changes of the scene by an entry. Neighbours mostly share a variant; each variant has its own radiometry.
 struct SceneVariant {
   std::optional<double> wavelength_um = {};               ///< without one: the scene's spectrum
-  std::optional<std::uint32_t> material = {}, band = {};  ///< positions among those of the scene
-  std::optional<double> temperature_K = {};               ///< of the surface
+  std::optional<std::uint32_t> material = {}, band = {};  ///< positions in the scene's lists
+  std::optional<double> temperature_K = {};               ///< temperature of the surface
   std::vector<FilmValue> films = {};
   friend auto operator<=>(const SceneVariant&, const SceneVariant&) = default;
 };
@@ -69,7 +82,7 @@ class SceneEntries {
   SceneEntries(std::vector<SceneEntry> points, std::vector<SceneVariant> variants = {{}})  // NOLINT: a list is entries
       : variants_(std::move(variants)), points_(std::move(points)) {}
   SceneEntries(std::initializer_list<SceneEntry> points) : points_(points) {}
-  /// `index`: that of the surface, for a grid with an axis of only n or only k.
+  /// `index`: index of the surface, for a grid with an axis of only n or only k.
   static SceneEntries of_grid(Axes axes, const OpticalConstants& index);
   static SceneEntries grid(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q);
 
@@ -81,10 +94,10 @@ class SceneEntries {
     return std::views::iota(std::size_t{0}, size()) |
            std::views::transform([this](std::size_t i) { return (*this)[i]; });
   }
-  /// At least one. A grid has all combinations of kVariantAxes, a list those among its points.
+  /// At least one variant. A grid has all combinations of kVariantAxes; a list has the variants of its points.
   const std::vector<SceneVariant>& variants() const { return variants_; }
 
-  // Of a grid.
+  // For a grid.
   const Axes& axes() const { return axes_; }
   const PerAxis& counts() const { return counts_; }
   const std::vector<double>& theta_deg() const { return axes_[Axis::kTheta]; }
@@ -97,18 +110,19 @@ class SceneEntries {
   /// The variant of an entry of a grid.
   std::size_t variant_at(const PerAxis& place) const;
   bool has_own_index() const { return !axes_[Axis::kN].empty() || !axes_[Axis::kK].empty(); }
-  /// The index of an entry, of a grid with an axis of n or k.
+  /// The index of an entry. Domain: a grid with an axis of n or k.
   OpticalConstants index_at(const PerAxis& place) const;
 
-  /// The entries at some positions, as points with the variants among them.
+  /// The entries at some positions, as points with only the variants that they use.
   SceneEntries chosen(std::span<const std::size_t> positions) const;
-  /// Parts of at most `most` entries each: of a grid as many directions of all wavelengths and indices as fit, else
-  /// parts of these, each a grid; of points consecutive ones.
+  /// Cuts into parts of at most `most` entries. Parts of a grid are grids: whole directions, with all wavelengths and
+  /// indices, where these fit. Parts of a list have consecutive points.
   std::vector<SceneEntries> parts(std::size_t most) const;
   /// The part of a grid that has only the values first[i], ..., first[i] + count[i] - 1 of each axis.
   SceneEntries part(const PerAxis& first, const PerAxis& count) const;
-  /// For a part: where its axes begin in the whole, and how many values they have there.
+  /// For a part: the positions at which its axes begin in the whole, and the numbers of values there.
   const PerAxis& first() const { return first_; }
+  PerAxis first_in(const SceneEntries& whole) const;
   const PerAxis& whole() const { return whole_; }
   const Axes& whole_axes() const { return *whole_axes_; }
   /// The position of an entry of the whole, if the part has it.
@@ -126,8 +140,8 @@ class SceneEntries {
   std::vector<SceneEntry> points_;
 };
 
-/// Calls use(run) for a part, that begins at `first` and has `count` values of each axis, of a whole with `whole`
-/// values.
+/// Calls use(run) for each run of a part. The part begins at `first` and has `count` values of each axis; the whole has
+/// `whole`.
 void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& whole,
                   const std::function<void(const GridRun&)>& use);
 

@@ -16,7 +16,7 @@ namespace {
 // Points of a part between two ends. Chosen: Planck's function of a linear temperature needs fewer.
 constexpr Eigen::Index kPoints = 17;
 
-// Distances between nodes exceed those at the nodes by no more than this: the functions are smooth between the ends.
+// Largest factor between the distances off the nodes and at the nodes: the functions are smooth between the ends.
 constexpr double kBetweenNodes = 1.5;
 constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
@@ -29,6 +29,30 @@ constexpr double kBeyondLast = 2.0;
 constexpr double kHorizonPower = 4.0;
 
 }  // namespace
+
+LeastSquares::LeastSquares(const Eigen::MatrixXd& columns)
+    : orthonormal_(columns), triangle_(Eigen::MatrixXd::Zero(columns.cols(), columns.cols())) {
+  for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+    Eigen::VectorXd own = columns.col(i);
+    const auto before = orthonormal_.leftCols(i);
+    for (int pass = 0; pass < 2; ++pass) {
+      const Eigen::VectorXd parts = before.transpose() * own;
+      own -= before * parts;
+      triangle_.col(i).head(i) += parts;
+    }
+    triangle_(i, i) = own.norm();
+    orthonormal_.col(i) = own / triangle_(i, i);
+  }
+}
+
+Eigen::VectorXd LeastSquares::solve(const Eigen::VectorXd& values) const {
+  Eigen::VectorXd weights = orthonormal_.topRows(values.size()).transpose() * values;
+  for (Eigen::Index i = weights.size() - 1; i >= 0; --i) {
+    weights[i] /= triangle_(i, i);
+    weights.head(i) -= weights[i] * triangle_.col(i).head(i);
+  }
+  return weights;
+}
 
 SkyNodes::SkyNodes(std::vector<double> ends_deg) : ends_deg_(std::move(ends_deg)), points_(lobatto_points(kPoints)) {
   for (std::size_t i = 0; i + 1 < ends_deg_.size(); ++i) {
@@ -43,7 +67,7 @@ Eigen::RowVectorXd SkyNodes::at(double zenith_deg, const Eigen::MatrixXd& values
   const double start = *(above - 1);
   const double x = std::clamp((end - zenith_deg + (start - zenith_deg)) / (end - start), -1.0, 1.0);
   const Eigen::Index first = (above - ends_deg_.begin() - 1) * kPoints;
-  // As cardinal_values, without its allocations: tables of a sky ask for some 10,000 zeniths.
+  // cardinal_values without its allocations, because tables of a sky need some 10,000 zeniths.
   Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(values.cols());
   double total = 0.0;
   for (Eigen::Index i = 0; i < kPoints; ++i) {

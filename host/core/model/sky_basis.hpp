@@ -1,15 +1,29 @@
-// Functions of the zenith that describe a sky, and the few of them from which those of all wavelengths are combined.
+// Functions of the zenith that describe a sky, and a basis of a few functions for all wavelengths.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstddef>
 #include <functional>
-#include <optional>
 #include <vector>
 
-#include "model/least_squares.hpp"
-
 namespace dolp {
+
+/// Finds sums of columns that are nearest to given values. Method: Gram and Schmidt's orthonormal columns, twice, which
+/// keeps them orthogonal to rounding.
+class LeastSquares {
+ public:
+  LeastSquares() = default;
+  /// `columns` are linearly independent.
+  explicit LeastSquares(const Eigen::MatrixXd& columns);
+
+  /// The weight of each column in the sum that is nearest to `values`, and to 0 in the rows below.
+  Eigen::VectorXd solve(const Eigen::VectorXd& values) const;
+
+ private:
+  // Their product is the columns.
+  Eigen::MatrixXd orthonormal_;
+  Eigen::MatrixXd triangle_;
+};
 
 /// Zeniths at which functions of a sky are known: between two ends, which may be corners, they are the polynomial
 /// through Chebyshev-Lobatto points.
@@ -34,7 +48,7 @@ class SkyNodes {
 
  private:
   std::vector<double> ends_deg_;
-  std::vector<double> points_;  ///< of a part, on [-1, 1]
+  std::vector<double> points_;  ///< points of a part, on [-1, 1]
   std::vector<double> zenith_deg_;
 };
 
@@ -57,7 +71,7 @@ class SkyBasis {
   /// The functions at a zenith.
   Eigen::RowVectorXd at(double zenith_deg) const { return nodes_.at(zenith_deg, values_); }
   SkyWeights weights_of(const Eigen::VectorXd& function) const;
-  /// A basis of one of the functions.
+  /// A basis of one function.
   SkyBasis only(std::size_t function) const {
     return {nodes_, {values_.col(static_cast<Eigen::Index>(function))}, 0.0};
   }
@@ -65,10 +79,10 @@ class SkyBasis {
  private:
   SkyNodes nodes_;
   Eigen::MatrixXd values_;  ///< nodes x functions
-  LeastSquares sums_;       ///< of these
+  LeastSquares sums_;       ///< sums of these functions
 };
 
-/// Most functions of a basis, which is the most that the kernels take.
+/// Most functions of a basis: the most that kernels take.
 inline constexpr std::size_t kMostSkyFunctions = 8;
 
 }  // namespace dolp

@@ -1,12 +1,14 @@
 #include "model/slopes.hpp"
 
 #include <algorithm>
+#include <boost/math/policies/policy.hpp>
+#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 
 namespace dolp {
 namespace {
 
-constexpr double kLargestExponent = 500.0;  // of e, so that nothing overflows
+constexpr double kLargestExponent = 500.0;  // exponent of e, so that nothing overflows
 
 }  // namespace
 
@@ -24,6 +26,13 @@ double steeper_share(Distribution distribution, const SlopeShape& shape, double 
 
 double power_law_reach(double share, double exponent) {
   return std::sqrt(std::expm1(std::min(-std::log(share) / exponent, kLargestExponent)));
+}
+
+double gamma_ratio(double x) {
+  // In long double, Boost's default, it would dominate the host's cost of a slope distribution.
+  const boost::math::policies::policy<boost::math::policies::promote_double<false>> in_double;
+  if (x < 1.0) return boost::math::tgamma_ratio(x + 0.5, x, in_double);
+  return boost::math::tgamma_delta_ratio(x + 0.5, -0.5, in_double);
 }
 
 }  // namespace dolp

@@ -15,7 +15,7 @@ struct SlopeShape {
 /// m = sqrt(2) sigma, the unit of the slopes.
 double slope_width(const SlopeShape& shape);
 
-/// sigma of the sea's slopes in a wind, those of all directions together.
+/// sigma of the sea's slopes in a wind, over all directions.
 ///
 /// Equation: 2 sigma^2 = m^2 = 0.003 + 0.00512 U.
 /// Source: Cox and Munk, J. Opt. Soc. Am. 44 (1954) 838: clean sea, U from 1 to 14 m/s, 12.5 m above the water.
@@ -32,5 +32,8 @@ double steeper_share(Distribution distribution, const SlopeShape& shape, double 
 /// The slope u in units of m beyond which the power law (1 + u^2)^-exponent is less than `share`.
 /// Domain: share in (0, 1], exponent > 0; finite for any tail.
 double power_law_reach(double share, double exponent);
+
+/// Gamma(x + 1/2) / Gamma(x), to a few roundings. Domain: x > 0 of any size.
+double gamma_ratio(double x);
 
 }  // namespace dolp

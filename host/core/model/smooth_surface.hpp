@@ -1,9 +1,28 @@
 #pragma once
 
+#include <complex>
+
 #include "model/facet_optics.hpp"
 #include "model/moments.hpp"
 
 namespace dolp {
+
+/// Amplitudes that a facet reflects.
+struct ReflectedAmplitudes {
+  std::complex<double> s;
+  std::complex<double> p;
+};
+
+/// Amplitudes of a medium under films.
+///
+/// Equation: the recursion r = (r_j + r e^(2 i delta)) / (1 + r_j r e^(2 i delta)) from the medium outward,
+/// delta = 2 pi d q / lambda, q = sqrt(N^2 - sin^2 beta).
+/// Source: Born and Wolf, Principles of Optics, section 1.6. Conventions: r_p = -r_s at normal incidence.
+/// Domain: cosine in (0, 1].
+ReflectedAmplitudes film_amplitudes(const FacetOptics& optics, double cosine);
+
+/// Fringes that the films add between grazing and normal incidence: periods of e^(2 i delta).
+double fringe_count(const FacetOptics& optics);
 
 /// Parts absorbed by a smooth surface, 1 - R_s and 1 - R_p.
 struct SmoothAbsorptance {

@@ -7,7 +7,6 @@
 
 #include <dolp/results.hpp>
 #include "model/direction.hpp"
-#include "model/kept_effects.hpp"
 #include "model/moments.hpp"
 #include "radiometry/diffuse.hpp"
 #include "radiometry/scattered.hpp"

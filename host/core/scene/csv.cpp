@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <dolp/errors.hpp>
-#include <optional>
 #include <utility>
 
 #include "base/text.hpp"

@@ -13,14 +13,14 @@ namespace dolp {
 
 struct CsvForm {
   char separator = ',';         ///< with ' ', any number of blanks separates two cells
-  bool has_blank_lines = true;  ///< they are left out, as lines that begin with # always are
+  bool has_blank_lines = true;  ///< leaves blank lines out; lines that begin with # are always left out
   std::size_t first_line = 1;
 };
 
 /// Goes through a text line by line: `for (CsvReader row(text, name); row.next();)`.
 ///
-/// Accepts what split_lines does; a cell in double quotes may hold separators, and is what is between the quotes.
-/// Leaves out rows without any value at the end of the text. All views are into `text`.
+/// Accepts what split_lines does. A cell in double quotes may hold separators; its value is the text between the
+/// quotes. Leaves out rows without any value at the end of the text. All views are into `text`.
 class CsvReader {
  public:
   CsvReader(std::string_view text, std::string name, CsvForm form = {});
@@ -58,19 +58,19 @@ struct CsvColumn {
   std::string name;
   NumberRange range = {};
   bool is_required = false;
-  std::string other_name = {};  ///< that the column may have too
-  std::string unit = {};        ///< for messages, where the name has none
+  std::string other_name = {};  ///< another name that the column may have
+  std::string unit = {};        ///< for messages, if the name has no unit
 };
 
 /// The columns of a file, found by the names in its header, in any order and in upper or lower case.
 class CsvColumns {
  public:
-  /// Columns called as one of `ignored` are left out.
+  /// Leaves out columns whose names are in `ignored`.
   /// Errors: InputError for a name that is unknown, with the nearest known one if it is near, or appears twice; for a
   /// required column that is missing; for another separator; for a line of numbers.
   CsvColumns(const CsvReader& header, std::vector<CsvColumn> known, const std::vector<std::string>& ignored = {});
 
-  /// All known columns in their order, of rows without a header.
+  /// All known columns in their order, for rows without a header.
   explicit CsvColumns(std::vector<CsvColumn> known);
   /// Reads the header as well. Errors: InputError for a text without one.
   static CsvColumns first_of(CsvReader& reader, std::vector<CsvColumn> known,
@@ -78,7 +78,7 @@ class CsvColumns {
 
   bool has(std::string_view name) const { return cell_of(name).has_value(); }
 
-  /// The column of each cell, as its position among the known ones; nullopt for one that is left out.
+  /// The position of each cell's column among the known columns; nullopt for a column that is left out.
   const std::vector<std::optional<std::size_t>>& cells() const { return cells_; }
 
   /// The number that a row has in a column; nullopt for a column that the file lacks.
@@ -97,7 +97,7 @@ class CsvColumns {
   std::vector<std::string> names_;  // in the file
 };
 
-/// Message about a column that is none of `known`: what is allowed, and the nearest name if it is near.
+/// Message about an unknown column: the allowed columns, and the nearest name if it is near.
 std::string unknown_column(std::string_view name, const std::vector<CsvColumn>& known);
 
 }  // namespace dolp

@@ -17,7 +17,7 @@ double sum_of_pairs(Coefficients c, std::size_t first, const Term& term) {
   return sum;
 }
 
-/// One coefficient; those left out are zero.
+/// One coefficient; 0 if the formula leaves it out.
 double at_or_zero(Coefficients c, std::size_t i) { return i < c.size() ? c[i] : 0.0; }
 
 /// C2 l^C3 / (l^2 - C4^C5) and the like. Without its coefficients it would be 0 / (l^2 - 1).

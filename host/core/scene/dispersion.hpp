@@ -20,7 +20,7 @@ struct Dispersion {
   double at(double wavelength_um) const;
 };
 
-/// How many coefficients a formula may have: whole terms, those left out at the end being zero.
+/// Numbers of coefficients that a formula may have. Terms left out at the end are zero.
 std::vector<std::size_t> coefficient_counts(int number);
 
 }  // namespace dolp

@@ -86,7 +86,7 @@ const Material* match_name(std::string_view name) {
   return beginning.size() == 1 ? beginning.front() : nullptr;
 }
 
-/// What a name could mean: the materials that have its words or begin alike, else those with the nearest name or word.
+/// Materials that a name may mean: materials with its words or beginning, else materials with the nearest name or word.
 std::string name_hint(std::string_view name) {
   std::vector<std::string> alike;
   for (const Material* material : materials_with(trim(name))) alike.push_back(material->name);

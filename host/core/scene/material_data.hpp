@@ -20,7 +20,7 @@ const std::vector<Material>& built_in_materials();
 /// Errors: InputError that begins with `prefix`: unknown name, with the nearest.
 const Material& named_material(std::string_view name, const std::string& prefix);
 
-/// The built-in material called `name`, for use over `spectrum`. Errors: those of named_material and fit_to_spectrum.
+/// The built-in material called `name`, for use over `spectrum`. Errors: errors of named_material and fit_to_spectrum.
 Material find_material(std::string_view name, const Spectrum& spectrum, const std::string& prefix);
 
 /// A user's file of n and k over wavelength [um], linear in between, for use over `spectrum`.
@@ -29,8 +29,8 @@ Material find_material(std::string_view name, const Spectrum& spectrum, const st
 /// formula 1 to 9 for n, with or without tabulated k.
 /// Anything else: CSV with the columns `wavelength_um` (or `wl`), n, k or both; a further line of names begins a
 /// further table, as in the CSV that refractiveindex.info exports. # begins a comment line. A file without k has k = 0,
-/// and so has a k that is below 0 by up to 1e-5. Rows of a table are as append_rows takes them.
-/// Errors: InputError with file and line; `prefix` begins the message when the file cannot be opened; those of
+/// and a k that is below 0 by up to 1e-5 counts as 0. append_rows takes the rows of a table.
+/// Errors: InputError with file and line; `prefix` begins the message when the file cannot be opened; errors of
 /// fit_to_spectrum.
 Material read_material_file(const std::string& path, const Spectrum& spectrum, const std::string& prefix);
 
@@ -49,7 +49,17 @@ void check_covers(const Material& material, const Spectrum& spectrum, const std:
 void check_formula(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
 /// A tabulated material as a scene uses it: over a band its tables, at a single wavelength the constant index there.
-/// Errors: InputError as check_covers and check_formula.
+/// Errors: InputError of check_covers and check_formula.
 Material fit_to_spectrum(const Material& material, const Spectrum& spectrum, const std::string& prefix);
+
+/// A user's CSV with the columns beta_deg (angle of incidence, from 0 to 90), r_s and r_p, and wavelength_um where the
+/// reflectances depend on it: then each wavelength has the same angles.
+///
+/// Domain: reflectances in [0, 1], which agree at 0 degrees to 0.01 (their mean is taken).
+/// Errors: InputError with file and line; `prefix` begins the message when the file cannot be opened.
+ReflectanceTable read_reflectance_file(const std::string& path, const std::string& prefix);
+
+/// Reads a text instead of a file; `name` begins messages. Errors: InputError with the line.
+ReflectanceTable parse_reflectances(const std::string& text, const std::string& name);
 
 }  // namespace dolp

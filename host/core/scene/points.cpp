@@ -29,7 +29,7 @@ struct ColumnRule {
   std::string name;
   NumberRange range;
   std::variant<Axis, Points::Column Points::*, FilmColumn> column;
-  bool is_wind = false;  ///< in the place of sigma
+  bool is_wind = false;  ///< replaces sigma
 
   double value(double number) const { return is_wind ? sigma_of_wind(number) : number; }
   bool is_required() const { return column.index() == 1; }

@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "model/axes.hpp"
 #include "model/scene_entry.hpp"
 
 namespace dolp {
@@ -23,20 +22,20 @@ enum class PointsKind {
 
 /// The points in their order; a column that they do not have is nullopt.
 struct Points {
-  std::string name;  ///< of the file, for messages: its path, or stdin; of arrays "points"
+  std::string name;  ///< for messages: the path of the file, "stdin", or "points" for arrays
   std::size_t count = 0;
   std::string header;             ///< column names as given, joined by commas, no blanks around them
-  std::vector<std::string> rows;  ///< the input cells as typed, joined by commas, no blanks around them; none of arrays
+  std::vector<std::string> rows;  ///< input cells as typed, joined by commas, no blanks around them; empty for arrays
   std::vector<std::string> left_out;  ///< columns of the file that are results
   using Column = std::optional<std::vector<double>>;
   AxisArray<Column> coordinates;
-  AxisLabels labels;  ///< of columns of a file that have texts: their values are positions in these
+  AxisLabels labels;  ///< texts in columns of a file; the values of these columns are positions in this list
   /// Numbers of films, by layer (from 0) and part: columns called as the keys, "surface.coating.1.thickness_um".
   std::map<std::pair<std::size_t, FilmValue::Part>, Column> films;
   bool has_winds = false;                          ///< sigma was given as winds
-  Column theta_i_deg, theta_r_deg, delta_phi_deg;  ///< of kGeometries, in the place of theta_deg and wavelength_um
-  std::size_t header_line = 0;                     ///< 0 of arrays
-  std::vector<std::uint32_t> row_lines;            ///< the line of each row; empty of arrays
+  Column theta_i_deg, theta_r_deg, delta_phi_deg;  ///< for kGeometries, which has no theta_deg and wavelength_um
+  std::size_t header_line = 0;                     ///< 0 for arrays
+  std::vector<std::uint32_t> row_lines;            ///< the line of each row; empty for arrays
   std::size_t size() const { return count; }
   Column& operator[](Axis axis) { return coordinates[axis]; }
   const Column& operator[](Axis axis) const { return coordinates[axis]; }
@@ -54,8 +53,8 @@ inline double value_or(const Points::Column& column, std::size_t row, double fal
   return column ? (*column)[row] : fallback;
 }
 
-/// The positions in `known` of the labels that a column has, of each point. Case does not matter, and a part of a
-/// label does where no other one has it. Errors: InputError with the known labels.
+/// For each point, the position in `known` of the label in its column. Case does not matter. A part of a label is
+/// enough if no other label has it. Errors: InputError with the known labels.
 std::vector<double> label_positions(const Points& points, Axis axis, const AxisLabels& known);
 
 /// Points in memory: `count` of them.
@@ -65,13 +64,13 @@ Points points_of(std::span<const Column> columns, std::size_t count, PointsKind 
 /// Reads the points at `path` ("-" is stdin). A header without rows is a valid list of no points.
 ///
 /// Accepts CRLF line ends, a UTF-8 byte order mark, blanks and double quotes around cells, lines that begin with # and
-/// empty lines at the end of the file. Columns that are called as one of `results` are left out.
+/// empty lines at the end of the file. Leaves out columns whose names are in `results`.
 /// Units: degrees; delta_phi_deg = 180 is the specular side, range [-360, 360].
 /// Errors: InputError, one line that names file, line, column, value and allowed range; a file that cannot be opened is
 /// an InputError too.
 Points read_points(const std::string& path, PointsKind kind, const std::vector<std::string>& results = {});
 
-/// The same for a text in memory; `path_name` is for messages.
+/// Reads points from a text in memory; `path_name` is for messages.
 Points parse_points(const std::string& text, const std::string& path_name, PointsKind kind,
                     const std::vector<std::string>& results = {});
 

@@ -33,9 +33,9 @@ struct Material {
   std::string source;  ///< where the values come from; empty for n, k given in the scene
   OpticalConstants constant;
   SpectralTable n, k;
-  /// Of a constant that comes from a table: n and k wherever they are known.
+  /// For a constant from a table: the whole table.
   std::shared_ptr<const Material> tabulated = {};
-  double least_k = 0.0;  ///< in its file: below 0 by noise, which counts as 0
+  double least_k = 0.0;  ///< least k in the file; noise below 0 counts as 0
   bool is_constant() const { return n.wavelength_um.empty(); }
   OpticalConstants at(double wavelength_um) const;
 };
@@ -46,7 +46,7 @@ struct Layer {
   double thickness_um = 0.0;
 };
 
-/// Reflectances of a smooth surface at ascending wavelengths; one of them is for all wavelengths.
+/// Reflectances of a smooth surface at ascending wavelengths; a single one is for all wavelengths.
 struct ReflectanceTable {
   std::vector<double> wavelength_um;
   std::vector<std::shared_ptr<const MeasuredReflectance>> measured;
@@ -62,7 +62,7 @@ struct Surface {
   Masking masking = Masking::kIntegral;
   Scattering scattering = Scattering::kSingle;  ///< kMultiple: with v-cavity
   double sigma = 0.0;
-  std::optional<double> wind_m_s = {};  ///< that gives sigma; none where the scene has sigma itself
+  std::optional<double> wind_m_s = {};  ///< wind that gives sigma; none if the scene has sigma
   double q = 2.0;
   double specular = 1.0;           ///< k_s in [0, 1]
   double diffuse = 0.0;            ///< k_d in [0, 1]
@@ -71,7 +71,7 @@ struct Surface {
   /// True if the masking needs the mean slope, which the distribution does not always have: kSmithCauchyQRange.
   bool needs_mean_slope() const { return masking == Masking::kSmith && distribution == Distribution::kCauchy; }
   bool is_bare() const { return coating.empty() && !reflectance; }
-  /// True if the facets reflect alike at all wavelengths.
+  /// True if the reflectances of facets do not depend on the wavelength.
   bool has_constant_optics() const;
   FacetOptics optics_at(double wavelength_um) const;
   /// Wavelengths at which the optics bend: the rows of tables.
@@ -95,9 +95,9 @@ struct Source {
 };
 
 struct Surroundings {
-  double temperature_K = 0.0;                           ///< where there is no profile
-  SkyAir air = {};                                      ///< of a built-in profile
-  std::shared_ptr<const SkyProfile> profile = nullptr;  ///< not the same everywhere
+  double temperature_K = 0.0;                           ///< if there is no profile
+  SkyAir air = {};                                      ///< air of a built-in profile
+  std::shared_ptr<const SkyProfile> profile = nullptr;  ///< null for a uniform sky
 };
 
 /// Path to the sensor: I -> tau I + L (times pi in hemispherical mode); Q, U, V -> tau Q, U, V.
@@ -125,7 +125,7 @@ struct Accuracy {
   bool may_interpolate = true;  ///< between slope distributions, where the grid is dense
 };
 
-/// Names in a scene, that of the material in full; empty where the scene gives no name.
+/// Names in a scene; empty where the scene gives no name. The name of the material is in full.
 struct SceneNames {
   struct OfLayer {
     std::string material, material_file;
@@ -156,19 +156,22 @@ struct SceneValues : SceneModel {
   std::string title;
   SceneNames names;
   Axes grid;                       ///< in the user's order; sigma and q fall back to [surface]
-  AxisLabels labels;               ///< of the grid's axes of materials and bands
-  std::vector<double> wind_m_s;    ///< that give the grid's values of sigma; empty where the scene has sigma itself
+  AxisLabels labels;               ///< labels of the grid's materials and bands
+  std::vector<double> wind_m_s;    ///< winds that give the grid's values of sigma; empty if the scene has sigma
   std::string path_name;           ///< as given on the command line, for messages
   std::string text;                ///< the file, verbatim
-  std::vector<std::string> files;  ///< that the scene names, as the process finds them
-  std::vector<Setting> settings;   ///< that were applied to the text
-  std::shared_ptr<const SceneDocument> document;  ///< text and settings as TOML; none of a scene that was not read
+  std::vector<std::string> files;  ///< files that the scene names, as the process finds them
+  std::vector<Setting> settings;   ///< settings that were applied to the text
+  std::shared_ptr<const SceneDocument> document;  ///< text and settings as TOML; null for a scene that was not read
 };
 
 /// The scene at one wavelength. Errors: InputError, where n, k or E0 are not known there.
 SceneModel at_wavelength(const SceneModel& scene, double wavelength_um);
 
-/// The scene as a variant changes it. Domain: films that the scene has. Errors: those of at_wavelength.
+/// Gives the films of a surface other numbers.
+void set_films(Surface& surface, const std::vector<FilmValue>& films);
+
+/// The scene as a variant changes it. Domain: films that the scene has. Errors: errors of at_wavelength.
 SceneModel with_variant(const SceneModel& scene, const SceneVariant& variant);
 
 }  // namespace dolp

@@ -17,20 +17,6 @@
 namespace dolp {
 namespace {
 
-/// A value as one would write it in TOML.
-std::string toml_text(const toml::node& node) {
-  if (const auto* number = node.as_floating_point()) return format_number(number->get());
-  if (const auto* text = node.as_string()) return '"' + text->get() + '"';
-  if (const toml::array* array = node.as_array()) {
-    std::vector<std::string> elements;
-    for (const toml::node& element : *array) elements.push_back(toml_text(element));
-    return '[' + join(elements) + ']';
-  }
-  std::ostringstream stream;
-  node.visit([&](const auto& value) { stream << toml::toml_formatter{value}; });
-  return stream.str();
-}
-
 constexpr std::size_t kMostDepth = 100;
 
 /// The end of the string that begins at `begin`, as TOML has four kinds of them.
@@ -136,6 +122,24 @@ struct ValueInserter {
 };
 
 }  // namespace
+
+std::string toml_text(const toml::node& node, bool is_escaped) {
+  if (const auto* number = node.as_floating_point()) return format_number(number->get());
+  if (const auto* text = node.as_string(); text && !is_escaped) return '"' + text->get() + '"';
+  std::vector<std::string> parts;
+  if (const toml::array* array = node.as_array()) {
+    for (const toml::node& element : *array) parts.push_back(toml_text(element, is_escaped));
+    return '[' + join(parts) + ']';
+  }
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [name, value] : *table)
+      parts.push_back(fmt::format("{} = {}", name.str(), toml_text(value, is_escaped)));
+    return "{ " + join(parts) + " }";
+  }
+  std::ostringstream stream;
+  node.visit([&](const auto& value) { stream << toml::toml_formatter{value}; });
+  return stream.str();
+}
 
 SceneDocument::SceneDocument(const std::string& text, const std::string& path_name) : name_(input_name(path_name)) {
   if (text.size() > kMostTextBytes) {
@@ -267,7 +271,7 @@ std::string SceneDocument::prefix(std::string_view key) const {
   const bool is_of_value = node != nullptr || find_scene_key(table_part(key)) != nullptr;
   if (const std::string* origin = is_of_value ? origin_of(key) : nullptr; origin)
     return *origin + ": " + (node ? "" : last_part(key) + ": ");
-  const std::string value = node && !node->is_table() ? " = " + one_line(toml_text(*node)) : "";
+  const std::string value = node && !node->is_table() ? " = " + one_line(toml_text(*node, false)) : "";
   return fmt::format("{}:{}: {}{}: ", name_, line_of(key), one_line(key), value);
 }
 

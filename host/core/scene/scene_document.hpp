@@ -12,8 +12,12 @@
 
 namespace dolp {
 
-/// True for a setting that takes a key or a table away, of a program or as its text.
+/// True for a setting that removes a key or a table, as a value of a program or as text.
 bool is_removal(const Setting& setting);
+
+/// A value in one line, as one would write it in TOML. Without `is_escaped`, for messages: texts between double quotes
+/// as they are.
+std::string toml_text(const toml::node& node, bool is_escaped = true);
 
 class SceneDocument {
  public:
@@ -28,7 +32,7 @@ class SceneDocument {
   const toml::node* find(std::string_view key) const;
   bool is_set(std::string_view key) const { return origin_of(key) != nullptr; }
 
-  /// The first of these keys that a setting gave, else the first: the one to name where they do not go together.
+  /// The first of these keys that a setting gave, else the first key. A message about a contradiction names it.
   std::string first_set(std::initializer_list<std::string> keys) const;
 
   /// Throws InputError with the place of the key's value, the key, its value and the problem. For an absent key it
@@ -38,7 +42,7 @@ class SceneDocument {
   /// The beginning of such a message.
   std::string prefix(std::string_view key) const;
 
-  /// The line of a key's value or, failing that, of the nearest table around it; 1 for none.
+  /// The line of a key's value, or the line of the nearest table around it, or 1.
   unsigned line_of(std::string_view key) const;
 
  private:

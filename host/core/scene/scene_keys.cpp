@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <dolp/number_range.hpp>
 #include <iterator>
 #include <type_traits>
 #include <utility>
@@ -16,75 +18,89 @@ namespace {
 
 using Type = Key::Type;
 
-// The value at a place of a scene; a null pointer is a place that the scene does not have.
-std::optional<KeyValue> value_at(const double* at) {
-  return at ? std::optional(KeyValue{.number = *at}) : std::nullopt;
+// From what a scene holds to the value of a key, and back.
+KeyValue value_of(double number) { return {.number = number}; }
+KeyValue value_of(bool flag) { return {.word = flag ? 1U : 0U, .text = flag ? "true" : "false"}; }
+KeyValue value_of(const std::string& text) { return {.text = text}; }
+KeyValue value_of(const std::vector<double>& numbers) { return {.numbers = numbers}; }
+KeyValue value_of(const std::vector<std::string>& names) { return {.names = names}; }
+template <class Choice>
+KeyValue value_of(Choice choice) requires std::is_enum_v<Choice> {
+  return {.word = static_cast<std::size_t>(choice), .text = name_of(choice)};
 }
-std::optional<KeyValue> value_at(const bool* at) {
-  return at ? std::optional(KeyValue{.word = *at ? std::size_t{1} : 0, .is_set = *at}) : std::nullopt;
-}
-std::optional<KeyValue> value_at(const std::string* at) {
-  return at && !at->empty() ? std::optional(KeyValue{.text = *at}) : std::nullopt;
-}
-std::optional<KeyValue> value_at(const std::vector<double>* at) {
-  return at && !at->empty() ? std::optional(KeyValue{.numbers = *at}) : std::nullopt;
-}
-std::optional<KeyValue> value_at(const std::vector<std::string>* at) {
-  return at && !at->empty() ? std::optional(KeyValue{.names = *at}) : std::nullopt;
+void assign(double& number, const KeyValue& v) { number = v.number; }
+void assign(std::optional<double>& number, const KeyValue& v) { number = v.number; }
+void assign(bool& flag, const KeyValue& v) { flag = v.word == 1; }
+void assign(std::string& text, const KeyValue& v) { text = v.text; }
+void assign(std::vector<double>& numbers, const KeyValue& v) { numbers = v.numbers; }
+void assign(std::vector<std::string>& names, const KeyValue& v) { names = v.names; }
+template <class Choice>
+void assign(Choice& choice, const KeyValue& v) requires std::is_enum_v<Choice> {
+  choice = static_cast<Choice>(v.word);
 }
 
-// In all of these `place` gives the address of the key's value in a Scene.
+/// The value at an address in a scene; none for a null pointer, and for a number, text or list that is empty.
+template <class Content>
+std::optional<KeyValue> value_at(const Content* at) {
+  if (!at) return std::nullopt;
+  if constexpr (std::is_same_v<Content, std::optional<double>>) {
+    return *at ? std::optional(value_of(**at)) : std::nullopt;
+  } else if constexpr (requires { at->empty(); }) {
+    return at->empty() ? std::nullopt : std::optional(value_of(*at));
+  } else {
+    return value_of(*at);
+  }
+}
 
-template <class Place>
+bool always(const SceneValues&) { return true; }
+
+/// A key whose value is at the address that `place` gives in a scene, or a null pointer; the scene has the value if
+/// `is_there`.
+template <class Place, class IsThere>
+SceneKey key_at(Key description, Place place, IsThere is_there) {
+  return {std::move(description), [place](SceneValues& s, const KeyValue& v) { assign(*place(s), v); },
+          [place, is_there](const SceneValues& s) { return is_there(s) ? value_at(place(s)) : std::nullopt; }};
+}
+
+Key described(const std::string& key, Type type, const char* unit, const NumberRange& range, const char* fallback,
+              const char* meaning, std::vector<std::string> words = {}) {
+  return {key, type, unit, range, std::move(words), fallback, meaning};
+}
+
+/// A key that changes more of a scene than the number at its place.
+SceneKey with_set(SceneKey key, std::function<void(SceneValues& scene, const KeyValue& value)> set) {
+  key.set = std::move(set);
+  return key;
+}
+
+template <class Place, class IsThere = decltype(&always)>
 SceneKey number(const std::string& key, const char* unit, const NumberRange& range, const char* fallback,
-                const char* meaning, Place place) {
-  return {{key, Type::kNumber, unit, range, {}, fallback, meaning},
-          [place](SceneValues& s, const KeyValue& v) { *place(s) = v.number; },
-          [place](const SceneValues& s) { return value_at(place(s)); }};
+                const char* meaning, Place place, IsThere is_there = always) {
+  return key_at(described(key, Type::kNumber, unit, range, fallback, meaning), place, is_there);
 }
 
-/// One of several keys for one thing: its place is there once it was set.
-template <class Place, class Set>
-SceneKey number(const std::string& key, const char* unit, const NumberRange& range, const char* fallback,
-                const char* meaning, Place place, Set set) {
-  return {{key, Type::kNumber, unit, range, {}, fallback, meaning}, set, [place](const SceneValues& s) {
-            return value_at(place(s));
-          }};
-}
-
-/// The words are in the order of the enumeration.
 template <class Choice, class Place>
 SceneKey choice(const char* key, Choice fallback, const char* meaning, Place place) {
-  const auto& words = Names<Choice>::kAll;
-  return {{key, Type::kWord, "", {}, {words.begin(), words.end()}, name_of(fallback), meaning},
-          [place](SceneValues& s, const KeyValue& v) { *place(s) = static_cast<Choice>(v.word); },
-          [place](const SceneValues& s) -> std::optional<KeyValue> {
-            const auto* at = place(s);
-            if (!at) return std::nullopt;
-            return KeyValue{.word = static_cast<std::size_t>(*at), .text = name_of(*at)};
-          }};
+  const auto words = words_of(fallback);
+  return key_at(described(key, Type::kWord, "", {}, name_of(fallback), meaning, {words.begin(), words.end()}), place,
+                always);
 }
 
 template <class Place>
 SceneKey flag(const char* key, const char* meaning, Place place) {
-  return {{key, Type::kFlag, "", {}, {"false", "true"}, "false", meaning},
-          [place](SceneValues& s, const KeyValue& v) { *place(s) = v.is_set; },
-          [place](const SceneValues& s) { return value_at(place(s)); }};
+  return key_at(described(key, Type::kFlag, "", {}, "false", meaning, {"false", "true"}), place, always);
 }
 
-template <class Place>
-SceneKey text(const std::string& key, const char* meaning, Place place) {
-  return {{key, Type::kText, "", {}, {}, "", meaning},
-          [place](SceneValues& s, const KeyValue& v) { *place(s) = v.text; },
-          [place](const SceneValues& s) { return value_at(place(s)); }};
+template <class Place, class IsThere = decltype(&always)>
+SceneKey text(const std::string& key, const char* meaning, Place place, IsThere is_there = always) {
+  return key_at(described(key, Type::kText, "", {}, "", meaning), place, is_there);
 }
 
 SceneKey grid_axis(Axis axis, const char* fallback, const char* meaning) {
-  const AxisDescription& described = description_of(axis);
-  const std::string key = std::string("grid.") + described.column;
-  return {{key, Type::kAxis, described.units, described.range, {}, fallback, meaning},
-          [axis](SceneValues& s, const KeyValue& v) { s.grid[axis] = v.numbers; },
-          [axis](const SceneValues& s) { return value_at(&s.grid[axis]); }};
+  const AxisDescription& of_axis = description_of(axis);
+  return key_at(
+      described(std::string("grid.") + of_axis.column, Type::kAxis, of_axis.units, of_axis.range, fallback, meaning),
+      [axis](auto& s) { return &s.grid[axis]; }, always);
 }
 
 void append(std::vector<SceneKey>& keys, std::vector<SceneKey> more) {
@@ -94,8 +110,6 @@ void append(std::vector<SceneKey>& keys, std::vector<SceneKey> more) {
 bool has_own_index(const SceneValues& s) {
   return s.names.material.empty() && s.names.material_file.empty() && s.labels[Axis::kMaterial].empty();
 }
-
-bool is_of_kind(const SceneValues& s, Source::Kind kind) { return s.source && s.source->kind == kind; }
 
 void set_sigma(SceneValues& s, const KeyValue& v) {
   s.surface.sigma = v.number;
@@ -107,22 +121,39 @@ void set_wind(SceneValues& s, const KeyValue& v) {
   s.surface.wind_m_s = v.number;
 }
 
+/// A key that gives E0, and with it the kind of the source.
+SceneKey source_number(const char* key, const char* unit, const char* meaning, Source::Kind kind,
+                       double Source::*number_of) {
+  const auto is_kind = [kind](const SceneValues& s) { return s.source && s.source->kind == kind; };
+  const auto set = [=](SceneValues& s, const KeyValue& v) {
+    s.source->kind = kind;
+    (*s.source).*number_of = v.number;
+  };
+  return with_set(
+      number(
+          key, unit, kNonNegativeRange, "", meaning, [=](auto& s) { return &((*s.source).*number_of); }, is_kind),
+      set);
+}
+
 SceneKey wind_axis() {
   const auto set = [](SceneValues& s, const KeyValue& v) {
     s.wind_m_s = v.numbers;
     s.grid[Axis::kSigma].clear();
     std::ranges::transform(v.numbers, std::back_inserter(s.grid[Axis::kSigma]), sigma_of_wind);
   };
-  return {{"grid.wind_m_s", Type::kAxis, kWind.units, kWind.range, {}, "", "winds of the table, instead of grid.sigma"},
-          set,
-          [](const SceneValues& s) { return value_at(&s.wind_m_s); }};
+  return with_set(key_at(
+                      described("grid.wind_m_s", Type::kAxis, kWind.units, kWind.range, "",
+                                "winds of the table, instead of grid.sigma"),
+                      [](auto& s) { return &s.wind_m_s; }, always),
+                  set);
 }
 
-/// The layer of a key, counted from 1 in its name; made where the scene has fewer.
-Layer& layer_of(SceneValues& s, std::size_t layer) {
-  if (s.surface.coating.size() < layer) {
-    s.surface.coating.resize(layer);
-    s.names.coating.resize(layer);
+/// The layer of a key, counted from 1 in its name; made if a scene that changes has fewer.
+template <class Scene>
+auto& layer_of(Scene& s, std::size_t layer) {
+  if constexpr (!std::is_const_v<Scene>) {
+    s.surface.coating.resize(std::max(s.surface.coating.size(), layer));
+    s.names.coating.resize(s.surface.coating.size());
   }
   return s.surface.coating[layer - 1];
 }
@@ -130,36 +161,30 @@ Layer& layer_of(SceneValues& s, std::size_t layer) {
 std::vector<SceneKey> layer_keys(std::size_t layer) {
   const std::string begin = fmt::format("surface.coating.{}.", layer);
   const auto has_layer = [layer](const SceneValues& s) { return s.surface.coating.size() >= layer; };
-  const auto index_place = [=](auto OpticalConstants::*part) {
-    return [=](const SceneValues& s) -> const double* {
-      if (!has_layer(s)) return nullptr;
-      const SceneNames::OfLayer& names = s.names.coating[layer - 1];
-      const bool has_name = !names.material.empty() || !names.material_file.empty();
-      return has_name ? nullptr : &(s.surface.coating[layer - 1].material.constant.*part);
-    };
+  const auto has_index = [=](const SceneValues& s) {
+    return has_layer(s) && s.names.coating[layer - 1].material.empty() &&
+           s.names.coating[layer - 1].material_file.empty();
   };
-  const auto set_index = [=](auto OpticalConstants::*part) {
-    return [=](SceneValues& s, const KeyValue& v) { layer_of(s, layer).material.constant.*part = v.number; };
+  const auto index_place = [=](auto OpticalConstants::*part) {
+    return [=](auto& s) { return &(layer_of(s, layer).material.constant.*part); };
   };
   const auto name_place = [=](auto SceneNames::OfLayer::*name) {
     return [=](auto& s) {
-      if constexpr (!std::is_const_v<std::remove_reference_t<decltype(s)>>) layer_of(s, layer);
-      return has_layer(s) ? &(s.names.coating[layer - 1].*name) : nullptr;
+      layer_of(s, layer);
+      return &(s.names.coating[layer - 1].*name);
     };
   };
   std::vector<SceneKey> keys = {
       number(begin + "n", "1", kNRange, "", "n of a film on the surface; layers count from the outside in",
-             index_place(&OpticalConstants::n), set_index(&OpticalConstants::n)),
-      number(begin + "k", "1", kKRange, "0", "k of the film, with n", index_place(&OpticalConstants::k),
-             set_index(&OpticalConstants::k)),
+             index_place(&OpticalConstants::n), has_index),
+      number(begin + "k", "1", kKRange, "0", "k of the film, with n", index_place(&OpticalConstants::k), has_index),
       text(begin + "material", "a built-in material by name, instead of the film's n and k",
-           name_place(&SceneNames::OfLayer::material)),
+           name_place(&SceneNames::OfLayer::material), has_layer),
       text(begin + "material_file", "your own n and k of the film, instead of n and k",
-           name_place(&SceneNames::OfLayer::material_file)),
+           name_place(&SceneNames::OfLayer::material_file), has_layer),
       number(
           begin + "thickness_um", "um", kThicknessUmRange, "required", "thickness of the film",
-          [=](const SceneValues& s) { return has_layer(s) ? &s.surface.coating[layer - 1].thickness_um : nullptr; },
-          [=](SceneValues& s, const KeyValue& v) { layer_of(s, layer).thickness_um = v.number; }),
+          [=](auto& s) { return &layer_of(s, layer).thickness_um; }, has_layer),
   };
   for (SceneKey& key : keys) key.description.layer = layer;
   return keys;
@@ -170,12 +195,10 @@ std::vector<SceneKey> surface_keys() {
       text("title", "name of the scene, for the table and the window", [](auto& s) { return &s.title; }),
       number(
           "surface.n", "1", kNRange, "", "real part n of the refractive index n + ik; or material, or material_file",
-          [](const SceneValues& s) { return has_own_index(s) ? &s.surface.material.constant.n : nullptr; },
-          [](SceneValues& s, const KeyValue& v) { s.surface.material.constant.n = v.number; }),
+          [](auto& s) { return &s.surface.material.constant.n; }, has_own_index),
       number(
           "surface.k", "1", kKRange, "0", "imaginary part k of the refractive index n + ik, with surface.n",
-          [](const SceneValues& s) { return has_own_index(s) ? &s.surface.material.constant.k : nullptr; },
-          [](SceneValues& s, const KeyValue& v) { s.surface.material.constant.k = v.number; }),
+          [](auto& s) { return &s.surface.material.constant.k; }, has_own_index),
       text("surface.material", "a built-in material by name (dolp materials lists them), instead of n and k",
            [](auto& s) { return &s.names.material; }),
       text("surface.material_file", "your own n and k: refractiveindex.info YAML or CSV, instead of n and k",
@@ -186,14 +209,16 @@ std::vector<SceneKey> surface_keys() {
            [](auto& s) { return &s.names.reflectance_file; }),
       choice("surface.distribution", Surface().distribution, "slope distribution D",
              [](auto& s) { return &s.surface.distribution; }),
-      number(
-          "surface.sigma", "1", kSigmaRange, "required",
-          "slope width sigma (m^2 = 2 sigma^2); may be absent with grid.sigma, whose first value it then is",
-          [](const SceneValues& s) { return &s.surface.sigma; }, set_sigma),
-      number(
-          "surface.wind_m_s", "m s-1", kWindRange, "",
-          "wind over a sea, instead of sigma, with distribution gaussian: m^2 = 0.003 + 0.00512 times the wind",
-          [](const SceneValues& s) { return s.surface.wind_m_s ? &*s.surface.wind_m_s : nullptr; }, set_wind),
+      with_set(
+          number("surface.sigma", "1", kSigmaRange, "required",
+                 "slope width sigma (m^2 = 2 sigma^2); may be absent with grid.sigma, whose first value it then is",
+                 [](auto& s) { return &s.surface.sigma; }),
+          set_sigma),
+      with_set(
+          number("surface.wind_m_s", "m s-1", kWindRange, "",
+                 "wind over a sea, instead of sigma, with distribution gaussian: m^2 = 0.003 + 0.00512 times the wind",
+                 [](auto& s) { return &s.surface.wind_m_s; }),
+          set_wind),
       number("surface.q", "1", kQRange, "2", "tail exponent q of the cauchy distribution; 2 is GGX",
              [](auto& s) { return &s.surface.q; }),
       choice("surface.masking", Surface().masking, "geometric attenuation G; smith with cauchy needs every q > 1.5",
@@ -227,32 +252,15 @@ std::vector<SceneKey> radiation_keys() {
       flag("emission.bracket",
            "adds dolp_low, dolp_high: what DOLP lies between with all bounces (masking smith or v-cavity)",
            [](auto& s) { return s.emission ? &s.emission->has_bracket : nullptr; }),
-      number(
-          "source.irradiance", "W m-2 um-1", kNonNegativeRange, "", "E0 at normal incidence, flat over a band",
-          [](const SceneValues& s) { return is_of_kind(s, Source::Kind::kFlat) ? &s.source->irradiance : nullptr; },
-          [](SceneValues& s, const KeyValue& v) {
-            s.source->kind = Source::Kind::kFlat;
-            s.source->irradiance = v.number;
-          }),
-      number(
-          "source.relative_irradiance", "1", kNonNegativeRange, "",
-          "e = E0/(pi B(T)) at each wavelength, T of the emission; instead of irradiance",
-          [](const SceneValues& s) {
-            return is_of_kind(s, Source::Kind::kRelative) ? &s.source->relative_irradiance : nullptr;
-          },
-          [](SceneValues& s, const KeyValue& v) {
-            s.source->kind = Source::Kind::kRelative;
-            s.source->relative_irradiance = v.number;
-          }),
-      {{"source.preset",
-        Type::kWord,
-        "",
-        {},
-        {"sun"},
-        "",
-        "E0 of the sun at the top of the atmosphere; instead of irradiance"},
-       [](SceneValues& s, const KeyValue& v) { s.names.source_preset = v.text; },
-       [](const SceneValues& s) { return value_at(&s.names.source_preset); }},
+      source_number("source.irradiance", "W m-2 um-1", "E0 at normal incidence, flat over a band", Source::Kind::kFlat,
+                    &Source::irradiance),
+      source_number("source.relative_irradiance", "1",
+                    "e = E0/(pi B(T)) at each wavelength, T of the emission; instead of irradiance",
+                    Source::Kind::kRelative, &Source::relative_irradiance),
+      key_at(
+          described("source.preset", Type::kWord, "", {}, "",
+                    "E0 of the sun at the top of the atmosphere; instead of irradiance", {"sun"}),
+          [](auto& s) { return &s.names.source_preset; }, always),
       text("source.file", "your own E0: CSV of wavelength_um, irradiance; instead of irradiance",
            [](auto& s) { return &s.names.source_file; }),
       number("source.scale", "1", kNonNegativeRange, "1", "factor on E0, whatever its kind",
@@ -260,51 +268,36 @@ std::vector<SceneKey> radiation_keys() {
       number(
           "surroundings.temperature_K", "K", kBackgroundTemperatureRange, "",
           "temperature T_surr of the black surroundings that the surface reflects; or profile",
-          [](const SceneValues& s) {
-            return s.surroundings && s.names.profile.empty() ? &s.surroundings->temperature_K : nullptr;
-          },
-          [](SceneValues& s, const KeyValue& v) { s.surroundings->temperature_K = v.number; }),
+          [](auto& s) { return s.surroundings ? &s.surroundings->temperature_K : nullptr; },
+          [](const SceneValues& s) { return s.names.profile.empty(); }),
       text("surroundings.profile",
            "a sky over zenith: clear-sky, overcast or your own CSV of zenith_deg, temperature_K or radiance, "
            "wavelength_um; instead of temperature_K",
            [](auto& s) { return &s.names.profile; }),
-      number(
-          "surroundings.vapour_cm", "cm", kVapourRange, "",
-          "precipitable water of the air of clear-sky or overcast; without it 1.27 cm, or all that colder air holds",
-          [](const SceneValues& s) {
-            return s.surroundings && s.surroundings->air.vapour_cm ? &*s.surroundings->air.vapour_cm : nullptr;
-          },
-          [](SceneValues& s, const KeyValue& v) { s.surroundings->air.vapour_cm = v.number; }),
-      number(
-          "surroundings.air_temperature_K", "K", kAirTemperatureRange, "",
-          "temperature of the air at the ground under clear-sky or overcast; 288.15 K without it",
-          [](const SceneValues& s) {
-            return s.surroundings && s.surroundings->air.temperature_K ? &*s.surroundings->air.temperature_K : nullptr;
-          },
-          [](SceneValues& s, const KeyValue& v) { s.surroundings->air.temperature_K = v.number; }),
+      number("surroundings.vapour_cm", "cm", kVapourRange, "",
+             "precipitable water of the air of clear-sky or overcast; without it 1.27 cm, or all that colder air holds",
+             [](auto& s) { return s.surroundings ? &s.surroundings->air.vapour_cm : nullptr; }),
+      number("surroundings.air_temperature_K", "K", kAirTemperatureRange, "",
+             "temperature of the air at the ground under clear-sky or overcast; 288.15 K without it",
+             [](auto& s) { return s.surroundings ? &s.surroundings->air.temperature_K : nullptr; }),
       number("path.transmittance", "1", kFractionRange, "1", "transmittance tau of the path to the sensor",
              [](auto& s) { return s.path ? &s.path->transmittance : nullptr; }),
-      number(
-          "path.temperature_K", "K", kBackgroundTemperatureRange, "",
-          "temperature of the path, whose radiance is (1 - tau) B(T); without it and radiance, none",
-          [](const SceneValues& s) { return s.path && s.path->temperature_K ? &*s.path->temperature_K : nullptr; },
-          [](SceneValues& s, const KeyValue& v) { s.path->temperature_K = v.number; }),
-      number(
-          "path.radiance", "W m-2 sr-1 um-1", kNonNegativeRange, "",
-          "path radiance L_path; instead of path.temperature_K",
-          [](const SceneValues& s) { return s.path && s.path->radiance ? &*s.path->radiance : nullptr; },
-          [](SceneValues& s, const KeyValue& v) { s.path->radiance = v.number; }),
+      number("path.temperature_K", "K", kBackgroundTemperatureRange, "",
+             "temperature of the path, whose radiance is (1 - tau) B(T); without it and radiance, none",
+             [](auto& s) { return s.path ? &s.path->temperature_K : nullptr; }),
+      number("path.radiance", "W m-2 sr-1 um-1", kNonNegativeRange, "",
+             "path radiance L_path; instead of path.temperature_K",
+             [](auto& s) { return s.path ? &s.path->radiance : nullptr; }),
   };
 }
 
 std::vector<SceneKey> geometry_keys() {
   return {
-      number(
-          "spectrum.wavelength_um", "um", kWavelengthUmRange, "", "wavelength lambda; or band_um",
-          [](const SceneValues& s) { return s.spectrum.is_band() ? nullptr : &s.spectrum.min_um; },
-          [](SceneValues& s, const KeyValue& v) {
-            s.spectrum = {v.number, v.number};
-          }),
+      {{"spectrum.wavelength_um", Type::kNumber, "um", kWavelengthUmRange, {}, "", "wavelength lambda; or band_um"},
+       [](SceneValues& s, const KeyValue& v) {
+         s.spectrum = {v.number, v.number};
+       },
+       [](const SceneValues& s) { return s.spectrum.is_band() ? std::nullopt : value_at(&s.spectrum.min_um); }},
       {{"spectrum.band_um", Type::kPair, "um", kWavelengthUmRange, {}, "", "band [lambda1, lambda2] to integrate over"},
        [](SceneValues& s, const KeyValue& v) {
          s.spectrum = {v.numbers[0], v.numbers[1]};
@@ -326,9 +319,10 @@ std::vector<SceneKey> geometry_keys() {
                 "zenith theta: of the view (hemispherical) or of the source (bistatic)"),
       grid_axis(Axis::kSigma, "surface.sigma", "slope widths sigma of the table"),
       wind_axis(),
-      {{"grid.material", Type::kNames, "", {}, {}, "", "materials of the table instead of n and k: names, or \"all\""},
-       [](SceneValues& s, const KeyValue& v) { s.labels[Axis::kMaterial] = v.names; },
-       [](const SceneValues& s) { return value_at(&s.labels[Axis::kMaterial]); }},
+      key_at(
+          described("grid.material", Type::kNames, "", {}, "",
+                    "materials of the table instead of n and k: names, or \"all\""),
+          [](auto& s) { return &s.labels[Axis::kMaterial]; }, always),
       {{"grid.band_um", Type::kPairs, "um", kWavelengthUmRange, {}, "", "bands of the table instead of a spectrum"},
        [](SceneValues& s, const KeyValue& v) {
          for (std::size_t i = 0; i < v.numbers.size(); i += 2) s.bands.push_back({v.numbers[i], v.numbers[i + 1]});
@@ -352,20 +346,23 @@ std::vector<SceneKey> geometry_keys() {
              [](auto& s) { return &s.accuracy.tolerance; }),
       choice("accuracy.precision", Accuracy().precision, "arithmetic of the device",
              [](auto& s) { return &s.accuracy.precision; }),
-      {{"accuracy.interpolation",
-        Type::kWord,
-        "",
-        {},
-        {"auto", "off"},
-        "auto",
-        "between slope distributions of a dense grid and over many indices by responses, within the tolerance; off: "
-        "every entry is integrated by itself"},
+      {described("accuracy.interpolation", Type::kWord, "", {}, "auto",
+                 "between slope distributions of a dense grid and over many indices by responses, within the "
+                 "tolerance; off: every entry is integrated by itself",
+                 {"auto", "off"}),
        [](SceneValues& s, const KeyValue& v) { s.accuracy.may_interpolate = v.word == 0; },
        [](const SceneValues& s) -> std::optional<KeyValue> {
          const bool is_auto = s.accuracy.may_interpolate;
          return KeyValue{.word = is_auto ? std::size_t{0} : 1, .text = is_auto ? "auto" : "off"};
        }},
   };
+}
+
+std::string range_end_text(double value) {
+  const std::string text = fmt::format("{:g}", value);
+  const double exponent = std::log10(value);
+  const bool is_large_power_of_ten = value >= 1e4 && exponent == std::round(exponent);
+  return is_large_power_of_ten && std::isfinite(value) ? fmt::format("1e{}", static_cast<int>(exponent)) : text;
 }
 
 }  // namespace
@@ -529,6 +526,20 @@ std::string Key::allowed() const {
       return "a number in " + range.text() + ", a list of them, or { from, to, count, spacing }";
   }
   return {};
+}
+
+bool NumberRange::contains(double value) const {
+  if (!std::isfinite(value)) return false;
+  const bool above = ends == Ends::kOpenBelow ? value > min : value >= min;
+  const bool below = ends == Ends::kOpenAbove ? value < max : value <= max;
+  return above && below;
+}
+
+std::string NumberRange::text() const {
+  const bool open_below = ends == Ends::kOpenBelow || std::isinf(min);
+  const bool open_above = ends == Ends::kOpenAbove || std::isinf(max);
+  return fmt::format("{}{}, {}{}", open_below ? '(' : '[', range_end_text(min), range_end_text(max),
+                     open_above ? ')' : ']');
 }
 
 }  // namespace dolp

@@ -1,4 +1,4 @@
-// The one list of scene keys: allowed values, and their places in the Scene.
+// The list of all scene keys: allowed values, and how a scene holds them.
 #pragma once
 
 #include <functional>
@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/scene_document.hpp"
 #include "scene/scene_reader.hpp"
 
 namespace dolp {
@@ -14,17 +15,16 @@ namespace dolp {
 /// A value that its Key allows.
 struct KeyValue {
   double number = 0.0;
-  std::size_t word = 0;  ///< position in Key::words
-  std::string text = {};
-  bool is_set = false;               ///< flag
-  std::vector<double> numbers = {};  ///< pair, axis; pairs one after the other
+  std::size_t word = 0;              ///< position in Key::words
+  std::string text = {};             ///< also the text of a word or a flag
+  std::vector<double> numbers = {};  ///< values of a pair, an axis, or pairs one after the other
   std::vector<std::string> names = {};
 };
 
 struct SceneKey {
   Key description;
   std::function<void(SceneValues& scene, const KeyValue& value)> set;
-  /// None where the scene has no such thing: n with a material, the temperature of an emission that is not there.
+  /// None if the scene has no such value: n beside a material, the temperature of an absent emission.
   std::function<std::optional<KeyValue>(const SceneValues& scene)> value;
 };
 
@@ -33,12 +33,12 @@ struct KeyChoice {
   std::string table;
   std::vector<std::vector<std::string>> alternatives;
   bool is_required = true;                    ///< if the table is there, or must be
-  std::vector<std::string> substitutes = {};  ///< keys of which one does instead
-  bool does_each_choose = false;              ///< any key of an alternative chooses it, alone or with the others
-  bool is_of_layer = false;                   ///< of a layer of a coating, which a scene may lack
+  std::vector<std::string> substitutes = {};  ///< keys that replace the choice
+  bool does_each_choose = false;              ///< any key of an alternative chooses it, with or without the others
+  bool is_of_layer = false;                   ///< the table is a layer of a coating, which a scene may lack
 };
 
-inline constexpr std::size_t kMostLayers = 16;  ///< of a coating
+inline constexpr std::size_t kMostLayers = 16;  ///< most layers of a coating
 
 const std::vector<SceneKey>& scene_key_table();
 const std::vector<KeyChoice>& key_choices();
@@ -51,8 +51,8 @@ struct AxisExclusion {
 };
 const std::vector<AxisExclusion>& axis_exclusions();
 
-/// The keys that a setting of `key` replaces: those of the other alternatives if it chooses its own, and those that no
-/// scene has beside it.
+/// The keys that a setting of `key` replaces: the keys of other alternatives if it chooses its own, and the keys that
+/// no scene has beside it.
 std::vector<std::string> keys_replaced_by(std::string_view key);
 
 /// The tables in the order of the keys.
@@ -64,10 +64,15 @@ bool is_effect_table(std::string_view table);
 /// True for the coating of a scene and for one of its layers: "surface.coating", "surface.coating.2".
 bool is_coating(std::string_view key);
 
-/// True if the word none takes a key or a table away. Where it may be a value, `{}` does.
+/// True if the word none removes a key or a table. If none may be a value, `{}` removes it.
 bool is_removed_by_none(std::string_view key);
 
 /// Makes the table's effect present in the scene.
 void add_effect(SceneValues& scene, std::string_view table);
+
+class SceneDocument;
+
+/// The value of a key that the document has. Errors: InputError through SceneDocument::fail.
+KeyValue read_value(const SceneDocument& document, const Key& description);
 
 }  // namespace dolp

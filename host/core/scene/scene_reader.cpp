@@ -5,19 +5,15 @@
 #include <algorithm>
 #include <cstddef>
 #include <dolp/errors.hpp>
-#include <filesystem>
 #include <iterator>
 #include <numeric>
 #include <utility>
-#include <variant>
 
 #include "base/text.hpp"
 #include "model/direction.hpp"
 #include "scene/material_data.hpp"
-#include "scene/reflectance_file.hpp"
 #include "scene/scene_document.hpp"
 #include "scene/scene_keys.hpp"
-#include "scene/scene_values.hpp"
 #include "scene/spectral_data.hpp"
 
 namespace dolp {
@@ -114,7 +110,7 @@ void check_choice(const SceneDocument& document, const KeyChoice& choice) {
                                            find_scene_key(heads.front())->description.allowed(), join(heads)));
 }
 
-/// Refuses a key whose needs are not all met, and names those that are not.
+/// Refuses a key with unmet needs, and names all of them.
 struct Needs {
   bool are_met;
   const char* text;
@@ -204,9 +200,9 @@ std::string resolve_path(const std::string& file, const std::string& scene_path)
 /// Result of `read` for a file that the scene names; an InputError that begins with `prefix` where no file may be
 /// opened.
 template <class Read>
-auto read_file_of(SceneValues& scene, const std::string& file, const std::string& scene_path, const std::string& prefix,
-                  const KnownData* known, const Read& read) {
-  const std::string& path = scene.files.emplace_back(resolve_path(file, scene_path));
+auto read_file_of(SceneValues& scene, const std::string& file, const std::string& prefix, const KnownData* known,
+                  const Read& read) {
+  const std::string& path = scene.files.emplace_back(resolve_path(file, scene.path_name));
   if (!known) return read(path);
   if (!known->may_open_files) {
     throw InputError(prefix + "is not in the table; dolp verify --named-files reads it from that file");
@@ -232,7 +228,8 @@ Spectrum all_wavelengths(const SceneValues& scene) {
   return all;
 }
 
-/// Loads the material of the table `prefix_key`: the surface, or a layer of its coating. `own` is as a table has it.
+/// Loads the material of the table `prefix_key`: the surface, or a layer of its coating. `own`: the material that a
+/// table has.
 void load_material(SceneValues& scene, const SceneDocument& document, const std::string& table, Material& material,
                    std::string& name, const std::string& file, const KnownData* known, const Material* own) {
   const bool is_file = document.find(table + ".material_file") != nullptr;
@@ -250,7 +247,7 @@ void load_material(SceneValues& scene, const SceneDocument& document, const std:
     if (material.is_constant()) return;
     material = fit_to_spectrum(material, scene.spectrum, prefix);
   } else if (is_file) {
-    material = read_file_of(scene, file, scene.path_name, prefix, known, [&](const std::string& path) {
+    material = read_file_of(scene, file, prefix, known, [&](const std::string& path) {
       Material read = read_material_file(path, scene.spectrum, prefix);
       check_axis(read);
       return read;
@@ -262,7 +259,7 @@ void load_material(SceneValues& scene, const SceneDocument& document, const std:
   check_axis(material);
 }
 
-/// The names of built-in materials that a grid's axis means, in full; "all" are those that cover the spectrum.
+/// The full names of the built-in materials on a grid's axis; "all" means the materials that cover the spectrum.
 std::vector<std::string> axis_names(const SceneValues& scene, const std::string& prefix) {
   std::vector<std::string> names;
   const std::vector<std::string>& given = scene.labels[Axis::kMaterial];
@@ -281,7 +278,7 @@ std::vector<std::string> axis_names(const SceneValues& scene, const std::string&
   return names;
 }
 
-/// Loads the materials of the grid's axis, of which the first is the scene's. `known` are those that a table has.
+/// Loads the materials of the grid's axis; the first is the scene's material. `known` has the materials of a table.
 void load_axis_materials(SceneValues& scene, const SceneDocument& document, const KnownData* known) {
   if (!document.find("grid.material")) return;
   const std::string prefix = document.prefix("grid.material");
@@ -323,14 +320,13 @@ void load_materials(SceneValues& scene, const SceneDocument& document, const Kno
   ReflectanceTable table =
       known && known->reflectance
           ? *known->reflectance
-          : read_file_of(scene, scene.names.reflectance_file, scene.path_name, prefix, known,
+          : read_file_of(scene, scene.names.reflectance_file, prefix, known,
                          [&](const std::string& path) { return read_reflectance_file(path, prefix); });
   if (!table.wavelength_um.empty()) check_covers({table.wavelength_um, {}}, all_wavelengths(scene), prefix);
   surface.reflectance = std::make_shared<const ReflectanceTable>(std::move(table));
 }
 
-void load_source(SceneValues& scene, const SceneDocument& document, const std::string& scene_path,
-                 const KnownData* known) {
+void load_source(SceneValues& scene, const SceneDocument& document, const KnownData* known) {
   const bool is_preset = document.find("source.preset") != nullptr;
   if (!is_preset && !document.find("source.file")) return;
   const std::string prefix = document.prefix(is_preset ? "source.preset" : "source.file");
@@ -342,14 +338,13 @@ void load_source(SceneValues& scene, const SceneDocument& document, const std::s
   } else if (is_preset) {
     source.table = sun_irradiance();
   } else {
-    source.table = read_file_of(scene, scene.names.source_file, scene_path, prefix, known,
+    source.table = read_file_of(scene, scene.names.source_file, prefix, known,
                                 [&](const std::string& path) { return read_irradiance_file(path, prefix); });
   }
   check_covers(source.table, all_wavelengths(scene), prefix);
 }
 
-void load_profile(SceneValues& scene, const SceneDocument& document, const std::string& scene_path,
-                  const KnownData* known) {
+void load_profile(SceneValues& scene, const SceneDocument& document, const KnownData* known) {
   if (!document.find("surroundings.profile")) return;
   const std::string prefix = document.prefix("surroundings.profile");
   const char* const air_key =
@@ -359,7 +354,7 @@ void load_profile(SceneValues& scene, const SceneDocument& document, const std::
   if (!profile && known && known->profile) profile = known->profile;
   std::error_code unknown;
   const std::filesystem::file_status file =
-      std::filesystem::status(resolve_path(scene.names.profile, scene_path), unknown);
+      std::filesystem::status(resolve_path(scene.names.profile, scene.path_name), unknown);
   if (!profile && !known && file.type() == std::filesystem::file_type::not_found) {
     std::vector<std::string> names;
     for (const BuiltInSky& sky : built_in_skies()) names.emplace_back(sky.name);
@@ -368,7 +363,7 @@ void load_profile(SceneValues& scene, const SceneDocument& document, const std::
                                  near ? "; the nearest is " + *near : ""));
   }
   if (!profile) {
-    profile = read_file_of(scene, scene.names.profile, scene_path, prefix, known,
+    profile = read_file_of(scene, scene.names.profile, prefix, known,
                            [&](const std::string& path) { return read_sky_profile(path, prefix); });
   }
   if (!profile->wavelength_um.empty()) check_covers({profile->wavelength_um, {}}, all_wavelengths(scene), prefix);
@@ -495,8 +490,8 @@ SceneValues scene_of(const SceneDocument& document, const std::string& path_name
   fill_from_grid(scene, document);
   scene.path_name = path_name;
   load_materials(scene, document, known);
-  load_source(scene, document, path_name, known);
-  load_profile(scene, document, path_name, known);
+  load_source(scene, document, known);
+  load_profile(scene, document, known);
   fill_grid(scene, document);
   check_smith(scene, document);
   check_radiation(scene, document);

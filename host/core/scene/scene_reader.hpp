@@ -6,35 +6,42 @@
 #include <string>
 #include <vector>
 
-#include <dolp/number_range.hpp>
+#include <filesystem>
 #include "scene/scene.hpp"
 
 namespace dolp {
 
 /// Reads the scene at `path` ("-" is stdin), applies the settings in order and validates the result. Files named in a
 /// scene are relative to the folder of the scene (of the process for "-").
-/// Errors: InputError, one line: `file:line: key = value: what is wrong and what is allowed`, of a setting its origin
-/// instead; a file that cannot be opened is an InputError too.
+/// Errors: InputError, one line: `file:line: key = value: what is wrong and what is allowed`. For a setting its origin
+/// begins the line. A file that cannot be opened is an InputError too.
 SceneValues read_scene(const std::string& path, const std::vector<Setting>& settings = {});
 
 /// The scene with more settings. Domain: a scene that was read. Errors: InputError, as read_scene.
 SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& settings);
 
-/// n, k, E0 and the sky as they were when the table was computed, in place of the names in its scene.
+/// n, k, E0 and the sky as they were when the table was computed. They replace the names in its scene.
 struct KnownData {
   std::optional<Material> material = {};
-  std::vector<std::optional<Material>> layers = {};  ///< of a coating
-  std::vector<Material> materials = {};              ///< of the axis of materials
+  std::vector<std::optional<Material>> layers = {};  ///< layers of a coating
+  std::vector<Material> materials = {};              ///< materials on the grid's axis
   std::optional<ReflectanceTable> reflectance = {};
   std::optional<SpectralTable> irradiance = {};
   std::optional<SkyProfile> profile = {};
   bool may_open_files = false;  ///< for missing data; messages then do not quote their contents
 };
 
-/// The same for a text that is already in memory (the scene that a table file carries); `path_name` is for messages and
-/// gives the folder of the files the scene names. With `known` none of these is opened, unless it says so: an
-/// InputError where it lacks what the scene takes from one.
+/// Reads a scene from a text in memory, for example the scene in a table file. `path_name` is for messages and gives
+/// the folder of the files that the scene names. With `known` no file is opened unless `may_open_files` is set: data
+/// that `known` lacks are an InputError.
 SceneValues parse_scene(const std::string& text, const std::string& path_name,
                         const std::vector<Setting>& settings = {}, const KnownData* known = nullptr);
+
+/// TOML that reads back as the scene: its keys in the order of dolp::keys(), numbers as the shortest text that reads
+/// back as the same double, no comments.
+///
+/// Files that the scene names are written as they are found from `folder`, where the text will be saved.
+/// Domain: a scene that was read.
+std::string scene_toml(const SceneValues& scene, const std::filesystem::path& folder);
 
 }  // namespace dolp

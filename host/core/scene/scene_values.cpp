@@ -1,11 +1,10 @@
-#include "scene/scene_values.hpp"
+#include "scene/scene_keys.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 
 #include "base/text.hpp"
 
@@ -15,14 +14,6 @@ namespace {
 using Type = Key::Type;
 
 constexpr auto kMostListed = static_cast<std::size_t>(kAxisCountRange.max);
-
-/// An axis as from, to, count and spacing.
-struct AxisRule {
-  double from = 0.0;
-  double to = 0.0;
-  std::size_t count = 1;
-  bool is_log = false;
-};
 
 double read_number(const SceneDocument& document, std::string_view key, const toml::node& node,
                    const NumberRange& range, const std::string& allowed) {
@@ -53,7 +44,7 @@ double read_axis_number(const SceneDocument& document, const std::string& key, c
   return read_number(document, key, *node, range, allowed);
 }
 
-AxisRule read_axis_rule(const SceneDocument& document, const Key& description, const toml::table& table) {
+AxisRange read_axis_rule(const SceneDocument& document, const Key& description, const toml::table& table) {
   const std::string begin = description.key + '.';
   const std::vector<std::string> known = {"from", "to", "count", "spacing"};
   for (const auto& [name, node] : table) {
@@ -61,7 +52,7 @@ AxisRule read_axis_rule(const SceneDocument& document, const Key& description, c
     document.fail(begin + std::string(name.str()),
                   fmt::format("unknown key; the nearest known key is {}{}", begin, nearest_name(name.str(), known)));
   }
-  AxisRule rule;
+  AxisRange rule;
   rule.from = read_axis_number(document, begin + "from", description.range);
   rule.to = read_axis_number(document, begin + "to", description.range);
   const double count = read_axis_number(document, begin + "count", kAxisCountRange);
@@ -70,13 +61,13 @@ AxisRule read_axis_rule(const SceneDocument& document, const Key& description, c
   if (const toml::node* spacing = document.find(begin + "spacing")) {
     const std::string word = spacing->value_or(std::string());
     if (word != "linear" && word != "log") document.fail(begin + "spacing", "must be one of linear, log");
-    rule.is_log = word == "log";
+    rule.is_logarithmic = word == "log";
   }
   if (rule.count == 1 && rule.from != rule.to)
     document.fail(document.first_set({begin + "count", begin + "from", begin + "to"}), "one value needs from = to");
   for (const char* end : {"from", "to"}) {
     const double value = std::string_view(end) == "from" ? rule.from : rule.to;
-    if (rule.is_log && value <= 0.0)
+    if (rule.is_logarithmic && value <= 0.0)
       document.fail(document.first_set({begin + end, begin + "spacing"}),
                     "spacing = \"log\" needs from > 0 and to > 0");
   }
@@ -84,14 +75,14 @@ AxisRule read_axis_rule(const SceneDocument& document, const Key& description, c
 }
 
 /// Both forms give the same values, in reverse, when from and to change places, and the ends exactly.
-std::vector<double> axis_values(const AxisRule& rule) {
+std::vector<double> axis_values(const AxisRange& rule) {
   std::vector<double> values(rule.count, rule.from);
   const auto last = static_cast<double>(rule.count - 1);
   for (std::size_t i = 1; i < rule.count; ++i) {
     const auto done = static_cast<double>(i);
     const double left = last - done;
-    values[i] = rule.is_log ? std::pow(rule.from, left / last) * std::pow(rule.to, done / last)
-                            : (left * rule.from + done * rule.to) / last;
+    values[i] = rule.is_logarithmic ? std::pow(rule.from, left / last) * std::pow(rule.to, done / last)
+                                    : (left * rule.from + done * rule.to) / last;
   }
   values.back() = rule.to;
   return values;
@@ -161,35 +152,27 @@ KeyValue read_word(const SceneDocument& document, const Key& description, const 
 
 KeyValue read_value(const SceneDocument& document, const Key& description) {
   const toml::node& node = *document.find(description.key);
-  KeyValue value;
   switch (description.type) {
     case Type::kNumber:
-      value.number = read_number(document, description.key, node, description.range, description.allowed());
-      break;
+      return {.number = read_number(document, description.key, node, description.range, description.allowed())};
     case Type::kWord:
       return read_word(document, description, node);
     case Type::kFlag:
       if (!node.is_boolean()) document.fail(description.key, "must be " + description.allowed());
-      value.is_set = node.value_or(false);
-      break;
+      return {.word = node.value_or(false) ? 1U : 0U};
     case Type::kText:
       if (!node.is_string()) document.fail(description.key, "must be a text");
-      value.text = node.value_or(std::string());
-      break;
+      return {.text = node.value_or(std::string())};
     case Type::kPair:
-      value.numbers = read_pair(document, description, node);
-      break;
+      return {.numbers = read_pair(document, description, node)};
     case Type::kNames:
-      value.names = read_names(document, description, node);
-      break;
+      return {.names = read_names(document, description, node)};
     case Type::kPairs:
-      value.numbers = read_pairs(document, description, node);
-      break;
+      return {.numbers = read_pairs(document, description, node)};
     case Type::kAxis:
-      value.numbers = read_axis(document, description, node);
-      break;
+      return {.numbers = read_axis(document, description, node)};
   }
-  return value;
+  return {};
 }
 
 }  // namespace dolp

@@ -1,9 +1,10 @@
-#include "scene/scene_writer.hpp"
 
 #include <fmt/format.h>
 
+#include <toml++/toml.h>
+#include <algorithm>
+#include <dolp/setting.hpp>
 #include <map>
-#include <sstream>
 
 #include "base/text.hpp"
 #include "scene/scene_document.hpp"
@@ -12,32 +13,6 @@
 
 namespace dolp {
 namespace {
-
-template <class Value>
-std::string formatted(const Value& value) {
-  std::ostringstream stream;
-  stream << value;
-  return stream.str();
-}
-
-/// A value in one line.
-std::string value_text(const toml::node& node) {
-  if (const auto* number = node.as_floating_point()) return format_number(number->get());
-  std::string text;
-  if (const toml::array* array = node.as_array()) {
-    for (const toml::node& element : *array) text += (text.empty() ? "" : ", ") + value_text(element);
-    return '[' + text + ']';
-  }
-  if (const toml::table* table = node.as_table()) {
-    for (const auto& [name, inner] : *table) {
-      text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", name.str(), value_text(inner));
-    }
-    return "{ " + text + " }";
-  }
-  if (const auto* word = node.as_string()) return formatted(*word);
-  if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
-  return formatted(*node.as_integer());
-}
 
 /// True if a key's value is the name of a file.
 bool names_file(const std::string& key, const std::string& value) {
@@ -55,6 +30,23 @@ std::string path_from(const std::filesystem::path& folder, const std::string& fi
   return found.lexically_relative(fs::absolute(folder).lexically_normal()).string();
 }
 
+struct TextOf {
+  std::string operator()(std::monostate) const { return "none"; }
+  std::string operator()(bool flag) const { return flag ? "true" : "false"; }
+  std::string operator()(double number) const { return number_text(number); }
+  std::string operator()(const std::string& text) const { return toml_text(toml::value(text)); }
+  std::string operator()(const std::vector<double>& numbers) const {
+    std::vector<std::string> texts;
+    std::ranges::transform(numbers, std::back_inserter(texts), number_text);
+    return '[' + join(texts) + ']';
+  }
+  std::string operator()(const AxisRange& range) const {
+    return fmt::format("{{ from = {}, to = {}, count = {}, spacing = \"{}\" }}", number_text(range.from),
+                       number_text(range.to), range.count, range.is_logarithmic ? "log" : "linear");
+  }
+  std::string operator()(const TomlText& toml) const { return toml.text; }
+};
+
 }  // namespace
 
 std::string scene_toml(const SceneValues& scene, const std::filesystem::path& folder) {
@@ -63,7 +55,7 @@ std::string scene_toml(const SceneValues& scene, const std::filesystem::path& fo
   for (const Key& description : dolp::keys()) {
     if (description.key.find('.') != std::string::npos) continue;
     if (const toml::node* node = document.find(description.key)) {
-      written += description.key + " = " + value_text(*node) + '\n';
+      written += description.key + " = " + toml_text(*node) + '\n';
     }
   }
   std::map<std::size_t, std::string> layers;
@@ -75,8 +67,8 @@ std::string scene_toml(const SceneValues& scene, const std::filesystem::path& fo
       if (!node) continue;
       const std::string value =
           names_file(description.key, node->value_or(std::string()))
-              ? formatted(toml::value(path_from(folder, node->value_or(std::string()), scene.path_name)))
-              : value_text(*node);
+              ? toml_text(toml::value(path_from(folder, node->value_or(std::string()), scene.path_name)))
+              : toml_text(*node);
       if (description.layer > 0) {
         std::string& layer = layers[description.layer];
         layer += (layer.empty() ? "" : ", ") + last_part(description.key) + " = " + value;
@@ -91,6 +83,29 @@ std::string scene_toml(const SceneValues& scene, const std::filesystem::path& fo
     layers.clear();
   }
   return written;
+}
+
+std::string Value::text() const { return std::visit(TextOf{}, content_); }
+
+Setting Setting::from_text(const std::string& argument, const std::string& option) {
+  const std::string origin = (option.empty() ? "" : option + ' ') + one_line(argument);
+  const std::size_t equals = argument.find('=');
+  const std::string key(trim(std::string_view(argument).substr(0, equals)));
+  if (equals == std::string::npos || std::ranges::any_of(split(key, '.'), &std::string_view::empty)) {
+    throw InputError(origin + ": must be KEY=VALUE with a scene key, for example surface.masking=smith");
+  }
+  return {key, TomlText{std::string(trim(std::string_view(argument).substr(equals + 1)))}, origin};
+}
+
+std::string Setting::text() const {
+  const bool is_removal = std::holds_alternative<std::monostate>(value.content());
+  return key + '=' + (is_removal && !is_removed_by_none(key) ? "{}" : value.text());
+}
+
+std::vector<Setting> settings_from_text(const std::vector<std::string>& arguments, const std::string& option) {
+  std::vector<Setting> settings;
+  for (const std::string& argument : arguments) settings.push_back(Setting::from_text(argument, option));
+  return settings;
 }
 
 }  // namespace dolp

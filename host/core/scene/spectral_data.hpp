@@ -15,9 +15,9 @@ namespace dolp {
 SpectralTable sun_irradiance();
 
 /// A user's CSV with the columns wavelength_um and irradiance (W m-2 um-1), interpolated linearly. Without a line of
-/// names these two columns stand in this order.
+/// names the columns have this order.
 ///
-/// Blank lines and lines that begin with # are skipped. Rows are as append_rows takes them.
+/// Skips blank lines and lines that begin with #. append_rows takes the rows.
 /// Domain: irradiance >= 0, at least one row.
 /// Errors: InputError; `prefix` begins the message when the file cannot be opened.
 SpectralTable read_irradiance_file(const std::string& path, const std::string& prefix);
@@ -41,7 +41,7 @@ struct SpectralRow {
 
 /// Appends the rows of a file in the order of their wavelengths. Leaves out rows outside of kWavelengthUmRange, and
 /// rows that repeat another. `named` has the name and the range of the values.
-/// Errors: InputError with file and line for two values at one wavelength, and as append_row.
+/// Errors: InputError with file and line for two values at one wavelength; errors of append_row.
 void append_rows(SpectralTable& table, std::vector<SpectralRow> rows, const NamedValue& named, const std::string& file);
 
 /// Refuses a table that has no values over the whole spectrum; `prefix` begins the message.

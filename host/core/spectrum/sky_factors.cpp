@@ -1,7 +1,5 @@
 #include "spectrum/sky_factors.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "spectrum/planck.hpp"
@@ -9,8 +7,8 @@
 namespace dolp {
 namespace {
 
-// Of the scene's tolerance, for the functions that a basis leaves out. Chosen: a function more costs a sixth of a
-// kernel.
+// Share of the scene's tolerance for the functions that a basis leaves out. Chosen: one more function costs a sixth of
+// a kernel.
 constexpr double kBasisShare = 0.02;
 
 Eigen::VectorXd vector_of(const std::vector<double>& values) {

@@ -14,7 +14,8 @@ namespace dolp {
 /// The radiance of a scene's profile at a wavelength. Units: W m-2 sr-1 um-1.
 double sky_radiance(const SkyProfile& profile, double wavelength_um, double zenith_deg);
 
-/// Exitances pi L of a scene's profile at its nodes, and their mean: that of a uniform sky with the same irradiance.
+/// Exitances pi L of a scene's profile at its nodes, and their mean, the exitance of a uniform sky with equal
+/// irradiance.
 class SkySampler {
  public:
   explicit SkySampler(const SkyProfile& profile);
@@ -28,12 +29,11 @@ class SkySampler {
   Eigen::VectorXd mean_weights_;
 };
 
-/// A basis of what the sky adds to its mean, in all samples of a scene at `wavelength_um`, or of its spectrum where the
-/// list is empty. Null where it adds nothing.
+/// A basis of what the sky adds to its mean, over all samples of a scene's variants. Null if it adds nothing.
 std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, const std::vector<SceneVariant>& variants);
 
-/// What the sky adds to its mean in each sample of a rule: weights of the moments with the functions of a basis. Empty
-/// where no sample has a sky.
+/// Weights of the moments with the functions of a basis, for what the sky adds to its mean in each sample of a rule.
+/// Empty if no sample has a sky.
 std::vector<SkyWeights> sky_weights(const SpectralRule& rule, const SkyBasis* basis);
 
 }  // namespace dolp

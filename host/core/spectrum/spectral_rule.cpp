@@ -1,14 +1,10 @@
 #include "spectrum/spectral_rule.hpp"
 #include "model/facet_optics.hpp"
-#include "model/kept_effects.hpp"
 
 #include <algorithm>
 #include <array>
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/special_functions/legendre.hpp>
-#include <cmath>
-#include <cstddef>
-#include <functional>
 #include <numbers>
 #include <optional>
 
@@ -45,7 +41,7 @@ constexpr int kMostNodes = 24;
 // Where n passes 1, it begins near grazing.
 constexpr double kProbeSafety = 10.0;
 constexpr std::array<double, 7> kProbeCosines = {1.0, 0.5, 0.25, 0.15, 0.1, 0.07, 0.04};
-constexpr std::array<double, 7> kCriticalPlaces = {0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};  // of a segment
+constexpr std::array<double, 7> kCriticalPlaces = {0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};  // positions in a segment
 // A segment that more nodes do not bring to this share of the scene's tolerance is cut into equal panels, each with its
 // own nodes, until the error that the probes show is below kPanelShareOfTolerance of the band, or a band has about
 // kMostPanels. Mirrors have closed forms, and rough surfaces smooth roots. Entries state what they see of the panels'
@@ -55,18 +51,12 @@ constexpr double kPanelShareOfTolerance = 0.03;
 constexpr int kLeastPanels = 4;
 constexpr double kMostPanels = 32.0;
 constexpr double kMostMirrorPanels = 512.0;
-constexpr double kMostFringes = 256.0;  // that films may add to a band, each with its own nodes
+constexpr double kMostFringes = 256.0;  // most fringes that films add to a band, each with its own nodes
 
 /// A node of the fine rule with the spectral factors there, all multiplied by the node's weight.
-struct FineNode {
+struct FineNode : SpectralFactors {
   double wavelength_um = 0.0;
-  double emitted = 0.0;
-  double surroundings = 0.0;
-  double excess = 0.0;
-  double irradiance = 0.0;
-  double width = 0.0;
   double path = 0.0;
-  std::vector<double> sky = {};
 };
 
 double source_irradiance(const SceneModel& scene, double wavelength_um, double emitted) {
@@ -190,6 +180,14 @@ std::vector<FineNode> fine_nodes(const SceneModel& scene, double from_um, double
   return nodes;
 }
 
+/// The nodes of both halves of an interval.
+std::vector<FineNode> finer_nodes(const SceneModel& scene, double from_um, double to_um) {
+  const double middle_um = 0.5 * (from_um + to_um);
+  std::vector<FineNode> nodes = fine_nodes(scene, from_um, middle_um);
+  std::ranges::move(fine_nodes(scene, middle_um, to_um), std::back_inserter(nodes));
+  return nodes;
+}
+
 std::vector<double> gauss_wavelengths(double from_um, double to_um, int count) {
   std::vector<double> wavelengths_um;
   for (const double zero : boost::math::legendre_p_zeros<double>(count)) {
@@ -210,20 +208,6 @@ std::vector<double> lagrange(const std::vector<double>& nodes_um, double wavelen
   return values;
 }
 
-void add_scaled(std::vector<double>& sum, const std::vector<double>& more, double factor) {
-  sum.resize(more.size());
-  for (std::size_t i = 0; i < more.size(); ++i) sum[i] += factor * more[i];
-}
-
-void add(SpectralSample& sample, const FineNode& node, double factor) {
-  add_scaled(sample.sky, node.sky, factor);
-  sample.emitted += factor * node.emitted;
-  sample.surroundings += factor * node.surroundings;
-  sample.excess += factor * node.excess;
-  sample.irradiance += factor * node.irradiance;
-  sample.width += factor * node.width;
-}
-
 std::vector<SpectralSample> samples_at(const SceneModel& scene, const std::vector<double>& nodes_um,
                                        const std::vector<FineNode>& fine) {
   std::vector<SpectralSample> samples(nodes_um.size());
@@ -233,7 +217,7 @@ std::vector<SpectralSample> samples_at(const SceneModel& scene, const std::vecto
   }
   for (const FineNode& node : fine) {
     const std::vector<double> values = lagrange(nodes_um, node.wavelength_um);
-    for (std::size_t j = 0; j < samples.size(); ++j) add(samples[j], node, values[j]);
+    for (std::size_t j = 0; j < samples.size(); ++j) samples[j].add(node, values[j]);
   }
   return samples;
 }
@@ -319,12 +303,7 @@ void append_merged(std::vector<SpectralSample>& samples, const SpectralSample& s
     samples.push_back(sample);
     return;
   }
-  add_scaled(same->sky, sample.sky, 1.0);
-  same->emitted += sample.emitted;
-  same->surroundings += sample.surroundings;
-  same->excess += sample.excess;
-  same->irradiance += sample.irradiance;
-  same->width += sample.width;
+  same->add(sample, 1.0);
 }
 
 /// The samples of one segment, and their error.
@@ -341,13 +320,10 @@ SegmentRule smooth_segment(const SceneModel& scene, double from_um, double to_um
                            const std::vector<double>& cosines) {
   if (scene.surface.has_constant_optics()) return {samples_at(scene, gauss_wavelengths(from_um, to_um, 1), fine), 0.0};
   SegmentRule rule;
-  // Fringes take many nodes: there no more than the tolerance needs.
+  // Fringes take many nodes: no more than the tolerance needs.
   const double enough = scene.surface.coating.empty() ? kNodesRelativeError : enough_for_tolerance(scene);
-  // The nodes to compare with are none of the rule's own, whatever their number.
-  const double middle_um = 0.5 * (from_um + to_um);
-  std::vector<FineNode> finer = fine_nodes(scene, from_um, middle_um);
-  for (const FineNode& node : fine_nodes(scene, middle_um, to_um)) finer.push_back(node);
-  const std::vector<ProbeSums> exact = exact_sums(scene.surface, finer, cosines);
+  // The nodes to compare with are never nodes of the rule.
+  const std::vector<ProbeSums> exact = exact_sums(scene.surface, finer_nodes(scene, from_um, to_um), cosines);
   for (int count = 1; count <= kMostNodes; ++count) {
     rule.samples = samples_at(scene, gauss_wavelengths(from_um, to_um, count), fine);
     rule.error = nodes_error(rule.samples, exact, cosines, kSmallestPart);
@@ -364,9 +340,7 @@ SegmentRule segment_of_panels(const SceneModel& scene, double from_um, double to
   for (int i = 0; i < panels; ++i) {
     const double start_um = std::lerp(from_um, to_um, static_cast<double>(i) / panels);
     const double end_um = std::lerp(from_um, to_um, static_cast<double>(i + 1) / panels);
-    const double middle_um = 0.5 * (start_um + end_um);
-    std::vector<FineNode> fine = fine_nodes(scene, start_um, middle_um);
-    for (const FineNode& node : fine_nodes(scene, middle_um, end_um)) fine.push_back(node);
+    const std::vector<FineNode> fine = finer_nodes(scene, start_um, end_um);
     for (const SpectralSample& sample : samples_at(scene, gauss_wavelengths(start_um, end_um, kPanelNodes), fine))
       rule.samples.push_back(sample);
     all.insert(all.end(), fine.begin(), fine.end());
@@ -402,11 +376,21 @@ SpectralRule single_wavelength_rule(const SceneModel& scene, double wavelength_u
   SpectralSample sample;
   sample.wavelength_um = wavelength_um;
   sample.index = scene.surface.optics_at(wavelength_um);
-  add(sample, node, 1.0);
+  sample.add(node, 1.0);
   return {.samples = {sample}, .path_exitance = node.path};
 }
 
 }  // namespace
+
+void SpectralFactors::add(const SpectralFactors& more, double factor) {
+  emitted += factor * more.emitted;
+  surroundings += factor * more.surroundings;
+  excess += factor * more.excess;
+  irradiance += factor * more.irradiance;
+  width += factor * more.width;
+  sky.resize(more.sky.size());
+  for (std::size_t i = 0; i < sky.size(); ++i) sky[i] += factor * more.sky[i];
+}
 
 std::vector<FacetOptics> SpectralRule::indices() const {
   std::vector<FacetOptics> result;

@@ -47,13 +47,13 @@ class LookupAxis {
   };
   Place place(double value) const;
 
-  /// Lagrange interpolation from the `count` values around a place, as many as there are; where it is a value of the
-  /// axis, that alone. `shift` moves the window by so many values, where it still contains the place; by nothing
-  /// otherwise. Domain: count from 2 to kMostStencil.
+  /// Lagrange interpolation from the `count` values around a place, or from all values if there are fewer. A place at a
+  /// value of the axis gives only this value. `shift` moves the window by so many values, as long as it contains the
+  /// place. Domain: count from 2 to kMostStencil.
   Stencil stencil(const Place& place, std::size_t count, int shift = 0) const;
 
-  /// The factors by which `count` values from `first` on give the divided difference over them: 1 / product of
-  /// x_i - x_j over the others. Domain: count from 2 to kMostStencil, first + count <= size().
+  /// The factors by which `count` values from `first` give the divided difference over them: 1 / product of x_i - x_j
+  /// over the other values. Domain: count from 2 to kMostStencil, first + count <= size().
   std::span<const double> divided_difference(std::size_t first, std::size_t count) const {
     return std::span(factors_[count][first]).first(count);
   }
@@ -66,8 +66,8 @@ class LookupAxis {
   Scale scale_;
   double origin_;
   std::vector<double> values_;          ///< ascending
-  std::vector<double> coordinates_;     ///< of values_
-  std::vector<std::size_t> positions_;  ///< in the table, of values_
+  std::vector<double> coordinates_;     ///< coordinate of each of values_
+  std::vector<std::size_t> positions_;  ///< position in the table of each of values_
   /// For each count, window and value: divided_difference.
   std::array<std::vector<std::array<double, kMostStencil>>, kMostStencil + 1> factors_;
 };

@@ -2,14 +2,41 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <bit>
 #include <dolp/errors.hpp>
+#include <functional>
+#include <numeric>
 
+#include "base/hash.hpp"
 #include "base/parallel_ranges.hpp"
 #include "base/text.hpp"
-#include "model/scene_entry.hpp"
 
 namespace dolp {
+namespace {
+
+constexpr std::uint64_t kPlaceFactor = 0x9e3779b97f4a7c15U;
+
+std::uint64_t bits_of(double value) { return std::bit_cast<std::uint64_t>(value); }
+std::uint64_t bits_of(std::uint32_t value) { return std::uint64_t{value} + 1U; }
+
+template <class Value>
+std::uint64_t sum_of_values(std::span<const Value> values, std::size_t first_place) {
+  std::uint64_t sum = 0;
+  std::uint64_t factor = first_place * kPlaceFactor;
+  for (const Value value : values) {
+    sum += bits_of(value) * (factor | 1U);
+    factor += kPlaceFactor;
+  }
+  return sum;
+}
+
+/// Some neighbours in a list.
+std::vector<double> slice(const std::vector<double>& list, std::size_t first, std::size_t count) {
+  const auto begin = list.begin() + static_cast<std::ptrdiff_t>(first);
+  return {begin, begin + static_cast<std::ptrdiff_t>(count)};
+}
+
+}  // namespace
 
 std::string spectral_data_of(const TableHead& head) {
   std::string text;
@@ -60,6 +87,13 @@ std::string coordinates_of(const TableHead& head) {
   return names;
 }
 
+TableLayout layout_of(const TableValues& table) {
+  TableLayout layout{static_cast<const TableHead&>(table), table.quantities(), !table.status.empty()};
+  std::ranges::copy_if(kAllResponseVariables, std::back_inserter(layout.responses),
+                       [&](ResponseVariable variable) { return !table.responses[variable].empty(); });
+  return layout;
+}
+
 ResultColumns columns_of(std::span<const PointResult> results, const Quantities& quantities) {
   constexpr std::size_t kEntriesAtOnce = 16384;
   ResultColumns columns;
@@ -72,6 +106,87 @@ ResultColumns columns_of(std::span<const PointResult> results, const Quantities&
     }
   });
   return columns;
+}
+
+std::vector<TableBox> boxes_in_order(const PerAxis& counts, std::size_t most) {
+  if (size_of(counts) == 0) return {};
+  // Boxes have all of the fastest axes, some of one, and one value of the slowest.
+  std::size_t cut = counts.size() - 1;
+  std::size_t of_one = 1;
+  while (cut > 0 && of_one * counts[cut] <= most) of_one *= counts[cut--];
+  const std::size_t at_once = std::clamp<std::size_t>(most / of_one, 1, counts[cut]);
+  const auto end_of_slow = counts.begin() + static_cast<std::ptrdiff_t>(cut);
+  const std::size_t slow = std::accumulate(counts.begin(), end_of_slow, std::size_t{1}, std::multiplies<>());
+  std::vector<TableBox> boxes;
+  for (std::size_t i = 0; i < slow; ++i) {
+    TableBox box{{}, counts};
+    for (std::size_t axis = cut, rest = i; axis-- > 0; rest /= counts[axis]) {
+      box.first[axis] = rest % counts[axis];
+      box.count[axis] = 1;
+    }
+    for (std::size_t first = 0; first < counts[cut]; first += at_once) {
+      box.first[cut] = first;
+      box.count[cut] = std::min(at_once, counts[cut] - first);
+      boxes.push_back(box);
+    }
+  }
+  return boxes;
+}
+
+TableHead head_of(const TableHead& whole, const TableBox& box) {
+  TableHead head = whole;
+  head.axes = part_of(whole.axes, box.first, box.count);
+  if (!head.wind_m_s.empty()) head.wind_m_s = slice(head.wind_m_s, box.first[Axis::kSigma], box.count[Axis::kSigma]);
+  for (const TableCurve& described : kTableCurves) {
+    std::vector<double>& used = (head.*described.curve).used;
+    if (!used.empty()) used = slice(used, box.first[Axis::kWavelength], box.count[Axis::kWavelength]);
+  }
+  return head;
+}
+
+ValueSums sums_of(const TableValues& part, const TableLayout& layout, const PerAxis& first) {
+  ValueSums sums;
+  for_each_variable(layout, [&](const auto& of, std::size_t width) {
+    std::uint64_t& sum = sums.emplace_back(0);
+    const std::span values(of(part));
+    for_each_run(first, part.counts(), layout.head.counts(), [&](const GridRun& run) {
+      sum += sum_of_values(values.subspan(run.in_part * width, run.count * width), run.in_whole * width);
+    });
+  });
+  return sums;
+}
+
+void add(ValueSums& sums, const ValueSums& of_part) {
+  sums.resize(of_part.size(), 0);
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += of_part[i];
+}
+
+std::string values_hash(const TableLayout& layout, const ValueSums& sums) {
+  const TableHead& head = layout.head;
+  std::uint64_t hash = kHashStart;
+  for (const Axis axis : kAllAxes) {
+    const std::vector<double>& values = head.axes[axis];
+    if (description_of(axis).has_labels) {  // positions differ between a table and its parts
+      for (const double value : values) hash = hashed(hashed(hash, head.label(axis, value)), std::uint64_t{0});
+    } else if (axis != Axis::kTemperature || !values.empty()) {  // files that could not have it keep their hash
+      hash = hashed(hash, std::span(values));
+    }
+  }
+  for (const std::vector<double>* values : {&head.wind_m_s, &head.beta_deg}) {
+    if (!values->empty()) hash = hashed(hash, std::span(*values));
+  }
+  for (const TableCurve& described : kTableCurves) {
+    const Curve& curve = head.*described.curve;
+    for (const std::vector<double>* values : {&curve.wavelength_um, &curve.values, &curve.used})
+      if (!values->empty()) hash = hashed(hash, std::span(*values));
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const char* const other = head.beta_deg.empty() ? "status" : "response";
+    hash = hashed(hash,
+                  std::string_view(i < layout.quantities.size() ? description_of(layout.quantities[i]).name : other));
+    hash = hashed(hash, sums[i]);
+  }
+  return fmt::format("placed64:{:016x}", hash);
 }
 
 }  // namespace dolp

@@ -6,17 +6,19 @@
 #include <algorithm>
 #include <bit>
 #include <iterator>
-#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "base/atomic_file.hpp"
+#include "base/parallel_ranges.hpp"
 #include "base/text.hpp"
-#include "table/result_csv.hpp"
 #include "table/table_store.hpp"
 
 namespace dolp {
 namespace {
+
+constexpr std::size_t kRowsAtOnce = 4096;         // rows of a thread
+constexpr std::size_t kBlock = 16 * kRowsAtOnce;  // rows that are text in memory at a time
 
 namespace fs = std::filesystem;
 
@@ -127,6 +129,61 @@ std::string npy_rows(const TableValues& part, const TableLayout& layout) {
 
 }  // namespace
 
+std::string result_header(const Quantities& quantities, bool has_status) {
+  std::string header;
+  for (const Quantity quantity : quantities) (header += description_of(quantity).name) += ',';
+  if (has_status) return header + "status";
+  return header.substr(0, header.size() - 1);
+}
+
+std::string result_rows(const ResultColumns& results, std::size_t rows, const Quantities& quantities,
+                        const RowStart& start) {
+  std::vector<std::string> pieces((rows + kRowsAtOnce - 1) / kRowsAtOnce);
+  parallel_ranges(rows, kRowsAtOnce, [&](std::size_t first, std::size_t last) {
+    std::string& text = pieces[first / kRowsAtOnce];
+    for (std::size_t row = first; row < last; ++row) {
+      start(text, row);
+      for (const Quantity quantity : quantities) {
+        append_number(text, results[quantity][row]);
+        text += ',';
+      }
+      results.status.empty() ? text.pop_back() : void(text += std::to_string(results.status[row]));
+      text += '\n';
+    }
+  });
+  std::string text;
+  for (const std::string& piece : pieces) text += piece;
+  return text;
+}
+
+Quantities in_csv_order(const Quantities& quantities) {
+  Quantities ordered;
+  std::ranges::copy_if(kCsvOrder, std::back_inserter(ordered),
+                       [&](Quantity quantity) { return std::ranges::count(quantities, quantity) > 0; });
+  return ordered;
+}
+
+ResultCsv::ResultCsv(const std::filesystem::path& path, const std::string& columns, const Quantities& quantities,
+                     RowStart start)
+    : quantities_(in_csv_order(quantities)), start_(std::move(start)) {
+  if (path != "-") file_.emplace(path);
+  write(columns + ',' + result_header(quantities_) + '\n');
+}
+
+void ResultCsv::append(std::span<const PointResult> results) {
+  while (!results.empty()) {
+    const std::span<const PointResult> block = results.first(std::min(kBlock, results.size()));
+    write(result_rows(columns_of(block, quantities_), block.size(), quantities_,
+                      [&](std::string& text, std::size_t row) { start_(text, done_ + row); }));
+    done_ += block.size();
+    results = results.subspan(block.size());
+  }
+}
+
+void ResultCsv::commit() { file_ ? file_->commit() : write_text_atomically("-", text_); }
+
+void ResultCsv::write(const std::string& text) { file_ ? file_->append(text) : void(text_ += text); }
+
 TableFormat format_of(const fs::path& path) {
   const std::string suffix = path.extension().string();
   if (suffix == ".nc") return TableFormat::kNetcdf;
@@ -150,9 +207,7 @@ std::string table_rows(const TableValues& part, const TableLayout& layout, Table
 
 void write_table(const TableValues& table, const fs::path& path) {
   const TableFormat format = format_of(path);
-  TableLayout layout{static_cast<const TableHead&>(table), table.quantities(), !table.status.empty()};
-  std::ranges::copy_if(kAllResponseVariables, std::back_inserter(layout.responses),
-                       [&](ResponseVariable variable) { return !table.responses[variable].empty(); });
+  const TableLayout layout = layout_of(table);
   if (format != TableFormat::kNetcdf && !layout.responses.empty())
     throw InputError(path.string() + ": the name of a response table must end in .nc");
   if (format != TableFormat::kNetcdf)

@@ -11,7 +11,7 @@
 
 #include <dolp/status.hpp>
 #include "base/numbers.hpp"
-#include "table/masking_kinks.hpp"
+#include "model/angles.hpp"
 
 namespace dolp {
 namespace {
@@ -20,9 +20,9 @@ constexpr auto kTheta = static_cast<std::size_t>(Axis::kTheta);
 constexpr auto kQ = static_cast<std::size_t>(Axis::kQ);
 constexpr std::array<std::size_t, kAxisCount> kWindow = {2, 2, 4, 4, 4, 4, 6, 6, 6};  // values of each axis
 constexpr std::size_t kMostRows =
-    std::size_t{4} * 4 * 4 * 4 * 6 * 6;  // of values along q; a point is at one value of an axis with labels
-constexpr int kMostShift = 3;            // of a window away from unknown entries
-constexpr std::size_t kLeastValues = 4;  // of an axis: fewer give no reliable estimate
+    std::size_t{4} * 4 * 4 * 4 * 6 * 6;  // rows of values along q; a point is at one value of an axis with labels
+constexpr int kMostShift = 3;            // shift of a window away from unknown entries
+constexpr std::size_t kLeastValues = 4;  // values of an axis: fewer give no reliable estimate
 // Tuned. Stated error over the change by one value more: where the window has a value to add on both sides, and
 // elsewhere. Of 581,000 bistatic lookups with half, this and double 147, 2 and 0 err by more than stated; the median of
 // what is stated: 1.56, 3.02, 6.00e-4.
@@ -32,7 +32,7 @@ constexpr double kAtEnds = 37.0;
 // and double: 44, 2 and 0 of these lookups; the median: 2.65, 3.02, 3.95e-4.
 constexpr double kFastestFall = 0.2;
 constexpr double kFastestFallOfTwo = 0.25;
-// Tuned. Stated error by a kink over that of a ramp. Without, with half, this and double: 38, 4, 2 and 2 of these
+// Tuned. Stated error by a kink over the error of a ramp. Without, with half, this and double: 38, 4, 2 and 2 of these
 // lookups; the median: 2.99, 3.01, 3.02, 3.04e-4.
 constexpr double kKinkMargin = 2.0;
 
@@ -42,13 +42,13 @@ using enum Quantity;
 constexpr std::array kSmooth = {kStokesI, kStokesQ,     kStokesU,     kStokesV, kRhoI,    kRhoQ,
                                 kAlbedo,  kEmissivityS, kEmissivityP, kDolpLow, kDolpHigh};
 
-/// A stated error depends on it.
+/// True if a stated error depends on the quantity.
 bool has_error(Quantity quantity) {
   constexpr std::array kWithout = {kStokesV, kAlbedo, kEmissivityS, kEmissivityP};
   return std::ranges::find(kWithout, quantity) == kWithout.end();
 }
 
-/// Quantities that every table has, besides the status.
+/// Quantities that lookup needs; it also needs the status.
 constexpr std::array kNeeded = {kDolp, kStokesI, kStokesQ, kStokesU, kStokesV, kErrorEstimate};
 
 const std::vector<double>& checked(const std::vector<double>& values, const char* axis, const std::string& name) {
@@ -94,6 +94,31 @@ void check_variables(const TableValues& table, const std::string& name) {
 
 }  // namespace
 
+std::vector<double> masking_kinks(const SceneModel& scene) {
+  const Masking masking = scene.surface.masking;
+  const double view_deg = scene.geometry.view_zenith_deg;
+  if (scene.geometry.mode != Mode::kBistatic || !scene.source) return {};
+  if (masking == Masking::kIntegral) return {view_deg};
+  if (masking != Masking::kVCavity) return {};
+  const CosSin view = cos_sin_deg(view_deg);
+  const double cos_azimuth = cos_sin_deg(scene.geometry.relative_azimuth_deg).cos;
+  // (1 - G) cos^2(beta) before G is limited to 1, with 2 cos(alpha) cos(beta) = cos(theta) + cos(theta_view).
+  const auto hidden = [&](double theta_deg) {
+    const CosSin theta = cos_sin_deg(theta_deg);
+    const double cos2_beta = 0.5 * (1.0 + theta.cos * view.cos + theta.sin * view.sin * cos_azimuth);
+    return cos2_beta - std::min(theta.cos, view.cos) * (theta.cos + view.cos);
+  };
+  std::vector<double> kinks_deg;
+  if (hidden(view_deg) > 0.0) kinks_deg.push_back(view_deg);
+  for (int theta_deg = 0; theta_deg < 90; ++theta_deg) {
+    const double below = hidden(theta_deg);
+    const double above = hidden(theta_deg + 1);
+    // A secant of a degree is right within some 0.01 degrees, which the size of a kink's error hardly depends on.
+    if ((below > 0.0) != (above > 0.0)) kinks_deg.push_back(theta_deg + below / (below - above));
+  }
+  return kinks_deg;
+}
+
 /// The entries that are read: a product of stencils.
 struct TableLookup::Window {
   std::array<LookupAxis::Place, kAxisCount> places;
@@ -115,7 +140,7 @@ struct TableLookup::Window {
     return places[axis].is_value ? places[axis].next : places[axis].next - 1;
   }
 
-  /// The positions of the corners of the point's cell, but for the part of one axis.
+  /// The positions of the corners of the point's cell, without the part of one axis.
   using Corners = boost::container::static_vector<std::size_t, std::size_t{1} << kAxisCount>;
   Corners corners(const TableLookup& lookup, std::size_t without) const {
     Corners corners = {0};
@@ -164,7 +189,7 @@ struct TableLookup::Rows {
   double sum(const Value& value) const {
     return sum_of(value, [](double weight) { return weight; });
   }
-  /// The same with the sizes of the weights.
+  /// The sum of |weight| x value(position).
   template <class Value>
   double sum_of_sizes(const Value& value) const {
     return sum_of(value, [](double weight) { return std::abs(weight); });
@@ -214,19 +239,20 @@ struct TableLookup::Rows {
 struct TableLookup::Lines {
   /// An interpolation with one value more, at one of its ends: by how much it changes the result.
   struct Change {
-    std::size_t first = 0;  ///< of the lines' values
+    std::size_t first = 0;  ///< position in the values of a line
     std::size_t count = 0;
     std::size_t level = 0;  ///< 0: beyond the window, or all values; then one value fewer each; kLevels: a kink
   };
-  static constexpr std::size_t kLevels = 3;       // of a short axis, one fewer of others
+  static constexpr std::size_t kLevels = 3;       // for a short axis; others have one fewer
   static constexpr std::size_t kMostChanges = 6;  // a short axis has one of level 0
   static constexpr std::size_t kMostValues = kMostStencil + 1;
   boost::container::static_vector<Change, kMostChanges> changes;
-  std::array<std::array<double, kMostChanges>, kMostValues> factors{};  ///< of each value of a line in each change
-  std::array<std::size_t, kMostValues> along{};                         ///< position along a line
+  std::array<std::array<double, kMostChanges>, kMostValues>
+      factors{};                                 ///< factor of each value of a line in each change
+  std::array<std::size_t, kMostValues> along{};  ///< position along a line
   std::size_t count = 0;
   Window::Corners begin;
-  double factor = 1.0;  ///< of the error, including the weights of the other axes
+  double factor = 1.0;  ///< factor of the error, including the weights of the other axes
   bool has_error = false;
   bool is_short = false;  ///< the window and one value more are the whole axis
   bool is_unknown = false;
@@ -432,8 +458,7 @@ PointResult TableLookup::at(const Point& point) const {
 }
 
 void TableLookup::finish(PointResult& result, const PointResult& change, double error, double rho_error) const {
-  // Error of a quotient: that of the numerator, plus that of the denominator times the quotient, over the least
-  // denominator.
+  // Error of a quotient: (error of the numerator + quotient x error of the denominator) / least denominator.
   const auto over = [](double below, double below_error, double quotient, double above_error) {
     const double least = std::abs(below) - below_error;
     // A quotient of 0 stays 0 even if the error of the denominator is infinite.

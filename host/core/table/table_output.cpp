@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <dolp/errors.hpp>
 #include <string_view>
 
 #include "base/atomic_file.hpp"
@@ -64,9 +63,9 @@ std::optional<std::string> difference(const std::string& identity, const std::st
 struct TableOutput::Impl {
   Job job;
   TableFormat format;
-  std::optional<AtomicFile> file;  // with the values; none of a .csv or .npy of one part
+  std::optional<AtomicFile> file;  // has the values; none for a .csv or .npy of one part
   std::optional<TableStore> store;
-  std::optional<AtomicFile> progress;  // text of the parts done; of a resumable table
+  std::optional<AtomicFile> progress;  // text of the finished parts of a resumable table
   TableValues only_part;
   ValueSums sums;
   std::size_t parts_done = 0;
@@ -101,7 +100,7 @@ struct TableOutput::Impl {
     if (parts_done == 0) file->resize(0);
   }
 
-  /// Takes over the parts that are there. Returns the length of what the progress file says of them.
+  /// Reuses the parts that are there. Returns the length of their lines in the progress file.
   std::uint64_t reuse_finished_parts() {
     std::string text(progress->size(), '\0');
     progress->read_at(0, text.data(), text.size());
@@ -126,7 +125,7 @@ struct TableOutput::Impl {
     return parts_done > 0 ? taken : 0;
   }
 
-  /// The hash that the progress file has of the part after those done.
+  /// The hash of the next part in the progress file.
   std::uint64_t part_hash(const ValueSums& of_part) const {
     std::uint64_t hash = hashed(hashed(kHashStart, job.identity), std::uint64_t{parts_done});
     for (const std::uint64_t sum : of_part) hash = hashed(hash, sum);

@@ -8,26 +8,26 @@
 #include <string>
 #include <vector>
 
-#include "table/table_box.hpp"
+#include "table/table.hpp"
 
 namespace dolp {
 
-/// A table file under way. A resumable table of several parts is in PATH.partial until it is complete, and
-/// PATH.partial.txt has a line for each finished part, with a hash of its values; any other has no name before. A .csv
-/// or .npy is converted from it at the end.
+/// A table file that is being written. A resumable table of several parts stays in PATH.partial until it is complete;
+/// PATH.partial.txt has a line for each finished part, with a hash of its values. Other tables have no name before they
+/// are complete. A .csv or .npy is converted at the end.
 class TableOutput {
  public:
   struct Job {
     std::filesystem::path path;
     TableLayout layout;
     std::vector<TableBox> parts = {};  ///< in the order of write(); none: any number of parts, in any order
-    std::string identity = {};  ///< of a resumable table: names and values that all parts share, see difference()
-    bool is_resumed = false;    ///< goes on with PATH.partial, if it is there
-    Progress progress = {};     ///< called, with nothing done, while what is there is read
+    std::string identity = {};  ///< for a resumable table: names and values that all parts share, see difference()
+    bool is_resumed = false;    ///< continues PATH.partial, if it is there
+    Progress progress = {};     ///< called, with nothing done, while finished parts are read
   };
-  /// Of parts that an earlier run finished those are taken over that the file still has as they were written, up to the
-  /// first that it has not. Errors: those of check_output_path; InputError for a partial file of another identity, or
-  /// that another process writes; IoError where PATH.partial or PATH.partial.txt is a link; Cancelled.
+  /// Reuses finished parts of an earlier run, up to the first that is missing or changed. Errors: errors of
+  /// check_output_path; InputError for a partial file of another identity, or one that another process writes; IoError
+  /// if PATH.partial or PATH.partial.txt is a link; Cancelled.
   explicit TableOutput(Job job);
   ~TableOutput();
   TableOutput(const TableOutput&) = delete;

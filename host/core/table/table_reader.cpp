@@ -8,10 +8,8 @@
 
 #include <algorithm>
 #include <array>
-#include <dolp/errors.hpp>
 #include <numeric>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 
@@ -23,8 +21,8 @@
 namespace dolp {
 namespace {
 
-constexpr std::size_t kEntriesAtOnce = std::size_t{1} << 18U;  // of a part that is read
-constexpr std::size_t kMostAngles = 1024;                      // of a response table
+constexpr std::size_t kEntriesAtOnce = std::size_t{1} << 18U;  // entries of a part
+constexpr std::size_t kMostAngles = 1024;                      // angles of a response table
 
 namespace fs = std::filesystem;
 
@@ -47,8 +45,8 @@ class Reader {
   }
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
-  /// HDF5 keeps half of a file that fails to be closed, as where a server is gone, and crashes at exit. So it gets
-  /// another one to close; dup2 closes its own whatever happens.
+  /// If a file cannot be closed, for example because a server is gone, HDF5 keeps half of it and crashes at exit. So
+  /// HDF5 gets another file to close; dup2 always closes the real one.
   ~Reader() {
     void* own = nullptr;
     const int other = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
@@ -61,6 +59,12 @@ class Reader {
     if (code < 0) fail(what + ": cannot be read; the file is damaged");
   }
 
+  /// An object of HDF5. `name`: for the message if there is none.
+  Hdf5Handle take(hid_t id, Hdf5Handle::Close close, const std::string& name) const {
+    check(id < 0 ? -1 : 0, name);
+    return {id, close};
+  }
+
   const Hdf5Handle& file() const { return file_; }
 
   /// A variable whose values are in this file; nothing where it is not there.
@@ -71,10 +75,8 @@ class Reader {
     H5L_info_t link{};
     check(H5Lget_info(file_.id(), name.c_str(), &link, H5P_DEFAULT), name);
     if (link.type != H5L_TYPE_HARD) fail(name + ": is a link; a table holds all of its values");
-    Hdf5Handle variable(H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), H5Dclose);
-    check(variable ? 0 : -1, name);
-    const Hdf5Handle creation(H5Dget_create_plist(variable.id()), H5Pclose);
-    check(creation ? 0 : -1, name);
+    Hdf5Handle variable = take(H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), H5Dclose, name);
+    const Hdf5Handle creation = take(H5Dget_create_plist(variable.id()), H5Pclose, name);
     if (H5Pget_layout(creation.id()) == H5D_VIRTUAL || H5Pget_external_count(creation.id()) != 0) {
       fail(name + ": its values are in another file; a table holds all of its values");
     }
@@ -82,8 +84,7 @@ class Reader {
   }
 
   std::vector<hsize_t> shape_of(const Hdf5Handle& variable, const std::string& name) const {
-    const Hdf5Handle space(H5Dget_space(variable.id()), H5Sclose);
-    check(space ? 0 : -1, name);
+    const Hdf5Handle space = take(H5Dget_space(variable.id()), H5Sclose, name);
     const int rank = H5Sget_simple_extent_ndims(space.id());
     check(rank, name);
     std::vector<hsize_t> shape(static_cast<std::size_t>(rank));
@@ -132,8 +133,7 @@ std::vector<std::string> read_labels(const Reader& reader, const std::string& na
   const Hdf5Handle variable = reader.find(name);
   if (!variable) return {};
   const std::vector<hsize_t> shape = reader.shape_of(variable, name);
-  const Hdf5Handle type(H5Dget_type(variable.id()), H5Tclose);
-  reader.check(type ? 0 : -1, name);
+  const Hdf5Handle type = reader.take(H5Dget_type(variable.id()), H5Tclose, name);
   if (!is_of_class(type.id(), H5T_STRING) || shape.size() != 1 || shape[0] > most)
     reader.fail(name + ": is not a list of texts");
   const std::size_t width = H5Tget_size(type.id());
@@ -156,9 +156,17 @@ std::vector<std::string> read_labels(const Reader& reader, const std::string& na
   return labels;
 }
 
-/// The text of a fixed length that an attribute has, without the zero bytes that pad it.
-std::string fixed_text(const Reader& reader, const Hdf5Handle& attribute, const Hdf5Handle& type,
-                       const std::string& name) {
+/// The text of an attribute. Its length is fixed, with zero bytes at the end, or variable: other writers store text
+/// that is not ASCII in this form.
+std::string text_of(const Reader& reader, const Hdf5Handle& attribute, const Hdf5Handle& type,
+                    const std::string& name) {
+  if (H5Tis_variable_str(type.id()) > 0) {
+    char* stored = nullptr;
+    reader.check(H5Aread(attribute.id(), type.id(), &stored), name);
+    std::string text = stored ? stored : "";
+    reader.check(H5free_memory(stored), name);
+    return text;
+  }
   const std::size_t length = H5Tget_size(type.id());
   if (length > kMostStoredTextBytes) reader.fail(name + ": the text is too long");
   reader.check_claim(name, length);
@@ -168,30 +176,16 @@ std::string fixed_text(const Reader& reader, const Hdf5Handle& attribute, const 
   return text;
 }
 
-/// Other writers store text that is not ASCII in this form.
-std::string variable_text(const Reader& reader, const Hdf5Handle& attribute, const Hdf5Handle& type,
-                          const std::string& name) {
-  char* text = nullptr;
-  reader.check(H5Aread(attribute.id(), type.id(), &text), name);
-  std::string copy = text ? text : "";
-  reader.check(H5free_memory(text), name);
-  return copy;
-}
-
 /// A text or a number; nothing for other attributes.
 std::optional<std::variant<std::string, double>> read_value(const Reader& reader, const Hdf5Handle& attribute,
                                                             const std::string& name) {
-  const Hdf5Handle space(H5Aget_space(attribute.id()), H5Sclose);
-  const Hdf5Handle type(H5Aget_type(attribute.id()), H5Tclose);
-  reader.check(space && type ? 0 : -1, name);
+  const Hdf5Handle space = reader.take(H5Aget_space(attribute.id()), H5Sclose, name);
+  const Hdf5Handle type = reader.take(H5Aget_type(attribute.id()), H5Tclose, name);
   const bool is_text = is_of_class(type.id(), H5T_STRING);
   const hssize_t count = H5Sget_simple_extent_npoints(space.id());
   if (is_text && count == 0) return std::string();
   if (count != 1) return std::nullopt;
-  if (is_text) {
-    return H5Tis_variable_str(type.id()) > 0 ? variable_text(reader, attribute, type, name)
-                                             : fixed_text(reader, attribute, type, name);
-  }
+  if (is_text) return text_of(reader, attribute, type, name);
   if (!is_of_class(type.id(), H5T_FLOAT) && !is_of_class(type.id(), H5T_INTEGER)) return std::nullopt;
   double value = 0.0;
   reader.check(H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &value), name);
@@ -203,8 +197,7 @@ std::optional<std::string> find_text(const Reader& reader, const Hdf5Handle& obj
   const htri_t exists = H5Aexists(object.id(), name);
   reader.check(exists, name);
   if (exists == 0) return std::nullopt;
-  const Hdf5Handle attribute(H5Aopen(object.id(), name, H5P_DEFAULT), H5Aclose);
-  reader.check(attribute ? 0 : -1, name);
+  const Hdf5Handle attribute = reader.take(H5Aopen(object.id(), name, H5P_DEFAULT), H5Aclose, name);
   const auto value = read_value(reader, attribute, name);
   const auto* text = value ? std::get_if<std::string>(&*value) : nullptr;
   return text ? std::optional(*text) : std::nullopt;
@@ -220,7 +213,7 @@ Hdf5Handle attribute_at(const Reader& reader, hsize_t position) {
   reader.fail("an attribute cannot be read; the file is damaged");
 }
 
-/// All attributes but those of the file format.
+/// All attributes, except attributes of the file format.
 std::vector<Attribute> read_attributes(const Reader& reader) {
   H5O_info_t info{};
   reader.check(H5Oget_info2(reader.file().id(), &info, H5O_INFO_NUM_ATTRS), "the attributes");
@@ -242,8 +235,7 @@ void append_long_texts(const Reader& reader, std::vector<Attribute>& attributes)
                            "coating", "reflectance", "materials", kSpectralData}) {
     const Hdf5Handle variable = reader.find(name);
     if (!variable) continue;
-    const Hdf5Handle type(H5Dget_type(variable.id()), H5Tclose);
-    reader.check(type ? 0 : -1, name);
+    const Hdf5Handle type = reader.take(H5Dget_type(variable.id()), H5Tclose, name);
     const std::vector<hsize_t> shape = reader.shape_of(variable, name);
     const bool is_text = is_of_class(type.id(), H5T_STRING) && H5Tget_size(type.id()) == 1 && shape.size() == 1;
     if (!is_text || shape[0] > kMostStoredTextBytes) reader.fail(std::string(name) + ": is no text, or too long");
@@ -258,11 +250,9 @@ void append_long_texts(const Reader& reader, std::vector<Attribute>& attributes)
 
 struct TableReader::Impl {
   Reader reader;
-  TableHead head;
-  Quantities quantities;
-  std::vector<ResponseVariable> responses;
-  bool has_status = false;
-  std::vector<std::pair<std::string, Hdf5Handle>> open;  // the quantities, responses and status
+  TableLayout layout;
+  TableHead& head = layout.head;
+  std::vector<std::pair<std::string, Hdf5Handle>> open;  // in the order of for_each_variable
 
   explicit Impl(const fs::path& path) : reader(path) {}
 
@@ -306,17 +296,17 @@ struct TableReader::Impl {
     for (const Quantity quantity : kAllQuantities) {
       const QuantityDescription& described = description_of(quantity);
       if (!find(described.name, sizeof(double))) continue;
-      quantities.push_back(quantity);
+      layout.quantities.push_back(quantity);
       if (described.has_stokes_units)
         head.stokes_units = find_text(reader, open.back().second, "units").value_or(head.stokes_units);
     }
     for (const ResponseVariable variable : kAllResponseVariables) {
       const ResponseDescription& described = description_of(variable);
       if (!head.beta_deg.empty() && find(described.name, sizeof(double), described.has_beta))
-        responses.push_back(variable);
+        layout.responses.push_back(variable);
     }
-    has_status = find("status", sizeof(std::uint32_t));
-    if (quantities.empty()) reader.fail("is not a table of dolp (none of its variables is there)");
+    layout.has_status = find("status", sizeof(std::uint32_t));
+    if (layout.quantities.empty()) reader.fail("is not a table of dolp (none of its variables is there)");
   }
 
   void read_curves() {
@@ -333,9 +323,9 @@ struct TableReader::Impl {
     }
   }
 
+  /// Reads a part of a variable that has `width` values for each entry.
   template <class Value>
-  void read(std::size_t number, const TableBox& box, hid_t type, std::vector<Value>& values,
-            std::size_t angles = 0) const {
+  void read(std::size_t number, const TableBox& box, std::vector<Value>& values, std::size_t width) const {
     const auto& [name, variable] = open[number];
     std::vector<hsize_t> first, count;
     for (const Axis axis : kAllAxes) {
@@ -343,14 +333,15 @@ struct TableReader::Impl {
       first.push_back(box.first[axis]);
       count.push_back(box.count[axis]);
     }
-    if (angles > 0) {
+    if (reader.shape_of(variable, name).size() > count.size()) {  // over beta too
       first.push_back(0);
-      count.push_back(angles);
+      count.push_back(width);
     }
-    values.resize(size_of(box.count) * std::max<std::size_t>(angles, 1));
-    const Hdf5Handle in_file(H5Dget_space(variable.id()), H5Sclose);
-    const Hdf5Handle in_memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose);
-    reader.check(in_file && in_memory ? 0 : -1, name);
+    values.resize(size_of(box.count) * width);
+    const hid_t type = std::is_same_v<Value, double> ? H5T_NATIVE_DOUBLE : H5T_NATIVE_UINT;
+    const Hdf5Handle in_file = reader.take(H5Dget_space(variable.id()), H5Sclose, name);
+    const Hdf5Handle in_memory =
+        reader.take(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose, name);
     reader.check(H5Sselect_hyperslab(in_file.id(), H5S_SELECT_SET, first.data(), nullptr, count.data(), nullptr), name);
     reader.check(H5Dread(variable.id(), type, in_memory.id(), in_file.id(), H5P_DEFAULT, values.data()), name);
   }
@@ -367,58 +358,45 @@ TableReader::TableReader(const fs::path& path) : impl_(std::make_unique<Impl>(pa
 
 TableReader::~TableReader() = default;
 
-const TableHead& TableReader::head() const { return impl_->head; }
-const Quantities& TableReader::quantities() const { return impl_->quantities; }
-bool TableReader::has_status() const { return impl_->has_status; }
+const TableLayout& TableReader::layout() const { return impl_->layout; }
 
 TableValues TableReader::read(const TableBox& box) const {
-  TableValues part;
-  static_cast<TableHead&>(part) = head_of(impl_->head, box);
-  const Quantities& quantities = impl_->quantities;
-  for (std::size_t i = 0; i < quantities.size(); ++i) impl_->read(i, box, H5T_NATIVE_DOUBLE, part[quantities[i]]);
-  std::size_t number = quantities.size();
-  for (const ResponseVariable variable : impl_->responses)
-    impl_->read(number++, box, H5T_NATIVE_DOUBLE, part.responses[variable],
-                description_of(variable).has_beta ? part.beta_deg.size() : 0);
-  if (impl_->has_status) impl_->read(number, box, H5T_NATIVE_UINT, part.status);
+  TableValues part{head_of(head(), box)};
+  std::size_t number = 0;
+  for_each_variable(layout(), [&](const auto& of, std::size_t width) { impl_->read(number++, box, of(part), width); });
   return part;
 }
 
 void TableReader::check_hash(const ValueSums& sums) const {
   const std::optional<std::string> hash = find_text(impl_->reader, impl_->reader.file(), kValuesHash);
   if (!hash) impl_->reader.fail("has no text attribute values_hash: its values are not known to be those of dolp");
-  if (*hash == values_hash(impl_->head, impl_->quantities, sums)) return;
+  if (*hash == values_hash(layout(), sums)) return;
   impl_->reader.fail(
       "the values are not those that dolp wrote (attribute values_hash): the file was changed or is damaged, or has "
-      "not "
-      "all values, " +
+      "not all values, " +
       std::string(kPartHint));
 }
 
 ValueSums TableReader::sums_of(const TableValues& part, const TableBox& box) const {
-  return dolp::sums_of(part, impl_->quantities, box.first, impl_->head.counts());
+  return dolp::sums_of(part, layout(), box.first);
 }
 
 TableValues TableReader::read_entries(std::span<const std::size_t> positions, const Progress& progress) const {
-  TableValues entries;
-  static_cast<TableHead&>(entries) = impl_->head;
+  TableValues entries{head()};
   ValueSums sums;
   std::size_t before = 0;
-  const std::size_t at_once = kEntriesAtOnce / std::max<std::size_t>(impl_->head.beta_deg.size(), 1);
-  for (const TableBox& box : boxes_in_order(impl_->head.counts(), at_once)) {
-    if (progress && !progress(before, impl_->head.size())) throw Cancelled();
+  const std::size_t at_once = kEntriesAtOnce / std::max<std::size_t>(head().beta_deg.size(), 1);
+  for (const TableBox& box : boxes_in_order(head().counts(), at_once)) {
+    if (progress && !progress(before, head().size())) throw Cancelled();
     const TableValues part = read(box);
     add(sums, sums_of(part, box));
     const std::size_t end = before + size_of(box.count);
     for (; !positions.empty() && positions.front() < end; positions = positions.subspan(1)) {
       const std::size_t position = positions.front() - before;
-      for (const Quantity quantity : impl_->quantities) entries[quantity].push_back(part[quantity][position]);
-      for (const ResponseVariable variable : impl_->responses) {
-        const std::size_t width = part.width_of(variable);
-        const auto own = std::span(part.responses[variable]).subspan(position * width, width);
-        entries.responses[variable].insert(entries.responses[variable].end(), own.begin(), own.end());
-      }
-      if (impl_->has_status) entries.status.push_back(part.status[position]);
+      for_each_variable(layout(), [&](const auto& of, std::size_t width) {
+        const auto own = std::span(of(part)).subspan(position * width, width);
+        of(entries).insert(of(entries).end(), own.begin(), own.end());
+      });
     }
     before = end;
   }

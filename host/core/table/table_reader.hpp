@@ -6,13 +6,12 @@
 #include <memory>
 #include <span>
 
-#include "table/table_box.hpp"
-#include "table/values_hash.hpp"
+#include "table/table.hpp"
 
 namespace dolp {
 
-/// An open .nc table. Errors of all: InputError for a file that cannot be opened, is not such a table, is damaged, or
-/// claims more values than a file of its size can hold.
+/// An open .nc table. Errors of all calls: InputError for a file that cannot be opened, is not such a table, is
+/// damaged, or claims more values than a file of its size can hold.
 class TableReader {
  public:
   explicit TableReader(const std::filesystem::path& path);
@@ -20,19 +19,17 @@ class TableReader {
   TableReader& operator=(const TableReader&) = delete;
   ~TableReader();
 
-  const TableHead& head() const;
-  /// The quantities that the table has.
-  const Quantities& quantities() const;
-  bool has_status() const;
+  const TableLayout& layout() const;
+  const TableHead& head() const { return layout().head; }
 
   TableValues read(const TableBox& box) const;
-  /// The values of some entries, at ascending positions: each quantity has one for each of them. All are read, part by
-  /// part, and refused as by check_hash. Errors: also Cancelled.
+  /// The values of the entries at ascending positions: each variable has one value for each of them. Reads the whole
+  /// table, part by part, and refuses what check_hash refuses. Errors: also Cancelled.
   TableValues read_entries(std::span<const std::size_t> positions, const Progress& progress) const;
 
-  /// Contribution of a part that was read to the hash.
+  /// Hash contribution of a part that has been read.
   ValueSums sums_of(const TableValues& part, const TableBox& box) const;
-  /// Refuses values that differ from the written ones, or whose hash is missing, by the sums over all parts.
+  /// Refuses values that differ from the written ones, and a file without a hash. `sums`: sums over all parts.
   void check_hash(const ValueSums& sums) const;
 
  private:

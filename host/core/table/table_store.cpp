@@ -64,7 +64,7 @@ class MemoryFile {
   int descriptor_;
 };
 
-/// What the last call of HDF5 failed for.
+/// Why the last call of HDF5 failed.
 struct Hdf5Failure {
   std::string reason;      ///< in HDF5's words; empty where it has no memory for them
   bool is_memory = false;  ///< lack of memory
@@ -83,7 +83,7 @@ class Writer {
   explicit Writer(const MemoryFile& memory) : memory_(memory) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // messages are ours
     const Hdf5Handle access = take(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    check(H5Pset_fapl_stdio(access.id()));  // HDF5's usual driver asks for the file's own name, and this has none
+    check(H5Pset_fapl_stdio(access.id()));  // HDF5's usual driver needs the name of a file
     check(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18));
     const Hdf5Handle creation = take(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     // Without an order of creation the netCDF library opens a file for reading only.
@@ -120,7 +120,7 @@ class Writer {
     const hsize_t one = 1;
     put(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, take(H5Screate_simple(1, &one, nullptr), H5Sclose), &value);
   }
-  // CF-1.8 has no unsigned int, and wants masks of the variable's own type.
+  // CF-1.8 has no unsigned int; the masks must have the type of the variable.
   void put_status_bits(const Hdf5Handle& object) const {
     std::array<int, kStatusBits.size()> masks{};
     std::array<const char*, kStatusBits.size()> meanings{};
@@ -133,7 +133,7 @@ class Writer {
   }
 
   /// A variable without values, which has its place in the file. Uncompressed: zlib saves half of the file and takes
-  /// longer than all the rest of a table. In one piece: what points to pieces has no checksum.
+  /// longer than everything else of a table. In one piece, because pointers to pieces have no checksum.
   Hdf5Handle define(const char* name, hid_t type, const std::vector<hsize_t>& shape, const void* fill,
                     H5D_alloc_time_t allocation = H5D_ALLOC_TIME_EARLY) const {
     const Hdf5Handle creation = take(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
@@ -170,7 +170,7 @@ class Writer {
   Hdf5Handle file_;
 };
 
-/// A text as a variable over a dimension of its own.
+/// Writes a text as a variable over its length.
 void put_long_text(const Writer& writer, const std::string& name, const std::string& text) {
   const std::vector<hsize_t> shape = {text.size()};
   const Hdf5Handle length =  // never written, so that it takes no place in the file
@@ -202,12 +202,18 @@ void put_attributes(const Writer& writer, const TableHead& head) {
   if (const std::string data = spectral_data_of(head); !data.empty()) put_more(writer, {{kSpectralData, data}});
 }
 
+/// A coordinate: a dimension of its own, or over the dimension `along`, which may be missing.
 template <class Described>
-void put_coordinate(const Writer& writer, const Hdf5Handle& variable, const Described& described,
-                    const std::vector<double>& values) {
+Hdf5Handle put_coordinate(const Writer& writer, const Described& described, const std::vector<double>& values,
+                          const Hdf5Handle* along = nullptr) {
+  const std::vector<hsize_t> shape(!along || *along ? 1 : 0, values.size());
+  Hdf5Handle variable = writer.define(described.name, H5T_IEEE_F64LE, shape, nullptr);
+  if (!along) writer.check(H5DSset_scale(variable.id(), described.name));
+  if (along && *along) writer.check(H5DSattach_scale(variable.id(), along->id(), 0));
   writer.put_text(variable, "long_name", described.long_name);
   writer.put_text(variable, "units", described.units);
   writer.write(variable, H5T_NATIVE_DOUBLE, values.data());
+  return variable;
 }
 
 /// The coordinate of an axis with labels. Texts of one length crash the netCDF library.
@@ -232,32 +238,17 @@ AxisVariables put_axes(const Writer& writer, const TableHead& head) {
     const AxisDescription& described = description_of(axis);
     const std::vector<double>& values = head.axes[axis];
     if (values.empty()) continue;
-    if (described.has_labels) {
-      axes[axis] = put_labels(writer, head, axis);
-      continue;
-    }
-    axes[axis] = writer.define(described.name, H5T_IEEE_F64LE, {values.size()}, nullptr);
-    writer.check(H5DSset_scale(axes[axis].id(), described.name));
-    put_coordinate(writer, axes[axis], described, values);
+    axes[axis] = described.has_labels ? put_labels(writer, head, axis) : put_coordinate(writer, described, values);
   }
-  if (!head.wind_m_s.empty()) {
-    const Hdf5Handle wind = writer.define(kWind.name, H5T_IEEE_F64LE, {head.wind_m_s.size()}, nullptr);
-    writer.check(H5DSattach_scale(wind.id(), axes[Axis::kSigma].id(), 0));
-    put_coordinate(writer, wind, kWind, head.wind_m_s);
-  }
+  if (!head.wind_m_s.empty()) put_coordinate(writer, kWind, head.wind_m_s, &axes[Axis::kSigma]);
   for (const TableCurve& described : kTableCurves) {
     const std::vector<double>& used = (head.*described.curve).used;
-    if (used.empty()) continue;
-    const Hdf5Handle& wavelengths = axes[Axis::kWavelength];
-    const std::vector<hsize_t> shape(wavelengths ? 1 : 0, used.size());
-    const Hdf5Handle variable = writer.define(described.name, H5T_IEEE_F64LE, shape, nullptr);
-    if (wavelengths) writer.check(H5DSattach_scale(variable.id(), wavelengths.id(), 0));
-    put_coordinate(writer, variable, described, used);
+    if (!used.empty()) put_coordinate(writer, described, used, &axes[Axis::kWavelength]);
   }
   return axes;
 }
 
-/// `beta`: the coordinate that the variable has besides the axes, if it has one.
+/// `beta`: the last coordinate of the variable, after the axes; null for most variables.
 Hdf5Handle define_over_axes(const Writer& writer, const TableHead& head, const AxisVariables& axes, const char* name,
                             hid_t type, const void* fill, const Hdf5Handle* beta = nullptr) {
   std::vector<hsize_t> shape;
@@ -302,14 +293,6 @@ std::uint64_t put_quantity(const Writer& writer, const TableHead& head, const Ax
                       is_response ? kResponseQualifier : described.ancillary);
 }
 
-Hdf5Handle put_beta(const Writer& writer, const TableHead& head) {
-  if (head.beta_deg.empty()) return {};
-  Hdf5Handle beta = writer.define(kBeta.name, H5T_IEEE_F64LE, {head.beta_deg.size()}, nullptr);
-  writer.check(H5DSset_scale(beta.id(), kBeta.name));
-  put_coordinate(writer, beta, kBeta, head.beta_deg);
-  return beta;
-}
-
 std::uint64_t put_response(const Writer& writer, const TableHead& head, const AxisVariables& axes,
                            const Hdf5Handle& beta, ResponseVariable variable) {
   const ResponseDescription& described = description_of(variable);
@@ -334,7 +317,7 @@ std::uint64_t bytes_of(const std::vector<Attribute>& attributes) {
   return bytes;
 }
 
-/// No file of this layout is longer.
+/// Upper bound of the length of a file with this layout.
 std::uint64_t most_bytes(const TableLayout& layout) {
   const TableHead& head = layout.head;
   const std::size_t of_entry =
@@ -348,7 +331,7 @@ std::uint64_t most_bytes(const TableLayout& layout) {
   return numbers * sizeof(double) + bytes_of(head.attributes) + spectral_data_of(head).size() + kMostOverhead;
 }
 
-/// Refuses files that may not be so long: HDF5 does not survive one of its own that may not grow.
+/// Refuses a file longer than the system allows, because HDF5 does not survive a file that cannot grow.
 void check_room(const AtomicFile& file, std::uint64_t bytes) {
   rlimit limit{};
   if (::getrlimit(RLIMIT_FSIZE, &limit) != 0 || bytes <= limit.rlim_cur) return;
@@ -363,8 +346,7 @@ struct TableStore::Impl {
   AtomicFile& file;
   MemoryFile memory;
   Writer writer{memory};
-  /// Where the values of each of the quantities, the responses, and last of status (32 bits each) if it is there, begin
-  /// in the file.
+  /// Where the values of each variable begin in the file, in the order of for_each_variable.
   std::vector<std::uint64_t> offsets;
 
   Impl(TableLayout own, AtomicFile& of_table)
@@ -372,7 +354,7 @@ struct TableStore::Impl {
     const TableHead& head = layout.head;
     put_attributes(writer, head);
     const AxisVariables axes = put_axes(writer, head);
-    const Hdf5Handle beta = put_beta(writer, head);
+    const Hdf5Handle beta = head.beta_deg.empty() ? Hdf5Handle() : put_coordinate(writer, kBeta, head.beta_deg);
     for (const Quantity quantity : layout.quantities) offsets.push_back(put_quantity(writer, head, axes, quantity));
     for (const ResponseVariable variable : layout.responses)
       offsets.push_back(put_response(writer, head, axes, beta, variable));
@@ -382,31 +364,25 @@ struct TableStore::Impl {
   /// Calls use(offset, values) for each run of values of a part that is one run in the file too.
   template <class Values, class Use>
   void each_run(Values& part, const PerAxis& first, const Use& use) const {
-    const auto of_variable = [&](std::size_t variable, auto& values) {
-      const std::span all(values);
-      const std::size_t width = all.size() / part.size();
-      for_each_run(first, part.counts(), layout.head.counts(), [&](const GridRun& run) {
-        use(offsets[variable] + run.in_whole * width * sizeof(all[0]),
-            all.subspan(run.in_part * width, run.count * width));
-      });
-    };
     std::size_t variable = 0;
-    for (const Quantity quantity : layout.quantities) of_variable(variable++, part[quantity]);
-    for (const ResponseVariable response : layout.responses) of_variable(variable++, part.responses[response]);
-    if (layout.has_status) of_variable(variable, part.status);
+    for_each_variable(layout, [&](const auto& of, std::size_t width) {
+      const std::span values(of(part));
+      const std::uint64_t offset = offsets[variable++];
+      for_each_run(first, part.counts(), layout.head.counts(), [&](const GridRun& run) {
+        use(offset + run.in_whole * width * sizeof(values[0]), values.subspan(run.in_part * width, run.count * width));
+      });
+    });
   }
 
-  /// Writes the bytes of the file that are not values: between and around them, where there is anything at all.
+  /// Writes the bytes of the file between and around the values.
   void write_gaps() {
     writer.check(H5Fflush(writer.file().id(), H5F_SCOPE_GLOBAL));
     std::vector<std::pair<std::uint64_t, std::uint64_t>> values;
-    const auto add = [&](std::size_t of_entry) {
+    const TableValues none;
+    for_each_variable(layout, [&](const auto& of, std::size_t width) {
       const std::uint64_t first = offsets[values.size()];
-      values.emplace_back(first, first + layout.head.size() * of_entry);
-    };
-    for (std::size_t i = 0; i < layout.quantities.size(); ++i) add(sizeof(double));
-    for (const ResponseVariable response : layout.responses) add(layout.head.width_of(response) * sizeof(double));
-    if (layout.has_status) add(sizeof(std::uint32_t));
+      values.emplace_back(first, first + layout.head.size() * width * sizeof(of(none)[0]));
+    });
     const std::uint64_t size = memory.size();
     values.emplace_back(size, size);
     std::ranges::sort(values);
@@ -431,16 +407,12 @@ ValueSums TableStore::write(const TableValues& part, const PerAxis& first) {
   impl_->each_run(part, first, [&](std::uint64_t offset, auto values) {
     impl_->file.write_at(offset, values.data(), values.size_bytes());
   });
-  return sums_of(part, impl_->layout.quantities, first, impl_->layout.head.counts());
+  return sums_of(part, impl_->layout, first);
 }
 
 TableValues TableStore::read(const TableBox& box) const {
-  TableValues part;
-  static_cast<TableHead&>(part) = head_of(impl_->layout.head, box);
-  for (const Quantity quantity : impl_->layout.quantities) part[quantity].resize(part.size());
-  for (const ResponseVariable response : impl_->layout.responses)
-    part.responses[response].resize(part.size() * part.width_of(response));
-  if (impl_->layout.has_status) part.status.resize(part.size());
+  TableValues part{head_of(impl_->layout.head, box)};
+  for_each_variable(impl_->layout, [&](const auto& of, std::size_t width) { of(part).resize(part.size() * width); });
   impl_->each_run(part, box.first, [&](std::uint64_t offset, auto values) {
     impl_->file.read_at(offset, values.data(), values.size_bytes());
   });
@@ -449,14 +421,14 @@ TableValues TableStore::read(const TableBox& box) const {
 
 std::optional<ValueSums> TableStore::measured(const TableBox& box) const {
   try {
-    return sums_of(read(box), impl_->layout.quantities, box.first, impl_->layout.head.counts());
+    return sums_of(read(box), impl_->layout, box.first);
   } catch (const IoError&) {  // cut short, for one
     return std::nullopt;
   }
 }
 
 void TableStore::finish(std::vector<Attribute> more, const ValueSums& sums) {
-  more.push_back({kValuesHash, values_hash(impl_->layout.head, impl_->layout.quantities, sums)});
+  more.push_back({kValuesHash, values_hash(impl_->layout, sums)});
   check_room(impl_->file, most_bytes(impl_->layout) + bytes_of(more));
   put_more(impl_->writer, more);
   impl_->write_gaps();

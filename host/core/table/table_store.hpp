@@ -6,15 +6,13 @@
 #include <vector>
 
 #include "base/atomic_file.hpp"
-#include "table/table_box.hpp"
-#include "table/values_hash.hpp"
+#include "table/table.hpp"
 
 namespace dolp {
 
-/// A NetCDF-4 table under way in a file: its values may come in any order. HDF5 protects names, shapes and attributes
-/// with checksums, the hash the values. HDF5 makes all but the values in memory, since it does not survive a disk that
-/// fills up. A text too long for an attribute of the netCDF library is a variable of characters with the attribute's
-/// name.
+/// A NetCDF-4 table that is being written. Its values may come in any order. Checksums of HDF5 protect names, shapes
+/// and attributes; the hash protects the values. HDF5 makes everything except the values in memory, because it does not
+/// survive a full disk. A text too long for an attribute is a variable of characters with the attribute's name.
 class TableStore {
  public:
   /// `file` must outlive the object; nothing is written to it yet.
@@ -29,9 +27,9 @@ class TableStore {
   ValueSums write(const TableValues& part, const PerAxis& first);
   /// Reads a part back. Errors: IoError.
   TableValues read(const TableBox& box) const;
-  /// The sums of a part that an earlier process wrote, as the file has it now; nothing where it cannot be read.
+  /// The sums of a part as it is in the file now; nothing if it cannot be read.
   std::optional<ValueSums> measured(const TableBox& box) const;
-  /// Writes the rest of the file, with more attributes. `sums`: of all values. Errors: IoError, Cancelled.
+  /// Writes the rest of the file, with more attributes. `sums`: sums over all values. Errors: IoError, Cancelled.
   void finish(std::vector<Attribute> more, const ValueSums& sums);
 
  private:

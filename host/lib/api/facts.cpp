@@ -7,7 +7,6 @@
 #include <optional>
 
 #include <dolp/number_range.hpp>
-#include <dolp/status.hpp>
 #include "api/impl.hpp"
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
@@ -27,7 +26,7 @@
 namespace dolp {
 namespace {
 
-/// The precisions to examine. `left_out` says why one is missing that auto would include.
+/// The precisions to examine. `left_out`: why a precision of auto is missing.
 std::vector<Precision> precisions_of(const DeviceCheckOptions& options, std::string& left_out) {
   const std::optional<Precision> wanted = named<Precision>(options.precision);
   if (!wanted) throw InputError("precision " + one_line(options.precision) + ": must be auto, float or double");

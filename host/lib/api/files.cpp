@@ -20,7 +20,6 @@
 #include "run/scene_table.hpp"
 #include "run/table_run.hpp"
 #include "run/table_scene.hpp"
-#include "table/result_csv.hpp"
 #include "table/table_file.hpp"
 #include "table/table_lookup.hpp"
 

@@ -23,7 +23,6 @@
 #include "run/scene_run.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/scene_reader.hpp"
-#include "scene/scene_writer.hpp"
 
 namespace dolp {
 namespace {
@@ -235,7 +234,7 @@ void add_model_gap(ReportBuilder& report, const Best& best, const FitOptions& op
 }
 
 /// Fits all combinations that the scene has, and gives the best; `models` gets all, the best first. `begin` gets the
-/// first scene and gives the evaluator. Errors: InputError where the scene has none of them.
+/// first scene and gives the evaluator. Errors: InputError if the scene has no combination.
 Best best_of(std::vector<ComparedModel>& models, const SceneValues& scene, const std::vector<MeasuredData>& data,
              const FitOptions& options, const std::function<ModelEvaluator*(const SceneValues&)>& begin) {
   ModelEvaluator* evaluator = nullptr;

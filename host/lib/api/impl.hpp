@@ -54,7 +54,7 @@ void check_output_is_no_input(const std::filesystem::path& output, const std::ve
 /// `head`: the head of the table that a run over the points would write, or of the table that was read.
 Results results_of(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head);
 
-/// Points of columns, as many as the columns that have not one value for all; one where there is none.
+/// Points of columns. Columns of one value hold for all points; without longer columns there is one point.
 /// Errors: InputError for a column that is unknown, has another length, or has a value out of range.
 Points points_of_columns(const std::vector<Column>& columns, PointsKind kind);
 
@@ -62,7 +62,7 @@ Points points_of_columns(const std::vector<Column>& columns, PointsKind kind);
 /// does not copy, so that calls would wait without end.
 void check_no_fork();
 
-/// Evaluator factory. `needs_double`: of a device, double precision in kernels.
+/// Evaluator factory. `needs_double`: a device must have double precision in kernels.
 /// Errors: InputError for another name, and for a device beside cpu or reference; DeviceError when vulkan is asked for
 /// and there is no usable device.
 std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, bool needs_double);
@@ -70,8 +70,8 @@ std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, b
 struct Evaluator::Impl {
   explicit Impl(EvaluatorOptions own) : options(std::move(own)) {}
 
-  /// The evaluator for a scene, before a run; a scene in double gets a device that has it. Errors: those of
-  /// make_evaluator.
+  /// The evaluator for a scene, before a run; a scene in double gets a device with double. Errors:
+  /// errors of make_evaluator.
   ModelEvaluator* begin(const SceneValues& scene) {
     const bool needs_double = scene.accuracy.precision == Precision::kDouble;
     if (evaluator && (evaluator->has_double() || !needs_double)) {

@@ -9,7 +9,6 @@
 #include "scene/material_data.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/scene_reader.hpp"
-#include "scene/scene_writer.hpp"
 
 namespace dolp {
 namespace {
@@ -67,9 +66,7 @@ std::optional<double> Scene::number(std::string_view key) const {
 
 std::optional<std::string> Scene::word(std::string_view key) const {
   const std::optional<KeyValue> value = value_of(impl_->scene, key, {Type::kWord, Type::kText, Type::kFlag});
-  if (!value) return std::nullopt;
-  if (find_scene_key(key)->description.type != Type::kFlag) return value->text;
-  return value->is_set ? "true" : "false";
+  return value ? std::optional(value->text) : std::nullopt;
 }
 
 std::vector<double> Scene::numbers(std::string_view key) const {

@@ -12,9 +12,8 @@
 #include "run/lookup_run.hpp"
 #include "run/scene_run.hpp"
 #include "run/table_scene.hpp"
-#include "table/result_csv.hpp"
+#include "table/table.hpp"
 #include "table/table_file.hpp"
-#include "table/values_hash.hpp"
 
 namespace dolp {
 namespace {
@@ -74,19 +73,10 @@ void check_values(const TableValues& table, const std::string& name) {
   }
 }
 
-void check_labels(const TableHead& table, const SceneValues& scene, Axis axis, const std::string& name) {
-  for (const double value : table.axes[axis]) {
-    const std::string& label = table.label(axis, value);
-    if (std::ranges::find(scene.labels[axis], label) != scene.labels[axis].end()) continue;
-    throw InputError(fmt::format("{}: {} = \"{}\": is not among those that were computed: {}", name,
-                                 description_of(axis).name, one_line(label), join(scene.labels[axis])));
-  }
-}
-
 /// Refuses a table that lost an axis of its scene, which would be looked up with the scene's value. Refuses values of
 /// an axis that were not computed: entries that another program put between others have no error.
 void check_computed(const TableHead& table, const SceneValues& scene, const std::string& name) {
-  constexpr double kFloatRounding = 0x1p-23;  // of an axis that was stored in single precision
+  constexpr double kFloatRounding = 0x1p-23;  // rounding of an axis in single precision
   for (const Axis axis : kAllAxes) {
     const char* const axis_name = description_of(axis).name;
     std::vector<double> computed = scene.grid[axis];
@@ -96,7 +86,7 @@ void check_computed(const TableHead& table, const SceneValues& scene, const std:
           fmt::format("{}: the axis {} is missing, which its scene has; one value of it is enough", name, axis_name));
     }
     if (description_of(axis).has_labels) {
-      check_labels(table, scene, axis, name);
+      for (const double value : table.axes[axis]) scene_position(table, axis, value, scene, name);
       continue;
     }
     std::ranges::sort(computed);
@@ -144,9 +134,8 @@ std::vector<Attribute> Table::file_attributes() const {
   std::vector<Attribute> attributes = {{kConventions, kConventionsOfFiles}};
   attributes.insert(attributes.end(), table.attributes.begin(), table.attributes.end());
   if (const std::string data = spectral_data_of(table); !data.empty()) attributes.push_back({kSpectralData, data});
-  const Quantities quantities = table.quantities();
-  const ValueSums sums = sums_of(table, quantities, {}, table.counts());
-  attributes.push_back({kValuesHash, values_hash(table, quantities, sums)});
+  const TableLayout layout = layout_of(table);
+  attributes.push_back({kValuesHash, values_hash(layout, sums_of(table, layout, {}))});
   return attributes;
 }
 

@@ -92,8 +92,8 @@ inline constexpr double kNodeGain = 1e-2;
 inline constexpr double kStepOfDeviation = 0.5;
 inline constexpr double kLeastDeviation = 1e-4;
 inline constexpr double kMostDeviation = 1.0 / 12.0;
-/// Growth up to which nodes ask for their neighbours. Above the higher level, because its line may cross a cell between
-/// corners that lie above.
+/// Growth up to which the neighbours of nodes are computed. Above the higher level, because its line may cross a cell
+/// between corners that lie above.
 inline constexpr double kSpreadGrowth = 9.0;
 /// Grids that are tried, each of twice the step of the one before.
 inline constexpr std::size_t kMostGrids = 3;

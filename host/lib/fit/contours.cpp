@@ -65,7 +65,7 @@ class GrowthMap {
   Eigen::Vector2d position(const GridNode& node) const {
     return result_.valley_points.front().where.at(pair_) + steps_ * Eigen::Vector2d(node.first, node.second);
   }
-  /// True for nodes in the range and at most about a step beyond it: those lie on its bound.
+  /// True for nodes in the range and up to about a step beyond it; these are moved to its bound.
   bool is_near_range(const GridNode& node) const {
     const Eigen::Vector2d at = position(node);
     return (steps_.inverse() * (at - at.cwiseMax(0.0).cwiseMin(1.0))).norm() < 1.5;

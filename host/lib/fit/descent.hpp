@@ -2,9 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <dolp/fit.hpp>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -57,7 +55,7 @@ void descend(Residuals& residuals, std::vector<Minimum>& all, const DescentOptio
 struct Neighbour {
   const Minimum* near;
   std::vector<Eigen::Index> held;
-  Eigen::VectorXd to;  ///< coordinates, of which only the held ones count
+  Eigen::VectorXd to;  ///< coordinates; only the held coordinates count
 };
 
 /// The least objective at held coordinates: derivatives lead the other parameters to the bottom of the valley there,

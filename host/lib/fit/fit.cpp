@@ -8,14 +8,12 @@
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 #include <dolp/number_range.hpp>
 #include "base/numbers.hpp"
 #include "base/text.hpp"
 #include "fit/constants.hpp"
-#include "fit/profile.hpp"
 #include "fit/search.hpp"
 
 namespace dolp::fit {
@@ -60,7 +58,7 @@ struct Covariance {
 };
 
 Covariance covariance_of(const Minimum& minimum, Loss loss, double scale) {
-  constexpr double kNullShare = 1e-4;        // of the largest singular value: the data do not see the direction
+  constexpr double kNullShare = 1e-4;        // share of the largest singular value: the data do not see the direction
   constexpr double kLeastDeviations = 1e-3;  // a parameter whose range changes the residuals by less is not seen
   Eigen::MatrixXd jacobian =
       loss_weights(minimum.where.residuals, loss).cwiseSqrt().asDiagonal() * minimum.where.jacobian;
@@ -195,7 +193,7 @@ class Fit {
     total_ = total;
   }
 
-  /// With a model error the parameters only choose the bracket: each point is a condition of its own.
+  /// With a model error the parameters only choose the bracket: each point is a separate condition.
   std::size_t freedom() const {
     return model_.observation_count() - (model_.has_model_error() ? 0 : model_.parameters().size());
   }

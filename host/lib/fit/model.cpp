@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <dolp/errors.hpp>
 #include <map>
 #include <ranges>
 #include <set>
@@ -189,11 +188,8 @@ bool Model::varies(const std::string& key) const {
 
 SceneValues Model::with(const SceneValues& scene, const Eigen::VectorXd& values) const {
   SceneValues own = scene;
-  for (std::size_t j = 0; j < parameters_.size(); ++j) {
-    KeyValue value;
-    value.number = values[static_cast<Eigen::Index>(j)];
-    find_scene_key(parameters_[j].key)->set(own, value);
-  }
+  for (std::size_t j = 0; j < parameters_.size(); ++j)
+    find_scene_key(parameters_[j].key)->set(own, {.number = values[static_cast<Eigen::Index>(j)]});
   return own;
 }
 

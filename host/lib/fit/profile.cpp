@@ -1,6 +1,6 @@
-#include "fit/profile.hpp"
 #include "base/numbers.hpp"
 #include "fit/constants.hpp"
+#include "fit/search.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -207,7 +207,7 @@ class Profiler {
   }
 
  private:
-  /// Completes the sides from a position on, which come in pairs from one start.
+  /// Completes the sides from a position. Sides come in pairs from one start.
   void complete(std::size_t first) {
     const auto is_done = [](const Side& side) { return side.is_done(); };
     for (;;) {

@@ -16,7 +16,7 @@ std::array<double, 2> offsets_at(double at, double step) {
   return {inward, has_both_sides ? -step : 2.0 * inward};
 }
 
-/// The derivative of the line through a point and the one beside it, or of the parabola through it and two of them.
+/// The derivative of the line through a point and its neighbour, or of the parabola through it and two neighbours.
 Eigen::MatrixX2d derivative(const Eigen::MatrixX2d& centre, const Prediction* beside, std::size_t count,
                             const std::array<double, 2>& offsets) {
   const auto [a, b] = offsets;
@@ -81,7 +81,7 @@ std::vector<Linearisation> Residuals::at(const std::vector<Eigen::VectorXd>& poi
 }
 
 void Residuals::linearise(const std::vector<Linearisation*>& points) {
-  const std::size_t count = differences_ == Differences::kCentral ? 2 : 1;  // of points beside, for each parameter
+  const std::size_t count = differences_ == Differences::kCentral ? 2 : 1;  // points beside, for each parameter
   std::vector<Eigen::VectorXd> beside;
   for (Linearisation* const point : points) {
     if (point->steps.size() == 0) point->steps.setConstant(point->at.size(), kFirstStep);

@@ -5,7 +5,6 @@
 #include <boost/random/sobol.hpp>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <random>
 #include <span>
 #include <utility>

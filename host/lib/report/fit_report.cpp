@@ -1,7 +1,6 @@
 #include "report/fit_report.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -19,8 +18,8 @@ using Json = ReportBuilder::Json;
 
 constexpr double kStrongCorrelation = 0.9;
 constexpr double kTooGood = 0.999;  // p-value
-// Of Akaike's criterion above the least: models below the first cannot be told apart, those below the second may be
-// true.
+// Akaike's criterion above the least: models below the first value cannot be told apart; models below the second may
+// be true.
 constexpr double kAlike = 1.3;
 constexpr double kPossible = 4.0;
 
@@ -242,7 +241,7 @@ FitInterval hull(const std::vector<const FitResult*>& results, std::size_t j, Fi
   return hull.value_or(FitInterval{.is_empty = true});
 }
 
-/// What models have in common that the data cannot tell apart, and the ranges of parameters over all that may be true.
+/// Adds the models that the data cannot tell apart, and the ranges of parameters over all models that may be true.
 void add_alike(ReportBuilder& report, const std::vector<ComparedModel>& models, double least_aic) {
   std::vector<const FitResult*> possible;
   Json alike = Json::array(), ranges = Json::array();

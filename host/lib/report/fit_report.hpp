@@ -1,7 +1,6 @@
 // Report on a fit.
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <vector>
 

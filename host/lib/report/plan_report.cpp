@@ -11,7 +11,7 @@
 #include "model/choices.hpp"
 #include "plan/kernel_data.hpp"
 #include "run/estimates.hpp"
-#include "run/lookup_forecast.hpp"
+#include "run/lookup_run.hpp"
 #include "run/prediction.hpp"
 #include "run/scene_run.hpp"
 

@@ -1,7 +1,5 @@
 #include "report/run_report.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include <dolp/status.hpp>

@@ -1,12 +1,10 @@
 // Reports on a run and on a planned run, and the parts that several reports share.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <dolp/results.hpp>
 #include "model/evaluator.hpp"
 #include "plan/effects.hpp"
 #include "report/report.hpp"

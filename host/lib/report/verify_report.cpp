@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <dolp/errors.hpp>
-#include <dolp/status.hpp>
 #include "base/numbers.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "model/choices.hpp"

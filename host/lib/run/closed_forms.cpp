@@ -42,9 +42,9 @@ double critical_angle(const FacetOptics& optics) {
 }
 
 constexpr double kHorizon_deg = 90.0;
-constexpr double kMirrorSpread_deg = 2.0 * kMirrorSlope * 180.0 / std::numbers::pi;  // of the reflected rays
+constexpr double kMirrorSpread_deg = 2.0 * kMirrorSlope * 180.0 / std::numbers::pi;  // spread of the reflected rays
 
-/// The moments with the functions of a sky where all rays leave toward one zenith, but for a spread.
+/// Adds the moments with the functions of a sky if all rays leave toward one zenith, within a spread.
 void add_sky(Moments& moments, const SkyBasis& sky, double zenith_deg, double spread_deg) {
   const Eigen::RowVectorXd at = sky.at(zenith_deg);
   const Eigen::RowVectorXd above = sky.at(std::max(zenith_deg - spread_deg, 0.0));

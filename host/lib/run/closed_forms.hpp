@@ -7,8 +7,8 @@
 
 namespace dolp {
 
-/// Moments that need no evaluator: of a mirror, or the limits at 90 degrees of moments that diverge there.
-/// With a basis of a sky (null: none) those with its functions too. Domain: a direction whose treatment is not
+/// Moments that need no evaluator: moments of a mirror, or limits at 90 degrees of moments that diverge there. With a
+/// basis of a sky (null: none) also the moments with its functions. Domain: a direction whose treatment is not
 /// kIntegrated.
 Moments closed_form(const Surface& surface, const Direction& direction, const SlopeShape& shape,
                     const FacetOptics& index, const SkyBasis* sky);

@@ -66,8 +66,6 @@ void check_wavelengths(const SceneValues& scene, const Points& points) {
   }
 }
 
-}  // namespace
-
 void check_shapes(const SceneValues& scene, const Points& points) {
   const Surface& surface = scene.surface;
   if (points.has_winds && surface.distribution != Distribution::kGaussian) {
@@ -98,6 +96,13 @@ void check_films(const SceneValues& scene, const Points& points) {
   }
 }
 
+}  // namespace
+
+void check_surface(const SceneValues& scene, const Points& points) {
+  check_shapes(scene, points);
+  check_films(scene, points);
+}
+
 SceneEntries grid_entries(const SceneValues& scene) {
   const PerAxis counts = counts_of(scene.grid);
   double size = 1.0;
@@ -111,9 +116,8 @@ SceneEntries grid_entries(const SceneValues& scene) {
 
 SceneEntries point_entries(const SceneValues& scene, const Points& points) {
   check_columns(scene, points);
-  check_shapes(scene, points);
+  check_surface(scene, points);
   const Surface& surface = scene.surface;
-  check_films(scene, points);
   const bool has_own_index = points[Axis::kN] || points[Axis::kK];
   const auto columns = variant_columns(scene, points);
   const bool has_variants = !columns.empty() || !points.films.empty();

@@ -7,20 +7,23 @@
 #include <cmath>
 
 #include <dolp/status.hpp>
+#include <set>
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "model/direction.hpp"
-#include "run/drawn_entries.hpp"
 #include "run/scene_run.hpp"
 #include "spectrum/spectral_rule.hpp"
 
 namespace dolp {
 namespace {
 
+// Its multiples modulo 1 fill the interval evenly and do not resonate with the axes of a grid.
+constexpr double kGoldenRatio = 0.6180339887498949;
+
 using enum Quantity;
 
 constexpr double kTolerance = 1e-3;
 constexpr std::size_t kBandWavelengths = 8;
-constexpr std::size_t kDrawnPoints = 24;  // of a list
+constexpr std::size_t kDrawnPoints = 24;  // points of a list
 
 /// Values of each axis of a grid that are looked at. What changes DOLP is largest at an end of sigma and of q.
 std::size_t most_values(Axis axis) {
@@ -60,7 +63,7 @@ SceneEntries spread_entries(const SceneEntries& entries) {
 struct Sample {
   SceneValues scene;
   SceneEntries entries;         ///< an entry is there once for each weight, side by side
-  std::vector<double> weights;  ///< of the wavelengths of a band; {1} without
+  std::vector<double> weights;  ///< weights of the wavelengths of a band; {1} without a band
 };
 
 Sample sample_of(const SceneValues& scene, const SceneEntries& entries) {
@@ -151,6 +154,20 @@ Looked looked_at(const Sample& sample) {
 }
 
 }  // namespace
+
+std::vector<std::size_t> drawn_positions(std::size_t size, std::size_t count) {
+  std::set<std::size_t> positions;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double part = std::fmod(static_cast<double>(i + 1) * kGoldenRatio, 1.0);
+    positions.insert(static_cast<std::size_t>(part * static_cast<double>(size)));
+  }
+  return {positions.begin(), positions.end()};
+}
+
+SceneEntries drawn_entries(const SceneEntries& entries, std::size_t count) {
+  if (entries.size() <= count) return entries;
+  return entries.chosen(drawn_positions(entries.size(), count));
+}
 
 std::string Looked::text() const {
   if (wavelengths == 1) return fmt::format("{} entries", entries);

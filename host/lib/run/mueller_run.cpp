@@ -71,14 +71,14 @@ void add_diffuse(MuellerMatrix& f, const Surface& surface, const MuellerPoint& p
   f[5] += scale * out.q * in.q;
 }
 
-/// True where the error is not that of every pBRDF: more bounces count than are followed.
+/// True if the error exceeds the usual error of a pBRDF, because more bounces count than are followed.
 bool is_inaccurate(const ScatteringMatrix& specular, Precision precision) {
-  constexpr double kRounding = 1e-3;  // of the sum of errors
+  constexpr double kRounding = 1e-3;  // rounding of the sum of errors
   const double accuracy = precision == Precision::kFloat ? kScatteringErrorFloat : kScatteringErrorDouble;
   return specular.error > (1.0 + kRounding) * accuracy * specular.m[0];
 }
 
-/// `specular` is null for a point that the evaluator is not asked for.
+/// `specular` is null for a point that needs no evaluator.
 MuellerMatrix elements(const Surface& surface, const MuellerPoint& point, const ScatteringMatrix* specular,
                        Precision precision) {
   MuellerMatrix f{};
@@ -99,7 +99,7 @@ MuellerMatrix elements(const Surface& surface, const MuellerPoint& point, const 
 }  // namespace
 
 std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points& points) {
-  check_shapes(scene, points);
+  check_surface(scene, points);
   const Surface& surface = scene.surface;
   const bool has_own_index = points[Axis::kN] && points[Axis::kK];
   const bool needs_one_wavelength = !surface.coating.empty() || (!surface.material.is_constant() && !has_own_index);
@@ -117,17 +117,14 @@ std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points&
                     "give n and k, or a material and a coating",
                     scene.path_name));
   }
-  check_films(scene, points);
-  const double at_um = scene.spectrum.min_um;
-  FacetOptics optics = surface.optics_at(at_um);
+  Surface own = surface;
+  FacetOptics optics = surface.optics_at(scene.spectrum.min_um);
   std::vector<MuellerPoint> result;
   result.reserve(points.size());
   for (std::size_t row = 0; row < points.size(); ++row) {
-    for (const FilmValue& value : points.films_at(row)) {
-      Film& film = optics.films[value.layer];
-      if (value.part == FilmValue::Part::kN) film.index.n = value.value;
-      if (value.part == FilmValue::Part::kK) film.index.k = value.value;
-      if (value.part == FilmValue::Part::kThickness) film.thickness = value.value / at_um;
+    if (!points.films.empty()) {
+      set_films(own, points.films_at(row));
+      optics = own.optics_at(scene.spectrum.min_um);
     }
     result.push_back({{(*points.theta_i_deg)[row], (*points.theta_r_deg)[row], (*points.delta_phi_deg)[row]},
                       {value_or(points[Axis::kSigma], row, surface.sigma), value_or(points[Axis::kQ], row, surface.q)},

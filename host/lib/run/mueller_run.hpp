@@ -1,7 +1,6 @@
 // The Mueller pBRDF of a scene's surface at scattered geometries.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "model/evaluator.hpp"
@@ -23,8 +22,8 @@ struct MuellerPoint {
 /// on the wavelength, unless the points have n and k both; q <= 3/2 with smith masking and the cauchy distribution.
 std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points& points);
 
-/// The precision of a scene's pBRDFs: what it says, and for kAuto float where kScatteringErrorFloat meets the tolerance
-/// (or the evaluator has nothing better), double elsewhere.
+/// The precision of a scene's pBRDFs. kAuto becomes float if kScatteringErrorFloat meets the tolerance or the evaluator
+/// has no double, else double.
 Precision mueller_precision(const Accuracy& accuracy, bool has_double);
 
 /// f of eq. (15) with k_s and the diffuse part, in the order of `points`.
@@ -33,7 +32,7 @@ Precision mueller_precision(const Accuracy& accuracy, bool has_double);
 /// Domain: at 90 degrees the limits, which v-cavity and smith have with one beam there. Where f has no finite value all
 /// 16 are NaN: at 90 degrees otherwise, and for a mirror (sigma = 0) in its specular direction; in others its f is the
 /// diffuse part. So they are where more bounces count than are followed (plan/further_bounces.cpp).
-/// Errors: those of the evaluator.
+/// Errors: errors of the evaluator.
 std::vector<MuellerMatrix> evaluate_mueller(const SceneValues& scene, const std::vector<MuellerPoint>& points,
                                             ModelEvaluator& evaluator, const Progress& progress);
 

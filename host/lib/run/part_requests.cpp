@@ -1,9 +1,14 @@
 #include "run/part_requests.hpp"
+#include "model/sky_basis.hpp"
+#include "plan/response_plan.hpp"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <map>
+#include <set>
+#include <tuple>
+#include <utility>
 
 namespace dolp {
 namespace {
@@ -33,6 +38,57 @@ std::vector<std::uint32_t> compact_used_values(const std::vector<double>& values
     if (is_used[i] != 0) axis.push_back(values[i]);
   }
   return positions;
+}
+
+constexpr std::size_t kLeastEntries = 24;  // entries of an index. Chosen: its weights take as long as some of them
+// For points: directions and slope distributions times indices, over the number of points. Each direction and slope
+// distribution is combined with all indices.
+constexpr std::size_t kMostOfPoints = 2;
+
+std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const SceneEntries& entries) {
+  const SpectralIndices spectral = spectral_indices(scene, entries);
+  const bool has_one_index =
+      spectral.size() == 1 && spectral.front().size() == 1 &&
+      std::ranges::none_of(entries.all(), [](const SceneEntry& e) { return e.index.has_value(); });
+  if (has_one_index) return {};
+  std::set<FacetOptics> indices;
+  std::set<std::tuple<double, double, double>> shapes;
+  std::size_t points = 0;
+  const auto add = [&](const FacetOptics& index) { indices.insert(index); };
+  for (const SceneEntry& entry : entries.all()) {
+    shapes.insert({moment_zenith_deg(scene, entry.theta_deg), entry.shape.sigma, entry.shape.q});
+    const std::vector<FacetOptics>& samples = spectral[entry.variant];
+    if (entry.index) std::ranges::for_each(with_index(samples, entry.index), add);
+    if (!entry.index) std::ranges::for_each(samples, add);
+    points += entry.index && samples.front().is_bare() ? 1 : samples.size();
+  }
+  if (shapes.size() * indices.size() > kMostOfPoints * points) return {};
+  return {indices.begin(), indices.end()};
+}
+
+std::vector<FacetOptics> indices_of_grid(const SceneValues& scene, const SceneEntries& entries) {
+  const PerAxis& counts = entries.whole();
+  if (counts[Axis::kTheta] * counts[Axis::kSigma] * counts[Axis::kQ] < kLeastEntries) return {};
+  const SceneEntries whole = SceneEntries::of_grid(entries.whole_axes(), entries.index());
+  std::vector<FacetOptics> indices;
+  if (whole.has_own_index()) {
+    PerAxis place{};
+    for (const std::vector<FacetOptics>& samples : spectral_indices(scene, whole)) {
+      for (std::size_t& n = place[Axis::kN] = 0; n < whole.counts()[Axis::kN]; ++n) {
+        for (std::size_t& k = place[Axis::kK] = 0; k < whole.counts()[Axis::kK]; ++k) {
+          const std::vector<FacetOptics> own = with_index(samples, whole.index_at(place));
+          indices.insert(indices.end(), own.begin(), own.end());
+        }
+      }
+      if (samples.front().is_bare()) break;  // they are the same at all wavelengths
+    }
+    return indices;
+  }
+  for (const std::vector<FacetOptics>& own : spectral_indices(scene, whole)) {
+    if (indices.size() < own.size() || !std::ranges::equal(own, std::span(indices).last(own.size())))
+      indices.insert(indices.end(), own.begin(), own.end());
+  }
+  return indices;
 }
 
 }  // namespace
@@ -85,9 +141,9 @@ PartRequests::PartRequests(const SceneValues& scene, const SpectralIndices& samp
   moments_.basis = level.basis;
   moments_.sky = plan.sky;
   moments_.may_interpolate = level.may_interpolate;
-  if (plan.kept.moments && selection.part.is_grid()) ask_grid(selection);
-  if (plan.kept.moments && !selection.part.is_grid()) ask_points(selection);
-  if (plan.needs_beams) ask_beams(selection);
+  if (plan.kept.moments && selection.part.is_grid()) request_grid(selection);
+  if (plan.kept.moments && !selection.part.is_grid()) request_points(selection);
+  if (plan.needs_beams) request_beams(selection);
 }
 
 std::size_t PartRequests::index_set(const SceneEntries& grid, const PerAxis& place) const {
@@ -107,7 +163,7 @@ std::vector<FacetOptics> PartRequests::samples_of(const SceneEntries& grid, std:
   return with_index(samples_[set / (n_values * k_values)], grid.index_at(place));
 }
 
-void PartRequests::ask_grid(const Selection& selection) {
+void PartRequests::request_grid(const Selection& selection) {
   const SceneEntries& grid = selection.part;
   const PerAxis& counts = grid.counts();
   const bool is_whole = selection.chosen.empty();
@@ -131,7 +187,7 @@ void PartRequests::ask_grid(const Selection& selection) {
   }
   if (std::ranges::find(theta, 1) == theta.end()) return;
   moments_.layout = MomentsRequest::Layout::kGrid;
-  ask_indices(grid, set);
+  request_indices(grid, set);
   sigma_at_ = compact_used_values(grid.sigma(), sigma, moments_.sigma);
   if (scene_.surface.distribution == Distribution::kGaussian) {
     moments_.q = {SlopeShape{}.q};
@@ -148,11 +204,11 @@ void PartRequests::ask_grid(const Selection& selection) {
   for (double& theta_deg : moments_.theta_deg) {
     theta_deg = zenith_before_limit_deg(scene_.surface.masking, theta_deg);
   }
-  if (!is_whole) mask(selection);
+  if (!is_whole) mark_wanted(selection);
 }
 
 /// Equal sets share their indices.
-void PartRequests::ask_indices(const SceneEntries& grid, const std::vector<char>& is_used) {
+void PartRequests::request_indices(const SceneEntries& grid, const std::vector<char>& is_used) {
   index_set_offset_.assign(is_used.size(), 0);
   std::vector<FacetOptics> last;
   std::uint32_t first = 0;
@@ -168,20 +224,20 @@ void PartRequests::ask_indices(const SceneEntries& grid, const std::vector<char>
   }
 }
 
-void PartRequests::mask(const Selection& selection) {
+void PartRequests::mark_wanted(const Selection& selection) {
   moments_.wanted.assign(moments_.size(), 0);
   for (std::size_t i = 0; i < selection.size(); ++i) {
     const SceneEntry entry = selection[i];
     if (!wants_moments(scene_, entry, plan_)) continue;
-    const Place place = moments_of(i);
-    const std::size_t samples = place.stride == 0 ? 1 : samples_[entry.variant].size();
-    for (std::size_t j = 0; j < samples; ++j) moments_.wanted[place.first + j * place.stride] = 1;
+    const MomentsSpan span = moments_of(i);
+    const std::size_t samples = span.stride == 0 ? 1 : samples_[entry.variant].size();
+    for (std::size_t j = 0; j < samples; ++j) moments_.wanted[span.first + j * span.stride] = 1;
   }
   if (moments_.wanted_count() == moments_.size()) moments_.wanted.clear();
 }
 
-PartRequests::Place PartRequests::moments_of(std::size_t member) const {
-  if (!places_.empty()) return places_[member];
+PartRequests::MomentsSpan PartRequests::moments_of(std::size_t member) const {
+  if (!spans_of_points_.empty()) return spans_of_points_[member];
   const SceneEntries& grid = selection_.part;
   const PerAxis place = grid.place(selection_.position(member));
   const std::size_t of_index = moments_.theta_deg.size() * moments_.shapes();
@@ -196,33 +252,34 @@ std::size_t PartRequests::direction_of(std::size_t member) const {
   return theta_at_[selection_.part.place(selection_.position(member))[Axis::kTheta]];
 }
 
-void PartRequests::ask_points(const Selection& selection) {
+void PartRequests::request_points(const Selection& selection) {
   moments_.layout = MomentsRequest::Layout::kList;
-  places_.reserve(selection.size());
-  std::map<std::array<double, 6>, Place> known;
+  spans_of_points_.reserve(selection.size());
+  std::map<std::array<double, 6>, MomentsSpan> known;
   for (std::size_t i = 0; i < selection.size(); ++i) {
     const SceneEntry entry = selection[i];
     if (!wants_moments(scene_, entry, plan_)) {
-      places_.emplace_back();
+      spans_of_points_.emplace_back();
       continue;
     }
     const double zenith_deg =
         zenith_before_limit_deg(scene_.surface.masking, moment_zenith_deg(scene_, entry.theta_deg));
     const SlopeShape shape = normalised(scene_, entry.shape);
-    // Without an index of its own it has the indices of a wavelength; no k is negative.
+    // An entry without an index has the indices of its variant; no k is negative.
     const OpticalConstants key = entry.index.value_or(OpticalConstants{static_cast<double>(entry.variant), -1.0});
     const double films_at = has_films() ? entry.variant : -1.0;
-    const auto [place, is_new] = known.try_emplace({zenith_deg, shape.sigma, shape.q, key.n, key.k, films_at}, Place{});
+    const auto [known_span, is_new] =
+        known.try_emplace({zenith_deg, shape.sigma, shape.q, key.n, key.k, films_at}, MomentsSpan{});
     if (is_new) {
       const std::vector<FacetOptics> own = with_index(samples_[entry.variant], entry.index);
-      place->second = {moments_.size(), entry.index && !has_films() ? std::size_t{0} : std::size_t{1}};
+      known_span->second = {moments_.size(), entry.index && !has_films() ? std::size_t{0} : std::size_t{1}};
       for (const FacetOptics& sample : own) moments_.append({zenith_deg, shape, sample});
     }
-    places_.push_back(place->second);
+    spans_of_points_.push_back(known_span->second);
   }
 }
 
-void PartRequests::ask_beams(const Selection& selection) {
+void PartRequests::request_beams(const Selection& selection) {
   const bool is_grid = selection.part.is_grid();
   const auto q_count = static_cast<std::uint32_t>(selection.part.q().size());
   if (is_grid) {
@@ -263,6 +320,16 @@ void PartRequests::ask_beams(const Selection& selection) {
       beams_.entries.push_back(wanted);
     }
   }
+}
+
+std::shared_ptr<const ResponseBasis> run_basis(const SceneValues& scene, const SceneEntries& entries,
+                                               const EffectPlan& plan) {
+  const bool has_bounces = plan.kept.further_bounces && scene.surface.scattering == Scattering::kMultiple;
+  if (!scene.accuracy.may_interpolate || !plan.kept.moments || has_bounces) return nullptr;
+  const std::vector<FacetOptics> indices =
+      entries.is_grid() ? indices_of_grid(scene, entries) : indices_of_points(scene, entries);
+  const std::size_t passes = response_passes(plan.needs_direct, plan.sky ? plan.sky->size() : 0);
+  return indices.empty() ? nullptr : ResponseBasis::of(indices, scene.accuracy.tolerance, passes);
 }
 
 }  // namespace dolp

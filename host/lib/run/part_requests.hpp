@@ -3,16 +3,19 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "model/direction.hpp"
 #include "model/moments.hpp"
+#include "model/response_basis.hpp"
 #include "model/scattering.hpp"
 #include "model/scene_entry.hpp"
 #include "plan/effects.hpp"
 #include "plan/refinement.hpp"
 #include "radiometry/radiometry.hpp"
+#include "scene/scene.hpp"
 
 namespace dolp {
 
@@ -26,7 +29,7 @@ struct Selection {
   SceneEntry operator[](std::size_t member) const { return part[position(member)]; }
 };
 
-/// The direction that an entry's moments depend on: in bistatic mode that of the view.
+/// The zenith that an entry's moments depend on: in bistatic mode the zenith of the view.
 double moment_zenith_deg(const SceneValues& scene, double theta_deg);
 
 bool wants_moments(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
@@ -43,14 +46,14 @@ Scattered beam_without_evaluator(const SceneValues& scene, double theta_deg);
 using SpectralIndices = std::vector<std::vector<FacetOptics>>;
 SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& entries);
 
-/// Samples with another medium under their films. Bare ones are then the same, of which one is enough.
+/// Samples with another medium under their films. Bare samples become equal, so that one is returned.
 std::vector<FacetOptics> with_index(const std::vector<FacetOptics>& samples,
                                     const std::optional<OpticalConstants>& index);
 
-/// The requests of one level for a selection. For a grid the moments form a grid again: of the directions and indices
-/// of the selection, and of all slope distributions, so that the result of an entry does not depend on the entries
-/// selected in other directions; in bistatic mode of one direction, the view. Points that differ only in values that
-/// the moments do not depend on share them.
+/// The requests of one level for a selection. For a grid the moments form a grid again. It has the directions (in
+/// bistatic mode the view) and indices of the selection, and all slope distributions, so that the result of an entry
+/// does not depend on the entries selected in other directions. Points share moments if they differ only in values that
+/// the moments do not depend on.
 class PartRequests {
  public:
   PartRequests(const SceneValues& scene, const SpectralIndices& samples, const EffectPlan& plan,
@@ -60,25 +63,25 @@ class PartRequests {
   const ScatteringRequest& beams() const { return beams_; }
 
   /// The position of a member's moments in the answer: `first + j * stride` for spectral sample j.
-  struct Place {
+  struct MomentsSpan {
     std::size_t first = 0;
     std::size_t stride = 0;
   };
-  Place moments_of(std::size_t member) const;
+  MomentsSpan moments_of(std::size_t member) const;
   /// For a grid: the request's direction from which a member has its moments.
   std::size_t direction_of(std::size_t member) const;
   /// The first of its beams, one for each sample.
   std::size_t beams_of(std::size_t member) const { return first_beam_[member]; }
 
  private:
-  void ask_grid(const Selection& selection);
-  void ask_indices(const SceneEntries& grid, const std::vector<char>& is_used);
-  void mask(const Selection& selection);
+  void request_grid(const Selection& selection);
+  void request_indices(const SceneEntries& grid, const std::vector<char>& is_used);
+  void mark_wanted(const Selection& selection);
   std::size_t index_set(const SceneEntries& grid, const PerAxis& place) const;
   std::vector<FacetOptics> samples_of(const SceneEntries& grid, std::size_t set) const;
   bool has_films() const { return !samples_.front().front().is_bare(); }
-  void ask_points(const Selection& selection);
-  void ask_beams(const Selection& selection);
+  void request_points(const Selection& selection);
+  void request_beams(const Selection& selection);
 
   const SceneValues& scene_;
   const SpectralIndices& samples_;
@@ -87,10 +90,18 @@ class PartRequests {
   MomentsRequest moments_;
   ScatteringRequest beams_;
   // For a grid: the position in the request of each value of the part's axes, and of the first index of each set: the
-  // indices of a wavelength, or the one of n and k.
+  // indices of a variant, or one index of n and k.
   std::vector<std::uint32_t> theta_at_, sigma_at_, q_at_, index_set_offset_;
-  std::vector<Place> places_;  ///< of points
+  std::vector<MomentsSpan> spans_of_points_;  ///< one for each point of a list
   std::vector<std::size_t> first_beam_;
 };
+
+/// Responses from which a run combines the moments of its many indices, at the tolerance of the scene: tighter levels
+/// are for the quadrature. They follow from the whole grid, even if the entries are a part of it.
+///
+/// Null where a basis saves nothing: for a grid with few entries of each index, points that mostly differ in direction
+/// or slope distribution, few indices, many bounces, and for a scene without interpolation.
+std::shared_ptr<const ResponseBasis> run_basis(const SceneValues& scene, const SceneEntries& entries,
+                                               const EffectPlan& plan);
 
 }  // namespace dolp

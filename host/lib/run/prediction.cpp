@@ -6,9 +6,8 @@
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/kernel/slope_samples.hpp"
 #include "plan/moments_plan.hpp"
-#include "run/drawn_entries.hpp"
+#include "run/estimates.hpp"
 #include "run/part_requests.hpp"
-#include "run/run_basis.hpp"
 #include "run/scene_run.hpp"
 #include "table/table.hpp"
 
@@ -161,7 +160,7 @@ RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries,
     }
     run.beams += beams;
     if (beams > 0) visit.beams(first.requests.beams());
-    // Memory of the results, the columns made of them, and those of the part before, which are being written.
+    // Memory of the results, their columns, and the columns of the part before, which are being written.
     const std::size_t columns = part.size() * (kQuantityCount * sizeof(double) + sizeof(std::uint32_t));
     largest = std::max(largest, part.size() * sizeof(PointResult) + columns + columns_before +
                                     first.moments.size() * sizeof(Moments) + largest_step +

@@ -22,20 +22,20 @@ inline constexpr std::size_t kCountedDirections = 6;
 struct RunPrediction {
   std::size_t entries = 0;
   std::size_t spectral_samples = 0;
-  std::size_t moments = 0;         ///< that the first level computes: entries that share them count once
+  std::size_t moments = 0;         ///< moments that the first level computes; shared moments count once
   std::size_t interpolated = 0;    ///< moments that it interpolates between others
-  std::size_t beams = 0;           ///< that the first level asks for: f of one geometry and index each
+  std::size_t beams = 0;           ///< values of f in the first level, for one geometry and index each
   RefinementLevel first;           ///< precision and tolerance of the first level
-  double first_evaluations = 0.0;  ///< integrand evaluations of it
+  double first_evaluations = 0.0;  ///< integrand evaluations of the first level
   double again_share =
       0.0;  ///< moments and beams of other levels, over the entries and beams that the first level gives
   double again_evaluations = 0.0;
   double again_beams = 0.0;
   bool counts_directions = false;
   bool is_exact = true;    ///< all moments and beams were counted, none estimated from others
-  double moments_s = 0.0;  ///< of all levels on this machine's processor, from counting
+  double moments_s = 0.0;  ///< time of all levels on this machine's processor, from counting
   double beams_s = 0.0;
-  double host_bytes = 0.0;  ///< of the largest part, and the columns that are written
+  double host_bytes = 0.0;  ///< memory of the largest part, and of the columns that are written
 };
 
 /// Called with each request of the first level.

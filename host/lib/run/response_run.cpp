@@ -20,7 +20,6 @@
 #include "run/closed_forms.hpp"
 #include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
-#include "table/table_box.hpp"
 
 namespace dolp {
 namespace {
@@ -49,7 +48,7 @@ Eigen::VectorXd chebyshev_at(double x) {
 /// The angles of a table.
 struct Nodes {
   Eigen::MatrixXd polynomials;  ///< T_m(x_j): polynomials x angles
-  Eigen::ArrayXd sin2;          ///< of beta
+  Eigen::ArrayXd sin2;          ///< sin^2 of beta
   std::vector<double> beta_deg;
 
   Nodes() : polynomials(kBetaAngles, kBetaAngles), sin2(kBetaAngles) {
@@ -84,7 +83,7 @@ Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error
         (m == 0 ? 1.0 : 2.0) / kBetaAngles * nodes().polynomials.row(static_cast<Eigen::Index>(m));
     own.i += sum.i * share;
     own.q += sum.q * share / nodes().sin2;
-    // The rules of q may agree by chance too, so that the bound of i is added to its own.
+    // The rules of q may agree by chance too, so that the bound of i is added to the bound of q.
     const double of_i = std::abs(sum.i_apart) + sum.relative_error * std::abs(sum.i) + sum.error;
     const double of_q = std::abs(sum.q_apart) + sum.relative_error * std::abs(sum.q) + sum.error;
     own.error += std::ldexp(std::max(of_i, whole_error) + of_q, -static_cast<int>(m));
@@ -107,7 +106,7 @@ Moments mirror_of(const MomentsRequest& request, const Direction& direction, con
 
 bool has_emission(Masking masking) { return keeps_projected_area(masking); }
 
-/// Stores an entry where its bound is below the one that is there.
+/// Stores an entry if its bound is below the known bound.
 void take_better(const Moments& reflected, const Moments* direct, double cosine, std::size_t entry,
                  EntryResponses& to) {
   const Weights weights = weights_of(reflected.columns, reflected.albedo_error);
@@ -261,8 +260,7 @@ ResponseOutcome run_responses(const SceneValues& scene, const TableLayout& layou
     TableBox box{{}, layout.head.counts()};
     box.first[Axis::kTheta] = first;
     box.count[Axis::kTheta] = std::min(at_once, axes[Axis::kTheta].size() - first);
-    TableValues part;
-    static_cast<TableHead&>(part) = head_of(layout.head, box);
+    TableValues part{head_of(layout.head, box)};
     MomentsRequest request = response_request(scene.surface);
     request.theta_deg = part.axes[Axis::kTheta];
     request.sigma = part.axes[Axis::kSigma];

@@ -22,9 +22,9 @@ struct EntryResponses {
   std::vector<double> albedo;
 };
 
-/// Weights and bounds of the entries of a request, of which its surface, layout, directions and shapes count; NaN where
-/// rho has no value. Entries are computed again, with finer rules, where response_error exceeds the tolerance times
-/// the albedo.
+/// Weights and bounds of the entries of a request; NaN where rho has no value. Only the surface, layout, directions and
+/// shapes of the request count. Entries whose response_error exceeds the tolerance times the albedo are computed again,
+/// with finer rules.
 ///
 /// Equation: w_j = (2 / K) (C_0 / 2 + sum over 0 < m < K of C_m T_m(x_j)) / cos(theta), C_m the moments with Chebyshev
 ///   polynomials T_m(x), x = 2 asinh(cos(beta) / c0) / asinh(1 / c0) - 1, instead of reflectances, x_j the zeros of
@@ -47,7 +47,7 @@ struct ResponseOutcome {
   std::size_t missed = 0;    ///< entries whose response_error exceeds the tolerance times the albedo
   double worst_error = 0.0;  ///< largest response_error over the albedo
   double wall_s = 0.0;
-  std::vector<Attribute> attributes = {};  ///< of the table, known after the run
+  std::vector<Attribute> attributes = {};  ///< attributes of the table that are known after the run
 };
 
 /// Computes a response table part by part, some directions at a time.

@@ -4,16 +4,32 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
+#include <random>
+#include <set>
 #include <sstream>
-#include <vector>
 
 #include "base/parallel_ranges.hpp"
 
 namespace dolp {
 namespace {
 
-constexpr std::size_t kSummaryEntriesAtOnce = 65536;  // of a thread
+constexpr std::size_t kMostChecked = 64;
+constexpr std::size_t kManyMoments = std::size_t{1} << 22U;  // number of moments of which kMostChecked are checked
+// A fiftieth of the run; an entry that is computed again takes about four times what it took, with two digits more and
+// no neighbour to share with.
+constexpr std::size_t kShare = 50;
+constexpr std::size_t kCostOfOne = 4;
+
+double ratio(double difference, double bounds) {
+  if (!(std::abs(difference) > 0.0)) return 0.0;  // equal, or not a number in both
+  return std::abs(difference) / bounds;
+}
+
+double rho_bound(const PointResult& result) {
+  return result[Quantity::kRhoErrorEstimate] * std::abs(result[Quantity::kRhoI]);
+}
+
+constexpr std::size_t kSummaryEntriesAtOnce = 65536;  // entries of a thread
 
 using Range = std::pair<double, double>;
 
@@ -27,6 +43,28 @@ void add_range(EnergyRange& range, const EnergyRange& other) {
   widen(range.theta_deg, range.entries == 0, other.theta_deg);
   widen(range.sigma, range.entries == 0, other.sigma);
   range.entries += other.entries;
+}
+
+/// Calls use(number) for each number, in the order of the summary's text.
+template <class Summary, class Use>
+void for_each_number(Summary& s, const Use& use) {
+  use(s.entries);
+  for (auto& count : s.status) use(count);
+  use(s.worst_error);
+  use(s.worst_rho_error);
+  use(s.albedos);
+  use(s.albedo.first);
+  use(s.albedo.second);
+  for (auto* range : {&s.loses, &s.gains}) {
+    use(range->entries);
+    for (auto* ends : {&range->theta_deg, &range->sigma}) use(ends->first), use(ends->second);
+  }
+  use(s.model_change);
+  use(s.check.entries);
+  use(s.check.worst_ratio);
+  use(s.radiometry_s);
+  for (auto* number : {&s.work.evaluations, &s.work.kernel_s, &s.work.sums_s}) use(*number);
+  for (auto* number : {&s.work.dispatches, &s.work.interpolated, &s.work.interpolation_nodes}) use(*number);
 }
 
 void raise(std::optional<double>& worst, const std::optional<double>& error) {
@@ -47,6 +85,34 @@ void add_result(RunSummary& summary, double theta_deg, double sigma, const Point
 }
 
 }  // namespace
+
+void SelfCheck::add(const PointResult& result, const PointResult& again) {
+  ++entries;
+  const auto difference = [&](Quantity quantity) { return result[quantity] - again[quantity]; };
+  if (promises_dolp(result.status)) {
+    worst_ratio = std::max(worst_ratio, ratio(difference(Quantity::kDolp),
+                                              result[Quantity::kErrorEstimate] + again[Quantity::kErrorEstimate]));
+  }
+  const double rho = rho_bound(result) + rho_bound(again);
+  for (const Quantity quantity : {Quantity::kRhoI, Quantity::kRhoQ})
+    worst_ratio = std::max(worst_ratio, ratio(difference(quantity), rho));
+}
+
+void SelfCheck::add(const SelfCheck& other) {
+  entries += other.entries;
+  worst_ratio = std::max(worst_ratio, other.worst_ratio);
+}
+
+std::size_t checked_count(std::size_t moments) {
+  return std::min(kMostChecked + kMostChecked * (moments / kManyMoments), moments / (kShare * kCostOfOne));
+}
+
+std::vector<std::size_t> checked_positions(std::size_t size, std::size_t count, std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  std::set<std::size_t> positions;
+  while (positions.size() < std::min(count, size)) positions.insert(static_cast<std::size_t>(engine() % size));
+  return {positions.begin(), positions.end()};
+}
 
 void RunSummary::add(const SceneValues& scene, const SceneEntries& part, std::span<const PointResult> results) {
   const bool bistatic = scene.geometry.mode == Mode::kBistatic;
@@ -82,53 +148,33 @@ std::size_t RunSummary::count(std::uint32_t bit) const {
 }
 
 std::string RunSummary::text() const {
-  const auto range = [](const EnergyRange& r) {
-    return fmt::format("{} {} {} {} {}", r.entries, r.theta_deg.first, r.theta_deg.second, r.sigma.first,
-                       r.sigma.second);
-  };
-  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", entries, fmt::join(status, " "),
-                     worst_error.value_or(-1.0), worst_rho_error.value_or(-1.0), albedos, albedo.first, albedo.second,
-                     range(loses), range(gains), model_change, check.entries, check.worst_ratio, radiometry_s,
-                     work.evaluations, work.kernel_s, work.sums_s, work.dispatches, work.interpolated,
-                     work.interpolation_nodes, "end");
+  std::string text;
+  for_each_number(*this, [&](const auto& number) {
+    if constexpr (requires { number.value_or(-1.0); }) {
+      text += fmt::format("{} ", number.value_or(-1.0));
+    } else {
+      text += fmt::format("{} ", number);
+    }
+  });
+  return text + "end";
 }
 
 std::optional<RunSummary> RunSummary::from_text(const std::string& text) {
   RunSummary summary;
   std::istringstream words(text);
   std::string word;
-  const auto number = [&] {
-    words >> word;
-    return std::strtod(word.c_str(), nullptr);  // inf too
-  };
-  const auto range = [&](EnergyRange& r) {
-    words >> r.entries;
-    r.theta_deg = {number(), 0.0};
-    r.theta_deg.second = number();
-    r.sigma.first = number();
-    r.sigma.second = number();
-  };
-  words >> summary.entries;
-  for (std::size_t& count : summary.status) words >> count;
-  for (std::optional<double>* worst : {&summary.worst_error, &summary.worst_rho_error}) {
-    const double value = number();
-    if (value >= 0.0) *worst = value;
-  }
-  words >> summary.albedos;
-  summary.albedo.first = number();
-  summary.albedo.second = number();
-  range(summary.loses);
-  range(summary.gains);
-  summary.model_change = number();
-  words >> summary.check.entries;
-  summary.check.worst_ratio = number();
-  summary.radiometry_s = number();
-  summary.work.evaluations = number();
-  summary.work.kernel_s = number();
-  summary.work.sums_s = number();
-  words >> summary.work.dispatches >> summary.work.interpolated >> summary.work.interpolation_nodes >> word;
-  if (!words || word != "end") return std::nullopt;
-  return summary;
+  for_each_number(summary, [&](auto& number) {
+    if constexpr (std::is_integral_v<std::remove_reference_t<decltype(number)>>) {
+      words >> number;
+    } else {
+      words >> word;
+      const double value = std::strtod(word.c_str(), nullptr);  // inf too
+      const bool is_none = std::is_same_v<decltype(number), std::optional<double>&> && !(value >= 0.0);
+      if (!is_none) number = value;
+    }
+  });
+  words >> word;
+  return words && word == "end" ? std::optional(summary) : std::nullopt;
 }
 
 }  // namespace dolp

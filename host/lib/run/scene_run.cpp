@@ -1,12 +1,10 @@
 #include "run/scene_run.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <dolp/errors.hpp>
 #include <map>
 #include <numeric>
-#include <optional>
 #include <span>
 
 #include <dolp/status.hpp>
@@ -18,7 +16,6 @@
 #include "plan/refinement.hpp"
 #include "run/closed_forms.hpp"
 #include "run/part_requests.hpp"
-#include "run/run_basis.hpp"
 #include "run/table_scene.hpp"
 
 namespace dolp {
@@ -30,7 +27,7 @@ constexpr std::size_t kPointsAtOnce = 1U << 17U;
 // Chosen: 1.71, 1.81, 1.99 with smith (see plan/constants.hpp). A direction is refined as a whole where more than one
 // entry in so many misses the tolerance.
 constexpr std::size_t kWholeDirectionMissRatio = 8;
-constexpr std::size_t kEntriesAtOnce = 4096;  // of a thread: their radiometry takes longer than to start one
+constexpr std::size_t kEntriesAtOnce = 4096;  // entries of a thread: their radiometry takes longer than to start one
 
 /// The radiometry of each variant in a part.
 struct Spectra {
@@ -50,7 +47,7 @@ struct RunContext {
   const Spectra& spectra;
   ModelEvaluator* evaluator;
   std::shared_ptr<const ResponseBasis> basis;
-  RunSummary& summary;  ///< of the run so far: the work of the host is added
+  RunSummary& summary;  ///< summary so far, to which the work of the host is added
 };
 
 /// The evaluator's results for the requests of a part.
@@ -71,7 +68,7 @@ class MemberResults {
 
   PointResult operator()(std::size_t member) {
     const SceneEntry entry = selection_[member];
-    const Direction direction = seen(entry);
+    const Direction direction = view_direction(entry);
     const std::vector<FacetOptics>& samples = context_.spectra.indices[entry.variant];
     if (moments_.size() != samples.size()) {
       moments_.assign(samples.size(), {});
@@ -94,7 +91,7 @@ class MemberResults {
 
  private:
   /// Neighbours in a grid mostly have one direction, and all of them one way to treat it.
-  const Direction& seen(const SceneEntry& entry) {
+  const Direction& view_direction(const SceneEntry& entry) {
     const Surface& surface = context_.scene.surface;
     const double theta_deg = moment_zenith_deg(context_.scene, entry.theta_deg);
     const Treatment treatment = treatment_of(surface.distribution, surface.masking, theta_deg, entry.shape);
@@ -115,11 +112,11 @@ class MemberResults {
       }
       return moments_;
     }
-    const PartRequests::Place place = requests_.moments_of(member);
-    if (place.stride == 1 || moments_.size() == 1) {
-      return std::span(evaluated_.moments).subspan(place.first, moments_.size());
+    const PartRequests::MomentsSpan span = requests_.moments_of(member);
+    if (span.stride == 1 || moments_.size() == 1) {
+      return std::span(evaluated_.moments).subspan(span.first, moments_.size());
     }
-    for (std::size_t j = 0; j < moments_.size(); ++j) moments_[j] = evaluated_.moments[place.first + j * place.stride];
+    for (std::size_t j = 0; j < moments_.size(); ++j) moments_[j] = evaluated_.moments[span.first + j * span.stride];
     return moments_;
   }
 
@@ -214,8 +211,8 @@ RefinementLevel level_of_direction(RefinementLevel next, const RunContext& conte
   return next;
 }
 
-/// The next level of one direction whose `members` were computed at `last`: of all of it, between nodes again, where
-/// many miss the tolerance; else of each of these by itself. The choice for an entry depends on its direction alone.
+/// Queues the next level of one direction whose `members` were computed at `last`. If many members miss the tolerance,
+/// all are queued and interpolated again; else each of these by itself. The choice depends only on the direction.
 void queue_refinement(const RunContext& context, const SceneEntries& part, const RefinementLevel& last,
                       std::span<const std::size_t> members, std::span<const PointResult> results,
                       EntriesByLevel& by_level) {
@@ -238,7 +235,7 @@ void queue_refinement(const RunContext& context, const SceneEntries& part, const
 struct FirstResults {
   RefinementLevel level;
   std::vector<PointResult> results;
-  std::vector<char> is_interpolated;  ///< of each run of part.entries_per_direction() entries
+  std::vector<char> is_interpolated;  ///< flag of each run of part.entries_per_direction() entries
 };
 
 FirstResults first_results(const RunContext& context, const SceneEntries& part, const Progress& progress) {
@@ -350,9 +347,7 @@ void CollectedResults::write(const SceneEntries& part, std::vector<PointResult> 
     results_ = std::move(results);
   } else if (part.is_grid()) {
     results_.resize(entries_.size());
-    PerAxis first = part.first();
-    for (std::size_t i = 0; i < first.size(); ++i) first[i] -= entries_.first()[i];
-    for_each_run(first, part.counts(), entries_.counts(), [&](const GridRun& run) {
+    for_each_run(part.first_in(entries_), part.counts(), entries_.counts(), [&](const GridRun& run) {
       std::copy_n(results.begin() + static_cast<std::ptrdiff_t>(run.in_part), run.count,
                   results_.begin() + static_cast<std::ptrdiff_t>(run.in_whole));
     });

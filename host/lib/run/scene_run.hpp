@@ -28,13 +28,10 @@ SceneEntries grid_entries(const SceneValues& scene);
 /// wavelength; q <= 3/2 with smith masking and the cauchy distribution.
 SceneEntries point_entries(const SceneValues& scene, const Points& points);
 
-/// Refuses points with a q that the scene's masking does not support, q <= 3/2 with smith and the cauchy distribution,
-/// and winds for another distribution than the gaussian; the scene's own values have passed the same check.
+/// Refuses points that do not fit the scene's surface: q <= 3/2 with smith masking and the cauchy distribution, winds
+/// without the gaussian distribution, numbers of films that the scene lacks, n and k of a film that has a material.
 /// Errors: InputError that names the points' file and line, column, value and what is allowed.
-void check_shapes(const SceneValues& scene, const Points& points);
-
-/// Refuses numbers of films that the scene does not have, and n and k of a film that has a material.
-void check_films(const SceneValues& scene, const Points& points);
+void check_surface(const SceneValues& scene, const Points& points);
 
 /// Destination of results, part by part.
 class Sink {
@@ -43,7 +40,7 @@ class Sink {
   /// The parts that an earlier run left, which come first and are not computed again, and their summary.
   virtual std::size_t parts_done() const { return 0; }
   virtual RunSummary summary_of_done() const { return {}; }
-  /// Takes the results of `part`: points follow those of the part before, the part of a grid states its own position.
+  /// Takes the results of `part`. Points follow the points of the part before; a part of a grid has its position.
   /// `so_far`: summary of all parts up to this one.
   virtual void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary& so_far) = 0;
 };
@@ -81,10 +78,10 @@ using EvaluatorMaker = std::function<ModelEvaluator*()>;
 struct RunOutcome {
   EffectPlan plan;
   std::vector<Effect> effects;
-  RunSummary summary;           ///< of all parts, also of those that were there already
-  EvaluationReport evaluation;  ///< likewise
+  RunSummary summary;           ///< summary of all parts, including parts that were there already
+  EvaluationReport evaluation;  ///< evaluation of all parts
   double wall_s = 0.0;
-  double file_s = 0.0;  ///< of it: waiting until the table was written
+  double file_s = 0.0;  ///< part of wall_s: waiting until the table was written
 };
 
 /// A run of a scene over a grid, a part of one, or points: the pipeline of every front end. The constructor decides
@@ -92,7 +89,7 @@ struct RunOutcome {
 class Run {
  public:
   /// `scene` must outlive the object. Tells `options.progress` that all inputs are read, then makes the evaluator if
-  /// one is needed. Errors: those of make_evaluator; Cancelled.
+  /// one is needed. Errors: errors of make_evaluator; Cancelled.
   Run(const SceneValues& scene, SceneEntries entries, const RunOptions& options, const EvaluatorMaker& make_evaluator);
 
   const SceneEntries& entries() const { return entries_; }
@@ -105,8 +102,8 @@ class Run {
   /// Drives the whole pipeline, part by part: it computes what the plan keeps, and computes again where results miss
   /// the tolerance; quantities outside the plan are NaN. Progress counts entries. Some entries of a grid are checked; a
   /// direction in which a bound fails gets the status of a missed tolerance. The result of an entry of a grid depends
-  /// on its direction and index, and on the slope distributions of the grid, not on the parts. Errors: those of the
-  /// evaluator, of Radiometry and of the sink; Cancelled.
+  /// on its direction and index, and on the slope distributions of the grid, not on the parts. Errors: errors of the
+  /// evaluator, Radiometry and the sink; Cancelled.
   RunOutcome compute(Sink& sink);
 
   /// Time since the object was made.
@@ -130,12 +127,11 @@ std::size_t spectral_samples(const SceneValues& scene, const SceneEntries& entri
 /// Calls `progress`, if there is one, with nothing done yet: all inputs are read. Errors: Cancelled.
 void report_start(const Progress& progress, std::size_t total);
 
-/// The same as Run::compute for an existing plan and evaluator; the evaluator may be null where the plan leaves nothing
-/// for it.
+/// Run::compute with an existing plan and evaluator. The evaluator may be null if the plan leaves nothing for it.
 RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
                      ModelEvaluator* evaluator, Sink& sink, const Progress& progress);
 
-/// The same into memory: results in the order of `entries`; without a plan everything is kept.
+/// run_scene into memory: results in the order of `entries`. Without a plan everything is kept.
 std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEntries& entries,
                                         ModelEvaluator& evaluator, const Progress& progress,
                                         const std::optional<EffectPlan>& plan = {});

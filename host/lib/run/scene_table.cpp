@@ -12,7 +12,6 @@
 
 #include "base/hash.hpp"
 #include "base/version.hpp"
-#include "run/surface_data.hpp"
 #include "run/table_scene.hpp"
 
 namespace dolp {
@@ -89,19 +88,28 @@ std::string history_text(const std::string& command_line) {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ} {}", fmt::gmtime(now), command_line);
 }
 
-std::vector<Attribute> attributes_of(const SceneValues& scene, const RunOutcome& run, const std::string& command_line) {
-  const EvaluationReport& evaluation = run.evaluation;
+std::vector<Attribute> RunRecord::attributes(const std::string& command_line) const {
   return {{"history", history_text(command_line)},
           {"device", evaluation.device},
           {"driver", evaluation.driver},
           {"evaluator", evaluation.evaluator},
           {"precision", evaluation.precision},
-          {"effects", effects_text(run.effects, run.plan)},
-          {"rule", rule_text(scene.accuracy.tolerance, evaluation)},
-          {kModelChange, run.summary.model_change},
-          {"self_check_entries", static_cast<double>(run.summary.check.entries)},
-          {"self_check_worst_ratio", run.summary.check.worst_ratio},
-          {"wall_time_s", run.wall_s}};
+          {"effects", effects},
+          {"rule", rule},
+          {kModelChange, model_change},
+          {"self_check_entries", static_cast<double>(check.entries)},
+          {"self_check_worst_ratio", check.worst_ratio},
+          {"wall_time_s", wall_s}};
+}
+
+std::vector<Attribute> attributes_of(const SceneValues& scene, const RunOutcome& run, const std::string& command_line) {
+  const RunRecord record{run.evaluation,
+                         effects_text(run.effects, run.plan),
+                         rule_text(scene.accuracy.tolerance, run.evaluation),
+                         run.summary.model_change,
+                         run.summary.check,
+                         run.wall_s};
+  return record.attributes(command_line);
 }
 
 std::string rule_text(double tolerance, const EvaluationReport& evaluation) {
@@ -158,21 +166,20 @@ TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const
                      {"tolerance", scene.accuracy.tolerance}};
   const Dispersion& formula = recorded_material(axes, scene).n.formula;
   if (formula.number != 0 && !scene.materials) head.attributes.push_back({"index_n_formula", formula_text(formula)});
-  const std::string coating = coating_text(scene.surface, !axes[Axis::kWavelength].empty());
-  if (!coating.empty()) head.attributes.push_back({"coating", coating});
-  const std::string materials = axis_materials_text(scene, !axes[Axis::kWavelength].empty());
-  if (!materials.empty()) head.attributes.push_back({"materials", materials});
-  const std::string reflectance = reflectance_text(scene.surface);
-  if (!reflectance.empty()) head.attributes.push_back({"reflectance", reflectance});
-  const std::string profile = profile_text(scene);
-  if (!profile.empty()) head.attributes.push_back({"surroundings_profile", profile});
+  const bool has_wavelengths = !axes[Axis::kWavelength].empty();
+  const std::initializer_list<Attribute> of_data = {{"coating", coating_text(scene.surface, has_wavelengths)},
+                                                    {"materials", axis_materials_text(scene, has_wavelengths)},
+                                                    {"reflectance", reflectance_text(scene.surface)},
+                                                    {"surroundings_profile", profile_text(scene)}};
+  std::ranges::copy_if(of_data, std::back_inserter(head.attributes),
+                       [](const Attribute& data) { return !std::get<std::string>(data.value).empty(); });
   layout.quantities = quantities_of(scene, &plan);
   return layout;
 }
 
 namespace {
 
-/// A hash of n, k and E0, from files or from wherever the scene has them.
+/// A hash of all data of the scene: n, k, E0, films, reflectances and the sky.
 std::uint64_t data_hash(const SceneValues& scene) {
   std::uint64_t hash = kHashStart;
   const auto add = [&hash](const SpectralTable& table) {

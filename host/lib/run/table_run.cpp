@@ -4,21 +4,17 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <dolp/errors.hpp>
 #include <future>
-#include <map>
 #include <utility>
 
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
-#include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
 #include "run/table_scene.hpp"
 #include "spectrum/spectral_rule.hpp"
 #include "table/table_file.hpp"
 #include "table/table_output.hpp"
-#include "table/table_reader.hpp"
 
 namespace dolp {
 namespace {
@@ -52,13 +48,6 @@ Axes scene_axes(TableHead table, const SceneValues& scene, const std::string& na
 
 std::string shard_text(const Shard& shard) { return fmt::format("{}/{}", shard.number, shard.count); }
 
-/// Where a part begins in the entries that it is a part of.
-PerAxis place_in(const SceneEntries& entries, const SceneEntries& part) {
-  PerAxis first = part.first();
-  for (std::size_t i = 0; i < first.size(); ++i) first[i] -= entries.first()[i];
-  return first;
-}
-
 std::string identity_of(const SceneValues& scene, const TableJob& job) {
   return identity_of(scene, job.evaluator, job.options.keep_all);
 }
@@ -71,7 +60,7 @@ std::string identity_of_file(const std::string& identity, const Shard& shard, co
 
 std::vector<TableBox> boxes_of(const SceneEntries& entries, const std::vector<SceneEntries>& parts) {
   std::vector<TableBox> boxes;
-  for (const SceneEntries& part : parts) boxes.push_back({place_in(entries, part), part.counts()});
+  for (const SceneEntries& part : parts) boxes.push_back({part.first_in(entries), part.counts()});
   return boxes;
 }
 
@@ -95,11 +84,11 @@ class TableSink final : public Sink {
     TableValues table = table_part(layout_, part, results);
     finish();
     pending_ = std::async(std::launch::async,
-                          [this, first = place_in(entries_, part), own = std::move(table),
+                          [this, first = part.first_in(entries_), own = std::move(table),
                            note = so_far.text()]() mutable { output_.write(std::move(own), first, note); });
   }
 
-  /// Waits for the last part. Errors: those of its writing.
+  /// Waits for the last part. Errors: errors of its writing.
   void finish() {
     const auto start = std::chrono::steady_clock::now();
     if (pending_.valid()) pending_.get();
@@ -138,15 +127,13 @@ void with_rest(const TableOutput& output, const Body& body) {
 
 /// A text attribute, empty where there is none.
 std::string text_of(const TableHead& head, const char* name) {
-  const auto found = std::ranges::find(head.attributes, name, &Attribute::name);
-  const auto* text = found == head.attributes.end() ? nullptr : std::get_if<std::string>(&found->value);
+  const auto* text = find_attribute<std::string>(head, name);
   return text ? *text : "";
 }
 
 /// A number attribute from 0 on; 0 for anything else.
 double number_of(const TableHead& head, const char* name) {
-  const auto found = std::ranges::find(head.attributes, name, &Attribute::name);
-  const auto* number = found == head.attributes.end() ? nullptr : std::get_if<double>(&found->value);
+  const auto* number = find_attribute<double>(head, name);
   return number && *number >= 0.0 ? *number : 0.0;
 }
 
@@ -166,44 +153,21 @@ Axes axes_of_shard(const SceneValues& scene, const Shard& shard, const std::stri
   }
 }
 
-/// What the shards of a table say of their runs, together.
-class MergedRun {
- public:
-  void add(const TableHead& head) {
-    const double most = static_cast<double>(kMostTableEntries);
-    check_.entries += static_cast<std::size_t>(std::min(number_of(head, "self_check_entries"), most));
-    check_.worst_ratio = std::max(check_.worst_ratio, number_of(head, "self_check_worst_ratio"));
-    model_change_ = std::max(model_change_, number_of(head, kModelChange));
-    wall_s_ += number_of(head, "wall_time_s");
-    const std::string device = text_of(head, "device");
-    if (devices_.find(device) == std::string::npos) devices_ += (devices_.empty() ? "" : "; ") + device;
-  }
-
-  /// The attributes of the whole table; `first` is a shard's.
-  std::vector<Attribute> attributes(const TableHead& first, const std::string& command_line) const {
-    return {{"history", history_text(command_line)},
-            {"device", devices_},
-            {"driver", text_of(first, "driver")},
-            {"evaluator", text_of(first, "evaluator")},
-            {"precision", text_of(first, "precision")},
-            {"effects", text_of(first, "effects")},
-            {"rule", text_of(first, "rule")},
-            {kModelChange, model_change_},
-            {"self_check_entries", static_cast<double>(check_.entries)},
-            {"self_check_worst_ratio", check_.worst_ratio},
-            {"wall_time_s", wall_s_}};
-  }
-
- private:
-  SelfCheck check_;
-  double model_change_ = 0.0;
-  double wall_s_ = 0.0;
-  std::string devices_;
-};
+/// Adds the run of a shard to the record of the whole table.
+void add_run(RunRecord& whole, const TableHead& shard) {
+  const double most = static_cast<double>(kMostTableEntries);
+  whole.check.entries += static_cast<std::size_t>(std::min(number_of(shard, "self_check_entries"), most));
+  whole.check.worst_ratio = std::max(whole.check.worst_ratio, number_of(shard, "self_check_worst_ratio"));
+  whole.model_change = std::max(whole.model_change, number_of(shard, kModelChange));
+  whole.wall_s += number_of(shard, "wall_time_s");
+  const std::string device = text_of(shard, "device");
+  std::string& devices = whole.evaluation.device;
+  if (devices.find(device) == std::string::npos) devices += (devices.empty() ? "" : "; ") + device;
+}
 
 /// A shard's attributes that also hold for the whole table.
 std::vector<Attribute> without_run(std::vector<Attribute> attributes) {
-  const std::vector<Attribute> run = MergedRun().attributes({}, "");
+  const std::vector<Attribute> run = RunRecord().attributes("");
   std::erase_if(attributes, [&](const Attribute& attribute) {
     return attribute.name == kShard || std::ranges::find(run, attribute.name, &Attribute::name) != run.end();
   });
@@ -295,7 +259,7 @@ bool is_there(const SceneValues& scene, const TableJob& job) {
     const TableHead& head = reader.head();
     if (difference(text_of(head, kIdentity), identity_of(scene, job)) || text_of(head, kShard) != shard_text(job.shard))
       return false;
-    // Refuses values that are not those that were written.
+    // Refuses values that differ from the written ones.
     static_cast<void>(reader.read_entries({}, job.options.progress));
     return scene_axes(head, scene, job.path.string()) == shard_entries(scene, job.shard).axes();
   } catch (const InputError&) {
@@ -326,7 +290,7 @@ void ShardSet::begin(const TableReader& first, const std::string& path) {
   const std::optional<Shard> shard = shard_of(first.head());
   if (!shard) return;
   scene_ = table_scene(first.head(), path);
-  layout_ = {first.head(), first.quantities(), first.has_status()};
+  layout_ = first.layout();
   layout_.head.axes = scene_.grid;
   layout_.head.labels = scene_.labels;
   fill_used(layout_.head, scene_);
@@ -343,8 +307,8 @@ std::size_t ShardSet::checked_number(const TableReader& reader, const std::strin
   if (const auto differs = difference(identity, text_of(first, kIdentity)))
     throw InputError(fmt::format("{}: is a shard of another table: it has {}", path, *differs));
   const bool has_same_curves = spectral_data_of(head) == spectral_data_of(first);
-  if (shard->count != count_ || reader.quantities() != layout_.quantities ||
-      reader.has_status() != layout_.has_status || head.stokes_units != first.stokes_units || !has_same_curves) {
+  if (shard->count != count_ || reader.layout().quantities != layout_.quantities ||
+      reader.layout().has_status != layout_.has_status || head.stokes_units != first.stokes_units || !has_same_curves) {
     throw InputError(fmt::format("{}: is shard {}, of another table than {}: it has other variables or units", path,
                                  shard_text(*shard), paths_.begin()->second));
   }
@@ -357,17 +321,21 @@ std::size_t ShardSet::merge(const fs::path& path, const std::string& command_lin
   TableLayout layout = layout_;
   layout.head.attributes = without_run(layout_.head.attributes);
   TableOutput output({.path = path, .layout = std::move(layout)});
-  MergedRun run;
+  const TableHead& first = layout_.head;
+  RunRecord run{{}, text_of(first, "effects"), text_of(first, "rule")};
+  run.evaluation.driver = text_of(first, "driver");
+  run.evaluation.evaluator = text_of(first, "evaluator");
+  run.evaluation.precision = text_of(first, "precision");
   for (const auto& [number, own_path] : paths_) {
     const TableReader reader(own_path);
     const std::size_t is_now = checked_number(reader, own_path);
     if (is_now != number)
       throw InputError(fmt::format("{}: is shard {} now, and was {}", own_path, shard_text({is_now, count_}), number));
-    run.add(reader.head());
+    add_run(run, reader.head());
     merge_shard(output, reader, shard_entries(scene_, {number, count_}));
   }
-  output.finish(run.attributes(layout_.head, command_line));
-  return layout_.head.size();
+  output.finish(run.attributes(command_line));
+  return first.size();
 }
 
 }  // namespace dolp

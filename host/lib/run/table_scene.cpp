@@ -10,8 +10,8 @@
 #include <dolp/number_range.hpp>
 #include "base/hash.hpp"
 #include "base/text.hpp"
-#include "run/surface_data.hpp"
-#include "scene/reflectance_file.hpp"
+#include "scene/csv.hpp"
+#include "scene/material_data.hpp"
 #include "scene/scene_reader.hpp"
 #include "scene/spectral_data.hpp"
 #include "table/table_file.hpp"
@@ -19,11 +19,9 @@
 namespace dolp {
 namespace {
 
-/// A text attribute, or nullptr.
-const std::string* find_text(const TableHead& table, std::string_view attribute) {
-  const auto found = std::ranges::find(table.attributes, attribute, &Attribute::name);
-  return found == table.attributes.end() ? nullptr : std::get_if<std::string>(&found->value);
-}
+constexpr double kMostMaterials = 1e4;
+
+enum Column : std::size_t { kNumber, kQuantity, kWavelength, kValue, kColumns };
 
 /// True for a line that begins a setting: a key, dotted or at the top of a scene, and an equals sign.
 bool begins_setting(std::string_view line) {
@@ -52,7 +50,7 @@ KnownData known_data(const TableHead& table, const std::string& name) {
     material.n = checked_table(table.index_n, {"index_n", 0.0, kNRange}, where);
     material.k = checked_table(table.index_k, {"index_k", 0.0, kKRange}, where);
     material.constant = {material.n.value.front(), material.k.value.front()};
-    const std::string* formula = find_text(table, "index_n_formula");
+    const std::string* formula = find_attribute<std::string>(table, "index_n_formula");
     if (formula) material.n.formula = parse_formula(*formula, where + "attribute \"index_n_formula\": ");
     for (SpectralTable* values : {&material.n, &material.k}) {
       if (values->value.size() == 1) *values = {};
@@ -61,15 +59,15 @@ KnownData known_data(const TableHead& table, const std::string& name) {
   if (!table.irradiance.values.empty()) {
     known.irradiance = checked_table(table.irradiance, {"irradiance", 0.0, kNonNegativeRange}, where);
   }
-  if (const std::string* coating = find_text(table, "coating"))
+  if (const std::string* coating = find_attribute<std::string>(table, "coating"))
     known.layers = parse_materials(*coating, name + ": attribute \"coating\"");
-  if (const std::string* materials = find_text(table, "materials")) {
+  if (const std::string* materials = find_attribute<std::string>(table, "materials")) {
     for (std::optional<Material>& material : parse_materials(*materials, name + ": attribute \"materials\""))
       known.materials.push_back(std::move(material).value_or(Material()));
   }
-  if (const std::string* reflectance = find_text(table, "reflectance"))
+  if (const std::string* reflectance = find_attribute<std::string>(table, "reflectance"))
     known.reflectance = parse_reflectances(*reflectance, name + ": attribute \"reflectance\"");
-  const std::string* profile = find_text(table, "surroundings_profile");
+  const std::string* profile = find_attribute<std::string>(table, "surroundings_profile");
   if (profile && !profile->empty()) {
     known.profile = parse_sky_profile(*profile, name + ": attribute \"surroundings_profile\"");
   }
@@ -77,6 +75,109 @@ KnownData known_data(const TableHead& table, const std::string& name) {
 }
 
 }  // namespace
+
+std::string formula_text(const Dispersion& formula) {
+  std::string text = std::to_string(formula.number);
+  for (const double coefficient : formula.coefficients) text += ' ' + format_number(coefficient);
+  return text;
+}
+
+Dispersion parse_formula(const std::string& text, const std::string& where) {
+  Dispersion formula;
+  for (const std::string_view word : split(text, ' '))
+    formula.coefficients.push_back(parse_number(word).value_or(-1.0));
+  formula.number = static_cast<int>(std::clamp(formula.coefficients.front(), -1.0, kDispersionFormulas + 1.0));
+  formula.coefficients.erase(formula.coefficients.begin());
+  const bool is_known = formula.number >= 1 && formula.number <= kDispersionFormulas;
+  const std::vector<std::size_t> counts = is_known ? coefficient_counts(formula.number) : std::vector<std::size_t>{};
+  if (std::ranges::find(counts, formula.coefficients.size()) == counts.end()) {
+    throw InputError(fmt::format("{}is no dispersion formula", where));
+  }
+  return formula;
+}
+
+std::string materials_text(const std::vector<const Material*>& materials, bool has_wavelength_axis) {
+  if (materials.empty()) return {};
+  std::string text = "number,quantity,wavelength_um,value\n";
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const Material& used = *materials[i];
+    if (!used.name.empty()) text += fmt::format("{},name,,\"{}\"\n", i + 1, one_line(used.name));
+    const Material& material = has_wavelength_axis && used.tabulated ? *used.tabulated : used;
+    const auto add = [&](const char* quantity, const SpectralTable& table, double constant) {
+      if (table.wavelength_um.empty()) text += fmt::format("{},{},,{}\n", i + 1, quantity, format_number(constant));
+      for (std::size_t row = 0; row < table.wavelength_um.size(); ++row) {
+        text += fmt::format("{},{},{},{}\n", i + 1, quantity, format_number(table.wavelength_um[row]),
+                            format_number(table.value[row]));
+      }
+    };
+    add("n", material.n, material.constant.n);
+    add("k", material.k, material.constant.k);
+    if (material.n.formula.number != 0)
+      text += fmt::format("{},formula,,{}\n", i + 1, formula_text(material.n.formula));
+  }
+  return text;
+}
+
+std::string coating_text(const Surface& surface, bool has_wavelength_axis) {
+  std::vector<const Material*> films;
+  for (const Layer& layer : surface.coating) films.push_back(&layer.material);
+  return materials_text(films, has_wavelength_axis);
+}
+
+std::string axis_materials_text(const SceneModel& scene, bool has_wavelength_axis) {
+  std::vector<const Material*> materials;
+  for (std::size_t i = 0; scene.materials && i < scene.materials->size(); ++i)
+    materials.push_back(&(*scene.materials)[i]);
+  return materials_text(materials, has_wavelength_axis);
+}
+
+std::vector<std::optional<Material>> parse_materials(const std::string& text, const std::string& name) {
+  std::vector<std::optional<Material>> materials;
+  CsvReader row(text, name);
+  row.next();  // names
+  while (row.next()) {
+    if (row.cells().size() != kColumns) row.fail("4 columns are expected");
+    const double number = row.number(kNumber, "number");
+    if (!(number >= 1.0 && number <= kMostMaterials)) row.fail("no such material");
+    materials.resize(std::max(materials.size(), static_cast<std::size_t>(number)));
+    std::optional<Material>& material = materials[static_cast<std::size_t>(number) - 1];
+    if (!material) material.emplace();
+    const std::string_view quantity = row.cells()[kQuantity];
+    if (quantity == "name") {
+      material->name = row.cells()[kValue];
+      continue;
+    }
+    if (quantity == "formula") {
+      material->n.formula = parse_formula(std::string(row.cells()[kValue]), row.where());
+      continue;
+    }
+    const double value = row.number(kValue, "value", quantity == "n" ? &kNRange : &kKRange);
+    if (row.cells()[kWavelength].empty()) {
+      (quantity == "n" ? material->constant.n : material->constant.k) = value;
+    } else {
+      const double wavelength_um = row.number(kWavelength, "wavelength_um");
+      append_index(*material, wavelength_um, quantity == "n" ? std::optional(value) : std::nullopt,
+                   quantity == "n" ? std::nullopt : std::optional(value), row.where());
+    }
+  }
+  return materials;
+}
+
+std::string reflectance_text(const Surface& surface) {
+  if (!surface.reflectance) return {};
+  const ReflectanceTable& table = *surface.reflectance;
+  const bool has_wavelengths = !table.wavelength_um.empty();
+  std::string text = has_wavelengths ? "wavelength_um,beta_deg,r_s,r_p\n" : "beta_deg,r_s,r_p\n";
+  for (std::size_t i = 0; i < table.measured.size(); ++i) {
+    const MeasuredReflectance& measured = *table.measured[i];
+    for (std::size_t j = 0; j < measured.beta_deg.size(); ++j) {
+      if (has_wavelengths) text += format_number(table.wavelength_um[i]) + ',';
+      text += fmt::format("{},{},{}\n", format_number(measured.beta_deg[j]), format_number(measured.r_s[j]),
+                          format_number(measured.r_p[j]));
+    }
+  }
+  return text;
+}
 
 std::string settings_text(const std::vector<Setting>& settings) {
   std::string text;
@@ -119,30 +220,33 @@ TableValues load_table(const std::string& path) {
   return read_table(path);
 }
 
+double scene_position(const TableHead& table, Axis axis, double value, const SceneValues& scene,
+                      const std::string& name) {
+  const std::vector<std::string>& known = scene.labels[axis];
+  const std::string& label = table.label(axis, value);
+  const auto found = std::ranges::find(known, label);
+  if (found == known.end())
+    throw InputError(fmt::format("{}: {} = \"{}\": is not among those that were computed: {}", name,
+                                 description_of(axis).name, one_line(label), join(known)));
+  return static_cast<double>(found - known.begin());
+}
+
 void use_scene_labels(TableHead& table, const SceneValues& scene, const std::string& name) {
   for (const Axis axis : kAllAxes) {
-    const std::vector<std::string>& known = scene.labels[axis];
-    for (double& value : table.axes[axis]) {
-      if (!description_of(axis).has_labels) break;
-      const std::string& label = table.label(axis, value);
-      const auto found = std::ranges::find(known, label);
-      if (found == known.end())
-        throw InputError(fmt::format("{}: {}: \"{}\" is not among those of its scene: {}", name,
-                                     description_of(axis).name, one_line(label), join(known)));
-      value = static_cast<double>(found - known.begin());
-    }
-    table.labels[axis] = known;
+    if (!description_of(axis).has_labels) continue;
+    for (double& value : table.axes[axis]) value = scene_position(table, axis, value, scene, name);
+    table.labels[axis] = scene.labels[axis];
   }
 }
 
 SceneValues table_scene(const TableHead& table, const std::string& name, NamedData named_data) {
-  const std::string* text = find_text(table, "scene");
+  const std::string* text = find_attribute<std::string>(table, "scene");
   if (!text) {
     throw InputError(
         fmt::format("{}: has no attribute \"scene\"; only a table that dolp wrote as .nc holds its scene", name));
   }
-  const std::string* overrides = find_text(table, "scene_overrides");
-  const std::string* path = find_text(table, "scene_path");
+  const std::string* overrides = find_attribute<std::string>(table, "scene_overrides");
+  const std::string* path = find_attribute<std::string>(table, "scene_path");
   const KnownData known =
       named_data == NamedData::kOfTable ? known_data(table, name) : KnownData{.may_open_files = true};
   SceneValues scene;
@@ -152,7 +256,7 @@ SceneValues table_scene(const TableHead& table, const std::string& name, NamedDa
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: attribute \"scene\": {}", name, error.what()));
   }
-  const std::string* hash = find_text(table, "scene_hash");
+  const std::string* hash = find_attribute<std::string>(table, "scene_hash");
   if (hash && *hash != scene_hash(scene)) {
     throw InputError(
         fmt::format("{}: attribute \"scene_hash\" is {}, but its scene has {}: the scene was changed after "

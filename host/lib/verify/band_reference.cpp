@@ -4,9 +4,7 @@
 #include <array>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
-#include <optional>
 
-#include "base/numbers.hpp"
 #include "model/angles.hpp"
 #include "run/scene_run.hpp"
 #include "spectrum/spectral_rule.hpp"
@@ -19,14 +17,14 @@ using Kronrod = boost::math::quadrature::gauss_kronrod<double, 15>;
 using Gauss = boost::math::quadrature::gauss<double, 7>;
 
 constexpr std::size_t kFirstIntervals = 4;
-constexpr std::size_t kMostIntervals = 32;  // of a point: 480 wavelengths
+constexpr std::size_t kMostIntervals = 32;  // intervals of a point: 480 wavelengths
 constexpr double kQuadratureShare = 0.01;   // where a quadrature ends
 
 // Results of a wavelength that are integrated without a weight, and with the weight of the mean reflectance.
 constexpr std::array kIntegrated = {kStokesI, kStokesQ, kStokesU, kStokesV};
 constexpr std::array kMeans = {kRhoI, kRhoQ, kEmissivityS, kEmissivityP};
 
-/// Integrals: of the radiation, the weight, the means times it, and the errors of DOLP and rho at each wavelength.
+/// Integrals of the radiation, the weight, the means times the weight, and the errors of DOLP and rho.
 constexpr std::size_t kWeight = kIntegrated.size();
 constexpr std::size_t kDolpError = kWeight + 1 + kMeans.size();
 constexpr std::size_t kRhoError = kDolpError + 1;
@@ -43,7 +41,7 @@ struct BandPiece {
 struct PointIntegral {
   SceneEntry entry;
   SceneVariant variant;        ///< without a wavelength
-  std::vector<double> breaks;  ///< of its spectrum, in um
+  std::vector<double> breaks;  ///< wavelengths in um at which its spectrum is not smooth
   std::vector<BandPiece> intervals;
   std::size_t first_new = 0;  ///< first interval without a value
   PointResult last;           ///< at some wavelength

@@ -32,7 +32,7 @@ Choice choice(const CsvReader& row, std::size_t column) {
   const std::optional<Choice> found = named<Choice>(word);
   if (!found) {
     row.fail(fmt::format("{} = {}: must be one of {}", kCaseColumns[column], one_line(word),
-                         fmt::join(Names<Choice>::kAll, ", ")));
+                         fmt::join(words_of(Choice{}), ", ")));
   }
   return *found;
 }
@@ -47,10 +47,10 @@ StoredCase parse_case(const CsvReader& row) {
   stored.theta_deg = number(2);
   stored.shape = {number(3), number(4)};
   stored.index = {number(5), number(6)};
-  constexpr std::array kMoments{&Moments::r_i,          &Moments::r_q,          &Moments::albedo,
-                                &Moments::deficit,      &Moments::r_i_error,    &Moments::r_q_error,
-                                &Moments::albedo_error, &Moments::deficit_error};
-  for (std::size_t i = 0; i < kMoments.size(); ++i) stored.moments.*kMoments[i] = number(7 + i);
+  for (std::size_t i = 0; i < 4; ++i) {
+    stored.moments.*kMomentMembers[i].value = number(7 + i);
+    stored.moments.*kMomentMembers[i].error = number(11 + i);
+  }
   stored.name = row.cells()[15];
   stored.origin = row.cells()[16];
   return stored;

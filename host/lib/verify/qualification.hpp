@@ -1,7 +1,6 @@
 // Stored reference moments, and how an evaluator compares with them, through the radiometry, as `dolp eval` computes.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -59,11 +58,11 @@ struct CaseOutcome {
   StoredCase stored;
   ErrorCheck rho;              ///< max(|d rho_I|, |d rho_Q|) / rho_I
   ErrorCheck dolp;             ///< |d DOLP|
-  bool promises_dolp = false;  ///< the tolerance is promised for DOLP: status has none of the bits 1, 4, 8
+  bool promises_dolp = false;  ///< the tolerance is promised for DOLP: status has no bit 1, 4 or 8
   std::uint32_t status = 0;
   std::string complaint;  ///< empty when the case is right: errors below estimates, tolerances met or status 2 or 16
   double worst_ratio() const;
-  bool misses_tolerance() const { return (status & kAnyToleranceNotMet) != 0; }  ///< and says so
+  bool misses_tolerance() const { return (status & kAnyToleranceNotMet) != 0; }  ///< and states it
 };
 
 /// The scene of the cases of one distribution and masking: a surface that only emits, at 300 K and 10.6 um, so that
@@ -73,7 +72,7 @@ SceneValues emission_scene(Distribution distribution, Masking masking, double to
 /// Evaluates all cases and compares each with its reference, in the order of `cases`.
 ///
 /// At 90 degrees, rho has no finite value with masking none and integral; DOLP is compared with |r_Q / r_I|.
-/// Domain: cases at 90 degrees are of those two maskings and have finite moments.
+/// Domain: cases at 90 degrees have one of these maskings and finite moments.
 /// Errors: errors of evaluate_scene.
 std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, ModelEvaluator& evaluator,
                                  const Accuracy& accuracy, const Progress& progress);

@@ -12,7 +12,6 @@
 #include <span>
 
 #include <dolp/number_range.hpp>
-#include <dolp/results.hpp>
 #include <dolp/status.hpp>
 #include "base/numbers.hpp"
 #include "reference/reference_evaluator.hpp"
@@ -53,7 +52,7 @@ constexpr std::array<Compared, 13> kCompared{{
 /// that it is a sum of.
 constexpr double kUnstatedOverStated = 10.0;
 
-/// What bounds depend on besides the entry.
+/// Properties of a variant that bounds depend on.
 struct BoundTerms {
   double tolerance = 0.0;
   double radiation = 0.0;  ///< emitted plus reflected radiation with rho = 1, in the units of Stokes I
@@ -89,7 +88,7 @@ double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const Po
     case Bound::kPolarisedRadiation:
       return radiation;
     case Bound::kRadiation:
-      // Toward DOLP = 0 its estimate says nothing of I.
+      // Toward DOLP = 0 its estimate does not bound the error of I.
       return std::min(dolp > 0.0 ? radiation / dolp : kInfinity, unstated * terms.radiation);
     case Bound::kEmissivity:
       return unstated;
@@ -123,10 +122,11 @@ double allowed_error(Bound bound, std::uint32_t status, double tolerance, const 
   return is_dolp ? tolerance : kInfinity;
 }
 
-void add(QuantityCheck& check, const CheckedValue& value) {
-  ++check.compared;
-  if (std::isinf(value.stated)) ++check.unstated;
-  if (check.compared == 1 || value.ratio() > check.worst.ratio()) check.worst = value;
+void add(TableCheck& check, QuantityCheck& of_quantity, const CheckedValue& value) {
+  ++of_quantity.compared;
+  if (std::isinf(value.stated)) ++of_quantity.unstated;
+  if (of_quantity.compared == 1 || value.ratio() > of_quantity.worst.ratio()) of_quantity.worst = value;
+  if (!value.complaint.empty()) check.failures.push_back(value);
 }
 
 CheckedValue compare(const TableSample& sample, const Compared& compared, std::size_t i, const PointResult& reference,
@@ -247,9 +247,7 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
     QuantityCheck& of_quantity = check.quantities.emplace_back();
     of_quantity.name = description_of(compared.quantity).name;
     for (std::size_t i = 0; i < results.size(); ++i) {
-      const CheckedValue value = compare(sample, compared, i, results[i], terms[grid[sample.positions[i]].variant]);
-      add(of_quantity, value);
-      if (!value.complaint.empty()) check.failures.push_back(value);
+      add(check, of_quantity, compare(sample, compared, i, results[i], terms[grid[sample.positions[i]].variant]));
     }
   }
   return check;
@@ -287,8 +285,7 @@ TableCheck check_responses(const TableSample& sample, const SceneValues& scene, 
       value.stated = stated[i];
       value.reference_error = reference_error[i];
       if (!(value.stored <= stated[i] + reference_error[i])) value.complaint = "is too far from the reference";
-      if (of_variable.compared++ == 0 || value.ratio() > of_variable.worst.ratio()) of_variable.worst = value;
-      if (!value.complaint.empty()) check.failures.push_back(value);
+      add(check, of_variable, value);
     }
   }
   return check;

@@ -2,11 +2,9 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <dolp/options.hpp>
 #include <dolp/results.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "model/evaluator.hpp"
@@ -48,7 +46,7 @@ struct QuantityCheck {
 struct TableCheck {
   std::size_t entries = 0;
   std::size_t checked = 0;
-  std::size_t missed = 0;  ///< checked entries that say they miss the tolerance (status 2 or 16)
+  std::size_t missed = 0;  ///< checked entries whose status reports a missed tolerance (2 or 16)
   double tolerance = 0.0;
   std::vector<QuantityCheck> quantities;
   std::vector<CheckedValue> failures;
@@ -58,7 +56,7 @@ struct TableCheck {
 /// The values of the axes at an entry of a table.
 std::vector<AxisValue> position_of(std::size_t entry, const TableHead& table);
 
-/// Positions of `samples` distinct entries out of `entries`, ascending; the same for the same seed everywhere.
+/// Positions of `samples` distinct entries out of `entries`, ascending. They depend only on the seed.
 std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckOptions& options);
 
 /// Some entries of a table: its variables have one value for each of the ascending positions.
@@ -67,7 +65,7 @@ struct TableSample {
   std::vector<std::size_t> positions;
 };
 
-/// Compares dolp, rho_i, rho_q and the Stokes parameters of the sample, as far as the table has them, with
+/// Compares the quantities of the sample that the table has (dolp, rho_i, rho_q, Stokes parameters) with
 /// ReferenceEvaluator through the radiometry of the table's scene, over a band with integrate_band.
 ///
 /// A value is wrong if its error exceeds the stated bound plus the reference's bound, if only one of both is a number,

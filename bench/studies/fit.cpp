@@ -7,9 +7,11 @@
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "base/stopwatch.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "run/scene_run.hpp"
 #include "scene/scene_reader.hpp"
 #include "studies/child.hpp"
 #include "studies/fit_sets.hpp"
@@ -131,6 +133,46 @@ ordered_json time_json(ModelEvaluator& evaluator) {
           {"scipy", scipy_json(set, data, result)}};
 }
 
+constexpr std::size_t kSpectrumWavelengths = 300;
+constexpr double kSpectrumNoise = 0.002;
+constexpr std::uint64_t kSpectrumSeed = 20261126;
+const std::string kWater = R"toml(
+[surface]
+material = "water 25C"
+sigma = 0.2
+q = 3.0
+masking = "smith"
+[emission]
+temperature_K = 290
+[surroundings]
+temperature_K = 240
+[spectrum]
+wavelength_um = 10
+)toml";
+
+/// Times a fit of spectra: sigma and q of water from many wavelengths at three zeniths.
+ordered_json spectrum_json(ModelEvaluator& evaluator) {
+  const SceneValues scene = parse_scene(kWater, "water");
+  std::string points = "theta_deg,wavelength_um\n";
+  for (const double theta_deg : {40.0, 60.0, 70.0}) {
+    for (std::size_t i = 0; i < kSpectrumWavelengths; ++i)
+      points += fmt::format("{},{}\n", theta_deg, 8.0 + 6.0 * static_cast<double>(i) / (kSpectrumWavelengths - 1));
+  }
+  const Points at = parse_points(points, "points", PointsKind::kDirections);
+  const std::vector<PointResult> results = evaluate_scene(scene, point_entries(scene, at), evaluator, {});
+  std::mt19937_64 engine(kSpectrumSeed);
+  std::normal_distribution<double> noise(0.0, kSpectrumNoise);
+  std::string csv = "theta_deg,wavelength_um,q_over_i,uncertainty\n";
+  for (std::size_t i = 0; i < results.size(); ++i)
+    csv += fmt::format("{},{},{}\n", at.rows[i], results[i][Quantity::kQOverI] + noise(engine), kSpectrumNoise);
+  const fit::Model model(scene, {MeasuredData::from_csv(csv)}, {{"surface.sigma", 0.05, 0.6}, {"surface.q", 1.6, 6.0}});
+  const auto start = std::chrono::steady_clock::now();
+  const fit::FitResult result = fit::fit(model, evaluator, {}).value();
+  return {{"points", results.size()},          {"time_s", rounded_time(seconds_since(start))},
+          {"evaluations", result.evaluations}, {"sigma", result.parameters[0].value},
+          {"q", result.parameters[1].value},   {"chi_square", result.chi_square}};
+}
+
 /// Median share of the range of n that remains at 95 % with single scattering.
 double median_share_of_n(const ordered_json& rows) {
   const FitRange range = bracket_set(0).parameters.front();
@@ -152,6 +194,7 @@ void measure_sets(StudyRun& run) {
   const std::size_t bracket_sets = std::min(kBracketSets, sets);
   run.expect(sets + bracket_sets);
   run.json()["time"] = time_json(evaluator);
+  run.json()["spectrum"] = spectrum_json(evaluator);
   const std::size_t first = run.options().first_set;
   for (std::size_t number = first; number < first + sets; ++number) {
     const FitSet set = fit_set(number);
@@ -186,6 +229,10 @@ std::string table_text(const ordered_json& result) {
   text += fmt::format("a fit of {} parameters to {} points: {}, {} evaluations\n",
                       time["parameters"].get<std::size_t>(), time["points"].get<std::size_t>(),
                       time_text(time["time_s"].get<double>()), time["evaluations"].get<std::size_t>());
+  const ordered_json& spectrum = result["spectrum"];
+  text += fmt::format("a fit of 2 parameters to {} points of spectra: {}, {} evaluations\n",
+                      spectrum["points"].get<std::size_t>(), time_text(spectrum["time_s"].get<double>()),
+                      spectrum["evaluations"].get<std::size_t>());
   const ordered_json& scipy = time["scipy"];
   if (scipy.is_null()) return text;
   text += fmt::format("  one descent of SciPy around dolp.evaluate: {}, {} calls, {:.2g} standard errors apart\n",

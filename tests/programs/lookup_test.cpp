@@ -136,7 +136,7 @@ TEST_F(Lookup, BadPoints_NameLineColumnAndRange) {
   put("points.csv", "sigma,q\n0.2,2\n");
   expect_refused(lookup(), "points.csv:1: column \"theta_deg\" is missing, a number in [0, 80.5]");
   put("points.csv", "theta_deg,n\n30,1.6\n");
-  expect_refused(lookup(), "points.csv:2: n = 1.6: the table is of n = 1.5; dolp eval computes other indices");
+  expect_refused(lookup(), "points.csv:2: n = 1.6: the table is of n = 1.5; dolp eval computes other values");
   put("points.csv", "theta_deg,n,k\n30,1.5,0.1\n");
   EXPECT_EQ(lookup().status, 0);
 }

@@ -7,8 +7,10 @@
 #include <dolp/status.hpp>
 
 #include "base/temporary_folder.hpp"
+#include "error_text.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "run/lookup_run.hpp"
+#include "run/scene_remarks.hpp"
 #include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
 #include "run/table_run.hpp"
@@ -191,12 +193,36 @@ TEST(GridAxes, Mistakes_AreToldWithTheKeyAndWhatIsAllowed) {
       {"theta_deg,material\n30,lead\n",
        "p.csv:2: material = \"lead\": must be one of gold (Ordal), SiO2 amorphous quartz, PET"},
       {"theta_deg,band_um\n30,7-9\n", "p.csv:2: band_um = \"7-9\": must be one of 8-9, 10-12"},
+      {"theta_deg,material,n,k\n30,PET,1.5,0\n", "columns \"material\" and \"n\" cannot be combined"},
+      {"theta_deg,material\n30,\n", "p.csv:2: material = \"\": must be one of"},
       {"theta_deg,temperature_K\n30,-1\n", "must be a number in (0, 1e4]"}};
   for (const auto& [csv, message] : points) {
     const std::string said =
         message_of([&, text = csv] { point_entries(scene, parse_points(text, "p.csv", PointsKind::kDirections)); });
     EXPECT_NE(said.find(message), std::string::npos) << said;
   }
+}
+
+TEST(GridAxes, SceneWithSeveralMaterials_NeedsAChoice) {
+  const Points points = parse_points("theta_deg,band_um\n30,8-9\n", "p.csv", PointsKind::kDirections);
+  const auto said = [&](const SceneValues& scene, const Points& at) {
+    return error_text([&] { check_labels_chosen(scene, at); });
+  };
+  EXPECT_NE(said(scene_with(), points)
+                .find("grid.material has 3 values; choose one with --set surface.material=NAME, or "
+                      "add the column \"material\" to p.csv"),
+            std::string::npos);
+  EXPECT_NE(said(scene_with(), {}).find("choose one with --set surface.material=NAME"), std::string::npos);
+  EXPECT_NO_THROW(check_labels_chosen(scene_with({"surface.material=PET"}), points));
+  EXPECT_NO_THROW(check_labels_chosen(scene_with({"surface.material=PET", "spectrum.band_um=[8, 9]"}), {}));
+}
+
+TEST(GridAxes, UnlikelyUnits_AreRemarkedWithTheAxis) {
+  const auto remarks = remarks_on(scene_with({"grid.temperature_K=[20, 300]"}));
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_NE(remarks[0].find("grid.temperature_K=[20, 300]: 20 K is cold"), std::string::npos) << remarks[0];
+  const auto wide = remarks_on(scene_with({"surface.n=1.5", "grid.band_um=[[8000, 9000]]"}));
+  EXPECT_NE(wide[0].find("grid.band_um"), std::string::npos) << wide[0];
 }
 
 TEST(GridAxes, SettingThatExcludesAnAxis_ReplacesIt) {

@@ -190,7 +190,7 @@ std::vector<double> label_positions(const Points& points, Axis axis, const AxisL
       return value < static_cast<double>(labels.size()) ? std::optional(std::floor(value)) : std::nullopt;
     const std::string name = lower_case(given[static_cast<std::size_t>(value)]);
     std::vector<double> found;
-    for (std::size_t i = 0; i < labels.size(); ++i) {
+    for (std::size_t i = 0; i < labels.size() && !name.empty(); ++i) {
       if (lower_case(labels[i]) == name) return static_cast<double>(i);
       if (lower_case(labels[i]).find(name) != std::string::npos) found.push_back(static_cast<double>(i));
     }

@@ -26,6 +26,8 @@ inline constexpr NumberRange kPositiveRange{0.0, std::numeric_limits<double>::in
 inline constexpr NumberRange kWavelengthUmRange{0.1, 1e4};
 /// Wavelengths in um that are all above this number are probably in nm.
 inline constexpr double kLikelyNanometres = 1000.0;
+/// Colder than this are few surfaces, and warmer than -213 degrees Celsius all.
+inline constexpr double kLikelyCelsius_K = 60.0;
 inline constexpr NumberRange kToleranceRange{1e-10, 1e-2};
 inline constexpr NumberRange kAxisCountRange{1.0, 1e6};
 /// Positions on an axis with labels.

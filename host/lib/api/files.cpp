@@ -39,11 +39,14 @@ Points load_points(const std::filesystem::path& path, PointsKind kind, std::vect
   return read_points(path.string(), kind, results);
 }
 
-/// Adds that wavelengths are likely in nm.
+/// Adds that wavelengths are likely in nm, and temperatures in degrees Celsius.
 void add_remarks(Report& report, const Points& points) {
   const Points::Column& um = points[Axis::kWavelength];
   if (um && !um->empty() && std::ranges::min(*um) > kLikelyNanometres)
     report.remarks.push_back(points.where() + ": wavelength_um is in micrometres; were nanometres meant?");
+  const Points::Column& kelvin = points[Axis::kTemperature];
+  if (kelvin && !kelvin->empty() && std::ranges::min(*kelvin) < kLikelyCelsius_K)
+    report.remarks.push_back(points.where() + ": temperature_K is in kelvins; were degrees Celsius meant?");
 }
 
 void add_left_out(ReportBuilder& report, const Points& points) {
@@ -117,6 +120,7 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
                                const std::filesystem::path& path, const RunOptions& of_call) {
   return impl().exclusively(scene, of_call, [&](const SceneValues& values, const RunOptions& options) {
     const Points points = load_points(points_path, PointsKind::kDirections, files_of(values), path);
+    check_labels_chosen(values, points);
     SceneEntries entries = point_entries(values, points);
     check_writable(path);
     Run run(values, std::move(entries), options, impl_->maker(values));
@@ -139,6 +143,7 @@ Report Evaluator::write_mueller(const Scene& scene, const std::filesystem::path&
   return impl().exclusively(scene, of_call, [&](const SceneValues& values, const RunOptions& options) {
     const Clock::time_point start = Clock::now();
     const Points points = load_points(points_path, PointsKind::kGeometries, files_of(values), path);
+    check_labels_chosen(values);
     const std::vector<MuellerPoint> geometries = mueller_points(values, points);
     check_writable(path);
     report_start(options.progress, points.size());

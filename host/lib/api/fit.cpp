@@ -287,6 +287,7 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     check_loss(options.loss, options.model_error, data);
     check_starts(options.starts);
     check_plot(options.plot);
+    check_labels_chosen(own);
     report_start(options.progress, 1);
     std::vector<ComparedModel> models;
     ModelEvaluator* evaluator = nullptr;

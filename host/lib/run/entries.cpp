@@ -22,6 +22,11 @@ void check_columns(const SceneValues& scene, const Points& points) {
                     "does without",
                     points.where(), kZenithDegRange.text()));
   }
+  for (const Axis axis : {Axis::kN, Axis::kK}) {
+    if (points[axis] && points[Axis::kMaterial])
+      throw InputError(fmt::format("{}: columns \"material\" and \"{}\" cannot be combined", points.where(),
+                                   description_of(axis).column));
+  }
   const Material& material = scene.surface.material;
   const bool is_dispersive = !material.is_constant() || (points[Axis::kWavelength] && material.tabulated);
   const bool has_n = points[Axis::kN].has_value();
@@ -101,6 +106,19 @@ void check_films(const SceneValues& scene, const Points& points) {
 void check_surface(const SceneValues& scene, const Points& points) {
   check_shapes(scene, points);
   check_films(scene, points);
+}
+
+void check_labels_chosen(const SceneValues& scene, const Points& points) {
+  for (const Axis axis : kAllAxes) {
+    const std::vector<std::string>& labels = scene.labels[axis];
+    if (labels.size() < 2 || points[axis]) continue;
+    const char* const key = axis == Axis::kMaterial ? "surface.material=NAME" : "spectrum.band_um=[FROM, TO]";
+    throw InputError(fmt::format("{}: grid.{} has {} values; choose one with --set {}{}", scene.path_name,
+                                 description_of(axis).column, labels.size(), key,
+                                 points.name.empty() ? ""
+                                                     : fmt::format(", or add the column \"{}\" to {}",
+                                                                   description_of(axis).column, points.name)));
+  }
 }
 
 SceneEntries grid_entries(const SceneValues& scene) {

@@ -15,8 +15,6 @@
 namespace dolp {
 namespace {
 
-// Colder than this are few surfaces, and warmer than -213 degrees Celsius all.
-constexpr double kLikelyCelsius_K = 60.0;
 constexpr double kLikelyNanometresOfFilm = 100.0;
 constexpr double kHotSky = 2.0;  // times the temperature of the surface
 // Neighbouring rows leave a gap from this ratio of their wavelengths, whatever the file's spacing, and never below the
@@ -30,8 +28,9 @@ using Interval = std::pair<double, double>;
 /// The wavelengths that a scene uses: single ones, or a band.
 std::vector<Interval> used_um(const SceneValues& scene) {
   const std::vector<double>& grid = scene.grid[Axis::kWavelength];
-  if (grid.empty()) return {{scene.spectrum.min_um, scene.spectrum.max_um}};
   std::vector<Interval> used;
+  for (const Spectrum& band : scene.bands) used.emplace_back(band.min_um, band.max_um);
+  if (grid.empty() && used.empty()) return {{scene.spectrum.min_um, scene.spectrum.max_um}};
   for (const double um : grid) used.emplace_back(um, um);
   return used;
 }
@@ -73,6 +72,7 @@ class Remarks {
       if (low <= kLikelyNanometres) return;
     }
     add(has_grid                    ? "grid.wavelength_um"
+        : !scene_.bands.empty()     ? "grid.band_um"
         : scene_.spectrum.is_band() ? "spectrum.band_um"
                                     : "spectrum.wavelength_um",
         "is in micrometres; were nanometres meant?");
@@ -82,7 +82,11 @@ class Remarks {
     const auto check = [&](const char* key, double lowest_K) {
       if (lowest_K < kLikelyCelsius_K) add(key, fmt::format("{} K is cold; were degrees Celsius meant?", lowest_K));
     };
-    if (scene_.emission) check("emission.temperature_K", scene_.emission->temperature_K);
+    if (const std::vector<double>& grid = scene_.grid[Axis::kTemperature]; !grid.empty()) {
+      check("grid.temperature_K", std::ranges::min(grid));
+    } else if (scene_.emission) {
+      check("emission.temperature_K", scene_.emission->temperature_K);
+    }
     if (scene_.path && scene_.path->temperature_K) check("path.temperature_K", *scene_.path->temperature_K);
     if (!scene_.surroundings) return;
     const SkyProfile* profile = scene_.surroundings->profile.get();

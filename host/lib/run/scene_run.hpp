@@ -33,6 +33,10 @@ SceneEntries point_entries(const SceneValues& scene, const Points& points);
 /// Errors: InputError that names the points' file and line, column, value and what is allowed.
 void check_surface(const SceneValues& scene, const Points& points);
 
+/// Refuses a scene with several materials or bands if the points do not choose among them. Without points (a Mueller
+/// matrix, a fit) the scene must have one. Errors: InputError with what to do.
+void check_labels_chosen(const SceneValues& scene, const Points& points = {});
+
 /// Destination of results, part by part.
 class Sink {
  public:

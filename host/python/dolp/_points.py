@@ -76,6 +76,7 @@ def _positions(name: str, values: Any, labels: list[str]) -> Any:
     def position(value: Any) -> float:
         wanted = str(value).casefold()
         alike = [i for i, label in enumerate(labels) if wanted in label.casefold()]
+        alike = alike if wanted else []
         same = [i for i in alike if labels[i].casefold() == wanted]
         if len(same or alike) != 1:
             known = f"one of {', '.join(labels)}" if labels else f"absent: there is no axis of {name}"

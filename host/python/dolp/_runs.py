@@ -87,6 +87,7 @@ def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_
     """
     native, engine = native_scene(scene), native_evaluator(evaluator, device)
     frame, columns = columns_of(points, native.labels(), has_keys=True)
+    _check_labels(native, columns)
     varied = {key: columns.pop(key) for key in [*columns] if "." in key}
     _check_varied("points", varied, columns)
 
@@ -138,6 +139,7 @@ def mueller(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **poin
     ((3, 4, 4), True)
     """
     frame, columns = columns_of(points)
+    _check_labels(native_scene(scene), columns)
     matrices = native_evaluator(evaluator, device).mueller(native_scene(scene), columns)
     return matrices.reshape(frame.shape + (4, 4))
 
@@ -198,6 +200,13 @@ def with_axes(scene: Scene, axes: Mapping[str, Array]) -> _native.Scene:
     check_names("axes", axes, [column for column, *_ in _native.axes()])
     return native.with_([(f"grid.{axis}", label_values(values) if axis in native.labels() else axis_values(axis, values))
                          for axis, values in axes.items()])
+
+
+def _check_labels(scene: _native.Scene, columns: Iterable[str]) -> None:
+    """Refuses a scene with several materials or bands among which the points do not choose."""
+    for name, labels in scene.labels().items():
+        if len(labels) > 1 and name not in columns:
+            raise InputError(f"points: {name} is missing, one of {', '.join(labels)}")
 
 
 def _check_varied(what: str, keys: Iterable[str], columns: Iterable[str]) -> None:

@@ -120,7 +120,7 @@ Effect part_row(const SceneValues& scene, const EffectPlan& plan, Part part, Eff
   return row;
 }
 
-/// What a part needs from the moments while they are kept.
+/// The work that kept moments take, for the table of effects.
 std::string needs_of_moments(const SceneValues& scene, const EffectPlan& plan) {
   if (!plan.kept.moments) return "closed form";
   return is_bistatic(scene) ? fmt::format("moments at {:g} deg", scene.geometry.view_zenith_deg)

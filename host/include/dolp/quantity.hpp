@@ -46,7 +46,7 @@ inline constexpr std::array<Quantity, kQuantityCount> kAllQuantities = enumerato
 /// Some quantities, in the order of Quantity.
 using Quantities = std::vector<Quantity>;
 
-/// What a scene must have for a quantity.
+/// Condition on a scene for a quantity.
 enum class QuantityNeeds : std::uint8_t { kNothing, kReflectance, kMoments, kEmission, kBracket };
 
 struct QuantityDescription {

@@ -35,7 +35,7 @@ std::string identity_of(const SceneValues& scene, const std::string& evaluator, 
 /// The values of a part of the grid.
 TableValues table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results);
 
-/// What a table's file records of its run.
+/// Record of a run in its table file.
 struct RunRecord {
   EvaluationReport evaluation;
   std::string effects, rule;

@@ -48,7 +48,7 @@ class Instance {
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
 };
 
-/// What a window needs from instance and device.
+/// Requirements of a window on instance and device.
 struct Presentation {
   std::vector<const char*> instance_extensions;
   /// True if a queue family of a device can show images on the display.

@@ -68,7 +68,8 @@ struct Sample {
 
 Sample sample_of(const SceneValues& scene, const SceneEntries& entries) {
   Sample sample{scene, spread_entries(entries), {1.0}};
-  sample.scene.accuracy = {.tolerance = kTolerance};
+  // Float is enough for an estimate. In double, entries that no rule reaches cost more than the table.
+  sample.scene.accuracy = {.tolerance = kTolerance, .precision = Precision::kFloat};
   if (sample.scene.emission) sample.scene.emission->has_bracket = false;
   if (spectral_samples(scene, entries) <= kBandWavelengths) return sample;
   using Rule = boost::math::quadrature::gauss<double, kBandWavelengths>;

@@ -39,6 +39,8 @@ TEST(SceneError_InTheFile, NamesFileLineKeyValueAndWhatIsAllowed) {
        {"s.toml:9: geometry.mode = \"bistatical\": ", "hemispherical, bistatic"}},
       {"[geometry]\nmode = 1\n", {"s.toml:9: geometry.mode = 1: ", "hemispherical, bistatic"}},
       {"[grid]\ntheta_deg = [0, 91]\n", {"s.toml:9: grid.theta_deg = [", "91 is out of range", "[0, 90]"}},
+      {"[grid]\ntheta_deg = \"0:90:10\"\n",
+       {"s.toml:9: grid.theta_deg = ", "or a range { from = ..., to = ..., count = ... }"}},
       {"[grid]\ntheta_deg = []\n", {"s.toml:9: grid.theta_deg = []: the list is empty"}},
       {"[grid]\nq = [2, \"3\"]\n", {"s.toml:9: grid.q = [", "(1, 1e4]"}},
       {"[grid]\nq = [2, 3, 2.0]\n", {"s.toml:9: grid.q = [", "2 appears twice"}},
@@ -243,6 +245,15 @@ TEST(SceneErrors_OfSeveralKeys, AreToldTogether) {
   std::string many;
   for (int i = 0; i < 8; ++i) many += "surface.x" + std::to_string(i) + " = 1\n";
   EXPECT_TRUE(error_of(many, {}).ends_with("; and 3 more")) << error_of(many, {});
+}
+
+TEST(SceneError_OfAListForOneNumber, SaysWhereAListBelongs) {
+  for (const auto& [setting, hint] :
+       {std::pair("spectrum.wavelength_um=[8, 14]",
+                  "; several values are grid.wavelength_um = [...]; a band is spectrum.band_um = [from, to]"),
+        {"surface.sigma=[0.1, 0.2]", "must be a number in [0, 10]; several values are grid.sigma = [...]"},
+        {"surface.specular=[0.1, 0.2]", "must be a number in [0, 1]"}})
+    EXPECT_TRUE(error_of(kMinimal, {setting}).ends_with(hint)) << error_of(kMinimal, {setting});
 }
 
 TEST(SceneOverride_OfAnAlternative, ReplacesTheFilesChoice) {

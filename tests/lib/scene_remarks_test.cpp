@@ -54,12 +54,16 @@ TEST(SceneRemarks, OrdinaryScenes_HaveNone) {
   }
 }
 
-TEST(SceneRemarks, FileThatLacksData_IsSaid) {
+TEST(SceneRemarks, FileThatLacksDataOrRows_IsSaid) {
   const std::string no_k = "the file has no k, so that k = 0";
   const std::string noise = "k is down to -2e-07 in the file; below 0 it counts as 0";
   const auto gap = [](const std::string& ends) {
     return "the file has no row between " + ends + " um; a straight line bridges the gap";
   };
+  const std::string coarse = "wl,n,k\n8,1.5,0\n10,2,0\n12,1.5,0\n";  // R: 0.04, 0.1111, 0.04
+  const std::string of_lines =
+      "the rows of n and k are coarse near 10 um: straight lines between them change the smooth surface's reflectance "
+      "or absorptance by about 16 %";
   const std::string dense = "wl,n,k\n3,1,1\n3.1,1,1\n3.2,1,1\n3.3,1,1\n3.4,1,1\n10.6,2,1\n11,2,1\n";
   struct Case {
     std::string text;
@@ -74,6 +78,9 @@ TEST(SceneRemarks, FileThatLacksData_IsSaid) {
            {dense, "wavelength_um=10.6", {}},
            {dense, "band_um=[3, 3.4]", {}},
            {dense, "band_um=[3.3, 3.5]", {gap("3.4 and 10.6")}},
+           {coarse, "band_um=[8.5, 9]", {of_lines}},
+           {coarse, "wavelength_um=11.9", {of_lines}},
+           {coarse, "wavelength_um=10", {}},
            {"wl,n,k\n3.39,1.5,0\n10.6,1.5,0\n", "wavelength_um=8", {gap("3.39 and 10.6")}},
            {"wl,n\n3,1\n12,2\nwl,k\n4,0\n12,0\n", "wavelength_um=8", {gap("3 and 12"), gap("4 and 12")}},
        }) {
@@ -83,6 +90,10 @@ TEST(SceneRemarks, FileThatLacksData_IsSaid) {
     for (std::string& remark : expected) remark.insert(0, set);
     EXPECT_EQ(remarks_of({set.substr(6, set.size() - 8), "spectrum." + row.spectrum}), expected) << row.text;
   }
+  const std::vector<std::string> of_axis =
+      remarks_of({"grid.material=[\"iron\", \"soda-lime glass\"]", "spectrum.band_um=[8, 14]"});
+  ASSERT_EQ(of_axis.size(), 1U);
+  EXPECT_NE(of_axis[0].find("soda-lime glass: the rows of n and k are coarse near 8.2 um"), std::string::npos);
   const TemporaryFile source("e.csv", "3,1\n12,2\n");
   EXPECT_TRUE(remarks_of({"source.file=" + source.path()}).at(0).ends_with(gap("3 and 12")));
 }

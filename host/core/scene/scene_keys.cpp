@@ -523,7 +523,7 @@ std::string Key::allowed() const {
     case Type::kPairs:
       return "a list of pairs of ascending numbers in " + range.text();
     case Type::kAxis:
-      return "a number in " + range.text() + ", a list of them, or { from, to, count, spacing }";
+      return "a number in " + range.text() + ", a list of them, or a range { from = ..., to = ..., count = ... }";
   }
   return {};
 }

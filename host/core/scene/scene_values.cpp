@@ -148,13 +148,27 @@ KeyValue read_word(const SceneDocument& document, const Key& description, const 
   return value;
 }
 
+/// What to write where a key that takes one number has a list.
+std::string list_hint(const Key& description) {
+  const std::string name = description.key.substr(description.key.find('.') + 1);
+  const std::string axis = "grid." + name;
+  if (!find_scene_key(axis)) return "";
+  const char* const band = name == "wavelength_um" ? "; a band is spectrum.band_um = [from, to]" : "";
+  return fmt::format("; several values are {} = [...]{}", axis, band);
+}
+
+KeyValue read_one_number(const SceneDocument& document, const Key& description, const toml::node& node) {
+  const std::string hint = node.is_array() ? list_hint(description) : "";
+  return {.number = read_number(document, description.key, node, description.range, description.allowed() + hint)};
+}
+
 }  // namespace
 
 KeyValue read_value(const SceneDocument& document, const Key& description) {
   const toml::node& node = *document.find(description.key);
   switch (description.type) {
     case Type::kNumber:
-      return {.number = read_number(document, description.key, node, description.range, description.allowed())};
+      return read_one_number(document, description, node);
     case Type::kWord:
       return read_word(document, description, node);
     case Type::kFlag:

@@ -22,6 +22,9 @@ constexpr double kHotSky = 2.0;  // times the temperature of the surface
 constexpr double kGapRatio = 2.0;
 constexpr double kNoGapRatio = 1.5;
 constexpr double kUsualSpacings = 10.0;
+// Rows are coarse from this change on. A smaller reflectance counts as kLeastPart.
+constexpr double kCoarseChange = 0.05;
+constexpr double kLeastPart = 0.01;
 
 using Interval = std::pair<double, double>;
 
@@ -58,6 +61,38 @@ std::optional<Interval> bridged_gap(const SpectralTable& table, const std::vecto
     }
   }
   return widest;
+}
+
+/// The relative change of the reflectance or the absorptance at normal incidence, whichever is smaller, that straight
+/// lines between the rows of a material may cause.
+struct CoarseRows {
+  double at_um = 0.0;
+  double change = 0.0;
+};
+
+double normal_reflectance(const OpticalConstants& index) {
+  return (std::pow(index.n - 1.0, 2) + std::pow(index.k, 2)) / (std::pow(index.n + 1.0, 2) + std::pow(index.k, 2));
+}
+
+/// The rows where the change is largest. A line between two rows is off by about a quarter of the distance between the
+/// row in the middle and the line that leaves it out.
+CoarseRows coarsest_rows(const Material& material, const std::vector<Interval>& used) {
+  CoarseRows worst;
+  const std::vector<double>& um = material.n.wavelength_um;
+  for (std::size_t i = 1; i + 1 < um.size(); ++i) {
+    const auto uses = [&](const Interval& part) {
+      return um[i - 1] < part.second && um[i + 1] > part.first && part != Interval{um[i], um[i]};
+    };
+    if (std::ranges::none_of(used, uses)) continue;
+    const OpticalConstants before = material.at(um[i - 1]);
+    const OpticalConstants after = material.at(um[i + 1]);
+    const double share = (um[i] - um[i - 1]) / (um[i + 1] - um[i - 1]);
+    const double right = normal_reflectance(material.at(um[i]));
+    const double line = normal_reflectance({std::lerp(before.n, after.n, share), std::lerp(before.k, after.k, share)});
+    const double change = 0.25 * std::abs(right - line) / std::max(std::min(right, 1.0 - right), kLeastPart);
+    if (change > worst.change) worst = {um[i], change};
+  }
+  return worst;
 }
 
 class Remarks {
@@ -98,10 +133,14 @@ class Remarks {
 
   void add_files() {
     if (!scene_.names.material_file.empty()) add_material("surface.material_file", scene_.surface.material);
+    if (!scene_.names.material.empty()) add_coarse_rows("surface.material", scene_.surface.material);
+    for (const Material& material : scene_.materials ? *scene_.materials : std::vector<Material>{})
+      add_coarse_rows("grid.material", material, material.name + ": ");
     for (std::size_t i = 0; i < scene_.surface.coating.size(); ++i) {
       const Layer& layer = scene_.surface.coating[i];
       const std::string key = fmt::format("surface.coating.{}.", i + 1);
       if (!scene_.names.coating[i].material_file.empty()) add_material(key + "material_file", layer.material);
+      if (!scene_.names.coating[i].material.empty()) add_coarse_rows(key + "material", layer.material);
       if (layer.thickness_um >= kLikelyNanometresOfFilm)
         add(key + "thickness_um", "is in micrometres; were nanometres meant?");
     }
@@ -129,6 +168,16 @@ class Remarks {
     const std::optional<Interval> gap = bridged_gap(material.n, used_um(scene_));
     add_gap(key, gap);
     if (const auto k_gap = bridged_gap(material.k, used_um(scene_)); k_gap != gap) add_gap(key, k_gap);
+    if (!gap) add_coarse_rows(key, material);
+  }
+
+  void add_coarse_rows(const std::string& key, const Material& used, const std::string& name = "") {
+    const CoarseRows rows = coarsest_rows(used.tabulated ? *used.tabulated : used, used_um(scene_));
+    if (rows.change < kCoarseChange) return;
+    add(key,
+        name + fmt::format("the rows of n and k are coarse near {} um: straight lines between them change the smooth "
+                           "surface's reflectance or absorptance by about {:.0f} %",
+                           rows.at_um, 100.0 * rows.change));
   }
 
   void add_gap(const std::string& key, const std::optional<Interval>& gap) {

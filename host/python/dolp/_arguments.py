@@ -10,6 +10,7 @@ from typing import Any, Union
 import numpy as np
 import xarray as xr
 
+from . import _native
 from ._native import InputError
 
 Path = Union[str, bytes, "os.PathLike[str]"]
@@ -111,8 +112,9 @@ def check_names(what: str, given: Iterable[str], known: list[str]) -> None:
     for name in given:
         if name in known:
             continue
-        near = [one for one in known if one.startswith(f"{name}_")] or difflib.get_close_matches(name, known, 1)
-        hint = f"; did you mean {near[0]}?" if near else ""
+        near = [axis for axis in known if axis.startswith(f"{name}_")] or difflib.get_close_matches(name, known, 1)
+        keys = [key for key, *_ in _native.keys() if key.split(".")[-1] == name]
+        hint = f"; did you mean {near[0]}?" if near else f'; it is a key of the scene: scene.with_({{"{keys[0]}": ...}})' if keys else ""
         raise InputError(f"{what}: {name} is none of {', '.join(known)}{hint}")
 
 
@@ -126,6 +128,8 @@ def floats(name: str, values: Any) -> np.ndarray:
             return array.astype(float)
     except (TypeError, ValueError, OverflowError):
         raise InputError(f"{name}: {short(values)} are no numbers of double precision") from None
+    if array.dtype.kind == "U":
+        raise InputError(f"{name}: {short(values)} is a text; numpy.linspace(first, last, count) makes a range of numbers")
     raise InputError(f"{name}: {short(values)} are no numbers but {array.dtype}")
 
 

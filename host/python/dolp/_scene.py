@@ -38,6 +38,8 @@ class Scene:
         if isinstance(path, Scene):
             self._native = path._native.with_(values)
         elif path is not None:
+            if isinstance(path, str) and "\n" in path:
+                raise InputError(f"path: {short(path)} is the text of a scene; write Scene(text=...)")
             self._native = _native.Scene.from_file(input_path("path", path), values)
         elif isinstance(text, str):
             self._native = _native.Scene.from_text(text, values, "text")

@@ -288,7 +288,7 @@ def draw(table, path):
 
 
 def draw_ranking(tables, theta, path):
-    """Draws for each material a bar, DOLP with the scene's sigma, and a line, the range of DOLP over all sigma."""
+    """Draws for each material a bar (DOLP with the scene's sigma) and a line (range of DOLP over all sigma)."""
     first = next(iter(tables.values()))
     row = int(np.argmin(np.abs(first.theta - theta)))
     own = {name: table.dolp[row, table.column_in_scene] for name, table in tables.items()}

@@ -61,7 +61,7 @@ struct Method {
   std::string name;                    ///< name on the command line and in results
   std::string label;                   ///< name in figures and tables
   std::string what;                    ///< one sentence: rule, coordinates, language
-  std::string cores;                   ///< "1", or "all" for the evaluators of dolp
+  std::string cores;                   ///< "1", or "all" for methods that use every core
   std::string setting_name;            ///< quantity in `settings`: nodes, samples, tolerance
   std::vector<double> settings;        ///< settings to measure, from coarse to fine
   std::vector<double> quick_settings;  ///< the subset that --quick runs

@@ -34,7 +34,7 @@ Answer product_rule(const DirectSurface& surface, const Rule& rule) {
     answer.r_i += rule.weights[i] * row.i;
     answer.r_q += rule.weights[i] * row.q;
   }
-  const double factor = 0.5 * pi * pi;  // lengths of the two intervals
+  const double factor = 0.5 * pi * pi;  // product of the lengths of the two intervals
   answer.r_i *= factor;
   answer.r_q *= factor;
   return answer;

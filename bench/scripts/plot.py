@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Figures and tables of dolp-bench.
 
-Usage: plot.py accuracy RESULT.json -o FIGURE.png    error against time per entry, one panel a case
+Usage: plot.py accuracy RESULT.json -o FIGURE.png    error against time per entry, one panel per case
        plot.py accuracy RESULT.json --markdown       time per entry at given errors, as a Markdown table on stdout
        plot.py effects RESULT.json -o FIGURE.png     time per entry of each effect
        plot.py effects RESULT.json --markdown        time per entry of each effect, as Markdown tables on stdout

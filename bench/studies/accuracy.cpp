@@ -1,4 +1,4 @@
-// The study of accuracy: error against time.
+// The study of accuracy: error against time per entry.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -84,7 +84,7 @@ ordered_json coverage_json(const ordered_json& rows, const char* part) {
 }
 
 /// Runs SciPy's least_squares around the Python package, from the middle of the ranges. Returns the output of
-/// fit_scipy.py, and the largest distance from the parameters that dolp found. Null without SciPy or xarray.
+/// fit_scipy.py, and its largest distance from dolp's parameters in standard errors. Null without SciPy or xarray.
 ordered_json scipy_json(const FitSet& set, const MeasuredData& data, const fit::FitResult& result) {
   const std::string script = DOLP_BENCH_SCRIPTS "/fit_scipy.py";
   if (run_child({kPython, "-c", "import scipy, xarray"}, ChildErrors::kHidden).status != 0) return {};

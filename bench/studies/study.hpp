@@ -1,4 +1,4 @@
-// The studies of dolp-bench. Each is one function in a separate file.
+// The studies of dolp-bench. Each study is a function in a separate file.
 #pragma once
 
 #include <cstddef>
@@ -45,8 +45,8 @@ void run_effects(const StudyOptions& options);
 /// DeviceError without a usable device; IoError; Cancelled.
 void run_throughput(const StudyOptions& options);
 
-/// `dolp-bench peers`: for every method the cheapest setting with a measured error within the tolerance on a sample of
-/// a grid's entries, its time per entry, and the ratio of this time to the time of dolp's float kernels.
+/// `dolp-bench peers`: finds for every method the cheapest setting that meets a tolerance on a sample of a grid's
+/// entries. Reports its time per entry, and the ratio of this time to the time of dolp's float kernels.
 ///
 /// `cases` are maskings. Errors: InputError for an unknown case or method; DeviceError if `device` is given and not
 /// available; IoError; Cancelled.

@@ -1,4 +1,4 @@
-// The study of the window: sliders dragged by real events on a display without a screen.
+// The study of the window: real events drag sliders on a virtual display.
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the DOLP of paint over zenith under a uniform, a clear and an overcast sky, and the skies.
+"""Draws Q/I of paint over zenith under a uniform, a clear and an overcast sky, and the temperatures of these skies.
 
 Usage: plot_skies.py DOLP OUT.png [--band FROM TO]
 DOLP is the program. The temperature of the uniform sky gives it the same irradiance as the clear sky.

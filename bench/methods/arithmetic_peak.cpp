@@ -17,7 +17,7 @@ constexpr double kSteps = 8.0 * DOLP_PEAK_TURNS;
 constexpr double kFlops = 2.0 * kChains * kSteps;  // floating-point operations per invocation
 
 constexpr std::uint32_t kInvocations = 1U << 15U;
-constexpr double kEnoughTime = 0.02;  // duration of a run in seconds, at least
+constexpr double kEnoughTime = 0.02;  // shortest duration of a run, in seconds
 constexpr double kTimeout = 60.0;
 
 }  // namespace

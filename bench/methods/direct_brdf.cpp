@@ -54,7 +54,7 @@ class MaskingTails {
 namespace {
 
 constexpr double kStep = 1.0 / 24.0;      // step between nodes in X; the interpolation error is 1e-12
-constexpr double kEndOverWidth = 1e6;     // table end over max(1, m); beyond it, tails are powers of tau to 1e-12
+constexpr double kEndOverWidth = 1e6;     // end of the tables over max(1, m); tails beyond are powers of tau to 1e-12
 constexpr double kVerticalSlope = 1e100;  // steepest sampled slope; its square does not overflow
 using CellRule = boost::math::quadrature::gauss<double, 4>;
 

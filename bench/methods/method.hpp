@@ -52,7 +52,7 @@ struct TookTooLong : Unavailable {
 
 struct SolverOptions {
   std::string device = {};     ///< Vulkan device: position or part of the name, empty for the default
-  double time_limit_s = 20.0;  ///< limit for one call; kept by methods that may not end
+  double time_limit_s = 20.0;  ///< limit for one call, for methods that might not end
   std::vector<std::string> pythons = {"/usr/bin/python3", "python3"};  ///< tried in turn until one has SciPy
 };
 

@@ -14,7 +14,7 @@ layout(std430, binding = DOLP_BINDING_THETAS) readonly buffer Thetas { real2 the
 layout(std430, binding = DOLP_BINDING_INDICES) readonly buffer Indices { IndexNode indices[]; };
 // One element per invocation: positions of theta, shape and index; then first zenith + 65536 * number of zeniths.
 layout(std430, binding = DOLP_BINDING_TASKS) readonly buffer Entries { uvec4 entries[]; };
-// First n. Then n zeniths (cos(theta_r), sin(theta_r), weight). Then n azimuths (cos(delta_phi), weight).
+// product[0].x is n. Then come n zeniths (cos(theta_r), sin(theta_r), weight) and n azimuths (cos(delta_phi), weight).
 layout(std430, binding = DOLP_BINDING_RULE) readonly buffer Product { real4 product[]; };
 layout(std430, binding = DOLP_BINDING_MOMENTS) writeonly buffer Sums { real2 sums[]; };  // r_i, r_q
 

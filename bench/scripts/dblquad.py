@@ -19,7 +19,7 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.special import betainc, gammaln
 
 STEP = 1 / 64  # step in asinh(tau/width)
-FAR = 1e5  # tables end at this times max(1, m); beyond it, tails are powers of tau
+FAR = 1e5  # end of the tables over max(1, m); tails beyond are powers of tau
 MOST_REPEATS = 3
 ENOUGH_S = 1.5  # after this many seconds in total no repeat follows
 

@@ -36,8 +36,8 @@ def time_table(result):
 
 
 def ratio_text(row):
-    """Time of the row over the time of dolp's kernels: with interpolation / with every entry integrated. A star marks
-    times with hindsight."""
+    """The time of a row over the time of dolp's kernels. The first number is for kernels with interpolation, the second
+    for kernels that integrate every entry. A star marks times with the cheapest setting of each entry (hindsight)."""
     cells = []
     for prefix in ("table_", ""):
         ratio = row.get(f"{prefix}ratio", row.get(f"hindsight_{prefix}ratio"))

@@ -55,8 +55,8 @@ def transform(count):
 
 
 def errors(counts):
-    """Errors of moments from responses: the largest error of rho_i and rho_q over rho_i, for each index and number of
-    angles."""
+    """Errors of moments from responses (moments in which a Chebyshev polynomial replaces the reflectances): the largest
+    error of rho_i and rho_q over rho_i, for each index and number of angles."""
     scene = SCENE.with_({"accuracy.tolerance": TIGHT})
     response = dolp.response(scene, evaluator="cpu", **GRID)
     c0, most = response.attrs["c0"], response.sizes["beta"]

@@ -190,7 +190,7 @@ std::vector<EffectGroup> radiation_groups(const SceneValues& base, const SceneVa
                                                                          }}})};
 }
 
-/// Scenes that contain a negligible radiation: sunlight at 10.6 um, or emission in the visible.
+/// Scenes in which one radiation is negligible beside the others: sunlight at 10.6 um, and emission in the visible.
 std::vector<EffectGroup> daylight_groups(const Axes& grid) {
   SceneValues thermal = under_the_sky(grid);
   thermal.accuracy.tolerance = kOnePercent;

@@ -58,7 +58,7 @@ struct Pair {
   TimedScene planned;
   TimedScene all;
 
-  /// True if the plan saves work. Otherwise `planned` and `all` do the same.
+  /// True if the plan saves work. Otherwise `planned` and `all` are equal runs.
   bool saves() const {
     const EffectPlan& own = planned.plan();
     const EffectPlan& whole = all.plan();

@@ -114,7 +114,7 @@ ordered_json scipy_json(const FitSet& set, const MeasuredData& data, const fit::
   return reply;
 }
 
-/// Times a whole fit, which consists of the search and the intervals. The device exists before.
+/// Times a whole fit: the search and the intervals. The time to create the device does not count.
 ordered_json time_json(ModelEvaluator& evaluator) {
   const FitSet set = timed_set();
   const MeasuredData data = synthetic_data(set, 0, evaluator);

@@ -43,8 +43,8 @@ constexpr const char* kOwnTable = "vulkan-table";
 struct Effort {
   std::vector<double> tolerances;  ///< from coarse to fine
   std::size_t sample;              ///< entries whose errors are checked
-  double call_s;                   ///< seconds; after a longer call no finer setting of the method is tried
-  double grid_s;                   ///< seconds; a grid that is expected to take longer is not timed
+  double call_s;                   ///< limit in seconds: after a longer call no finer setting of the method is tried
+  double grid_s;                   ///< limit in seconds: a grid that would take longer is not timed
   TimingPolicy timing;
 };
 const Effort kFull{.tolerances = {1e-3, 1e-4, 1e-6},

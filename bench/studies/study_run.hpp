@@ -53,7 +53,7 @@ class StudyRun {
 struct StudyParts {
   std::function<void(StudyRun&)> measure;
   std::function<std::string(const nlohmann::ordered_json&)> table_text;                ///< table for the terminal
-  std::function<void(nlohmann::ordered_json&)> warn = [](nlohmann::ordered_json&) {};  ///< adds to `warnings`
+  std::function<void(nlohmann::ordered_json&)> warn = [](nlohmann::ordered_json&) {};  ///< adds warnings
 };
 
 /// Runs a study with a progress bar, prints its table and warnings, and writes its JSON. Errors: IoError before the

@@ -111,7 +111,7 @@ struct GridRun {
   }
 };
 
-constexpr std::array<GridSize, 2> kMaterialGrids = {{{64, 16, 16}, {8, 8, 8}}};  // of a full and of a quick study
+constexpr std::array<GridSize, 2> kMaterialGrids = {{{64, 16, 16}, {8, 8, 8}}};  // grids of a full and of a quick study
 constexpr std::size_t kManyIndices = 12;                                         // number of values of n, and of k
 constexpr std::size_t kManyWavelengths = 300;
 
@@ -132,11 +132,11 @@ struct MaterialAxes {
   std::vector<double> n = {}, k = {}, wavelength_um = {};
   std::optional<OpticalConstants> index = {};  ///< replaces n and k of the scene
   std::vector<Layer> coating = {};
-  std::size_t over = 0;  ///< position of the case whose kernel time divides the kernel time of this case
+  std::size_t over = 0;  ///< position of the case by whose kernel time the kernel time of this case is divided
   std::vector<Spectrum> bands = {};
   std::vector<double> temperature_K = {};
   bool has_all_materials = false;
-  double polarised_diffuse = 0.0;  ///< diffuse factor k_d with polarised light
+  double polarised_diffuse = 0.0;  ///< k_d of a diffuse part with polarised light
 };
 
 Layer layer(const OpticalConstants& index, double thickness_um) { return {{.constant = index}, thickness_um}; }

@@ -14,8 +14,8 @@ struct TimingPolicy {
   std::size_t min_repeats = 5;
   std::size_t max_repeats = 15;
   std::size_t random_repeats = 32;  ///< for methods whose answers differ from call to call
-  double enough_s = 0.5;            ///< total time of all repeats, after which min_repeats suffice
-  double most_s = 3.0;              ///< total time of all repeats, after which fewer suffice; random methods ignore it
+  double enough_s = 0.5;            ///< after this total time min_repeats suffice
+  double most_s = 3.0;              ///< after this total time no repeat follows; random methods ignore it
   double raw_time_s = 1e-3;         ///< shorter calls are repeated until a raw time is this long
 };
 

@@ -11,8 +11,8 @@ from ._arguments import floats
 from ._native import InputError
 
 _MOST = 5  # values that an interpolation uses: four give the result, one more gives the error
-_LEAST = 3  # with fewer values there is no error
-_SAFETY = 16.0  # stated error over the change of the result by one more value; the factor of lookups in tables
+_LEAST = 3  # with fewer values the error estimate is infinite
+_SAFETY = 16.0  # stated error over the change of the result by one more value; lookups in tables use the same factor
 _MISSED, _RHO_MISSED = 2, 16  # status bits: the tolerance of DOLP or of rho is not met
 _SMOOTH = ("stokes_i", "stokes_q", "stokes_u", "stokes_v", "rho_i", "rho_q", "albedo", "emissivity_s", "emissivity_p",
            "dolp_low", "dolp_high")

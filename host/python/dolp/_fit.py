@@ -24,7 +24,7 @@ class Fit:
 
     `params`: dictionary of the fitted values; `fit[key]` is one of them.
     `stderr`: dictionary of their standard errors. An error is None if the parameter is at a bound, if the error would
-    reach beyond the range, or if the data determine none; then `why_no_error` in the parameter's entry of
+    reach beyond the range, or if the data do not determine the parameter. Then `why_no_error` in the parameter's entry of
     values["parameters"] gives the reason. If a parameter is at its bound, the errors of the others assume that it stays
     there.
     `covariance`: matrix in the order of `params`; NaN without a standard error.
@@ -54,7 +54,7 @@ class Fit:
     def conf_interval(self, level: float = 0.95, *, scaled: bool = False) -> dict[str, tuple[float | None, float | None] | None]:
         """Intervals of the profile likelihood at a level of 0.68 or 0.95. An end is None if the data do not bound it.
         An interval is None if it contains no value. `scaled`: if the fit is doubtful or bad, the intervals are for
-        uncertainties that are larger by sqrt(reduced chi^2).
+        uncertainties that are larger by the factor sqrt(reduced chi^2).
         """
         if level not in (0.68, 0.95):
             raise InputError(f"level = {level}: must be 0.68 or 0.95")

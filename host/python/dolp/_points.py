@@ -126,7 +126,7 @@ def csv_of(data: Any) -> str:
             raise InputError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error.reason}") from None
     if not (isinstance(data, Mapping) or hasattr(data, "keys")):
         raise TypeError(f"data: must be a path or columns by name, not {type(data).__name__}")
-    if isinstance(data, xr.Dataset):  # a result has coordinates whose names differ from columns
+    if isinstance(data, xr.Dataset):  # in a result, coordinates and columns have different names
         data = data.rename({name: column for column, (name, _) in COORDINATES.items() if name in data.variables})
     names = list(data.variables) if isinstance(data, xr.Dataset) else list(data.keys())
     columns = [floats(name, data[name]) for name in names]

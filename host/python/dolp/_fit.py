@@ -24,9 +24,9 @@ class Fit:
 
     `params`: dictionary of the fitted values; `fit[key]` is one of them.
     `stderr`: dictionary of their standard errors. An error is None if the parameter is at a bound, if the error would
-    reach beyond the range, or if the data do not determine the parameter. Then `why_no_error` in the parameter's entry of
-    values["parameters"] gives the reason. If a parameter is at its bound, the errors of the others assume that it stays
-    there.
+    reach beyond the range, or if the data do not determine the parameter. Then `why_no_error` in the parameter's entry
+    of values["parameters"] gives the reason. If a parameter is at its bound, the errors of the others assume that it
+    stays there.
     `covariance`: matrix in the order of `params`; NaN without a standard error.
     `scene`: the scene with the fitted values, and with the best combination of `compare`.
     `fit_quality`: "good", "doubtful" (p < 0.05), "bad" (p < 0.001), or None without a p-value.

@@ -132,8 +132,8 @@ int parse_and_run(int argc, char** argv) {
   return kExitDone;
 }
 
-// Keeps freed memory for the next repeat. By default glibc returns large blocks to the system, so repeats of large
-// grids would pay for fresh pages and repeats of small grids would not.
+// Keeps freed memory in the process. By default glibc returns large blocks to the system. Then every repeat of a large
+// grid would spend time on new memory pages, and a repeat of a small grid would not.
 void keep_freed_memory() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_MAX, 0);

@@ -1,4 +1,4 @@
-"""Writes pictures of Matplotlib to files that are complete or absent."""
+"""Writes Matplotlib figures so that a file is never incomplete."""
 import errno
 import io
 import os
@@ -10,7 +10,7 @@ def save(figure, path, colours=None, **how):
 
     Errors: OSError that names `path`. The old file then remains unchanged.
     """
-    target = os.path.realpath(path)  # keeps a symbolic link
+    target = os.path.realpath(path)  # if `path` is a symbolic link, its target is replaced
     suffix = os.path.splitext(target)[1]
     target += "" if suffix else ".png"
     is_there = os.path.exists(target)

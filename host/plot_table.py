@@ -3,10 +3,10 @@
 
 Usage: plot_table.py TABLE.nc OUT.png [--q Q] [--wavelength UM] [--temperature K] [--n N] [--k K] [--material NAME] [--band FROM-TO]
        plot_table.py TABLE.nc OUT.png --rank THETA ...   ranks the materials of a table by DOLP at this zenith
-Draws one value of each other axis: the one nearest to its option, by default to the value in the scene, else the middle one; of
-materials and bands the first.
-One of the curves has the sigma of the scene. A table with winds is drawn over wind instead of sigma. Entries with a status other
-than 0 are drawn faint in the curves and hatched grey in the map. Needs python3-netcdf4, python3-numpy and python3-matplotlib.
+Draws one value of each other axis: the value nearest to its option. Without the option, it draws the value nearest to
+the value in the scene, or the middle value if the scene has none; of materials and bands it draws the first. One of the
+curves has the sigma of the scene. If the table has winds, wind takes the role of sigma. Entries with a status other
+than 0 are faint in the curves and hatched grey in the map. Needs python3-netcdf4, python3-numpy and python3-matplotlib.
 Exit status: 0 done, 2 usage or a file that is not such a table, 4 the picture could not be written.
 """
 import argparse
@@ -31,9 +31,9 @@ import picture_file  # noqa: E402
 COLOURS = "viridis"
 MOST_CURVES = 6
 CONTOURS_PERCENT = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50)
-SHOWN_SHARE_PERCENT = 97  # share of the entries in the scale, without peaks: a grazing rise must not fill the scale
+SHOWN_SHARE_PERCENT = 97  # this share of the entries lies in the DOLP scale; a rise near grazing must not fill it
 FEW_ANGLES = 25  # with at most this many zeniths each entry gets a dot
-# least number of values of theta and of sigma; a smaller map would show structure that the table lacks
+# Least number of values of theta and of sigma for a map. A smaller map would suggest structure that the table lacks.
 FEWEST_OF_MAP = 6
 SMALLEST_SPAN_PERCENT = 0.01  # least range of the DOLP axes, so that rounding noise does not look like a signal
 STATUS_MEANINGS = {
@@ -46,21 +46,21 @@ STATUS_MEANINGS = {
 RHO_TOLERANCE_NOT_MET = 16
 
 
-# axes with numbers; the picture shows one value of each
+# Axes with numbers, and their symbols. The picture shows one value of each.
 SYMBOLS = {"q": "q", "wavelength": "λ", "temperature": "T", "n": "n", "k": "k"}
 NAMED = ("material", "band")  # axes with names; the picture shows one value of each
 UNITS = {"wavelength": " µm", "temperature": " K", "band": " µm"}
 KEYS = {"temperature": ("emission", "temperature_K"), "q": ("surface", "q"), "wavelength": ("spectrum", "wavelength_um"), "n": ("surface", "n"), "k": ("surface", "k"),
-        "sigma": ("surface", "sigma"), "wind_m_s": ("surface", "wind_m_s")}  # the scene's keys for the value of an axis
+        "sigma": ("surface", "sigma"), "wind_m_s": ("surface", "wind_m_s")}  # scene keys with the values of these axes
 
 
 def text_of(dataset, name):
-    """A text attribute. Long texts are variables of characters."""
+    """A text attribute of a table. Long texts are stored as variables of characters."""
     return dataset[name][:].tobytes().decode() if name in dataset.variables else getattr(dataset, name, "")
 
 
 def scene_part(dataset, part):
-    """The keys of one part of the scene, such as surface, with its overrides; empty if they are not TOML."""
+    """The keys of one part of the scene, such as surface, after its overrides. Empty if the texts are not TOML."""
     try:
         keys = tomllib.loads(text_of(dataset, "scene")).get(part, {})
         for line in text_of(dataset, "scene_overrides").splitlines():
@@ -73,14 +73,14 @@ def scene_part(dataset, part):
 
 
 def spectrum_of(dataset):
-    """The wavelength or band of a table that has neither axis, in words."""
+    """The wavelength or band of the scene as text. Empty if the table has an axis of wavelengths or bands."""
     has_axis = "wavelength" in dataset.variables or "band" in dataset.variables
     spectrum = {} if has_axis else scene_part(dataset, "spectrum")
     return "–".join(f"{end:g}" for end in np.ravel(list(spectrum.values()))) + " µm" if spectrum else ""
 
 
 def index_in_scene(dataset, axis):
-    """Position of the value nearest to the scene's value; the middle if the scene has none."""
+    """Position of the axis value nearest to the scene's value; the middle position if the scene has none."""
     part, key = KEYS[axis]
     own = scene_part(dataset, part).get(key)
     along = np.asarray(dataset[axis][:])
@@ -88,7 +88,7 @@ def index_in_scene(dataset, axis):
 
 
 def title_of(dataset):
-    """The scene's title with the wavelengths. Omits the scene's wind, which may differ from the table's."""
+    """The scene's title, with the wavelengths, and without the scene's wind if the table has an axis of winds."""
     title = re.sub(r"[, ]*[\d.]+( *[-–] *[\d.]+)? *[uµ]m$", "", text_of(dataset, "title"))
     if "wind_m_s" in dataset.variables:
         title = re.sub(r"[, ]*wind [\d.]+ m/s", "", title)
@@ -100,7 +100,7 @@ class NotATable(Exception):
 
 
 def position_of(dataset, axis, name):
-    """Position of a name: an exact match, or the only name that contains the text."""
+    """Position of a material or band on its axis: the name that equals the text, or the only name that contains it."""
     names = [str(own) for own in dataset[axis][:]]
     alike = [i for i, own in enumerate(names) if name.lower() in own.lower()]
     same = [i for i in alike if names[i].lower() == name.lower()]
@@ -110,11 +110,11 @@ def position_of(dataset, axis, name):
 
 
 class Slice:
-    """The part of a table at one value of every axis except theta and sigma. Theta and sigma are ascending, DOLP is
-    in percent."""
+    """The part of a table at one value of every axis except theta and sigma. Theta and sigma are ascending, DOLP is in
+    percent. If the table has winds, `sigma` holds the winds."""
 
     def __init__(self, dataset, wanted):
-        """`wanted` has a value for each axis in SYMBOLS and NAMED, or None for the scene's value."""
+        """`wanted` has a value for each axis in SYMBOLS and NAMED, or None for the default."""
         for name in ("theta", "sigma", "q", "dolp"):
             if name not in dataset.variables:
                 raise NotATable(f"has no variable {name}; a table with DOLP is expected")
@@ -148,10 +148,10 @@ class Slice:
             return data[np.ix_(rows, columns)]
 
         self.dolp = 100.0 * values("dolp", np.nan)
-        if "stokes_i" in dataset.variables:  # at 90 degrees DOLP may be a limit to which no line leads
+        if "stokes_i" in dataset.variables:  # omits limits of DOLP at 90 degrees, which have no I
             self.dolp[np.isnan(values("stokes_i", np.nan))] = np.nan
         status = values("status", 0) if "status" in dataset.variables else np.zeros(self.dolp.shape, int)
-        self.status = status & ~RHO_TOLERANCE_NOT_MET  # DOLP is right even if rho misses its tolerance
+        self.status = status & ~RHO_TOLERANCE_NOT_MET  # DOLP may meet its tolerance even if rho does not
         has_bracket = "dolp_low" in dataset.variables and "dolp_high" in dataset.variables
         self.bracket = [100.0 * values(name, np.nan) for name in ("dolp_low", "dolp_high")] if has_bracket else None
         errors = values("error_estimate", np.nan) if "error_estimate" in dataset.variables else None
@@ -186,7 +186,7 @@ class Slice:
 
 
 def cell_edges(centres):
-    """Edges halfway between the centres. The outer edges are the outer centres."""
+    """Edges of the cells of a map, halfway between their centres. The outer edges are the outer centres."""
     middle = 0.5 * (centres[1:] + centres[:-1])
     return np.concatenate([[centres[0]], middle, [centres[-1]]])
 
@@ -199,7 +199,7 @@ def highest_peak(curve):
 
 
 def drawn_columns(table):
-    """At most MOST_CURVES columns, evenly spread. The scene's column replaces the nearest one."""
+    """Columns of sigma to draw: at most MOST_CURVES, evenly spread. The scene's column replaces the nearest one."""
     chosen = np.linspace(0, table.sigma.size - 1, min(MOST_CURVES, table.sigma.size)).round().astype(int)
     chosen[np.argmin(np.abs(chosen - table.column_in_scene))] = table.column_in_scene
     return chosen
@@ -288,7 +288,7 @@ def draw(table, path):
 
 
 def draw_ranking(tables, theta, path):
-    """Draws a bar for each material: DOLP with the scene's sigma, and a line over all values of sigma."""
+    """Draws for each material a bar (DOLP with the scene's sigma) and a line (range of DOLP over all sigma)."""
     first = next(iter(tables.values()))
     row = int(np.argmin(np.abs(first.theta - theta)))
     own = {name: table.dolp[row, table.column_in_scene] for name, table in tables.items()}

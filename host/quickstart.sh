@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # From a fresh machine to a lookup table: quickstart.sh [SCENE] [OUT]
 #
-# Installs the packages that are missing, and builds the program, its Python package and its pages into build/release, from
-# which `cmake --install` works. Then writes the table of SCENE to OUT, prints the summary and draws OUT with the suffix .png.
-# Default SCENE: night_paint.toml with 36 roughnesses. Default OUT: dolp.nc in the current folder. Only an OUT with the suffix
-# .nc gets a picture.
+# Installs the packages that are missing. Builds the program, its Python package and its manual pages in build/release,
+# from which `cmake --install` works. Then writes the table of SCENE to OUT. If OUT ends in .nc, also draws the table
+# into a picture of the same name with the suffix .png. Default SCENE: night_paint.toml with 36 values of sigma. Default
+# OUT: dolp.nc in the current folder.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -27,6 +27,6 @@ if [[ $table != *.nc ]]; then
   exit 0
 fi
 picture=${table%.nc}.png
-# Debian's Python, for which the packages above are installed. PATH may have another one first.
+# Uses Debian's Python, for which the packages above are installed. Another Python may come first in PATH.
 /usr/bin/python3 "$root/host/plot_table.py" "$table" "$picture"
 echo "picture: $(realpath -- "$picture")"

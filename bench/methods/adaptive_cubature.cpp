@@ -1,4 +1,4 @@
-// Adaptive cubature of libcubature over the running beam.
+// Adaptive cubature by libcubature over the directions of the running beam (see direct_brdf.hpp).
 #include <cubature.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::size_t kMostEvaluations = 10'000'000;  // per entry; this takes a few seconds
+constexpr std::size_t kMostEvaluations = 10'000'000;  // per entry; this many take a few seconds
 
 struct Integral {
   const DirectSurface& surface;
@@ -47,7 +47,7 @@ class Cubature final : public Solver {
       Integral integral{surface};
       double values[2];
       double errors[2];
-      // The largest error over the largest value, which is r_i: the definition of error in this study.
+      // ERROR_LINF divides the larger error by the larger value, which is r_i. So it is the error that a study reports.
       const int status =
           routine_(2, integrand, &integral, 2, kLow, kHigh, kMostEvaluations, 0.0, setting, ERROR_LINF, values, errors);
       if (status != 0) throw Unavailable("libcubature gave up");

@@ -11,13 +11,13 @@
 namespace dolp::bench {
 namespace {
 
-// arithmetic_peak.comp
+// Sizes of the loops in arithmetic_peak.comp.
 constexpr double kChains = 12.0;
 constexpr double kSteps = 8.0 * DOLP_PEAK_TURNS;
-constexpr double kFlops = 2.0 * kChains * kSteps;  // flops per invocation
+constexpr double kFlops = 2.0 * kChains * kSteps;  // floating-point operations per invocation
 
 constexpr std::uint32_t kInvocations = 1U << 15U;
-constexpr double kEnoughTime = 0.02;  // seconds per run
+constexpr double kEnoughTime = 0.02;  // shortest duration of a run, in seconds
 constexpr double kTimeout = 60.0;
 
 }  // namespace

@@ -7,8 +7,8 @@
 
 namespace dolp::bench {
 
-/// Float multiplications and additions per second in `repeats` runs of a kernel that does nothing else. Sorted, the
-/// fastest last. Errors: DeviceError.
+/// Measures how many float multiplications and additions per second a kernel does that does nothing else. Returns one
+/// value per repeat, in ascending order. Errors: DeviceError.
 std::vector<double> arithmetic_peak(const std::string& device, std::size_t repeats);
 
 }  // namespace dolp::bench

@@ -9,17 +9,18 @@
 
 namespace dolp::bench {
 
-/// Instance, device and stream; with the validation layer if DOLP_VALIDATION is 1.
+/// A Vulkan device with its instance and command stream. If the environment variable DOLP_VALIDATION is 1, the
+/// validation layer is on.
 struct BenchDevice {
   /// `choice`: position or part of the name; empty means the default. Errors: DeviceError.
   explicit BenchDevice(const std::string& choice);
   BenchDevice(const BenchDevice&) = delete;
   BenchDevice& operator=(const BenchDevice&) = delete;
 
-  /// Name and driver.
+  /// Name and driver of the device.
   std::string where() const;
 
-  /// Errors: DeviceError if the validation layer reported a message.
+  /// Checks the messages of the validation layer. Errors: DeviceError if there is one.
   void check_messages() const;
 
   vulkan::ValidationLog log;

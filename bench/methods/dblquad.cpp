@@ -1,4 +1,4 @@
-// SciPy's dblquad in a separate process, which measures its times itself, without the start of the interpreter.
+// SciPy's dblquad in a separate process. That process measures the times, so they exclude the start of Python.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -58,7 +58,7 @@ class Dblquad final : public Solver {
     add_times(reply["times_s"].get<std::vector<double>>(), solution);
   }
 
-  // The k-th repeat of a call is the sum of the k-th repeats of its entries.
+  // Adds the times of one entry. The k-th time of a call is the sum of the k-th times of its entries.
   static void add_times(const std::vector<double>& times_s, Solution& solution) {
     if (solution.answers.size() == 1) solution.own_times_s.assign(times_s.size(), 0.0);
     solution.own_times_s.resize(std::min(solution.own_times_s.size(), times_s.size()));

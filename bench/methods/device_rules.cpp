@@ -26,14 +26,15 @@ using Node = std::array<double, 4>;
 using Pair = std::array<double, 2>;
 using EntryWords = std::array<std::uint32_t, 4>;
 
-constexpr double kTimeout = 600.0;                   // seconds for one dispatch
-constexpr std::size_t kMostIterations = 1U << 14U;   // per invocation: drivers stop one after 65,535
-constexpr std::size_t kMostSamples = 1U << 26U;      // per dispatch, so that a time limit is noticed
-constexpr std::size_t kMostShapes = 1U << 12U;       // masking tables of 4 kB
+constexpr double kTimeout = 600.0;  // longest time of one dispatch, in seconds
+constexpr std::size_t kMostIterations = 1U
+                                        << 14U;  // limit per invocation; lavapipe stops loops after 65,535 iterations
+constexpr std::size_t kMostSamples = 1U << 26U;  // limit per dispatch; the time limit is checked after each dispatch
+constexpr std::size_t kMostShapes = 1U << 12U;   // limit per call; each shape needs a masking table of 4 kB
 constexpr std::size_t kMostInvocations = 1U << 22U;  // limit per call
 constexpr std::uint32_t kZenithUnit = 1U << 16U;
 
-/// The number of zeniths, then the zeniths, then the azimuths.
+/// The nodes in the layout of product_rule.comp: the number of zeniths, then the zeniths, then the azimuths.
 std::vector<Node> product_nodes(const Rule& rule) {
   std::vector<Node> nodes{{static_cast<double>(rule.nodes.size()), 0.0, 0.0, 0.0}};
   for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
@@ -68,7 +69,8 @@ class DeviceRule final : public Solver {
   std::string where() const override { return bench_.where(); }
 
  private:
-  /// Makes the invocations. Neighbours compute the same zeniths of different entries.
+  /// Fills `words_` with one element per invocation. Neighbouring invocations compute the same zeniths of different
+  /// entries.
   void make_words(const KernelData& data, std::size_t nodes) {
     const std::size_t most_zeniths = std::max<std::size_t>(1, kMostIterations / nodes);
     words_.clear();
@@ -76,7 +78,7 @@ class DeviceRule final : public Solver {
       const std::size_t zeniths = std::min(most_zeniths, nodes - first);
       for (std::size_t i = 0; i < data.size(); ++i) {
         const MomentsEntry entry = data[i];
-        // The direction, not one of its variants.
+        // KernelData lists the directions once for each variant. The angle does not depend on the variant.
         const auto direction = static_cast<std::uint32_t>(entry.theta % data.directions);
         words_.push_back(
             {direction, entry.shape, entry.index, static_cast<std::uint32_t>(first + kZenithUnit * zeniths)});

@@ -1,7 +1,7 @@
-// The plain textbook formulas of the model, for the methods that dolp is compared with.
-//
-// They share nothing with the shaders or the reference. Reflectances use real arithmetic, and the paper's masking comes
-// from tables of its three primitives, because a user who cares about time would program it this way.
+// The plain textbook formulas of the model, for the methods that dolp is compared with. They share nothing with the
+// shaders or the reference. They are programmed as a user who cares about time would do it: reflectances in real
+// arithmetic, and the paper's masking from tables of three integrals.
+// A moment belongs to one fixed beam and integrates over the directions of the other one, the running beam.
 #pragma once
 
 #include <cstddef>
@@ -21,26 +21,27 @@ struct Entry {
 };
 Entry entry_of(const MomentsRequest& request, std::size_t position);
 
-/// G M00 and G M01 of one facet.
+/// Masking times reflectance of one facet: `i` is G M00, `q` is G M01.
 struct Reflected {
   double i = 0.0;
   double q = 0.0;
 };
 
-/// Tails of the in-plane slope density, from which both tabulated maskings follow.
+/// Tables of integrals over the tail of the in-plane slope density. `smith` and `integral` masking follow from them.
 class MaskingTails;
 
-/// The direction of the running beam, with the part of G that depends only on this beam.
+/// A direction of the running beam. `masking` is the part of G that does not depend on the facet.
 struct RunningBeam {
   double cos = 1.0;
   double sin = 0.0;
-  double masking = 0.0;  ///< smith: G; integral: height integral of the lower of the two beams; unused otherwise
+  /// smith: G. integral: MaskingTails::height for the beam that is nearer to the horizon. Otherwise unused.
+  double masking = 0.0;
 };
 
 /// The microfacet surface seen from one fixed direction.
 ///
-/// Equation: (1), (2), (3), (5), (7), (8), (9)-(12).
-/// Accuracy: masking tables to 1e-10 absolute (test BenchFormulas).
+/// Equation: (1), (2), (3), (5), (7), (8), (9)-(12) of the paper.
+/// Accuracy: moments agree with the reference to 1e-7 (test BenchFormulas).
 /// Domain: 0 < theta < 90 degrees, sigma > 0, cauchy q > 1 (smith: q > 3/2).
 class DirectSurface {
  public:
@@ -56,16 +57,16 @@ class DirectSurface {
   /// Width m of the slope distribution, m^2 = 2 sigma^2.
   double width() const { return m_; }
 
-  /// P(t), t = tan(alpha): density of slopes over their plane, D cos^4(alpha). Units: 1.
+  /// Density of the slopes t = tan(alpha) in the slope plane, P(t) = D cos^4(alpha). Units: 1.
   double slope_density(double tan2_alpha) const;
 
-  /// Slope whose exceedance probability under D cos(alpha) is `probability` in (0, 1].
+  /// The slope that facets drawn from D cos(alpha) exceed with this probability, which lies in (0, 1].
   double sampled_slope(double probability) const;
 
-  /// Prepares G for a running beam; cos_r > 0.
+  /// The running beam in a direction with cos_r > 0, with its part of G.
   RunningBeam beam(double cos_r, double sin_r) const;
 
-  /// G M00 and G M01 of the facet between the fixed beam and the running one. M01 is 0 where eta is undefined.
+  /// G M00 and G M01 of the facet that reflects one beam into the other. M01 is 0 where eta is undefined.
   Reflected reflected(const RunningBeam& beam, double cos_alpha, double tan_alpha, double cos_beta) const;
 
  private:
@@ -77,16 +78,17 @@ class DirectSurface {
   double sin_theta_;
   double m_;
   std::unique_ptr<MaskingTails> tails_;
-  double fixed_masking_ = 0.0;  ///< term of the fixed beam: Lambda (smith) or height integral (integral)
+  /// Part of G that belongs to the fixed beam: Lambda (smith) or MaskingTails::height (integral).
+  double fixed_masking_ = 0.0;
 };
 
-/// The integrand over the running beam, by the plain formulas.
-/// Equation: r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r)/2. It counts both halves of the
-/// azimuth.
+/// Integrand of the moments at one direction of the running beam.
+/// Equation: r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r)/2. The azimuth covers half a circle;
+/// the integrand is doubled to count the other half.
 Reflected beam_integrand(const DirectSurface& surface, const RunningBeam& beam, double cos_azimuth);
 
-/// Integrand of the facet with slope tan_alpha at azimuth phi_h from the fixed beam, per unit of P(t) t dt dphi_h. Zero
-/// if the reflected ray does not leave the surface.
+/// Integrand of the moments at one facet, with slope tan_alpha and azimuth phi_h from the fixed beam, per unit of
+/// P(t) t dt dphi_h. Zero if the reflected ray does not leave the surface.
 /// Equation: r = int P t dt dphi_h (cos(beta)/cos(alpha)) G M, over cos(theta_r) > 0.
 Reflected half_vector_integrand(const DirectSurface& surface, double tan_alpha, double cos_phi);
 

@@ -16,7 +16,7 @@ namespace dolp::bench {
 struct Answer {
   double r_i = 0.0;
   double r_q = 0.0;
-  /// bound or estimate of max(|d r_i|, |d r_q|)/r_i; empty if the method states none
+  /// bound or estimate of max(|d r_i|, |d r_q|)/r_i, where d is the error; empty if the method states none
   std::optional<double> stated_error;
 };
 
@@ -25,12 +25,12 @@ struct Solution {
   std::vector<Answer> answers = {};        ///< one per entry of the request, in its order
   std::optional<double> evaluations = {};  ///< integrand evaluations of the whole call
   std::optional<double> kernel_s =
-      {};  ///< time of kernels and of sums of their results, for the whole call; empty without kernels
-  std::vector<double> own_times_s = {};  ///< repeated times of the call, if only the method can measure them
+      {};  ///< time of the kernels and of the sums over their results, for the whole call; empty without kernels
+  std::vector<double> own_times_s = {};  ///< times of repeated calls, if the method measures them itself
 };
 
-/// A method that is ready to run. Its constructor makes what is needed once (a device, an interpreter), untimed.
-/// `solve` makes what each entry needs (nodes, masking tables), timed.
+/// A method that is ready to run. The constructor creates what is needed once (a device, an interpreter) and is not
+/// timed. `solve` creates what each entry needs (nodes, masking tables) and is timed.
 class Solver {
  public:
   virtual ~Solver() = default;
@@ -52,24 +52,24 @@ struct TookTooLong : Unavailable {
 
 struct SolverOptions {
   std::string device = {};     ///< Vulkan device: position or part of the name, empty for the default
-  double time_limit_s = 20.0;  ///< for one call of a method that may not end
+  double time_limit_s = 20.0;  ///< limit for one call, for methods that might not end
   std::vector<std::string> pythons = {"/usr/bin/python3", "python3"};  ///< tried in turn until one has SciPy
 };
 
 /// One row of the list of methods.
 struct Method {
   std::string name;                    ///< name on the command line and in results
-  std::string label;                   ///< for figures and tables
+  std::string label;                   ///< name in figures and tables
   std::string what;                    ///< one sentence: rule, coordinates, language
-  std::string cores;                   ///< "1", or "all" for the evaluators of dolp
-  std::string setting_name;            ///< meaning of `settings`: nodes, samples, tolerance
-  std::vector<double> settings;        ///< from coarse to fine
+  std::string cores;                   ///< "1", or "all" for methods that use every core
+  std::string setting_name;            ///< quantity in `settings`: nodes, samples, tolerance
+  std::vector<double> settings;        ///< settings to measure, from coarse to fine
   std::vector<double> quick_settings;  ///< the subset that --quick runs
-  /// meant for many entries per call: its time is the time of a call over the number of entries
+  /// computes many entries per call; the time per entry is the time of a call divided by their number
   bool is_batched = false;
-  bool needs_grid = false;  ///< faster only for entries that form a grid
-  bool is_random = false;   ///< every call gives other answers; the error is their rms
-  /// Errors: Unavailable.
+  bool needs_grid = false;  ///< saves time only for entries that form a grid
+  bool is_random = false;   ///< answers differ from call to call; the error is the rms over the calls
+  /// Creates the solver. Errors: Unavailable.
   std::function<std::unique_ptr<Solver>(const SolverOptions&)> make;
 };
 

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t kBlock = 64;  // invocations that a core takes at a time
 
-/// Calls body(i) once for each i < count. OpenMP would be slower beside other load, because its threads spin while they
-/// wait.
+/// Calls body(i) once for each i < count. OpenMP would be slower when other programs run, because its threads spin
+/// while they wait.
 void on_all_cores(std::size_t count, const std::function<void(std::size_t)>& body) {
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {

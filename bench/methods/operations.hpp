@@ -7,7 +7,7 @@
 
 namespace dolp::bench {
 
-/// Operations of the float kernels for one request, masking tables included.
+/// Operations of the float kernels for one request, including those that make the masking tables.
 struct KernelWork {
   OperationCounts counts;  ///< operations for all entries, extrapolated from the counted invocations
   double evaluations = 0.0;
@@ -16,8 +16,8 @@ struct KernelWork {
   double busy_lanes = 1.0;
 };
 
-/// Runs `workgroups` evenly spread workgroups of the kernel with counting arithmetic.
-/// Accuracy: a few percent, if the other workgroups resemble these. Domain: has_kernel_for.
+/// Counts the operations of `workgroups` evenly spread workgroups, and extrapolates to all workgroups of the request.
+/// Accuracy: a few percent, if the others resemble the counted ones. Domain: requests that has_kernel_for accepts.
 KernelWork count_operations(const MomentsRequest& request, std::size_t workgroups, std::size_t lanes);
 
 }  // namespace dolp::bench

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Product rule over the running beam: each invocation sums some zeniths theta_r of one entry and all azimuths. Density,
-// geometry and rotations use the plain formulas. Fresnel reflectances and masking tables are the ones of dolp.
+// Product rule over the running beam. Each invocation sums over some zeniths theta_r of one entry, and for each of them
+// over all azimuths. Density, geometry and rotations use the plain formulas. Fresnel reflectances and masking use the
+// code of dolp.
 //   r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r) / 2
 
 #include "physics/prelude.glsl"
@@ -11,16 +12,16 @@
 
 layout(std430, binding = DOLP_BINDING_THETAS) readonly buffer Thetas { real2 thetas[]; };  // cos, sin
 layout(std430, binding = DOLP_BINDING_INDICES) readonly buffer Indices { IndexNode indices[]; };
-// theta, shape, index, first zenith + 65536 * zeniths
+// One element per invocation: positions of theta, shape and index; then first zenith + 65536 * number of zeniths.
 layout(std430, binding = DOLP_BINDING_TASKS) readonly buffer Entries { uvec4 entries[]; };
-// n; n zeniths (cos(theta_r), sin(theta_r), weight); n azimuths (cos(delta_phi), weight)
+// product[0].x is n. Then come n zeniths (cos(theta_r), sin(theta_r), weight) and n azimuths (cos(delta_phi), weight).
 layout(std430, binding = DOLP_BINDING_RULE) readonly buffer Product { real4 product[]; };
 layout(std430, binding = DOLP_BINDING_MOMENTS) writeonly buffer Sums { real2 sums[]; };  // r_i, r_q
 
-// The facet that reflects one beam into the other.
+// The facet that reflects one beam into the other, with slope t at azimuth phi_h from the fixed beam.
 struct Bisector {
   real slope2;  // tan^2(alpha)
-  real along;   // fixed beam on the facet, in the plane of incidence, over cos(alpha)
+  real along;   // cos(theta) t cos(phi_h) - sin(theta)
   real across2;
   real cos_beta;
 };

@@ -1,4 +1,4 @@
-// One-dimensional rules, the factors of product rules.
+// One-dimensional quadrature rules, from which product rules are made.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ struct Rule {
 };
 
 Rule midpoint_rule(std::size_t count);
-/// Gauss-Legendre.
+/// The Gauss-Legendre rule.
 Rule gauss_rule(std::size_t count);
 
 }  // namespace dolp::bench

@@ -1,4 +1,4 @@
-// Values from the independent reference, which show the error of each method.
+// Values from the independent reference, to find the error of each method.
 #pragma once
 
 #include <vector>
@@ -11,14 +11,14 @@ namespace dolp::bench {
 /// The reference's moments of one entry.
 struct Truth {
   Moments moments;
-  double bound = 0.0;   ///< bound of max(|d r_i|, |d r_q|)/r_i
+  double bound = 0.0;   ///< bound of max(|d r_i|, |d r_q|)/r_i, where d is the reference's error
   double time_s = 0.0;  ///< time per entry, on one core
 };
 
-/// The reference at its tightest setting, for every entry of a request.
+/// Moments from the reference at its tightest setting, for every entry of a request.
 std::vector<Truth> truths_of(MomentsRequest request);
 
-/// max(|d r_i|, |d r_q|)/r_i.
+/// max(|d r_i|, |d r_q|)/r_i, where d is the answer's difference from the truth.
 double error_of(const Answer& answer, const Truth& truth);
 
 }  // namespace dolp::bench

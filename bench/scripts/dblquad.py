@@ -3,8 +3,8 @@
 
 Usage: dblquad.py --version | dblquad.py REQUEST
 REQUEST is JSON with distribution (cauchy | gaussian), masking, theta_rad, sigma, q, n, k, tolerance, time_limit_s.
-Prints JSON: r_i, r_q, stated_error (of r_i), evaluations, times_s (raw, of the whole computation, tables of the masking
-included, imports not), or too_long: true when the first computation exceeds the limit. Exit status: 0, 2 usage.
+Prints JSON: r_i, r_q, stated_error (of r_i), evaluations, times_s (one per repeat, with masking tables, no imports).
+If the first computation exceeds the limit, prints too_long: true instead. Exit status: 0 done, 2 usage.
 """
 import json
 import math
@@ -19,13 +19,14 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.special import betainc, gammaln
 
 STEP = 1 / 64  # step in asinh(tau/width)
-FAR = 1e5  # beyond this the tails of the slope density are powers
+FAR = 1e5  # end of the tables over max(1, m); tails beyond are powers of tau
 MOST_REPEATS = 3
-ENOUGH_S = 1.5  # seconds of repeats that are enough
+ENOUGH_S = 1.5  # after this many seconds in total no repeat follows
 
 
 class MaskingTails:
-    """Tails of the in-plane slope density p beyond tau: int p, int g p, int g p (t - tau), with g = 1/sqrt(1 + t^2)."""
+    """Three integrals over the in-plane slope density p from tau to infinity: int p dt, int g p dt, and
+    int g p (t - tau) dt, with g = 1/sqrt(1 + t^2)."""
 
     def __init__(self, m, q, is_gaussian):
         self.q = q
@@ -118,7 +119,7 @@ class Surface:
         return 1 - kappa * (self.low_height - height - (tau - c / s) * first) - probability
 
     def values(self, delta_phi, theta_r):
-        """Both integrands at one geometry."""
+        """The integrands of r_i and r_q at one geometry."""
         self.evaluations += 1
         if theta_r != self.theta_r:
             self.start_row(theta_r)
@@ -188,7 +189,7 @@ def main(arguments):
         print("usage: dblquad.py --version | dblquad.py REQUEST", file=sys.stderr)
         return 2
     import warnings
-    warnings.simplefilter("ignore")  # quad warns if it misses a tolerance; stated_error reports it
+    warnings.simplefilter("ignore")  # dblquad warns if it misses a tolerance; stated_error reports this
     print(json.dumps(timed(json.loads(arguments[0]))))
     return 0
 

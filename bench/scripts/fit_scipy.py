@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """SciPy's least_squares around `dolp.evaluate`, as one would write it without `dolp fit`.
 
-One argument, JSON: `package` (the folder of the Python package dolp), `scene` (text), `tolerance`, `columns` (column of
-the points, for each parameter), `low`, `high`, `start`, `theta_deg`, `measured`, `uncertainty`. Prints JSON: `values`,
-`chi_square`, `calls` of dolp.evaluate, `time_s`. One call computes a whole Jacobian.
+One argument, JSON. For the model: `package` (the folder of the Python package dolp), `scene` (text), `tolerance`. For
+each parameter: `columns` (its column of the points), `low`, `high`, `start`. For the data: `theta_deg`, `measured`
+(Q/I), `uncertainty`. Prints JSON: `values`, `chi_square`, `calls` of dolp.evaluate, `time_s`. One call computes a whole
+Jacobian.
 """
 import json
 import sys
@@ -12,7 +13,7 @@ import time
 import numpy as np
 import scipy.optimize
 
-STEP = 1e-4  # step of differences, relative to the range
+STEP = 1e-4  # step of finite differences over the range of a parameter
 
 
 class Model:
@@ -27,7 +28,7 @@ class Model:
         self.calls = 0
 
     def residuals_at(self, sets):
-        """Residuals of all parameter sets from one call."""
+        """Residuals of several parameter sets, from one call of dolp.evaluate."""
         self.calls += 1
         columns = dict(zip(self.question["columns"], np.array(sets).T[:, :, np.newaxis]))
         found = self.evaluate(self.scene, theta_deg=self.theta, **columns)

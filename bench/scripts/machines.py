@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Where and when the studies were measured, as a Markdown table: machines.py RESULT.json..."""
+"""Prints a Markdown table of where and when studies were measured: machines.py RESULT.json..."""
 import json
 import sys
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Figures and tables of dolp-bench.
 
-Usage: plot.py accuracy RESULT.json -o FIGURE.png    error against time per entry, one panel a case
+Usage: plot.py accuracy RESULT.json -o FIGURE.png    error against time per entry, one panel per case
        plot.py accuracy RESULT.json --markdown       time per entry at given errors, as a Markdown table on stdout
        plot.py effects RESULT.json -o FIGURE.png     time per entry of each effect
        plot.py effects RESULT.json --markdown        time per entry of each effect, as Markdown tables on stdout
@@ -62,7 +62,7 @@ def points(result, method, case):
 
 
 def worth_it(all_points):
-    """The points that no cheaper setting of the method beats, from coarse to fine."""
+    """The points with a smaller error than every cheaper setting of the method, from coarse to fine."""
     kept = []
     for error, time_s in sorted(all_points, key=lambda point: (point[1], point[0])):
         if not kept or error < kept[-1][0]:
@@ -98,7 +98,7 @@ def markdown(result):
 
 
 def spread_apart(heights, gap):
-    """The heights, in their order, moved little so that neighbours are at least `gap` apart."""
+    """Moves heights as little as necessary, so that neighbours are at least `gap` apart. Keeps their order."""
     order = sorted(range(len(heights)), key=lambda i: heights[i])
     placed = [heights[i] for i in order]
     for _ in range(200):
@@ -118,7 +118,7 @@ def spread_apart(heights, gap):
 
 
 def draw_curves(axes, result, case):
-    """Draws all curves of a case. Returns the end of each with its label and colour."""
+    """Draws all curves of a case. Returns for each its most accurate point, its label and its colour."""
     ends = []
     for method in result["methods"]:
         label, colour, marker, line = style(method["name"])
@@ -138,7 +138,8 @@ def draw_curves(axes, result, case):
 
 
 def label_ends(axes, ends):
-    """Labels the least accurate curve right of its end, the others left of it. Moves labels that would touch."""
+    """Labels each curve at its most accurate point: the curve with the largest error there on the right, the others on
+    the left. Moves labels that would touch."""
     if not ends:
         return
     to_points = 72.0 / axes.figure.dpi
@@ -213,7 +214,7 @@ def limits_of(result):
         raise NotAResult("holds no measured setting")
     errors, times = zip(*everything)
     finest, coarsest = math.log10(min(errors)), math.log10(max(errors))
-    # The space left and right is for the labels.
+    # The labels need space on the left and on the right.
     return 10 ** (finest - 4.7), 10 ** (coarsest + 1.4), min(times) / 2.0, max(times) * 2.5
 
 

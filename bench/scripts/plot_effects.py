@@ -7,7 +7,7 @@ NOTE_WIDTH = 140  # letters
 
 
 def micro(time_s):
-    """The number with three digits."""
+    """A time in microseconds, with three digits."""
     return f"{1e6 * time_s:.3g}"
 
 
@@ -20,7 +20,7 @@ def left_out(row):
 
 
 def markdown(result):
-    """The Markdown table."""
+    """The results as a Markdown table."""
     lines = ["| effect | mode | scene | time, µs | in kernels, µs | ratio | `--keep-all`, µs | error | left out |",
              "|---" * 9 + "|"]
     for row in result["results"]:
@@ -32,7 +32,7 @@ def markdown(result):
 
 
 def places_of(rows):
-    """A height for each row, with a gap between the effects."""
+    """The vertical position of each row, with gaps between effects."""
     places, height, last = [], 0.0, None
     for row in rows:
         group = (row["effect"], row["case"])

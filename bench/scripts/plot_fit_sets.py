@@ -8,7 +8,7 @@ def sets_of(result):
 
 
 def markdown(result):
-    """The Markdown table."""
+    """The results as a Markdown table, with sentences on the other parts of the study."""
     coverage = result["coverage"]
     rows = sets_of(result)
     lines = ["| parameters | sets | median time, s | 68 % intervals hold the truth | 95 % intervals | global minimum found |",
@@ -45,7 +45,7 @@ def line_of(name, rows):
 
 
 def intervals_of(result):
-    """(low, high) of each bounded 95 % interval, minus the truth and divided by half the width."""
+    """Both ends of each bounded 95 % interval: distances from the truth, in half-widths of the interval."""
     for row in sets_of(result):
         for truth, (low, high) in zip(row["truth"], row["interval_95"]):
             if low is not None and high is not None:

@@ -38,7 +38,7 @@ TIGHT = 1e-9
 
 
 def reflectances(index, cosine):
-    """(R_s + R_p) / 2 and (R_s - R_p) / (2 sin^2)."""
+    """(R_s + R_p)/2 and (R_s - R_p)/(2 sin^2 beta), where `cosine` is cos(beta)."""
     root = np.sqrt((index - 1) * (index + 1) + cosine ** 2 + 0j)
     r_s = abs((cosine - root) / (cosine + root)) ** 2
     r_p = abs((index ** 2 * cosine - root) / (index ** 2 * cosine + root)) ** 2
@@ -46,7 +46,8 @@ def reflectances(index, cosine):
 
 
 def transform(count):
-    """Zeros of the Chebyshev polynomial of a degree, and the matrix that turns values there into coefficients."""
+    """Zeros of the Chebyshev polynomial T_count, and the matrix that turns values of a function there into its
+    Chebyshev coefficients."""
     x = np.polynomial.chebyshev.chebpts1(count)[::-1]
     matrix = 2 / count * np.polynomial.chebyshev.chebvander(x, count - 1).T
     matrix[0] /= 2
@@ -54,11 +55,12 @@ def transform(count):
 
 
 def errors(counts):
-    """The largest error of rho_i and rho_q over rho_i, for each index and number of angles."""
+    """Errors of moments from responses (moments in which a Chebyshev polynomial replaces the reflectances): the largest
+    error of rho_i and rho_q over rho_i, for each index and number of angles."""
     scene = SCENE.with_({"accuracy.tolerance": TIGHT})
     response = dolp.response(scene, evaluator="cpu", **GRID)
     c0, most = response.attrs["c0"], response.sizes["beta"]
-    sums = np.polynomial.chebyshev.chebvander(transform(most)[0], most - 1)  # weights to sums with polynomials
+    sums = np.polynomial.chebyshev.chebvander(transform(most)[0], most - 1)  # turns weights into responses
     of_i = response.response_i.values @ sums
     of_q = (response.response_q * np.sin(np.deg2rad(response.beta)) ** 2).values @ sums
     found = np.empty((len(INDICES), len(counts)))
@@ -84,7 +86,8 @@ def seconds(call):
 
 
 def times(numbers):
-    """Times: moments from a response table, and from a separate table for each material."""
+    """Seconds for a response table, for the table of one material, and for the moments of several materials from the
+    response table."""
     axes = {"theta_deg": np.linspace(0, 85, 32), "sigma": np.geomspace(0.05, 1, 8), "q": np.linspace(1.75, 6, 8)}
     response = dolp.response(SCENE, **axes)
     pass_s = seconds(lambda: dolp.response(SCENE, **axes))

@@ -8,7 +8,7 @@ def rows_of(result, case):
 
 
 def markdown(result):
-    """The Markdown tables."""
+    """The results as Markdown tables."""
     lines = ["| entries | time, s | entries/s | `cp` of the file, s | peak memory, MB | file, MB |", "|---" * 6 + "|"]
     for row in rows_of(result, "entries"):
         lines.append(f"| {row['entries']:,} | {row['time_s']:.2f} | {row['entries'] / row['time_s']:.2g} "

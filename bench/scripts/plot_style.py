@@ -1,8 +1,8 @@
-"""What the figures and tables of all studies share."""
+"""Styles and helpers that the figures and tables of all studies share."""
 import textwrap
 
-# Colours of Okabe and Ito, which colour-blind readers can tell apart. A method in both precisions, or a rule on several
-# processors, has one colour.
+# Colours of Okabe and Ito, which colour-blind readers can tell apart. A method has the same colour in float and double,
+# and a rule has the same colour on the CPU and with Vulkan.
 STYLES = {
     "midpoint": ("midpoint", "#E69F00", "s", "-"),
     "gauss": ("Gauss", "#009E73", "D", "-"),
@@ -37,7 +37,7 @@ def time_text(time_s):
 
 
 def digits(value):
-    """Three digits; thousands are separated by commas."""
+    """A number with three digits. Commas separate thousands."""
     return f"{float(f'{value:.3g}'):,.0f}" if value >= 100 else f"{value:.3g}"
 
 
@@ -46,7 +46,7 @@ def row_of_cells(cells):
 
 
 def head(cells):
-    """A table's head."""
+    """The first two lines of a Markdown table."""
     return [row_of_cells(cells), "|---" * len(cells) + "|"]
 
 

@@ -6,7 +6,7 @@ TOLERANCE = 1e-4
 
 
 def interpolated(rows):
-    """The rows with interpolation: these runs compute a grid as `dolp table` does."""
+    """The rows of runs that may interpolate, as `dolp table` does."""
     return [row for row in rows if row["interpolation"] == "auto"]
 
 
@@ -67,7 +67,7 @@ def scaling_table(rows, variable):
 
 
 def markdown(result):
-    """All parts that the result has, as Markdown tables."""
+    """All parts of the study that the result contains, as Markdown tables."""
     blocks = []
     if part(result, "grids"):
         blocks.append(grid_table(part(result, "grids")))
@@ -167,7 +167,7 @@ def draw_scaling(axes, result):
 
 
 def figure(result, path, save):
-    """Draws the parts that the result has; `save(drawing, path)` writes it."""
+    """Draws all parts of the study that the result contains; `save(drawing, path)` writes the figure."""
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt

@@ -1,4 +1,4 @@
-// The study of accuracy: error against time.
+// The study of accuracy: error against time per entry.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ using nlohmann::ordered_json;
 const TimingPolicy kFullTiming{};
 const TimingPolicy kQuickTiming{
     .min_repeats = 3, .max_repeats = 5, .random_repeats = 16, .enough_s = 0.1, .most_s = 1.0};
-constexpr double kFullLimit = 20.0;  // seconds for one call of a method that may not end
+constexpr double kFullLimit = 20.0;  // longest time of one call, in seconds, for methods that may not end
 constexpr double kQuickLimit = 1.5;
 constexpr std::size_t kQuickEntries = 512;
 
@@ -56,7 +56,7 @@ ordered_json measured_row(const Method& method, const Case& which, double settin
   return row;
 }
 
-/// The requested methods, cases and settings.
+/// Measures the requested methods, cases and settings.
 class Study {
  public:
   explicit Study(StudyRun& run);
@@ -173,7 +173,7 @@ std::string row_text(const ordered_json& row) {
                      time_text(row["time_s"].get<double>()), kernel, work);
 }
 
-/// The table that people read.
+/// The results as tables for the terminal.
 std::string table_text(const ordered_json& result) {
   std::string text;
   for (const ordered_json& one : result["cases"]) {

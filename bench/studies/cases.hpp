@@ -1,4 +1,4 @@
-// The cases of the study of accuracy, from harmless to the worst of the domain.
+// The cases of the study of accuracy, from easy to the hardest in the domain.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace dolp::bench {
 
-/// One entry, with a name. All cases have the cauchy distribution.
+/// An entry with a name. All cases have the Cauchy distribution.
 struct Case {
   std::string name;
   std::string what;
@@ -19,7 +19,7 @@ struct Case {
   OpticalConstants index;
 };
 
-/// The cases in the order of figures.
+/// All cases, in the order in which figures show them.
 const std::vector<Case>& cases();
 
 /// A request of `count` entries of equal cost that share no work. The first is the case itself; theta, sigma and q of

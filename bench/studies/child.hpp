@@ -12,7 +12,7 @@ struct ChildOutcome {
   std::string out;
 };
 
-/// Treatment of a program's stderr.
+/// Whether a program's stderr is shown or discarded.
 enum class ChildErrors { kShown, kHidden };
 
 /// Runs a program to its end. Errors: Unavailable if the process does not start.

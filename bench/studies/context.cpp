@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// "Debian GNU/Linux 12 (bookworm), Linux 6.1.0", or the part of it that is known.
+/// Name of the operating system and its kernel, as far as known, such as "Debian GNU/Linux 12 (bookworm), Linux 6.1.0".
 std::string system_name() {
   std::string name;
   std::ifstream release("/etc/os-release");
@@ -51,7 +51,7 @@ ordered_json device_json(const std::string& choice) {
   }
 }
 
-/// The widest vector instructions of the processor. Distinguishes only sets that matter for kernels.
+/// The widest vector instructions of the processor. It distinguishes only instruction sets that matter for kernels.
 const char* vector_instructions() {
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx512f")) return "AVX-512";

@@ -10,17 +10,18 @@
 
 namespace dolp::bench {
 
-/// An environment variable that lavapipe reads once in a process.
+/// An environment variable that lavapipe reads once per process.
 struct DriverVariable {
   std::string name;
   std::vector<unsigned> settings;
-  /// the variable changes the code of kernels. Mesa's cache on disk ignores it, so each setting gets a separate cache.
+  /// The variable changes the machine code of kernels. Mesa's cache on disk ignores this, so each setting gets a cache
+  /// folder.
   bool changes_code = false;
 };
 
-/// Runs `dolp-bench throughput --case kernels` `rounds` times with each setting, in turns, so that other load on the
-/// machine affects all settings equally. Returns a row for each setting and masking: case, setting, entries, time_s,
-/// time_min_s, speedup over the first setting (from the minima) and raw_times_s.
+/// Runs `dolp-bench throughput --case kernels` with each setting, `rounds` times. The settings take turns, so that
+/// other load on the machine affects all of them equally. Returns one row per setting and masking: case, setting,
+/// entries, time_s, time_min_s, raw_times_s, and the speedup over the first setting (from the minimum times).
 /// Errors: Unavailable if a process fails; IoError.
 std::vector<nlohmann::ordered_json> kernels_with(const DriverVariable& variable, const StudyOptions& options,
                                                  std::size_t entries, std::size_t rounds);

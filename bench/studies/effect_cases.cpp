@@ -16,11 +16,11 @@ constexpr double kTemperature = 298.15;  // temperature of the surface, K
 constexpr double kLastTheta = 85.0;
 constexpr double kFirstSigma = 0.05;
 constexpr double kLastSigma = 1.0;
-constexpr double kIrradiance = 20.0;  // W m-2 um-1, slightly less than the surface emits
-constexpr double kSunAtTenUm = 0.18;  // the sun at 10.6 um above the atmosphere, W m-2 um-1
+constexpr double kIrradiance = 20.0;  // W m-2 um-1; two thirds of the exitance of a black body at kTemperature
+constexpr double kSunAtTenUm = 0.18;  // sunlight above the atmosphere at 10.6 um, W m-2 um-1
 constexpr double kSunInVisible = 1800.0;
 constexpr double kVisible_um = 0.55;
-constexpr double kColdSky = 250.0;    // K
+constexpr double kColdSky = 250.0;    // temperature of a cold sky, K
 constexpr double kOnePercent = 1e-2;  // a tolerance of DOLP that suits a thermal camera
 
 Axes grid_of(std::size_t entries) {
@@ -49,14 +49,14 @@ SceneValues emitting(const Axes& grid) {
   return scene;
 }
 
-/// The emitting steel with a source, seen from one direction outside the plane of the source.
+/// The emitting steel in bistatic mode, viewed outside the plane of incidence. The caller adds a source.
 SceneValues seen_from_one_side(const Axes& grid) {
   SceneValues scene = emitting(grid);
   scene.geometry = {Mode::kBistatic, 60.0, 90.0};
   return scene;
 }
 
-/// The emitting steel by day, under a clear sky, with the one masking that conserves energy.
+/// The bistatic scene under a uniform cold sky. The albedo of `smith` masking is at most 1.
 SceneValues under_the_sky(const Axes& grid) {
   SceneValues scene = seen_from_one_side(grid);
   scene.surface.masking = Masking::kSmith;
@@ -70,7 +70,7 @@ Source flat_source(double irradiance) {
   return source;
 }
 
-/// A material whose n and k change with wavelength, linearly.
+/// A material with n and k that depend linearly on wavelength between four values.
 Material dispersive() {
   Material material;
   material.name = "dispersive";
@@ -87,7 +87,7 @@ std::vector<double> spaced(double first, double last, std::size_t count) {
   return values;
 }
 
-/// The name of a change to the base scene, and the changed scene.
+/// A change to the base scene, with its name.
 struct Change {
   std::string name;
   std::function<void(SceneValues&)> apply = [](SceneValues&) {};
@@ -128,7 +128,7 @@ Change profile(const std::string& name, const SkyProfile& sky) {
           }};
 }
 
-/// Temperatures that rise toward the horizon in steps of 5 degrees.
+/// A sky with temperatures that rise toward the horizon, given every 5 degrees.
 SkyProfile sky_of_rows() {
   SkyProfile sky;
   sky.zenith_deg = spaced(0.0, 90.0, 19);
@@ -155,7 +155,7 @@ std::vector<EffectGroup> surface_groups(const SceneValues& base) {
                                                           }}})};
 }
 
-/// Effects beyond single scattering, with the only masking that supports all of them.
+/// Effects beyond single scattering. Only `v-cavity` masking supports all of them.
 std::vector<EffectGroup> scattering_groups(const Axes& grid) {
   SceneValues rough = emitting(grid);
   rough.surface.masking = Masking::kVCavity;
@@ -190,7 +190,7 @@ std::vector<EffectGroup> radiation_groups(const SceneValues& base, const SceneVa
                                                                          }}})};
 }
 
-/// Radiation that is negligible beside another part.
+/// Scenes in which one radiation is negligible beside the others: sunlight at 10.6 um, and emission in the visible.
 std::vector<EffectGroup> daylight_groups(const Axes& grid) {
   SceneValues thermal = under_the_sky(grid);
   thermal.accuracy.tolerance = kOnePercent;

@@ -1,4 +1,4 @@
-// The scenes of the study of effects: pairs that differ in one effect.
+// The scenes of the study of effects. The scenes of a group differ in one effect.
 #pragma once
 
 #include <cstddef>
@@ -15,16 +15,16 @@ struct EffectSetting {
   SceneValues scene;
 };
 
-/// Scenes that differ only in one effect. The first is the base of the ratios.
+/// Scenes that differ only in one effect. The study divides their times by the time of the first.
 struct EffectGroup {
   std::string effect;
   std::string mode;  ///< "hemispherical" or "bistatic"
   std::vector<EffectSetting> settings;
 };
 
-/// All groups, in the order of scene files. Every scene has the same grid of about `entries` entries: theta from 0 to
-/// 85 degrees, sigma from 0.05 to 1, and one q, so that all models share moments equally. The sun at 10.6 um has a
-/// tolerance of 1e-2.
+/// All groups, in the order of the study's table. Every scene has a grid of about `entries` entries: theta from 0 to 85
+/// degrees, sigma from 0.05 to 1, and q = 3. With one q, no masking saves time by kernel rows along q. The group
+/// `sun at 10.6 um` has a tolerance of 1e-2, which suits a thermal camera; the other groups have the default.
 std::vector<EffectGroup> effect_groups(std::size_t entries);
 
 }  // namespace dolp::bench

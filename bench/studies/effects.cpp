@@ -1,4 +1,4 @@
-// The study of effects: the cost of each one, and the savings by the plan.
+// The study of effects: how much time each effect costs, and how much time the plan saves.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -58,7 +58,7 @@ struct Pair {
   TimedScene planned;
   TimedScene all;
 
-  /// True if the plan saves work. Otherwise both runs are equal.
+  /// True if the plan saves work. Otherwise `planned` and `all` are equal runs.
   bool saves() const {
     const EffectPlan& own = planned.plan();
     const EffectPlan& whole = all.plan();
@@ -89,7 +89,7 @@ ordered_json effect_row(const EffectGroup& group, const Pair& pair, const Pair& 
   return row;
 }
 
-/// The requested groups and settings.
+/// Measures the requested groups of scenes.
 class Study {
  public:
   explicit Study(StudyRun& run);
@@ -186,7 +186,7 @@ std::string effect_text(const ordered_json& row) {
                      row["error"].get<double>(), joined(row["left_out"]));
 }
 
-/// The table that people read.
+/// The results as a table for the terminal.
 std::string table_text(const ordered_json& result) {
   std::string text = fmt::format(
       "Times in us an entry; ratio to the first line of an effect\n  {:<14} {:<13} {:<22} {:>9} {:>9} {:>7} {:>9} "
@@ -196,7 +196,7 @@ std::string table_text(const ordered_json& result) {
   return text;
 }
 
-/// Names the scenes in which dropping an effect changed DOLP by more than the tolerance.
+/// Warns of scenes in which dropped effects change DOLP by more than the tolerance.
 void add_tolerance_warnings(ordered_json& result) {
   for (const ordered_json& row : result["results"]) {
     const double tolerance = row["tolerance"].get<double>();

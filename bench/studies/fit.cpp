@@ -1,4 +1,4 @@
-// The study of fits: synthetic sets with a known truth, and the time of a fit.
+// The study of fits: how well fits recover the known truth of synthetic data, and how long a fit takes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -59,7 +59,8 @@ ordered_json set_row(const char* part, const FitSet& set, std::size_t number, co
   return row;
 }
 
-/// Share of all intervals that contain the truth, and share of the sets whose global minimum was found.
+/// Summary of the rows of one part: which share of the intervals contains the truth, how many global minima were found,
+/// and the cost of a fit.
 ordered_json coverage_json(const ordered_json& rows, const char* part) {
   std::size_t intervals = 0, held_68 = 0, held_95 = 0, global = 0, evaluations = 0;
   std::vector<double> times_s;
@@ -82,7 +83,8 @@ ordered_json coverage_json(const ordered_json& rows, const char* part) {
           {"median_time_s", median(times_s)}};
 }
 
-/// The minimum that SciPy finds with the Python package, from the middle of the ranges; null without SciPy.
+/// Runs SciPy's least_squares around the Python package, from the middle of the ranges. Returns the output of
+/// fit_scipy.py, and its largest distance from dolp's parameters in standard errors. Null without SciPy or xarray.
 ordered_json scipy_json(const FitSet& set, const MeasuredData& data, const fit::FitResult& result) {
   const std::string script = DOLP_BENCH_SCRIPTS "/fit_scipy.py";
   if (run_child({kPython, "-c", "import scipy, xarray"}, ChildErrors::kHidden).status != 0) return {};
@@ -112,7 +114,7 @@ ordered_json scipy_json(const FitSet& set, const MeasuredData& data, const fit::
   return reply;
 }
 
-/// Times a whole fit, search and intervals, with device and kernels ready.
+/// Times a whole fit: the search and the intervals. The time to create the device does not count.
 ordered_json time_json(ModelEvaluator& evaluator) {
   const FitSet set = timed_set();
   const MeasuredData data = synthetic_data(set, 0, evaluator);
@@ -150,7 +152,7 @@ temperature_K = 240
 wavelength_um = 10
 )toml";
 
-/// Times a fit of spectra: sigma and q of water from many wavelengths at three zeniths.
+/// Times a fit of spectra: finds sigma and q of water from 300 wavelengths at each of three zeniths.
 ordered_json spectrum_json(ModelEvaluator& evaluator) {
   const SceneValues scene = parse_scene(kWater, "water");
   std::string points = "theta_deg,wavelength_um\n";
@@ -173,7 +175,7 @@ ordered_json spectrum_json(ModelEvaluator& evaluator) {
           {"q", result.parameters[1].value},   {"chi_square", result.chi_square}};
 }
 
-/// Median share of the range of n that remains at 95 % with single scattering.
+/// Length of the 95 % interval of n over the length of its search range; the median of the sets of the part `bracket`.
 double median_share_of_n(const ordered_json& rows) {
   const FitRange range = bracket_set(0).parameters.front();
   std::vector<double> shares;
@@ -241,7 +243,7 @@ std::string table_text(const ordered_json& result) {
   return text;
 }
 
-/// Names the sets whose global minimum was missed.
+/// Warns of inconsistent intervals and of missed global minima.
 void warn(ordered_json& result) {
   for (const ordered_json& row : result["results"]) {
     if (row["part"] != "set") continue;

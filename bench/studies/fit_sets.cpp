@@ -16,9 +16,9 @@ namespace {
 
 constexpr std::size_t kPoints = 12;
 constexpr double kFirstDeg = 2.0;
-constexpr double kLastDeg = 80.0;         // beyond this, `integral` masking creates energy and Q/I has poles
-constexpr double kExactTolerance = 1e-8;  // tolerance of the data without noise: far below the noise
-constexpr double kSameObjective = 0.01;   // differences of chi^2 below this do not count
+constexpr double kLastDeg = 80.0;         // at larger zeniths `integral` masking creates energy, and Q/I has poles
+constexpr double kExactTolerance = 1e-8;  // tolerance of the values to which noise is added
+constexpr double kSameObjective = 0.01;   // smaller differences of chi^2 do not count
 
 constexpr const char* kSceneText = R"([surface]
 n = 1.5
@@ -35,7 +35,7 @@ wavelength_um = 10
 precision = "auto"
 )";
 
-/// Uniform and normal random numbers, equal in every standard library.
+/// Uniform and normal random numbers, with the same values in every standard library.
 class Random {
  public:
   explicit Random(std::size_t seed) : engine_(seed) {}
@@ -53,7 +53,7 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// A parameter, the range of its true value, and the range of the search.
+/// A parameter with the range of its search, and the limits between which its true value is drawn.
 struct Choice {
   FitRange parameter;
   double least, most;

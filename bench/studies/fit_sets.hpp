@@ -12,51 +12,52 @@
 
 namespace dolp::bench {
 
-/// A scene, its varied parameters, and their true values.
+/// Synthetic measurements: the fitted scene, its varied parameters with their true values, and the kind of data.
 struct FitSet {
   SceneValues scene;
   std::vector<FitRange> parameters;
   Eigen::VectorXd truth;
   Observable observable = Observable::kQOverI;
-  std::size_t points = 0;              ///< zeniths from 2 to 80 degrees
+  std::size_t points = 0;              ///< number of zeniths, evenly spaced from 2 to 80 degrees
   double uncertainty = 0.0;            ///< standard deviation of the noise in DOLP or Q/I
-  bool has_noise = true;               ///< whether the data has noise of that standard deviation
-  std::vector<Setting> of_truth = {};  ///< settings of the scene of the data that the fitted scene lacks
+  bool has_noise = true;               ///< without noise the data are exact
+  std::vector<Setting> of_truth = {};  ///< settings for the scene of the data only; the fitted scene lacks them
   ModelError model_error = ModelError::kNone;
 
-  /// Varied keys joined by blanks.
+  /// Keys of the varied parameters, joined by blanks.
   std::string keys() const;
 };
 
-/// Makes the set with a number, which is the seed of its random choices: one of the maskings and distributions, two to
-/// four parameters, 12 points, a truth inside the ranges, and noise of 0.0005 to 0.01, log-uniform.
+/// Makes a random set; `number` is the seed. The set has a random masking and distribution, two to four parameters, 12
+/// points, true values inside the search ranges, and noise between 0.0005 and 0.01 (log-uniform).
 FitSet fit_set(std::size_t number);
 
-/// Data with all bounces. The fit of n and sigma uses single scattering and its bracket. Sets have noise and no noise
-/// in turns.
+/// Makes a set with data that follow all bounces, while the fit of n and sigma uses single scattering with the bracket
+/// as model error. The data have noise if `number` is odd.
 FitSet bracket_set(std::size_t number);
 
 /// The set whose fit is timed: n, k and sigma from 40 points of Q/I.
 FitSet timed_set();
 
-/// The true values, with Gaussian noise if the set has noise. `number` is the seed of the noise.
+/// Data of a set: values at the true parameters, with Gaussian noise if the set has noise. `number` seeds the noise.
 MeasuredData synthetic_data(const FitSet& set, std::size_t number, ModelEvaluator& evaluator);
 
 /// The result of a fit, compared with the truth.
 struct SetOutcome {
   fit::FitResult result;
   double chi_square_of_truth = 0.0;
-  double chi_square_from_truth = 0.0;    ///< minimum that a descent from the truth reaches
+  double chi_square_from_truth = 0.0;    ///< objective at the minimum that a descent from the truth reaches
   std::size_t held_68 = 0, held_95 = 0;  ///< numbers of intervals that contain the truth
   double time_s = 0.0;
 
-  /// Without a model error: true if the intervals contain the truth where the chi^2 of the truth requires it.
+  /// True if each interval contains its truth, unless chi^2 of the truth exceeds the minimum by more than the interval
+  /// allows. Meaningful only without a model error.
   bool is_consistent() const;
-  /// True if no descent from the truth reaches a lower objective.
+  /// True if a descent from the truth reaches no lower objective.
   bool is_global() const;
 };
 
-/// Makes the data of a set and fits them. `number` is the seed of the noise.
+/// Makes the data of a set and fits them. `number` seeds the noise.
 SetOutcome fit_outcome(const FitSet& set, std::size_t number, ModelEvaluator& evaluator);
 
 }  // namespace dolp::bench

@@ -8,7 +8,7 @@
 namespace dolp::bench {
 namespace {
 
-// host/scenes/stainless_steel.toml
+// Values of host/scenes/stainless_steel.toml: index, range of sigma, range of q - 1.
 constexpr double kIndex = 1.508;
 constexpr double kFirstSigma = 0.05;
 constexpr double kLastSigma = 1.0;
@@ -88,7 +88,7 @@ std::vector<NestedGrid::Place> NestedGrid::sample(std::size_t count) {
   constexpr std::size_t kPlaces = kSide / kLargestStride;
   std::vector<Place> places;
   for (std::size_t i = 0; i < count; ++i) {
-    // Multiples of irrationals fill an interval evenly and never repeat.
+    // The fractional parts of multiples of an irrational number fill [0, 1) evenly and never repeat.
     const auto position = [&](double irrational) {
       const double x = (static_cast<double>(i) + 0.5) * irrational;
       return static_cast<std::size_t>(static_cast<double>(kPlaces) * (x - std::floor(x)));

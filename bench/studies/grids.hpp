@@ -20,17 +20,17 @@ struct GridSize {
   std::string text() const;  ///< "64 x 64 x 64"
 };
 
-/// theta: 0 to 90 degrees. sigma: 0.05 to 1, q - 1: 0.75 to 7, both in equal ratios.
+/// theta from 0 to 90 degrees in equal steps; sigma from 0.05 to 1, and q - 1 from 0.75 to 7, in equal ratios.
 Axes steel_grid(const GridSize& size);
 
-/// The unchanged surface of the scene with this grid.
+/// The stainless-steel scene with this masking and with a grid of this size.
 SceneValues steel_scene(Masking masking, const GridSize& size);
 
 /// The moments of the steel for every entry of a grid, in C order (q fastest).
 MomentsRequest steel_request(Masking masking, const Axes& grid);
 
 /// A grid of 64 x 64 x 64 entries for comparisons. No direction lies at 0 or 90 degrees, which some methods do not
-/// support. It contains smaller grids of the same extent, so a slow method may compute only some of its entries.
+/// support. Coarser grids are part of it, so that a slow method can compute fewer entries.
 struct NestedGrid {
   static constexpr std::size_t kSide = 64;
   static constexpr std::size_t kLargestStride = 8;
@@ -38,18 +38,18 @@ struct NestedGrid {
   /// Every `stride`-th value of each axis. `stride` is a power of two up to kLargestStride.
   static Axes with_stride(std::size_t stride);
 
-  /// An entry that the grids of all strides have.
+  /// An entry that belongs to the grids of all strides.
   struct Place {
-    std::size_t theta = 0;  ///< positions in the grid of the largest stride
+    std::size_t theta = 0;  ///< positions on the axes of the grid with the largest stride
     std::size_t sigma = 0;
     std::size_t q = 0;
-    std::size_t position(std::size_t stride) const;  ///< position in the request of the grid with this stride
+    std::size_t position(std::size_t stride) const;  ///< index in the request for the grid with this stride
   };
-  /// `count` such entries, evenly spread, equal at each call.
+  /// Chooses `count` evenly spread places; every call returns the same places.
   static std::vector<Place> sample(std::size_t count);
 };
 
-/// Only the entries of a sample, each with a separate direction and shape.
+/// A request for only the entries of a sample, as a list of points.
 MomentsRequest sample_request(Masking masking, const std::vector<NestedGrid::Place>& sample);
 
 }  // namespace dolp::bench

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kShortCall = 0.01;  // seconds: a shorter call is timed twice, and the faster time counts
 
-/// One entry of the sample.
+/// A request for entry `i` of the sample only.
 MomentsRequest one_of(const PeerSample& sample, std::size_t i) {
   MomentsRequest request;
   request.distribution = sample.alone.distribution;
@@ -49,7 +49,8 @@ Call undisturbed_call(Solver& solver, const MomentsRequest& request, double sett
   return second.time_s < first.time_s ? second : first;
 }
 
-/// The stride of the smallest grid that shows the speed of a method.
+/// The stride of the grid with which a batched method tries its settings. A method that interpolates is fast only on
+/// the full grid.
 std::size_t stride_of_tries(const Method& method) { return method.needs_grid ? 1 : NestedGrid::kLargestStride; }
 
 }  // namespace
@@ -115,7 +116,7 @@ std::optional<double> PeerSettings::with_hindsight(double tolerance) const {
   return sum_s / static_cast<double>(sample_.truths.size());
 }
 
-/// The first run compiles kernels and makes tables of nodes.
+/// Runs the method once without timing. This run compiles kernels and makes tables of nodes.
 void PeerSettings::warm_up() {
   const MomentsRequest request =
       method_.is_batched ? nested_grid(sample_, stride_of_tries(method_)).request : one_of(sample_, 0);
@@ -147,7 +148,7 @@ bool PeerSettings::try_next() {
   return true;
 }
 
-/// Returns the seconds that the run took, as try_each does.
+/// Tries a setting on a grid. Returns the time of the call in seconds.
 double PeerSettings::try_grid(TriedSetting& tried) {
   const PeerBatch batch = nested_grid(sample_, stride_of_tries(method_));
   const Call made = call(solver_, batch.request, tried.setting);

@@ -1,4 +1,4 @@
-// Search for the cheapest setting of a method that reaches an accuracy, for the study of peers.
+// For the study of peers: search for the cheapest setting with which a method meets a tolerance.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace dolp::bench {
 
-/// Entries of one masking on which all methods are compared.
+/// Entries on which all methods are compared, for one masking.
 struct PeerSample {
   PeerSample(Masking which, const std::vector<NestedGrid::Place>& sample_places);
 
@@ -22,48 +22,48 @@ struct PeerSample {
   std::vector<Truth> truths;
 };
 
-/// Entries to solve, and the positions of the sample among them.
+/// Entries to compute, and which of them belong to the sample.
 struct PeerBatch {
   MomentsRequest request;
   std::vector<std::size_t> positions;
 
-  /// The largest error of the answers to the request; infinite for NaN.
+  /// The largest error over the entries of the sample; infinite if one is NaN. `answers` belong to `request`.
   double worst_error(const std::vector<Answer>& answers, const PeerSample& sample) const;
 };
 
-/// The entries of the sample.
+/// A batch of only the entries of the sample.
 PeerBatch whole_sample(const PeerSample& sample);
-/// The nested grid of a stride.
+/// A batch of the nested grid with this stride.
 PeerBatch nested_grid(const PeerSample& sample, std::size_t stride);
 
 /// Errors and times of one setting on each entry of the sample.
 struct TriedSetting {
   double setting = 0.0;
   std::vector<double> errors = {};
-  /// time per entry; methods for many entries per call have one time per call, divided by its entries
+  /// time per entry; for a batched method the time of the call divided by its number of entries
   std::vector<double> times_s = {};
 
   double worst_error() const;
 };
 
-/// The settings of one method for one sample, from coarse to fine, as far as they are worth trying. Methods for many
-/// entries per call compute the smallest nested grid, the other methods each entry of the sample separately.
+/// Tries the settings of one method on one sample, from coarse to fine, until a call takes too long. A batched method
+/// computes a nested grid in one call; any other method computes the entries of the sample one by one.
 class PeerSettings {
  public:
-  /// Stops after a call that takes longer than `most_s`.
+  /// `most_s`: after a longer run, in seconds, no finer setting is tried.
   PeerSettings(const Method& method, Solver& solver, const PeerSample& sample, double most_s);
 
-  /// Tries settings until one keeps the tolerance at all entries; null if none does.
+  /// The first setting that meets the tolerance at all entries of the sample; null if there is none.
   const TriedSetting* reaching(double tolerance);
 
-  /// Records a larger error of a setting, found on other entries.
+  /// Records that a setting has a larger error, found on a larger grid.
   void reject(const TriedSetting& setting, double error);
 
-  /// The reason why no more settings were tried.
+  /// The reason why `reaching` found no setting.
   const std::string& why_not() const { return why_not_; }
 
-  /// Mean time per entry if each entry has the cheapest setting that meets the tolerance. Such a choice is possible
-  /// only if the truth is known. Empty if no setting meets the tolerance at some entry.
+  /// Mean time per entry if each entry had its cheapest setting that meets the tolerance. In practice this choice is
+  /// impossible, because it needs the truth. Empty if some entry has no such setting.
   std::optional<double> with_hindsight(double tolerance) const;
 
  private:

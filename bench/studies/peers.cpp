@@ -35,16 +35,16 @@ std::vector<PeerCase> peer_cases() {
   return cases;
 }
 
-// The methods of dolp that others are compared with: every entry integrated, and a grid computed as `dolp table` does.
+// The two methods of dolp that others are compared with: one integrates every entry, one interpolates as `dolp table`.
 constexpr const char* kOwn = "vulkan-float";
 constexpr const char* kOwnTable = "vulkan-table";
 
-/// The effort of the study.
+/// How much the study computes.
 struct Effort {
   std::vector<double> tolerances;  ///< from coarse to fine
   std::size_t sample;              ///< entries whose errors are checked
-  double call_s;                   ///< limit in seconds: after a longer call the method stops
-  double grid_s;                   ///< limit in seconds for the time of a grid
+  double call_s;                   ///< limit in seconds: after a longer call no finer setting of the method is tried
+  double grid_s;                   ///< limit in seconds: a grid that would take longer is not timed
   TimingPolicy timing;
 };
 const Effort kFull{.tolerances = {1e-3, 1e-4, 1e-6},
@@ -58,13 +58,13 @@ const Effort kQuick{.tolerances = {1e-4},
                     .grid_s = 0.1,
                     .timing = {.min_repeats = 3, .max_repeats = 5, .enough_s = 0.05, .most_s = 0.3}};
 
-/// A target to reach at a tolerance of 1e-4.
+/// A target for the time of the best other method over the time of dolp, at a tolerance of 1e-4.
 struct Target {
   const char* what;
   std::vector<std::string> methods;  ///< the fastest of them counts
   std::vector<std::string> cases;
   double ratio;
-  const char* key = "table_ratio";  ///< key of the ratio in the rows
+  const char* key = "table_ratio";  ///< key of this ratio in the rows of results
 };
 const std::vector<Target> kTargets = {
     {"SciPy dblquad", {"dblquad"}, {"none", "v-cavity", "integral", "smith"}, 1e5},
@@ -74,11 +74,11 @@ const std::vector<Target> kTargets = {
     {"native float build, same cores and entries", {"native-float"}, {"integral", "smith"}, 0.9, "ratio"}};
 constexpr double kTargetTolerance = 1e-4;
 
-/// The entries whose time is measured: the sample, or the largest grid that the method computes within the limit.
+/// The entries whose time is measured: the sample, or for a batched method the largest grid within the time limit.
 PeerBatch timed_batch(const Method& method, Solver& solver, const PeerSample& sample, double setting,
                       const Effort& effort) {
   if (!method.is_batched) return whole_sample(sample);
-  constexpr double kGrowth = 8.0;  // growth of the number of entries with half the stride
+  constexpr double kGrowth = 8.0;  // half the stride gives 8 times the entries
   std::size_t stride = NestedGrid::kLargestStride;
   PeerBatch batch = nested_grid(sample, stride);
   while (stride > 1) {
@@ -184,7 +184,7 @@ ordered_json Study::measured_row(const Method& method, Solver& solver, const Pee
     const std::size_t entries = batch.request.size();
     const Measurement measurement = measure(solver, batch.request, tried->setting, method.is_random, effort_.timing);
     const double error = method.is_batched ? batch.worst_error(measurement.last, sample) : tried->worst_error();
-    if (error > tolerance) {  // larger grids are interpolated more
+    if (error > tolerance) {  // a larger grid is interpolated more, which may increase the error
       settings.reject(*tried, error);
       continue;
     }
@@ -207,7 +207,7 @@ ordered_json Study::measured_row(const Method& method, Solver& solver, const Pee
   return row;
 }
 
-/// The time that is compared: the kernels' time if the method has kernels.
+/// The time per entry that ratios compare: time in kernels if the method has kernels.
 std::optional<double> compared_time(const ordered_json& row, const char* otherwise = "time_s") {
   for (const char* key : {"kernel_time_s", otherwise}) {
     if (row.contains(key)) return row[key].get<double>();

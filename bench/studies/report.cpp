@@ -13,9 +13,9 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double kAcceptedSpread = 0.2;
-constexpr double kAcceptedLoad = 0.3;  // load per core before the study begins
+constexpr double kAcceptedLoad = 0.3;  // load per core above which a study warns; measured before it begins
 
-/// The first few names.
+/// The first four names, and how many more there are.
 std::string some_of(const std::vector<std::string>& names) {
   constexpr std::size_t kMostNames = 4;
   std::string text;
@@ -23,7 +23,7 @@ std::string some_of(const std::vector<std::string>& names) {
   return names.size() > kMostNames ? text + fmt::format(" and {} more", names.size() - kMostNames) : text;
 }
 
-/// "gauss easy 64", "masking hemispherical smith".
+/// Name of a row in warnings, such as "gauss easy 64" or "masking hemispherical smith".
 std::string row_name(const ordered_json& row) {
   const auto text = [&](const char* key) {
     const ordered_json& value = row[key];

@@ -1,4 +1,4 @@
-// Output of results for all studies.
+// Parts of the JSON that all studies have in common.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,17 +8,17 @@
 
 namespace dolp::bench {
 
-/// Fills `warnings` of a study with problems of its times, and remedies. Reads `context`, and in `results` the fields
-/// that name a row (method or effect, case, setting) and raw_times_s if present.
+/// Fills `warnings` with problems of the measured times, and with remedies. Reads `context`, and from each row of
+/// `results` raw_times_s and the fields that name the row, such as method, case and setting.
 void add_warnings(nlohmann::ordered_json& result);
 
-/// A method as an element of `methods`.
+/// The description of a method, an element of `methods`.
 nlohmann::ordered_json method_json(const Method& method);
 
-/// Adds the device or processor of a method to `methods`.
+/// Adds the device or processor of a method to its description in `methods`.
 void note_where(nlohmann::ordered_json& result, const Method& method, const Solver& solver);
 
-/// A study as text of its file: indented, except `results`, which come last with one row per line.
+/// The text of a study's JSON file. It is indented, except for `results`, which come last with one row per line.
 std::string json_text(nlohmann::ordered_json result);
 
 }  // namespace dolp::bench

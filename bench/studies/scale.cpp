@@ -1,4 +1,4 @@
-// The study of scale: time and peak memory of `dolp table` against the size of the table, and of shards.
+// The study of scale: time and peak memory of `dolp table` for tables of different size, and for shards of one table.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
@@ -44,7 +44,7 @@ q = [1.8, 2, 3, 5]
 tolerance = 1e-3
 )";
 
-/// Numbers of values of wavelength, n and k for the scene's 10,000 entries.
+/// Numbers of wavelengths, n and k. The scene has 10,000 entries for each combination of them.
 struct Size {
   std::size_t wavelengths, n, k;
   std::size_t entries() const { return 10'000 * wavelengths * n * k; }
@@ -61,7 +61,7 @@ std::vector<std::string> grid_of(const Size& size) {
           "--set", axis("k", 0.05, 1.0, size.k)};
 }
 
-/// A temporary folder with the scene.
+/// A temporary folder that contains the scene file.
 class Folder {
  public:
   Folder() : folder_("dolp-bench") { std::ofstream(at("scene.toml")) << kScene; }
@@ -71,7 +71,7 @@ class Folder {
   TemporaryFolder folder_;
 };
 
-/// Starts a program without output.
+/// Starts a program and discards its standard output.
 pid_t start(const std::vector<std::string>& arguments) {
   std::vector<char*> words;
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
@@ -86,7 +86,7 @@ pid_t start(const std::vector<std::string>& arguments) {
   return process;
 }
 
-/// Peak memory of a program that has ended. Errors: Unavailable when it failed.
+/// Waits for the end of a program and returns its peak memory. Errors: Unavailable if the program failed.
 std::size_t peak_bytes(pid_t process) {
   int status = 0;
   rusage used{};
@@ -103,7 +103,7 @@ std::vector<std::string> table_command(const StudyOptions& options, const Folder
   return command;
 }
 
-/// The table of one process, and the time to copy it.
+/// The row of a table that one process computes, with the time to copy its file.
 ordered_json size_row(const StudyOptions& options, const Size& size) {
   const Folder folder;
   const auto begin = std::chrono::steady_clock::now();
@@ -122,7 +122,7 @@ ordered_json size_row(const StudyOptions& options, const Size& size) {
           {"raw_times_s", {time_s}}};
 }
 
-/// All shards at the same time, then their merge.
+/// The row of a table in shards: all shards run at the same time, and then `dolp merge` joins them.
 ordered_json shards_row(const StudyOptions& options, const Size& size, std::size_t count) {
   const Folder folder;
   const auto begin = std::chrono::steady_clock::now();

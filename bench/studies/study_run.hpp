@@ -16,7 +16,7 @@
 
 namespace dolp::bench {
 
-/// A study while it runs: the JSON so far, and the progress in rows.
+/// The state of a study while it runs: the JSON so far, and how many of the expected rows are done.
 class StudyRun {
  public:
   StudyRun(const StudyOptions& options, Progress progress) : options_(options), progress_(std::move(progress)) {}
@@ -26,10 +26,10 @@ class StudyRun {
   /// Starts the JSON: name of the study, context, and the meanings of `error` and `time_s` in its rows.
   void describe(const std::string& study, const std::string& error, const std::string& time_s);
 
-  /// The JSON, to add anything except rows.
+  /// The JSON, so that a study can add anything except rows.
   nlohmann::ordered_json& json() { return json_; }
 
-  /// Announces more rows.
+  /// Increases the number of rows that the progress bar expects.
   void expect(std::size_t rows) { total_ += rows; }
 
   /// Adds a finished row. Errors: Cancelled.
@@ -49,11 +49,11 @@ class StudyRun {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// The parts that each study supplies.
+/// The functions that each study supplies.
 struct StudyParts {
   std::function<void(StudyRun&)> measure;
-  std::function<std::string(const nlohmann::ordered_json&)> table_text;                ///< the table that people read
-  std::function<void(nlohmann::ordered_json&)> warn = [](nlohmann::ordered_json&) {};  ///< adds to `warnings`
+  std::function<std::string(const nlohmann::ordered_json&)> table_text;                ///< table for the terminal
+  std::function<void(nlohmann::ordered_json&)> warn = [](nlohmann::ordered_json&) {};  ///< adds warnings
 };
 
 /// Runs a study with a progress bar, prints its table and warnings, and writes its JSON. Errors: IoError before the
@@ -77,10 +77,10 @@ std::vector<Named> chosen(const std::vector<Named>& all, const std::vector<std::
   return kept;
 }
 
-/// Errors: DeviceError before the start if --device names an unknown device.
+/// Checks the option --device before a study starts. Errors: DeviceError if it names an unknown device.
 void check_device(const StudyOptions& options);
 
-/// A time as text in a table: "3.1 us".
+/// A time with a unit, for tables: "3.1 us".
 std::string time_text(double time_s);
 
 }  // namespace dolp::bench

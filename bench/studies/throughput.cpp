@@ -1,4 +1,4 @@
-// The study of throughput: entries and evaluations per second, as a share of what the device can do.
+// The study of throughput: entries and evaluations per second, and which share of the device's peak they reach.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ using nlohmann::ordered_json;
 
 constexpr std::array kMaskings = {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith};
 constexpr std::array kMaskingsByRows = {Masking::kIntegral, Masking::kSmith};
-// maskings of the kernels that run in separate processes
+// Maskings that the part `kernels` runs in a quick study.
 constexpr std::array kQuickMaskings = {Masking::kNone, Masking::kIntegral};
 constexpr double kTolerance = 1e-4;
 constexpr std::array kTolerances = {1e-3, 1e-4, 1e-6};
@@ -43,15 +43,15 @@ constexpr std::array<GridSize, 8> kGrids = {{{32, 32, 32},
                                              {256, 64, 64},
                                              {256, 128, 64},
                                              {256, 128, 128}}};
-constexpr std::size_t kMainGrid = 1;         // position in kGrids of the grid for all parts except the grids themselves
-constexpr GridSize kSmallGrid = {2, 2, 16};  // its entries come in groups
+constexpr std::size_t kMainGrid = 1;         // position in kGrids of the grid that other parts than `grids` use
+constexpr GridSize kSmallGrid = {2, 2, 16};  // for the warm-up; its entries fill whole kernel rows
 constexpr std::size_t kQuickEntries = std::size_t{24} * 24 * 24;
 constexpr std::size_t kFullRepeats = 5;
 constexpr std::size_t kQuickRepeats = 2;
-constexpr double kLongTime = 1.0;  // seconds: a longer call is repeated as seldom as in a quick study
+constexpr double kLongTime = 1.0;  // seconds; runs that take longer are repeated kQuickRepeats times
 constexpr std::size_t kFullWorkgroups = 48;
 constexpr std::size_t kQuickWorkgroups = 6;
-constexpr std::size_t kFullRounds = 3;  // rounds of processes
+constexpr std::size_t kFullRounds = 3;  // rounds in which each setting runs in one process
 constexpr std::size_t kQuickRounds = 1;
 constexpr std::size_t kPeakRepeats = 9;
 const TimingPolicy kFullTiming{.min_repeats = 5, .max_repeats = 15, .enough_s = 1.0, .most_s = 4.0};
@@ -63,7 +63,7 @@ struct Part {
 };
 const std::vector<Part> kParts = {{"grids"}, {"materials"}, {"arithmetic"}, {"cores"}, {"vector-width"}, {"kernels"}};
 
-/// Grids of at most this many entries; if the smallest has more, one of about this many.
+/// The grids of kGrids with at most `entries` entries. If there is none, a cubic grid of about `entries` entries.
 std::vector<GridSize> grids_up_to(std::size_t entries) {
   std::vector<GridSize> sizes;
   for (const GridSize& size : kGrids) {
@@ -76,14 +76,14 @@ std::vector<GridSize> grids_up_to(std::size_t entries) {
   return sizes;
 }
 
-/// Errors: DeviceError without a usable device.
+/// The Vulkan device of the study. Errors: DeviceError without a usable device.
 dolp::Device device_of(const StudyOptions& options) {
   const DeviceList list = list_devices();
   if (list.devices.empty()) throw DeviceError(list.why_empty);
   return list.devices[choose_device(list.devices, options.device, false)];
 }
 
-/// The largest error that a run states, over the entries with status 0.
+/// The largest error estimate of a run, over the entries with status 0.
 double stated_error(const std::vector<PointResult>& results) {
   double largest = 0.0;
   for (const PointResult& result : results) {
@@ -96,7 +96,7 @@ ordered_json row_start(const char* part, const std::string& which, const ordered
   return {{"part", part}, {"case", which}, {"setting", setting}};
 }
 
-/// A run of a grid as `dolp table` makes it, with its name.
+/// A grid that is run as `dolp table` runs it.
 struct GridRun {
   GridSize size;
   double tolerance = kTolerance;
@@ -111,8 +111,8 @@ struct GridRun {
   }
 };
 
-constexpr std::array<GridSize, 2> kMaterialGrids = {{{64, 16, 16}, {8, 8, 8}}};  // for a full and for a quick study
-constexpr std::size_t kManyIndices = 12;                                         // values of n, and of k
+constexpr std::array<GridSize, 2> kMaterialGrids = {{{64, 16, 16}, {8, 8, 8}}};  // grids of a full and of a quick study
+constexpr std::size_t kManyIndices = 12;                                         // number of values of n, and of k
 constexpr std::size_t kManyWavelengths = 300;
 
 std::vector<double> spaced(double first, double last, std::size_t count) {
@@ -122,22 +122,21 @@ std::vector<double> spaced(double first, double last, std::size_t count) {
   return values;
 }
 
-/// Axes of materials, with their names.
 constexpr OpticalConstants kAluminium{27.0, 90.0};
 constexpr OpticalConstants kOxide{0.7, 0.1};
 constexpr OpticalConstants kPaint{1.5, 0.02};
 
 struct MaterialAxes {
   std::string name;
-  std::string material = {};  ///< name of a built-in one; empty: the scene's material
+  std::string material = {};  ///< name of a built-in material; empty means the scene's material
   std::vector<double> n = {}, k = {}, wavelength_um = {};
-  std::optional<OpticalConstants> index = {};  ///< instead of the scene's
+  std::optional<OpticalConstants> index = {};  ///< replaces n and k of the scene
   std::vector<Layer> coating = {};
-  std::size_t over = 0;  ///< position of the case whose kernel time is the unit
+  std::size_t over = 0;  ///< position of the case by whose kernel time the kernel time of this case is divided
   std::vector<Spectrum> bands = {};
   std::vector<double> temperature_K = {};
   bool has_all_materials = false;
-  double polarised_diffuse = 0.0;  ///< k_d of the case
+  double polarised_diffuse = 0.0;  ///< k_d of a diffuse part with polarised light
 };
 
 Layer layer(const OpticalConstants& index, double thickness_um) { return {{.constant = index}, thickness_um}; }
@@ -170,7 +169,7 @@ std::vector<MaterialAxes> material_axes() {
           {.name = "polarised diffuse part", .polarised_diffuse = 0.2}};
 }
 
-/// An axis of the built-in materials that are known at the scene's wavelength.
+/// Adds an axis of all built-in materials with data at the scene's wavelength.
 void add_all_materials(SceneValues& scene) {
   std::vector<Material> materials;
   for (const Material& material : built_in_materials()) {
@@ -248,7 +247,7 @@ Study::Study(StudyRun& run)
       device_(device_of(run.options())),
       parts_(chosen(kParts, run.options().cases, "--case")),
       grids_(grids_up_to(quick() ? std::min(run.options().entries, kQuickEntries) : run.options().entries)) {
-  if (run.options().cases.empty()) parts_.pop_back();  // the processes of the other parts run it
+  if (run.options().cases.empty()) parts_.pop_back();  // `kernels` runs in the processes of `cores` and `vector-width`
   if (runs("grids")) run_.expect(kMaskings.size() * (grids_.size() + 2 * kTolerances.size() - 1));
   if (runs("materials")) run_.expect(kMaskingsByRows.size() * material_axes().size());
   if (runs("arithmetic")) run_.expect(kMaskingsByRows.size() * arithmetic_tolerances().size());
@@ -346,7 +345,7 @@ void Study::run_materials(Masking masking) {
   for (std::size_t i = 0; i < kQuickRepeats; ++i) {
     for (const std::unique_ptr<TimedScene>& one : all) one->repeat();
   }
-  // Excludes the sums over responses, which the host computes for each entry.
+  // The time of the kernels without the time in which the host sums responses for each entry.
   const auto kernels_s = [&](std::size_t i) { return all[i]->work().kernel_s; };
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto entries = static_cast<double>(all[i]->entries().size());

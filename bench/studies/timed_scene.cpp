@@ -11,8 +11,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kRawTime = 5e-3;  // seconds: shorter calls are repeated within one raw time
-constexpr double kLongTime = 0.5;  // seconds: if the first call takes longer, it is the only one
+constexpr double kRawTime = 5e-3;  // seconds; shorter calls are repeated until a raw time is this long
+constexpr double kLongTime = 0.5;  // seconds; if the first call takes longer, each raw time is one call
 
 }  // namespace
 

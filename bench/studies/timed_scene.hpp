@@ -1,4 +1,4 @@
-// Times a scene as a user runs it.
+// Times the run of a scene, as a user runs it.
 #pragma once
 
 #include <vector>
@@ -8,13 +8,13 @@
 
 namespace dolp::bench {
 
-/// Plan and evaluation of a scene's grid, again and again.
+/// Plans and evaluates the grid of a scene repeatedly, and records the times.
 class TimedScene {
  public:
   /// Runs the scene once, which creates the pipelines. The evaluator must outlive the object.
   TimedScene(SceneValues scene, bool keep_all, ModelEvaluator& evaluator);
 
-  /// Adds a raw time of a call.
+  /// Records one raw time, which is the mean time of one or several calls.
   void repeat();
 
   const SceneValues& scene() const { return scene_; }
@@ -22,7 +22,7 @@ class TimedScene {
   const EffectPlan& plan() const { return plan_; }
   const std::vector<PointResult>& results() const { return results_; }
   const Work& work() const { return work_; }  ///< work of the last call
-  /// Raw times per entry in seconds, of calls and of their kernels.
+  /// Raw times per entry in seconds: of whole calls, and of the kernels and sums of moments in them.
   std::vector<double> times_s() const;
   std::vector<double> kernel_times_s() const;
 

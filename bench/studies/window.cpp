@@ -1,4 +1,4 @@
-// The study of the window: sliders dragged by real events on a display without a screen.
+// The study of the window: real events drag sliders on a virtual display.
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -33,7 +33,7 @@ constexpr int kMovesPerSecond = 30;
 constexpr double kGoalOfOne = 20.0;  // fresh curves per second, for one wavelength
 constexpr double kGoalOfBand = 8.0;  // fresh curves per second, for a band with n(lambda)
 
-/// A slider to drag in a scene.
+/// A drag of the slider of `key`, in the scene with `changes`.
 struct DragCase {
   std::string name;
   std::string key;
@@ -70,7 +70,7 @@ const std::vector<DragCase>& drag_cases() {
   return all;
 }
 
-/// Xvfb on a private display. Sets DISPLAY to it.
+/// Runs Xvfb on a private display, and sets DISPLAY to this display.
 class Display {
  public:
   Display() {
@@ -108,7 +108,7 @@ void xdotool(const std::string& commands) {
     throw IoError("xdotool fails");
 }
 
-/// The events of a drag there and back. The button is down from the first move to the last.
+/// Commands that drag a slider there and back. The button is down from the first move to the last.
 std::string drag_commands(const explore::Area& slider) {
   const auto at = [&](double part) {
     const ImVec2 place = slider.at(static_cast<float>(part), 0.5F);
@@ -125,7 +125,7 @@ std::string drag_commands(const explore::Area& slider) {
   return commands + "mouseup 1";
 }
 
-/// Records what the frames of a drag show.
+/// Counts the curves, maps and frames that the window shows during a drag.
 class Watch {
  public:
   explicit Watch(explore::App& app) : app_(app), scene_(curve().key()), shown_(shown_text()) {}
@@ -147,7 +147,7 @@ class Watch {
     gap_s_ = std::max(gap_s_, std::chrono::duration<double>(now - last_fresh_).count());
     last_fresh_ = now;
   }
-  /// The last curve belongs to the scene and has its tolerance.
+  /// True after the drag has begun, once the curve belongs to the current scene and meets its tolerance.
   bool is_done() const { return begin_ && curve().is_finished(); }
 
   ordered_json json(Clock::time_point released) const {
@@ -188,7 +188,7 @@ ordered_json drag_row(const DragCase& one, const std::string& device) {
   explore::App app(explore::SceneEdits(Scene::from_text(kScene, one.changes, one.name)), {.device = device});
   xdotool(fmt::format("windowsize --sync %1 {} {} windowfocus %1", kWidth, kHeight));
   app.settle();
-  // The first coarse results of a scene compile kernels, so only the second drag counts.
+  // During the first drag, coarse results compile kernels. So only the second drag counts.
   ordered_json measured;
   for (int i = 0; i < 2; ++i) {
     Watch watch(app);
@@ -238,7 +238,7 @@ std::string table_text(const ordered_json& result) {
   return text;
 }
 
-/// Names the drags that miss the goal for fresh curves.
+/// Warns of drags with fewer fresh curves per second than the goal.
 void warn(ordered_json& result) {
   for (const ordered_json& row : result["drags"]) {
     const double goal = row["is_band"].get<bool>() ? kGoalOfBand : kGoalOfOne;

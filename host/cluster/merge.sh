@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The last job that submit.sh makes: merge.sh FILE.nc SHARDS. Removes the shards when the table is complete.
+# Merges all shards into FILE.nc and then removes them: merge.sh FILE.nc SHARDS. It is the last job of submit.sh.
 set -euo pipefail
 
 file=$1 shards=$2

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# One task of the array that submit.sh makes: shard.sh SCENE FILE.nc [option of dolp table]...
+# Computes one shard, as one task of submit.sh's job array: shard.sh SCENE FILE.nc [option of dolp table]...
 set -uo pipefail
 
 most_attempts=4

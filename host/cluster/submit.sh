@@ -3,9 +3,9 @@
 #
 #   submit.sh SCENE FILE.nc SHARDS [option of dolp table]...
 #
-# A task that fails is queued again, up to three times, and continues where it stopped. Wrong input (exit status 2) ends it
-# at once. Environment: DOLP, the program (default dolp); SBATCH_PARTITION, SBATCH_TIMELIMIT and other variables of sbatch.
-# Prints the numbers of the two jobs.
+# A task that fails is queued again, up to three times, and continues where it stopped. Wrong input (exit status 2) ends
+# the task at once. Prints the numbers of the two jobs.
+# Environment: DOLP, the program (default dolp); SBATCH_PARTITION, SBATCH_TIMELIMIT and other variables of sbatch.
 set -euo pipefail
 
 if (($# < 3)); then

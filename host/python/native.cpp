@@ -1,4 +1,4 @@
-// Python binding of the library: arrays and dictionaries in, arrays out; the public interface is in dolp/__init__.py.
+// Python binding of the library: it takes and returns arrays and dictionaries. Users call dolp/__init__.py instead.
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -28,7 +28,7 @@ using Columns = std::map<std::string, Array>;
 
 constexpr auto kSignalsEvery = std::chrono::milliseconds(50);
 
-/// Calls `body(progress)` in another thread, while Python's other threads run, and ends it when a signal arrives.
+/// Calls `body(progress)` in another thread. Meanwhile Python's other threads run. A signal ends the call.
 template <class Body>
 auto interruptible(const Body& body) {
   std::atomic<bool> goes_on = true;
@@ -49,7 +49,7 @@ auto interruptible(const Body& body) {
   return result.get();
 }
 
-// Python's form of bytes that are not UTF-8, as paths may have them.
+// Python's way to decode bytes that are not UTF-8. Paths may contain such bytes.
 constexpr const char* kOtherBytes = "surrogateescape";
 
 py::str text_of(const std::string& text) {
@@ -96,7 +96,7 @@ void add_error(py::module_& module, const std::string& name, PyObject* base, con
   module.attr(name.c_str()) = py::reinterpret_steal<py::object>(type);
 }
 
-/// The position of a word in the allowed words of an argument. Errors: InputError.
+/// The position of a word among the allowed words of an argument. Errors: InputError if the word is not allowed.
 std::size_t position_of(const std::string& argument, const std::string& word, const std::vector<std::string>& words) {
   const auto found = std::ranges::find(words, word);
   if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
@@ -105,7 +105,7 @@ std::size_t position_of(const std::string& argument, const std::string& word, co
   throw dolp::InputError(argument + " = " + word + ": must be one of " + allowed);
 }
 
-/// A value of a key: None, bool, float, str, a list of floats or a dictionary of from, to, count and spacing.
+/// Converts a value of a key: None, bool, float, str, a list, or a dictionary of from, to, count and spacing.
 dolp::Value value_of(const std::string& key, const py::handle& value) {
   if (value.is_none()) return {};
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>();
@@ -129,7 +129,7 @@ dolp::Value value_of(const std::string& key, const py::handle& value) {
                          range.at("count").cast<std::size_t>(), word == "log"};
 }
 
-using Values = std::vector<std::pair<py::str, py::object>>;  // values of keys
+using Values = std::vector<std::pair<py::str, py::object>>;  // keys with their values
 
 std::vector<dolp::Setting> settings_of(const Values& values) {
   std::vector<dolp::Setting> settings;
@@ -140,7 +140,7 @@ std::vector<dolp::Setting> settings_of(const Values& values) {
   return settings;
 }
 
-/// The reverse of value_of. Only command lines have text of TOML.
+/// The reverse of value_of. Settings from command lines have TOML text, which becomes a str.
 py::object object_of(const dolp::Value& value) {
   const auto object = [](const auto& content) -> py::object {
     using Content = std::decay_t<decltype(content)>;
@@ -161,9 +161,10 @@ py::object object_of(const dolp::Value& value) {
   return std::visit(object, value.content());
 }
 
-/// Warns of each remark in Python, at the line that called the package. Errors: the warning where Python makes it one.
+/// Gives a Python warning for each remark, at the line that called the package. Errors: the warning, if Python's
+/// filters turn it into an exception.
 void warn(const std::vector<std::string>& remarks) {
-  constexpr int kCaller = 2;  // the first frame is the package's
+  constexpr int kCaller = 2;  // skips the frame of the package
   const py::object category = py::module_::import("dolp._native").attr("InputWarning");
   for (const std::string& remark : remarks)
     py::module_::import("warnings").attr("warn")(text_of(remark), category, kCaller);
@@ -174,7 +175,7 @@ dolp::Scene with_warnings(dolp::Scene scene) {
   return scene;
 }
 
-/// The value of a key; None where the scene has no such thing. Errors: InputError.
+/// The value of a key; None if the scene has no value. Errors: InputError.
 py::object value_of_key(const dolp::Scene& scene, const std::string& key) {
   const auto object = [](const auto& value) -> py::object { return value ? py::cast(*value) : py::none(); };
   const auto known = std::ranges::find(dolp::keys(), key, &dolp::Key::key);
@@ -200,7 +201,7 @@ Values values_of(const dolp::Scene& scene) {
   return values;
 }
 
-/// Views of arrays that outlive the result.
+/// Columns that refer to the data of arrays. The arrays must outlive the columns.
 std::vector<dolp::Column> views(const Columns& columns) {
   std::vector<dolp::Column> all;
   for (const auto& [name, values] : columns) {
@@ -209,7 +210,7 @@ std::vector<dolp::Column> views(const Columns& columns) {
   return all;
 }
 
-/// Low, high and perhaps a start of each key.
+/// Ranges from (low, high) or (low, high, start) of each key. Errors: InputError for another number of values.
 std::vector<dolp::FitRange> ranges_of(const std::vector<std::pair<std::string, std::vector<double>>>& vary) {
   std::vector<dolp::FitRange> ranges;
   for (const auto& [key, ends] : vary) {
@@ -220,7 +221,7 @@ std::vector<dolp::FitRange> ranges_of(const std::vector<std::pair<std::string, s
   return ranges;
 }
 
-/// A list of of(element) for each element.
+/// The list of the results of `of` for all elements.
 template <class Range, class Of>
 py::list list_of(Range&& range, const Of& of) {
   py::list all;
@@ -236,7 +237,7 @@ py::array_t<Value> array_of(std::vector<Value> values) {
   return py::array_t<Value>(own->size(), own->data(), owner);
 }
 
-/// (quantities: [(name, long_name, units, ancillary, values)], status, attributes).
+/// The tuple (quantities, status, attributes) with quantities [(name, long_name, units, ancillary, values)].
 py::tuple parts_of(dolp::ResultColumns results, const dolp::Quantities& given, const std::string& stokes_units,
                    const std::vector<dolp::Attribute>& attributes) {
   py::list quantities;
@@ -258,7 +259,8 @@ py::tuple parts_of(dolp::Results results) {
                   results.attributes);
 }
 
-/// (axes: [(name, values)], winds, curves: [(name, long_name, units, used)], parts).
+/// The tuple (axes, winds, curves, parts) with axes [(name, values)], curves [(name, long_name, units, used)] and the
+/// tuple of parts_of.
 py::tuple contents_of(const dolp::Table& table) {
   const dolp::TableValues& values = table.values();
   py::list axes, curves;
@@ -279,7 +281,8 @@ py::tuple contents_of(const dolp::Table& table) {
                         parts_of(values, values.quantities(), values.stokes_units, table.file_attributes()));
 }
 
-/// (beta, its long_name and units, variables: [(name, long_name, ancillary, has_beta, values)]) of a response table.
+/// The tuple (beta, long_name of beta, units of beta, variables) of a response table, with variables
+/// [(name, long_name, ancillary, has_beta, values)].
 py::tuple responses_of(const dolp::TableValues& table) {
   py::list variables;
   for (const dolp::ResponseVariable variable : dolp::kAllResponseVariables) {
@@ -293,7 +296,7 @@ py::tuple responses_of(const dolp::TableValues& table) {
 
 std::vector<double> vector_of(const Array& values) { return {values.data(), values.data() + values.size()}; }
 
-/// The labels of each column of points that has labels, by its name.
+/// The labels for each column of points that takes labels. The keys are the names of the columns.
 py::dict labels_of(const dolp::AxisLabels& labels) {
   py::dict all;
   for (const dolp::Axis axis : dolp::kAllAxes) {
@@ -303,7 +306,7 @@ py::dict labels_of(const dolp::AxisLabels& labels) {
   return all;
 }
 
-/// A table of the axes, curves, columns and attributes that are there, by name.
+/// Makes a table from those axes, curves, quantities and attributes that the arguments contain.
 dolp::Table table_of(const Columns& columns, const std::map<std::string, std::vector<std::string>>& labels,
                      const py::array_t<std::uint32_t, py::array::forcecast>& status, const std::string& stokes_units,
                      const py::dict& attributes, const std::string& name) {
@@ -324,7 +327,7 @@ dolp::Table table_of(const Columns& columns, const std::map<std::string, std::ve
   for (const dolp::Quantity quantity : dolp::kAllQuantities) take(dolp::description_of(quantity).name, table[quantity]);
   for (const dolp::TableCurve& known : dolp::kTableCurves) {
     dolp::Curve& curve = table.*known.curve;
-    take(known.name + std::string("_wavelength"), curve.wavelength_um);  // in files of dolp 0.2
+    take(known.name + std::string("_wavelength"), curve.wavelength_um);  // only in files of dolp 0.2
     take(known.name, curve.wavelength_um.empty() ? curve.used : curve.values);
   }
   table.status.assign(status.data(), status.data() + status.size());
@@ -471,7 +474,7 @@ PYBIND11_MODULE(_native, module) {
     });
   });
   module.def("keys", [] {
-    const auto is_first = [](const dolp::Key& key) { return key.layer <= 1; };  // all layers have these keys
+    const auto is_first = [](const dolp::Key& key) { return key.layer <= 1; };  // all films have the keys of film 1
     return list_of(dolp::keys() | std::views::filter(is_first), [](const dolp::Key& key) {
       return py::make_tuple(key.key, key.unit, key.allowed(), key.fallback, key.meaning);
     });

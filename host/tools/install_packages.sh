@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the packages of Debian 12, Debian 13 or Ubuntu 24.04 that are missing: install_packages.sh SET...
 #
-#   build    the program and its lookup tables
+#   build    the program, its window and its Python package
 #   picture  host/plot_table.py and host/tools/paper_figure.py
 #   bench    dolp-bench and its figures
 #   test     the test suite
@@ -25,12 +25,12 @@ need build pybind11-dev python3-dev python3-numpy python3-xarray python3-netcdf4
 need picture python3 python3-matplotlib python3-netcdf4 python3-numpy
 need bench libcubature-dev libgsl-dev python3-scipy  # methods to compare with
 need bench python3 python3-matplotlib python3-numpy
-need test libgtest-dev libclang-rt-dev clang-format  # framework, fuzzing, format
-need test vulkan-validationlayers                    # misuse of Vulkan
-need test libnetcdf-dev netcdf-bin octave octave-netcdf python3 python3-netcdf4 python3-numpy  # second readers of tables
+need test libgtest-dev libclang-rt-dev clang-format  # test framework, fuzzing, code format
+need test vulkan-validationlayers                    # finds misuse of Vulkan
+need test libnetcdf-dev netcdf-bin octave octave-netcdf python3 python3-netcdf4 python3-numpy  # other readers of tables
 need test x11-utils xvfb xauth xdotool               # a display with mouse and keyboard
 need test slurmctld slurmd slurm-client munge        # a cluster of one node
-need test dpkg-dev file fish zsh                     # the package, completions
+need test dpkg-dev file fish zsh                     # check the Debian package, and shell completions
 
 missing=()
 for set in "$@"; do

@@ -1,8 +1,8 @@
 """The model's curves for figures 4-7 of the paper, computed by dolp, and the numbers behind the paper's statements.
 
-The paper does not print k_s, k_d, c, q, E0, and the masking of its Gaussian curves. So each figure is computed for two
-readings: `integral`, with the unchanged sample scenes, and `smith`. A Gaussian has the same D(0) as the Cauchy curve:
-sigma_G = sigma / sqrt(q - 1). Angles in degrees, DOLP in percent.
+The paper prints neither k_s, k_d, c, q and E0 nor the masking of its Gaussian curves. So each figure is computed for
+two readings: `integral`, with the unchanged sample scenes, and `smith`. A Gaussian has the D(0) of the Cauchy curve:
+sigma_G = sigma / sqrt(q - 1). Angles are in degrees, DOLP in percent.
 """
 import csv
 import dataclasses
@@ -23,7 +23,7 @@ READINGS = {
     "smith": {"surface.masking": "smith", "surface.q": 3.0, "surface.specular": 0.3, "surface.diffuse": 0.3,
               "surface.diffuse_exponent": -0.3, "source.relative_irradiance": 3.0},
 }
-# What the paper does not print and a user may set; both readings choose the masking themselves.
+# Keys of values that the paper does not print; --set may change them. The reading determines the masking.
 UNPRINTED = ("surface.q", "surface.specular", "surface.diffuse", "surface.diffuse_exponent",
              "source.relative_irradiance")
 VIEW_DEG = 60.0  # zenith of the view in bistatic mode
@@ -33,8 +33,8 @@ ANGLES_DEG = np.arange(90 * STEPS_PER_DEGREE + 1) / STEPS_PER_DEGREE
 MODEL_FAILS = 1 | 4 | 8  # status bits with which the model fails
 
 FIGURE4_SIGMA, FIGURE4_Q, FIGURE4_THETA_I_DEG = 0.3, 2.0, 30.0
-GRAZING_THETA_I_DEG = 85.0  # at this angle the corner of `integral` itself is large
-GRAZING_DEG = 90.0 - 1e-6  # used instead of 90 degrees, where the pBRDF diverges but G, a ratio of two, does not
+GRAZING_THETA_I_DEG = 85.0  # at this angle of incidence, G of `integral` masking has a large corner
+GRAZING_DEG = 90.0 - 1e-6  # replaces 90 degrees, where the pBRDF diverges; G, a ratio of two pBRDFs, is finite
 
 
 class CannotRun(Exception):
@@ -47,7 +47,7 @@ class CannotRun(Exception):
 
 @dataclasses.dataclass
 class Program:
-    """Runs dolp with the values that the paper does not print; they replace the values of both readings."""
+    """Runs dolp. `changes` has values for keys in UNPRINTED, which replace the values of both readings."""
 
     path: pathlib.Path
     evaluator: str | None = None
@@ -100,7 +100,7 @@ class Curve:
         return (float(ANGLES_DEG[top]), float(held[top])) if is_inside else None
 
     def fails_from(self):
-        """First angle with a status for a failure of the model, or None."""
+        """First angle at which the model fails, or None."""
         failing = np.flatnonzero(~self.holds())
         return float(ANGLES_DEG[failing[0]]) if failing.size else None
 
@@ -113,12 +113,12 @@ def scene_value(sample, settings, key):
 
 
 def width(sigma, q, distribution):
-    """The sigma to use. A Gaussian distribution gets the sigma with equal D(0)."""
+    """The sigma for a distribution. With it, the Gaussian has the same D(0) as the Cauchy distribution."""
     return sigma / math.sqrt(q - 1.0) if distribution == "gaussian" else sigma
 
 
 def curve(program, sample, reading, mode, distribution, roughness_of=None):
-    """The curve of a sample. `roughness_of` names the sample whose sigma it gets; the default is its own."""
+    """The curve of a sample. `roughness_of` may name another sample, whose sigma the curve gets."""
     settings = READINGS[reading] | program.changes
     q = scene_value(sample, settings, "surface.q")
     sigma = width(scene_value(roughness_of or sample, settings, "surface.sigma"), q, distribution)
@@ -131,7 +131,7 @@ def curve(program, sample, reading, mode, distribution, roughness_of=None):
 
 
 def dolp_curves(program, samples, roughened=False):
-    """Curves of figures 5-7. `roughened` adds the first sample with the roughness of the second."""
+    """Curves of figures 5-7. `roughened` adds curves of the first sample with the sigma of the second."""
     result = []
     for reading in READINGS:
         for mode in MODES:
@@ -143,8 +143,8 @@ def dolp_curves(program, samples, roughened=False):
 
 
 def largest_difference(one, other, low, high):
-    """The angle in [low, high] at which the DOLP of two curves differs most, and the difference, where the model
-    holds for both."""
+    """The angle in [low, high] at which the DOLP of two curves differs most, and the difference there. Only angles at
+    which the model holds for both curves count."""
     where = (ANGLES_DEG >= low) & (ANGLES_DEG <= high) & one.holds() & other.holds()
     apart = np.where(where, one.dolp - other.dolp, 0.0)
     worst = int(np.argmax(np.abs(apart)))
@@ -152,8 +152,8 @@ def largest_difference(one, other, low, high):
 
 
 def ranges_above(one, other):
-    """Ranges [from, to] of angles in which `one` exceeds `other` by more than the numerical errors and the model
-    holds."""
+    """Ranges [from, to] of angles in which the DOLP of `one` exceeds the DOLP of `other` by more than the numerical
+    errors, and the model holds for both."""
     is_above = (one.dolp - other.dolp > one.bound + other.bound) & one.holds() & other.holds()
     above = np.concatenate([[False], is_above, [False]])
     edges = np.flatnonzero(above[1:] != above[:-1])
@@ -186,7 +186,7 @@ class Attenuation:
 
 
 def attenuation(program, masking, distribution, theta_i_deg):
-    """G as the ratio of m00 with and without masking, k_d = 0: f_s = k_s D G M / (4 cos theta_i cos theta_r)."""
+    """G as the ratio of m00 with masking to m00 without it. At k_d = 0 the pBRDF is proportional to G."""
     view = np.minimum(ANGLES_DEG, GRAZING_DEG)
     points = {"theta_i_deg": np.full(view.size, theta_i_deg), "theta_r_deg": view,
               "delta_phi_deg": np.full(view.size, 180.0)}

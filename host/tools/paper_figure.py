@@ -7,7 +7,7 @@ Usage: paper_figure.py FIGURE [-o FIGURE.png] [--table | --json] [--set KEY=VALU
 --table prints the numbers as Markdown, --json as JSON. --set replaces a value that the paper does not print, such as
 surface.q, in both readings (paper_curves.py). Runs build/release/dolp, or the program named with --program.
 Needs python3-numpy, and python3-matplotlib for the picture.
-Exit status: 0 done, 2 usage or no program, 4 the picture could not be written; when dolp fails, its own.
+Exit status: 0 done, 2 usage or no program, 4 the picture could not be written; if dolp fails, the status of dolp.
 """
 import argparse
 import json

@@ -11,7 +11,7 @@ DIGITS = 6
 
 
 def plain(value):
-    """A float for JSON; NaN becomes null."""
+    """A rounded float for JSON; null if it is not finite."""
     return round(float(value), DIGITS) if math.isfinite(value) else None
 
 
@@ -82,7 +82,7 @@ def corner_text(corner):
 
 
 def dolp_markdown(report):
-    """Peaks, Cauchy against Gaussian slopes, rough against smooth, and DOLP at the paper's angles."""
+    """Markdown tables: peaks, Cauchy minus Gaussian, where the rougher sample has the larger DOLP, all DOLP."""
     curves = report["curves"]
     column = {angle: i for i, angle in enumerate(model.PAPER_ANGLES_DEG)}
     heads = ["masking", "mode", "sample", "distribution", "peak", *(f"{angle}°" for angle in KEY_ANGLES_DEG),

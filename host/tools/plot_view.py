@@ -16,7 +16,7 @@ from matplotlib.colors import LogNorm, Normalize  # noqa: E402
 from matplotlib.patheffects import withStroke  # noqa: E402
 from matplotlib.ticker import FormatStrFormatter, LogLocator, MaxNLocator  # noqa: E402
 
-# Colours of the window's light theme. Line styles distinguish the curves without colours.
+# Colours of the window's light theme. The line styles distinguish the curves without colours.
 STYLES = {"curve": {"color": "#0072B2", "linestyle": "-"}, "overlay": {"color": "#C47C00", "linestyle": (0, (5, 3))}}
 PINS = (("#968A00", (0, (1.5, 2))), ("#AA5082", (0, (7, 2.5))), ("#008662", (0, (3, 1.5))), ("#BE4600", (0, (1, 1.5))),
         ("#3296CD", (0, (9, 1.5))), ("#181A1E", (0, (2.5, 4.5))))
@@ -58,7 +58,7 @@ def draw_curves(axes, plots):
                       markerfacecolor="none", elinewidth=0.8, label="measured")
     set_axes(axes, plots["x"], plots["y"])
     axes.grid(alpha=0.25, linewidth=0.6)
-    entries = {}  # curves with equal names have separate entries; marks with equal names share one
+    entries = {}  # each curve gets an entry in the legend; brackets share one entry, and so do failing parts
     for handle, label in zip(*axes.get_legend_handles_labels()):
         entries[label if label in (MODEL_FAILS, BAND) else handle] = (handle, label)
     axes.legend(*zip(*entries.values()), frameon=False, fontsize=8)
@@ -86,7 +86,7 @@ def draw_map(figure, axes, plot):
     mesh = axes.pcolormesh(x, y, rows, cmap=colours, norm=norm, shading="nearest", rasterized=True)
     axes.set_facecolor("0.72")
     levels = [level for level in locator.tick_values(low, high) if low < level < high]
-    # before the labels, because their gaps depend on the length of the text on these axes
+    # The scales come first: the gaps for contour labels depend on the length of the text on these axes.
     set_axes(axes, plot["x"], plot["y"])
     if levels:
         lines = axes.contour(x, y, rows, levels=levels, colors="0.2" if plot["is_signed"] else "white", linewidths=0.7)
@@ -96,7 +96,7 @@ def draw_map(figure, axes, plot):
 
 
 def draw(plots, suffix):
-    # An SVG keeps text as text. A title may contain any character.
+    # In an SVG, text remains text. Titles are not parsed as formulas, because they may contain any character.
     plt.rcParams.update({"font.size": 10, "svg.fonttype": "none", "text.parse_math": False})
     plt.rcParams.update({"axes.spines.top": False, "axes.spines.right": False})
     has_map = plots["map"] is not None

@@ -46,7 +46,7 @@ def output_of(command, build):
 
 
 def regenerated(text, build):
-    """The text with all parts current, and the commands whose parts were not."""
+    """The text with all generated parts up to date, and the commands of the parts that were not."""
     if text.count("<!-- generated: ") != len(PART.findall(text)):
         raise CannotGenerate("a mark <!-- generated: COMMAND --> has no <!-- end of generated -->")
     stale = []

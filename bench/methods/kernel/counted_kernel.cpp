@@ -72,7 +72,7 @@ class Counted {
   std::uint32_t is_constant_ = 0;
 };
 
-/// A number that the host gives.
+/// Marks a number as input of the kernel: operations with it count, even if all operands are inputs.
 inline Counted as_data(Counted number) { return Counted(number.value()); }
 
 using real = Counted;

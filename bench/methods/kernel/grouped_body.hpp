@@ -1,5 +1,6 @@
 // Body of native_kernel.cpp and counted_kernel.cpp, which first define DOLP_KERNEL_NAMESPACE and in it real, real2,
-// real4 and as_data. The compiler knows the masking and the width of a row, as a device's compiler does.
+// real4 and as_data. The masking and the width of a row are template arguments, because the compiler of a device knows
+// them too.
 
 #include <algorithm>
 #include <array>

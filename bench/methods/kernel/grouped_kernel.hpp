@@ -12,17 +12,17 @@
 
 namespace dolp::bench {
 
-/// A request as the kernel gets it.
+/// A request in the form that the kernel reads.
 struct GroupedWork {
   explicit GroupedWork(const MomentsRequest& request);
 
   KernelData data;
   Rows rows;
-  std::vector<RowPiece> pieces;  ///< the invocations, in the device's order
+  std::vector<RowPiece> pieces;  ///< one per invocation, in the order of a Vulkan device
 };
 
-/// The kernels of shaders/ over one piece of work, which must outlive the object. All members may be called from
-/// several threads at a time, for different shapes and pieces.
+/// The kernels of shaders/ for one GroupedWork, which must outlive the object. Several threads may call the functions
+/// at the same time, for different shapes and pieces.
 class GroupedKernel {
  public:
   virtual ~GroupedKernel() = default;
@@ -30,20 +30,21 @@ class GroupedKernel {
   /// Fills the masking table of a shape. If the data needs tables, call this before run_pieces.
   virtual void build_masking_table(std::size_t shape) = 0;
 
-  /// Runs invocations from `first` until `members` is full. Each gives a node for each member of its row.
+  /// Runs invocations from `first` until `members` is full. Each writes one node for each member of its row.
   virtual void run_pieces(std::size_t first, std::span<kernel::MomentsNode> members) = 0;
 };
 
-/// Adds the results of the pieces, row by row. Returns moments in the order of the request.
+/// Adds the results of the pieces of each row. Returns moments in the order of the request.
 std::vector<Moments> moments_of(const GroupedWork& work, const std::vector<kernel::MomentsNode>& nodes);
 
-/// True if the builds below support this work: Cauchy distribution, no total reflection, a masking that the device
-/// computes by rows.
+/// True if the two kernels below support these data: the Cauchy distribution, no total reflection, and `integral` or
+/// `smith` masking.
 inline bool has_kernel_for(const KernelData& data) {
   return data.distribution == Distribution::kCauchy && !data.has_total_reflection && data.needs_masking_table();
 }
 
-/// Compiled for this processor. Runs one invocation after the other, with vectors where the compiler finds some.
+/// A kernel that is compiled for this processor. It runs one invocation after another. The compiler uses vector
+/// instructions where it can.
 std::unique_ptr<GroupedKernel> make_native_kernel(const GroupedWork& work);
 
 /// Arithmetic operations by kind.
@@ -54,11 +55,11 @@ struct OperationCounts {
   std::uint64_t square_root = 0;
   std::uint64_t other = 0;  ///< comparisons, minima, maxima, sign, floor, powers of two, conversions
 
-  /// Floating-point operations. `other` does not count.
+  /// Number of floating-point operations, without `other`.
   std::uint64_t flops() const { return add + multiply + divide + square_root; }
 };
 
-/// Counts operations of the calling thread; use it from one thread at a time.
+/// A kernel that counts the operations of the calling thread. Only one thread at a time may call it.
 std::unique_ptr<GroupedKernel> make_counted_kernel(const GroupedWork& work);
 
 /// The operations that this thread has counted since the program began.

@@ -1,5 +1,5 @@
-// GLSL's types and functions for the kernel source with the includer's own `real`: a plain float that a C++ compiler
-// may optimise freely, or a number that counts its operations.
+// Types and functions of GLSL that the kernel source needs. The including file defines `real`: a plain float, so that
+// the C++ compiler may optimise freely, or a number that counts its operations.
 #pragma once
 
 #include <bit>
@@ -51,14 +51,14 @@ inline float floor(float value) { return std::floor(value); }
 inline float sqrt(float value) { return std::sqrt(value); }
 inline float mod(float value, float by) { return value - by * std::floor(value / by); }
 
-/// value 2^exponent, where the result is a normal number.
+/// value times 2^exponent. Domain: exponents for which 2^exponent is a normal float.
 inline float ldexp(float value, int exponent) {
   constexpr int kMantissaBits = 23;
   constexpr int kBias = 127;
   return value * std::bit_cast<float>((exponent + kBias) << kMantissaBits);
 }
 
-/// Mantissa in [0.5, 1) of a positive normal number.
+/// Splits a positive normal number into a mantissa in [0.5, 1), which it returns, and an exponent of 2.
 inline float frexp(float value, int& exponent) {
   constexpr int kMantissaBits = 23;
   constexpr int kBias = 126;

@@ -18,28 +18,30 @@
 >>> dolp.evaluate(scene, theta_deg=[0, 40, 80]).dolp.values.round(4)
 array([0.    , 0.0295, 0.1346])
 
-Scene                   a scene: a file or a text, with other values of its keys
-table, write_table      the quantities over the scene's grid: a Dataset, or a file
-evaluate, mueller       the same at points; Mueller matrices of pairs of directions
-lookup                  a table between its entries
-response, moments       a table for any material; reflectances of materials from it
-fit                     numbers of a scene from measured data
+Scene                   a scene, from a file or a text, with changed values of keys
+table, write_table      DOLP and the other quantities over the scene's grid: as a Dataset, or in a file
+evaluate, mueller       these quantities at points; Mueller matrices of pairs of directions
+lookup                  values between the entries of a table
+response, moments       a table for any material; the reflectances of materials from it
+fit                     values of a scene's keys from measured data
 plan                    what a table would compute and cost
 material                n and k of a built-in material
 devices, keys, materials, citation
 
-Names and units are those of scene files and tables: angles in degrees, wavelengths in um, temperatures in K. Results are
-xarray Datasets with the variables, units and meanings that table files have, and the same bits that the command line
-computes; `dataset.dolp.plot()` draws. Every entry has its error bound in `error_estimate`.
+Names and units are the same as in scene files and table files: angles in degrees, wavelengths in um, temperatures in
+K. Results are xarray Datasets with the variables, units and meanings of table files. Their values have the same bits as
+the results of the command line. `dataset.dolp.plot()` draws. `error_estimate` has an error bound for every entry.
 
-The device and its kernels are kept between calls. A long call lets Python's other threads run, and Ctrl-C ends it. A
-process that was forked from one that has used a Vulkan device gets a DeviceError: start processes afresh
-(multiprocessing.set_start_method("spawn")), or take evaluator="cpu". Errors: InputError (a ValueError) with one line
-that says what is allowed, DeviceError (a RuntimeError), IoError (an OSError); a TypeError for arguments of another kind;
-MemoryError. A file that is to be read and is not there is a MissingFileError (an InputError and a FileNotFoundError).
-Input that was probably meant otherwise (percent, Celsius, nanometres), or a file without k, gives an InputWarning; a scene
-for which single scattering is not enough (status 32) gives one ModelWarning. Masked arrays are refused, because results
-have no mask: fill or compress them.
+The package keeps the device and its kernels between calls. During a long call Python's other threads run, and Ctrl-C
+ends the call. If a process has used a Vulkan device, its forked children get a DeviceError: start new processes instead
+(multiprocessing.set_start_method("spawn")), or use evaluator="cpu".
+
+Errors: InputError (a ValueError) with one line that states what is allowed; MissingFileError (an InputError and a
+FileNotFoundError) if a file to read does not exist; DeviceError (a RuntimeError); IoError (an OSError); TypeError for
+an argument of a wrong type; MemoryError. Results have no mask, so masked arrays give an InputError: fill or compress
+them.
+Warnings: InputWarning for input that you probably meant differently (percent, Celsius, nanometres), and for a file
+without k; ModelWarning, once for each scene, if single scattering is not enough (status 32).
 """
 from __future__ import annotations
 
@@ -52,17 +54,17 @@ from ._response import moments, response
 from ._runs import Plan, devices, evaluate, lookup, mueller, plan, table, write_table
 from ._scene import Material, Scene, keys, material, materials
 
-# The exceptions stand in the text above: with them `help` would print the methods of Python's own.
+# Omits the exceptions, because `help` would print the methods of their base classes. The text above describes them.
 __all__ = ["Fit", "Material", "Plan", "Scene", "citation", "devices", "evaluate", "fit", "keys", "lookup", "material", "materials",
            "moments", "mueller", "plan", "response", "table", "write_table"]
 __version__ = _native.version()
 
 
 def citation() -> str:
-    """How to cite the program and its model, in the Citation File Format."""
+    """The citation of the program and its model, in the Citation File Format."""
     return _native.citation()
 
 
-# All names show as those of this package, wherever they are defined.
+# Makes every public name show as a member of this package instead of the module that defines it.
 for _public in (*map(globals().get, __all__), MissingFileError, ModelWarning):
     _public.__module__ = __name__

@@ -1,4 +1,4 @@
-"""Arguments of calls, checked and as the library takes them."""
+"""Checks arguments of calls, and converts them to the types that the library takes."""
 from __future__ import annotations
 
 import difflib
@@ -18,7 +18,7 @@ Array = Union[float, "np.ndarray", "xr.DataArray", "list[float]"]
 
 
 class MissingFileError(InputError, FileNotFoundError):
-    """A file that was to be read is not there."""
+    """A file to read does not exist."""
 
 
 def check_mapping(name: str, values: Mapping[str, Any] | None) -> Mapping[str, Any]:
@@ -37,7 +37,7 @@ def native_path(name: str, path: Path) -> str:
 
 
 def encodable(name: str, text: str, errors: str = "strict") -> str:
-    """A text without half characters, which no encoding has."""
+    """The text, if it can be encoded. Errors: InputError for a surrogate without its other half."""
     try:
         text.encode("utf-8", errors)
     except UnicodeEncodeError:
@@ -84,7 +84,7 @@ def word(name: str, value: Any) -> str:
 
 
 def device_name(device: Any) -> str:
-    """A part of a name, or a position."""
+    """A device as text: a part of its name, or its position."""
     return str(device) if isinstance(device, (int, np.integer)) else word("device", device)
 
 
@@ -95,7 +95,7 @@ def flag(name: str, value: Any) -> bool:
 
 
 def axis_values(name: str, values: Any) -> list[float]:
-    """The values of an axis: a number or a list."""
+    """The values of an axis as a list. `values` is a number or a list."""
     array = floats(name, values)
     if array.ndim > 1:
         raise InputError(f"{name}: must be a number or a list, not an array of shape {array.shape}")
@@ -103,12 +103,12 @@ def axis_values(name: str, values: Any) -> list[float]:
 
 
 def label_values(values: Any) -> Any:
-    """The values of an axis of materials or of bands: a name or a list of names, a pair of wavelengths or a list."""
+    """The values of an axis of materials (a name or a list of names) or of bands (a pair of wavelengths or a list)."""
     return values if isinstance(values, str) else np.asarray(values).tolist()
 
 
 def check_names(what: str, given: Iterable[str], known: list[str]) -> None:
-    """Refuses a name that is none of those known, with the one that may have been meant."""
+    """Errors: InputError for a name that is not in `known`; it suggests a similar name."""
     for name in given:
         if name in known:
             continue
@@ -119,7 +119,7 @@ def check_names(what: str, given: Iterable[str], known: list[str]) -> None:
 
 
 def floats(name: str, values: Any) -> np.ndarray:
-    """Values as floats. Refuses what would silently become other numbers: masks and dates."""
+    """Values as floats. Errors: InputError for masked arrays and dates, which would silently become other numbers."""
     if isinstance(values, np.ma.MaskedArray):
         raise InputError(f"{name}: is a masked array, and results have no mask: fill or compress it")
     try:
@@ -136,7 +136,7 @@ def floats(name: str, values: Any) -> np.ndarray:
 def short(value: Any) -> str:
     try:
         text = " ".join(repr(value).split())
-    except ValueError:  # Python writes no more than some thousand digits
+    except ValueError:  # Python does not print whole numbers of several thousand digits
         return f"a {type(value).__name__} of very many digits"
     return text if len(text) <= 60 else f"{text[:57]}..."
 
@@ -152,7 +152,7 @@ def native_values(overrides: Mapping[str, Any] | None) -> list[tuple[str, Any]]:
 
 
 def _value(key: str, value: Any) -> Any:
-    """A value as the library takes it: None, bool, float, str, a list of floats, or a range as a dictionary."""
+    """A value in a type that the library takes: None, bool, float, str, a list, or a range as a dictionary."""
     if value is None or isinstance(value, (bool, np.bool_)):
         return None if value is None else bool(value)
     if isinstance(value, (str, bytes, os.PathLike)):

@@ -1,4 +1,4 @@
-"""Lookups between the values of a key of the scene, each of which is a table of its own."""
+"""Lookups between the values of a scene key. The table of each value is computed separately."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -10,18 +10,20 @@ import xarray as xr
 from ._arguments import floats
 from ._native import InputError
 
-_MOST = 5  # values that an interpolation looks at; four of them give the result
-_LEAST = 3  # fewer give no error
-_SAFETY = 16.0  # of the stated error over the change that one value makes, as in tables
-_MISSED, _RHO_MISSED = 2, 16  # of status
+_MOST = 5  # values that an interpolation uses: four give the result, one more gives the error
+_LEAST = 3  # with fewer values the error estimate is infinite
+_SAFETY = 16.0  # stated error over the change of the result by one more value; lookups in tables use the same factor
+_MISSED, _RHO_MISSED = 2, 16  # status bits: the tolerance of DOLP or of rho is not met
 _SMOOTH = ("stokes_i", "stokes_q", "stokes_u", "stokes_v", "rho_i", "rho_q", "albedo", "emissivity_s", "emissivity_p",
            "dolp_low", "dolp_high")
 
 
 def between_tables(table: xr.Dataset, key: str, at: Any, look_up: Callable[[xr.Dataset], xr.Dataset]) -> xr.Dataset:
-    """The results at one value of a key that is a dimension of the table: polynomials through the four nearest values.
+    """The results at one value of a key that is a dimension of the table, by polynomials through the four nearest
+    values.
 
-    The error estimate adds what another value changes, times `_SAFETY`. Errors: InputError for a value outside.
+    The error estimate includes `_SAFETY` times the change of the result by one more value. Errors: InputError for a
+    value outside the table.
     """
     value = floats(key, at)
     if value.ndim > 0:
@@ -66,7 +68,7 @@ def between_tables(table: xr.Dataset, key: str, at: Any, look_up: Callable[[xr.D
 
 
 def _weights(values: np.ndarray, used: np.ndarray, at: float) -> np.ndarray:
-    """Weights of the polynomial through the values at the positions `used`; zero for the others."""
+    """Weight of each value in the polynomial through the values at the positions `used`; zero at other positions."""
     weights = np.zeros(len(values))
     for i in used:
         weights[i] = np.prod([(at - values[j]) / (values[i] - values[j]) for j in used if j != i])

@@ -1,4 +1,4 @@
-"""Results of the library as Datasets of xarray, and such Datasets as tables of the library."""
+"""Converts results of the library to xarray Datasets, and Datasets to tables of the library."""
 from __future__ import annotations
 
 import functools
@@ -15,7 +15,7 @@ from ._arguments import floats, short
 from ._native import InputError
 from ._points import COORDINATES, KEY_ATTRIBUTES, Frame
 
-# The attribute with the values of each key of the scene that is a dimension: one setting a line, KEY=[VALUE, ...].
+# Attribute of tables over keys of the scene. Each such key has a line KEY=[VALUE, ...] with the computed values.
 _COMPUTED = "computed_values"
 
 
@@ -25,7 +25,7 @@ def dataset_at(parts: _native.Parts, frame: Frame) -> xr.Dataset:
 
 def table_dataset(axes: list[tuple[str, np.ndarray]], winds: np.ndarray,
                    curves: list[tuple[str, str, str, np.ndarray]], parts: _native.Parts) -> xr.Dataset:
-    """A table as xarray has it of its file."""
+    """A table as the Dataset that xarray reads from the table's file."""
     known = dict(COORDINATES.values())
     coordinates = {name: xr.Variable(name, np.asarray(values, object if isinstance(values, list) else None), known[name])
                    for name, values in axes}
@@ -48,7 +48,7 @@ def table_dataset(axes: list[tuple[str, np.ndarray]], winds: np.ndarray,
 
 
 def concatenated(tables: list[xr.Dataset], key: str, values: np.ndarray) -> xr.Dataset:
-    """Tables of scenes that differ in one key, along a dimension of that name."""
+    """Joins tables of scenes that differ in one key. The key becomes a dimension."""
     if not tables:
         raise InputError(f"{key}: needs at least one value")
     first = tables[0]
@@ -61,7 +61,7 @@ def concatenated(tables: list[xr.Dataset], key: str, values: np.ndarray) -> xr.D
     joined.attrs.pop("scene_hash", None)
     computed = _attributes_of(first).get(_COMPUTED)
     _set_attribute(joined, _COMPUTED, "\n".join(filter(None, [computed, f"{key}={values.tolist()}"])))
-    if "scene_overrides" in first.attrs:  # those of all but for this key, whose value native_table adds again
+    if "scene_overrides" in first.attrs:  # removes the override of this key, because native_table adds it
         before, _, after = f"\n{first.attrs['scene_overrides']}\n".rpartition(f"\n{key}=")
         rest = after.partition("\n")[2]
         joined.attrs["scene_overrides"] = f"{before}\n{rest}".strip("\n")
@@ -69,9 +69,10 @@ def concatenated(tables: list[xr.Dataset], key: str, values: np.ndarray) -> xr.D
 
 
 def native_table(table: xr.Dataset) -> _native.Table:
-    """The table that a Dataset holds; a coordinate of one value is an axis of one, one that is a key of the scene its value.
+    """The table in a Dataset.
 
-    The dimensions of an axis are those of its coordinate, whatever their names and order.
+    A scalar coordinate becomes an axis with one value, or the value of a scene key if it has the name of a key.
+    Dimensions may have any names and order, because the coordinate of an axis shows which dimension belongs to it.
     """
     attributes = _attributes_of(table)
     overrides = [str(attributes.get("scene_overrides", "")), *_values_of_keys(table, str(attributes.pop(_COMPUTED, "")))]
@@ -103,7 +104,7 @@ def native_table(table: xr.Dataset) -> _native.Table:
 
 
 def _values_of_keys(table: xr.Dataset, computed: str) -> list[str]:
-    """The coordinates that are keys of the scene, as its overrides."""
+    """Overrides of the scene, from the coordinates that have names of scene keys."""
     known = {key: json.loads(values) for key, _, values in (line.partition("=") for line in computed.split("\n")) if key}
     overrides = []
     for key in [str(name) for name in table.coords if name in KEY_ATTRIBUTES]:
@@ -118,7 +119,7 @@ def _values_of_keys(table: xr.Dataset, computed: str) -> list[str]:
 
 
 def _set_attribute(table: xr.Dataset, name: str, value: str | float) -> None:
-    """An attribute, which is a variable of characters where it is long."""
+    """Sets an attribute. A long text becomes a variable of characters instead."""
     encoded = value.encode("utf-8", "surrogateescape") if isinstance(value, str) else b""
     if len(encoded) > _native.most_attribute_bytes:
         encoding = {"char_dim_name": f"{name}_length", "dtype": np.dtype("S1")}

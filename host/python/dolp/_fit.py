@@ -1,4 +1,4 @@
-"""Fits of numbers of a scene to measured data."""
+"""Fits values of a scene's keys to measured data."""
 from __future__ import annotations
 
 import json
@@ -20,14 +20,18 @@ _SYMBOLS = {"dolp": "DOLP", "q_over_i": "Q/I", "emissivity_s": "ε_s", "emissivi
 
 
 class Fit:
-    """What a fit found; prints as a report.
+    """The result of a fit. It prints as a report.
 
-    `params` and `stderr` are dictionaries of values and standard errors (None at a bound, beyond the range, or where the
-    data give none: `why_no_error` of its entry in values["parameters"]; with a parameter at its bound the other errors
-    hold with it kept there). `fit[key]` is one value, `covariance` is in their order, NaN where there is none. `scene`
-    has the values that were found, and what was best of `compare`. `fit_quality` is "good", "doubtful" (p < 0.05), "bad"
-    (p < 0.001), or None without a p-value. `values` is what `dolp fit --json` prints, as a dictionary: parameters,
-    correlation, chi_square, reduced_chi_square, p_value, aic, bic, minima, residuals, models, alike, ranges.
+    `params`: dictionary of the fitted values; `fit[key]` is one of them.
+    `stderr`: dictionary of their standard errors. An error is None if the parameter is at a bound, if the error would
+    reach beyond the range, or if the data do not determine the parameter. Then `why_no_error` in the parameter's entry
+    of values["parameters"] gives the reason. If a parameter is at its bound, the errors of the others assume that it
+    stays there.
+    `covariance`: matrix in the order of `params`; NaN without a standard error.
+    `scene`: the scene with the fitted values, and with the best combination of `compare`.
+    `fit_quality`: "good", "doubtful" (p < 0.05), "bad" (p < 0.001), or None without a p-value.
+    `values`: the report of `dolp fit --json` as a dictionary: parameters, correlation, chi_square, reduced_chi_square,
+    p_value, aic, bic, minima, residuals, models, alike, ranges.
     """
 
     def __init__(self, text: str, values: dict[str, Any], scene: Scene, overrides: dict[str, Mapping[str, Any]]) -> None:
@@ -43,14 +47,14 @@ class Fit:
 
     @property
     def covariance(self) -> np.ndarray:
-        """The covariance of the parameters."""
+        """The covariance matrix of the parameters, in the order of `params`."""
         errors = np.array(list(self.stderr.values()), dtype=float)
         return np.array(self.values["correlation"], dtype=float) * np.outer(errors, errors)
 
     def conf_interval(self, level: float = 0.95, *, scaled: bool = False) -> dict[str, tuple[float | None, float | None] | None]:
-        """Intervals of the profile likelihood at a level of 0.68 or 0.95; an end that the data do not bound is None, and
-        so is an interval that has no value. `scaled`: where the fit is doubtful or bad, with uncertainties that are
-        sqrt(reduced chi^2) times as large.
+        """Intervals of the profile likelihood at a level of 0.68 or 0.95. An end is None if the data do not bound it.
+        An interval is None if it contains no value. `scaled`: if the fit is doubtful or bad, the intervals are for
+        uncertainties that are larger by the factor sqrt(reduced chi^2).
         """
         if level not in (0.68, 0.95):
             raise InputError(f"level = {level}: must be 0.68 or 0.95")
@@ -58,7 +62,7 @@ class Fit:
         return {one["key"]: one[name] and tuple(one[name]) for one in self.values["parameters"]}
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws data, model and its bracket in percent over zenith with Matplotlib, and returns the axes."""
+        """Draws data, model and the model's bracket in percent over zenith with Matplotlib. Returns the axes."""
         import matplotlib.pyplot as plt
         axes = plt.subplots()[1] if axes is None else axes
         sets: dict[tuple[Any, ...], list[dict[str, Any]]] = {}
@@ -83,11 +87,11 @@ class Fit:
         return axes
 
     def _model(self, name: str, quantity: str, points: dict[str, Any]) -> tuple[xr.DataArray, tuple[Any, Any] | None]:
-        """The fitted model of a data set, and its bracket."""
+        """The fitted model for a data set, and the bracket of the model if it has one."""
         scene = self.scene.with_(self._overrides[name])
         try:
             own = evaluate(scene.with_({"emission.bracket": True}), evaluator="cpu", **points)
-        except InputError:  # a scene without a bracket
+        except InputError:  # the scene allows no bracket
             return evaluate(scene, evaluator="cpu", **points)[quantity], None
         if quantity == "dolp":
             return own.dolp, (own.dolp_low, own.dolp_high)
@@ -102,15 +106,18 @@ class Fit:
 def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, compare: Mapping[str, Iterable[str]] | None = None,
         loss: str = "squares", model_error: str = "none", starts: int = 24, seed: int = 1, plot: Path | None = None,
         evaluator: str = "vulkan", device: str = "") -> Fit:
-    """Numbers of a scene from measured data, with profile-likelihood intervals.
+    """Fits values of a scene's keys to measured data. Gives intervals of the profile likelihood.
 
     `data`: a CSV file, or columns by name (a dictionary, a Dataset, a pandas DataFrame): theta_deg or theta_i_deg; dolp,
-    q_over_i (signed) or emissivity_s, emissivity_p; uncertainty (one standard deviation), wavelength_um. A list has
-    several sets, each alone or as a pair (data, overrides). `vary`: (low, high) or (low, high, start) of each key.
-    `compare`: values of keys, all combinations of which are fitted and ranked. `loss`: squares, or huber, soft-l1,
-    cauchy or tukey for data with outliers. `model_error`: none, or bracket: at each point the truth may lie anywhere
-    between both ends of the bracket of single scattering. Without it a fit whose status has bit 32 warns with
-    dolp.ModelWarning. `plot`: a .png, .pdf or .svg of data, model, residuals and contours, as the command draws it.
+    q_over_i (signed) or emissivity_s, emissivity_p; uncertainty (one standard deviation), wavelength_um. A list
+    contains several data sets; a set is data, or a pair (data, overrides of the scene).
+    `vary`: (low, high) or (low, high, start) for each key to fit.
+    `compare`: lists of values for keys. All their combinations are fitted and ranked.
+    `loss`: squares; or huber, soft-l1, cauchy, tukey for data with outliers.
+    `model_error`: none, or bracket. With bracket, the truth at each point may lie anywhere in the bracket of single
+    scattering. Without it, the fit warns with dolp.ModelWarning if its status has bit 32.
+    `plot`: a .png, .pdf or .svg file for the picture of data, model, residuals and contours that `dolp fit --plot`
+    draws.
 
     >>> truth = dolp.evaluate(scene, theta_deg=np.arange(5, 85, 5), n=1.6)
     >>> data = {"theta_deg": truth.theta, "dolp": truth.dolp, "uncertainty": np.full(16, 0.001)}

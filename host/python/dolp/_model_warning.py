@@ -1,4 +1,4 @@
-"""The warning about scenes for which single scattering is not enough."""
+"""The warning for scenes in which single scattering is not enough."""
 from __future__ import annotations
 
 import warnings
@@ -13,11 +13,11 @@ _MODEL_INACCURATE = 32  # bit of the status
 
 
 class ModelWarning(UserWarning):
-    """Single scattering, or a masking that creates light, changes I by an estimated more than 5 % (status 32)."""
+    """Light that single scattering loses, or that a masking creates, changes I by more than about 5 % (status 32)."""
 
 
 def warn_of_model(scene: Scene, status: Any, change: float | None = None, stacklevel: int = 3) -> None:
-    """Warns once for each scene if a status has the bit. `change`: the largest, where it is known."""
+    """Warns once for each scene if a status has bit 32. `change`: the largest relative change of I, if known."""
     if scene._has_model_warning or not np.any(np.asarray(status) & _MODEL_INACCURATE):
         return
     scene._has_model_warning = True

@@ -1,4 +1,4 @@
-"""Points and columns that callers give, as columns of the library with the coordinates of the result."""
+"""Converts points and columns of callers to columns of the library, and makes the coordinates of the result."""
 from __future__ import annotations
 
 import os
@@ -13,7 +13,7 @@ from . import _native
 from ._arguments import Array, check_names, encodable, floats, input_path, short
 from ._native import InputError
 
-# Of each column of points the name of its coordinate, which is that of table files, with its attributes.
+# Name and attributes of the coordinate that belongs to each column of points. Table files have the same names.
 COORDINATES = {column: (name, {"long_name": long_name, "units": units})
                 for column, name, long_name, units in _native.axes()}
 COORDINATES |= {name: (name, {"long_name": long_name, "units": "degree"}) for name, long_name in (
@@ -32,9 +32,10 @@ class Frame(NamedTuple):
 
 def columns_of(points: Mapping[str, Array], labels: Mapping[str, list[str]] = {},
                has_keys: bool = False) -> tuple[Frame, dict[str, np.ndarray]]:
-    """Columns for the library, of one value where there is one for all, and their common shape with its coordinates.
+    """The frame to which the points broadcast, and the columns for the library. A column has one value for all points,
+    or one value per point.
 
-    `labels`: of the columns that have labels, for which the library takes positions.
+    `labels`: for each column of names (materials, bands), the known names. The library takes positions in this list.
     """
     check_names("points", [name for name in points if not (has_keys and "." in name)], list(COORDINATES))
     points = {name: _positions(name, values, labels[name]) if name in labels else values
@@ -72,7 +73,7 @@ def columns_of(points: Mapping[str, Array], labels: Mapping[str, list[str]] = {}
 
 
 def _positions(name: str, values: Any, labels: list[str]) -> Any:
-    """The position of each label, given in full or as a part that no other one has."""
+    """The position of each value in `labels`. A value is a whole label, or a part that only one label contains."""
     def position(value: Any) -> float:
         wanted = str(value).casefold()
         alike = [i for i, label in enumerate(labels) if wanted in label.casefold()]
@@ -90,7 +91,7 @@ def _positions(name: str, values: Any, labels: list[str]) -> Any:
 
 def _dimensions(points: Mapping[str, np.ndarray],
                 shape: tuple[int, ...]) -> tuple[tuple[str, ...], dict[str, xr.Variable]]:
-    """Names of the dimensions and the coordinates along one of them."""
+    """Names of the dimensions, and those coordinates that run along only one dimension."""
     dims, coordinates = [], {}
     for axis, size in enumerate(shape):
         along = [column for column, values in points.items()
@@ -105,7 +106,7 @@ def _dimensions(points: Mapping[str, np.ndarray],
 
 
 def _with_real_index(points: Mapping[str, Array]) -> Mapping[str, Array]:
-    """The points with n and k in the place of a complex n."""
+    """The points, with n and k instead of a complex n."""
     if not np.iscomplexobj(points.get("n")):
         return points
     if "k" in points:
@@ -116,7 +117,7 @@ def _with_real_index(points: Mapping[str, Array]) -> Mapping[str, Array]:
 
 
 def csv_of(data: Any) -> str:
-    """The text of a file, or columns as one."""
+    """The text of a CSV file, or columns as CSV text."""
     if isinstance(data, (str, bytes, os.PathLike)):
         path = input_path("data", data)
         try:
@@ -125,7 +126,7 @@ def csv_of(data: Any) -> str:
             raise InputError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error.reason}") from None
     if not (isinstance(data, Mapping) or hasattr(data, "keys")):
         raise TypeError(f"data: must be a path or columns by name, not {type(data).__name__}")
-    if isinstance(data, xr.Dataset):  # with the coordinates of a result, whose columns have other names
+    if isinstance(data, xr.Dataset):  # in a result, coordinates and columns have different names
         data = data.rename({name: column for column, (name, _) in COORDINATES.items() if name in data.variables})
     names = list(data.variables) if isinstance(data, xr.Dataset) else list(data.keys())
     columns = [floats(name, data[name]) for name in names]

@@ -1,4 +1,4 @@
-"""Response tables, and the reflectance of any material from them."""
+"""Response tables, and the reflectances of any material from them."""
 from __future__ import annotations
 
 import numpy as np
@@ -11,16 +11,17 @@ from ._points import columns_of
 from ._runs import native_evaluator, with_axes
 from ._scene import Scene
 
-_ANGLES = 256  # at which a curve and its interpolant are compared
+_ANGLES = 256  # number of angles at which a reflectance curve is compared with its interpolant
 
 
 def response(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **axes: Array) -> xr.Dataset:
-    """The response table over the scene's grid, which serves any material: a Dataset that is what the file would hold.
+    """The response table over the scene's grid, from which `moments` gets the reflectances of any material. The Dataset
+    has the contents of the table's file.
 
-    `axes` (theta_deg, sigma or wind_m_s, q) replace those of the scene. Over beta, local angles of incidence, it has the
-    weights response_i and response_q of the facets' reflectances, with masking smith and v-cavity also emission_i and
-    emission_q of the direct emission; and without beta albedo and response_error, which long_name describes. Nothing
-    depends on material, wavelength and radiation of the scene.
+    `axes` (theta_deg, sigma or wind_m_s, q) replace axes of the scene. The dimension beta has local angles of
+    incidence. response_i and response_q are the weights of a smooth surface's reflectances at these angles. With
+    masking smith or v-cavity, emission_i and emission_q are the weights for direct emission. albedo and response_error
+    have no dimension beta; `long_name` describes them. Material, wavelength and radiation of the scene do not matter.
 
     >>> r = dolp.response(scene, theta_deg=[0, 60], sigma=[0.1, 0.2])
     >>> r.response_i.dims, bool(abs(r.response_i.sum("beta") - r.albedo).max() < 1e-12)
@@ -41,12 +42,13 @@ def response(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **axe
 
 def moments(response: xr.Dataset, *, n: Array | None = None, k: Array = 0.0, r_s: xr.DataArray | None = None,
             r_p: xr.DataArray | None = None) -> xr.Dataset:
-    """rho_i, rho_q (k_s = 1, no diffuse part), albedo and rho_error of materials, from a response table or a part of one.
+    """rho_i, rho_q, albedo and rho_error of materials for k_s = 1 without a diffuse part, from a response table or a
+    part.
 
-    The material is n and k, arrays or DataArrays as for `evaluate`, or the reflectances r_s and r_p of a smooth surface,
-    DataArrays over the response's beta, which may have further dimensions. rho_error bounds the errors of rho_i and rho_q
-    from numerics and, of n and k, from the distance of the reflectances from their interpolants, the largest at 256
-    angles. Values r_s and r_p at beta do not show this distance: it comes on top.
+    A material is given by n and k, as for `evaluate`, or by the reflectances r_s and r_p of its smooth surface. r_s and
+    r_p are DataArrays over the response's beta and may have more dimensions. rho_error is a bound of the errors of
+    rho_i and rho_q. With n and k it includes the distance between the reflectances and the polynomials through their
+    values at beta, measured at 256 angles. With r_s and r_p this distance is unknown, and you must add it.
 
     >>> r = dolp.response(scene, theta_deg=60)
     >>> m = dolp.moments(r, n=[1.3, 1.5, 4], k=0.05)
@@ -88,21 +90,21 @@ def _fresnel(index: xr.DataArray, cosine: xr.DataArray) -> tuple[xr.DataArray, x
 
 
 def _coefficients(beta: xr.DataArray) -> xr.DataArray:
-    """Of Chebyshev polynomials through values at beta, which are their zeros."""
+    """Matrix that turns values at beta, which are zeros of a Chebyshev polynomial, into Chebyshev coefficients."""
     count = beta.size
     values = np.polynomial.chebyshev.chebvander(np.polynomial.chebyshev.chebpts1(count)[::-1], count - 1).T
     return xr.DataArray(values * np.where(np.arange(count) == 0, 1, 2)[:, None] / count, {"beta": beta}, ("m", "beta"))
 
 
 def _size(mean: xr.DataArray, half: xr.DataArray) -> xr.DataArray:
-    """What response_error is to be multiplied by."""
+    """Factor of response_error: the largest coefficient of the curves, each coefficient m times 2^m."""
     growth = xr.DataArray(2.0 ** np.arange(mean.sizes["beta"]), dims="m")
     curves = mean, half / np.sin(np.deg2rad(mean.beta)) ** 2
     return np.maximum(*((growth * abs(curve.dot(_coefficients(mean.beta), "beta"))).max("m") for curve in curves))
 
 
 def _distance(response: xr.Dataset, index: xr.DataArray, r_s: xr.DataArray, r_p: xr.DataArray) -> xr.DataArray:
-    """The largest distance of (r_s + r_p) / 2 and (r_s - r_p) / 2 from what the weights assume between the angles."""
+    """The largest distance of (r_s + r_p) / 2 and (r_s - r_p) / 2 from their interpolants between the angles beta."""
     beta, c0 = response.beta, float(response.attrs["c0"])
     x = np.polynomial.chebyshev.chebpts1(_ANGLES)
     cosine = xr.DataArray(c0 * np.sinh(0.5 * (1 + x) * np.arcsinh(1 / c0)), dims="angle")
@@ -115,7 +117,7 @@ def _distance(response: xr.Dataset, index: xr.DataArray, r_s: xr.DataArray, r_p:
 
 
 def _at_beta(name: str, values: xr.DataArray, beta: xr.DataArray) -> xr.DataArray:
-    """Reflectances, refused where they are not at the angles of the response."""
+    """Checked reflectances. Errors: InputError if they are not at the angles of the response or not in [0, 1]."""
     if not isinstance(values, xr.DataArray) or "beta" not in values.coords or values.beta.shape != beta.shape \
             or not np.allclose(values.beta, beta):
         raise InputError(f"{name}: must be a DataArray at the angles beta of the response; "

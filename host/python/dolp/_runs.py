@@ -22,13 +22,16 @@ from ._scene import Scene
 
 def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all: bool = False,
           **axes: Array) -> xr.Dataset:
-    """The table over the scene's grid: a Dataset that is what the file would hold.
+    """The table over the scene's grid: a Dataset with the contents of the table's file.
 
-    `axes` (theta_deg, sigma or wind_m_s, q, wavelength_um or band_um, temperature_K, and n, k or material) replace those
-    of the scene: `dolp.table(scene, material=["gold (Ordal)", "iron"])`, or "all". Winds are a second coordinate
-    along sigma: `t.swap_dims(sigma="wind_m_s")`. Each is a number or a list, and the table has all combinations of their
-    values. Any other number of the scene can be an axis by its key, each of its values as a table of its own; `lookup`
-    reads between them, as `dolp.lookup(t, **{"path.transmittance": 0.85}, theta_deg=40)`. Attributes that differ between them are left out.
+    `axes` (theta_deg, sigma or wind_m_s, q, wavelength_um or band_um, temperature_K, and n, k or material) replace axes
+    of the scene. Each axis is a number or a list, and the table has all combinations of their values. Materials are
+    names, as in `dolp.table(scene, material=["gold (Ordal)", "iron"])`, or "all". Winds become a second coordinate
+    along sigma; `t.swap_dims(sigma="wind_m_s")` makes it the dimension.
+
+    Any other number of the scene can be an axis, with its key as the name. The program then computes one table for each
+    value, and `lookup` interpolates between them: `dolp.lookup(t, **{"path.transmittance": 0.85}, theta_deg=40)`. The
+    Dataset has only attributes that are equal in all these tables.
 
     >>> t = dolp.table(scene, theta_deg=[0, 60], sigma=[0.1, 0.2, 0.3])
     >>> dict(t.sizes)["theta"], dict(t.sizes)["sigma"], t.dolp.units, t.theta.units
@@ -52,10 +55,11 @@ def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all
 
 def write_table(scene: Scene, path: Path, *, evaluator: str = "vulkan", device: str = "", keep_all: bool = False,
                 resume: bool = False, **axes: Array) -> str:
-    """The same into a file (.nc, .csv or .npy), part by part, so that memory does not grow with the table.
+    """Writes the table of `table` to a file (.nc, .csv or .npy), part by part, so that memory does not grow with its
+    size.
 
-    Returns the report of the run. What an interrupted call has finished stays beside the file; `resume` goes on there.
-    Axes are those of files; other keys of the scene are axes of `table` alone.
+    Returns the report of the run. An interrupted call leaves its finished parts beside the file, and `resume` continues
+    from there. Only in `table` can axes have keys of the scene as names.
 
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     print(dolp.write_table(scene, folder + "/table.nc").splitlines()[1])
@@ -70,12 +74,13 @@ def write_table(scene: Scene, path: Path, *, evaluator: str = "vulkan", device: 
 
 def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all: bool = False,
              **points: Array) -> xr.Dataset:
-    """The quantities of a table at points: a Dataset of the shape to which the arrays broadcast.
+    """The quantities of a table at points: a Dataset with the shape to which the arrays of `points` broadcast.
 
-    `points` (theta_deg, sigma or wind_m_s, q, wavelength_um, n, k): arrays of one shape are pairs, value by value, where
-    `table` takes all combinations; what they do not say comes from the scene. A complex n gives n and k. Any other number of the scene can be given by its key, each of its values as a run of its own.
-    DataArrays keep their dimensions and coordinates. Of other arrays, one that has a dimension to itself gives that its
-    coordinate, theta, sigma, q, n, k or wavelength as in a table.
+    `points` (theta_deg, sigma or wind_m_s, q, wavelength_um, n, k): arrays of the same shape are combined value by
+    value, unlike the axes of `table`. Values that you do not give come from the scene. A complex n gives n and k. Any
+    other number of the scene can be given too, with its key as the name; each of its values is a separate run.
+    DataArrays keep their dimensions and coordinates. If another array is the only one along a dimension, the dimension
+    gets its name in tables (theta, sigma, q, n, k or wavelength) and its values as coordinate.
 
     >>> float(dolp.evaluate(scene, theta_deg=40).dolp.round(4))
     0.0295
@@ -101,14 +106,16 @@ def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_
 
 
 def lookup(table: Path | xr.Dataset, **points: Array) -> xr.Dataset:
-    """A table between its entries: error estimates contain the interpolation.
+    """Values between the entries of a table. Their error estimates include the error of interpolation.
 
-    `table`: a file, or a Dataset of `table` or of such a file, or a part of one: fewer values of an axis, or one of them,
-    as `t.sel(k=0.1)`, fewer variables: dolp, the Stokes parameters, error_estimate, status and the attribute scene are
-    needed. Dimensions may have any names and order, as after `t.swap_dims(sigma="wind_m_s")`; values of an axis that were
-    not computed, as after `t.interp(theta=33)`, are refused. values_hash is that of the whole table and not looked at in a
-    Dataset; a file that holds a part is read by `xarray.load_dataset`. `points`: as for `evaluate`; an axis of one value needs none. The file that was used last stays
-    in memory; a Dataset is copied in each call.
+    `table`: a file, or a Dataset from `table` or from such a file, or a part of a Dataset. A part may have fewer values
+    of an axis, such as `t.sel(k=0.1)`, and fewer variables; it needs dolp, the Stokes parameters, error_estimate,
+    status and the attribute scene. Dimensions may have any names and order, such as after
+    `t.swap_dims(sigma="wind_m_s")`. Axes with values that were not computed, such as after `t.interp(theta=33)`, give
+    an InputError. The attribute values_hash belongs to the whole table; a lookup checks it in a file, but not in a
+    Dataset. So read a file with a part of a table by `xarray.load_dataset`.
+    `points`: as for `evaluate`; an axis with only one value needs no point.
+    The file that was used last stays in memory. A Dataset is copied in each call.
 
     >>> t = dolp.table(scene, theta_deg=np.linspace(0, 80, 41), sigma=[0.1, 0.2])
     >>> bool(abs(dolp.lookup(t.sel(sigma=0.2), theta_deg=33).dolp - dolp.evaluate(scene, theta_deg=33).dolp) < 1e-5)
@@ -130,9 +137,10 @@ def lookup(table: Path | xr.Dataset, **points: Array) -> xr.Dataset:
 
 
 def mueller(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **points: Array) -> np.ndarray:
-    """Mueller matrices of the pBRDF in 1/sr, shape (..., 4, 4): of theta_i_deg, theta_r_deg, delta_phi_deg.
+    """Mueller matrices of the pBRDF in 1/sr, with shape (..., 4, 4).
 
-    `delta_phi_deg` is 180 on the specular side. Also sigma, q, n, k. NaN where the model has no finite value.
+    `points`: theta_i_deg, theta_r_deg, delta_phi_deg (180 on the specular side), and optionally sigma, q, n, k. A
+    matrix is NaN if the model has no finite value.
 
     >>> m = dolp.mueller(scene, theta_i_deg=[10, 20, 30], theta_r_deg=30, delta_phi_deg=180)
     >>> m.shape, bool(m[2, 0, 0] > m[0, 0, 0])
@@ -145,9 +153,10 @@ def mueller(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **poin
 
 
 class Plan:
-    """What a table of a scene would compute and leave out, why, and what it would cost; prints as a report.
+    """The plan of a table: what the program would compute and leave out, the reasons, and the cost. It prints as a
+    report.
 
-    `values` is what `dolp plan --json` prints, as a dictionary.
+    `values`: the report of `dolp plan --json` as a dictionary.
     """
 
     def __init__(self, text: str, values: dict[str, Any]) -> None:
@@ -158,7 +167,7 @@ class Plan:
 
 
 def plan(scene: Scene, *, device: str = "", keep_all: bool = False) -> Plan:
-    """What a table over the scene's grid would compute, leave out and cost; nothing is computed.
+    """Plans the table over the scene's grid: what it would compute, leave out and cost. Computes no entry.
 
     >>> dolp.plan(scene).values["entries"]
     5
@@ -183,7 +192,7 @@ def _evaluator_of(evaluator: str, device: str) -> _native.Evaluator:
 
 @functools.lru_cache(maxsize=1)
 def _table_of(path: str, _: tuple[int, int, int]) -> _native.Table:
-    """The table of a file, read again when the file has changed."""
+    """The table in a file. The other argument changes with the file, so that a changed file is read again."""
     return _native.Table.read(path)
 
 
@@ -195,7 +204,7 @@ def native_scene(scene: Scene) -> _native.Scene:
 
 
 def with_axes(scene: Scene, axes: Mapping[str, Array]) -> _native.Scene:
-    """The scene on other axes, by the names of their columns."""
+    """The scene with other axes. The keys of `axes` are names of columns, such as theta_deg."""
     native = native_scene(scene)
     check_names("axes", axes, [column for column, *_ in _native.axes()])
     return native.with_([(f"grid.{axis}", label_values(values) if axis in native.labels() else axis_values(axis, values))
@@ -203,14 +212,14 @@ def with_axes(scene: Scene, axes: Mapping[str, Array]) -> _native.Scene:
 
 
 def _check_labels(scene: _native.Scene, columns: Iterable[str]) -> None:
-    """Refuses a scene with several materials or bands among which the points do not choose."""
+    """Errors: InputError if the scene has several materials or bands and the points have no column for them."""
     for name, labels in scene.labels().items():
         if len(labels) > 1 and name not in columns:
             raise InputError(f"points: {name} is missing, one of {', '.join(labels)}")
 
 
 def _check_varied(what: str, keys: Iterable[str], columns: Iterable[str]) -> None:
-    """Refuses keys that vary what a column varies."""
+    """Errors: InputError if a key and a column vary the same value of the scene."""
     for key in keys:
         table, _, column = key.partition(".")
         if column in columns and table in ("surface", "spectrum", "emission"):
@@ -219,7 +228,8 @@ def _check_varied(what: str, keys: Iterable[str], columns: Iterable[str]) -> Non
 
 def _over_keys(run: Callable[..., _native.Parts], scene: _native.Scene, columns: dict[str, np.ndarray],
                varied: dict[str, np.ndarray]) -> _native.Parts:
-    """The points in runs of scenes that differ in the keys of `varied`; the attributes that all runs have."""
+    """The results of points with several values of the keys in `varied`: one run per combination of values, and the
+    attributes that are equal in all runs."""
     different, which = np.unique(np.stack(np.broadcast_arrays(*varied.values()), axis=-1), axis=0, return_inverse=True)
     size = max(values.size for values in (*columns.values(), *varied.values()))
     which = np.broadcast_to(which.ravel(), size)

@@ -1,4 +1,4 @@
-"""Scenes and the built-in materials that they name."""
+"""Scenes and built-in materials."""
 from __future__ import annotations
 
 import os
@@ -13,12 +13,12 @@ from ._native import InputError
 
 
 class Scene:
-    """A surface, what it radiates and reflects, and how accurate results are to be: a scene file, or its text.
+    """A scene: a surface, its radiation and surroundings, and the accuracy of results. From a scene file or its text.
 
-    Parameters: a path or `text`, then overrides of any key of a scene; None, or "none" where a key takes no words, removes a
-    table or a key; a complex surface.n gives n and k. `scene[key]` is the value of a key, None where the scene has no such
-    thing. Scenes can be copied, pickled and sent to other processes, which find the files that a scene names where this
-    one did.
+    Parameters: a path or `text`, and `overrides` of any keys. None removes a key or a table; so does "none" if the key
+    does not take words. A complex surface.n gives n and k. `scene[key]` is the value of a key, or None if the scene has
+    no value. Scenes can be copied, pickled and sent to other processes; these find the files named in a scene at the
+    same paths.
 
     >>> smooth = dolp.Scene(scene, {"surface.sigma": 0.01, "title": "a mirror", "surface.n": 1.5 + 0.1j})
     >>> smooth.title, smooth["surface.k"], smooth["surface.masking"], smooth["grid.q"], smooth["path.radiance"]
@@ -28,7 +28,7 @@ class Scene:
     dolp.InputError: surface.sigma = -1: -1 is out of range; must be a number in [0, 10]
     """
 
-    _has_model_warning = False  # whether dolp.ModelWarning was given
+    _has_model_warning = False  # true after a dolp.ModelWarning
 
     def __init__(self, path: Path | Scene | None = None, overrides: Mapping[str, Any] | None = None, *,
                  text: str | None = None) -> None:
@@ -47,7 +47,7 @@ class Scene:
             raise TypeError(f"text: must be a str, not {type(text).__name__}")
 
     def with_(self, values: Mapping[str, Any]) -> Scene:
-        """The same scene with other values of keys.
+        """A copy of the scene with other values of keys.
 
         >>> scene.with_({"surface.q": 4, "grid.sigma": {"from": 0.1, "to": 1, "count": 5, "spacing": "log"}}).title
         ''
@@ -55,7 +55,7 @@ class Scene:
         return Scene(self, values)
 
     def without(self, key: str) -> Scene:
-        """The same scene without the table of an effect, or without a key.
+        """A copy of the scene without a key, or without a table of keys such as `emission`.
 
         >>> "emission" in scene.with_({"surroundings.temperature_K": 250}).without("emission").toml()
         False
@@ -71,7 +71,7 @@ class Scene:
         return self._native.value(check_key(key))
 
     def toml(self) -> str:
-        """The scene with its overrides applied, as a scene file has it."""
+        """The text of a scene file for this scene, with its overrides applied."""
         return self._native.toml()
 
     def __repr__(self) -> str:
@@ -82,7 +82,7 @@ class Scene:
 
 
 def keys() -> dict[str, dict[str, str]]:
-    """The keys that scenes have, with unit, allowed values, default and meaning.
+    """All keys of scenes, with unit, allowed values, default and meaning.
 
     >>> dolp.keys()["surface.sigma"]["allowed"]
     'a number in [0, 10]'
@@ -92,7 +92,7 @@ def keys() -> dict[str, dict[str, str]]:
 
 
 class Material:
-    """A built-in material; `n(wavelength_um)` and `k(wavelength_um)` take numbers and arrays."""
+    """A built-in material. `n(wavelength_um)` and `k(wavelength_um)` take numbers and arrays."""
 
     def __init__(self, name: str) -> None:
         known = materials()
@@ -144,7 +144,7 @@ def material(name: str) -> Material:
 
 
 def materials() -> dict[str, dict[str, Any]]:
-    """The built-in materials, with the wavelengths at which they are known, in um, and the source.
+    """The built-in materials, with the range of known wavelengths in um and the source of the data.
 
     >>> dolp.materials()["gold (Ordal)"]["from_um"] <= 8
     True

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Measured DOLPs beside what a scene gives: compare_with_measured.py [MEASURED.csv [PICTURE]]
+"""Compares measured values of DOLP with a scene: compare_with_measured.py [MEASURED.csv [PICTURE]]
 
-MEASURED.csv has columns theta_deg and dolp, and dolp_uncertainty if it is known. Without one, a synthetic set is
-compared: the scene itself with noise.
+MEASURED.csv has the columns theta_deg and dolp, and dolp_uncertainty if it is known. Without a file, the script
+compares synthetic data: values of the scene with noise.
 """
 import sys
 

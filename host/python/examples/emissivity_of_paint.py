@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Emissivity and DOLP of a painted plate over the zenith angle: emissivity_of_paint.py [PICTURE]"""
+"""Draws emissivity and DOLP of a painted plate over the zenith angle: emissivity_of_paint.py [PICTURE]"""
 import sys
 
 import matplotlib

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Which n and sigma give a DOLP that was seen? A table over n, k and sigma, and lookups in it.
+"""Finds the n and sigma that give two measured values of DOLP, by lookups in a table over n, k and sigma.
 
 retrieval_table.py [PICTURE]
 """
@@ -30,7 +30,7 @@ tolerance = 1e-3
 table = dolp.table(scene, n=np.linspace(1.3, 2.0, 15), k=[0.0, 0.1, 0.2], theta_deg=np.linspace(40, 80, 21),
                    sigma=np.linspace(0.05, 0.5, 19), q=3.0)
 
-# Two looks at a plate, from 50 and from 70 degrees.
+# Two measurements of a plate, at zeniths of 50 and 70 degrees.
 truth = {"n": 1.62, "k": 0.1, "sigma": 0.23}
 seen = {angle: float(dolp.evaluate(scene, theta_deg=angle, **truth).dolp) for angle in (50.0, 70.0)}
 n, sigma = np.linspace(1.3, 2.0, 141), np.linspace(0.05, 0.5, 91)

@@ -96,6 +96,8 @@ def flag(name: str, value: Any) -> bool:
 
 def axis_values(name: str, values: Any) -> list[float]:
     """The values of an axis as a list. `values` is a number or a list."""
+    if isinstance(values, str):
+        raise InputError(f"{name}: {short(values)} is a text; numpy.linspace(first, last, count) makes a range of numbers")
     array = floats(name, values)
     if array.ndim > 1:
         raise InputError(f"{name}: must be a number or a list, not an array of shape {array.shape}")
@@ -128,8 +130,6 @@ def floats(name: str, values: Any) -> np.ndarray:
             return array.astype(float)
     except (TypeError, ValueError, OverflowError):
         raise InputError(f"{name}: {short(values)} are no numbers of double precision") from None
-    if array.dtype.kind == "U":
-        raise InputError(f"{name}: {short(values)} is a text; numpy.linspace(first, last, count) makes a range of numbers")
     raise InputError(f"{name}: {short(values)} are no numbers but {array.dtype}")
 
 

@@ -81,7 +81,7 @@ def markdown(result):
     """Time per entry of the cheapest setting that reaches each given error, for every method and case."""
     wanted = " / ".join(f"{error:g}" for error in WANTED_ERRORS)
     names = [case["name"] for case in result["cases"]]
-    lines = [f"Time per entry for an error of at most {wanted} (—: at no setting):", "",
+    lines = [f"Time per entry of the cheapest setting whose error is at most {wanted}. A dash means that no setting reaches this error.", "",
              "| method | cores | " + " | ".join(names) + " |", "|---" * (2 + len(names)) + "|"]
     for method in result["methods"]:
         reason = why_not_run(result, method["name"])

@@ -11,7 +11,7 @@ def markdown(result):
     """The results as a Markdown table, with sentences on the other parts of the study."""
     coverage = result["coverage"]
     rows = sets_of(result)
-    lines = ["| parameters | sets | median time, s | 68 % intervals hold the truth | 95 % intervals | global minimum found |",
+    lines = ["| varied parameters | data sets | median time of a fit, s | 68 % intervals that contain the true value | 95 % intervals that contain it | fits that found the global minimum |",
              "|---" * 6 + "|"]
     for count in sorted({len(row["truth"]) for row in rows}):
         own = [row for row in rows if len(row["truth"]) == count]
@@ -23,7 +23,7 @@ def markdown(result):
     lines += ["", f"{coverage['intervals']} intervals; those of one set are not independent.", "",
               f"{bracket['sets']} sets of all bounces (`v-cavity`, n and σ vary, half of them without noise), fitted with single "
               f"scattering and `--model-error bracket`: {share['share_68']:.0f} % of the 68 % intervals and "
-              f"{share['share_95']:.0f} % of the 95 % intervals hold the truth. They are wide: in the median "
+              f"{share['share_95']:.0f} % of the 95 % intervals contain the true value. They are wide: in the median "
               f"{share['share_of_n']:.0f} % of the range of n is left.", "",
               f"A fit of {time['parameters']} parameters to {time['points']} points takes {time['time_s']:.2f} s with its "
               f"intervals, {time['evaluations']} parameter sets."]

@@ -48,9 +48,10 @@ def ratio_text(row):
 
 def ratio_table(result):
     names = [case["name"] for case in result["cases"]]
-    lines = [f"Time over that of dolp's kernels in float, both for {TARGET_TOLERANCE:g}: where the grid is interpolated "
-             "between slope distributions, as `dolp table` does / where every entry is integrated (*: with the cheapest "
-             "setting of each single entry, chosen with hindsight):", ""]
+    lines = [f"Ratio of the time of each method to the time of dolp's kernels in float, both for an error of at most "
+             f"{TARGET_TOLERANCE:g}. First number: dolp interpolates between slope distributions, as `dolp table` does. Second "
+             "number: dolp integrates every entry. A star marks ratios with the cheapest setting of each entry, chosen with "
+             "hindsight.", ""]
     lines += head(["method"] + names)
     for method in result["methods"]:
         cells = [ratio_text(rows_of(result, method["name"], name).get(TARGET_TOLERANCE, {})) for name in names]
@@ -59,7 +60,8 @@ def ratio_table(result):
 
 
 def target_table(result):
-    lines = head(["against", "masking", "wanted", "measured", "with hindsight", "reached"])
+    lines = [f"Targets: by what factor each method takes longer than dolp, for an error of at most {TARGET_TOLERANCE:g}.", ""]
+    lines += head(["method", "masking", "target factor", "measured factor", "factor with hindsight", "target reached"])
     for target in result["targets"]:
         hindsight = digits(target["hindsight_ratio"]) if "hindsight_ratio" in target else "—"
         measured = digits(target["ratio"]) if "ratio" in target else "—"

@@ -9,11 +9,11 @@ def rows_of(result, case):
 
 def markdown(result):
     """The results as Markdown tables."""
-    lines = ["| entries | time, s | entries/s | `cp` of the file, s | peak memory, MB | file, MB |", "|---" * 6 + "|"]
+    lines = ["| entries | time, s | entries/s | time of `cp` of the file, s | peak memory, MB | file, MB |", "|---" * 6 + "|"]
     for row in rows_of(result, "entries"):
         lines.append(f"| {row['entries']:,} | {row['time_s']:.2f} | {row['entries'] / row['time_s']:.2g} "
                      f"| {row['copy_time_s']:.2f} | {row['peak_bytes'] / 1e6:.0f} | {row['file_bytes'] / 1e6:.0f} |")
-    lines += ["", "| shards, all at once | entries | time, s | merge, s | peak memory of one, MB |", "|---" * 5 + "|"]
+    lines += ["", "Shards of one table that run at the same time:", "", "| number of shards | entries of the table | time until the last shard ends, s | time of the merge, s | peak memory of one shard, MB |", "|---" * 5 + "|"]
     for row in rows_of(result, "shards"):
         merge = f"{row['merge_time_s']:.2f}" if row["merge_time_s"] else "—"
         lines.append(f"| {row['setting']} | {row['entries']:,} | {row['time_s']:.2f} | {merge} "

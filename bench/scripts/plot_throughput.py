@@ -19,8 +19,8 @@ def millions(rate):
 
 
 def grid_table(rows):
-    lines = head(["masking", "grid (θ × σ × q)", "tolerance", "interpolation", "whole run", "kernels", "per entry, whole", "kernels",
-                  "million entries/s", "million evaluations/s", "evaluations an entry", "time over half the entries"])
+    lines = head(["masking", "grid (θ × σ × q)", "tolerance", "interpolation", "time of the whole run", "time in kernels", "whole run, per entry", "kernels, per entry",
+                  "million entries/s", "million evaluations/s", "evaluations per entry", "time / time of half the entries"])
     order = lambda row: (list(MASKINGS).index(row["case"]), -row["tolerance"], row["entries"], row["interpolation"])
     for row in sorted(rows, key=order):
         lines.append(row_of_cells([
@@ -32,8 +32,8 @@ def grid_table(rows):
 
 
 def materials_table(rows):
-    lines = head(["masking", "surface", "entries", "whole run", "kernels", "kernels over those of one bare index",
-                  "per entry, whole"])
+    lines = head(["masking", "surface", "entries", "time of the whole run", "time in kernels", "kernel time / kernel time of one bare index",
+                  "whole run, per entry"])
     for row in rows:
         lines.append(row_of_cells([
             row["case"], row["setting"], digits(row["entries"]), time_text(row["run_s"]), time_text(row["kernel_run_s"]),
@@ -45,8 +45,8 @@ def arithmetic_table(result, rows):
     peak = result["peak"]
     lines = [f"Peak of the device, measured in the same run: {1e-9 * peak['flops_per_s']:.0f} GFLOP/s "
              f"({peak['what']}).", ""]
-    lines += head(["masking", "tolerance", "kernels, per entry", "evaluations", "flops", "of them ÷ and √",
-                   "GFLOP/s", "of the peak", "lanes busy, at most"])
+    lines += head(["masking", "tolerance", "kernels, per entry", "evaluations per entry", "flops per entry", "÷ and √ per entry",
+                   "GFLOP/s", "share of the peak", "lanes busy, at most"])
     for row in rows:
         slow = row["operations"]["divide"] + row["operations"]["square_root"]
         lines.append(row_of_cells([
@@ -59,7 +59,7 @@ def arithmetic_table(result, rows):
 def scaling_table(rows, variable):
     settings = sorted({row["setting"] for row in rows})
     names = list(dict.fromkeys(row["case"] for row in rows))
-    lines = head([f"`{variable}`"] + names)
+    lines = head([f"`{variable}`"] + [f"{name}: speed / speed of the first row (time per entry)" for name in names])
     for setting in settings:
         cells = [f"{row['speedup']:.2f} ({time_text(row['time_min_s'])})" for row in rows if row["setting"] == setting]
         lines.append(row_of_cells([f"{setting:g}"] + cells))

@@ -34,7 +34,7 @@ def ending(status):
 
 
 def markdown(results):
-    lines = ["| fault | tries | ends |", "|---|---|---|"]
+    lines = ["| fault | number of tries | how many tries ended with which exit status |", "|---|---|---|"]
     for row in results["kinds"]:
         ends = ", ".join(f"{count} {what}" for what, count in row["ends"].items())
         lines.append(f"| {row['fault']} | {row['tries']:,} | {ends} |")

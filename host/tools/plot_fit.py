@@ -70,8 +70,8 @@ def draw_data(upper, lower, report):
         bars = PERCENT * curve["uncertainty"] if has_uncertainties else np.zeros_like(curve["measured"])
         measured, line = PERCENT * curve["measured"], PERCENT * np.array(lines[key]["model"], dtype=float)
         upper.errorbar(curve["theta_deg"], measured, bars if has_uncertainties else None, fmt="o", markersize=3.5,
-                       linewidth=1.0, color=colour, label=label_of(key, several))
-        upper.plot(lines[key]["theta_deg"], line, color=colour, linewidth=1.6)
+                       linewidth=1.0, color=colour, label=f"measured: {label_of(key, several)}")
+        upper.plot(lines[key]["theta_deg"], line, color=colour, linewidth=1.6, label="model" if i == 0 else None)
         seen += [measured - bars, measured + bars, line]
         lower.errorbar(curve["theta_deg"], factor * curve["residual"], 1.0 if has_uncertainties else None, fmt="o",
                        markersize=3.5, linewidth=1.0, color=colour)
@@ -121,15 +121,15 @@ def draw_spectrum(panels, lower, report, zeniths):
             colour = COLOURS[zeniths.index(zenith) % len(COLOURS)]
             bars = PERCENT * column("uncertainty") if has_uncertainties else None
             panel.errorbar(column("wavelength_um"), PERCENT * column("measured"), bars, fmt=mark, markersize=3.0,
-                           linewidth=0.6, color=colour, alpha=0.5, label=label_of(key, several))
-            panel.plot(column("wavelength_um"), PERCENT * column("model"), color="black", linewidth=1.4)
+                           linewidth=0.6, color=colour, alpha=0.5, label=f"measured: {label_of(key, several)}")
+            panel.plot(column("wavelength_um"), PERCENT * column("model"), color="black", linewidth=1.4,
+                       label="model" if mark == MARKS[0] else None)
             lower.plot(column("wavelength_um"), (1.0 if has_uncertainties else PERCENT) * column("residual"), mark,
                        markersize=2.5, color=colour)
         panel.set_title(f"$\\theta$ = {zenith:g}°", fontsize=10, loc="left")
         panel.set_ylabel(names_in(report["points"]) + " (%)")
         panel.tick_params(labelbottom=False)
-    if len(own) > 1:
-        panels[0].legend(frameon=False, fontsize=8)
+    panels[0].legend(frameon=False, fontsize=8)
     lower.set_xlabel("wavelength λ (µm)")
     label_residuals(lower, has_uncertainties)
 
@@ -155,7 +155,7 @@ def draw_pair(axes, report):
             if end is not None:
                 line(end, color="0.5", linestyle="--", linewidth=1.0)
     axes.plot([], [], color="0.5", linestyle="--", linewidth=1.0, label="95 % of each, profile likelihood")
-    axes.plot(first["value"], second["value"], "+", color="black", markersize=10)
+    axes.plot(first["value"], second["value"], "+", color="black", markersize=10, linestyle="none", label="best fit")
     axes.set_xlabel(symbol_of(first["key"]))
     axes.set_ylabel(symbol_of(second["key"]))
     positions = [list(parameters).index(key) for key in contours["keys"]]

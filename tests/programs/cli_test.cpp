@@ -412,7 +412,7 @@ TEST_F(CommandLine, Materials_List_HasNameRangeAndSource) {
   EXPECT_EQ((*mirror)["to_um"], 12.5);
   const std::size_t line = text.out.find("oxidised Al mirror ");
   ASSERT_NE(line, std::string::npos);
-  EXPECT_LT(text.out.find("2 to 12.5 ", line), text.out.find("Querry 1985\n", line)) << text.out;
+  EXPECT_LT(text.out.find("2 to 12.5 ", line), text.out.find("mirror with its oxide film\n", line)) << text.out;
 }
 
 TEST_F(CommandLine, Materials_OneAtAWavelength_HasNAndKOfItsTable) {

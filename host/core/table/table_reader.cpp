@@ -48,9 +48,10 @@ class Reader {
   /// If a file cannot be closed, for example because a server is gone, HDF5 keeps half of it and crashes at exit. So
   /// HDF5 gets another file to close; dup2 always closes the real one.
   ~Reader() {
-    void* own = nullptr;
+    void* descriptor = nullptr;
     const int other = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
-    if (other >= 0 && H5Fget_vfd_handle(file_.id(), H5P_DEFAULT, &own) >= 0) ::dup2(other, *static_cast<int*>(own));
+    if (other >= 0 && H5Fget_vfd_handle(file_.id(), H5P_DEFAULT, &descriptor) >= 0)
+      ::dup2(other, *static_cast<int*>(descriptor));
     if (other >= 0) ::close(other);
   }
 
@@ -394,8 +395,8 @@ TableValues TableReader::read_entries(std::span<const std::size_t> positions, co
     for (; !positions.empty() && positions.front() < end; positions = positions.subspan(1)) {
       const std::size_t position = positions.front() - before;
       for_each_variable(layout(), [&](const auto& of, std::size_t width) {
-        const auto own = std::span(of(part)).subspan(position * width, width);
-        of(entries).insert(of(entries).end(), own.begin(), own.end());
+        const auto of_entry = std::span(of(part)).subspan(position * width, width);
+        of(entries).insert(of(entries).end(), of_entry.begin(), of_entry.end());
       });
     }
     before = end;

@@ -70,9 +70,10 @@ struct Hdf5Failure {
   bool is_memory = false;  ///< lack of memory
 
   static herr_t add(unsigned, const H5E_error2_t* error, void* failure) {
-    auto& own = *static_cast<Hdf5Failure*>(failure);
-    if (own.reason.empty() && error->desc) own.reason = error->desc;
-    own.is_memory |= error->maj_num == H5E_RESOURCE || error->min_num == H5E_NOSPACE || error->min_num == H5E_CANTALLOC;
+    auto& first_failure = *static_cast<Hdf5Failure*>(failure);
+    if (first_failure.reason.empty() && error->desc) first_failure.reason = error->desc;
+    first_failure.is_memory |=
+        error->maj_num == H5E_RESOURCE || error->min_num == H5E_NOSPACE || error->min_num == H5E_CANTALLOC;
     return 0;
   }
 };
@@ -117,8 +118,8 @@ class Writer {
     return type;
   }
   void put_number(const Hdf5Handle& object, const char* name, double value) const {
-    const hsize_t one = 1;
-    put(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, take(H5Screate_simple(1, &one, nullptr), H5Sclose), &value);
+    const hsize_t count = 1;
+    put(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, take(H5Screate_simple(1, &count, nullptr), H5Sclose), &value);
   }
   // CF-1.8 has no unsigned int; the masks must have the type of the variable.
   void put_status_bits(const Hdf5Handle& object) const {
@@ -349,8 +350,8 @@ struct TableStore::Impl {
   /// Where the values of each variable begin in the file, in the order of for_each_variable.
   std::vector<std::uint64_t> offsets;
 
-  Impl(TableLayout own, AtomicFile& of_table)
-      : layout(std::move(own)), file(of_table), memory(of_table.path().string()) {
+  Impl(TableLayout of_file, AtomicFile& of_table)
+      : layout(std::move(of_file)), file(of_table), memory(of_table.path().string()) {
     const TableHead& head = layout.head;
     put_attributes(writer, head);
     const AxisVariables axes = put_axes(writer, head);

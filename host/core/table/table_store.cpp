@@ -275,30 +275,17 @@ std::uint64_t offset_of(const Writer& writer, const Hdf5Handle& variable) {
 }
 
 /// `qualifiers`: names of the variables that qualify it, or "".
-std::uint64_t put_variable(const Writer& writer, const TableHead& head, const AxisVariables& axes, const char* name,
-                           const char* long_name, const std::string& units, const char* qualifiers,
+template <class Described>
+std::uint64_t put_variable(const Writer& writer, const TableHead& head, const AxisVariables& axes,
+                           const Described& described, const std::string& units, const char* qualifiers,
                            const Hdf5Handle* beta = nullptr) {
   constexpr double kFill = std::numeric_limits<double>::quiet_NaN();
-  const Hdf5Handle variable = define_over_axes(writer, head, axes, name, H5T_IEEE_F64LE, &kFill, beta);
+  const Hdf5Handle variable = define_over_axes(writer, head, axes, described.name, H5T_IEEE_F64LE, &kFill, beta);
   writer.put_number(variable, "_FillValue", kFill);
-  writer.put_text(variable, "long_name", long_name);
+  writer.put_text(variable, "long_name", described.long_name);
   writer.put_text(variable, "units", units);
   if (*qualifiers != '\0') writer.put_text(variable, "ancillary_variables", qualifiers);
   return offset_of(writer, variable);
-}
-
-std::uint64_t put_quantity(const Writer& writer, const TableHead& head, const AxisVariables& axes, Quantity quantity) {
-  const QuantityDescription& described = description_of(quantity);
-  const bool is_response = !head.beta_deg.empty();
-  return put_variable(writer, head, axes, described.name, described.long_name, units_of(quantity, head.stokes_units),
-                      is_response ? kResponseQualifier : described.ancillary);
-}
-
-std::uint64_t put_response(const Writer& writer, const TableHead& head, const AxisVariables& axes,
-                           const Hdf5Handle& beta, ResponseVariable variable) {
-  const ResponseDescription& described = description_of(variable);
-  return put_variable(writer, head, axes, described.name, described.long_name, "1",
-                      described.has_beta ? kResponseQualifier : "", described.has_beta ? &beta : nullptr);
 }
 
 std::uint64_t put_status(const Writer& writer, const TableHead& head, const AxisVariables& axes) {
@@ -356,9 +343,16 @@ struct TableStore::Impl {
     put_attributes(writer, head);
     const AxisVariables axes = put_axes(writer, head);
     const Hdf5Handle beta = head.beta_deg.empty() ? Hdf5Handle() : put_coordinate(writer, kBeta, head.beta_deg);
-    for (const Quantity quantity : layout.quantities) offsets.push_back(put_quantity(writer, head, axes, quantity));
-    for (const ResponseVariable variable : layout.responses)
-      offsets.push_back(put_response(writer, head, axes, beta, variable));
+    for (const Quantity quantity : layout.quantities) {
+      const QuantityDescription& described = description_of(quantity);
+      offsets.push_back(put_variable(writer, head, axes, described, units_of(quantity, head.stokes_units),
+                                     beta ? kResponseQualifier : described.ancillary));
+    }
+    for (const ResponseVariable variable : layout.responses) {
+      const ResponseDescription& described = description_of(variable);
+      offsets.push_back(put_variable(writer, head, axes, described, "1", described.has_beta ? kResponseQualifier : "",
+                                     described.has_beta ? &beta : nullptr));
+    }
     if (layout.has_status) offsets.push_back(put_status(writer, head, axes));
   }
 

@@ -232,9 +232,9 @@ py::list list_of(Range&& range, const Of& of) {
 /// An array that owns `values`.
 template <class Value>
 py::array_t<Value> array_of(std::vector<Value> values) {
-  auto* const own = new std::vector<Value>(std::move(values));
-  const py::capsule owner(own, [](void* held) { delete static_cast<std::vector<Value>*>(held); });
-  return py::array_t<Value>(own->size(), own->data(), owner);
+  auto* const kept = new std::vector<Value>(std::move(values));
+  const py::capsule owner(kept, [](void* held) { delete static_cast<std::vector<Value>*>(held); });
+  return py::array_t<Value>(kept->size(), kept->data(), owner);
 }
 
 /// The tuple (quantities, status, attributes) with quantities [(name, long_name, units, ancillary, values)].
@@ -318,10 +318,10 @@ dolp::Table table_of(const Columns& columns, const std::map<std::string, std::ve
   for (const dolp::Axis axis : dolp::kAllAxes) {
     const char* const axis_name = dolp::description_of(axis).name;
     take(axis_name, table.axes[axis]);
-    const auto own = labels.find(axis_name);
-    for (std::size_t i = 0; own != labels.end() && i < own->second.size(); ++i) {
+    const auto of_axis = labels.find(axis_name);
+    for (std::size_t i = 0; of_axis != labels.end() && i < of_axis->second.size(); ++i) {
       table.axes[axis].push_back(static_cast<double>(i));
-      table.labels[axis].push_back(own->second[i]);
+      table.labels[axis].push_back(of_axis->second[i]);
     }
   }
   for (const dolp::Quantity quantity : dolp::kAllQuantities) take(dolp::description_of(quantity).name, table[quantity]);

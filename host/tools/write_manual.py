@@ -6,8 +6,8 @@ In each Markdown file of the repository (or in those named) the lines between
     <!-- generated: COMMAND -->
 and
     <!-- end of generated -->
-become what COMMAND prints when it runs in the repository's root. The first word of COMMAND may begin with
-build/release/, which --build replaces. --check writes nothing and names the parts that are not current.
+become what COMMAND prints when it runs in the repository's root. Words of COMMAND may begin with build/release/,
+which --build replaces. --check writes nothing and names the parts that are not current.
 Exit status: 0 done or all current, 1 --check found a part that is not, 2 a command fails or a mark has no end.
 """
 import argparse
@@ -33,9 +33,7 @@ def markdown_files():
 
 
 def output_of(command, build):
-    words = shlex.split(command)
-    if words[0].startswith(BUILD):
-        words[0] = str(build / words[0][len(BUILD):])
+    words = [str(build / word[len(BUILD):]) if word.startswith(BUILD) else word for word in shlex.split(command)]
     try:
         done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False)
     except OSError as error:

@@ -61,7 +61,7 @@ TEST(SkyProfile, BadFile_IsOneLineThatNamesFileLineAndWhatIsAllowed) {
            Case{"wavelength_um,zenith_deg,radiance\n8,0,1\n8,90,1\n9,0,1\n",
                 "sky.csv:4: zenith_deg = 0: must be 90 in one row"},
            Case{"wavelength_um,zenith_deg,radiance\n8,0,1\n8,90,1\n9,0,1\n9,30,1\n9,90,1\n",
-                "sky.csv:5: zenith_deg = 30: each wavelength must have the same zeniths, and the first has 90"},
+                "sky.csv:5: zenith_deg = 30: each wavelength must have the same angles, and the first has 90"},
            Case{
                "zenith_deg;radiance\n0;1\n90;1\n",
                "sky.csv:1: zenith_deg;radiance: cells must be separated by commas, not semicolons; numbers must have a "

@@ -4,11 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "computed_scene.hpp"
 #include "radiometry/diffuse.hpp"
 #include "run/mueller_run.hpp"
-#include "run/scene_run.hpp"
-#include "scene/scene_reader.hpp"
 #include "temporary_file.hpp"
 
 namespace dolp {
@@ -34,15 +32,8 @@ wavelength_um = 10
 theta_deg = [60]
 )toml";
 
-SceneValues scene_with(const std::vector<std::string>& overrides) {
-  return parse_scene(kScene, "s.toml", settings_from_text(overrides));
-}
-
-PointResult result_of(const std::vector<std::string>& overrides) {
-  const SceneValues scene = scene_with(overrides);
-  CpuEvaluator evaluator;
-  return evaluate_scene(scene, grid_entries(scene), evaluator, {}).front();
-}
+SceneValues scene_with(const std::vector<std::string>& overrides) { return parse(kScene, overrides); }
+PointResult result_of(const std::vector<std::string>& overrides) { return results_of(scene_with(overrides)).front(); }
 
 TEST(DiffuseScenes, BistaticBeam_IsTheFirstColumnOfTheMuellerMatrix) {
   const std::vector<std::string> beam = {"emission=none", "source.irradiance=2", "geometry.mode=bistatic",
@@ -112,9 +103,8 @@ TEST(DiffuseScenes, FilmsOrMeasuredReflectances_AreRefused) {
 
 TEST(DiffuseScenes, GridOfIndices_HasTheDiffusePartOfEach) {
   const SceneValues scene = scene_with({"grid.n=[1.3, 2.0, 4.0]", "grid.k=[0, 0.5]"});
-  CpuEvaluator evaluator;
   const SceneEntries entries = grid_entries(scene);
-  const std::vector<PointResult> results = evaluate_scene(scene, entries, evaluator, {});
+  const std::vector<PointResult> results = results_of(scene, entries);
   for (std::size_t i = 0; i < results.size(); ++i) {
     const OpticalConstants index = *entries[i].index;
     const PointResult alone =

@@ -19,6 +19,7 @@
 #include "reference/hemisphere.hpp"
 #include "reference/reference_evaluator.hpp"
 #include "run/scene_run.hpp"
+#include "scene/embedded_data.hpp"
 #include "stored_evaluator.hpp"
 #include "verify/qualification.hpp"
 

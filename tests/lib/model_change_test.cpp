@@ -7,10 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "computed_scene.hpp"
 #include "run/estimates.hpp"
-#include "run/scene_run.hpp"
-#include "scene/scene_reader.hpp"
 
 namespace dolp {
 namespace {
@@ -32,15 +30,8 @@ wavelength_um = 10.6
 theta_deg = [60]
 )toml";
 
-SceneValues scene_with(const Overrides& overrides) {
-  return parse_scene(kScene, "s.toml", settings_from_text(overrides));
-}
-
-PointResult result_of(const Overrides& overrides) {
-  const SceneValues scene = scene_with(overrides);
-  CpuEvaluator evaluator;
-  return evaluate_scene(scene, grid_entries(scene), evaluator, {}).front();
-}
+SceneValues scene_with(const Overrides& overrides) { return parse(kScene, overrides); }
+PointResult result_of(const Overrides& overrides) { return results_of(scene_with(overrides)).front(); }
 
 TEST(ModelChange, RoughMetalWithAnyMasking_HasBit32UnlessAllBouncesAreFollowed) {
   for (const char* masking : {"none", "v-cavity", "integral", "smith"}) {

@@ -55,6 +55,15 @@ struct ScatteringMatrix {
   double error = 0.0;  ///< bound of the absolute error of each element
 };
 
+/// Unpolarised light scattered from one direction into another: the first column of a ScatteringMatrix.
+struct Scattered {
+  double i = 0.0;
+  double q = 0.0;
+  double u = 0.0;
+  double v = 0.0;
+  double error = 0.0;  ///< bound of the absolute error of each one
+};
+
 /// Bounds of the errors over m00, rounding included (tests MuellerAccuracy.*).
 constexpr double kScatteringErrorFloat = 1e-5;
 constexpr double kScatteringErrorDouble = 1e-11;

@@ -35,10 +35,10 @@ Axes part_of(const Axes& axes, const PerAxis& first, const PerAxis& count) {
   return part;
 }
 
-PerAxis place_of(std::size_t position, const PerAxis& counts) {
-  PerAxis place = {};
-  for (std::size_t i = kAxisCount; i-- > 0 && position > 0; position /= counts[i]) place[i] = position % counts[i];
-  return place;
+PerAxis positions_on_axes(std::size_t position, const PerAxis& counts) {
+  PerAxis on_axes = {};
+  for (std::size_t i = kAxisCount; i-- > 0 && position > 0; position /= counts[i]) on_axes[i] = position % counts[i];
+  return on_axes;
 }
 
 PerAxis counts_of(const Axes& axes) {
@@ -91,20 +91,22 @@ SceneEntries SceneEntries::grid(std::vector<double> theta_deg, std::vector<doubl
   return of_grid(axes_of(std::move(theta_deg), std::move(sigma), std::move(q)), {});
 }
 
-std::size_t SceneEntries::variant_at(const PerAxis& place) const {
+std::size_t SceneEntries::variant_at(const PerAxis& on_axes) const {
   std::size_t variant = 0;
-  for (const Axis axis : kVariantAxes) variant = variant * counts_[axis] + place[axis];
+  for (const Axis axis : kVariantAxes) variant = variant * counts_[axis] + on_axes[axis];
   return variant;
 }
 
-OpticalConstants SceneEntries::index_at(const PerAxis& place) const {
-  const auto at = [&](Axis axis, double own) { return axes_[axis].empty() ? own : axes_[axis][place[axis]]; };
+OpticalConstants SceneEntries::index_at(const PerAxis& on_axes) const {
+  const auto at = [&](Axis axis, double of_scene) {
+    return axes_[axis].empty() ? of_scene : axes_[axis][on_axes[axis]];
+  };
   return {at(Axis::kN, index_.n), at(Axis::kK, index_.k)};
 }
 
 SceneEntry SceneEntries::operator[](std::size_t entry) const {
   if (!is_grid_) return points_[entry];
-  const PerAxis at = place(entry);
+  const PerAxis at = axis_positions(entry);
   SceneEntry result;
   result.theta_deg = theta_deg()[at[Axis::kTheta]];
   result.shape = {sigma()[at[Axis::kSigma]], q()[at[Axis::kQ]]};
@@ -122,11 +124,11 @@ SceneEntries SceneEntries::part(const PerAxis& first, const PerAxis& count) cons
 }
 
 std::optional<std::size_t> SceneEntries::position_of(std::size_t in_whole) const {
-  const PerAxis place = place_of(in_whole, whole_);
+  const PerAxis on_axes = positions_on_axes(in_whole, whole_);
   std::size_t position = 0;
-  for (std::size_t i = 0; i < place.size(); ++i) {
-    if (place[i] < first_[i] || place[i] >= first_[i] + counts_[i]) return std::nullopt;
-    position = position * counts_[i] + place[i] - first_[i];
+  for (std::size_t i = 0; i < on_axes.size(); ++i) {
+    if (on_axes[i] < first_[i] || on_axes[i] >= first_[i] + counts_[i]) return std::nullopt;
+    position = position * counts_[i] + on_axes[i] - first_[i];
   }
   return position;
 }

@@ -27,7 +27,7 @@ Axes axes_of(std::vector<double> theta_deg, std::vector<double> sigma, std::vect
 Axes part_of(const Axes& axes, const PerAxis& first, const PerAxis& count);
 
 /// Index on each axis of the entry at a position of a table.
-PerAxis place_of(std::size_t position, const PerAxis& counts);
+PerAxis positions_on_axes(std::size_t position, const PerAxis& counts);
 
 /// Number of values on each axis, 1 for an empty axis; and the product of these numbers.
 PerAxis counts_of(const Axes& axes);
@@ -103,15 +103,15 @@ class SceneEntries {
   const std::vector<double>& theta_deg() const { return axes_[Axis::kTheta]; }
   const std::vector<double>& sigma() const { return axes_[Axis::kSigma]; }
   const std::vector<double>& q() const { return axes_[Axis::kQ]; }
-  PerAxis place(std::size_t entry) const { return place_of(entry, counts_); }
+  PerAxis axis_positions(std::size_t entry) const { return positions_on_axes(entry, counts_); }
   /// Entries that differ only in sigma and q.
   std::size_t entries_per_direction() const { return sigma().size() * q().size(); }
   const OpticalConstants& index() const { return index_; }
   /// The variant of an entry of a grid.
-  std::size_t variant_at(const PerAxis& place) const;
+  std::size_t variant_at(const PerAxis& on_axes) const;
   bool has_own_index() const { return !axes_[Axis::kN].empty() || !axes_[Axis::kK].empty(); }
   /// The index of an entry. Domain: a grid with an axis of n or k.
-  OpticalConstants index_at(const PerAxis& place) const;
+  OpticalConstants index_at(const PerAxis& on_axes) const;
 
   /// The entries at some positions, as points with only the variants that they use.
   SceneEntries chosen(std::span<const std::size_t> positions) const;

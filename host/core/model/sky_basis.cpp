@@ -33,15 +33,15 @@ constexpr double kHorizonPower = 4.0;
 LeastSquares::LeastSquares(const Eigen::MatrixXd& columns)
     : orthonormal_(columns), triangle_(Eigen::MatrixXd::Zero(columns.cols(), columns.cols())) {
   for (Eigen::Index i = 0; i < columns.cols(); ++i) {
-    Eigen::VectorXd own = columns.col(i);
+    Eigen::VectorXd column = columns.col(i);
     const auto before = orthonormal_.leftCols(i);
     for (int pass = 0; pass < 2; ++pass) {
-      const Eigen::VectorXd parts = before.transpose() * own;
-      own -= before * parts;
+      const Eigen::VectorXd parts = before.transpose() * column;
+      column -= before * parts;
       triangle_.col(i).head(i) += parts;
     }
-    triangle_(i, i) = own.norm();
-    orthonormal_.col(i) = own / triangle_(i, i);
+    triangle_(i, i) = column.norm();
+    orthonormal_.col(i) = column / triangle_(i, i);
   }
 }
 

@@ -77,10 +77,10 @@ SmoothAbsorptance covered_absorptance(const FacetOptics& optics, double cosine) 
 }
 
 /// (R_s - R_p) / sin^2: both reflectances agree at normal incidence, next to which it is a straight line in sin^2.
-double split_of(const FacetOptics& optics, double cosine, const SmoothAbsorptance& own) {
+double split_of(const FacetOptics& optics, double cosine, const SmoothAbsorptance& absorbed_here) {
   constexpr double kStep = 1e-5;
   const double sin2 = (1.0 - cosine) * (1.0 + cosine);
-  if (sin2 >= kStep) return (own.p - own.s) / sin2;
+  if (sin2 >= kStep) return (absorbed_here.p - absorbed_here.s) / sin2;
   const auto at = [&](double square) {
     const SmoothAbsorptance absorbed = covered_absorptance(optics, std::sqrt(1.0 - square));
     return (absorbed.p - absorbed.s) / square;
@@ -98,11 +98,11 @@ ReflectedAmplitudes film_amplitudes(const FacetOptics& optics, double cosine) {
   waves.push_back(wave_in(optics.index, cosine));
   ReflectedAmplitudes r = interface_amplitudes(waves[waves.size() - 2], waves.back());
   for (std::size_t j = optics.films.size(); j-- > 0;) {
-    const ReflectedAmplitudes own = interface_amplitudes(waves[j], waves[j + 1]);
+    const ReflectedAmplitudes top = interface_amplitudes(waves[j], waves[j + 1]);
     const std::complex<double> turn =
         std::exp(std::complex<double>(0.0, 2.0 * kTwoPi * optics.films[j].thickness) * waves[j + 1].q);
-    r = {quotient(own.s + r.s * turn, 1.0 + own.s * r.s * turn),
-         quotient(own.p + r.p * turn, 1.0 + own.p * r.p * turn)};
+    r = {quotient(top.s + r.s * turn, 1.0 + top.s * r.s * turn),
+         quotient(top.p + r.p * turn, 1.0 + top.p * r.p * turn)};
   }
   return r;
 }

@@ -227,17 +227,17 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
                                  double cos_theta_i, std::span<const Scattered> scattered) const {
   const bool bistatic = scene_.geometry.mode == Mode::kBistatic;
   PointResult result;
-  boost::container::small_vector<Reflectance, 1> own;  // most scenes have one sample and many entries
+  boost::container::small_vector<Reflectance, 1> reflected;  // most scenes have one sample and many entries
   boost::container::small_vector<DiffuseSample, 1> diffuse;
   boost::container::small_vector<DiffuseLight, 1> diffuse_beam;
   for (std::size_t j = 0; j < moments.size(); ++j) {
     diffuse.push_back(
         {optics.diffuse[j].rho(cos_theta), optics.diffuse_beyond_mean.empty() ? 0.0 : optics.diffuse_beyond_mean[j]});
     if (bistatic) diffuse_beam.push_back(optics.diffuse[j].beam(cos_theta_i, cos_theta));
-    own.push_back(reflectance(scene_.surface, moments[j], cos_theta, diffuse[j].rho));
-    if (is_unphysical(own.back())) result.status |= kReflectanceOutsideZeroToOne;
+    reflected.push_back(reflectance(scene_.surface, moments[j], cos_theta, diffuse[j].rho));
+    if (is_unphysical(reflected.back())) result.status |= kReflectanceOutsideZeroToOne;
   }
-  const std::span<const Reflectance> reflectances(own.data(), own.size());
+  const std::span<const Reflectance> reflectances(reflected.data(), reflected.size());
   const EmissionModel model = emission_model(scene_);
   const auto emissivities_of = [&](EmissionModel of) {
     boost::container::small_vector<Emissivity, 1> list;
@@ -245,7 +245,7 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
       list.push_back(of == EmissionModel::kFresnel ? fresnel_emissivity(optics.facets[j], cos_theta)
                      : of == EmissionModel::kDirect
                          ? direct_emissivity(scene_.surface, moments[j], cos_theta, diffuse[j].rho)
-                         : kirchhoff_emissivity(own[j]));
+                         : kirchhoff_emissivity(reflected[j]));
     }
     return list;
   };

@@ -8,8 +8,8 @@
 #include <dolp/results.hpp>
 #include "model/direction.hpp"
 #include "model/moments.hpp"
+#include "model/scattering.hpp"
 #include "radiometry/diffuse.hpp"
-#include "radiometry/scattered.hpp"
 #include "scene/scene.hpp"
 #include "spectrum/sky_factors.hpp"
 #include "spectrum/spectral_rule.hpp"

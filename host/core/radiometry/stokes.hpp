@@ -6,8 +6,8 @@
 
 #include "model/choices.hpp"
 #include "model/moments.hpp"
+#include "model/scattering.hpp"
 #include "radiometry/reflectance.hpp"
-#include "radiometry/scattered.hpp"
 #include "scene/scene.hpp"
 #include "spectrum/sky_factors.hpp"
 #include "spectrum/spectral_rule.hpp"

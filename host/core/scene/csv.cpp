@@ -57,12 +57,7 @@ std::optional<std::size_t> position_of(const std::vector<CsvColumn>& columns, st
 
 /// Refuses a line with semicolons, tabs or blanks instead of commas.
 void check_separators(const CsvReader& row, const std::vector<CsvColumn>& columns) {
-  struct Separator {
-    char character;
-    const char* name;
-  };
-  for (const auto& [character, name] :
-       {Separator{';', "semicolons"}, Separator{'\t', "tabs"}, Separator{' ', "blanks"}}) {
+  for (const auto& [character, name] : {std::pair(';', "semicolons"), {'\t', "tabs"}, {' ', "blanks"}}) {
     for (const std::string_view cell : row.cells()) {
       const std::vector<std::string_view> pieces = split(cell, character);
       const bool is_row = std::ranges::any_of(

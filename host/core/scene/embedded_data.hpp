@@ -1,23 +1,21 @@
-// The data files that are part of the program, embedded when it is built: no files are searched at run time.
+// The files that are part of the program, embedded when it is built: no files are searched at run time.
 #pragma once
 
 #include <string_view>
 
 namespace dolp {
 
-/// host/data/CITATION.cff.
+// In host/data.
 std::string_view embedded_citation_cff();
-
-/// host/data/materials.csv.
+std::string_view embedded_hard_cases_csv();
 std::string_view embedded_materials_csv();
-
-/// host/data/materials_sources.csv.
 std::string_view embedded_materials_sources_csv();
+std::string_view embedded_sun_csv();
 
-/// host/scenes/stainless_steel.toml.
+// In host/scenes.
 std::string_view embedded_stainless_steel_toml();
 
-/// host/data/sun.csv.
-std::string_view embedded_sun_csv();
+// In host/tools.
+std::string_view embedded_plot_fit_py();
 
 }  // namespace dolp

@@ -79,12 +79,12 @@ void parse_csv(Material& material, IndexRows& rows, std::string_view text) {
   rows.end_table();
 }
 
-std::string place(const Material& material, const YAML::Mark& mark) {
+std::string where(const Material& material, const YAML::Mark& mark) {
   return fmt::format("{}:{}: ", material.source, std::max(mark.line, 0) + 1);
 }
 
 [[noreturn]] void fail(const Material& material, const YAML::Node& node, const std::string& what) {
-  throw InputError(place(material, node.Mark()) + what);
+  throw InputError(where(material, node.Mark()) + what);
 }
 
 /// The text of a key that the item must have.
@@ -201,9 +201,9 @@ void parse_yaml(Material& material, IndexRows& rows, const std::string& text) {
     if (!data.IsSequence()) fail(material, data, "DATA: must be a list of items");
     for (const YAML::Node& item : data) read_item(material, rows, item);
   } catch (const YAML::DeepRecursion& error) {
-    throw InputError(place(material, error.mark) + "nested too deeply");
+    throw InputError(where(material, error.mark) + "nested too deeply");
   } catch (const YAML::Exception& error) {
-    throw InputError(place(material, error.mark) + "not valid YAML: " + one_line(error.msg));
+    throw InputError(where(material, error.mark) + "not valid YAML: " + one_line(error.msg));
   }
 }
 

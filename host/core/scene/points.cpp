@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <dolp/errors.hpp>
 #include <iterator>
@@ -43,19 +42,15 @@ struct ColumnRule {
 
 /// The rules of the keys of films among some names.
 void append_film_rules(std::vector<ColumnRule>& rules, const std::vector<std::string>& names) {
-  struct Part {
-    const char* name;
-    FilmValue::Part part;
-  };
-  constexpr std::array<Part, 3> kParts = {
-      {{"n", FilmValue::Part::kN}, {"k", FilmValue::Part::kK}, {"thickness_um", FilmValue::Part::kThickness}}};
+  static const std::map<std::string, FilmValue::Part> kParts = {
+      {"n", FilmValue::Part::kN}, {"k", FilmValue::Part::kK}, {"thickness_um", FilmValue::Part::kThickness}};
   for (const std::string& name : names) {
     const SceneKey* const key = find_scene_key(name);
     if (!key || key->description.layer == 0 || std::ranges::find(rules, name, &ColumnRule::name) != rules.end())
       continue;
-    const auto part = std::ranges::find(kParts, name.substr(name.rfind('.') + 1), &Part::name);
+    const auto part = kParts.find(name.substr(name.rfind('.') + 1));
     if (part == kParts.end()) continue;
-    rules.push_back({name, key->description.range, FilmColumn{key->description.layer - 1, part->part}});
+    rules.push_back({name, key->description.range, FilmColumn{key->description.layer - 1, part->second}});
   }
 }
 
@@ -128,22 +123,22 @@ void check_required(Points& points, const std::vector<ColumnRule>& rules) {
 /// Makes the columns of a file that are not left out present in `points`.
 void add_columns(const CsvReader& header, const CsvColumns& columns, const std::vector<ColumnRule>& rules,
                  Points& points) {
-  std::vector<std::string_view> own;
+  std::vector<std::string_view> kept;
   for (std::size_t cell = 0; cell < columns.cells().size(); ++cell) {
     const std::string_view name = header.cells()[cell];
     if (const std::optional<std::size_t> column = columns.cells()[cell]) {
       add_column(points, rules[*column]);
-      own.push_back(name);
+      kept.push_back(name);
     } else {
       points.left_out.emplace_back(name);
     }
   }
-  points.header = fmt::format("{}", fmt::join(own, ","));
+  points.header = fmt::format("{}", fmt::join(kept, ","));
 }
 
 void parse_row(const CsvReader& row, const CsvColumns& columns, const std::vector<ColumnRule>& rules, Points& points) {
   columns.check_width(row);
-  std::vector<std::string_view> own;
+  std::vector<std::string_view> kept;
   for (std::size_t cell = 0; cell < columns.cells().size(); ++cell) {
     if (!columns.cells()[cell]) continue;
     const ColumnRule& rule = rules[*columns.cells()[cell]];
@@ -155,9 +150,9 @@ void parse_row(const CsvReader& row, const CsvColumns& columns, const std::vecto
     } else {
       rule.of(points)->push_back(rule.value(columns.number_at(row, cell)));
     }
-    own.push_back(row.cells()[cell]);
+    kept.push_back(row.cells()[cell]);
   }
-  points.rows.push_back(fmt::format("{}", fmt::join(own, ",")));
+  points.rows.push_back(fmt::format("{}", fmt::join(kept, ",")));
   points.row_lines.push_back(static_cast<std::uint32_t>(row.line_number()));
   ++points.count;
 }
@@ -229,9 +224,10 @@ Points points_of(std::span<const Column> columns, std::size_t count, PointsKind 
       throw InputError(fmt::format("{}: {} = {}: out of range; must be a number in {}", points.where(row), rule.name,
                                    format_number(values[row]), rule.range.text()));
     }
-    std::vector<double>& own = add_column(points, rule);
-    values.size() == count ? own.assign(values.begin(), values.end()) : own.assign(count, values[0]);
-    std::ranges::transform(own, own.begin(), [&](double number) { return rule.value(number); });
+    std::vector<double>& column_values = add_column(points, rule);
+    values.size() == count ? column_values.assign(values.begin(), values.end())
+                           : column_values.assign(count, values[0]);
+    std::ranges::transform(column_values, column_values.begin(), [&](double number) { return rule.value(number); });
   }
   check_required(points, rules);
   return points;

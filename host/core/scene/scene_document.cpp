@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdint>
 #include <dolp/errors.hpp>
 #include <limits>
 #include <optional>
@@ -97,30 +96,6 @@ void insert_text(const std::string& text, bool is_text_key, const Insert& insert
   insert(text);
 }
 
-/// Calls `insert` with a value as TOML has it.
-template <class Insert>
-struct ValueInserter {
-  const Insert& insert;
-  bool is_text_key;
-
-  void operator()(std::monostate) const {}
-  void operator()(bool flag) const { insert(flag); }
-  void operator()(double number) const { insert(number); }
-  void operator()(const std::string& text) const { insert(text); }
-  void operator()(const std::vector<double>& numbers) const {
-    toml::array list;
-    for (const double number : numbers) list.push_back(number);
-    insert(list);
-  }
-  void operator()(const AxisRange& range) const {
-    insert(toml::table{{"from", range.from},
-                       {"to", range.to},
-                       {"count", static_cast<std::int64_t>(range.count)},
-                       {"spacing", range.is_logarithmic ? "log" : "linear"}});
-  }
-  void operator()(const TomlText& toml) const { insert_text(toml.text, is_text_key, insert); }
-};
-
 }  // namespace
 
 std::string toml_text(const toml::node& node, bool is_escaped) {
@@ -182,8 +157,12 @@ void SceneDocument::apply(const Setting& setting) {
   drop_other_alternatives(key);
   const SceneKey* known = find_scene_key(key);
   const auto insert = [&](const auto& v) { table.insert_or_assign(leaf, v); };
-  const bool is_text_key = known && known->description.type == Key::Type::kText;
-  std::visit(ValueInserter<decltype(insert)>{insert, is_text_key}, setting.value.content());
+  if (const auto* text = std::get_if<std::string>(&setting.value.content())) {
+    insert(*text);  // it need not be UTF-8, as TOML must
+  } else {
+    const bool is_of_user = std::holds_alternative<TomlText>(setting.value.content());
+    insert_text(value, is_of_user && known && known->description.type == Key::Type::kText, insert);
+  }
   origins_[key] = origin;
 }
 

@@ -54,12 +54,12 @@ std::optional<KeyValue> value_at(const Content* at) {
 
 bool always(const SceneValues&) { return true; }
 
-/// A key whose value is at the address that `place` gives in a scene, or a null pointer; the scene has the value if
+/// A key whose value is at the address that `address` gives in a scene, or a null pointer; the scene has the value if
 /// `is_there`.
-template <class Place, class IsThere>
-SceneKey key_at(Key description, Place place, IsThere is_there) {
-  return {std::move(description), [place](SceneValues& s, const KeyValue& v) { assign(*place(s), v); },
-          [place, is_there](const SceneValues& s) { return is_there(s) ? value_at(place(s)) : std::nullopt; }};
+template <class Address, class IsThere>
+SceneKey key_at(Key description, Address address, IsThere is_there) {
+  return {std::move(description), [address](SceneValues& s, const KeyValue& v) { assign(*address(s), v); },
+          [address, is_there](const SceneValues& s) { return is_there(s) ? value_at(address(s)) : std::nullopt; }};
 }
 
 Key described(const std::string& key, Type type, const char* unit, const NumberRange& range, const char* fallback,
@@ -67,33 +67,33 @@ Key described(const std::string& key, Type type, const char* unit, const NumberR
   return {key, type, unit, range, std::move(words), fallback, meaning};
 }
 
-/// A key that changes more of a scene than the number at its place.
+/// A key that changes more of a scene than the number at its address.
 SceneKey with_set(SceneKey key, std::function<void(SceneValues& scene, const KeyValue& value)> set) {
   key.set = std::move(set);
   return key;
 }
 
-template <class Place, class IsThere = decltype(&always)>
+template <class Address, class IsThere = decltype(&always)>
 SceneKey number(const std::string& key, const char* unit, const NumberRange& range, const char* fallback,
-                const char* meaning, Place place, IsThere is_there = always) {
-  return key_at(described(key, Type::kNumber, unit, range, fallback, meaning), place, is_there);
+                const char* meaning, Address address, IsThere is_there = always) {
+  return key_at(described(key, Type::kNumber, unit, range, fallback, meaning), address, is_there);
 }
 
-template <class Choice, class Place>
-SceneKey choice(const char* key, Choice fallback, const char* meaning, Place place) {
+template <class Choice, class Address>
+SceneKey choice(const char* key, Choice fallback, const char* meaning, Address address) {
   const auto words = words_of(fallback);
-  return key_at(described(key, Type::kWord, "", {}, name_of(fallback), meaning, {words.begin(), words.end()}), place,
+  return key_at(described(key, Type::kWord, "", {}, name_of(fallback), meaning, {words.begin(), words.end()}), address,
                 always);
 }
 
-template <class Place>
-SceneKey flag(const char* key, const char* meaning, Place place) {
-  return key_at(described(key, Type::kFlag, "", {}, "false", meaning, {"false", "true"}), place, always);
+template <class Address>
+SceneKey flag(const char* key, const char* meaning, Address address) {
+  return key_at(described(key, Type::kFlag, "", {}, "false", meaning, {"false", "true"}), address, always);
 }
 
-template <class Place, class IsThere = decltype(&always)>
-SceneKey text(const std::string& key, const char* meaning, Place place, IsThere is_there = always) {
-  return key_at(described(key, Type::kText, "", {}, "", meaning), place, is_there);
+template <class Address, class IsThere = decltype(&always)>
+SceneKey text(const std::string& key, const char* meaning, Address address, IsThere is_there = always) {
+  return key_at(described(key, Type::kText, "", {}, "", meaning), address, is_there);
 }
 
 SceneKey grid_axis(Axis axis, const char* fallback, const char* meaning) {
@@ -103,8 +103,9 @@ SceneKey grid_axis(Axis axis, const char* fallback, const char* meaning) {
       [axis](auto& s) { return &s.grid[axis]; }, always);
 }
 
-void append(std::vector<SceneKey>& keys, std::vector<SceneKey> more) {
-  std::move(more.begin(), more.end(), std::back_inserter(keys));
+template <class Element>
+void append(std::vector<Element>& all, std::vector<Element> more) {
+  std::move(more.begin(), more.end(), std::back_inserter(all));
 }
 
 bool has_own_index(const SceneValues& s) {
@@ -165,10 +166,10 @@ std::vector<SceneKey> layer_keys(std::size_t layer) {
     return has_layer(s) && s.names.coating[layer - 1].material.empty() &&
            s.names.coating[layer - 1].material_file.empty();
   };
-  const auto index_place = [=](auto OpticalConstants::*part) {
+  const auto index_address = [=](auto OpticalConstants::*part) {
     return [=](auto& s) { return &(layer_of(s, layer).material.constant.*part); };
   };
-  const auto name_place = [=](auto SceneNames::OfLayer::*name) {
+  const auto name_address = [=](auto SceneNames::OfLayer::*name) {
     return [=](auto& s) {
       layer_of(s, layer);
       return &(s.names.coating[layer - 1].*name);
@@ -176,12 +177,12 @@ std::vector<SceneKey> layer_keys(std::size_t layer) {
   };
   std::vector<SceneKey> keys = {
       number(begin + "n", "1", kNRange, "", "n of a film on the surface; layers count from the outside in",
-             index_place(&OpticalConstants::n), has_index),
-      number(begin + "k", "1", kKRange, "0", "k of the film, with n", index_place(&OpticalConstants::k), has_index),
+             index_address(&OpticalConstants::n), has_index),
+      number(begin + "k", "1", kKRange, "0", "k of the film, with n", index_address(&OpticalConstants::k), has_index),
       text(begin + "material", "a built-in material by name, instead of the film's n and k",
-           name_place(&SceneNames::OfLayer::material), has_layer),
+           name_address(&SceneNames::OfLayer::material), has_layer),
       text(begin + "material_file", "your own n and k of the film, instead of n and k",
-           name_place(&SceneNames::OfLayer::material_file), has_layer),
+           name_address(&SceneNames::OfLayer::material_file), has_layer),
       number(
           begin + "thickness_um", "um", kThicknessUmRange, "required", "thickness of the film",
           [=](auto& s) { return &layer_of(s, layer).thickness_um; }, has_layer),
@@ -382,48 +383,52 @@ const std::vector<KeyChoice>& key_choices() {
   static const std::vector<KeyChoice> choices = [] {
     std::vector<KeyChoice> all = {
         {"surface",
-         {{"surface.n", "surface.k"}, {"surface.material"}, {"surface.material_file"}, {"surface.reflectance_file"}},
-         true,
-         {"grid.n", "grid.material"}},
-        {"surface", {{"surface.sigma", "grid.sigma"}, {"surface.wind_m_s", "grid.wind_m_s"}}, true, {}, true},
-        {"source", {{"source.irradiance"}, {"source.relative_irradiance"}, {"source.preset"}, {"source.file"}}},
-        {"surroundings", {{"surroundings.temperature_K"}, {"surroundings.profile"}}},
-        {"path", {{"path.temperature_K"}, {"path.radiance"}}, false},
-        {"spectrum", {{"spectrum.wavelength_um"}, {"spectrum.band_um"}}, true, {"grid.wavelength_um", "grid.band_um"}},
+         {{{"surface.n", "grid.n"}, {"surface.k", "grid.k"}},
+          {{"surface.material"}},
+          {{"surface.material_file"}},
+          {{"surface.reflectance_file"}},
+          {{"grid.material"}}}},
+        {"surface", {{{"surface.sigma", "grid.sigma"}}, {{"surface.wind_m_s", "grid.wind_m_s"}}}},
+        {"source", {{{"source.irradiance"}}, {{"source.relative_irradiance"}}, {{"source.preset"}}, {{"source.file"}}}},
+        {"surroundings", {{{"surroundings.temperature_K"}}, {{"surroundings.profile"}}}},
+        {"path", {{{"path.temperature_K"}}, {{"path.radiance"}}}, false},
+        {"spectrum", {{{"spectrum.wavelength_um", "grid.wavelength_um"}}, {{"spectrum.band_um"}}, {{"grid.band_um"}}}},
     };
     for (std::size_t layer = 1; layer <= kMostLayers; ++layer) {
       const std::string table = fmt::format("surface.coating.{}", layer);
       const auto key = [&](const char* name) { return table + '.' + name; };
-      all.push_back({table, {{key("n"), key("k")}, {key("material")}, {key("material_file")}}, true, {}, false, true});
+      all.push_back({table, {{{key("n")}, {key("k")}}, {{key("material")}}, {{key("material_file")}}}, true, true});
     }
     return all;
   }();
   return choices;
 }
 
-namespace {
-
-std::vector<std::string> rivals_of(const std::string& key) {
-  std::vector<std::string> rivals;
-  for (const KeyChoice& choice : key_choices()) {
-    const auto own = std::ranges::find_if(choice.alternatives, [&](const std::vector<std::string>& alternative) {
-      return std::ranges::find(alternative, key) != alternative.end();
-    });
-    if (own == choice.alternatives.end()) continue;
-    for (auto other = choice.alternatives.begin(); other != choice.alternatives.end(); ++other) {
-      if (other != own) rivals.insert(rivals.end(), other->begin(), other->end());
-    }
-  }
-  return rivals;
+std::vector<std::string> KeyAlternative::keys() const {
+  std::vector<std::string> all = heads;
+  append(all, companions);
+  return all;
 }
 
-}  // namespace
+std::vector<std::string> keys_replaced_by(std::string_view key) {
+  std::vector<std::string> replaced;
+  for (const KeyChoice& choice : key_choices()) {
+    const auto has_key = [key](const KeyAlternative& alternative) {
+      return std::ranges::count(alternative.keys(), key) > 0;
+    };
+    if (std::ranges::none_of(choice.alternatives, has_key)) continue;
+    for (const KeyAlternative& other : choice.alternatives) {
+      if (!has_key(other)) append(replaced, other.keys());
+    }
+  }
+  return replaced;
+}
 
 const std::vector<Key>& keys() {
   static const std::vector<Key> descriptions = [] {
     std::vector<Key> all;
     for (const SceneKey& key : scene_key_table()) all.push_back(key.description);
-    for (Key& key : all) key.rivals = rivals_of(key.key);
+    for (Key& key : all) key.rivals = keys_replaced_by(key.key);
     return all;
   }();
   return descriptions;
@@ -434,41 +439,6 @@ const SceneKey* find_scene_key(std::string_view key) {
     if (known.description.key == key) return &known;
   }
   return nullptr;
-}
-
-const std::vector<AxisExclusion>& axis_exclusions() {
-  static const std::vector<AxisExclusion> exclusions = [] {
-    const std::vector<std::string> materials = {"surface.material", "surface.material_file",
-                                                "surface.reflectance_file"};
-    std::vector<std::string> indices = materials;
-    indices.insert(indices.end(), {"surface.n", "surface.k", "grid.n", "grid.k"});
-    return std::vector<AxisExclusion>{
-        {"grid.wavelength_um", {"spectrum.band_um"}},
-        {"grid.band_um", {"spectrum.wavelength_um", "spectrum.band_um", "grid.wavelength_um"}},
-        {"grid.n", materials},
-        {"grid.k", materials},
-        {"grid.material", indices}};
-  }();
-  return exclusions;
-}
-
-std::vector<std::string> keys_replaced_by(std::string_view key) {
-  std::vector<std::string> replaced;
-  for (const auto& [axis, others] : axis_exclusions()) {
-    if (axis == key) replaced.insert(replaced.end(), others.begin(), others.end());
-    if (std::ranges::find(others, key) != others.end()) replaced.push_back(axis);
-  }
-  for (const KeyChoice& choice : key_choices()) {
-    const auto chooses = [&](const std::vector<std::string>& alternative) {
-      return choice.does_each_choose ? std::ranges::find(alternative, key) != alternative.end()
-                                     : alternative.front() == key;
-    };
-    if (std::ranges::none_of(choice.alternatives, chooses)) continue;
-    for (const auto& other : choice.alternatives) {
-      if (!chooses(other)) replaced.insert(replaced.end(), other.begin(), other.end());
-    }
-  }
-  return replaced;
 }
 
 std::vector<std::string> scene_tables() {

@@ -28,14 +28,20 @@ struct SceneKey {
   std::function<std::optional<KeyValue>(const SceneValues& scene)> value;
 };
 
-/// Alternatives of which one is chosen; each is a list of keys that belong together, and its first key chooses it.
+/// Keys that belong together. Any of `heads` chooses the alternative; `companions` need one of these beside them.
+struct KeyAlternative {
+  std::vector<std::string> heads;
+  std::vector<std::string> companions = {};
+
+  std::vector<std::string> keys() const;  ///< heads, then companions
+};
+
+/// Alternatives of which a scene has at most one.
 struct KeyChoice {
   std::string table;
-  std::vector<std::vector<std::string>> alternatives;
-  bool is_required = true;                    ///< if the table is there, or must be
-  std::vector<std::string> substitutes = {};  ///< keys that replace the choice
-  bool does_each_choose = false;              ///< any key of an alternative chooses it, with or without the others
-  bool is_of_layer = false;                   ///< the table is a layer of a coating, which a scene may lack
+  std::vector<KeyAlternative> alternatives;
+  bool is_required = true;   ///< if the table is there, or must be
+  bool is_of_layer = false;  ///< the table is a layer of a coating, which a scene may lack
 };
 
 inline constexpr std::size_t kMostLayers = 16;  ///< most layers of a coating
@@ -44,15 +50,7 @@ const std::vector<SceneKey>& scene_key_table();
 const std::vector<KeyChoice>& key_choices();
 const SceneKey* find_scene_key(std::string_view key);
 
-/// An axis of the grid, and the keys that no scene has beside it.
-struct AxisExclusion {
-  std::string axis;
-  std::vector<std::string> others;
-};
-const std::vector<AxisExclusion>& axis_exclusions();
-
-/// The keys that a setting of `key` replaces: the keys of other alternatives if it chooses its own, and the keys that
-/// no scene has beside it.
+/// The keys that a setting of `key` replaces: the keys of other alternatives.
 std::vector<std::string> keys_replaced_by(std::string_view key);
 
 /// The tables in the order of the keys.

@@ -76,36 +76,29 @@ std::vector<std::string> document_keys(const SceneDocument& document) {
   return keys;
 }
 
-/// A key that does instead of an alternative, where the document has one.
-const std::string* substitute_key(const SceneDocument& document, const KeyChoice& choice) {
-  const auto found =
-      std::ranges::find_if(choice.substitutes, [&](const std::string& key) { return document.find(key); });
-  return found == choice.substitutes.end() ? nullptr : &*found;
-}
-
-/// The alternative that the document chooses; nullptr for none. Two are an error, and so is a companion without its
-/// key.
+/// The alternative that the document chooses; nullptr for none. Two are an error, and so is a companion without a head.
 const std::string* chosen_key(const SceneDocument& document, const KeyChoice& choice) {
+  const auto first_of = [&](const std::vector<std::string>& keys) -> const std::string* {
+    const auto found = std::ranges::find_if(keys, [&](const std::string& key) { return document.find(key); });
+    return found == keys.end() ? nullptr : &*found;
+  };
   const std::string* chosen = nullptr;
-  for (const auto& alternative : choice.alternatives) {
-    const auto found = std::ranges::find_if(alternative, [&](const std::string& key) { return document.find(key); });
-    if (found == alternative.end()) continue;
-    if (!choice.does_each_choose && !document.find(alternative.front())) {
-      if (!substitute_key(document, choice)) document.fail(*found, "needs " + alternative.front() + " beside it");
-      continue;
-    }
-    if (chosen) document.fail(*found, "cannot be combined with " + *chosen);
-    chosen = &*found;
+  for (const KeyAlternative& alternative : choice.alternatives) {
+    const std::string* const head = first_of(alternative.heads);
+    if (const std::string* const companion = first_of(alternative.companions); companion && !head)
+      document.fail(*companion, "needs " + alternative.heads.front() + " beside it");
+    if (chosen && head) document.fail(*head, "cannot be combined with " + *chosen);
+    chosen = head ? head : chosen;
   }
   return chosen;
 }
 
 void check_choice(const SceneDocument& document, const KeyChoice& choice) {
   const bool is_present = document.find(choice.table) != nullptr;
-  if (chosen_key(document, choice) || !choice.is_required || substitute_key(document, choice)) return;
+  if (chosen_key(document, choice) || !choice.is_required) return;
   if (!is_present && (is_effect_table(choice.table) || choice.is_of_layer)) return;
   std::vector<std::string> heads;
-  for (const auto& alternative : choice.alternatives) heads.push_back(alternative.front());
+  for (const KeyAlternative& alternative : choice.alternatives) heads.push_back(alternative.heads.front());
   document.fail(heads.front(), fmt::format("missing; must be {}, or give one of {}",
                                            find_scene_key(heads.front())->description.allowed(), join(heads)));
 }
@@ -231,7 +224,7 @@ Spectrum all_wavelengths(const SceneValues& scene) {
 /// Loads the material of the table `prefix_key`: the surface, or a layer of its coating. `own`: the material that a
 /// table has.
 void load_material(SceneValues& scene, const SceneDocument& document, const std::string& table, Material& material,
-                   std::string& name, const std::string& file, const KnownData* known, const Material* own) {
+                   std::string& name, const std::string& file, const KnownData* known, const Material* stored) {
   const bool is_file = document.find(table + ".material_file") != nullptr;
   if (!is_file && !document.find(table + ".material")) return;
   const std::string prefix = document.prefix(table + (is_file ? ".material_file" : ".material"));
@@ -241,8 +234,8 @@ void load_material(SceneValues& scene, const SceneDocument& document, const std:
     check_covers(known_everywhere, all, prefix);
     for (const double um : scene.grid[Axis::kWavelength]) check_formula(known_everywhere, {um, um}, prefix);
   };
-  if (own) {
-    material = *own;
+  if (stored) {
+    material = *stored;
     material.name = is_file ? file : name;
     if (material.is_constant()) return;
     material = fit_to_spectrum(material, scene.spectrum, prefix);
@@ -374,22 +367,12 @@ void load_profile(SceneValues& scene, const SceneDocument& document, const Known
   scene.surroundings->profile = std::make_shared<const SkyProfile>(std::move(*profile));
 }
 
-void check_axes(const SceneDocument& document) {
-  for (const auto& [axis, others] : axis_exclusions()) {
-    for (const std::string& other : others) {
-      if (document.find(axis) && document.find(other))
-        document.fail(document.first_set({axis, other}), fmt::format("{} and {} cannot be combined", axis, other));
-    }
-  }
-  if (document.find("grid.temperature_K"))
-    check_needs(document, "grid.temperature_K", {{document.find("emission") != nullptr, "the table [emission]"}});
-}
-
 /// Fills in quantities that the scene gives only as an axis: each takes the first value of its axis.
 void fill_from_grid(SceneValues& scene, const SceneDocument& document) {
   Axes& grid = scene.grid;
   OpticalConstants& index = scene.surface.material.constant;
-  check_axes(document);
+  if (document.find("grid.temperature_K"))
+    check_needs(document, "grid.temperature_K", {{document.find("emission") != nullptr, "the table [emission]"}});
   if (!grid[Axis::kWavelength].empty() && !document.find("spectrum.wavelength_um"))
     scene.spectrum = {grid[Axis::kWavelength].front(), grid[Axis::kWavelength].front()};
   if (!scene.bands.empty()) scene.spectrum = scene.bands.front();

@@ -14,14 +14,12 @@
 #include "base/hash.hpp"
 #include "base/text.hpp"
 #include "model/angles.hpp"
-#include "scene/csv.hpp"
-#include "scene/material_data.hpp"
+#include "scene/spectral_data.hpp"
 
 namespace dolp {
 namespace {
 
 constexpr std::size_t kMostZeniths = 1000;
-constexpr std::size_t kMostProfileRows = 100'000;
 
 // Zeniths that divide smooth stretches: Chebyshev points do not reach far beside a horizon where exp(-1/cos) is flat.
 constexpr std::array<double, 2> kDivisions_deg = {60.0, 85.0};
@@ -84,57 +82,6 @@ CsvColumns read_header(CsvReader& reader) {
                             kBackgroundTemperatureRange.text(), has_radiance ? "; both are there" : ""));
   }
   return columns;
-}
-
-struct ProfileRow {
-  double wavelength_um;  ///< 0 in a file without this column
-  double zenith_deg;
-  double value;
-  std::size_t line;
-};
-
-/// The rows of a file, sorted by wavelength, then by zenith.
-std::vector<ProfileRow> read_rows(CsvReader& row, const CsvColumns& columns) {
-  std::vector<ProfileRow> rows;
-  while (row.next()) {
-    if (rows.size() == kMostProfileRows) row.fail(fmt::format("too many rows; at most {}", kMostProfileRows));
-    rows.push_back({columns.number(row, "wavelength_um").value_or(0.0), columns.number(row, "zenith_deg").value(),
-                    columns.number(row, value_column(columns.has("radiance"))).value(), row.line_number()});
-  }
-  if (rows.empty()) row.fail("no rows; zenith_deg from 0 to 90 is expected");
-  std::ranges::stable_sort(rows, [](const ProfileRow& a, const ProfileRow& b) {
-    return std::pair(a.wavelength_um, a.zenith_deg) < std::pair(b.wavelength_um, b.zenith_deg);
-  });
-  return rows;
-}
-
-/// Refuses rows of one wavelength whose zeniths do not ascend from 0 to 90, or differ from `expected_deg` if there are
-/// any.
-void check_zeniths(std::span<const ProfileRow> rows, const std::vector<double>& expected_deg, const std::string& name) {
-  const auto fail = [&](const ProfileRow& row, const std::string& what) {
-    throw InputError(fmt::format("{}:{}: zenith_deg = {}: {}", name, row.line, row.zenith_deg, what));
-  };
-  if (rows.front().zenith_deg != 0.0) fail(rows.front(), "must be 0 in one row, and 90 in another");
-  if (rows.back().zenith_deg != 90.0) fail(rows.back(), "must be 90 in one row");
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    if (rows[i].zenith_deg == rows[i - 1].zenith_deg) fail(rows[i], fmt::format("is in line {} too", rows[i - 1].line));
-  }
-  for (std::size_t i = 0; i < rows.size() && !expected_deg.empty(); ++i) {
-    if (rows[i].zenith_deg == expected_deg[i]) continue;
-    fail(rows[i], fmt::format("each wavelength must have the same zeniths, and the first has {}", expected_deg[i]));
-  }
-}
-
-/// Position of the interval of an ascending list that holds a value, and the value's share of the way through it.
-struct Between {
-  std::size_t first = 0;
-  double share = 0.0;
-};
-Between between(const std::vector<double>& list, double value) {
-  if (list.size() < 2) return {};
-  const auto above = std::upper_bound(list.begin() + 1, list.end() - 1, value);
-  const auto first = static_cast<std::size_t>(above - list.begin()) - 1;
-  return {first, std::clamp((value - list[first]) / (list[first + 1] - list[first]), 0.0, 1.0)};
 }
 
 }  // namespace
@@ -256,22 +203,17 @@ std::optional<SkyProfile> built_in_sky(std::string_view name, const SkyAir& air,
 SkyProfile parse_sky_profile(std::string_view text, const std::string& name) {
   CsvReader reader(text, name);
   const CsvColumns columns = read_header(reader);
-  const std::vector<ProfileRow> rows = read_rows(reader, columns);
+  const bool is_radiance = columns.has("radiance");
   SkyProfile profile;
-  profile.kind = columns.has("radiance") ? SkyProfile::Kind::kRadiance : SkyProfile::Kind::kTemperature;
-  for (auto first = rows.begin(); first != rows.end();) {
-    const auto end = std::upper_bound(first, rows.end(), first->wavelength_um,
-                                      [](double um, const ProfileRow& row) { return um < row.wavelength_um; });
-    check_zeniths({first, end}, profile.zenith_deg, name);
-    if (columns.has("wavelength_um")) profile.wavelength_um.push_back(first->wavelength_um);
-    if (profile.zenith_deg.empty())
-      std::transform(first, end, std::back_inserter(profile.zenith_deg),
-                     [](const ProfileRow& row) { return row.zenith_deg; });
-    first = end;
+  profile.kind = is_radiance ? SkyProfile::Kind::kRadiance : SkyProfile::Kind::kTemperature;
+  const std::vector<AngleRow> rows = read_angle_rows(reader, columns, "zenith_deg", {value_column(is_radiance)}, name);
+  for (const AngleRow& row : rows) {
+    if (row.wavelength_um == rows.front().wavelength_um) profile.zenith_deg.push_back(row.angle_deg);
+    if (row.angle_deg == 0.0 && row.wavelength_um > 0.0) profile.wavelength_um.push_back(row.wavelength_um);
+    profile.values.push_back(row.values.front());
   }
   if (profile.zenith_deg.size() > kMostZeniths)
     reader.fail(fmt::format("{} zeniths are too many; at most {}", profile.zenith_deg.size(), kMostZeniths));
-  for (const ProfileRow& row : rows) profile.values.push_back(row.value);
   return profile;
 }
 

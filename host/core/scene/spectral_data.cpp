@@ -10,7 +10,6 @@
 
 #include <span>
 #include "base/text.hpp"
-#include "scene/csv.hpp"
 #include "scene/embedded_data.hpp"
 #include "scene/material_data.hpp"
 
@@ -42,58 +41,25 @@ bool covers(const SpectralTable& table, const Spectrum& spectrum) {
   return table.wavelength_um.front() <= spectrum.min_um && spectrum.max_um <= table.wavelength_um.back();
 }
 
-constexpr std::size_t kMostReflectanceRows = 100'000;
+constexpr std::size_t kMostAngleRows = 100'000;
 constexpr double kLargestSplitAtNormal = 0.01;
 
-struct ReflectanceRow {
-  double wavelength_um;  ///< 0 in a file without this column
-  double beta_deg;
-  double r_s;
-  double r_p;
-  std::size_t line;
-};
-
-std::vector<ReflectanceRow> read_rows(CsvReader& row) {
-  const CsvColumns columns = CsvColumns::first_of(row, {{"beta_deg", kZenithDegRange, true},
-                                                        {"r_s", kFractionRange, true},
-                                                        {"r_p", kFractionRange, true},
-                                                        {"wavelength_um", kWavelengthUmRange}});
-  std::vector<ReflectanceRow> rows;
-  while (row.next()) {
-    if (rows.size() == kMostReflectanceRows) row.fail(fmt::format("too many rows; at most {}", kMostReflectanceRows));
-    rows.push_back({columns.number(row, "wavelength_um").value_or(0.0), columns.number(row, "beta_deg").value(),
-                    columns.number(row, "r_s").value(), columns.number(row, "r_p").value(), row.line_number()});
-  }
-  if (rows.empty()) row.fail("no rows; beta_deg from 0 to 90 is expected");
-  std::ranges::stable_sort(rows, [](const ReflectanceRow& a, const ReflectanceRow& b) {
-    return std::pair(a.wavelength_um, a.beta_deg) < std::pair(b.wavelength_um, b.beta_deg);
-  });
-  return rows;
-}
-
-/// The reflectances of rows of one wavelength.
-MeasuredReflectance measured_in(std::span<const ReflectanceRow> rows, const std::vector<double>& expected_deg,
-                                const std::string& path) {
-  const auto fail = [&](const ReflectanceRow& row, const std::string& what) {
-    throw InputError(fmt::format("{}:{}: {}", path, row.line, what));
+/// Refuses rows of one wavelength whose angles do not ascend from 0 to 90, or differ from the angles of `first`, the
+/// rows of the first wavelength.
+void check_angles(std::span<const AngleRow> rows, std::span<const AngleRow> first, const std::string& angle,
+                  const std::string& file) {
+  const auto fail = [&](const AngleRow& row, const std::string& what) {
+    throw InputError(fmt::format("{}:{}: {} = {}: {}", file, row.line, angle, row.angle_deg, what));
   };
-  if (rows.front().beta_deg != 0.0) fail(rows.front(), "beta_deg must be 0 in one row, and 90 in another");
-  if (rows.back().beta_deg != 90.0) fail(rows.back(), "beta_deg must be 90 in one row");
-  MeasuredReflectance measured;
-  for (const ReflectanceRow& row : rows) {
-    if (!measured.beta_deg.empty() && row.beta_deg == measured.beta_deg.back())
-      fail(row, fmt::format("beta_deg = {} is there twice", row.beta_deg));
-    measured.beta_deg.push_back(row.beta_deg);
-    measured.r_s.push_back(row.r_s);
-    measured.r_p.push_back(row.r_p);
+  if (rows.front().angle_deg != 0.0) fail(rows.front(), "must be 0 in one row, and 90 in another");
+  if (rows.back().angle_deg != 90.0) fail(rows.back(), "must be 90 in one row");
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (rows[i].angle_deg == rows[i - 1].angle_deg) fail(rows[i], fmt::format("is in line {} too", rows[i - 1].line));
   }
-  if (!expected_deg.empty() && measured.beta_deg != expected_deg)
-    fail(rows.front(), "each wavelength must have the same beta_deg");
-  if (std::abs(measured.r_s.front() - measured.r_p.front()) > kLargestSplitAtNormal)
-    fail(rows.front(),
-         fmt::format("r_s = {} and r_p = {} must agree at beta_deg = 0", measured.r_s.front(), measured.r_p.front()));
-  measured.r_s.front() = measured.r_p.front() = 0.5 * (measured.r_s.front() + measured.r_p.front());
-  return measured;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].angle_deg == first[i].angle_deg) continue;
+    fail(rows[i], fmt::format("each wavelength must have the same angles, and the first has {}", first[i].angle_deg));
+  }
 }
 
 }  // namespace
@@ -206,13 +172,42 @@ void set_films(Surface& surface, const std::vector<FilmValue>& films) {
 }
 
 SceneModel with_variant(const SceneModel& scene, const SceneVariant& variant) {
-  SceneModel own = scene;
-  if (variant.material) own.surface.material = scene.materials->at(*variant.material);
-  if (variant.band) own.spectrum = scene.bands.at(*variant.band);
-  if (variant.wavelength_um) own = at_wavelength(own, *variant.wavelength_um);
-  if (variant.temperature_K) own.emission->temperature_K = *variant.temperature_K;
-  set_films(own.surface, variant.films);
-  return own;
+  SceneModel changed = scene;
+  if (variant.material) changed.surface.material = scene.materials->at(*variant.material);
+  if (variant.band) changed.spectrum = scene.bands.at(*variant.band);
+  if (variant.wavelength_um) changed = at_wavelength(changed, *variant.wavelength_um);
+  if (variant.temperature_K) changed.emission->temperature_K = *variant.temperature_K;
+  set_films(changed.surface, variant.films);
+  return changed;
+}
+
+std::vector<AngleRow> read_angle_rows(CsvReader& row, const CsvColumns& columns, const std::string& angle,
+                                      const std::vector<std::string>& values, const std::string& file) {
+  std::vector<AngleRow> rows;
+  while (row.next()) {
+    if (rows.size() == kMostAngleRows) row.fail(fmt::format("too many rows; at most {}", kMostAngleRows));
+    AngleRow& read = rows.emplace_back();
+    read.wavelength_um = columns.number(row, "wavelength_um").value_or(0.0);
+    read.angle_deg = columns.number(row, angle).value();
+    for (const std::string& name : values) read.values.push_back(columns.number(row, name).value());
+    read.line = row.line_number();
+  }
+  if (rows.empty()) row.fail(fmt::format("no rows; {} from 0 to 90 is expected", angle));
+  std::ranges::stable_sort(rows, {}, [](const AngleRow& r) { return std::pair(r.wavelength_um, r.angle_deg); });
+  std::span<const AngleRow> first;
+  for (auto begin = rows.cbegin(), end = begin; begin != rows.cend(); begin = end) {
+    end = std::find_if(begin, rows.cend(), [&](const AngleRow& r) { return r.wavelength_um != begin->wavelength_um; });
+    if (first.empty()) first = {begin, end};
+    check_angles({begin, end}, first, angle, file);
+  }
+  return rows;
+}
+
+Between between(const std::vector<double>& list, double value) {
+  if (list.size() < 2) return {};
+  const auto above = std::upper_bound(list.begin() + 1, list.end() - 1, value);
+  const auto first = static_cast<std::size_t>(above - list.begin()) - 1;
+  return {first, std::clamp((value - list[first]) / (list[first + 1] - list[first]), 0.0, 1.0)};
 }
 
 ReflectanceTable read_reflectance_file(const std::string& path, const std::string& prefix) {
@@ -221,24 +216,35 @@ ReflectanceTable read_reflectance_file(const std::string& path, const std::strin
 
 ReflectanceTable parse_reflectances(const std::string& text, const std::string& name) {
   CsvReader reader(text, name);
-  const std::vector<ReflectanceRow> rows = read_rows(reader);
+  const CsvColumns columns = CsvColumns::first_of(reader, {{"beta_deg", kZenithDegRange, true},
+                                                           {"r_s", kFractionRange, true},
+                                                           {"r_p", kFractionRange, true},
+                                                           {"wavelength_um", kWavelengthUmRange}});
   ReflectanceTable table;
-  for (auto first = rows.begin(); first != rows.end();) {
-    const auto last =
-        std::find_if(first, rows.end(), [&](const auto& row) { return row.wavelength_um != first->wavelength_um; });
-    const std::vector<double> expected = table.measured.empty() ? std::vector<double>{} : table.measured[0]->beta_deg;
-    table.measured.push_back(std::make_shared<const MeasuredReflectance>(measured_in({first, last}, expected, name)));
-    if (first->wavelength_um > 0.0) table.wavelength_um.push_back(first->wavelength_um);
-    first = last;
+  std::vector<MeasuredReflectance> measured;
+  for (const AngleRow& row : read_angle_rows(reader, columns, "beta_deg", {"r_s", "r_p"}, name)) {
+    double r_s = row.values[0], r_p = row.values[1];
+    if (row.angle_deg == 0.0) {
+      if (std::abs(r_s - r_p) > kLargestSplitAtNormal) {
+        throw InputError(
+            fmt::format("{}:{}: r_s = {} and r_p = {} must agree at beta_deg = 0", name, row.line, r_s, r_p));
+      }
+      r_s = r_p = 0.5 * (r_s + r_p);
+      measured.emplace_back();
+      if (row.wavelength_um > 0.0) table.wavelength_um.push_back(row.wavelength_um);
+    }
+    measured.back().beta_deg.push_back(row.angle_deg);
+    measured.back().r_s.push_back(r_s);
+    measured.back().r_p.push_back(r_p);
   }
+  for (MeasuredReflectance& of_wavelength : measured)
+    table.measured.push_back(std::make_shared<const MeasuredReflectance>(std::move(of_wavelength)));
   return table;
 }
 
 std::shared_ptr<const MeasuredReflectance> ReflectanceTable::at(double at_um) const {
   if (measured.size() == 1) return measured.front();
-  const auto above = std::upper_bound(wavelength_um.begin() + 1, wavelength_um.end() - 1, at_um);
-  const auto i = static_cast<std::size_t>(above - wavelength_um.begin()) - 1;
-  const double share = std::clamp((at_um - wavelength_um[i]) / (wavelength_um[i + 1] - wavelength_um[i]), 0.0, 1.0);
+  const auto [i, share] = between(wavelength_um, at_um);
   const MeasuredReflectance& before = *measured[i];
   const MeasuredReflectance& after = *measured[i + 1];
   auto mixed = std::make_shared<MeasuredReflectance>(before);

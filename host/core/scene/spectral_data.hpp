@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <dolp/number_range.hpp>
+#include "scene/csv.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {
@@ -43,6 +44,27 @@ struct SpectralRow {
 /// rows that repeat another. `named` has the name and the range of the values.
 /// Errors: InputError with file and line for two values at one wavelength; errors of append_row.
 void append_rows(SpectralTable& table, std::vector<SpectralRow> rows, const NamedValue& named, const std::string& file);
+
+/// A row of a CSV of values over an angle from 0 to 90 degrees, and maybe over wavelength.
+struct AngleRow {
+  double wavelength_um = 0.0;  ///< 0 in a file without this column
+  double angle_deg = 0.0;
+  std::vector<double> values;
+  std::size_t line = 0;
+};
+
+/// The rows of a CSV by wavelength, then by angle. All wavelengths have the same angles, with 0 and 90 degrees.
+/// `angle` and `values` are names of columns, `file` is for messages. Errors: InputError with file, line and column.
+std::vector<AngleRow> read_angle_rows(CsvReader& row, const CsvColumns& columns, const std::string& angle,
+                                      const std::vector<std::string>& values, const std::string& file);
+
+/// The interval of an ascending list that holds a value, and the value's share of the way through it.
+struct Between {
+  std::size_t first = 0;
+  double share = 0.0;
+};
+/// The first or the last interval for a value beyond an end. A list of one value has one interval, without a length.
+Between between(const std::vector<double>& list, double value);
 
 /// Refuses a table that has no values over the whole spectrum; `prefix` begins the message.
 void check_covers(const SpectralTable& table, const Spectrum& spectrum, const std::string& prefix);

@@ -41,7 +41,7 @@ constexpr int kMostNodes = 24;
 // Where n passes 1, it begins near grazing.
 constexpr double kProbeSafety = 10.0;
 constexpr std::array<double, 7> kProbeCosines = {1.0, 0.5, 0.25, 0.15, 0.1, 0.07, 0.04};
-constexpr std::array<double, 7> kCriticalPlaces = {0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};  // positions in a segment
+constexpr std::array<double, 7> kCriticalShares = {0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};  // positions in a segment
 // A segment that more nodes do not bring to this share of the scene's tolerance is cut into equal panels, each with its
 // own nodes, until the error that the probes show is below kPanelShareOfTolerance of the band, or a band has about
 // kMostPanels. Mirrors have closed forms, and rough surfaces smooth roots. Entries state what they see of the panels'
@@ -240,8 +240,8 @@ std::vector<double> fringe_ends(const SceneModel& scene) {
 /// The cosines at which the rule of a segment is probed.
 std::vector<double> probe_cosines(const Surface& surface, double from_um, double to_um) {
   std::vector<double> cosines(kProbeCosines.begin(), kProbeCosines.end());
-  for (const double place : kCriticalPlaces) {
-    const OpticalConstants index = surface.material.at(std::lerp(from_um, to_um, place));
+  for (const double share : kCriticalShares) {
+    const OpticalConstants index = surface.material.at(std::lerp(from_um, to_um, share));
     const double square = index.n * index.n - index.k * index.k;
     if (square > 0.0 && square < 1.0) cosines.push_back(std::sqrt(1.0 - square));
   }

@@ -44,7 +44,7 @@ bool LookupAxis::contains(double value) const {
   return (min() <= value && value <= max()) || is_same(value, min()) || is_same(value, max());
 }
 
-LookupAxis::Place LookupAxis::place(double value) const {
+LookupAxis::Location LookupAxis::locate(double value) const {
   const auto above = static_cast<std::size_t>(std::ranges::lower_bound(values_, value) - values_.begin());
   for (const std::size_t i : {above, above - 1}) {
     if (i < values_.size() && is_same(values_[i], value)) return {coordinates_[i], i, true};
@@ -52,11 +52,11 @@ LookupAxis::Place LookupAxis::place(double value) const {
   return {coordinate(value), above, false};
 }
 
-Stencil LookupAxis::stencil(const Place& place, std::size_t count, int shift) const {
-  if (place.is_value) return {place.next, 1, {1.0}};
+Stencil LookupAxis::stencil(const Location& location, std::size_t count, int shift) const {
+  if (location.is_value) return {location.next, 1, {1.0}};
   const auto size = static_cast<std::ptrdiff_t>(values_.size());
   const auto wanted = std::min(static_cast<std::ptrdiff_t>(count), size);
-  const auto next = static_cast<std::ptrdiff_t>(place.next);  // values_[next - 1] < value < values_[next]
+  const auto next = static_cast<std::ptrdiff_t>(location.next);  // values_[next - 1] < value < values_[next]
   const std::ptrdiff_t centred = std::clamp<std::ptrdiff_t>(next - wanted / 2, 0, size - wanted);
   const std::ptrdiff_t first = std::clamp<std::ptrdiff_t>(
       std::clamp<std::ptrdiff_t>(centred + shift, next + 1 - wanted, next - 1), 0, size - wanted);
@@ -66,19 +66,19 @@ Stencil LookupAxis::stencil(const Place& place, std::size_t count, int shift) co
   double before = 1.0;
   for (std::size_t i = 0; i < stencil.count; ++i) {
     stencil.weights[i] = before * factors[i];
-    before *= place.coordinate - coordinates_[stencil.first + i];
+    before *= location.coordinate - coordinates_[stencil.first + i];
   }
   double after = 1.0;
   for (std::size_t i = stencil.count; i-- > 0;) {
     stencil.weights[i] *= after;
-    after *= place.coordinate - coordinates_[stencil.first + i];
+    after *= location.coordinate - coordinates_[stencil.first + i];
   }
   return stencil;
 }
 
-double LookupAxis::distances(const Place& place, std::size_t first, std::size_t count) const {
+double LookupAxis::distances(const Location& location, std::size_t first, std::size_t count) const {
   double product = 1.0;
-  for (std::size_t i = first; i < first + count; ++i) product *= place.coordinate - coordinates_[i];
+  for (std::size_t i = first; i < first + count; ++i) product *= location.coordinate - coordinates_[i];
   return product;
 }
 

@@ -14,18 +14,18 @@
 namespace dolp {
 namespace {
 
-constexpr std::uint64_t kPlaceFactor = 0x9e3779b97f4a7c15U;
+constexpr std::uint64_t kPositionFactor = 0x9e3779b97f4a7c15U;
 
 std::uint64_t bits_of(double value) { return std::bit_cast<std::uint64_t>(value); }
 std::uint64_t bits_of(std::uint32_t value) { return std::uint64_t{value} + 1U; }
 
 template <class Value>
-std::uint64_t sum_of_values(std::span<const Value> values, std::size_t first_place) {
+std::uint64_t sum_of_values(std::span<const Value> values, std::size_t first_position) {
   std::uint64_t sum = 0;
-  std::uint64_t factor = first_place * kPlaceFactor;
+  std::uint64_t factor = first_position * kPositionFactor;
   for (const Value value : values) {
     sum += bits_of(value) * (factor | 1U);
-    factor += kPlaceFactor;
+    factor += kPositionFactor;
   }
   return sum;
 }

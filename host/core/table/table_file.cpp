@@ -32,9 +32,9 @@ std::vector<Axis> present_axes(const Axes& axes) {
 /// Calls use(axis, value) for the coordinates of an entry on the axes of the table.
 template <class Use>
 void each_coordinate(const Axes& axes, std::size_t position, const Use& use) {
-  const PerAxis place = place_of(position, counts_of(axes));
+  const PerAxis on_axes = positions_on_axes(position, counts_of(axes));
   for (const Axis axis : kAllAxes) {
-    if (!axes[axis].empty()) use(axis, axes[axis][place[axis]]);
+    if (!axes[axis].empty()) use(axis, axes[axis][on_axes[axis]]);
   }
 }
 

@@ -121,23 +121,23 @@ std::vector<double> masking_kinks(const SceneModel& scene) {
 
 /// The entries that are read: a product of stencils.
 struct TableLookup::Window {
-  std::array<LookupAxis::Place, kAxisCount> places;
-  std::array<Stencil, kAxisCount> own;
+  std::array<LookupAxis::Location, kAxisCount> locations;
+  std::array<Stencil, kAxisCount> stencils;
 
   Window(const TableLookup& lookup, const Point& point) {
     for (std::size_t i = 0; i < kAxisCount; ++i) {
       const LookupAxis& axis = lookup.axes_[i];
-      places[i] = axis.size() == 1 ? LookupAxis::Place{.is_value = true} : axis.place(point[i]);
-      own[i] = axis.stencil(places[i], kWindow[i]);
+      locations[i] = axis.size() == 1 ? LookupAxis::Location{.is_value = true} : axis.locate(point[i]);
+      stencils[i] = axis.stencil(locations[i], kWindow[i]);
     }
   }
 
   bool is_entry() const {
-    return std::ranges::all_of(own, [](const Stencil& of_axis) { return of_axis.count == 1; });
+    return std::ranges::all_of(stencils, [](const Stencil& of_axis) { return of_axis.count == 1; });
   }
   /// The place of an axis's value at or below the point.
   std::size_t below(std::size_t axis) const {
-    return places[axis].is_value ? places[axis].next : places[axis].next - 1;
+    return locations[axis].is_value ? locations[axis].next : locations[axis].next - 1;
   }
 
   /// The positions of the corners of the point's cell, without the part of one axis.
@@ -147,7 +147,7 @@ struct TableLookup::Window {
     for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
       if (axis == without) continue;
       const std::size_t before = corners.size();
-      if (!places[axis].is_value) {
+      if (!locations[axis].is_value) {
         const std::size_t above = lookup.position(axis, below(axis) + 1);
         for (std::size_t i = 0; i < before; ++i) corners.push_back(corners[i] + above);
       }
@@ -168,15 +168,15 @@ struct TableLookup::Rows {
   std::array<std::size_t, kMostStencil> along{};  ///< position along a row
   Stencil q;
 
-  Rows(const TableLookup& lookup, const Window& window) : q(window.own[kQ]) {
+  Rows(const TableLookup& lookup, const Window& window) : q(window.stencils[kQ]) {
     rows.push_back({});
     for (std::size_t axis = 0; axis < kQ; ++axis) {
-      const Stencil& own = window.own[axis];
+      const Stencil& stencil = window.stencils[axis];
       const std::size_t before = rows.size();
-      for (std::size_t i = own.count; i-- > 0;) {  // the first last, because it takes the place of what is read
-        const std::size_t begin = lookup.position(axis, own.first + i);
+      for (std::size_t i = stencil.count; i-- > 0;) {  // the first last, because it takes the place of what is read
+        const std::size_t begin = lookup.position(axis, stencil.first + i);
         for (std::size_t row = 0; row < before; ++row) {
-          const Row next = {rows[row].begin + begin, rows[row].weight * own.weights[i]};
+          const Row next = {rows[row].begin + begin, rows[row].weight * stencil.weights[i]};
           i > 0 ? rows.push_back(next) : void(rows[row] = next);
         }
       }
@@ -184,38 +184,33 @@ struct TableLookup::Rows {
     for (std::size_t k = 0; k < q.count; ++k) along[k] = lookup.position(kQ, q.first + k);
   }
 
-  /// The sum of weight x value(position).
-  template <class Value>
+  /// The sum of weight x value(position), or with `kOfSizes` of |weight| x value(position).
+  template <bool kOfSizes = false, class Value>
   double sum(const Value& value) const {
-    return sum_of(value, [](double weight) { return weight; });
-  }
-  /// The sum of |weight| x value(position).
-  template <class Value>
-  double sum_of_sizes(const Value& value) const {
-    return sum_of(value, [](double weight) { return std::abs(weight); });
-  }
-
- private:
-  template <class Value, class Use>
-  double sum_of(const Value& value, const Use& use) const {
     bool is_dense = true;  // neighbours along q are neighbours in memory
     for (std::size_t k = 1; k < q.count; ++k) is_dense = is_dense && along[k] == along[0] + k;
-    if (is_dense && q.count == kWindow[kQ]) return sum_dense<kWindow[kQ]>(value, use);
-    if (is_dense && q.count == kWindow[kQ] - 1) return sum_dense<kWindow[kQ] - 1>(value, use);
-    if (is_dense && q.count == 1) return sum_dense<1>(value, use);
+    if (is_dense && q.count == kWindow[kQ]) return sum_dense<kWindow[kQ], kOfSizes>(value);
+    if (is_dense && q.count == kWindow[kQ] - 1) return sum_dense<kWindow[kQ] - 1, kOfSizes>(value);
+    if (is_dense && q.count == 1) return sum_dense<1, kOfSizes>(value);
     double sum = 0.0;
     for (const Row& row : rows) {
       double of_row = 0.0;
-      for (std::size_t k = 0; k < q.count; ++k) of_row += use(q.weights[k]) * value(row.begin + along[k]);
-      sum += use(row.weight) * of_row;
+      for (std::size_t k = 0; k < q.count; ++k) of_row += used<kOfSizes>(q.weights[k]) * value(row.begin + along[k]);
+      sum += used<kOfSizes>(row.weight) * of_row;
     }
     return sum;
   }
+
+ private:
+  template <bool kOfSizes>
+  static double used(double weight) {
+    return kOfSizes ? std::abs(weight) : weight;
+  }
   /// Loops of a length that the compiler knows, in two sums side by side.
-  template <std::size_t kCount, class Value, class Use>
-  double sum_dense(const Value& value, const Use& use) const {
+  template <std::size_t kCount, bool kOfSizes, class Value>
+  double sum_dense(const Value& value) const {
     std::array<double, kCount> weights;
-    for (std::size_t k = 0; k < kCount; ++k) weights[k] = use(q.weights[k]);
+    for (std::size_t k = 0; k < kCount; ++k) weights[k] = used<kOfSizes>(q.weights[k]);
     double even = 0.0;
     double odd = 0.0;
     for (const Row& row : rows) {
@@ -228,8 +223,8 @@ struct TableLookup::Rows {
         of_odd += weights[k + 1] * value(begin + k + 1);
       }
       if (kCount % 2 == 1) of_even += weights[kCount - 1] * value(begin + kCount - 1);
-      even += use(row.weight) * of_even;
-      odd += use(row.weight) * of_odd;
+      even += used<kOfSizes>(row.weight) * of_even;
+      odd += used<kOfSizes>(row.weight) * of_odd;
     }
     return even + odd;
   }
@@ -259,21 +254,21 @@ struct TableLookup::Lines {
 
   Lines(const TableLookup& lookup, const Window& window, std::size_t number) {
     const LookupAxis& axis = lookup.axes_[number];
-    const Stencil& own = window.own[number];
-    has_error = own.count > 1;
-    const std::size_t most = std::min(axis.size(), own.count + 1);
+    const Stencil& stencil = window.stencils[number];
+    has_error = stencil.count > 1;
+    const std::size_t most = std::min(axis.size(), stencil.count + 1);
     is_unknown = has_error && most < kLeastValues;
     if (!has_error || is_unknown) return;
     is_short = most == axis.size();
     const std::size_t levels = is_short ? kLevels : kLevels - 1;
     const std::size_t below = window.below(number);
-    const std::size_t start = std::max(own.first, std::size_t{1}) - 1;
+    const std::size_t start = std::max(stencil.first, std::size_t{1}) - 1;
     for (std::size_t level = 0; level < std::min(levels, most - 2); ++level) {
       const std::size_t values = most - level;
       const std::size_t before = values - 1;
       const std::size_t centred = below + 1 > before / 2 ? below + 1 - before / 2 : 0;
-      const std::size_t first = std::clamp(centred, own.first, own.first + own.count - before);
-      const double distances = axis.distances(window.places[number], first, before);
+      const std::size_t first = std::clamp(centred, stencil.first, stencil.first + stencil.count - before);
+      const double distances = axis.distances(window.locations[number], first, before);
       for (const std::size_t with : {first - 1, first}) {  // wraps below the axis
         if (with + values > axis.size() || with > first) continue;
         const std::span<const double> of_change = axis.divided_difference(with, values);
@@ -284,36 +279,36 @@ struct TableLookup::Lines {
     }
     for (std::size_t i = 0; i < count; ++i) along[i] = lookup.position(number, start + i);
     begin = window.corners(lookup, number);
-    const bool is_at_end = most <= own.count || below == 0 || below + 2 == axis.size();
+    const bool is_at_end = most <= stencil.count || below == 0 || below + 2 == axis.size();
     factor = is_at_end ? kAtEnds : kInside;
-    if (number == kTheta) add_kink(axis, window.places[kTheta].coordinate, own, start, lookup.kinks_deg_);
+    if (number == kTheta) add_kink(axis, window.locations[kTheta].coordinate, stencil, start, lookup.kinks_deg_);
     for (std::size_t i = 0; i < kAxisCount; ++i) {
       if (i == number) continue;
       double sizes = 0.0;
-      for (std::size_t k = 0; k < window.own[i].count; ++k) sizes += std::abs(window.own[i].weights[k]);
+      for (std::size_t k = 0; k < window.stencils[i].count; ++k) sizes += std::abs(window.stencils[i].weights[k]);
       factor *= sizes;
     }
   }
 
   /// Adds the error of a ramp that begins at a kink in the window, as steep as the second difference there shows. Takes
   /// the kink whose ramp errs most.
-  void add_kink(const LookupAxis& axis, double theta_deg, const Stencil& own, std::size_t start,
+  void add_kink(const LookupAxis& axis, double theta_deg, const Stencil& stencil, std::size_t start,
                 const std::vector<double>& kinks_deg) {
-    const std::size_t last = own.first + own.count - 1;
+    const std::size_t last = stencil.first + stencil.count - 1;
     double largest = 0.0;
     double kink_deg = 0.0;
     for (const double kink : kinks_deg) {
-      if (kink <= axis.coordinate_at(own.first) || kink >= axis.coordinate_at(last)) continue;
+      if (kink <= axis.coordinate_at(stencil.first) || kink >= axis.coordinate_at(last)) continue;
       double error = -std::max(theta_deg - kink, 0.0);
-      for (std::size_t k = 0; k < own.count; ++k) {
-        error += own.weights[k] * std::max(axis.coordinate_at(own.first + k) - kink, 0.0);
+      for (std::size_t k = 0; k < stencil.count; ++k) {
+        error += stencil.weights[k] * std::max(axis.coordinate_at(stencil.first + k) - kink, 0.0);
       }
       if (std::abs(error) <= std::abs(largest)) continue;
       largest = error;
       kink_deg = kink;
     }
-    if (largest == 0.0 || own.count < 3) return;
-    std::size_t middle = own.first + 1;  // the closest to the kink
+    if (largest == 0.0 || stencil.count < 3) return;
+    std::size_t middle = stencil.first + 1;  // the closest to the kink
     while (middle + 1 < last && axis.coordinate_at(middle) + axis.coordinate_at(middle + 1) < 2.0 * kink_deg) ++middle;
     const std::span<const double> difference = axis.divided_difference(middle - 1, 3);
     const double of_ramp = difference[1] * std::max(axis.coordinate_at(middle) - kink_deg, 0.0) +
@@ -340,12 +335,12 @@ struct TableLookup::Lines {
     if (is_unknown) return kInfinity;
     double of_change[kMostChanges];
     std::fill(std::begin(of_change), std::end(of_change), -1.0);
-    const std::size_t* const places = along.data();
+    const std::size_t* const positions = along.data();
     for (const std::size_t first : begin) {
       const double* const values = column.data() + first;
       double sums[kMostChanges] = {};
       for (std::size_t i = 0; i < count; ++i) {
-        const double value = values[places[i]];
+        const double value = values[positions[i]];
         const double* const of_value = factors.data()[i].data();
 #pragma GCC unroll 6
         for (std::size_t j = 0; j < kMostChanges; ++j) sums[j] += of_value[j] * value;
@@ -393,7 +388,7 @@ TableLookup::TableLookup(const TableValues& table, const SceneModel& scene, cons
 }
 
 bool TableLookup::is_known(const Window& window) const {
-  const Stencil& theta = window.own[kTheta];
+  const Stencil& theta = window.stencils[kTheta];
   const auto first = is_known_.begin() + static_cast<std::ptrdiff_t>(theta.first);
   if (std::all_of(first, first + static_cast<std::ptrdiff_t>(theta.count), [](char known) { return known != 0; })) {
     return true;
@@ -412,7 +407,7 @@ bool TableLookup::make_known(Window& window, double theta_deg) const {
       shift = 0;
       if (--count < 2) return false;
     }
-    window.own[kTheta] = axes_[kTheta].stencil(window.places[kTheta], count, away * shift);
+    window.stencils[kTheta] = axes_[kTheta].stencil(window.locations[kTheta], count, away * shift);
   }
   return true;
 }
@@ -425,7 +420,8 @@ std::uint32_t TableLookup::cell_status(const Window& window) const {
 
 PointResult TableLookup::at(const Point& point) const {
   Window window(*this, point);
-  if (window.is_entry()) return table_.at(Rows(*this, window).rows.front().begin + position(kQ, window.own[kQ].first));
+  if (window.is_entry())
+    return table_.at(Rows(*this, window).rows.front().begin + position(kQ, window.stencils[kQ].first));
   if (!make_known(window, point[kTheta])) return unknown();
   const Rows rows(*this, window);
   PointResult result;
@@ -438,19 +434,19 @@ PointResult TableLookup::at(const Point& point) const {
     result[quantity] = rows.sum([values = table_[quantity].data()](std::size_t position) { return values[position]; });
   }
   for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
-    if (window.own[axis].count == 1) continue;
+    if (window.stencils[axis].count == 1) continue;
     const Lines lines(*this, window, axis);
     for (const Quantity quantity : interpolated_) {
       if (has_error(quantity)) change[quantity] += lines.error(table_[quantity]);
     }
   }
   const double error =
-      rows.sum_of_sizes([bounds = table_[kErrorEstimate].data()](std::size_t position) { return bounds[position]; });
+      rows.sum<true>([bounds = table_[kErrorEstimate].data()](std::size_t position) { return bounds[position]; });
   double rho_error = 0.0;  // absolute
   if (table_.has(kRhoErrorEstimate)) {
     const std::vector<double>& rho = table_[kRhoI];
     const std::vector<double>& bounds = table_[kRhoErrorEstimate];
-    rho_error = rows.sum_of_sizes([&](std::size_t position) { return std::abs(rho[position]) * bounds[position]; });
+    rho_error = rows.sum<true>([&](std::size_t position) { return std::abs(rho[position]) * bounds[position]; });
   }
   result.status = cell_status(window) & (kReflectanceOutsideZeroToOne | kModelInaccurate);
   finish(result, change, error, rho_error);
@@ -486,11 +482,11 @@ void TableLookup::add_status(PointResult& result) const {
 }
 
 Quantities TableLookup::quantities() const {
-  Quantities own;
+  Quantities given;
   for (const Quantity quantity : kAllQuantities) {
-    if (!description_of(quantity).is_optional() || table_.has(quantity)) own.push_back(quantity);
+    if (!description_of(quantity).is_optional() || table_.has(quantity)) given.push_back(quantity);
   }
-  return own;
+  return given;
 }
 
 const LookupAxis* TableLookup::axis(Axis axis) const {

@@ -63,9 +63,7 @@ class TableLookup {
   struct Rows;
   struct Lines;
 
-  std::size_t position(std::size_t axis, std::size_t place) const {
-    return axes_[axis].position(place) * strides_[axis];
-  }
+  std::size_t position(std::size_t axis, std::size_t rank) const { return axes_[axis].position(rank) * strides_[axis]; }
   bool is_known(const Window& window) const;
   /// Moves a window away from entries that are not known; false where that is not possible.
   bool make_known(Window& window, double theta_deg) const;

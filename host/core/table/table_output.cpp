@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <string_view>
 
-#include "base/atomic_file.hpp"
 #include "base/hash.hpp"
 #include "base/temporary_folder.hpp"
 #include "base/text.hpp"
-#include "table/table_file.hpp"
-#include "table/table_store.hpp"
 
 namespace dolp {
 namespace {
@@ -51,156 +48,128 @@ std::string_view next_piece(std::string_view& text, std::string_view separator) 
 std::optional<std::string> difference(const std::string& identity, const std::string& wanted) {
   std::string_view theirs = identity, ours = wanted;
   while (!theirs.empty() || !ours.empty()) {
-    const std::string_view own = next_piece(theirs, kIdentityEnd);
+    const std::string_view their_piece = next_piece(theirs, kIdentityEnd);
     const std::string_view other = next_piece(ours, kIdentityEnd);
-    if (own == other) continue;
+    if (their_piece == other) continue;
     const std::size_t value = std::min(other.find(' '), other.size() - 1) + 1;
-    return fmt::format("{}, not {}", own.empty() ? "nothing" : one_line(own), one_line(other.substr(value)));
+    return fmt::format("{}, not {}", their_piece.empty() ? "nothing" : one_line(their_piece),
+                       one_line(other.substr(value)));
   }
   return std::nullopt;
 }
 
-struct TableOutput::Impl {
-  Job job;
-  TableFormat format;
-  std::optional<AtomicFile> file;  // has the values; none for a .csv or .npy of one part
-  std::optional<TableStore> store;
-  std::optional<AtomicFile> progress;  // text of the finished parts of a resumable table
-  TableValues only_part;
-  ValueSums sums;
-  std::size_t parts_done = 0;
-  std::string note;
-
-  explicit Impl(Job of_run) : job(std::move(of_run)), format(format_of(job.path)) {
-    check_output_path(job.path);
-    if (is_resumable()) {
-      check_writable(progress_path(job.path));
-      file.emplace(job.path, partial_path(job.path));
-    } else if (format == TableFormat::kNetcdf) {
-      file.emplace(job.path);
-    } else if (job.parts.size() != 1) {
-      file.emplace(job.path == "-" ? temporary_files() / "dolp" : job.path);
-    }
-    const bool was_empty = file && file->size() == 0;
-    try {
-      if (file) store.emplace(job.layout, *file);
-      if (is_resumable()) open_progress();
-    } catch (...) {
-      if (was_empty) file->discard();
-      throw;
-    }
+TableOutput::TableOutput(Job job) : job_(std::move(job)), format_(format_of(job_.path)) {
+  check_output_path(job_.path);
+  if (is_resumable()) {
+    check_writable(progress_path(job_.path));
+    file_.emplace(job_.path, partial_path(job_.path));
+  } else if (format_ == TableFormat::kNetcdf) {
+    file_.emplace(job_.path);
+  } else if (job_.parts.size() != 1) {
+    file_.emplace(job_.path == "-" ? temporary_files() / "dolp" : job_.path);
   }
-
-  bool is_resumable() const { return !job.identity.empty() && job.parts.size() > 1 && job.path != "-"; }
-
-  void open_progress() {
-    if (fs::exists(fs::symlink_status(progress_path(job.path)))) progress.emplace(job.path, progress_path(job.path));
-    const std::uint64_t kept = job.is_resumed && progress ? reuse_finished_parts() : 0;
-    if (progress) progress->resize(kept);
-    if (parts_done == 0) file->resize(0);
+  const bool was_empty = file_ && file_->size() == 0;
+  try {
+    if (file_) store_.emplace(job_.layout, *file_);
+    if (is_resumable()) open_progress();
+  } catch (...) {
+    if (was_empty) file_->discard();
+    throw;
   }
-
-  /// Reuses the parts that are there. Returns the length of their lines in the progress file.
-  std::uint64_t reuse_finished_parts() {
-    std::string text(progress->size(), '\0');
-    progress->read_at(0, text.data(), text.size());
-    const std::optional<std::string_view> identity = first_text(text, kHashStart);
-    if (!identity) return 0;
-    if (const auto differs = difference(std::string(*identity), job.identity)) {
-      throw InputError(fmt::format("{}: is of another run: it has {}; remove it, or leave out --resume",
-                                   partial_path(job.path).string(), *differs));
-    }
-    std::size_t taken = text.find('\n') + 1;
-    while (parts_done < job.parts.size() && taken < text.size()) {
-      if (job.progress && !job.progress(0, job.layout.head.size()))
-        throw Cancelled(partial_path(job.path).string() + " is as it was: the same command with --resume goes on");
-      const std::optional<ValueSums> of_part = store->measured(job.parts[parts_done]);
-      const auto own_note = first_text(std::string_view(text).substr(taken), of_part ? part_hash(*of_part) : 0);
-      if (!of_part || !own_note) break;
-      add(sums, *of_part);
-      note = *own_note;
-      ++parts_done;
-      taken = text.find('\n', taken) + 1;
-    }
-    return parts_done > 0 ? taken : 0;
-  }
-
-  /// The hash of the next part in the progress file.
-  std::uint64_t part_hash(const ValueSums& of_part) const {
-    std::uint64_t hash = hashed(hashed(kHashStart, job.identity), std::uint64_t{parts_done});
-    for (const std::uint64_t sum : of_part) hash = hashed(hash, sum);
-    return hash;
-  }
-
-  void write(const TableValues& part, const PerAxis& first, const std::string& own_note) {
-    const ValueSums of_part = store->write(part, first);
-    add(sums, of_part);
-    if (is_resumable()) {
-      if (!progress) progress.emplace(job.path, progress_path(job.path));
-      const std::string start = progress->size() == 0 ? progress_line(kHashStart, job.identity) : "";
-      progress->append(start + progress_line(part_hash(of_part), own_note));
-    }
-    ++parts_done;
-  }
-
-  void write_rows() {
-    AtomicFile* target = nullptr;
-    std::optional<AtomicFile> own;
-    if (job.path != "-") target = &own.emplace(job.path);
-    const auto put = [&](const std::string& bytes) {
-      if (target) return target->append(bytes);
-      write_text_atomically("-", bytes);
-    };
-    put(table_start(job.layout, format));
-    if (!store) put(table_rows(only_part, job.layout, format));
-    if (store) {
-      for (const TableBox& box : boxes_in_order(job.layout.head.counts(), kConvertedRowsAtOnce))
-        put(table_rows(store->read(box), job.layout, format));
-    }
-    if (target) target->commit();
-  }
-
-  void discard() {
-    if (file) file->discard();
-    if (progress) progress->discard();
-  }
-};
-
-TableOutput::TableOutput(Job job) : impl_(std::make_unique<Impl>(std::move(job))) {}
-
-TableOutput::~TableOutput() {
-  if (impl_->parts_done == 0) impl_->discard();  // nothing is in them
 }
 
-std::size_t TableOutput::parts_done() const { return impl_->parts_done; }
-const std::string& TableOutput::note() const { return impl_->note; }
+TableOutput::~TableOutput() {
+  if (parts_done_ > 0) return;
+  for (std::optional<AtomicFile>* empty : {&file_, &progress_})
+    if (*empty) (*empty)->discard();
+}
+
+void TableOutput::open_progress() {
+  if (fs::exists(fs::symlink_status(progress_path(job_.path)))) progress_.emplace(job_.path, progress_path(job_.path));
+  const std::uint64_t kept = job_.is_resumed && progress_ ? reuse_finished_parts() : 0;
+  if (progress_) progress_->resize(kept);
+  if (parts_done_ == 0) file_->resize(0);
+}
+
+/// Reuses the parts that are there. Returns the length of their lines in the progress file.
+std::uint64_t TableOutput::reuse_finished_parts() {
+  std::string text(progress_->size(), '\0');
+  progress_->read_at(0, text.data(), text.size());
+  const std::optional<std::string_view> identity = first_text(text, kHashStart);
+  if (!identity) return 0;
+  if (const auto differs = difference(std::string(*identity), job_.identity)) {
+    throw InputError(fmt::format("{}: is of another run: it has {}; remove it, or leave out --resume",
+                                 partial_path(job_.path).string(), *differs));
+  }
+  std::size_t taken = text.find('\n') + 1;
+  while (parts_done_ < job_.parts.size() && taken < text.size()) {
+    if (job_.progress && !job_.progress(0, job_.layout.head.size()))
+      throw Cancelled(partial_path(job_.path).string() + " is as it was: the same command with --resume goes on");
+    const std::optional<ValueSums> of_part = store_->measured(job_.parts[parts_done_]);
+    const auto part_note = first_text(std::string_view(text).substr(taken), of_part ? part_hash(*of_part) : 0);
+    if (!of_part || !part_note) break;
+    add(sums_, *of_part);
+    note_ = *part_note;
+    ++parts_done_;
+    taken = text.find('\n', taken) + 1;
+  }
+  return parts_done_ > 0 ? taken : 0;
+}
+
+/// The hash of the next part in the progress file.
+std::uint64_t TableOutput::part_hash(const ValueSums& of_part) const {
+  std::uint64_t hash = hashed(hashed(kHashStart, job_.identity), std::uint64_t{parts_done_});
+  for (const std::uint64_t sum : of_part) hash = hashed(hash, sum);
+  return hash;
+}
 
 void TableOutput::write(TableValues part, const PerAxis& first, const std::string& note) {
-  if (impl_->store) {
-    impl_->write(part, first, note);
-  } else {
-    impl_->only_part = std::move(part);
-    impl_->parts_done = 1;
+  if (!store_) {
+    only_part_ = std::move(part);
+    parts_done_ = 1;
+    return;
   }
+  const ValueSums of_part = store_->write(part, first);
+  add(sums_, of_part);
+  if (is_resumable()) {
+    if (!progress_) progress_.emplace(job_.path, progress_path(job_.path));
+    const std::string start = progress_->size() == 0 ? progress_line(kHashStart, job_.identity) : "";
+    progress_->append(start + progress_line(part_hash(of_part), note));
+  }
+  ++parts_done_;
 }
 
 void TableOutput::finish(const std::vector<Attribute>& more) {
-  Impl& own = *impl_;
-  std::vector<Attribute>& attributes = own.job.layout.head.attributes;
+  std::vector<Attribute>& attributes = job_.layout.head.attributes;
   attributes.insert(attributes.end(), more.begin(), more.end());
-  if (own.format == TableFormat::kNetcdf) {
-    own.store->finish(more, own.sums);
-    own.file->commit();
+  if (format_ == TableFormat::kNetcdf) {
+    store_->finish(more, sums_);
+    file_->commit();
   } else {
-    own.write_rows();
+    write_rows();
   }
-  own.parts_done = 0;
+  parts_done_ = 0;
+}
+
+void TableOutput::write_rows() {
+  std::optional<AtomicFile> target;  // none for standard output
+  if (job_.path != "-") target.emplace(job_.path);
+  const auto put = [&](const std::string& bytes) {
+    target ? target->append(bytes) : write_text_atomically("-", bytes);
+  };
+  put(table_start(job_.layout, format_));
+  if (!store_) put(table_rows(only_part_, job_.layout, format_));
+  if (store_) {
+    for (const TableBox& box : boxes_in_order(job_.layout.head.counts(), kConvertedRowsAtOnce))
+      put(table_rows(store_->read(box), job_.layout, format_));
+  }
+  if (target) target->commit();
 }
 
 std::optional<std::string> TableOutput::rest() const {
-  if (!impl_->is_resumable() || impl_->parts_done == 0) return std::nullopt;
-  return fmt::format("{} of {} parts are in {}: the same command with --resume goes on", impl_->parts_done,
-                     impl_->job.parts.size(), partial_path(impl_->job.path).string());
+  if (!is_resumable() || parts_done_ == 0) return std::nullopt;
+  return fmt::format("{} of {} parts are in {}: the same command with --resume goes on", parts_done_, job_.parts.size(),
+                     partial_path(job_.path).string());
 }
 
 }  // namespace dolp

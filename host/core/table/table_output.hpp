@@ -3,12 +3,14 @@
 
 #include <dolp/errors.hpp>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/atomic_file.hpp"
 #include "table/table.hpp"
+#include "table/table_file.hpp"
+#include "table/table_store.hpp"
 
 namespace dolp {
 
@@ -34,8 +36,8 @@ class TableOutput {
   TableOutput& operator=(const TableOutput&) = delete;
 
   /// Number of parts that exist already, and the note of the last of them.
-  std::size_t parts_done() const;
-  const std::string& note() const;
+  std::size_t parts_done() const { return parts_done_; }
+  const std::string& note() const { return note_; }
 
   /// Writes the next part, which begins at `first`, and a note, one line. Errors: IoError, Cancelled.
   void write(TableValues part, const PerAxis& first, const std::string& note);
@@ -46,8 +48,21 @@ class TableOutput {
   std::optional<std::string> rest() const;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  bool is_resumable() const { return !job_.identity.empty() && job_.parts.size() > 1 && job_.path != "-"; }
+  void open_progress();
+  std::uint64_t reuse_finished_parts();
+  std::uint64_t part_hash(const ValueSums& of_part) const;
+  void write_rows();
+
+  Job job_;
+  TableFormat format_;
+  std::optional<AtomicFile> file_;  ///< has the values; none for a .csv or .npy of one part
+  std::optional<TableStore> store_;
+  std::optional<AtomicFile> progress_;  ///< text of the finished parts of a resumable table
+  TableValues only_part_;
+  ValueSums sums_;
+  std::size_t parts_done_ = 0;
+  std::string note_;
 };
 
 /// The first difference between two identities, "name value; name value": "evaluator cpu, not vulkan". None: nothing.

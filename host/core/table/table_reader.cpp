@@ -48,9 +48,10 @@ class Reader {
   /// If a file cannot be closed, for example because a server is gone, HDF5 keeps half of it and crashes at exit. So
   /// HDF5 gets another file to close; dup2 always closes the real one.
   ~Reader() {
-    void* own = nullptr;
+    void* descriptor = nullptr;
     const int other = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
-    if (other >= 0 && H5Fget_vfd_handle(file_.id(), H5P_DEFAULT, &own) >= 0) ::dup2(other, *static_cast<int*>(own));
+    if (other >= 0 && H5Fget_vfd_handle(file_.id(), H5P_DEFAULT, &descriptor) >= 0)
+      ::dup2(other, *static_cast<int*>(descriptor));
     if (other >= 0) ::close(other);
   }
 
@@ -128,52 +129,43 @@ std::vector<double> read_list(const Reader& reader, const std::string& name, std
   return values;
 }
 
-/// The labels of an axis: texts of one length as this program writes them, or of any as others do.
+/// Texts of one length, with zero bytes at the end, or of any length, as other writers store texts that are not ASCII.
+/// `read` fills the memory of `count` texts.
+template <class Read>
+std::vector<std::string> read_texts(const Reader& reader, const std::string& name, const Hdf5Handle& type,
+                                    const Hdf5Handle& space, std::size_t count, const Read& read) {
+  std::vector<std::string> texts;
+  const std::size_t width = H5Tget_size(type.id());
+  if (width > kMostStoredTextBytes) reader.fail(name + ": the text is too long");
+  reader.check_claim(name, count * width);
+  if (H5Tis_variable_str(type.id()) > 0) {
+    std::vector<char*> stored(count, nullptr);
+    reader.check(read(stored.data()), name);
+    for (const char* text : stored) texts.emplace_back(text ? text : "");
+    reader.check(H5Dvlen_reclaim(type.id(), space.id(), H5P_DEFAULT, stored.data()), name);
+  } else {
+    std::string stored(count * width, '\0');
+    reader.check(read(stored.data()), name);
+    for (std::size_t i = 0; i < count; ++i) {
+      std::string& text = texts.emplace_back(stored.substr(i * width, width));
+      text.erase(text.find_last_not_of('\0') + 1);
+    }
+  }
+  return texts;
+}
+
+/// The labels of an axis.
 std::vector<std::string> read_labels(const Reader& reader, const std::string& name, std::size_t most) {
   const Hdf5Handle variable = reader.find(name);
   if (!variable) return {};
   const std::vector<hsize_t> shape = reader.shape_of(variable, name);
   const Hdf5Handle type = reader.take(H5Dget_type(variable.id()), H5Tclose, name);
+  const Hdf5Handle space = reader.take(H5Dget_space(variable.id()), H5Sclose, name);
   if (!is_of_class(type.id(), H5T_STRING) || shape.size() != 1 || shape[0] > most)
     reader.fail(name + ": is not a list of texts");
-  const std::size_t width = H5Tget_size(type.id());
-  reader.check_claim(name, shape[0] * width);
-  std::vector<std::string> labels;
-  if (H5Tis_variable_str(type.id()) > 0) {
-    std::vector<char*> texts(shape[0], nullptr);
-    const Hdf5Handle space(H5Dget_space(variable.id()), H5Sclose);
-    reader.read(variable, name, type.id(), texts.data());
-    for (const char* text : texts) labels.emplace_back(text ? text : "");
-    reader.check(H5Dvlen_reclaim(type.id(), space.id(), H5P_DEFAULT, texts.data()), name);
-  } else {
-    std::string text(shape[0] * width, '\0');
-    reader.read(variable, name, type.id(), text.data());
-    for (std::size_t i = 0; i < shape[0]; ++i) {
-      std::string& label = labels.emplace_back(text.substr(i * width, width));
-      label.erase(label.find_last_not_of('\0') + 1);
-    }
-  }
-  return labels;
-}
-
-/// The text of an attribute. Its length is fixed, with zero bytes at the end, or variable: other writers store text
-/// that is not ASCII in this form.
-std::string text_of(const Reader& reader, const Hdf5Handle& attribute, const Hdf5Handle& type,
-                    const std::string& name) {
-  if (H5Tis_variable_str(type.id()) > 0) {
-    char* stored = nullptr;
-    reader.check(H5Aread(attribute.id(), type.id(), &stored), name);
-    std::string text = stored ? stored : "";
-    reader.check(H5free_memory(stored), name);
-    return text;
-  }
-  const std::size_t length = H5Tget_size(type.id());
-  if (length > kMostStoredTextBytes) reader.fail(name + ": the text is too long");
-  reader.check_claim(name, length);
-  std::string text(length, '\0');
-  reader.check(H5Aread(attribute.id(), type.id(), text.data()), name);
-  text.erase(text.find_last_not_of('\0') + 1);
-  return text;
+  return read_texts(reader, name, type, space, shape[0], [&](void* memory) {
+    return H5Dread(variable.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, memory);
+  });
 }
 
 /// A text or a number; nothing for other attributes.
@@ -185,7 +177,8 @@ std::optional<std::variant<std::string, double>> read_value(const Reader& reader
   const hssize_t count = H5Sget_simple_extent_npoints(space.id());
   if (is_text && count == 0) return std::string();
   if (count != 1) return std::nullopt;
-  if (is_text) return text_of(reader, attribute, type, name);
+  const auto read = [&](void* memory) { return H5Aread(attribute.id(), type.id(), memory); };
+  if (is_text) return read_texts(reader, name, type, space, 1, read).front();
   if (!is_of_class(type.id(), H5T_FLOAT) && !is_of_class(type.id(), H5T_INTEGER)) return std::nullopt;
   double value = 0.0;
   reader.check(H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &value), name);
@@ -394,8 +387,8 @@ TableValues TableReader::read_entries(std::span<const std::size_t> positions, co
     for (; !positions.empty() && positions.front() < end; positions = positions.subspan(1)) {
       const std::size_t position = positions.front() - before;
       for_each_variable(layout(), [&](const auto& of, std::size_t width) {
-        const auto own = std::span(of(part)).subspan(position * width, width);
-        of(entries).insert(of(entries).end(), own.begin(), own.end());
+        const auto of_entry = std::span(of(part)).subspan(position * width, width);
+        of(entries).insert(of(entries).end(), of_entry.begin(), of_entry.end());
       });
     }
     before = end;

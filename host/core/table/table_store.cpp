@@ -70,9 +70,10 @@ struct Hdf5Failure {
   bool is_memory = false;  ///< lack of memory
 
   static herr_t add(unsigned, const H5E_error2_t* error, void* failure) {
-    auto& own = *static_cast<Hdf5Failure*>(failure);
-    if (own.reason.empty() && error->desc) own.reason = error->desc;
-    own.is_memory |= error->maj_num == H5E_RESOURCE || error->min_num == H5E_NOSPACE || error->min_num == H5E_CANTALLOC;
+    auto& first_failure = *static_cast<Hdf5Failure*>(failure);
+    if (first_failure.reason.empty() && error->desc) first_failure.reason = error->desc;
+    first_failure.is_memory |=
+        error->maj_num == H5E_RESOURCE || error->min_num == H5E_NOSPACE || error->min_num == H5E_CANTALLOC;
     return 0;
   }
 };
@@ -117,8 +118,8 @@ class Writer {
     return type;
   }
   void put_number(const Hdf5Handle& object, const char* name, double value) const {
-    const hsize_t one = 1;
-    put(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, take(H5Screate_simple(1, &one, nullptr), H5Sclose), &value);
+    const hsize_t count = 1;
+    put(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, take(H5Screate_simple(1, &count, nullptr), H5Sclose), &value);
   }
   // CF-1.8 has no unsigned int; the masks must have the type of the variable.
   void put_status_bits(const Hdf5Handle& object) const {
@@ -274,30 +275,17 @@ std::uint64_t offset_of(const Writer& writer, const Hdf5Handle& variable) {
 }
 
 /// `qualifiers`: names of the variables that qualify it, or "".
-std::uint64_t put_variable(const Writer& writer, const TableHead& head, const AxisVariables& axes, const char* name,
-                           const char* long_name, const std::string& units, const char* qualifiers,
+template <class Described>
+std::uint64_t put_variable(const Writer& writer, const TableHead& head, const AxisVariables& axes,
+                           const Described& described, const std::string& units, const char* qualifiers,
                            const Hdf5Handle* beta = nullptr) {
   constexpr double kFill = std::numeric_limits<double>::quiet_NaN();
-  const Hdf5Handle variable = define_over_axes(writer, head, axes, name, H5T_IEEE_F64LE, &kFill, beta);
+  const Hdf5Handle variable = define_over_axes(writer, head, axes, described.name, H5T_IEEE_F64LE, &kFill, beta);
   writer.put_number(variable, "_FillValue", kFill);
-  writer.put_text(variable, "long_name", long_name);
+  writer.put_text(variable, "long_name", described.long_name);
   writer.put_text(variable, "units", units);
   if (*qualifiers != '\0') writer.put_text(variable, "ancillary_variables", qualifiers);
   return offset_of(writer, variable);
-}
-
-std::uint64_t put_quantity(const Writer& writer, const TableHead& head, const AxisVariables& axes, Quantity quantity) {
-  const QuantityDescription& described = description_of(quantity);
-  const bool is_response = !head.beta_deg.empty();
-  return put_variable(writer, head, axes, described.name, described.long_name, units_of(quantity, head.stokes_units),
-                      is_response ? kResponseQualifier : described.ancillary);
-}
-
-std::uint64_t put_response(const Writer& writer, const TableHead& head, const AxisVariables& axes,
-                           const Hdf5Handle& beta, ResponseVariable variable) {
-  const ResponseDescription& described = description_of(variable);
-  return put_variable(writer, head, axes, described.name, described.long_name, "1",
-                      described.has_beta ? kResponseQualifier : "", described.has_beta ? &beta : nullptr);
 }
 
 std::uint64_t put_status(const Writer& writer, const TableHead& head, const AxisVariables& axes) {
@@ -349,15 +337,22 @@ struct TableStore::Impl {
   /// Where the values of each variable begin in the file, in the order of for_each_variable.
   std::vector<std::uint64_t> offsets;
 
-  Impl(TableLayout own, AtomicFile& of_table)
-      : layout(std::move(own)), file(of_table), memory(of_table.path().string()) {
+  Impl(TableLayout of_file, AtomicFile& of_table)
+      : layout(std::move(of_file)), file(of_table), memory(of_table.path().string()) {
     const TableHead& head = layout.head;
     put_attributes(writer, head);
     const AxisVariables axes = put_axes(writer, head);
     const Hdf5Handle beta = head.beta_deg.empty() ? Hdf5Handle() : put_coordinate(writer, kBeta, head.beta_deg);
-    for (const Quantity quantity : layout.quantities) offsets.push_back(put_quantity(writer, head, axes, quantity));
-    for (const ResponseVariable variable : layout.responses)
-      offsets.push_back(put_response(writer, head, axes, beta, variable));
+    for (const Quantity quantity : layout.quantities) {
+      const QuantityDescription& described = description_of(quantity);
+      offsets.push_back(put_variable(writer, head, axes, described, units_of(quantity, head.stokes_units),
+                                     beta ? kResponseQualifier : described.ancillary));
+    }
+    for (const ResponseVariable variable : layout.responses) {
+      const ResponseDescription& described = description_of(variable);
+      offsets.push_back(put_variable(writer, head, axes, described, "1", described.has_beta ? kResponseQualifier : "",
+                                     described.has_beta ? &beta : nullptr));
+    }
     if (layout.has_status) offsets.push_back(put_status(writer, head, axes));
   }
 

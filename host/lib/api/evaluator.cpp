@@ -74,9 +74,9 @@ std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, b
 
 void check_no_fork() {
   static std::atomic<pid_t> first_user = 0;
-  const pid_t own = getpid();
+  const pid_t process = getpid();
   pid_t user = 0;
-  if (first_user.compare_exchange_strong(user, own) || user == own) return;
+  if (first_user.compare_exchange_strong(user, process) || user == process) return;
   throw DeviceError(
       fmt::format("this process was forked from process {}, which uses Vulkan, and a device does not outlive a fork: "
                   "start processes afresh (in Python multiprocessing.set_start_method(\"spawn\")), or take the "

@@ -79,18 +79,13 @@ Report verify(const std::filesystem::path& path, const TableCheckOptions& option
   const TableReader reader(path);
   const SceneValues scene =
       table_scene(reader.head(), name, options.named_files ? NamedData::kOfFiles : NamedData::kOfTable);
-  TableReport report;
-  report.path = name;
-  report.title = scene.title;
-  report.options = options;
   TableSample sample;
-  sample.positions = sample_positions(reader.head().size(), report.options);
+  sample.positions = sample_positions(reader.head().size(), options);
   sample.table = reader.read_entries(sample.positions, options.progress);
   use_scene_labels(sample.table, scene, name);
-  const bool is_response = !sample.table.beta_deg.empty();
-  report.check = (is_response ? check_responses : check_table)(sample, scene, name, options.progress);
-  report.wall_s = seconds_since(start);
-  return public_report(table_report(report), report.check.passed());
+  const auto check_sample = sample.table.beta_deg.empty() ? check_table : check_responses;
+  const TableCheck check = check_sample(sample, scene, name, options.progress);
+  return public_report(table_report(check, name, scene.title, options.seed, seconds_since(start)), check.passed());
 }
 
 Report verify_device(const DeviceCheckOptions& options) {

@@ -188,12 +188,12 @@ Report write_lookup(const std::filesystem::path& table_path, const std::filesyst
   csv.commit();
 
   const auto count = [&](std::uint32_t bit) {
-    return std::ranges::count_if(results, [bit](const PointResult& one) { return (one.status & bit) != 0; });
+    return std::ranges::count_if(results, [bit](const PointResult& result) { return (result.status & bit) != 0; });
   };
   const auto worst_of = [&](Quantity error) {
     std::optional<double> worst;
-    for (const PointResult& one : results) {
-      if (promises_dolp(one.status)) worst = std::max(worst.value_or(0.0), one[error]);
+    for (const PointResult& found : results) {
+      if (promises_dolp(found.status)) worst = std::max(worst.value_or(0.0), found[error]);
     }
     return worst;
   };

@@ -21,6 +21,7 @@
 #include "report/fit_report.hpp"
 #include "report/run_report.hpp"
 #include "run/scene_run.hpp"
+#include "scene/embedded_data.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/scene_reader.hpp"
 
@@ -36,10 +37,10 @@ void check_loss(Loss loss, ModelError error, const std::vector<MeasuredData>& da
         fmt::format("loss {}: cannot be combined with a model error, whose intervals need the loss squares",
                     loss_names()[static_cast<std::size_t>(loss)]));
   }
-  for (const MeasuredData& one : data) {
-    if (loss == Loss::kSquares || one.has_uncertainties) continue;
+  for (const MeasuredData& data_set : data) {
+    if (loss == Loss::kSquares || data_set.has_uncertainties) continue;
     throw InputError(fmt::format("loss {}: {} needs the column \"uncertainty\", against which residuals are weighed",
-                                 loss_names()[static_cast<std::size_t>(loss)], one.name));
+                                 loss_names()[static_cast<std::size_t>(loss)], data_set.name));
   }
 }
 
@@ -66,9 +67,9 @@ std::vector<Settings> combinations(const FitOptions& options) {
   for (const Comparison& comparison : options.compare) {
     check_comparison(comparison, options);
     std::vector<Settings> more;
-    for (const Settings& one : all) {
+    for (const Settings& settings : all) {
       for (const std::string& word : comparison.words) {
-        more.push_back(one);
+        more.push_back(settings);
         more.back().push_back({comparison.key, TomlText{word}, fmt::format("{} = {}", comparison.key, one_line(word))});
       }
     }
@@ -110,7 +111,7 @@ void check_starts(std::size_t starts) {
 
 void check_outputs(const FitOptions& options, const SceneValues& scene, const std::vector<MeasuredData>& data) {
   std::vector<std::string> inputs = files_of(scene);
-  for (const MeasuredData& one : data) inputs.push_back(one.name);
+  for (const MeasuredData& data_set : data) inputs.push_back(data_set.name);
   for (const std::filesystem::path& path : {options.output, options.plot}) {
     if (path.empty()) continue;
     check_output_is_no_input(path, inputs);
@@ -177,13 +178,13 @@ std::vector<Bracketed> bracketed(const Best& best, MeasuredData data, const std:
 Json brackets(const Best& best, const FitOptions& options, ModelEvaluator& evaluator) {
   Json all = Json::array();
   for (const MeasuredData& data : best.model->data()) {
-    Json& one = all.emplace_back(nullptr);
+    Json& bracket = all.emplace_back(nullptr);
     const std::vector<double> zeniths = fine_zeniths(data);
     for (const Bracketed& at : bracketed(best, data, zeniths, options, evaluator)) {
-      one["low"].push_back(at.low);
-      one["high"].push_back(at.high);
+      bracket["low"].push_back(at.low);
+      bracket["high"].push_back(at.high);
     }
-    if (!one.is_null()) one["theta_deg"] = zeniths;
+    if (!bracket.is_null()) bracket["theta_deg"] = zeniths;
   }
   return all;
 }
@@ -193,7 +194,8 @@ Json curves(const Best& best, const FitOptions& options, ModelEvaluator& evaluat
   Json all = Json::array();
   for (const MeasuredData& data : best.model->data()) {
     std::map<std::pair<Observable, std::optional<double>>, Measurement> kinds;
-    for (const Measurement& one : data.measurements) kinds.emplace(std::pair(one.observable, one.wavelength_um), one);
+    for (const Measurement& measurement : data.measurements)
+      kinds.emplace(std::pair(measurement.observable, measurement.wavelength_um), measurement);
     const std::vector<double> zeniths = fine_zeniths(data);
     for (const auto& [kind, measurement] : kinds) {
       MeasuredData fine = data;
@@ -216,7 +218,7 @@ void add_model_gap(ReportBuilder& report, const Best& best, const FitOptions& op
   std::optional<double> gap, share;
   for (const MeasuredData& data : best.model->data()) {
     std::vector<double> zeniths;
-    for (const Measurement& one : data.measurements) zeniths.push_back(one.theta_deg);
+    for (const Measurement& measurement : data.measurements) zeniths.push_back(measurement.theta_deg);
     const std::vector<Bracketed> results = bracketed(best, data, zeniths, options, evaluator);
     for (std::size_t i = 0; i < results.size(); ++i) {
       const auto& [model, low, high] = results[i];
@@ -241,28 +243,28 @@ Best best_of(std::vector<ComparedModel>& models, const SceneValues& scene, const
   Best best;
   const std::vector<Settings> compared = combinations(options);
   for (const Settings& settings : compared) {
-    ComparedModel& one = models.emplace_back();
-    one.settings = settings;
+    ComparedModel& model_of_settings = models.emplace_back();
+    model_of_settings.settings = settings;
     std::unique_ptr<fit::Model> model;
-    SceneValues own;
+    SceneValues compared_scene;
     try {
-      own = with_settings(scene, settings);
-      model = std::make_unique<fit::Model>(own, data, options.vary, options.model_error);
+      compared_scene = with_settings(scene, settings);
+      model = std::make_unique<fit::Model>(compared_scene, data, options.vary, options.model_error);
     } catch (const InputError& error) {
       if (compared.size() == 1) throw;
-      one.refusal = error.what();
+      model_of_settings.refusal = error.what();
       continue;
     }
     if (evaluator == nullptr) evaluator = begin(model->scene());
     const double least_aic = best.result ? best.result->aic : std::numeric_limits<double>::infinity();
-    one.result = fit::fit(*model, *evaluator, options, least_aic);
-    if (one.result && one.result->aic < least_aic) {
-      best = {std::move(model), one.result, settings, own};
+    model_of_settings.result = fit::fit(*model, *evaluator, options, least_aic);
+    if (model_of_settings.result && model_of_settings.result->aic < least_aic) {
+      best = {std::move(model), model_of_settings.result, settings, compared_scene};
     }
   }
   if (evaluator == nullptr) throw InputError(models.front().refusal);
-  std::ranges::stable_sort(models, {}, [](const ComparedModel& one) {
-    return one.result ? one.result->aic : std::numeric_limits<double>::infinity();
+  std::ranges::stable_sort(models, {}, [](const ComparedModel& model_of_settings) {
+    return model_of_settings.result ? model_of_settings.result->aic : std::numeric_limits<double>::infinity();
   });
   return best;
 }
@@ -275,29 +277,29 @@ void draw(ReportBuilder& report, const Best& best, const Scene& fitted, const Fi
   report.value("spectrum_um", Json{spectrum.min_um, spectrum.max_um});
   report.value("brackets", brackets(best, options, evaluator));
   report.value("curves", curves(best, options, evaluator));
-  draw_with_python(kFitPictureScript, report.json_text(), options.plot.string());
+  draw_with_python(embedded_plot_fit_py().data(), report.json_text(), options.plot.string());
   report.row("picture", "{}", key("plot", options.plot.string()));
 }
 
 }  // namespace
 
 Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, const FitOptions& of_call) {
-  return impl().exclusively(scene, of_call, [&](const SceneValues& own, const FitOptions& options) {
+  return impl().exclusively(scene, of_call, [&](const SceneValues& values, const FitOptions& options) {
     const auto start = std::chrono::steady_clock::now();
     check_loss(options.loss, options.model_error, data);
     check_starts(options.starts);
     check_plot(options.plot);
-    check_labels_chosen(own);
+    check_labels_chosen(values);
     report_start(options.progress, 1);
     std::vector<ComparedModel> models;
     ModelEvaluator* evaluator = nullptr;
-    const Best best = best_of(models, own, data, options, [&](const SceneValues& first) {
+    const Best best = best_of(models, values, data, options, [&](const SceneValues& first) {
       check_outputs(options, first, data);
       return evaluator = impl_->begin(first);
     });
 
     ReportBuilder report;
-    report.line("{}", key("title", own.title));
+    report.line("{}", key("title", values.title));
     if (best.result) {
       report.row("data", "{} measured values of {} file{}", key("observations", best.model->observation_count()),
                  data.size(), data.size() == 1 ? "" : "s");

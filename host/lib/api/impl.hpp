@@ -30,7 +30,7 @@ struct Scene::Impl {
 };
 
 struct Table::Impl {
-  Impl(TableValues own, std::string own_name) : table(std::move(own)), name(std::move(own_name)) {}
+  Impl(TableValues values, std::string of_messages) : table(std::move(values)), name(std::move(of_messages)) {}
   /// Made at the first request. Errors: errors of table_scene and TableLookup.
   const TableLookup& lookup() const;
 
@@ -68,7 +68,7 @@ void check_no_fork();
 std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, bool needs_double);
 
 struct Evaluator::Impl {
-  explicit Impl(EvaluatorOptions own) : options(std::move(own)) {}
+  explicit Impl(EvaluatorOptions given) : options(std::move(given)) {}
 
   /// The evaluator for a scene, before a run; a scene in double gets a device with double. Errors:
   /// errors of make_evaluator.

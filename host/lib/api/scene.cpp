@@ -20,7 +20,7 @@ std::optional<KeyValue> value_of(const SceneValues& scene, std::string_view key,
   const SceneKey* const known = find_scene_key(key);
   if (!known) {
     std::vector<std::string> names;
-    for (const SceneKey& one : scene_key_table()) names.push_back(one.description.key);
+    for (const SceneKey& scene_key : scene_key_table()) names.push_back(scene_key.description.key);
     throw InputError(
         fmt::format("{}: is no key of a scene; the nearest is {}", one_line(key), nearest_name(key, names)));
   }

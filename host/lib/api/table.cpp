@@ -45,13 +45,14 @@ bool is_variable(std::string_view name) {
 void check_attributes(const std::vector<Attribute>& attributes, const std::string& name) {
   std::set<std::string_view> names;
   for (const Attribute& attribute : attributes) {
-    const std::string& own = attribute.name;
-    if (own.empty() || own.find('/') != std::string::npos || !names.insert(own).second)
-      throw InputError(fmt::format("{}: attribute \"{}\": must have a name of its own without /", name, one_line(own)));
+    const std::string& attribute_name = attribute.name;
+    if (attribute_name.empty() || attribute_name.find('/') != std::string::npos || !names.insert(attribute_name).second)
+      throw InputError(
+          fmt::format("{}: attribute \"{}\": must have a name of its own without /", name, one_line(attribute_name)));
     const auto* text = std::get_if<std::string>(&attribute.value);
-    if (text != nullptr && text->size() > kMostAttributeBytes && is_variable(own))
+    if (text != nullptr && text->size() > kMostAttributeBytes && is_variable(attribute_name))
       throw InputError(fmt::format("{}: attribute {}: must have at most {} bytes, or another name than a variable's",
-                                   name, own, kMostAttributeBytes));
+                                   name, attribute_name, kMostAttributeBytes));
   }
 }
 

@@ -1,4 +1,4 @@
-#include "fit/contours.hpp"
+#include "fit/fit.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -199,19 +199,19 @@ bool is_straight(const Linearisation& from, const Linearisation& to, double scal
 
 void descend(Residuals& residuals, std::vector<Minimum>& all, const DescentOptions& options) {
   std::vector<Eigen::VectorXd> unknown;
-  for (const Minimum& one : all) {
-    if (one.where.residuals.size() == 0) unknown.push_back(one.where.at);
+  for (const Minimum& minimum : all) {
+    if (minimum.where.residuals.size() == 0) unknown.push_back(minimum.where.at);
   }
   std::vector<Linearisation> known = residuals.at(unknown);
   auto next = known.begin();
   std::vector<Walk> walks;
-  for (Minimum& one : all) {
-    if (one.where.residuals.size() == 0) one.where = std::move(*next++);
-    one.objective = objective(one.where.residuals, options.loss);
-    const bool is_free = static_cast<std::size_t>(one.where.at.size()) > one.held.size();
-    one.has_converged = !is_free && std::isfinite(one.objective);
-    if (!is_free || !std::isfinite(one.objective)) continue;
-    walks.push_back({&one, one.where.jacobian.size() == 0, options.secant_below.has_value()});
+  for (Minimum& candidate : all) {
+    if (candidate.where.residuals.size() == 0) candidate.where = std::move(*next++);
+    candidate.objective = objective(candidate.where.residuals, options.loss);
+    const bool is_free = static_cast<std::size_t>(candidate.where.at.size()) > candidate.held.size();
+    candidate.has_converged = !is_free && std::isfinite(candidate.objective);
+    if (!is_free || !std::isfinite(candidate.objective)) continue;
+    walks.push_back({&candidate, candidate.where.jacobian.size() == 0, options.secant_below.has_value()});
   }
   const auto is_done = [](const Walk& walk) { return walk.is_done; };
   for (int i = 0; i < options.most_steps && !walks.empty(); ++i) {
@@ -251,17 +251,17 @@ std::pair<Eigen::VectorXd, double> predict_step(const Neighbour& neighbour, doub
 
 std::vector<Minimum> follow(Residuals& residuals, const std::vector<Neighbour>& all, const DescentOptions& options) {
   std::vector<Eigen::VectorXd> points;
-  for (const Neighbour& one : all) points.push_back(predict_step(one, options.scale).first);
+  for (const Neighbour& neighbour : all) points.push_back(predict_step(neighbour, options.scale).first);
   std::vector<Linearisation> found = residuals.at(points);
   std::vector<Minimum> minima;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Linearisation& near = all[i].near->where;
     const bool is_predicted = near.jacobian.size() > 0 && is_straight(near, found[i], options.scale);
-    Minimum& one = minima.emplace_back();
-    one.where = is_predicted ? moved(near, std::move(found[i])) : std::move(found[i]);
-    one.where.steps = near.steps;
-    one.held = all[i].held;
-    one.radius = kRadiusOfNeighbours;
+    Minimum& start = minima.emplace_back();
+    start.where = is_predicted ? moved(near, std::move(found[i])) : std::move(found[i]);
+    start.where.steps = near.steps;
+    start.held = all[i].held;
+    start.radius = kRadiusOfNeighbours;
   }
   descend(residuals, minima, options);
   return minima;

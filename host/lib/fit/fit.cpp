@@ -26,7 +26,8 @@ constexpr double kLevel95 = 0.95;
 double least_uncertainty(const Model& model) {
   double least = model.has_uncertainties() ? std::numeric_limits<double>::infinity() : kAssumedUncertainty;
   for (const MeasuredData& data : model.data()) {
-    for (const Measurement& one : data.measurements) least = std::min(least, one.uncertainty.value_or(least));
+    for (const Measurement& measurement : data.measurements)
+      least = std::min(least, measurement.uncertainty.value_or(least));
   }
   return least;
 }
@@ -103,7 +104,7 @@ Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance) {
   const auto known = [](double variance) { return variance > 0.0 && std::isfinite(variance) ? variance : kNaN; };
   const Eigen::VectorXd inverses = covariance.diagonal().unaryExpr(known).cwiseSqrt().cwiseInverse();
   Eigen::MatrixXd correlation = inverses.asDiagonal() * covariance * inverses.asDiagonal();
-  for (double& own : correlation.diagonal()) own = std::isnan(own) ? kNaN : 1.0;
+  for (double& entry : correlation.diagonal()) entry = std::isnan(entry) ? kNaN : 1.0;
   return correlation;
 }
 
@@ -145,10 +146,10 @@ void set_error(FitParameter& fitted, const FitRange& range, double deviation, bo
 FitInterval interval_of(const FitRange& parameter, const std::vector<Stretch>& stretches) {
   FitInterval interval;
   interval.is_empty = stretches.empty();
-  for (const Stretch& one : stretches) {
+  for (const Stretch& stretch : stretches) {
     std::optional<double> low, high;
-    if (one.low > kAtBound) low = parameter.at(one.low);
-    if (one.high < 1.0 - kAtBound) high = parameter.at(one.high);
+    if (stretch.low > kAtBound) low = parameter.at(stretch.low);
+    if (stretch.high < 1.0 - kAtBound) high = parameter.at(stretch.high);
     interval.pieces.emplace_back(low, high);
   }
   if (interval.is_empty) return interval;
@@ -206,7 +207,7 @@ class Fit {
     if (model_.has_uncertainties()) return 1.0;
     double largest = 0.0;
     for (const MeasuredData& data : model_.data()) {
-      for (const Measurement& one : data.measurements) largest = std::max(largest, std::abs(one.value));
+      for (const Measurement& measurement : data.measurements) largest = std::max(largest, std::abs(measurement.value));
     }
     return std::pow(std::max(0.01 * largest, fine_.tolerance()), 2);
   }
@@ -260,10 +261,10 @@ class Fit {
     const std::optional<Profiles> profiles = find_profiles(scale, may_restart);
     if (!profiles) return false;
     for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
-      FitParameter& one = result_.parameters[j];
-      (is_scaled ? one.scaled_68.emplace() : one.interval_68) =
+      FitParameter& parameter = result_.parameters[j];
+      (is_scaled ? parameter.scaled_68.emplace() : parameter.interval_68) =
           interval_of(model_.parameters()[j], profiles->stretches[j][0]);
-      (is_scaled ? one.scaled_95.emplace() : one.interval_95) =
+      (is_scaled ? parameter.scaled_95.emplace() : parameter.interval_95) =
           interval_of(model_.parameters()[j], profiles->stretches[j][1]);
     }
     if (!is_scaled) std::ranges::copy(profiles->points, std::back_inserter(result_.valley_points));
@@ -277,8 +278,8 @@ class Fit {
     if (!model_.has_model_error()) options.from = minima_.front().objective;
     options.count = [this](std::size_t done, std::size_t total) { count(done, total); };
     std::vector<Minimum> near;
-    for (const Minimum& one : minima_) {
-      if (one.objective < options.from + options.rises[1] * scale) near.push_back(one);
+    for (const Minimum& candidate : minima_) {
+      if (candidate.objective < options.from + options.rises[1] * scale) near.push_back(candidate);
     }
     if (near.empty())
       return Profiles{.stretches = std::vector<std::array<std::vector<Stretch>, 2>>(result_.parameters.size())};
@@ -312,9 +313,9 @@ class Fit {
         result_.p_value = boost::math::gamma_q(0.5 * freedoms, 0.5 * best.objective);
     }
     result_.fit_quality = fit_quality(result_.p_value);
-    for (const Minimum& one : minima_) {
-      const Eigen::VectorXd values = fine_.values(one.where.at);
-      result_.minima.push_back({{values.begin(), values.end()}, one.objective});
+    for (const Minimum& minimum : minima_) {
+      const Eigen::VectorXd values = fine_.values(minimum.where.at);
+      result_.minima.push_back({{values.begin(), values.end()}, minimum.objective});
     }
     result_.tolerance = fine_.tolerance();
     result_.status = prediction.status;

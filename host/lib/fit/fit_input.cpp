@@ -59,7 +59,7 @@ void add_row(MeasuredData& data, const CsvReader& row, const CsvColumns& columns
   observation.uncertainty = columns.number(row, "uncertainty");
   for (std::size_t cell = 0; cell < columns.cells().size(); ++cell) {
     const std::string& name = known_columns()[columns.cells()[cell].value()].name;
-    const auto observable = std::ranges::find_if(kObservables, [&](Observable one) { return name == name_of(one); });
+    const auto observable = std::ranges::find_if(kObservables, [&](Observable kind) { return name == name_of(kind); });
     if (observable == kObservables.end()) continue;
     if (*observable == Observable::kDolp && columns.number_at(row, cell) < 0.0) {
       row.fail(
@@ -74,11 +74,11 @@ void add_row(MeasuredData& data, const CsvReader& row, const CsvColumns& columns
 /// Signs of a unit that was probably not meant.
 std::vector<std::string> remarks_on(const MeasuredData& data) {
   double highest_deg = 0.0, highest_dolp = 0.0, least_um = std::numeric_limits<double>::infinity();
-  for (const Measurement& one : data.measurements) {
-    highest_deg = std::max(highest_deg, one.theta_deg);
-    const bool is_dolp = one.observable == Observable::kDolp || one.observable == Observable::kQOverI;
-    if (is_dolp) highest_dolp = std::max(highest_dolp, std::abs(one.value));
-    least_um = std::min(least_um, one.wavelength_um.value_or(0.0));
+  for (const Measurement& measurement : data.measurements) {
+    highest_deg = std::max(highest_deg, measurement.theta_deg);
+    const bool is_dolp = measurement.observable == Observable::kDolp || measurement.observable == Observable::kQOverI;
+    if (is_dolp) highest_dolp = std::max(highest_dolp, std::abs(measurement.value));
+    least_um = std::min(least_um, measurement.wavelength_um.value_or(0.0));
   }
   std::vector<std::string> remarks;
   if (highest_deg > 0.0 && highest_deg < kLikelyRadians) {

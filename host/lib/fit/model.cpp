@@ -34,7 +34,7 @@ Eigen::VectorXd each(const std::vector<FitRange>& parameters, ValueOf value_of) 
 }
 
 Eigen::VectorXd starts_of(const std::vector<FitRange>& parameters) {
-  return each(parameters, [](const FitRange& one) { return one.start.value_or(one.at(0.5)); });
+  return each(parameters, [](const FitRange& range) { return range.start.value_or(range.at(0.5)); });
 }
 
 /// The components of an observable at a point.
@@ -67,9 +67,9 @@ EmissionModel other_end_of(const SceneValues& scene) {
 }
 
 /// The value nearest to a measured one between both ends of a bracket. Equation: DOLP is |Q/I|, least where Q/I is 0.
-double nearest_between(const Eigen::RowVector2d& one, const Eigen::RowVector2d& other, const Measurement& measured) {
-  if (std::isnan(one[0] + other[0])) return one[0] + other[0];
-  const auto [low, high] = std::minmax(one[0], other[0]);
+double nearest_between(const Eigen::RowVector2d& end, const Eigen::RowVector2d& other, const Measurement& measured) {
+  if (std::isnan(end[0] + other[0])) return end[0] + other[0];
+  const auto [low, high] = std::minmax(end[0], other[0]);
   if (measured.observable != Observable::kDolp) return std::clamp(measured.value, low, high);
   return std::clamp(measured.value, std::max({low, -high, 0.0}), std::max(-low, high));
 }
@@ -88,14 +88,14 @@ double error_of(Observable observable, const PointResult& point) {
 Model::Model(const SceneValues& scene, std::vector<MeasuredData> data, std::vector<FitRange> parameters,
              ModelError error)
     : data_(std::move(data)), parameters_(std::move(parameters)), error_(error) {
-  for (const MeasuredData& one : data_) count_ += one.measurements.size();
+  for (const MeasuredData& data_set : data_) count_ += data_set.measurements.size();
   check();
   scene_of(scene, data_.front(), {}, each(parameters_, &FitRange::low));
   scene_of(scene, data_.front(), {}, each(parameters_, &FitRange::high));
   Eigen::Index first_row = 0;
-  for (const MeasuredData& one : data_) {
-    groups_.push_back(group_of(scene, one, first_row));
-    first_row += static_cast<Eigen::Index>(one.measurements.size());
+  for (const MeasuredData& measured : data_) {
+    groups_.push_back(group_of(scene, measured, first_row));
+    first_row += static_cast<Eigen::Index>(measured.measurements.size());
   }
 }
 
@@ -106,16 +106,16 @@ void Model::check() const {
     check_range({key, low, high, start}, key);
     if (std::ranges::count(parameters_, key, &FitRange::key) > 1)
       throw InputError(fmt::format("{}: varies twice", key));
-    for (const MeasuredData& one : data_) {
-      if (std::ranges::count(one.settings, key, &Setting::key) > 0)
-        throw InputError(fmt::format("{}: {} is varied and cannot be fixed too", one.name, key));
+    for (const MeasuredData& data_set : data_) {
+      if (std::ranges::count(data_set.settings, key, &Setting::key) > 0)
+        throw InputError(fmt::format("{}: {} is varied and cannot be fixed too", data_set.name, key));
     }
   }
-  for (const MeasuredData& one : data_) {
-    if (one.has_uncertainties == has_uncertainties()) continue;
-    throw InputError(fmt::format("{}: column \"uncertainty\" is {}; all data sets have it, or none", one.name,
-                                 one.has_uncertainties ? "there, and not in " + data_.front().name
-                                                       : "missing, and " + data_.front().name + " has it"));
+  for (const MeasuredData& measured : data_) {
+    if (measured.has_uncertainties == has_uncertainties()) continue;
+    throw InputError(fmt::format("{}: column \"uncertainty\" is {}; all data sets have it, or none", measured.name,
+                                 measured.has_uncertainties ? "there, and not in " + data_.front().name
+                                                            : "missing, and " + data_.front().name + " has it"));
   }
   if (has_model_error() && !has_uncertainties()) {
     throw InputError(fmt::format("{}: a model error needs the column \"uncertainty\", which it is weighed against",
@@ -137,31 +137,31 @@ std::vector<Setting> Model::settings(const Eigen::VectorXd& values) const {
   return settings;
 }
 
-SceneValues Model::scene_of(const SceneValues& scene, const MeasuredData& data, const std::vector<Setting>& own,
+SceneValues Model::scene_of(const SceneValues& scene, const MeasuredData& data, const std::vector<Setting>& extra,
                             const Eigen::VectorXd& values) const {
   std::vector<Setting> all = data.settings;
-  for (const auto& more : {own, settings(values)}) all.insert(all.end(), more.begin(), more.end());
+  for (const auto& more : {extra, settings(values)}) all.insert(all.end(), more.begin(), more.end());
   return with_settings(scene, all);
 }
 
 Model::Group Model::group_of(const SceneValues& scene, const MeasuredData& data, Eigen::Index first_row) const {
   Group group{.data = &data, .first_row = first_row};
   std::set<double> wavelengths;
-  for (const Measurement& one : data.measurements) {
-    if (one.wavelength_um) wavelengths.insert(*one.wavelength_um);
+  for (const Measurement& measurement : data.measurements) {
+    if (measurement.wavelength_um) wavelengths.insert(*measurement.wavelength_um);
   }
   group.wavelength_um.assign(wavelengths.begin(), wavelengths.end());
   if (wavelengths.empty()) group.scene = scene_of(scene, data, {}, starts_of(parameters_));
-  const auto sets_spectrum = [](const Setting& one) { return one.key.starts_with("spectrum."); };
+  const auto sets_spectrum = [](const Setting& setting) { return setting.key.starts_with("spectrum."); };
   if (!wavelengths.empty() && (std::ranges::any_of(data.settings, sets_spectrum) || varies("spectrum.wavelength_um"))) {
     throw InputError(data.name + ": column \"wavelength_um\" and a spectrum key contradict each other");
   }
   // The scene must take all wavelengths, and has the shortest one.
   for (const double at_um : group.wavelength_um | std::views::reverse) {
     if (at_um != group.wavelength_um.back() && at_um != group.wavelength_um.front()) continue;
-    const Setting own{"spectrum.wavelength_um", at_um,
-                      fmt::format("{}: wavelength_um = {}", data.name, format_number(at_um))};
-    group.scene = scene_of(scene, data, {own}, starts_of(parameters_));
+    const Setting wavelength{"spectrum.wavelength_um", at_um,
+                             fmt::format("{}: wavelength_um = {}", data.name, format_number(at_um))};
+    group.scene = scene_of(scene, data, {wavelength}, starts_of(parameters_));
   }
   const std::shared_ptr<const Material>& tabulated = group.scene.surface.material.tabulated;
   for (const double at_um : group.wavelength_um)
@@ -187,10 +187,10 @@ bool Model::varies(const std::string& key) const {
 }
 
 SceneValues Model::with(const SceneValues& scene, const Eigen::VectorXd& values) const {
-  SceneValues own = scene;
+  SceneValues varied = scene;
   for (std::size_t j = 0; j < parameters_.size(); ++j)
-    find_scene_key(parameters_[j].key)->set(own, {.number = values[static_cast<Eigen::Index>(j)]});
-  return own;
+    find_scene_key(parameters_[j].key)->set(varied, {.number = values[static_cast<Eigen::Index>(j)]});
+  return varied;
 }
 
 std::vector<Prediction> Model::predict(const std::vector<Eigen::VectorXd>& values, double tolerance,
@@ -246,11 +246,11 @@ void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>
 
 void Model::add_points(std::vector<SceneEntry>& points, const Group& group, const SceneValues& scene) const {
   const Surface& surface = scene.surface;
-  for (const Measurement& one : group.data->measurements) {
-    SceneEntry& point = points.emplace_back(SceneEntry{one.theta_deg, {surface.sigma, surface.q}, {}});
+  for (const Measurement& measurement : group.data->measurements) {
+    SceneEntry& point = points.emplace_back(SceneEntry{measurement.theta_deg, {surface.sigma, surface.q}, {}});
     if (surface.material.is_constant()) point.index = surface.material.constant;
-    if (!one.wavelength_um) continue;
-    const auto position = std::ranges::lower_bound(group.wavelength_um, *one.wavelength_um);
+    if (!measurement.wavelength_um) continue;
+    const auto position = std::ranges::lower_bound(group.wavelength_um, *measurement.wavelength_um);
     point.variant = static_cast<std::uint32_t>(position - group.wavelength_um.begin());
     if (!surface.material.tabulated) continue;
     if (!varies("surface.n")) point.index->n = group.indices[point.variant].n;

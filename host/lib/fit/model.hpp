@@ -73,7 +73,7 @@ class Model {
   /// Adds the points of a group's measurements.
   void add_points(std::vector<SceneEntry>& points, const Group& group, const SceneValues& scene) const;
   /// The scene of some data. Errors: InputError that says whose setting is refused.
-  SceneValues scene_of(const SceneValues& scene, const MeasuredData& data, const std::vector<Setting>& own,
+  SceneValues scene_of(const SceneValues& scene, const MeasuredData& data, const std::vector<Setting>& extra,
                        const Eigen::VectorXd& values) const;
   SceneValues with(const SceneValues& scene, const Eigen::VectorXd& values) const;
   void predict_group(const Group& group, const std::vector<Eigen::VectorXd>& values, double tolerance,

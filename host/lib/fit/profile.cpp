@@ -158,13 +158,13 @@ class Side {
 };
 
 /// Adds a stretch; stretches that meet become one.
-void merge(std::vector<Stretch>& all, Stretch one) {
+void merge(std::vector<Stretch>& all, Stretch stretch) {
   std::erase_if(all, [&](const Stretch& other) {
-    if (other.high < one.low || one.high < other.low) return false;
-    one = {std::min(one.low, other.low), std::max(one.high, other.high)};
+    if (other.high < stretch.low || stretch.high < other.low) return false;
+    stretch = {std::min(stretch.low, other.low), std::max(stretch.high, other.high)};
     return true;
   });
-  all.insert(std::ranges::find_if(all, [&](const Stretch& other) { return other.low > one.low; }), one);
+  all.insert(std::ranges::find_if(all, [&](const Stretch& other) { return other.low > stretch.low; }), stretch);
 }
 
 /// An end of the known part of a profile.
@@ -291,7 +291,9 @@ class Profiler {
     const std::vector<Stretch>& all = result_.stretches[static_cast<std::size_t>(end.parameter)][end.rise];
     const double width = all.back().high - all.front().low;
     const double beyond = std::clamp(end.at + end.direction * kBeyond * width, 0.0, 1.0);
-    const auto distance = [&](const Minimum& one) { return end.direction * (one.where.at[end.parameter] - end.at); };
+    const auto distance = [&](const Minimum& candidate) {
+      return end.direction * (candidate.where.at[end.parameter] - end.at);
+    };
     const Minimum* nearest = nullptr;
     std::vector<Neighbour> ways;
     for (const Side& side : sides_) {

@@ -18,7 +18,7 @@ std::vector<Eigen::VectorXd> sobol_points(std::size_t count, Eigen::Index dimens
   std::mt19937_64 engine(seed);
   Eigen::VectorXd shift = Eigen::VectorXd::Zero(dimensions);
   if (seed != 1) {
-    for (double& one : shift) one = std::generate_canonical<double, 53>(engine);
+    for (double& value : shift) value = std::generate_canonical<double, 53>(engine);
   }
   const double most = static_cast<double>(boost::random::sobol::max());
   std::vector<Eigen::VectorXd> points(count, Eigen::VectorXd(dimensions));
@@ -46,16 +46,16 @@ std::vector<Minimum> choose_starts(Residuals& residuals, const SearchOptions& op
     points.insert(points.begin(), given);
   }
   std::vector<Minimum> candidates;
-  for (Linearisation& one : residuals.at(points)) {
-    const double found = objective(one.residuals, options.loss);
-    candidates.push_back({.where = std::move(one), .objective = found});
+  for (Linearisation& point : residuals.at(points)) {
+    const double found = objective(point.residuals, options.loss);
+    candidates.push_back({.where = std::move(point), .objective = found});
   }
   std::ranges::stable_sort(std::span(candidates).subspan(has_start ? 1 : 0), {}, &Minimum::objective);
   const double apart = 0.5 * std::pow(static_cast<double>(points.size()), -1.0 / static_cast<double>(dimensions));
   std::vector<Minimum> starts;
   for (Minimum& candidate : candidates) {
-    const auto is_near = [&](const Minimum& one) {
-      return (one.where.at - candidate.where.at).lpNorm<Eigen::Infinity>() < apart;
+    const auto is_near = [&](const Minimum& minimum) {
+      return (minimum.where.at - candidate.where.at).lpNorm<Eigen::Infinity>() < apart;
     };
     if (std::isfinite(candidate.objective) && std::ranges::none_of(starts, is_near))
       starts.push_back({.where = std::move(candidate.where)});
@@ -86,8 +86,8 @@ Eigen::VectorXd on_floor(const Eigen::VectorXd& point, const Eigen::VectorXd& re
 /// True where the objective falls from point to point, or never rises by more than `scale`.
 bool falls(double from, std::span<const Linearisation> points, Loss loss, double scale) {
   double least = from;
-  return std::ranges::all_of(points, [&](const Linearisation& one) {
-    const double here = objective(one.residuals, loss);
+  return std::ranges::all_of(points, [&](const Linearisation& point) {
+    const double here = objective(point.residuals, loss);
     const bool is_low = here <= least + scale;
     least = std::min(least, here);
     return is_low;
@@ -116,15 +116,16 @@ bool leads_down(Residuals& residuals, const Minimum& from, const Minimum& to, co
 
 /// The minima, the lowest first. A minimum from which a path leads down to a lower one is left out.
 std::vector<Minimum> distinct(std::vector<Minimum> all, Residuals& residuals, const SearchOptions& options) {
-  std::erase_if(all, [](const Minimum& one) { return !std::isfinite(one.objective); });
+  std::erase_if(all, [](const Minimum& minimum) { return !std::isfinite(minimum.objective); });
   std::ranges::stable_sort(all, {}, &Minimum::objective);
   std::vector<Minimum> kept;
-  for (Minimum& one : all) {
+  for (Minimum& candidate : all) {
     const auto is_near = [&](const Minimum& lower) {
-      return is_straight(one.where, lower.where, scale_of(options, lower));
+      return is_straight(candidate.where, lower.where, scale_of(options, lower));
     };
-    const auto is_above = [&](const Minimum& lower) { return leads_down(residuals, one, lower, options); };
-    if (std::ranges::none_of(kept, is_near) && std::ranges::none_of(kept, is_above)) kept.push_back(std::move(one));
+    const auto is_above = [&](const Minimum& lower) { return leads_down(residuals, candidate, lower, options); };
+    if (std::ranges::none_of(kept, is_near) && std::ranges::none_of(kept, is_above))
+      kept.push_back(std::move(candidate));
   }
   return kept;
 }
@@ -140,9 +141,9 @@ std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> st
     std::vector<Minimum> ends = std::exchange(starts, {});
     std::ranges::stable_sort(ends, {}, &Minimum::objective);
     for (Minimum& end : ends) {
-      const auto leads_to = [&](const Minimum& one) {
-        return one.objective <= end.objective && one.where.at != end.where.at &&
-               is_straight(end.where, one.where, scale_of(options, one));
+      const auto leads_to = [&](const Minimum& minimum) {
+        return minimum.objective <= end.objective && minimum.where.at != end.where.at &&
+               is_straight(end.where, minimum.where, scale_of(options, minimum));
       };
       if (!std::isfinite(end.objective) || std::ranges::any_of(passed, leads_to)) continue;
       passed.push_back(end);
@@ -163,14 +164,14 @@ std::vector<Minimum> find_minima(Residuals& coarse, Residuals& fine, const Searc
   if (far.empty()) return far;
   const double scale = std::max(scale_of(options, far.front()), fine.tolerance() * fine.tolerance());
   const double most = far.front().objective + kFarAbove * scale_of(options, far.front());
-  const auto end_of_near = std::ranges::find_if(far, [&](const Minimum& one) { return one.objective > most; });
+  const auto end_of_near = std::ranges::find_if(far, [&](const Minimum& minimum) { return minimum.objective > most; });
   std::vector<Minimum> near;
-  for (auto one = far.begin(); one != end_of_near; ++one) near.push_back({.where = {one->where.at}});
+  for (auto minimum = far.begin(); minimum != end_of_near; ++minimum) near.push_back({.where = {minimum->where.at}});
   far.erase(far.begin(), end_of_near);
   descend(fine, near, {options.loss, scale, 100});
   std::vector<Minimum> minima = distinct(std::move(near), fine, options);
   std::ranges::move(far, std::back_inserter(minima));
-  std::erase_if(minima, [](const Minimum& one) { return !one.has_converged; });
+  std::erase_if(minima, [](const Minimum& candidate) { return !candidate.has_converged; });
   std::ranges::stable_sort(minima, {}, &Minimum::objective);
   return minima;
 }

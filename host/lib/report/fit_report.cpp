@@ -52,35 +52,38 @@ struct NamedInterval {
   std::string key, name;
   const FitInterval& interval;
 };
-std::vector<NamedInterval> intervals_of(const FitParameter& one) {
-  return {{"68", "68 %", one.interval_68}, {"95", "95 %", one.interval_95}};
+std::vector<NamedInterval> intervals_of(const FitParameter& parameter) {
+  return {{"68", "68 %", parameter.interval_68}, {"95", "95 %", parameter.interval_95}};
 }
 
-Json parameter_json(const FitParameter& one) {
-  Json json = {{"key", one.key}, {"value", one.value}, {"standard_error", json_of(one.standard_error)}};
-  for (const auto& [key, name, interval] : intervals_of(one)) json["interval_" + key] = json_of(interval);
-  json["at_bound"] = one.is_at_bound;
-  if (!one.standard_error) json["why_no_error"] = one.why_no_error;
-  for (const auto& [key, name, interval] : intervals_of(one)) {
+Json parameter_json(const FitParameter& parameter) {
+  Json json = {
+      {"key", parameter.key}, {"value", parameter.value}, {"standard_error", json_of(parameter.standard_error)}};
+  for (const auto& [key, name, interval] : intervals_of(parameter)) json["interval_" + key] = json_of(interval);
+  json["at_bound"] = parameter.is_at_bound;
+  if (!parameter.standard_error) json["why_no_error"] = parameter.why_no_error;
+  for (const auto& [key, name, interval] : intervals_of(parameter)) {
     if (interval.pieces.size() < 2) continue;
     for (const auto& [low, high] : interval.pieces) json["pieces_" + key].push_back(json_of(FitInterval{low, high}));
   }
-  if (one.scaled_68) json.update({{"scaled_68", json_of(*one.scaled_68)}, {"scaled_95", json_of(*one.scaled_95)}});
+  if (parameter.scaled_68)
+    json.update({{"scaled_68", json_of(*parameter.scaled_68)}, {"scaled_95", json_of(*parameter.scaled_95)}});
   return json;
 }
 
 /// Adds lines on a parameter that its row of the table has no room for.
-void add_remarks(ReportBuilder& report, const FitParameter& one, const FitResult& result) {
-  report.row_if(!one.standard_error, "no error", "{}: {}", one.key, one.why_no_error);
-  for (const auto& [key, name, interval] : intervals_of(one)) {
+void add_remarks(ReportBuilder& report, const FitParameter& parameter, const FitResult& result) {
+  report.row_if(!parameter.standard_error, "no error", "{}: {}", parameter.key, parameter.why_no_error);
+  for (const auto& [key, name, interval] : intervals_of(parameter)) {
     std::vector<std::string> pieces;
     for (const auto& [low, high] : interval.pieces) pieces.push_back(text_of(FitInterval{low, high}));
-    report.row_if(pieces.size() > 1, "pieces", "{}: the {} interval has gaps: {}", one.key, name,
+    report.row_if(pieces.size() > 1, "pieces", "{}: the {} interval has gaps: {}", parameter.key, name,
                   fmt::format("{}", fmt::join(pieces, " and ")));
   }
-  if (!one.scaled_68) return;
-  report.row("scaled", "{}: uncertainties {:.3g} times as large give 68 % {}, 95 % {}", one.key,
-             std::sqrt(result.reduced_chi_square.value()), text_of(*one.scaled_68), text_of(*one.scaled_95));
+  if (!parameter.scaled_68) return;
+  report.row("scaled", "{}: uncertainties {:.3g} times as large give 68 % {}, 95 % {}", parameter.key,
+             std::sqrt(result.reduced_chi_square.value()), text_of(*parameter.scaled_68),
+             text_of(*parameter.scaled_95));
 }
 
 /// Adds a line for each parameter.
@@ -88,21 +91,21 @@ void add_parameters(ReportBuilder& report, const FitResult& result) {
   Json list = Json::array();
   std::size_t width = 9;
   std::vector<std::string> held;
-  for (const FitParameter& one : result.parameters) {
-    list.push_back(parameter_json(one));
-    width = std::max(width, one.key.size());
-    if (one.is_at_bound) held.push_back(one.key);
+  for (const FitParameter& parameter : result.parameters) {
+    list.push_back(parameter_json(parameter));
+    width = std::max(width, parameter.key.size());
+    if (parameter.is_at_bound) held.push_back(parameter.key);
   }
   report.value("parameters", list);
   report.line("  {:<{}}  {:>11}  {:>11}  {:^25}  {:^25}", "parameter", width, "value", "std. error", "68 %", "95 %");
-  for (const FitParameter& one : result.parameters) {
-    report.line("  {:<{}}  {:>11.6g}  {:>11}  {:^25}  {:^25}{}", one.key, width, one.value,
-                one.standard_error ? fmt::format("{:.2g}", *one.standard_error) : "none", text_of(one.interval_68),
-                text_of(one.interval_95), one.is_at_bound ? "  at its bound" : "");
+  for (const FitParameter& fitted : result.parameters) {
+    report.line("  {:<{}}  {:>11.6g}  {:>11}  {:^25}  {:^25}{}", fitted.key, width, fitted.value,
+                fitted.standard_error ? fmt::format("{:.2g}", *fitted.standard_error) : "none",
+                text_of(fitted.interval_68), text_of(fitted.interval_95), fitted.is_at_bound ? "  at its bound" : "");
   }
-  for (const FitParameter& one : result.parameters) add_remarks(report, one, result);
-  const bool has_errors =
-      std::ranges::any_of(result.parameters, [](const FitParameter& one) { return one.standard_error.has_value(); });
+  for (const FitParameter& parameter : result.parameters) add_remarks(report, parameter, result);
+  const bool has_errors = std::ranges::any_of(
+      result.parameters, [](const FitParameter& parameter) { return parameter.standard_error.has_value(); });
   report.row_if(has_errors && !held.empty(), "errors", "hold with {} kept at the bound; the intervals do not assume it",
                 join(held));
   report.value("errors_with_kept", held);
@@ -112,11 +115,11 @@ void add_correlations(ReportBuilder& report, const FitResult& result) {
   report.value("correlation", json_of(result.correlation));
   for (Eigen::Index i = 0; i < result.correlation.rows(); ++i) {
     for (Eigen::Index j = 0; j < i; ++j) {
-      const double one = result.correlation(i, j);
-      if (!std::isfinite(one)) continue;
+      const double correlation = result.correlation(i, j);
+      if (!std::isfinite(correlation)) continue;
       report.row("correlated", "{} and {}: {:+.3f}{}", result.parameters[static_cast<std::size_t>(j)].key,
-                 result.parameters[static_cast<std::size_t>(i)].key, one,
-                 std::abs(one) > kStrongCorrelation ? ", strongly" : "");
+                 result.parameters[static_cast<std::size_t>(i)].key, correlation,
+                 std::abs(correlation) > kStrongCorrelation ? ", strongly" : "");
     }
   }
 }
@@ -187,13 +190,13 @@ void add_points(ReportBuilder& report, const fit::Model& model, const FitResult&
   Json points = Json::array();
   Eigen::Index row = 0;
   for (const MeasuredData& data : model.data()) {
-    for (const Measurement& one : data.measurements) {
+    for (const Measurement& measurement : data.measurements) {
       points.push_back({{"data", data.name},
-                        {"quantity", name_of(one.observable)},
-                        {"theta_deg", one.theta_deg},
-                        {"wavelength_um", json_of(one.wavelength_um)},
-                        {"measured", one.value},
-                        {"uncertainty", json_of(one.uncertainty)},
+                        {"quantity", name_of(measurement.observable)},
+                        {"theta_deg", measurement.theta_deg},
+                        {"wavelength_um", json_of(measurement.wavelength_um)},
+                        {"measured", measurement.value},
+                        {"uncertainty", json_of(measurement.uncertainty)},
                         {"model", result.predicted[row]},
                         {"residual", result.residuals[row]}});
       ++row;
@@ -221,8 +224,8 @@ std::string why_no_contours(const FitResult& result, const std::optional<fit::Co
   }
   if (drawn) return "";
   std::vector<std::string> reasons;
-  for (const FitParameter& one : result.parameters) {
-    if (!one.standard_error) reasons.push_back(one.key + ": " + one.why_no_error);
+  for (const FitParameter& parameter : result.parameters) {
+    if (!parameter.standard_error) reasons.push_back(parameter.key + ": " + parameter.why_no_error);
   }
   return fmt::format("none: they need two parameters that the data determine within their ranges ({})",
                      fmt::join(reasons, "; "));
@@ -232,11 +235,11 @@ std::string why_no_contours(const FitResult& result, const std::optional<fit::Co
 FitInterval hull(const std::vector<const FitResult*>& results, std::size_t j, FitInterval FitParameter::*interval) {
   std::optional<FitInterval> hull;
   for (const FitResult* const result : results) {
-    const FitInterval& one = result->parameters[j].*interval;
-    if (one.is_empty) continue;
-    if (!hull) hull = one;
-    hull->low = hull->low && one.low ? std::optional(std::min(*hull->low, *one.low)) : std::nullopt;
-    hull->high = hull->high && one.high ? std::optional(std::max(*hull->high, *one.high)) : std::nullopt;
+    const FitInterval& other = result->parameters[j].*interval;
+    if (other.is_empty) continue;
+    if (!hull) hull = other;
+    hull->low = hull->low && other.low ? std::optional(std::min(*hull->low, *other.low)) : std::nullopt;
+    hull->high = hull->high && other.high ? std::optional(std::max(*hull->high, *other.high)) : std::nullopt;
   }
   return hull.value_or(FitInterval{.is_empty = true});
 }
@@ -317,22 +320,22 @@ void add_comparison(ReportBuilder& report, const std::vector<ComparedModel>& mod
   }
   report.line("  {:<{}}  {:>10}  {:>9}  {:>9}", "model", width, "chi_square", "delta AIC", "delta BIC");
   for (const ComparedModel& model : models) {
-    Json one = {{"overrides", settings_of(model)}};
+    Json json = {{"overrides", settings_of(model)}};
     if (model.result) {
       const FitResult& result = *model.result;
       report.line("  {:<{}}  {:>10.5g}  {:>9.2f}  {:>9.2f}", model_text(model), width, result.chi_square,
                   result.aic - least_aic, result.bic - least_bic);
-      one.update({{"chi_square", result.chi_square}, {"aic", result.aic}, {"bic", result.bic}});
-      one["delta_aic"] = result.aic - least_aic;
+      json.update({{"chi_square", result.chi_square}, {"aic", result.aic}, {"bic", result.bic}});
+      json["delta_aic"] = result.aic - least_aic;
       for (const FitParameter& parameter : result.parameters) {
-        one["parameters"].push_back(parameter_json(parameter));
+        json["parameters"].push_back(parameter_json(parameter));
       }
     } else {
       const std::string reason = model.refusal.empty() ? "no minimum was found" : model.refusal;
       report.line("  {:<{}}  {}", model_text(model), width, reason);
-      one["reason"] = reason;
+      json["reason"] = reason;
     }
-    list.push_back(one);
+    list.push_back(json);
   }
   report.value("models", list);
   add_alike(report, models, least_aic);

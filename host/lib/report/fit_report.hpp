@@ -4,14 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "fit/contours.hpp"
 #include "fit/fit.hpp"
 #include "report/report.hpp"
 
 namespace dolp {
-
-/// The text of host/tools/plot_fit.py, which draws the JSON of a report.
-extern const char* const kFitPictureScript;
 
 /// One of the models that are compared.
 struct ComparedModel {

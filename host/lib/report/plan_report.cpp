@@ -226,7 +226,7 @@ void add_cost(ReportBuilder& report, const PlannedRun& plan) {
   report.value("estimated_cpu_s", nullptr);
   if (run.moments + run.beams == 0) return;
   report.row("time", "estimate: {:.2g} s of evaluation with the evaluator cpu, from counting here; no device is timed",
-             key("estimated_cpu_s", run.moments_s + run.beams_s));
+             key("estimated_cpu_s", run.cpu_s));
 }
 
 std::string needed_text(const AxisForecast& axis) {

@@ -29,8 +29,8 @@ std::string position_text(const CheckedValue& value) {
 ReportBuilder::Json value_json(const CheckedValue& value) {
   ReportBuilder::Json json = {{"quantity", value.quantity}};
   for (const auto& [axis, number, label] : value.position) {
-    ReportBuilder::Json& own = json[description_of(axis).column];
-    label.empty() ? own = number : own = label;
+    ReportBuilder::Json& coordinate = json[description_of(axis).column];
+    label.empty() ? coordinate = number : coordinate = label;
   }
   json.update({{"stored", value.stored},
                {"reference", value.reference},
@@ -171,11 +171,13 @@ ReportBuilder quality_report(const Quality& quality) {
     report.line("   {:<6} not measured: {}", name_of(quality.precision), key("why_not", quality.why_not));
     return report;
   }
-  const auto error_of = [](const CaseOutcome& one) { return std::isnan(one.rho.error) ? kInfinity : one.rho.error; };
+  const auto error_of = [](const CaseOutcome& outcome) {
+    return std::isnan(outcome.rho.error) ? kInfinity : outcome.rho.error;
+  };
   const CaseOutcome& worst = *std::ranges::max_element(quality.outcomes, {}, error_of);
   const auto missed = std::ranges::count_if(quality.outcomes, &CaseOutcome::misses_tolerance);
   const bool is_sound =
-      std::ranges::all_of(quality.outcomes, [](const CaseOutcome& one) { return one.complaint.empty(); });
+      std::ranges::all_of(quality.outcomes, [](const CaseOutcome& checked) { return checked.complaint.empty(); });
   report.line(
       "   {:<6} true error of rho at most {:.1e} in {} ordinary cases; with tolerance {:g}, {} of them get status 2 or "
       "16, because the stated bound, larger than the error, misses it{}",
@@ -220,15 +222,15 @@ ReportBuilder device_report(const Device& device, std::size_t position) {
 
 }  // namespace
 
-ReportBuilder table_report(const TableReport& table) {
-  const TableCheck& check = table.check;
+ReportBuilder table_report(const TableCheck& check, const std::string& path, const std::string& title,
+                           std::uint64_t seed, double wall_s) {
   ReportBuilder report;
-  report.line("{}: {}", key("table", table.path), key("title", table.title));
+  report.line("{}: {}", key("table", path), key("title", title));
   report.row(
       "checked",
       "{} of {} entries (seed {}) against the reference, {:.1f} s; tolerance {:g}, {} of them miss it and say so",
-      key("checked", check.checked), key("entries", check.entries), key("seed", table.options.seed),
-      key("wall_s", table.wall_s), key("tolerance", check.tolerance), key("missed_tolerance", check.missed));
+      key("checked", check.checked), key("entries", check.entries), key("seed", seed), key("wall_s", wall_s),
+      key("tolerance", check.tolerance), key("missed_tolerance", check.missed));
   std::vector<ReportBuilder> quantities;
   for (const QuantityCheck& quantity : check.quantities) quantities.push_back(quantity_report(quantity));
   report.add("quantities", quantities);

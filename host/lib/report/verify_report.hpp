@@ -11,15 +11,9 @@
 
 namespace dolp {
 
-/// A table that was checked.
-struct TableReport {
-  std::string path;
-  std::string title;
-  TableCheckOptions options;
-  TableCheck check;
-  double wall_s = 0.0;
-};
-ReportBuilder table_report(const TableReport& table);
+/// The check of the table at `path`, whose scene has this title.
+ReportBuilder table_report(const TableCheck& check, const std::string& path, const std::string& title,
+                           std::uint64_t seed, double wall_s);
 
 /// The hard cases in one precision.
 struct PrecisionReport {

@@ -51,7 +51,7 @@ SceneEntries spread_entries(const SceneEntries& entries) {
     of_axis[axis] = values[axis].size();
   }
   for (std::size_t i = 0; i < size_of(of_axis); ++i) {
-    const PerAxis chosen = place_of(i, of_axis);
+    const PerAxis chosen = positions_on_axes(i, of_axis);
     std::size_t position = 0;
     for (const Axis axis : kAllAxes) position = position * counts[axis] + values[axis][chosen[axis]];
     positions.push_back(position);
@@ -73,11 +73,11 @@ Sample sample_of(const SceneValues& scene, const SceneEntries& entries) {
   if (sample.scene.emission) sample.scene.emission->has_bracket = false;
   if (spectral_samples(scene, entries) <= kBandWavelengths) return sample;
   using Rule = boost::math::quadrature::gauss<double, kBandWavelengths>;
-  std::vector<double> places;  // in a band from 0 to 1
+  std::vector<double> shares;  // in a band from 0 to 1
   sample.weights.clear();
   for (std::size_t i = 0; i < kBandWavelengths / 2; ++i) {
     for (const double sign : {-1.0, 1.0}) {
-      places.push_back(0.5 + 0.5 * sign * Rule::abscissa()[i]);
+      shares.push_back(0.5 + 0.5 * sign * Rule::abscissa()[i]);
       sample.weights.push_back(Rule::weights()[i]);
     }
   }
@@ -92,8 +92,8 @@ Sample sample_of(const SceneValues& scene, const SceneEntries& entries) {
   std::vector<SceneVariant> variants;
   for (const SceneVariant& variant : sample.entries.variants()) {
     const Spectrum band = variant.band ? scene.bands[*variant.band] : scene.spectrum;
-    for (const double place : places)
-      variants.emplace_back(variant).wavelength_um = std::lerp(band.min_um, band.max_um, place);
+    for (const double share : shares)
+      variants.emplace_back(variant).wavelength_um = std::lerp(band.min_um, band.max_um, share);
   }
   sample.scene.spectrum.max_um = sample.scene.spectrum.min_um;
   sample.entries = {std::move(all), std::move(variants)};

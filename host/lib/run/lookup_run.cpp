@@ -100,14 +100,14 @@ void check_index(const TableLookup& lookup, const SceneValues& scene, const Poin
     const auto& given = points[axis];
     if (!given || lookup.axis(axis)) continue;
     const char* const name = description_of(axis).column;
-    const std::optional<double> own = value_of(scene, axis);
+    const std::optional<double> of_scene = value_of(scene, axis);
     const bool is_dispersive = !material.is_constant() && (axis == Axis::kN || axis == Axis::kK);
     for (std::size_t row = 0; row < points.size(); ++row) {
-      if (!is_dispersive && own && (*given)[row] == *own) continue;
+      if (!is_dispersive && of_scene && (*given)[row] == *of_scene) continue;
       throw InputError(fmt::format("{}: {} = {}: the table {}; dolp eval computes other values", points.where(row),
                                    name, points.text_at(axis, row),
                                    is_dispersive ? "is of a material that depends on the wavelength"
-                                   : own         ? fmt::format("is of {} = {}", name, format_number(*own))
+                                   : of_scene    ? fmt::format("is of {} = {}", name, format_number(*of_scene))
                                                  : "has no such axis"));
     }
   }

@@ -117,14 +117,14 @@ std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points&
                     "give n and k, or a material and a coating",
                     scene.path_name));
   }
-  Surface own = surface;
+  Surface coated = surface;
   FacetOptics optics = surface.optics_at(scene.spectrum.min_um);
   std::vector<MuellerPoint> result;
   result.reserve(points.size());
   for (std::size_t row = 0; row < points.size(); ++row) {
     if (!points.films.empty()) {
-      set_films(own, points.films_at(row));
-      optics = own.optics_at(scene.spectrum.min_um);
+      set_films(coated, points.films_at(row));
+      optics = coated.optics_at(scene.spectrum.min_um);
     }
     result.push_back({{(*points.theta_i_deg)[row], (*points.theta_r_deg)[row], (*points.delta_phi_deg)[row]},
                       {value_or(points[Axis::kSigma], row, surface.sigma), value_or(points[Axis::kQ], row, surface.q)},

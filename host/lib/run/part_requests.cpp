@@ -72,21 +72,22 @@ std::vector<FacetOptics> indices_of_grid(const SceneValues& scene, const SceneEn
   const SceneEntries whole = SceneEntries::of_grid(entries.whole_axes(), entries.index());
   std::vector<FacetOptics> indices;
   if (whole.has_own_index()) {
-    PerAxis place{};
+    PerAxis on_axes{};
     for (const std::vector<FacetOptics>& samples : spectral_indices(scene, whole)) {
-      for (std::size_t& n = place[Axis::kN] = 0; n < whole.counts()[Axis::kN]; ++n) {
-        for (std::size_t& k = place[Axis::kK] = 0; k < whole.counts()[Axis::kK]; ++k) {
-          const std::vector<FacetOptics> own = with_index(samples, whole.index_at(place));
-          indices.insert(indices.end(), own.begin(), own.end());
+      for (std::size_t& n = on_axes[Axis::kN] = 0; n < whole.counts()[Axis::kN]; ++n) {
+        for (std::size_t& k = on_axes[Axis::kK] = 0; k < whole.counts()[Axis::kK]; ++k) {
+          const std::vector<FacetOptics> with_this_index = with_index(samples, whole.index_at(on_axes));
+          indices.insert(indices.end(), with_this_index.begin(), with_this_index.end());
         }
       }
       if (samples.front().is_bare()) break;  // they are the same at all wavelengths
     }
     return indices;
   }
-  for (const std::vector<FacetOptics>& own : spectral_indices(scene, whole)) {
-    if (indices.size() < own.size() || !std::ranges::equal(own, std::span(indices).last(own.size())))
-      indices.insert(indices.end(), own.begin(), own.end());
+  for (const std::vector<FacetOptics>& of_variant : spectral_indices(scene, whole)) {
+    if (indices.size() < of_variant.size() ||
+        !std::ranges::equal(of_variant, std::span(indices).last(of_variant.size())))
+      indices.insert(indices.end(), of_variant.begin(), of_variant.end());
   }
   return indices;
 }
@@ -116,9 +117,9 @@ std::vector<FacetOptics> with_index(const std::vector<FacetOptics>& samples,
                                     const std::optional<OpticalConstants>& index) {
   if (!index) return samples;
   if (samples.front().is_bare()) return {*index};
-  std::vector<FacetOptics> own = samples;
-  for (FacetOptics& sample : own) sample.index = *index;
-  return own;
+  std::vector<FacetOptics> changed = samples;
+  for (FacetOptics& sample : changed) sample.index = *index;
+  return changed;
 }
 
 SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& entries) {
@@ -146,21 +147,21 @@ PartRequests::PartRequests(const SceneValues& scene, const SpectralIndices& samp
   if (plan.needs_beams) request_beams(selection);
 }
 
-std::size_t PartRequests::index_set(const SceneEntries& grid, const PerAxis& place) const {
-  if (!grid.has_own_index()) return grid.variant_at(place);
+std::size_t PartRequests::index_set(const SceneEntries& grid, const PerAxis& on_axes) const {
+  if (!grid.has_own_index()) return grid.variant_at(on_axes);
   const PerAxis& counts = grid.counts();
-  const std::size_t variant = has_films() ? grid.variant_at(place) : 0;
-  return (variant * counts[Axis::kN] + place[Axis::kN]) * counts[Axis::kK] + place[Axis::kK];
+  const std::size_t variant = has_films() ? grid.variant_at(on_axes) : 0;
+  return (variant * counts[Axis::kN] + on_axes[Axis::kN]) * counts[Axis::kK] + on_axes[Axis::kK];
 }
 
 std::vector<FacetOptics> PartRequests::samples_of(const SceneEntries& grid, std::size_t set) const {
   if (!grid.has_own_index()) return samples_[set];
   const std::size_t n_values = grid.counts()[Axis::kN];
   const std::size_t k_values = grid.counts()[Axis::kK];
-  PerAxis place = {};
-  place[Axis::kN] = set / k_values % n_values;
-  place[Axis::kK] = set % k_values;
-  return with_index(samples_[set / (n_values * k_values)], grid.index_at(place));
+  PerAxis on_axes = {};
+  on_axes[Axis::kN] = set / k_values % n_values;
+  on_axes[Axis::kK] = set % k_values;
+  return with_index(samples_[set / (n_values * k_values)], grid.index_at(on_axes));
 }
 
 void PartRequests::request_grid(const Selection& selection) {
@@ -173,8 +174,8 @@ void PartRequests::request_grid(const Selection& selection) {
   std::vector<char> set(sets, is_whole ? 1 : 0);
   for (const std::size_t i : selection.chosen) {
     if (!wants_moments(scene_, grid[i], plan_)) continue;
-    const PerAxis place = grid.place(i);
-    theta[place[Axis::kTheta]] = set[index_set(grid, place)] = 1;
+    const PerAxis on_axes = grid.axis_positions(i);
+    theta[on_axes[Axis::kTheta]] = set[index_set(grid, on_axes)] = 1;
   }
   for (std::size_t i = 0; i < sigma.size(); ++i) {
     for (std::size_t j = 0; j < q.size(); ++j) {
@@ -214,11 +215,11 @@ void PartRequests::request_indices(const SceneEntries& grid, const std::vector<c
   std::uint32_t first = 0;
   for (std::size_t set = 0; set < is_used.size(); ++set) {
     if (is_used[set] == 0) continue;
-    std::vector<FacetOptics> own = samples_of(grid, set);
-    if (own != last) {
+    std::vector<FacetOptics> of_set = samples_of(grid, set);
+    if (of_set != last) {
       first = static_cast<std::uint32_t>(moments_.optics.size());
-      moments_.optics.insert(moments_.optics.end(), own.begin(), own.end());
-      last = std::move(own);
+      moments_.optics.insert(moments_.optics.end(), of_set.begin(), of_set.end());
+      last = std::move(of_set);
     }
     index_set_offset_[set] = first;
   }
@@ -239,17 +240,17 @@ void PartRequests::mark_wanted(const Selection& selection) {
 PartRequests::MomentsSpan PartRequests::moments_of(std::size_t member) const {
   if (!spans_of_points_.empty()) return spans_of_points_[member];
   const SceneEntries& grid = selection_.part;
-  const PerAxis place = grid.place(selection_.position(member));
+  const PerAxis on_axes = grid.axis_positions(selection_.position(member));
   const std::size_t of_index = moments_.theta_deg.size() * moments_.shapes();
-  const std::size_t shape = sigma_at_[place[Axis::kSigma]] * moments_.q.size() + q_at_[place[Axis::kQ]];
-  const std::size_t of_theta = theta_at_[place[Axis::kTheta]] * moments_.shapes();
+  const std::size_t shape = sigma_at_[on_axes[Axis::kSigma]] * moments_.q.size() + q_at_[on_axes[Axis::kQ]];
+  const std::size_t of_theta = theta_at_[on_axes[Axis::kTheta]] * moments_.shapes();
   const bool has_one_index = grid.has_own_index() && !has_films();
-  return {index_set_offset_[index_set(grid, place)] * of_index + of_theta + shape,
+  return {index_set_offset_[index_set(grid, on_axes)] * of_index + of_theta + shape,
           has_one_index ? std::size_t{0} : of_index};
 }
 
 std::size_t PartRequests::direction_of(std::size_t member) const {
-  return theta_at_[selection_.part.place(selection_.position(member))[Axis::kTheta]];
+  return theta_at_[selection_.part.axis_positions(selection_.position(member))[Axis::kTheta]];
 }
 
 void PartRequests::request_points(const Selection& selection) {
@@ -271,9 +272,9 @@ void PartRequests::request_points(const Selection& selection) {
     const auto [known_span, is_new] =
         known.try_emplace({zenith_deg, shape.sigma, shape.q, key.n, key.k, films_at}, MomentsSpan{});
     if (is_new) {
-      const std::vector<FacetOptics> own = with_index(samples_[entry.variant], entry.index);
+      const std::vector<FacetOptics> of_entry = with_index(samples_[entry.variant], entry.index);
       known_span->second = {moments_.size(), entry.index && !has_films() ? std::size_t{0} : std::size_t{1}};
-      for (const FacetOptics& sample : own) moments_.append({zenith_deg, shape, sample});
+      for (const FacetOptics& sample : of_entry) moments_.append({zenith_deg, shape, sample});
     }
     spans_of_points_.push_back(known_span->second);
   }
@@ -300,10 +301,10 @@ void PartRequests::request_beams(const Selection& selection) {
     if (!wants_beam(scene_, entry, plan_)) continue;
     ScatteringEntry wanted;
     if (is_grid) {
-      const PerAxis place = selection.part.place(selection.position(i));
-      wanted.angles = static_cast<std::uint32_t>(place[Axis::kTheta]);
+      const PerAxis on_axes = selection.part.axis_positions(selection.position(i));
+      wanted.angles = static_cast<std::uint32_t>(on_axes[Axis::kTheta]);
       wanted.shape =
-          static_cast<std::uint32_t>(place[Axis::kSigma]) * q_count + static_cast<std::uint32_t>(place[Axis::kQ]);
+          static_cast<std::uint32_t>(on_axes[Axis::kSigma]) * q_count + static_cast<std::uint32_t>(on_axes[Axis::kQ]);
     } else {
       wanted.angles = wanted.shape = static_cast<std::uint32_t>(beams_.angles.size());
       beams_.angles.push_back(angles_of(scene_, entry.theta_deg));
@@ -312,9 +313,9 @@ void PartRequests::request_beams(const Selection& selection) {
     for (std::uint32_t j = 0; j < samples_[entry.variant].size(); ++j) {
       wanted.index = first_index[entry.variant] + j;
       if (entry.index) {
-        FacetOptics own = samples_[entry.variant][j];
-        own.index = *entry.index;
-        if (beams_.optics.back() != own) beams_.optics.push_back(std::move(own));
+        FacetOptics of_entry = samples_[entry.variant][j];
+        of_entry.index = *entry.index;
+        if (beams_.optics.back() != of_entry) beams_.optics.push_back(std::move(of_entry));
         wanted.index = static_cast<std::uint32_t>(beams_.optics.size() - 1);
       }
       beams_.entries.push_back(wanted);

@@ -77,7 +77,7 @@ class PartRequests {
   void request_grid(const Selection& selection);
   void request_indices(const SceneEntries& grid, const std::vector<char>& is_used);
   void mark_wanted(const Selection& selection);
-  std::size_t index_set(const SceneEntries& grid, const PerAxis& place) const;
+  std::size_t index_set(const SceneEntries& grid, const PerAxis& on_axes) const;
   std::vector<FacetOptics> samples_of(const SceneEntries& grid, std::size_t set) const;
   bool has_films() const { return !samples_.front().front().is_bare(); }
   void request_points(const Selection& selection);

@@ -122,8 +122,7 @@ void count_work(RunPrediction& run, const SceneValues& scene, const SceneEntries
   const double again = moments_scale * static_cast<double>(moments.again) + run.again_beams;
   run.again_share = again / static_cast<double>(std::max<std::size_t>(given, 1));
   run.is_exact = moments.first == run.moments && beams.first == run.beams;
-  run.moments_s = moments_scale * moments.spent_s;
-  run.beams_s = beams_scale * beams.spent_s;
+  run.cpu_s = moments_scale * moments.spent_s + beams_scale * beams.spent_s;
 }
 
 /// Memory of the responses of a step.

@@ -32,9 +32,8 @@ struct RunPrediction {
   double again_evaluations = 0.0;
   double again_beams = 0.0;
   bool counts_directions = false;
-  bool is_exact = true;    ///< all moments and beams were counted, none estimated from others
-  double moments_s = 0.0;  ///< time of all levels on this machine's processor, from counting
-  double beams_s = 0.0;
+  bool is_exact = true;     ///< all moments and beams were counted, none estimated from others
+  double cpu_s = 0.0;       ///< time of all levels on this machine's processor, from counting
   double host_bytes = 0.0;  ///< memory of the largest part, and of the columns that are written
 };
 

@@ -118,14 +118,14 @@ void RunSummary::add(const SceneValues& scene, const SceneEntries& part, std::sp
   const bool bistatic = scene.geometry.mode == Mode::kBistatic;
   std::vector<RunSummary> of_ranges((results.size() + kSummaryEntriesAtOnce - 1) / kSummaryEntriesAtOnce);
   parallel_ranges(results.size(), kSummaryEntriesAtOnce, [&](std::size_t first, std::size_t last) {
-    RunSummary& own = of_ranges[first / kSummaryEntriesAtOnce];
-    own.entries = last - first;
+    RunSummary& of_range = of_ranges[first / kSummaryEntriesAtOnce];
+    of_range.entries = last - first;
     for (std::size_t i = first; i < last; ++i) {
       const SceneEntry entry = part[i];
-      add_result(own, bistatic ? scene.geometry.view_zenith_deg : entry.theta_deg, entry.shape.sigma, results[i]);
+      add_result(of_range, bistatic ? scene.geometry.view_zenith_deg : entry.theta_deg, entry.shape.sigma, results[i]);
     }
   });
-  for (const RunSummary& own : of_ranges) add(own);
+  for (const RunSummary& of_range : of_ranges) add(of_range);
 }
 
 void RunSummary::add(const RunSummary& other) {

@@ -60,6 +60,28 @@ std::string stokes_units(const SceneValues& scene) {
   return units;
 }
 
+/// A hash of all data of the scene: n, k, E0, films, reflectances and the sky.
+std::uint64_t data_hash(const SceneValues& scene) {
+  std::uint64_t hash = kHashStart;
+  const auto add = [&hash](const SpectralTable& table) {
+    hash = hashed(hashed(hash, std::span(table.wavelength_um)), std::span(table.value));
+    hash =
+        hashed(hashed(hash, static_cast<std::uint64_t>(table.formula.number)), std::span(table.formula.coefficients));
+  };
+  const Material& used = scene.surface.material;
+  for (const Material* material : {&used, used.tabulated.get()}) {
+    if (!material) continue;
+    hash = hashed(hash, std::span<const double>(std::array{material->constant.n, material->constant.k}));
+    add(material->n);
+    add(material->k);
+  }
+  hash = hashed(hashed(hash, coating_text(scene.surface, true)), reflectance_text(scene.surface));
+  hash = hashed(hash, axis_materials_text(scene, true));
+  if (scene.source) add(scene.source->table);
+  if (scene.surroundings && scene.surroundings->profile) hash = hashed(hash, scene.surroundings->profile->hash());
+  return hash;
+}
+
 }  // namespace
 
 void fill_used(TableHead& head, const SceneValues& scene) {
@@ -176,32 +198,6 @@ TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const
   layout.quantities = quantities_of(scene, &plan);
   return layout;
 }
-
-namespace {
-
-/// A hash of all data of the scene: n, k, E0, films, reflectances and the sky.
-std::uint64_t data_hash(const SceneValues& scene) {
-  std::uint64_t hash = kHashStart;
-  const auto add = [&hash](const SpectralTable& table) {
-    hash = hashed(hashed(hash, std::span(table.wavelength_um)), std::span(table.value));
-    hash =
-        hashed(hashed(hash, static_cast<std::uint64_t>(table.formula.number)), std::span(table.formula.coefficients));
-  };
-  const Material& own = scene.surface.material;
-  for (const Material* material : {&own, own.tabulated.get()}) {
-    if (!material) continue;
-    hash = hashed(hash, std::span<const double>(std::array{material->constant.n, material->constant.k}));
-    add(material->n);
-    add(material->k);
-  }
-  hash = hashed(hashed(hash, coating_text(scene.surface, true)), reflectance_text(scene.surface));
-  hash = hashed(hash, axis_materials_text(scene, true));
-  if (scene.source) add(scene.source->table);
-  if (scene.surroundings && scene.surroundings->profile) hash = hashed(hash, scene.surroundings->profile->hash());
-  return hash;
-}
-
-}  // namespace
 
 std::string identity_of(const SceneValues& scene, const std::string& evaluator, bool keep_all) {
   return fmt::format("program dolp {} ({}); evaluator {}; precision {}; keep_all {}; scene {}; data fnv1a64:{:016x}",

@@ -84,8 +84,8 @@ class TableSink final : public Sink {
     TableValues table = table_part(layout_, part, results);
     finish();
     pending_ = std::async(std::launch::async,
-                          [this, first = part.first_in(entries_), own = std::move(table),
-                           note = so_far.text()]() mutable { output_.write(std::move(own), first, note); });
+                          [this, first = part.first_in(entries_), values = std::move(table),
+                           note = so_far.text()]() mutable { output_.write(std::move(values), first, note); });
   }
 
   /// Waits for the last part. Errors: errors of its writing.
@@ -175,12 +175,12 @@ std::vector<Attribute> without_run(std::vector<Attribute> attributes) {
 }
 
 /// Copies a shard into its place in the table.
-void merge_shard(TableOutput& output, const TableReader& reader, const SceneEntries& own) {
+void merge_shard(TableOutput& output, const TableReader& reader, const SceneEntries& shard) {
   ValueSums sums;
-  for (const TableBox& box : boxes_in_order(own.counts(), kMergedAtOnce)) {
+  for (const TableBox& box : boxes_in_order(shard.counts(), kMergedAtOnce)) {
     TableValues part = reader.read(box);
     add(sums, reader.sums_of(part, box));
-    PerAxis first = own.first();
+    PerAxis first = shard.first();
     for (std::size_t axis = 0; axis < first.size(); ++axis) first[axis] += box.first[axis];
     output.write(std::move(part), first, "");
   }
@@ -191,10 +191,10 @@ void merge_shard(TableOutput& output, const TableReader& reader, const SceneEntr
 
 fs::path shard_path(const fs::path& path, const Shard& shard) {
   if (shard.is_none() || path == "-") return path;
-  fs::path own = path;
+  fs::path of_shard = path;
   const std::string suffix = path.extension().string();
-  own.replace_extension();
-  return own.string() + fmt::format(".{}-of-{}", shard.number, shard.count) + suffix;
+  of_shard.replace_extension();
+  return of_shard.string() + fmt::format(".{}-of-{}", shard.number, shard.count) + suffix;
 }
 
 SceneEntries shard_entries(const SceneValues& scene, const Shard& shard) {
@@ -273,9 +273,9 @@ ShardSet::ShardSet(const std::vector<std::string>& paths) {
     const TableReader reader(path);
     if (paths_.empty()) begin(reader, path);
     const std::size_t number = checked_number(reader, path);
-    const auto [place, is_new] = paths_.emplace(number, path);
+    const auto [known, is_new] = paths_.emplace(number, path);
     if (!is_new)
-      throw InputError(fmt::format("{}: is shard {}, as {} is", path, shard_text({number, count_}), place->second));
+      throw InputError(fmt::format("{}: is shard {}, as {} is", path, shard_text({number, count_}), known->second));
   }
   std::vector<std::string> missing;
   for (std::size_t i = 1; i <= count_ && missing.size() < kMostNamed; ++i) {

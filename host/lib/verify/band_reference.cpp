@@ -84,7 +84,7 @@ Integrals integrand(const PointResult& at, double weight) {
 
 /// The wavelengths of an interval, ascending, as shares of its half width from its middle, with both weights.
 struct KronrodNode {
-  double place;
+  double offset;
   double kronrod;
   double gauss;
 };
@@ -139,7 +139,7 @@ void integrate_new(const SceneValues& scene, std::vector<PointIntegral*>& points
         entries.back().variant = static_cast<std::uint32_t>(variants.size());
         variants.push_back(point->variant);
         variants.back().wavelength_um =
-            std::midpoint(interval.from_um, interval.to_um) + 0.5 * node.place * (interval.to_um - interval.from_um);
+            std::midpoint(interval.from_um, interval.to_um) + 0.5 * node.offset * (interval.to_um - interval.from_um);
       }
     }
   }

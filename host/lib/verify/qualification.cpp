@@ -17,6 +17,7 @@
 #include "reference/hemisphere.hpp"
 #include "run/scene_run.hpp"
 #include "scene/csv.hpp"
+#include "scene/embedded_data.hpp"
 
 namespace dolp {
 namespace {

@@ -25,9 +25,6 @@ struct StoredCase {
   std::string origin;  ///< where the values come from
 };
 
-/// The file host/data/hard_cases.csv as it was when the program was built.
-std::string_view embedded_hard_cases_csv();
-
 /// The model's hard cases: ends of every range, coinciding split lines, indices that reflect nothing or everything; all
 /// maskings, both distributions.
 /// Accuracy: |d r_i| and |d r_q| at most 1.5e-13 r_i, for N = 1.0001, which reflects 3e-9, 3e-11 r_i

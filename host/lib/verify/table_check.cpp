@@ -7,7 +7,6 @@
 #include <cmath>
 #include <dolp/errors.hpp>
 #include <random>
-#include <ranges>
 #include <set>
 #include <span>
 
@@ -192,14 +191,12 @@ double CheckedValue::ratio() const {
 
 std::vector<AxisValue> position_of(std::size_t entry, const TableHead& table) {
   std::vector<AxisValue> position;
-  for (const Axis axis : kAllAxes | std::views::reverse) {
-    const std::vector<double>& values = table.axes[axis];
-    if (values.empty()) continue;
-    const double value = values[entry % values.size()];
+  const PerAxis at = positions_on_axes(entry, table.counts());
+  for (const Axis axis : kAllAxes) {
+    if (table.axes[axis].empty()) continue;
+    const double value = table.axes[axis][at[axis]];
     position.push_back({axis, value, description_of(axis).has_labels ? table.label(axis, value) : ""});
-    entry /= values.size();
   }
-  std::ranges::reverse(position);
   return position;
 }
 
@@ -277,11 +274,12 @@ TableCheck check_responses(const TableSample& sample, const SceneValues& scene, 
     of_variable.name = described.name;
     for (std::size_t i = 0; i < request.size(); ++i) {
       if (std::isnan(stated[i]) && std::isnan(reference_error[i])) continue;  // there is no reflectance
-      const auto own = [&](const std::vector<double>& weights) {
+      const auto of_entry = [&](const std::vector<double>& weights) {
         return std::span(weights).subspan(i * table.beta_deg.size(), table.beta_deg.size());
       };
       CheckedValue value{described.name, position_of(sample.positions[i], table)};
-      value.stored = response_distance(own(table.responses[variable]), own(right.responses[variable]), is_of_q);
+      value.stored =
+          response_distance(of_entry(table.responses[variable]), of_entry(right.responses[variable]), is_of_q);
       value.stated = stated[i];
       value.reference_error = reference_error[i];
       if (!(value.stored <= stated[i] + reference_error[i])) value.complaint = "is too far from the reference";

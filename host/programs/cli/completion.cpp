@@ -95,9 +95,9 @@ std::string completing_words(const CLI::App& app, const Words& line) {
     if (word.starts_with(current)) found += fmt::format("{}\t{}\n", word, description);
   };
   const CLI::App* command = nullptr;
-  for (const CLI::App* one : app.get_subcommands({})) {
-    if (line.size() < 2) add(one->get_name(), one->get_description());
-    if (line.size() >= 2 && one->get_name() == line.front()) command = one;
+  for (const CLI::App* subcommand : app.get_subcommands({})) {
+    if (line.size() < 2) add(subcommand->get_name(), subcommand->get_description());
+    if (line.size() >= 2 && subcommand->get_name() == line.front()) command = subcommand;
   }
   if (command == nullptr) return found;
   const CLI::Option* const previous = command->get_option_no_throw(line[line.size() - 2]);

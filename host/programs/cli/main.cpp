@@ -30,8 +30,8 @@ std::string option_hint(const CLI::App& command, const std::string& option) {
   constexpr std::size_t kMostMistakes = 2;
   const std::string given = option.substr(0, option.find('='));
   for (const CLI::Option* known : command.get_options()) {
-    for (const std::string& own : known->get_lnames()) {
-      if (edit_distance(given, "--" + own) <= kMostMistakes) return "; did you mean --" + own + "?";
+    for (const std::string& name : known->get_lnames()) {
+      if (edit_distance(given, "--" + name) <= kMostMistakes) return "; did you mean --" + name + "?";
     }
   }
   for (const Key& known : dolp::keys()) {

@@ -204,8 +204,8 @@ TEST_F(Library, Keys_NameTheirWordsAndRivals) {
   const auto named = [](const std::string& key) { return *std::ranges::find(dolp::keys(), key, &dolp::Key::key); };
   EXPECT_EQ(named("surface.scattering").words, (std::vector<std::string>{"single", "multiple"}));
   EXPECT_EQ(named("emission.bracket").words, (std::vector<std::string>{"false", "true"}));
-  EXPECT_EQ(named("surface.k").rivals,
-            (std::vector<std::string>{"surface.material", "surface.material_file", "surface.reflectance_file"}));
+  EXPECT_EQ(named("surface.k").rivals, (std::vector<std::string>{"surface.material", "surface.material_file",
+                                                                 "surface.reflectance_file", "grid.material"}));
   EXPECT_EQ(named("grid.sigma").rivals, (std::vector<std::string>{"surface.wind_m_s", "grid.wind_m_s"}));
   EXPECT_TRUE(named("surface.q").rivals.empty());
 }

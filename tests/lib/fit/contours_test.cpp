@@ -1,0 +1,87 @@
+// Contours agree with brute force.
+#include <Eigen/Geometry>
+
+#include "fit_support.hpp"
+
+namespace dolp::fit {
+namespace {
+
+/// The smallest growth over the third parameter at given coordinates of two others, by brute force: scans its range,
+/// and the neighbourhood of the previous minimum.
+std::vector<double> brute_growth(Residuals& residuals, const FitResult& result, const std::array<std::size_t, 2>& pair,
+                                 const std::vector<Eigen::Vector2d>& places) {
+  constexpr int kSteps = 40;
+  std::vector<double> least(places.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> middles(places.size(), 0.5);
+  for (double width = 0.5; width > 1e-4; width *= 2.0 / kSteps) {
+    std::vector<Eigen::VectorXd> points;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      for (int i = -kSteps / 2; i <= kSteps / 2; ++i) {
+        Eigen::VectorXd& point = points.emplace_back(3);
+        point.setConstant(std::clamp(middles[k] + 2.0 * width * i / kSteps, 0.0, 1.0));
+        for (std::size_t j = 0; j < 2; ++j)
+          point[static_cast<Eigen::Index>(pair[j])] = places[k][static_cast<Eigen::Index>(j)];
+      }
+    }
+    const std::vector<Linearisation> found = residuals.at(points);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const std::size_t k = i / (kSteps + 1);
+      const double growth = objective(found[i].residuals, Loss::kSquares) - result.chi_square;
+      if (growth >= least[k]) continue;
+      least[k] = growth;
+      middles[k] = points[i][static_cast<Eigen::Index>(3 - pair[0] - pair[1])];
+    }
+  }
+  return least;
+}
+
+class FitContours : public FitTest {
+ protected:
+  /// Compares contours of n, k and sigma from a few points with brute force. `off` is the largest allowed error of the
+  /// root of the growth.
+  void expect_true(int points, std::uint64_t seed, double off) {
+    const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0),
+                                              number("surface.sigma", 0.02, 1.0)};
+    const Model model(parse_scene(kScene, "scene"), {measured(kNoise, {}, true, points, seed)}, parameters);
+    const FitResult result = fit::fit(model, evaluator_, {}).value();
+    const Contours contours = contours_of(model, evaluator_, result, {}).value();
+    EXPECT_LE(contours.evaluations, 2 * result.evaluations);
+    const auto& pair = contours.parameters;
+    Residuals residuals(model, result.tolerance, Differences::kForward, evaluator_, {});
+    Eigen::AlignedBox2d box;
+    std::vector<Eigen::Vector2d> places;
+    std::vector<double> roots;
+    for (Eigen::Index i = 0; i < contours.growth.size(); ++i) {
+      const double growth = contours.growth.reshaped()[i];
+      if (std::isnan(growth)) continue;
+      const Eigen::Vector2d place(parameters[pair[0]].coordinate(contours.values[0].reshaped()[i]),
+                                  parameters[pair[1]].coordinate(contours.values[1].reshaped()[i]));
+      box.extend(place);
+      if (growth > kContourLevels[1] || i % 2 != 0) continue;
+      places.push_back(place);
+      roots.push_back(std::sqrt(growth));
+    }
+    ASSERT_GE(places.size(), 40U);
+    const std::vector<double> right = brute_growth(residuals, result, pair, places);
+    for (std::size_t i = 0; i < places.size(); ++i)
+      EXPECT_NEAR(roots[i], std::sqrt(std::max(0.0, right[i])), off) << places[i].transpose();
+    // Outside the contours nothing may lie well below the higher level.
+    places.clear();
+    for (int i = 0; i < 225; ++i) places.emplace_back(i % 15 / 14.0, i / 15 / 14.0);
+    const std::vector<double> growths = brute_growth(residuals, result, pair, places);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const bool is_at_bound = places[i].minCoeff() <= 0.0 || places[i].maxCoeff() >= 1.0;
+      EXPECT_TRUE(growths[i] > 0.9 * kContourLevels[1] || is_at_bound || box.contains(places[i]))
+          << places[i].transpose();
+    }
+  }
+};
+
+// Residuals bend between nodes, and descents stop before the bottom of the valley.
+TEST_F(FitContours, EightPoints_AreWhereTheLeastOfTheThirdParameterSays) { expect_true(8, 7, 0.1); }
+
+// The data cannot distinguish n, k and sigma. The valley bends, and the affordable grid is coarse.
+TEST_F(FitContours, FourPoints_AreWhereTheLeastOfTheThirdParameterSays) { expect_true(4, 7, 0.4); }
+
+}  // namespace
+}  // namespace dolp::fit

@@ -1,0 +1,124 @@
+// Fits find known truths, and name what the data do not determine.
+#include "fit_support.hpp"
+
+namespace dolp::fit {
+namespace {
+
+TEST(FitQuality, IsAWordForTheP_Value) {
+  for (const auto& [p, word] : {std::pair<std::optional<double>, const char*>(1.0, "good"),
+                                {0.05, "good"},
+                                {0.049, "doubtful"},
+                                {0.001, "doubtful"},
+                                {0.00099, "bad"},
+                                {0.0, "bad"},
+                                {std::nullopt, ""}}) {
+    EXPECT_EQ(fit_quality(p), word) << p.value_or(-1.0);
+  }
+}
+
+TEST_F(FitTest, ExactData_GiveTheTruth) {
+  const FitResult result = fitted(measured(0.0), {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0),
+                                                  number("surface.sigma", 0.02, 1.0)});
+  const double truth[] = {1.6, 0.5, 0.2};
+  for (std::size_t j = 0; j < 3; ++j) {
+    // Without noise the minimum is at the truth. The remaining difference is the model's numerical error, far below an
+    // uncertainty.
+    EXPECT_NEAR(result.parameters[j].value, truth[j], 0.02 * *result.parameters[j].standard_error);
+    EXPECT_FALSE(result.parameters[j].is_at_bound);
+  }
+  EXPECT_LT(result.chi_square, 1e-3);
+  EXPECT_LT(result.numerical_error, 0.01);
+  EXPECT_EQ(result.degrees_of_freedom, 17U);
+  EXPECT_TRUE(result.degeneracies.empty());
+}
+
+TEST_F(FitTest, NoUncertainties_TheResidualsGiveTheScale) {
+  const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.sigma", 0.02, 1.0)};
+  const FitResult with = fitted(measured(kNoise), parameters);
+  const FitResult without = fitted(measured(kNoise, {}, false), parameters);
+  EXPECT_FALSE(without.p_value.has_value());
+  EXPECT_NEAR(without.chi_square, with.chi_square * kNoise * kNoise, 1e-3 * without.chi_square);
+  EXPECT_NEAR(without.scale, without.chi_square / 18.0, 1e-9 * without.scale);
+  const double ratio = std::sqrt(*with.reduced_chi_square);
+  for (std::size_t j = 0; j < 2; ++j) {
+    EXPECT_NEAR(without.parameters[j].value, with.parameters[j].value, 0.01 * *with.parameters[j].standard_error);
+    EXPECT_NEAR(*without.parameters[j].standard_error, ratio * *with.parameters[j].standard_error,
+                0.02 * *with.parameters[j].standard_error);
+  }
+}
+
+TEST_F(FitTest, ParameterWithoutInfluence_IsNamedAndOpen) {
+  const FitResult result =
+      fitted(measured(kNoise, {"surface.distribution=gaussian"}),
+             {number("surface.n", 1.1, 4.0), number("surface.q", 1.6, 5.0)}, {}, {"surface.distribution=gaussian"});
+  ASSERT_EQ(result.degeneracies.size(), 1U);
+  EXPECT_EQ(result.degeneracies.front(), "the data do not determine surface.q at all");
+  EXPECT_FALSE(result.parameters[1].standard_error.has_value());
+  EXPECT_FALSE(result.parameters[1].interval_68.low || result.parameters[1].interval_68.high);
+  EXPECT_TRUE(result.parameters[0].interval_95.low && result.parameters[0].interval_95.high);
+  EXPECT_EQ(result.determined, 1U);
+}
+
+TEST_F(FitTest, FactorsOfOneProduct_AreNamedAsAPair) {
+  // Only a source: I and Q are both proportional to k_s times its irradiance, and Q/I depends on neither.
+  const std::vector<std::string> source_alone = {"emission=none", "surroundings=none", "source.irradiance=1"};
+  const MeasuredData data = measured(kNoise, source_alone);
+  const FitResult result = fitted(
+      data, {number("surface.n", 1.1, 4.0), number("surface.specular", 0.2, 0.9), number("source.scale", 0.5, 2.0)}, {},
+      source_alone);
+  ASSERT_EQ(result.degeneracies.size(), 2U);
+  EXPECT_NE((result.degeneracies[0] + result.degeneracies[1]).find("surface.specular"), std::string::npos);
+  EXPECT_NE((result.degeneracies[0] + result.degeneracies[1]).find("source.scale"), std::string::npos);
+  EXPECT_TRUE(result.parameters[0].interval_95.low.has_value());
+}
+
+TEST_F(FitTest, TruthBeyondTheRange_IsAtItsBound) {
+  const FitResult result = fitted(measured(kNoise), {number("surface.n", 1.1, 1.5)});
+  EXPECT_TRUE(result.parameters.front().is_at_bound);
+  EXPECT_EQ(result.parameters.front().value, 1.5);
+  EXPECT_FALSE(result.parameters.front().standard_error.has_value());
+  EXPECT_EQ(result.parameters.front().why_no_error, "it is at its bound");
+  EXPECT_FALSE(result.parameters.front().interval_95.high.has_value());
+}
+
+TEST_F(FitTest, Outlier_MovesSquaresMoreThanARobustLoss) {
+  MeasuredData data = measured(0.0);
+  data.measurements[15].value += 50.0 * kNoise;
+  const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0)};
+  const double squares = std::abs(fitted(data, parameters).parameters.front().value - 1.6);
+  for (const Loss loss : {Loss::kHuber, Loss::kSoftL1, Loss::kCauchy, Loss::kTukey}) {
+    FitOptions options;
+    options.loss = loss;
+    const FitResult result = fitted(data, parameters, options);
+    EXPECT_LT(std::abs(result.parameters.front().value - 1.6), 0.3 * squares);
+    EXPECT_FALSE(result.p_value.has_value());
+  }
+}
+
+TEST_F(FitTest, TwoDataSets_ShareParametersAndKeepKeysOfTheirOwn) {
+  MeasuredData warm = measured(0.0);
+  MeasuredData cold = measured(0.0, {"emission.temperature_K=250"});
+  cold.settings = {{"emission.temperature_K", 250.0}};
+  const Model model(parse_scene(kScene, "scene"), {warm, cold}, {number("surface.n", 1.1, 4.0)});
+  const std::optional<FitResult> result = fit::fit(model, evaluator_, {});
+  ASSERT_TRUE(result.has_value());
+  EXPECT_NEAR(result->parameters.front().value, 1.6, 1e-4);
+  EXPECT_LT(result->chi_square, 1e-3);
+  EXPECT_EQ(result->residuals.size(), 40);
+}
+
+TEST_F(FitTest, SameSeed_GivesTheSameDigits) {
+  const MeasuredData data = measured(kNoise);
+  const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.sigma", 0.02, 1.0)};
+  const FitResult one = fitted(data, parameters);
+  const FitResult two = fitted(data, parameters);
+  EXPECT_EQ(one.parameters[0].value, two.parameters[0].value);
+  EXPECT_EQ(one.parameters[1].interval_95.high, two.parameters[1].interval_95.high);
+  FitOptions other;
+  other.seed = 2;
+  EXPECT_NEAR(fitted(data, parameters, other).parameters[0].value, one.parameters[0].value,
+              0.01 * *one.parameters[0].standard_error);
+}
+
+}  // namespace
+}  // namespace dolp::fit

@@ -1,0 +1,125 @@
+// Intervals agree with closed forms, with brute force and with synthetic measurements.
+#include "fit_support.hpp"
+
+namespace dolp::fit {
+namespace {
+
+TEST_F(FitTest, LinearParameter_IntervalsAreThoseOfTheCovariance) {
+  // rho is linear in k_s. With the emission of a body at the same temperature, Q/I is nearly linear, too.
+  const FitResult result =
+      fitted(measured(kNoise), {number("surface.specular", 0.2, 1.0)}, {}, {"surface.specular=0.6"});
+  const FitParameter& one = result.parameters.front();
+  ASSERT_TRUE(one.interval_68.low && one.interval_95.low && one.interval_68.high && one.interval_95.high);
+  const double error = *one.standard_error;
+  constexpr double kCurvature = 0.05;  // relative curvature of Q/I in k_s over the interval
+  EXPECT_NEAR(one.value - *one.interval_68.low, error, kCurvature * error);
+  EXPECT_NEAR(*one.interval_68.high - one.value, error, kCurvature * error);
+  EXPECT_NEAR(one.value - *one.interval_95.low, 1.96 * error, 2.0 * kCurvature * error);
+  EXPECT_NEAR(*one.interval_95.high - one.value, 1.96 * error, 2.0 * kCurvature * error);
+}
+
+TEST_F(FitTest, IntervalEnds_LieWhereTheBestOfTheOthersHasGrownSo) {
+  const MeasuredData data = measured(kNoise);
+  const FitRange sigma = number("surface.sigma", 0.02, 1.0);
+  const FitResult result = fitted(data, {number("surface.n", 1.1, 4.0), sigma});
+  for (const bool is_95 : {false, true}) {
+    const FitInterval& interval = is_95 ? result.parameters[1].interval_95 : result.parameters[1].interval_68;
+    for (const std::optional<double>& end : {interval.low, interval.high}) {
+      ASSERT_TRUE(end.has_value());
+      const FitResult held =
+          fitted(data, {number("surface.n", 1.1, 4.0)}, {}, {"surface.sigma=" + std::to_string(*end)});
+      // The profile's root is found to 0.5 %, so its square to 1 %; to_string keeps six digits.
+      EXPECT_NEAR(held.chi_square - result.chi_square, is_95 ? 3.841 : 1.0, 0.015 * (is_95 ? 3.841 : 1.0));
+    }
+  }
+}
+
+// The scaled intervals equal the plain intervals for data with uncertainties multiplied by sqrt(reduced chi^2).
+TEST_F(FitTest, DoubtfulFit_ScaledIntervalsAreThoseOfLargerUncertainties) {
+  const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0)};
+  MeasuredData data = measured(kNoise, {"surface.sigma=0.26"});
+  const FitResult result = fitted(data, parameters);
+  ASSERT_NE(fit_quality(result.p_value), "good") << *result.p_value;
+  for (Measurement& one : data.measurements) *one.uncertainty *= std::sqrt(*result.reduced_chi_square);
+  const FitResult wider = fitted(data, parameters);
+  EXPECT_EQ(fit_quality(wider.p_value), "good");
+  constexpr double kRoot = 0.02;  // share of a half-width: both ends are found to 0.5 % of the root of the growth
+  for (std::size_t j = 0; j < 2; ++j) {
+    const FitParameter &one = result.parameters[j], &other = wider.parameters[j];
+    ASSERT_TRUE(one.scaled_68 && one.scaled_95 && !other.scaled_68 && !other.scaled_95);
+    for (const auto& [scaled, plain] :
+         {std::pair(*one.scaled_68, other.interval_68), {*one.scaled_95, other.interval_95}}) {
+      EXPECT_NEAR(*scaled.low, *plain.low, kRoot * (one.value - *plain.low));
+      EXPECT_NEAR(*scaled.high, *plain.high, kRoot * (*plain.high - one.value));
+    }
+    EXPECT_LT(*one.scaled_68->low, *one.interval_68.low);
+  }
+}
+
+// At each k below the minimum there are two minima of n: one at its bound and a lower one inside. Without the other
+// branch, most of k's interval would be missing.
+TEST_F(FitTest, MinimumAtABound_IntervalHasTheOtherBranch) {
+  MeasuredData data;
+  data.name = "paint";
+  data.zenith_column = "theta_deg";
+  data.has_uncertainties = true;
+  const std::vector<double> dolp = {0.000321, 0.000975, 0.002693, 0.004349, 0.006603,
+                                    0.010358, 0.014966, 0.019867, 0.025187};
+  for (std::size_t i = 0; i < dolp.size(); ++i) {
+    data.measurements.push_back({.observable = Observable::kDolp, .theta_deg = 5.0 * static_cast<double>(i + 1)});
+    data.measurements.back().value = dolp[i];
+    data.measurements.back().uncertainty = 5e-4;
+  }
+  const FitResult result =
+      fitted(data, {number("surface.n", 1.1, 3.0), number("surface.k", 0.0, 2.0)}, {},
+             {"surface.sigma=0.15", "surface.specular=0.97", "surface.diffuse=0.03", "surface.diffuse_exponent=-0.3",
+              "emission.temperature_K=290", "surroundings.temperature_K=240", "spectrum.band_um=[8,14]"});
+  ASSERT_EQ(result.parameters[0].value, 1.1);
+  ASSERT_TRUE(result.parameters[1].interval_68.low.has_value());
+  EXPECT_NEAR(*result.parameters[1].interval_68.low, 0.195, 0.01);
+  EXPECT_NEAR(*result.parameters[1].interval_68.high, 0.396, 0.002);
+}
+
+TEST_F(FitTest, StandardErrors_ThatReachBeyondTheRange_AreNone) {
+  const auto error_in = [&](double high) {
+    return fitted(measured(10.0 * kNoise), {number("surface.k", 0.0, high)}).parameters.front();
+  };
+  const FitParameter wide = error_in(5.0);
+  ASSERT_TRUE(wide.standard_error.has_value()) << wide.why_no_error;
+  EXPECT_TRUE(wide.why_no_error.empty());
+  const FitParameter narrow = error_in(wide.value + 0.5 * *wide.standard_error);
+  EXPECT_NEAR(narrow.value, wide.value, 0.1 * *wide.standard_error);
+  EXPECT_FALSE(narrow.standard_error.has_value());
+  EXPECT_NE(narrow.why_no_error.find("would reach beyond its range 0:"), std::string::npos) << narrow.why_no_error;
+}
+
+TEST_F(FitTest, Intervals_HoldTheTruthAsOftenAsTheySay) {
+  constexpr int kDraws = 40;
+  constexpr double kSpread = 3.0;  // standard deviations of the binomial distribution
+  const std::vector<FitRange> parameters = {number("surface.n", 1.3, 2.0), number("surface.sigma", 0.1, 0.4)};
+  const double truth[] = {1.6, 0.2};
+  for (const bool has_uncertainties : {true, false}) {
+    int held_68 = 0, held_95 = 0;
+    for (int draw = 0; draw < kDraws; ++draw) {
+      FitOptions options;
+      options.starts = 1;
+      const FitResult result =
+          fitted(measured(kNoise, {}, has_uncertainties, 5, static_cast<std::uint64_t>(draw)), parameters, options);
+      // one parameter per draw, because the parameters of a draw are correlated
+      const std::size_t j = static_cast<std::size_t>(draw) % 2;
+      const auto holds = [&](const FitInterval& interval) {
+        return interval.low.value_or(0.0) <= truth[j] && truth[j] <= interval.high.value_or(10.0);
+      };
+      held_68 += holds(result.parameters[j].interval_68) ? 1 : 0;
+      held_95 += holds(result.parameters[j].interval_95) ? 1 : 0;
+    }
+    const auto expect_share = [&](int held, double share) {
+      EXPECT_NEAR(held, kDraws * share, kSpread * std::sqrt(kDraws * share * (1.0 - share))) << has_uncertainties;
+    };
+    expect_share(held_68, 0.6827);
+    expect_share(held_95, 0.95);
+  }
+}
+
+}  // namespace
+}  // namespace dolp::fit

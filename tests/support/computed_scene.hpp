@@ -1,0 +1,25 @@
+// Results and tables of scenes in tests, computed on the CPU.
+#pragma once
+
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "run/scene_table.hpp"
+#include "scene_support.hpp"
+
+namespace dolp {
+
+inline std::vector<PointResult> results_of(const SceneValues& scene, const SceneEntries& entries) {
+  CpuEvaluator evaluator;
+  return evaluate_scene(scene, entries, evaluator, {});
+}
+inline std::vector<PointResult> results_of(const SceneValues& scene) { return results_of(scene, grid_entries(scene)); }
+
+/// The table over the scene's grid.
+inline TableValues table_of(const SceneValues& scene) {
+  const SceneEntries entries = grid_entries(scene);
+  const TableLayout layout = table_layout(scene, plan_effects(scene, entries, false), scene.grid);
+  TableValues table = table_part(layout, entries, results_of(scene, entries));
+  static_cast<TableHead&>(table) = layout.head;
+  return table;
+}
+
+}  // namespace dolp

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Builds and tests the last commit on Debian 13: debian13.sh FOLDER [COMMAND...]
 #
-# Makes a Debian 13 system in FOLDER by debootstrap, or uses an existing one, and puts the last commit into its /src/dolp.
-# There it runs COMMAND. Without COMMAND it runs the quickstart, and the tests that depend on the libraries, the driver and
-# the display of the system. Needs root: it changes its root folder and mounts /dev and /proc in FOLDER while it runs.
+# Makes a Debian 13 system in FOLDER with debootstrap, unless it exists, and copies the last commit to its /src/dolp. There
+# it runs COMMAND, by default the quickstart and those tests that depend on libraries, driver or display of the system.
+# Needs root for chroot, and to mount /dev and /proc in FOLDER while it runs.
 set -euo pipefail
 
-# Leaves out the tests that need new namespaces, which a changed root folder cannot have.
+# No tests that need new namespaces, which do not work in a chroot.
 parts='Table|Hdf5|HardCases|Devices|Window|Explore|Python|Install.Works|Octave|Hardening|file_limit|failed_close|endless|SecondDriver|manual_test'
 
 fail() {
@@ -29,7 +29,7 @@ git -C "$system/src/dolp" fetch -q --depth 1 "file://$project" HEAD
 git -C "$system/src/dolp" checkout -q --detach FETCH_HEAD
 
 (($# > 0)) || set -- bash -ec "time bash host/quickstart.sh; time bash tests/run.sh -R '$parts'"
-# The mounts belong to the new namespace and vanish with it.
+# The mounts exist only in the new namespace and end with it.
 exec unshare --mount bash -ec '
   system=$1
   shift

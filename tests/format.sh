@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# clang-format 14 of the C++ files that differ from a commit: format.sh [--fix] [COMMIT]
+# Checks or formats the C++ files that differ from a commit, with clang-format 14: format.sh [--fix] [COMMIT]
 #
-# COMMIT is the commit before the change; the default is origin/main, or the last commit if there is no origin/main. With
-# --fix the script formats the files. Otherwise it lists files that are not formatted, and then exits with 1. It also exits
-# with 1 without clang-format 14, because other versions break lines differently.
+# COMMIT is the commit before the change. The default is origin/main, or the last commit if there is no origin/main.
+# --fix formats the files. Without --fix the script lists badly formatted files and exits with 1 if there are any. It also
+# exits with 1 if clang-format has another version, because other versions break lines differently.
 set -euo pipefail
 
 version=14

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds everything and runs the whole test suite on lavapipe, Vulkan on the CPU.
+# Installs missing packages, builds everything, and runs the test suite on lavapipe, a Vulkan driver that uses the CPU.
 #
 # Environment:
-#   DOLP_BUILD_TYPE   Release (default) in build/release, Debug in build/debug, AsanUbsan in build/asan-ubsan;
-#                     Tsan in build/tsan has only the tests of the host's threads, because drivers are not instrumented
-#   DOLP_TEST_DEVICE  a part of the file name of another Vulkan driver (in vulkan/icd.d), e.g. nvidia or radeon
-#   DOLP_VALIDATION   1 (default): messages of the Vulkan validation layers fail a test; 0: without the layers
-# Arguments go to ctest, e.g. -R Eval. With AsanUbsan the suite has a minute of fuzzing, `-L fuzz`; after that build,
-# `bash tests/fuzz/run.sh build/asan-ubsan 3600` is an hour of it.
+#   DOLP_BUILD_TYPE   Release (default) builds in build/release, Debug in build/debug, AsanUbsan in build/asan-ubsan.
+#                     Tsan builds in build/tsan and runs only tests of host threads: drivers are not instrumented.
+#   DOLP_TEST_DEVICE  part of the file name of another Vulkan driver (in vulkan/icd.d), e.g. nvidia or radeon
+#   DOLP_VALIDATION   1 (default): a message of the Vulkan validation layers fails a test; 0: no validation layers
+# Passes arguments to ctest, e.g. -R Eval. With AsanUbsan the suite contains a minute of fuzzing (-L fuzz). To fuzz for
+# an hour after that, run `bash tests/fuzz/run.sh build/asan-ubsan 3600`.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -29,14 +29,14 @@ esac
 
 bash "$root/host/tools/install_packages.sh" build picture bench test
 
-# The loader's search would prefer a GPU if there is one.
+# Names the driver explicitly, because the Vulkan loader would prefer a GPU.
 shopt -s nullglob
 driver_files=({/usr/share,/usr/local/share,/etc}/vulkan/icd.d/*"$driver"*.json)
 ((${#driver_files[@]} > 0)) || fail "there is no Vulkan driver file vulkan/icd.d/*$driver*.json"
 driver_file=${driver_files[0]}
 export VK_DRIVER_FILES=$driver_file VK_ICD_FILENAMES=$driver_file
 export DOLP_VALIDATION=${DOLP_VALIDATION:-1}
-# Mesa and the validation layers keep memory until the end. They are unloaded before a suppression could use their names.
+# Mesa and the validation layers do not free all memory. A suppression cannot name them, because they are unloaded first.
 export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=0}
 
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE="$build_type" -DBUILD_TESTING=ON -DDOLP_BENCH=ON \
@@ -49,4 +49,4 @@ if [[ $build_type == Tsan ]]; then
 fi
 cmake --build "$build"
 "$build/dolp" devices || fail "no usable Vulkan device through $driver_file"
-ctest --test-dir "$build" --output-on-failure --timeout 600 -j2 "$@"  # the timeout ends a test that hangs
+ctest --test-dir "$build" --output-on-failure --timeout 600 -j2 "$@"  # the timeout is for tests that hang

@@ -1,4 +1,4 @@
-// Sets of the study of fits with bent valleys: their intervals contain the values that the data do not exclude.
+// Fits of the bench study to synthetic data: chi^2 with several valleys, and a model without multiple bounces.
 #include <gtest/gtest.h>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
@@ -10,7 +10,7 @@ namespace {
 using namespace dolp;
 using namespace dolp::bench;
 
-// A profile that follows only the branch of the minimum would miss a truth on another branch.
+// chi^2 of both sets has several valleys. Intervals that follow only the lowest valley would miss the truth.
 TEST(FitSets, BentValley_IntervalsHoldATruthThatTheDataDoNotExclude) {
   CpuEvaluator evaluator;
   for (const std::size_t number : {1005U, 1029U}) {
@@ -20,10 +20,10 @@ TEST(FitSets, BentValley_IntervalsHoldATruthThatTheDataDoNotExclude) {
   }
 }
 
-// Single scattering with its bracket contains the truth of all bounces in a wide interval. The model with all bounces
-// has a narrow one.
+// The data include multiple bounces. A fit by single scattering with its bracket has wide intervals, which contain the
+// truth. A fit by the model with all bounces has narrow ones.
 TEST(FitSets, AllBounces_IntervalsOfTheBracketHoldTheTruth) {
-  constexpr std::size_t kFewPoints = 6;  // the study has 15
+  constexpr std::size_t kFewPoints = 6;  // points per data set; the study uses 15
   CpuEvaluator evaluator;
   for (const std::size_t number : {1001U, 1002U, 1004U}) {
     FitSet set = bracket_set(number);

@@ -1,5 +1,4 @@
-// The methods that dolp is compared with give right results, converge at the expected rate, and measure times as
-// documented.
+// The methods that bench compares with dolp are correct, converge as expected, and measure times as documented.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +20,7 @@ namespace {
 using namespace dolp;
 using namespace dolp::bench;
 
-/// Tolerance of the reference, relative to r_i: below every tolerance here, with digits to spare.
+/// Tolerance of the reference, relative to r_i. It is tighter than every tolerance in this file.
 constexpr double kReferenceTolerance = 1e-9;
 
 std::unique_ptr<Solver> solver_of(const std::string& name) {
@@ -54,15 +53,15 @@ double worst_error(Solver& solver, const MomentsRequest& request, double setting
   return worst;
 }
 
-/// A cheap setting, and the largest allowed error for each case.
+/// A setting that makes a method fast, and the largest error that each case may have with this setting.
 struct Expected {
   double setting = 0.0;
   std::map<std::string, double> tolerance;
 };
 
-// Rules: the error measured once at this setting, times 2 to 3. The midpoint rule is of second order at corners; Gauss
-// is spectral without kinks. Monte Carlo: four standard errors of 1e5 samples. Libcubature: ten times its tolerance,
-// because it only estimates its errors. Other methods: the tolerance itself.
+// Tolerances of the midpoint and Gauss rules: two to three times the error that was measured once at this setting.
+// monte-carlo: four standard errors of 1e5 samples. hcubature and pcubature: ten times the setting, because they only
+// estimate their errors. Other methods: the setting itself.
 const std::map<std::string, Expected> kExpected = {
     {"midpoint", {256, {{"easy", 8e-6}, {"median", 6e-6}, {"rough", 6e-5}, {"hard", 2e-3}, {"worst", 2e-2}}}},
     {"gauss", {64, {{"easy", 2e-9}, {"median", 4e-5}, {"rough", 2e-9}, {"hard", 1.5e-4}, {"worst", 2e-5}}}},
@@ -85,7 +84,7 @@ class BenchMethod : public testing::TestWithParam<std::string> {};
 TEST_P(BenchMethod, EveryCase_CheapSetting_AgreesWithReference) {
   const std::unique_ptr<Solver> solver = solver_of(GetParam());
   const Expected& expected = kExpected.at(GetParam());
-  const std::size_t entries = GetParam() == "dblquad" ? 1 : 2;  // one entry for dblquad, whose separate timing is slow
+  const std::size_t entries = GetParam() == "dblquad" ? 1 : 2;  // the separate timing of dblquad is slow
   for (const Case& one : cases()) {
     if (!expected.tolerance.contains(one.name)) {
       EXPECT_THROW(worst_error(*solver, neighbourhood(one, entries), expected.setting), Unavailable) << one.name;
@@ -110,8 +109,7 @@ std::string test_name(const testing::TestParamInfo<std::string>& tested) {
 }
 INSTANTIATE_TEST_SUITE_P(Registry, BenchMethod, testing::ValuesIn(method_names()), test_name);
 
-// The tables of both maskings and the horizon of the integration region are far more accurate than the tolerances
-// above.
+// A tight tolerance tests the tables of integral and smith masking, and the horizon as the end of the integration.
 TEST(BenchFormulas, AdaptiveCubature_TightTolerance_AgreesWithReferenceForBothDistributions) {
   const std::unique_ptr<Solver> hcubature = solver_of("hcubature");
   for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
@@ -128,7 +126,7 @@ TEST(BenchFormulas, AdaptiveCubature_TightTolerance_AgreesWithReferenceForBothDi
   }
 }
 
-// Reflectances beyond the critical angle. The integrand has a square root there, which adaptive rules find slowly.
+// With n = 0.8 the integrand has a square root at the critical angle, where adaptive rules converge slowly.
 TEST(BenchFormulas, AdaptiveCubature_TotalReflection_AgreesWithReference) {
   MomentsRequest request = neighbourhood(case_of("easy"), 1);
   request.optics = {{0.8, 0.0}};
@@ -139,7 +137,7 @@ TEST(BenchRules, Midpoint_TwiceTheNodes_QuartersTheError) {
   const std::unique_ptr<Solver> midpoint = solver_of("midpoint");
   const MomentsRequest request = neighbourhood(case_of("easy"), 1);
   const double ratio = worst_error(*midpoint, request, 128) / worst_error(*midpoint, request, 256);
-  EXPECT_NEAR(ratio, 4.0, 0.1);  // second order; the next order is smaller by 1/128^2
+  EXPECT_NEAR(ratio, 4.0, 0.1);  // The error is of second order. Terms of higher order change the ratio by much less.
 }
 
 TEST(BenchRules, MonteCarlo_Repeats_ScatterAsStatedAboutTheTruth) {
@@ -158,7 +156,7 @@ TEST(BenchRules, MonteCarlo_Repeats_ScatterAsStatedAboutTheTruth) {
     sum_2 += deviation * deviation;
     stated_2 += *answer.stated_error * *answer.stated_error;
   }
-  // The scatter of 64 repeats is known to 9 %, their mean to an eighth of the scatter. Both allow four standard errors.
+  // 64 repeats determine the scatter to 9 %, the mean to 1/8 of the scatter. Both tolerances are four standard errors.
   EXPECT_NEAR(std::sqrt(sum_2 / stated_2), 1.0, 0.36);
   EXPECT_LE(std::abs(sum / kRepeats), 4.0 * std::sqrt(stated_2 / kRepeats) / std::sqrt(kRepeats));
 }
@@ -182,7 +180,7 @@ TEST(BenchTiming, MedianAndSpread_OddAndEven_AreThoseOfTheList) {
   EXPECT_DOUBLE_EQ(spread({1.0, 1.5, 9.0}), 0.5);
 }
 
-/// A study with one result, measured in the best conditions.
+/// A study with one result, on an idle machine with a release build. No condition gives a warning.
 nlohmann::ordered_json quiet_study() {
   return {
       {"study", "test"},

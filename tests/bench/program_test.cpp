@@ -1,4 +1,4 @@
-// dolp-bench from outside: options, JSON, table and figure.
+// dolp-bench and its plot script as a user runs them: options, JSON, table and figure.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -169,7 +169,7 @@ TEST_F(BenchProgram, StudiesOfTheDevice_WithoutOne_AreExit3) {
 
 struct Plotted {
   std::string study;
-  std::string row;  ///< a row of the table in Markdown
+  std::string row;  ///< a part of the Markdown table of the study
 };
 
 TEST_F(BenchProgram, Plot_OfEveryStudy_GivesFigureAndTable) {
@@ -192,7 +192,7 @@ TEST_F(BenchProgram, Plot_OfEveryStudy_GivesFigureAndTable) {
     EXPECT_NE(table.out.find(plotted.row), std::string::npos) << table.out;
     EXPECT_EQ(plot({study, "r.json", "-o", "none/r.png"}).status, 4);
   }
-  EXPECT_EQ(plot({"accuracy", "r.json", "--markdown"}).status, 2);  // the file has results of peers
+  EXPECT_EQ(plot({"accuracy", "r.json", "--markdown"}).status, 2);  // r.json has results of the study `peers`
   const Outcome missing = plot({"accuracy", "none.json", "-o", "r.png"});
   EXPECT_EQ(missing.status, 2);
   EXPECT_NE(missing.err.find("none.json"), std::string::npos) << missing.err;

@@ -1,4 +1,4 @@
-// dolp-bench throughput and dolp-bench peers from outside: options, JSON, table, figures.
+// dolp-bench throughput and dolp-bench peers as a user runs them: options, JSON, table, figures.
 #include <algorithm>
 
 #include "bench_program.hpp"
@@ -28,7 +28,7 @@ TEST_F(BenchThroughput, Json_GridsAndArithmetic_HaveTheirRows) {
   EXPECT_GT(result["peak"]["flops_per_s"].get<double>(), 0.0);
   for (const json& row : result["results"]) expect_keys(row, {"part", "case", "setting"});
   const std::vector<json> grids = part(result, "grids");
-  EXPECT_EQ(grids.size(), 4U * 3U * 2U);  // one grid, three tolerances, with and without interpolation
+  EXPECT_EQ(grids.size(), 4U * 3U * 2U);  // 4 maskings, 3 tolerances on one grid, with and without interpolation
   for (const json& row : grids) {
     expect_keys(row, {"entries_per_s", "evaluations_per_s", "stated_error", "raw_kernel_times_s"});
     EXPECT_EQ(row["entries"], 64);
@@ -48,10 +48,10 @@ TEST_F(BenchThroughput, Json_GridsAndArithmetic_HaveTheirRows) {
   }
 }
 
-/// Checks a part that runs the kernels in separate processes on lavapipe. On other devices it must state why it did not
-/// run.
+/// Checks the part of the study that runs the kernels in several processes at once. It exists only for lavapipe. For
+/// other devices the result must have the reason.
 void expect_processes(const json& result) {
-  constexpr std::size_t kMaskings = 2;  // maskings in a quick study
+  constexpr std::size_t kMaskings = 2;  // the quick study has two maskings
   const json& rows = result["results"];
   if (!result["context"]["device"]["name"].get<std::string>().starts_with("llvmpipe")) {
     ASSERT_EQ(rows.size(), 1U);
@@ -85,7 +85,8 @@ TEST_F(BenchProgram, Json_Rows_ReachTheToleranceAndCompareWithTheKernels) {
     expect_keys(row, {"method", "case", "tolerance"});
     EXPECT_EQ(row["case"], "integral");
     if (row["method"] == "monte-carlo") {
-      EXPECT_TRUE(row.contains("not_run")) << row.dump();  // a million samples give only three digits
+      // the largest allowed number of samples gives only three digits
+      EXPECT_TRUE(row.contains("not_run")) << row.dump();
       continue;
     }
     expect_keys(row, {"setting", "error", "time_s", "time_min_s", "raw_times_s", "entries", "ratio", "table_ratio"});
@@ -105,7 +106,7 @@ TEST_F(BenchProgram, Json_Rows_ReachTheToleranceAndCompareWithTheKernels) {
       EXPECT_GE(row["entries"], 512);
     }
   }
-  ASSERT_EQ(result["targets"].size(), 3U);  // libcubature, product rule, native build
+  ASSERT_EQ(result["targets"].size(), 3U);  // compared with libcubature, the product rule and the native build
   for (const json& target : result["targets"]) {
     EXPECT_EQ(target["met"], target["ratio"].get<double>() >= target["wanted"].get<double>()) << target.dump();
   }

@@ -1,4 +1,5 @@
-// Parts of the speed studies: nested grids, the native and the counting build of the kernel source, the device's peak.
+// Parts of the speed studies: grids, the kernel source compiled for the CPU, counted operations, the peak of the
+// device.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +38,8 @@ double largest_difference(const std::vector<Answer>& a, const std::vector<Answer
   return largest;
 }
 
-// Neighbouring directions use the largest of their orders. On this coarse grid their orders differ much.
+// The native build computes neighbouring directions together, with the largest of their orders. On this coarse grid
+// these orders differ much, so it uses up to four times as many evaluations as the device.
 TEST(BenchNative, Grid_HasTheDevicesNodesOrMoreAndItsMoments) {
   constexpr double kTolerance = 1e-4;
   const std::unique_ptr<Solver> native = solver_of("native-float");
@@ -54,10 +56,10 @@ TEST(BenchNative, Grid_HasTheDevicesNodesOrMoreAndItsMoments) {
   }
 }
 
-// So many nodes that several invocations share an entry.
+// With 256 nodes per axis, several invocations compute the parts of one entry.
 TEST(BenchDeviceRule, ManyNodes_EveryMasking_GivesTheSumOfTheHost) {
   constexpr double kNodes = 256;
-  constexpr double kRounding = 2e-5;  // rounding of geometry in float on the smoothest surface
+  constexpr double kRounding = 2e-5;  // Rounding error of the angles in float, largest for the smoothest surface.
   const std::vector<NestedGrid::Place> places = NestedGrid::sample(3);
   const std::unique_ptr<Solver> device = solver_of("vulkan-gauss");
   const std::unique_ptr<Solver> host = solver_of("gauss");
@@ -74,7 +76,7 @@ TEST(BenchOperations, WholeRequest_CountsWhatTheKernelDoes) {
   const KernelWork work = count_operations(request, 1'000'000, 8);
   const Solution solution = solver_of("vulkan-float")->solve(request, request.tolerance);
   EXPECT_NEAR(work.evaluations / *solution.evaluations, 1.0, 1e-3);
-  // Each sample has 3 square roots, and the pieces have more. Fresnel's formulas take about 40 multiplications.
+  // Each evaluation has three square roots and, in Fresnel's formulas, about 40 products. Limits of pieces need more.
   EXPECT_GT(static_cast<double>(work.counts.square_root), 3.0 * work.evaluations);
   EXPECT_GT(static_cast<double>(work.counts.multiply), 40.0 * work.evaluations);
   EXPECT_LT(static_cast<double>(work.counts.flops()), 5000.0 * work.evaluations);

@@ -15,11 +15,11 @@ namespace {
 constexpr double kFinerBy = 1e-5;
 constexpr double kFinest = 1e-13;
 constexpr double kReferenceTolerance = 1e-9;
-constexpr std::size_t kAtOnce = 2000;  // entries with masking tables in memory at the same time
+constexpr std::size_t kAtOnce = 2000;  // entries per call of an evaluator, which holds their masking tables in memory
 constexpr std::size_t kClimbSteps = 40;
-constexpr std::size_t kNeighbours = 16;  // neighbours per step
+constexpr std::size_t kNeighbours = 16;
 
-/// The entries of a domain with the results of both rules and the stated errors.
+/// Moments of some entries: by the rule under test with its stated errors, and by a far more accurate computation.
 struct Answers {
   std::vector<Moments> stated;
   std::vector<Moments> exact;
@@ -72,7 +72,7 @@ class Check {
   double bound_share_;
 };
 
-/// The largest ratio of the moments' error to the stated error, over both rules.
+/// The largest ratio over all moments: the difference of both results, divided by the sum of their stated errors.
 double error_over_bound(const Moments& stated, const Moments& exact) {
   double worst = 0.0;
   for (const auto& [value, error] : kMomentMembers) {
@@ -82,7 +82,7 @@ double error_over_bound(const Moments& stated, const Moments& exact) {
   return worst;
 }
 
-/// A number near `value`. `low` is the end of its range.
+/// Multiplies the distance of `value` from `low` by a random factor between e^-width and e^width.
 double moved(Draw& draw, double value, double low, double width) {
   return low + (value - low) * std::exp(width * draw.uniform(-1.0, 1.0));
 }
@@ -97,7 +97,7 @@ MomentsPoint neighbour(Draw& draw, const MomentsPoint& entry, Domain domain, dou
   return next;
 }
 
-/// True if `entry` lies in the region from which the entries of the domain are drawn.
+/// True if the entry lies in the domain of random_entry. Climbs must not leave it.
 bool is_in(Domain domain, const MomentsPoint& entry, double q_end) {
   if (domain == Domain::kCorners) return entry.shape.sigma <= 10.0 && entry.shape.q <= q_end + 20.0;
   return entry.shape.sigma >= 0.01 && entry.shape.sigma <= 2.0 && entry.shape.q >= q_end + 0.1 &&

@@ -1,5 +1,5 @@
-// Hold-out test of error bounds. Compares new random entries, and climbs from the worst of them, with rules of many
-// more digits or with the independent reference.
+// Test of the error bounds with new random entries. Compares the results with finer rules or with the independent
+// reference. A climb then searches near a bad entry for a worse one.
 #pragma once
 
 #include <cstddef>
@@ -15,13 +15,13 @@ struct HoldOutOptions {
   double tolerance = 1e-4;
   std::size_t entries = 1000;
   std::uint64_t seed = 1;
-  std::size_t climbs = 0;          ///< number of climbs from the worst entries, each with kClimbSteps steps
-  bool against_reference = false;  ///< takes a second of one core per entry
-  /// errors are compared with this share of their bounds; below 1 it shows how much the bounds exceed the errors
+  std::size_t climbs = 0;          ///< number of entries, the worst first, from which a climb starts
+  bool against_reference = false;  ///< compare with the reference, which takes a second of one core per entry
+  /// multiplies all bounds; the smallest value that passes shows how much bounds exceed errors
   double bound_share = 1.0;
 };
 
-/// An entry, and its error divided by its stated bound. Above 1 the bound is too small.
+/// An entry, and its error divided by its stated bound. Above 1 the bound is wrong.
 struct CheckedEntry {
   MomentsPoint entry;
   double ratio = 0.0;
@@ -30,15 +30,15 @@ struct CheckedEntry {
 /// Result of the hold-out test of one model.
 struct HoldOut {
   std::size_t entries = 0;
-  std::size_t understated = 0;  ///< number of entries with a bound that is too small for any moment
-  double flagged_share = 0.0;   ///< share of the entries whose bound of rho misses the tolerance at the first level
+  std::size_t understated = 0;  ///< number of entries where the error of at least one moment exceeds its bound
+  /// share of the entries whose bound of r_i or r_q exceeds the tolerance, so that a run would compute them again
+  double flagged_share = 0.0;
   double mean_evaluations = 0.0;
-  CheckedEntry worst;    ///< drawn
-  CheckedEntry climbed;  ///< worst entry found by climbing
+  CheckedEntry worst;    ///< worst of the random entries
+  CheckedEntry climbed;  ///< worst of all entries, including those that climbs found
 };
 
-/// Evaluates the kernel source on the CPU, in float if the tolerance allows it.
-/// `model` is a request without entries.
+/// Tests the rules of one model on the CPU, in float if the tolerance allows it. `model` is a request without entries.
 HoldOut hold_out(const MomentsRequest& model, const HoldOutOptions& options);
 
 }  // namespace dolp

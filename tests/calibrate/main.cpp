@@ -1,4 +1,4 @@
-// dolp-calibrate: recomputes the numbers of plan/rule.cpp, and tests the error bounds.
+// dolp-calibrate: fits the constants of the rules in plan/rule.cpp, and tests the error bounds.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -25,7 +25,7 @@ dolp::MomentsRequest integrand(dolp::Masking masking, dolp::Scattering scatterin
   return request;
 }
 
-/// The integrands that have rules: the maskings, and all bounces in grooves.
+/// The integrands with constants in plan/rule.cpp: one for each masking, and one for all bounces in V-grooves.
 const std::map<std::string, dolp::MomentsRequest> kIntegrands = {
     {"none", integrand(dolp::Masking::kNone)},
     {"v-cavity", integrand(dolp::Masking::kVCavity)},
@@ -36,7 +36,7 @@ const std::map<std::string, dolp::Domain> kDomains = {{"ordinary", dolp::Domain:
                                                       {"corners", dolp::Domain::kCorners}};
 
 struct CheckArguments {
-  std::vector<std::string> integrands;  // empty: all
+  std::vector<std::string> integrands;  // empty means all
   std::vector<double> tolerances{1e-2, 1e-3, 1e-4, 1e-6};
   dolp::HoldOutOptions options;
 };
@@ -58,7 +58,7 @@ std::string entry_text(const dolp::CheckedEntry& checked) {
                      e.shape.sigma, e.shape.q, e.index.index.n, e.index.index.k);
 }
 
-/// Prints a line for each tolerance, masking and distribution. Returns true if all bounds hold.
+/// Prints a line for each tolerance, integrand and distribution. Returns true if no error exceeds its bound.
 bool check(const CheckArguments& arguments) {
   std::size_t understated = 0;
   for (const double tolerance : arguments.tolerances) {

@@ -1,4 +1,4 @@
-// Random entries of the model's domain, equal on every machine.
+// Random entries from the range of the model. A seed gives the same entries on every machine.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,10 @@
 namespace dolp {
 
 enum class Domain {
-  kOrdinary,  ///< theta < 85 degrees, sigma 0.01 to 2, q 0.1 to 10 above its lower end, dielectrics and metals
-  kCorners,   ///< near the horizon, the normal, total reflection, n = 1 and the end of q; sigma up to 10
+  kOrdinary,  ///< theta up to 85 degrees, sigma 0.01 to 2, q 0.1 to 10 above its lower limit, dielectrics and metals
+  kCorners,   ///< theta near 0 or 90 degrees, total reflection, n near 1, q near its lower limit; sigma up to 10
 };
 
-/// Random draws, equal on every machine.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : engine_(seed) {}
@@ -28,7 +27,7 @@ class Draw {
 
 MomentsPoint random_entry(Draw& draw, Domain domain, Distribution distribution, Masking masking);
 
-/// The lower end of q for a distribution and masking.
+/// The lower limit of q: 1.5 for the Cauchy distribution with smith masking, otherwise 1.
 double least_q(Distribution distribution, Masking masking);
 
 }  // namespace dolp

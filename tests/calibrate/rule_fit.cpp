@@ -21,10 +21,10 @@ namespace {
 
 constexpr std::array kTolerances = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8};
 constexpr double kCornerShare = 0.25;
-// Cost of computing an entry again, over its first cost. It is 1 for a scattered point. In a dense table it is 30,
-// because interpolation saves 29 of 30 entries, but none that is computed again. This value lies between.
+// Relative cost of an evaluation in a second computation of an entry. A scattered point costs 1. In a dense grid it
+// costs 30: interpolation computes one entry of 30, but every entry that is computed again. This value lies between.
 constexpr double kAgainWeight = 8.0;
-// The DOLP of reflected light, r_q / r_i, has up to twice the relative error of r_q and r_i.
+// The relative error of r_q / r_i, the DOLP of reflected light, is at most the sum of the errors of r_q and r_i.
 constexpr double kErrorsOfDolp = 2.0;
 constexpr int kMostLevels = 8;
 constexpr double kLeastTolerance = 1e-13;
@@ -38,7 +38,6 @@ MomentsRequest random_request(MomentsRequest request, const RuleFitOptions& opti
   return request;
 }
 
-/// Moments of all entries of a request.
 std::vector<Moments> computed(const MomentsRequest& request, const RuleModel& model) {
   const KernelData data = kernel_data(request, model);
   const std::unique_ptr<CpuKernel> kernel = make_cpu_kernel_double(data);
@@ -59,7 +58,7 @@ std::vector<Moments> computed(const MomentsRequest& request, const RuleModel& mo
   return moments;
 }
 
-/// Sum over the entries of the logarithm of the evaluations that each needs to meet `tolerance`.
+/// Sum over all entries of the logarithm of the evaluations that an entry needs until it meets `tolerance`.
 double log_work(const MomentsRequest& all, double tolerance, const RuleModel& model) {
   std::vector<double> work(all.size(), 0.0);
   std::vector<std::uint32_t> wanted(all.size());
@@ -87,7 +86,7 @@ double log_work(const MomentsRequest& all, double tolerance, const RuleModel& mo
   return sum;
 }
 
-/// A number of a model, and the first step of its search.
+/// A constant of the rules, and the first step of the search along it.
 struct Parameter {
   double RuleModel::*value;
   double step;
@@ -134,7 +133,7 @@ RuleModel fit_rule(const MomentsRequest& integrand, const RuleFitOptions& option
           least = work;
           note(best, least);
         }
-        if (least < before) break;  // the opposite direction leads back
+        if (least < before) break;  // A step in the opposite direction would undo the last one.
       }
     }
   }

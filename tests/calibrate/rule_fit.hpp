@@ -1,4 +1,4 @@
-// Search for the numbers of plan/rule.hpp that minimise the work for random entries.
+// Search for the constants of plan/rule.hpp that minimise the evaluations for random entries.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +11,13 @@
 namespace dolp {
 
 struct RuleFitOptions {
-  std::size_t entries = 300;  ///< number of entries for each distribution and tolerance
+  std::size_t entries = 300;  ///< entries per distribution; each is computed at every tolerance
   std::uint64_t seed = 1;
-  int rounds = 4;  ///< rounds of the search; each halves the steps
+  int rounds = 4;  ///< passes over all constants; each pass halves the steps
 };
 
-/// Mean logarithm of the integrand evaluations per entry, over both distributions and tolerances from 1e-2 to 1e-8.
-/// Entries that miss their tolerance are computed again, as in a run.
-/// `integrand` is a request without entries.
+/// Mean of ln(evaluations) per entry, over both distributions and tolerances from 1e-2 to 1e-8. Entries that miss the
+/// tolerance are computed again, as in a run. `integrand` is a request without entries.
 double mean_log_work(const MomentsRequest& integrand, const RuleModel& model, const RuleFitOptions& options);
 
 /// The starting point of every search.
@@ -30,12 +29,12 @@ inline constexpr RuleModel kFitStart = {.margin_digits = 2.0,
                                         .phi_digits = 0.0,
                                         .cluster_stretch = 5.0};
 
-/// The model with the least work. The search starts at kFitStart and varies one number at a time. Calls `note` after
-/// each improvement. Equal arguments give equal results on every machine.
+/// The constants with the least mean_log_work. The search starts at kFitStart and varies one constant at a time. Calls
+/// `note` after each improvement. The result is the same on every machine.
 RuleModel fit_rule(const MomentsRequest& integrand, const RuleFitOptions& options,
                    const std::function<void(const RuleModel&, double)>& note);
 
-/// A model in the syntax of plan/rule.cpp.
+/// The constants as text that can be pasted into plan/rule.cpp.
 std::string rule_text(const RuleModel& model);
 
 }  // namespace dolp

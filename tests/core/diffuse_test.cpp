@@ -1,4 +1,4 @@
-// Polarised diffuse reflection, against sums over directions that share no code with it.
+// Polarised diffuse reflection, compared with sums over directions that share no code with it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// T_s and T_p of the smooth surface by Fresnel's amplitudes.
+/// Transmittances T_s and T_p of the smooth surface, by Fresnel's equations.
 std::pair<double, double> transmittances(std::complex<double> n, double cosine) {
   const std::complex<double> w = std::sqrt(n * n - 1.0 + cosine * cosine);
   const std::complex<double> s = (cosine - w) / (cosine + w), p = (n * n * cosine - w) / (n * n * cosine + w);
@@ -42,7 +42,7 @@ TEST(DiffuseReflection, RhoIsTheHemisphericalSumOfTheBeams) {
       const auto [out_s, out_p] = transmittances(n, cosine);
       double i = 0.0, q = 0.0;
       constexpr int kSteps = 200000;
-      for (int step = 0; step < kSteps; ++step) {  // substitution mu = x^5: no root at either end
+      for (int step = 0; step < kSteps; ++step) {  // substitution mu = x^5: the integrand has no root at either end
         const double x = (step + 0.5) / kSteps, mu = std::pow(x, 5.0);
         const auto [in_s, in_p] = transmittances(n, mu);
         const double f = 0.3 / kPi * std::pow(mu * cosine, own.c) * 0.5 * (in_s + in_p) / (normal * normal);

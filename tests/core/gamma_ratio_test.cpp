@@ -1,4 +1,4 @@
-// The ratio of gamma functions, against values with fifty digits.
+// The ratio of gamma functions, compared with values in fifty digits.
 #include "model/slopes.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Interpolation in artificial tables with known values between the entries, and the stated errors.
+// Lookups in artificial tables whose values between the entries are known, and the stated errors.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace {
 
 using namespace dolp;
-/// An artificial table: smooth in theta, ln sigma and ln(q - 1), with a Q that changes its sign.
+/// The values of an artificial table. They are smooth in theta, ln(sigma) and ln(q - 1); Q changes its sign.
 struct Truth {
   double i, q, rho_i, rho_q, albedo;
 };
@@ -215,7 +215,7 @@ TEST(TableLookup, AValueTwice_IsRefused) {
   EXPECT_THROW(TableLookup(table, with_tolerance(1e-4), "t.nc"), InputError);
 }
 
-// The lower end of a bracket is often zero everywhere.
+// dolp_low is zero in many whole tables.
 TEST(TableLookup, QuantityThatIs0Everywhere_Is0) {
   TableValues table = made_up(spaced(0.0, 60.0, 8), spaced(0.1, 0.5, 6), spaced(1.5, 4.0, 6));
   table[Quantity::kDolpLow].assign(table[Quantity::kDolp].size(), 0.0);
@@ -237,8 +237,8 @@ TEST(MaskingKinks, BistaticBeams_LieWhereTheLowerDirectionChanges_AndWhereNothin
       {Mode::kBistatic, Masking::kSmith, 33.0, 120.0, {}},
       {Mode::kBistatic, Masking::kNone, 33.0, 120.0, {}},
       {Mode::kHemispherical, Masking::kIntegral, 33.0, 120.0, {}},
-      // On the specular side 2 cos(alpha) cos(theta_low) = cos(beta) at 3 theta - view = 180 and at view - theta = 180
-      // - 2 view; theta_low is theta or the view.
+      // For v-cavity masking G has a kink where 2 cos(alpha) cos(theta') = cos(beta); theta' is the larger of theta and
+      // the view zenith. On the specular side this is at theta = 60 + view / 3 and at theta = 3 view - 180 degrees.
       {Mode::kBistatic, Masking::kVCavity, 70.0, 180.0, {30.0, 60.0 + 70.0 / 3.0}},
       {Mode::kBistatic, Masking::kVCavity, 30.0, 180.0, {70.0}},
       {Mode::kBistatic, Masking::kVCavity, 65.0, 0.0, {65.0}},
@@ -247,7 +247,7 @@ TEST(MaskingKinks, BistaticBeams_LieWhereTheLowerDirectionChanges_AndWhereNothin
     SceneModel scene;
     scene.surface.masking = row.masking;
     scene.geometry = {row.mode, row.view_deg, row.azimuth_deg};
-    EXPECT_TRUE(masking_kinks(scene).empty());  // a scene without a source
+    EXPECT_TRUE(masking_kinks(scene).empty());  // without a source there are no beams
     scene.source.emplace();
     const std::vector<double> kinks_deg = masking_kinks(scene);
     ASSERT_EQ(kinks_deg.size(), row.kinks_deg.size()) << row.view_deg;

@@ -1,4 +1,4 @@
-// Materials, the sun, and the data files that a scene can name.
+// Materials, the sun, and the data files of a scene.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -17,7 +17,7 @@ namespace dolp {
 namespace {
 
 constexpr Spectrum kCo2Line{10.6, 10.6};
-// Accuracy of the digits below, which were copied by hand.
+// Accuracy of the expected values below, which were copied by hand.
 constexpr double kDigits = 1e-9;
 
 void expect_near(const OpticalConstants& index, const OpticalConstants& expected, const std::string& what) {
@@ -51,13 +51,13 @@ TEST(Material_BuiltIn, IsLinearBetweenTheRowsOfTheFile) {
     OpticalConstants index;
   };
   const std::vector<Case> cases = {
-      {"iron", 2.0, {3.8475818, 6.7151655}},           // the first row
-      {"iron", 3.555, {4.44798615, 10.86398385}},      // half way from 2.67 to 4.44
-      {"iron", 10.6, {7.37028046364, 29.4866604545}},  // 6/11 of the way from 10.0 to 11.1
-      {"iron", 20.0, {13.13127, 53.12441}},            // the last row
-      {"sapphire o", 10.0, {0.89, 0.094}},             // a row
-      {"Kapton", 13.36, {1.749865, 0.03707}},          // half way from 13.34 to 13.38
-      {"carbon", 1.24, {2.204, 1.04}},                 // outside of 2 to 20 um
+      {"iron", 2.0, {3.8475818, 6.7151655}},           // first row
+      {"iron", 3.555, {4.44798615, 10.86398385}},      // half way between the rows at 2.67 and 4.44 um
+      {"iron", 10.6, {7.37028046364, 29.4866604545}},  // 6/11 of the way from the row at 10.0 to the row at 11.1 um
+      {"iron", 20.0, {13.13127, 53.12441}},            // last row
+      {"sapphire o", 10.0, {0.89, 0.094}},             // a row inside the table
+      {"Kapton", 13.36, {1.749865, 0.03707}},          // half way between the rows at 13.34 and 13.38 um
+      {"carbon", 1.24, {2.204, 1.04}},                 // a row outside of 2 to 20 um
   };
   for (const Case& row : cases) {
     const double um = row.wavelength_um;
@@ -69,12 +69,12 @@ TEST(Material_BuiltIn, IsLinearBetweenTheRowsOfTheFile) {
 }
 
 TEST(Material_BuiltIn, IsWithinTheThinningOfTheWholeRecord) {
-  constexpr double kThinning = 1e-3;  // error relative to |N|, documented in host/data/materials.csv
+  constexpr double kThinning = 1e-3;  // largest error relative to |N|, as documented in host/data/materials.csv
   struct Case {
     const char* name;
     double n, k;
   };
-  // The records of the database at 10.6 um, interpolated by hand between the neighbouring rows, to five digits.
+  // n and k at 10.6 um, interpolated by hand in the complete records of the database, to five digits.
   const std::vector<Case> cases = {
       {"iron", 7.3703, 29.487},
       {"iron (Querry)", 5.5281, 30.891},
@@ -198,8 +198,7 @@ std::string formula(const std::string& range, const std::string& coefficients, i
          "\n    coefficients: " + coefficients + "\n";
 }
 
-// Published coefficients of every formula, with the index computed by hand from the equation. A well-known index stands
-// beside its row.
+// Published coefficients. The last column is the index by the formula; comments name well-known values of it.
 TEST(Dispersion_Formulas, HaveThePublishedValues) {
   struct Case {
     int number;
@@ -235,7 +234,7 @@ TEST(Dispersion_Formulas, HaveThePublishedValues) {
       // urea, Rosker 1985
       {9, "2.51527 0.0240 0.0300 0.0202 1.52 0.8771", 0.5893, 1.6062783},
   };
-  constexpr double kShownDigits = 1e-7;  // number of digits in the values above
+  constexpr double kShownDigits = 1e-7;  // accuracy of the indices above
   for (const Case& row : cases) {
     const double um = row.wavelength_um;
     const std::string range = std::to_string(0.99 * um) + " " + std::to_string(1.01 * um);
@@ -319,7 +318,7 @@ TEST(MaterialFile_Wrong, NamesFileAndLine) {
   }
 }
 
-// Everything that a record of the database may have in addition to two tidy columns.
+// Records in the database may differ from two tidy columns in these ways. They must give the same material.
 TEST(MaterialFile_UntidyRecord, IsTheTidyOne) {
   const OpticalConstants half_way{1.75, 0.2};
   const std::string nk = "DATA:\n  - type: tabulated nk\n    data: |\n";
@@ -348,7 +347,7 @@ TEST(MaterialFile_KBelowZeroByNoise, CountsAsZero) {
   EXPECT_EQ(material.least_k, -2e-7);
 }
 
-// A formula with a pole at 11 um. Between 11 / sqrt(1.5) = 8.98 um and the pole n is not real.
+// n^2 = 1 + 0.5 um^2 / (um^2 - 11^2) has a pole at 11 um. n is not real between 8.98 um and the pole.
 TEST(MaterialFile_FormulaWithAPole, HoldsWhereTheSpectrumHasNone) {
   const TemporaryFile file("f.yml", formula("20 0.05", "0 0.5 11"));
   const std::string set = "surface.material_file=" + file.path();
@@ -360,7 +359,7 @@ TEST(MaterialFile_FormulaWithAPole, HoldsWhereTheSpectrumHasNone) {
 }
 
 TEST(Sun_At10p6, IsTheReferenceSpectrum) {
-  // host/data/sun.csv has 0.179 here, to three digits.
+  // host/data/sun.csv states 0.179 for this wavelength, with three digits.
   constexpr double kThreeDigits = 0.01;
   EXPECT_NEAR(sun_irradiance().at(10.6), 0.179, 0.179 * kThreeDigits);
 }
@@ -375,7 +374,7 @@ TEST(Sun_AtItsNodes, HasTheValuesOfTheFile) {
 TEST(Sun_BetweenNodes, IsAPowerOfWavelength) {
   const SpectralTable sun = sun_irradiance();
   const double middle_um = std::sqrt(10.0 * 11.0);
-  // One log, one pow and a few products.
+  // rounding of a logarithm, a power and a few products
   constexpr double kRounding = 1e-14;
   EXPECT_NEAR(sun.at(middle_um) / std::sqrt(0.2272 * 0.1540), 1.0, kRounding);
 }

@@ -1,4 +1,4 @@
-// The loop over ranges on all cores visits each item once, has equal ranges on all machines, and passes errors on.
+// parallel_ranges visits each item once, has the same ranges on all machines, and passes exceptions on.
 #include "base/parallel_ranges.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The points reader: accepted spellings, every error, and numbers that read back unchanged.
+// The reader of points files: accepted notations, every error, and numbers that do not change when written and read.
 #include "scene/points.hpp"
 #include "error_text.hpp"
 

@@ -1,4 +1,4 @@
-// Error estimates and status bits of radiometry, and its limits at 90 degrees.
+// Error estimates and status bits of the radiometry, and its limits at 90 degrees.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ TEST(Radiometry, MomentsOffByTheirErrors_StayWithinTheEstimates) {
     off.deficit_error = std::max(off.deficit_error, std::abs(off.deficit - exact.deficit));
     const PointResult truth = evaluate(scene, direction, exact);
     const PointResult result = evaluate(scene, direction, off);
-    if (truth[Quantity::kStokesI] == 0.0) continue;  // without radiation there is no DOLP
+    if (truth[Quantity::kStokesI] == 0.0) continue;  // without radiation DOLP does not exist
     ASSERT_LE(std::abs(result[Quantity::kDolp] - truth[Quantity::kDolp]), result[Quantity::kErrorEstimate])
         << "scene " << i;
     const double rho_error = std::max(std::abs(result[Quantity::kRhoI] - truth[Quantity::kRhoI]),
@@ -55,8 +55,8 @@ TEST(Radiometry, ErrorOfTheDeficit_CancelsInIsothermalIntensityWhereItCannotMatt
   const PointResult cold = evaluate(scene, direction, moments);
   scene.surroundings->temperature_K = 289.0;
   const PointResult warm = evaluate(scene, direction, moments);
-  // I = pi B + (X - pi B) rho. With 1 K instead of 50 K between the temperatures, the error of rho matters 30 times
-  // less.
+  // I = pi B + (X - pi B) rho. With a difference of 1 K instead of 50 K between the temperatures, X - pi B is much
+  // smaller, and so is the effect of an error of rho.
   EXPECT_LT(warm[Quantity::kErrorEstimate], 1e-3 * cold[Quantity::kErrorEstimate]);
 }
 
@@ -160,7 +160,7 @@ TEST(Radiometry, GrazingWithDivergingReflectance_GivesTheLimitOfDolp) {
   EXPECT_TRUE(std::isnan(limit[Quantity::kRhoI]) && std::isnan(limit[Quantity::kStokesI]) &&
               std::isnan(limit[Quantity::kStokesU]));
   const PointResult near_limit = evaluate(scene, {89.9999, 1e-14}, grazing_moments());
-  // The rest is the diffuse part, cos^-0.3 compared with 1/cos.
+  // The difference is due to the diffuse part, which grows as cos^-0.3; the specular part grows as 1/cos.
   EXPECT_NEAR(std::abs(near_limit[Quantity::kDolp]), limit[Quantity::kDolp], 1e-8);
 }
 
@@ -229,10 +229,10 @@ TEST(Radiometry, GrazingWithFiniteReflectance_UsesTheFormulasAtATinyCosine) {
   EXPECT_DOUBLE_EQ(smith[Quantity::kRhoI], 0.35);
   EXPECT_DOUBLE_EQ(smith[Quantity::kRhoQ], 0.15);
   EXPECT_EQ(smith.status, 0u);
-  scene.surface.masking = Masking::kIntegral;  // a mirror: at sigma = 0 the masking has no effect
+  scene.surface.masking = Masking::kIntegral;  // without effect, because sigma = 0 makes the surface a mirror
   EXPECT_EQ(evaluate(scene, {90.0, cos_theta}, moments_of({1.0, 1.0}, cos_theta)).status, 0u);
   scene.surface.diffuse = 0.1;
-  scene.surface.diffuse_exponent = 0.0;  // Lambertian: finite at grazing incidence
+  scene.surface.diffuse_exponent = 0.0;  // such a diffuse part is finite at 90 degrees
   EXPECT_DOUBLE_EQ(evaluate(scene, {90.0, cos_theta}, moments)[Quantity::kRhoI], 0.45);
 }
 

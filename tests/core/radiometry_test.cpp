@@ -1,4 +1,4 @@
-// Stokes parameters, rho and DOLP against the printed formulas, and their exact properties.
+// Stokes parameters, rho and DOLP of the radiometry, compared with the printed formulas, and their exact properties.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ TEST(Radiometry, RandomScenes_AgreeWithPrintedFormulas) {
       expected.i = integral(ends, [&](Real um) { return at(um).i; });
       expected.q = integral(ends, [&](Real um) { return at(um).q; });
     }
-    // Terms have either sign, so the scale is the sum of their magnitudes. For positive I, |rho| <= 3 bounds it.
+    // I and Q are sums whose terms may cancel. So a part of the tolerance is relative to the emission.
     const double scale = std::abs(static_cast<double>(expected.i)) + std::abs(static_cast<double>(expected.q));
     const double cancelled = 10.0 * kAgreement * Radiometry(scene).rule().samples[0].emitted;
     ASSERT_NEAR(actual[Quantity::kStokesI], static_cast<double>(expected.i), kAgreement * scale + cancelled)
@@ -40,13 +40,13 @@ TEST(Radiometry, RandomScenes_AgreeWithPrintedFormulas) {
         << "scene " << i;
     ASSERT_EQ(actual[Quantity::kStokesU], 0.0);
     ASSERT_EQ(actual[Quantity::kStokesV], 0.0);
-    if (actual[Quantity::kStokesI] ==
-        0.0) {  // total reflection without radiation to reflect, on a smooth surface that does not emit
+    // I is 0 with total reflection: a smooth surface emits nothing, and there is no light to reflect.
+    if (actual[Quantity::kStokesI] == 0.0) {
       ASSERT_TRUE(std::isnan(actual[Quantity::kDolp]));
       continue;
     }
     const auto expected_dolp = static_cast<double>(std::abs(expected.q) / expected.i);
-    // With total reflection the printed 1 - R leaves a rounding error of the emission; the program has exactly 0.
+    // With total reflection the emission is 0. The program finds exactly 0; the printed 1 - R has a rounding error.
     const double printed_rounding = 16.0 * static_cast<double>(std::numeric_limits<Real>::epsilon()) *
                                     Radiometry(scene).rule().samples[0].emitted / std::abs(actual[Quantity::kStokesI]);
     const double bound =
@@ -114,7 +114,7 @@ TEST(Radiometry, IsothermalSurroundingsWithoutSource_HaveNoPolarisation) {
     scene.surroundings = Surroundings{scene.emission->temperature_K};
     const Direction direction = direction_of(random.uniform(0.0, 89.9));
     const PointResult result = evaluate(scene, direction, moments_of(random.reflectance(), direction.cos_theta));
-    if (result[Quantity::kStokesI] == 0.0) continue;  // radiances below the range of a double
+    if (result[Quantity::kStokesI] == 0.0) continue;  // the radiances are too small for a double
     ASSERT_EQ(result[Quantity::kStokesQ], 0.0);
     ASSERT_FALSE(std::signbit(result[Quantity::kStokesQ]));
     ASSERT_EQ(result[Quantity::kDolp], 0.0);
@@ -174,7 +174,7 @@ TEST(Radiometry, MetalWithoutSurroundings_KeepsTheDigitsOfItsEmission) {
   scene.surroundings.reset();
   const Direction direction = direction_of(0.0);
   Moments moments;
-  moments.deficit = 3e-12;  // 1 - r_i would keep only four of its digits
+  moments.deficit = 3e-12;  // the difference 1 - r_i would have only four correct digits
   moments.r_i = 1.0 - moments.deficit;
   moments.r_q = 1e-12;
   const PointResult result = evaluate(scene, direction, moments);

@@ -1,4 +1,4 @@
-// The scene reader: every possible error in a scene, and overrides.
+// Errors of the scene reader: every error that a scene can have, and errors of overrides.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -21,8 +21,7 @@ const std::string kHostDir = DOLP_HOST_DIR;
 
 // ---- Errors --------------------------------------------------------------------------------------------------------
 
-/// A wrong scene: text that is appended to the minimal scene (whose last line is 7), and text that the message must
-/// contain.
+/// Text that makes kMinimal wrong if it is appended as line 8, and text that the message must contain.
 struct ErrorCase {
   const char* appended;
   std::vector<std::string> expected;
@@ -114,7 +113,6 @@ TEST(SceneError_KeysThatDoNotGoTogether, AreNamed) {
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface.masking=smith", "surface.q=1.5"}), "--set surface.q=1.5: "));
 }
 
-/// One message names everything that must change.
 TEST(SceneError_SeveralKeysThatDoNotGoTogether, AreNamedInOneMessage) {
   const std::string sea =
       "surface.n = 1.2\nsurface.sigma = 0.1\nsurface.masking = \"smith\"\nsurface.distribution = \"gaussian\"\n"
@@ -199,7 +197,7 @@ TEST(SceneError_RandomBytes, IsAlwaysOneLineAndAlwaysAnInputError) {
     EXPECT_FALSE(contains(error, "\n")) << error;
     if (error != "no error") ++refused;
   }
-  // Three random bytes in a scene of 92 bytes leave it valid only if they hit digits or similar characters.
+  // Most scenes with three random bytes are invalid. A scene stays valid if the bytes only change digits or names.
   EXPECT_GT(refused, kTrials / 2);
 }
 
@@ -215,7 +213,7 @@ TEST(SceneOverride_Malformed, IsRefused) {
   EXPECT_TRUE(contains(error_of(kMinimal, {"grid.thta=1"}), "the nearest known key is grid.theta_deg"));
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface.n.x=1"}), "--set surface.n.x=1: surface.n is not a table"));
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface=3"}), "--set surface=3: must be a table, [surface]"));
-  // A value must not smuggle in more keys.
+  // A value must not contain further keys.
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface.n=1\nsurface.k=2"}), "must be a number"));
 }
 
@@ -270,7 +268,7 @@ TEST(SceneOverride_OfAnAlternative, ReplacesTheFilesChoice) {
   const std::string gaussian = "surface.distribution=gaussian";
   const SceneValues sea = parse(kMinimal + "[grid]\nsigma = [0.1, 0.2]\n", {gaussian, "surface.wind_m_s=5"});
   EXPECT_EQ(sea.grid[Axis::kSigma].size(), 1U);
-  // A later change replaces an earlier one. The scene still follows from its text and settings.
+  // The later grid.sigma replaces the earlier wind. The scene keeps the list of both settings.
   const SceneValues changed = with_settings(sea, {{"grid.sigma", 0.4}});
   EXPECT_EQ(changed.grid[Axis::kSigma], std::vector<double>{0.4});
   EXPECT_TRUE(changed.wind_m_s.empty());

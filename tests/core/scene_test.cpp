@@ -1,4 +1,4 @@
-// The scene reader: every key, defaults, axes, the shipped scenes.
+// The scene reader: every key, defaults, axes, and the scenes in host/scenes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -59,7 +59,7 @@ TEST(Scene_Described, DefaultsAreTheRealOnes) {
   const std::vector<std::string> base = {"source.irradiance=1", "path.radiance=1"};
   expect_defaults(parse(kMinimal, base));
   for (const Key& key : dolp::keys()) {
-    if (key.layer > 0) continue;  // scenes have no coating by default
+    if (key.layer > 0) continue;  // by default a scene has no films
     const bool is_value = !key.fallback.empty() && key.fallback != "required" && !key.fallback.starts_with("surface.");
     if (!is_value) continue;
     SCOPED_TRACE(key.key);
@@ -69,7 +69,7 @@ TEST(Scene_Described, DefaultsAreTheRealOnes) {
   }
 }
 
-/// One row per key: a value other than the default, and a check of the member that received it.
+/// A key with a value that is not its default. `arrived` is true if the scene has this value.
 struct KeyCase {
   const char* key;
   const char* value;
@@ -160,14 +160,14 @@ const std::vector<KeyCase>& key_cases() {
 bool is_wind(const std::string& key) { return key.ends_with(".wind_m_s"); }
 bool is_of_layer(const std::string& key) { return key.starts_with("surface.coating."); }
 
-/// The keys without the keys of later layers, which equal the keys of the first.
+/// All keys, but of the films only those of the first one. The keys of other films differ only in their number.
 std::vector<Key> listed_keys() {
   std::vector<Key> keys;
   std::ranges::copy_if(dolp::keys(), std::back_inserter(keys), [](const Key& key) { return key.layer <= 1; });
   return keys;
 }
 
-/// Other settings that a key needs.
+/// Other settings without which a scene cannot have this key.
 std::vector<std::string> companions_of(const std::string& key) {
   if (key == "source.scale") return {"source.irradiance=1"};
   if (key == "surroundings.air_temperature_K") return {"surroundings.profile=clear-sky"};
@@ -220,7 +220,7 @@ TEST(Scene_EveryKey, CanBeWrittenInTheFile) {
   const TemporaryFile reflectance("reflectance.csv", "beta_deg,r_s,r_p\n0,0.1,0.1\n90,1,1\n");
   for (const KeyCase& row : key_cases()) {
     const std::string key = row.key;
-    // Dotted keys at the top level, so that parts of the scene can be left out one by one.
+    // Each line of this scene can be left out, because the keys are dotted and no line begins a table.
     std::string text = "accuracy.tolerance = 1e-5\n";
     if (key == "accuracy.tolerance") text.clear();
     const bool gives_optics =
@@ -298,7 +298,7 @@ TEST(Scene_EveryWord, NamesTheAllowedWords) {
     if (key.type != Key::Type::kWord) continue;
     const std::string error = error_of(kMinimal, {key.key + "=nonsense"});
     for (const std::string& word : key.words) EXPECT_TRUE(contains(error, word)) << error;
-    // All bounces and the direct emission need this masking.
+    // With v-cavity masking every word of every key is allowed.
     for (const std::string& word : key.words) {
       EXPECT_EQ(error_of(kMinimal, {"surface.masking=v-cavity", key.key + "=" + word}), "no error");
     }
@@ -346,7 +346,7 @@ TEST(SceneAxis_Linear, IsExactForWholeDegreesAndDescends) {
 
 TEST(SceneAxis_Log, HasExactEndsAndEqualRatios) {
   const SceneValues scene = parse(kMinimal + "[grid]\nsigma = { from = 0.01, to = 1, count = 3, spacing = \"log\" }\n");
-  // pow is accurate to 1 ulp; two of them are multiplied.
+  // rounding of two powers, each accurate to 1 ulp, and of their product
   constexpr double kTwoPowers = 3.0 * 2.3e-16;
   ASSERT_EQ(scene.grid[Axis::kSigma].size(), 3U);
   EXPECT_EQ(scene.grid[Axis::kSigma][0], 0.01);

@@ -1,4 +1,4 @@
-// Profiles of a sky: files, built-in skies, and the basis of functions that represents them.
+// Sky profiles: files, built-in skies, and the functions of the zenith that represent them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -94,7 +94,7 @@ TEST(SkyProfile, BetweenRows_IsAStraightLine) {
   EXPECT_DOUBLE_EQ(sky_radiance(sky, 10.0, 90.0), 8.0);
 }
 
-// Plane-parallel air: L = B(air) (1 - t^(1 / cos)), and a black cloud behind it.
+// Plane-parallel air with the transmittance t at the zenith: L = B(air) (1 - t^(1 / cos)). Clouds are black bodies.
 TEST(SkyProfile, BuiltInSkies_FollowTheirFormulas) {
   const double emissivity = 0.24 + 2.98e-8 * 7.85 * 7.85 * std::exp(3000.0 / 288.15);
   const SkyProfile clear = *built_in_sky("clear-sky");
@@ -110,7 +110,7 @@ TEST(SkyProfile, BuiltInSkies_FollowTheirFormulas) {
   for (const BuiltInSky& sky : built_in_skies()) EXPECT_TRUE(built_in_sky(sky.name)) << sky.name;
 }
 
-// The mean of mu^p with the weight cos^c is (c + 2) / (c + 2 + p), also with the distance to the horizon.
+// With the weight mu^(c + 1), the mean of mu^p over mu = cos(zenith) is (c + 2) / (c + 2 + p).
 TEST(SkyNodes, Means_OfPowersOfTheCosine_AreTheirClosedForms) {
   const SkyNodes nodes({0.0, 25.0, 60.0, 85.0, 90.0});
   for (const double c : {-0.9, -0.5, 0.0}) {
@@ -126,7 +126,7 @@ TEST(SkyNodes, Means_OfPowersOfTheCosine_AreTheirClosedForms) {
   }
 }
 
-// Vapour of 1 cm at 290 K has 290 / 46.5 hPa.
+// By w = 46.5 e / T, a column of w = 1 cm of vapour at T = 290 K has the vapour pressure e = 290 / 46.5 hPa.
 TEST(BuiltInSky, VapourAndTemperature_GiveTheEmittancesOfIdso) {
   const SkyProfile sky = *built_in_sky("clear-sky", {1.0, 290.0});
   const double vapour = std::pow(290.0 / 46.5, 2.0) * std::exp(3000.0 / 290.0);
@@ -149,7 +149,7 @@ TEST(BuiltInSky, WithoutVapourAndTemperature_IsTheStandardAtmosphere) {
 
 TEST(BuiltInSky, MoreVapourThanTheAirHolds_IsRefused) {
   EXPECT_THROW(built_in_sky("clear-sky", {2.0, 273.15}), InputError);
-  EXPECT_NO_THROW(built_in_sky("clear-sky", {1.0, 273.15}));  // 6.11 hPa are 1.04 cm
+  EXPECT_NO_THROW(built_in_sky("clear-sky", {1.0, 273.15}));  // air of 273.15 K holds 6.11 hPa, which is 1.04 cm
   EXPECT_THROW(parse(kMinimal + "[surroundings]\ntemperature_K = 240\nvapour_cm = 1\n"), InputError);
 }
 
@@ -181,7 +181,7 @@ TEST(SceneReader, Profile_TakesThePlaceOfATemperature) {
   EXPECT_TRUE(contains(error_of(sky + "profile = \"cloudy\"\n"), "s.toml:9: surroundings.profile = \"cloudy\""));
 }
 
-// A sky of one temperature is no longer a profile.
+// With horizon_K = 250 the profile has one temperature and could be simplified. The reader must refuse it, too.
 TEST(SceneReader, ProfileKnownAtOtherWavelengths_IsRefused) {
   for (const std::string horizon_K : {"250", "260"}) {
     std::string rows = "wavelength_um,zenith_deg,temperature_K\n";

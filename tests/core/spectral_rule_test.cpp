@@ -1,4 +1,4 @@
-// Planck's function, the smooth surface and the spectral rule, against external values.
+// Planck's law, the absorptance of a smooth surface, and the spectral rule, compared with independent values.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ using namespace radiometry_support;
 TEST(Planck, FiftyDigitValues_Agree) {
   for (const PlanckValue& expected : kPlanckValues) {
     const double actual = planck_radiance(expected.wavelength_um, expected.temperature_K);
-    // The exponent, hc/(lambda k T), has about one rounding error, which the exponential amplifies.
+    // The exponential amplifies the rounding error of its exponent hc/(lambda k T).
     const double tolerance = (6.0 + 2.0 * 14388.0 / (expected.wavelength_um * expected.temperature_K)) * kEpsilon;
     EXPECT_NEAR(actual, expected.radiance, tolerance * expected.radiance)
         << expected.wavelength_um << " um, " << expected.temperature_K << " K";
@@ -43,7 +43,7 @@ TEST(Planck, WholeDomain_IsFiniteAndGrowsWithTemperature) {
 }
 
 TEST(SmoothAbsorptance, FiftyDigitValues_Agree) {
-  // A complex product, square root and quotient of positive parts: about ten roundings.
+  // About ten roundings without cancellation: a complex product, square root and quotient.
   constexpr double kTolerance = 20.0 * kEpsilon;
   for (const AbsorptanceValue& expected : kAbsorptanceValues) {
     const SmoothAbsorptance actual = smooth_absorptance({expected.n, expected.k}, expected.cosine);
@@ -66,7 +66,7 @@ TEST(SpectralRule, SingleWavelength_IsOneSampleOfPlanckFactors) {
 }
 
 TEST(SpectralRule, ConstantIndexBands_IntegratePlanckToRounding) {
-  // Planck's exponent changes most for 1 K over the widest band; the long-wave end dominates its sum.
+  // 1 K over the widest band is the hardest case: the exponent varies most, and only the longest wavelengths count.
   for (const double temperature_K : {1.0, 20.0, 77.0, 300.0, 6000.0}) {
     for (const auto& [from_um, to_um] : {std::pair{0.3, 1000.0}, {8.0, 14.0}, {3.0, 5.0}}) {
       SceneValues scene = night_scene();
@@ -74,7 +74,7 @@ TEST(SpectralRule, ConstantIndexBands_IntegratePlanckToRounding) {
       scene.spectrum = {from_um, to_um};
       const SpectralRule rule = spectral_rule(scene);
       ASSERT_EQ(rule.samples.size(), 1u);
-      // In ln(lambda) the integrand is smooth on the scale of the whole band.
+      // As a function of ln(lambda) the integrand is smooth over the whole band.
       const std::vector<double> ends = {std::log(from_um), std::log(to_um)};
       const Real expected = integral(ends, [&](Real x) {
         return std::numbers::pi_v<Real> * std::exp(x) * printed_planck(std::exp(x), temperature_K);
@@ -111,7 +111,7 @@ void expect_promised_reflectances(const Material& material) {
   scene.source->table = {{5.0, 8.1, 9.3, 10.0, 20.0}, {9.0, 4.0, 6.0, 0.5, 0.1}, SpectralTable::Interpolation::kLogLog};
   const SpectralRule rule = spectral_rule(scene);
   EXPECT_LE(rule.relative_error, kBandAgreement);
-  for (const Real cosine : {0.97L, 0.7L, 0.3L, 0.15L}) {  // different from the cosines that choose the rule
+  for (const Real cosine : {0.97L, 0.7L, 0.3L, 0.15L}) {  // not the cosines for which the rule is chosen
     Real actual_emitted = 0.0L;
     Real actual_direct = 0.0L;
     for (const SpectralSample& sample : rule.samples) {
@@ -138,7 +138,7 @@ TEST(SpectralRule, TabulatedMaterialBand_IntegratesReflectancesToItsPromise) {
 }
 
 TEST(SpectralRule, FormulaMaterialBand_IntegratesReflectancesToItsPromise) {
-  Material material = tabulated_material();  // the material whose k is kept
+  Material material = tabulated_material();  // n is replaced in the next line
   material.n = {{7.0, 15.0}, {0.0, 0.0}, SpectralTable::Interpolation::kLinear, {1, {0.0, 4.458, 0.2, 2.896, 47.14}}};
   expect_promised_reflectances(material);
 }

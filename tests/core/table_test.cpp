@@ -1,4 +1,4 @@
-// Tables as files: the values that are written are the values that are read.
+// Table files: values that are written and read again do not change.
 #include "table/table.hpp"
 
 #include <gtest/gtest.h>
@@ -90,7 +90,8 @@ TEST_F(TableFiles, Netcdf_Metadata_FollowsCf) {
               ancillary.empty() ? "(absent)" : ancillary);
     std::array<int, 3> dimensions{};
     EXPECT_EQ(nc_inq_vardimid(file, variable(described.name), dimensions.data()), NC_NOERR);
-    const std::array<const char*, 3> axes = {"theta", "sigma", "q"};  // two of them have equal lengths
+    // lengths alone would not show the order, because two are equal
+    const std::array<const char*, 3> axes = {"theta", "sigma", "q"};
     for (std::size_t i = 0; i < axes.size(); ++i) {
       std::array<char, NC_MAX_NAME + 1> name{};
       EXPECT_EQ(nc_inq_dimname(file, dimensions[i], name.data()), NC_NOERR);
@@ -117,7 +118,7 @@ TEST_F(TableFiles, ReadTable_WhatIsNoTable_IsRefusedByName) {
   EXPECT_EQ(message.find('\n'), std::string::npos) << message;
 }
 
-/// A new file with axes of these lengths, no values, and a variable dolp over the first few axes.
+/// A file with axes of these lengths, without values. Its variable dolp has the first `axes` of them.
 struct BareFile {
   BareFile(const fs::path& path, const std::array<std::size_t, 3>& lengths, int axes = 3) {
     const std::array<const char*, 3> names = {"theta", "sigma", "q"};
@@ -151,7 +152,7 @@ TEST_F(TableFiles, ReadTable_SizesThatNoTableHas_AreRefusedByName) {
     std::array<std::size_t, 3> lengths;
     const char* message;
   };
-  // The product of the first row wraps to 3456 modulo 2^64.
+  // The number of entries of the first case overflows a 64-bit integer to 3456.
   for (const Claim& claim : {Claim{{6365383, 1165742, 2485952}, "theta: 50923064 bytes are claimed, which a file of"},
                              Claim{{1ULL << 60U, 1, 1}, "theta: 1152921504606846976 values"},
                              Claim{{262144, 262144, 2}, "q: 2 values; a table has at most 68719476736 entries"},
@@ -337,7 +338,7 @@ TEST(PrintableLine, WhatATerminalObeys_IsReplaced) {
   EXPECT_EQ(printable_line("10.6 \u00b5m, \u03c3\t\u20ac \U0001d70c"), "10.6 \u00b5m, \u03c3\t\u20ac \U0001d70c");
   EXPECT_EQ(printable_line("\x1b]0;title\a\r\n\x7f"), "?]0;title????");
   EXPECT_EQ(printable_line("\u009b31m\u2028\u202e\u2066"), "?31m???");
-  // Stray, cut off, overlong and surrogate bytes.
+  // Invalid UTF-8: a stray byte, a cut character, overlong characters, a surrogate.
   EXPECT_EQ(printable_line("a\x80z\xc3"), "a?z?");
   EXPECT_EQ(printable_line("\xc0\xaf\xe0\x80\xaf\xed\xa0\x80"), "????????");
   EXPECT_EQ(printable_line(std::string_view("\0", 1)), "?");

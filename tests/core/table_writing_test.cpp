@@ -1,4 +1,4 @@
-// Files are complete or absent, whatever stops their writing.
+// A file is complete or absent, whatever stops its writing.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -25,7 +25,7 @@ namespace {
 using namespace dolp;
 namespace fs = std::filesystem;
 
-/// A limit of the process, valid while the object exists.
+/// Sets a resource limit of the process. The destructor restores the old limit.
 class Limit {
  public:
   Limit(__rlimit_resource resource, rlim_t value) : resource_(resource) {
@@ -42,7 +42,7 @@ class Limit {
   rlimit before_{};
 };
 
-/// Limits the size of files that the process writes, like a full disk.
+/// Limits the size of files, so that writing fails as on a full disk.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)), limit_(RLIMIT_FSIZE, bytes) {}
@@ -69,7 +69,7 @@ TEST_F(TableFiles, CheckOutputPath_WrongPaths_AreRefusedBeforeAnyWork) {
   EXPECT_EQ(names(), std::vector<std::string>{"folder.nc"});
 }
 
-// The files of its parts would have longer names.
+// The name of the table is short enough, but names of its temporary files would be too long.
 TEST_F(TableFiles, TableOutput_NameTooLongForAPartialFile_IsRefusedBeforeAnyWork) {
   const TableValues table = sample_table(2, 1, 1);
   const TableLayout layout{table, table.quantities(), true};
@@ -86,7 +86,7 @@ TEST_F(TableFiles, TableOutput_NameTooLongForAPartialFile_IsRefusedBeforeAnyWork
 TEST_F(TableFiles, CheckWritable_ReadOnlyFolder_IsRefused) {
   fs::create_directory(at("locked"));
   fs::permissions(at("locked"), fs::perms::owner_read | fs::perms::owner_exec);
-  // Root may write anywhere except here.
+  // Root may write everywhere except in /proc.
   const fs::path folder = ::geteuid() == 0 ? fs::path("/proc/self") : at("locked");
   for (const char* name : {"t.nc", "t.csv", "t.npy"}) {
     EXPECT_THROW(write_table(sample_table(1, 1, 1), folder / name), IoError) << name;
@@ -124,7 +124,7 @@ TEST_F(TableFiles, WriteTable_DiskFull_LeavesNothingOrWhatWasThere) {
       fs::remove(at(name));
     }
   }
-  // The libraries below still work.
+  // After the failures the libraries NetCDF and HDF5 still work.
   write_table(table, at("t.nc"));
   expect_same(read_table(at("t.nc")), table);
 }
@@ -186,7 +186,7 @@ TEST_F(TableFiles, WriteText_Killed_LeavesNothing) {
   const pid_t writer = ::fork();
   ASSERT_GE(writer, 0);
   if (writer == 0) {
-    // Writing beyond the limit ends the process without calling destructors.
+    // The signal SIGXFSZ ends the process without calling destructors.
     const FullDisk full(100'000);
     std::signal(SIGXFSZ, SIG_DFL);
     write_text_atomically(at("t.csv"), std::string(200'000, 'x'));
@@ -207,7 +207,7 @@ TEST_F(TableFiles, UnderWay_AnotherProcessHasIt_IsRefused) {
   EXPECT_EQ(names(), std::vector<std::string>{"t.csv"});
 }
 
-/// A resumable table of two parts. The first part is equal to the first part of `one_part`.
+/// A table in two parts that can be resumed. Its first part has the entries of `one_part`.
 TableOutput::Job resumable_job(const fs::path& path, const TableValues& one_part) {
   const TableHead& head = one_part;
   TableHead whole = head;
@@ -235,7 +235,7 @@ TEST_F(TableFiles, PartialFile_NoMemoryForItsWriter_IsNotLeft) {
       const TableOutput output(std::move(own));
       has_failed = failing.has_failed();
     } catch (const std::bad_alloc&) {
-      // Calls that can do without this memory throw nothing.
+      // Not every failed allocation comes here: some calls manage without the memory.
     }
     ASSERT_EQ(names(), std::vector<std::string>{}) << before;
   }

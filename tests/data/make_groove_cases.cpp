@@ -1,5 +1,5 @@
-// make_groove_cases FILE.csv: writes reference moments of all bounces in V-grooves, for hard cases and for random
-// entries of the whole domain. Tests compare every kernel with them. Takes minutes.
+// make_groove_cases FILE.csv: writes reference moments with all bounces in V-grooves, for hard cases and random
+// entries. Tests compare the kernels with them. Takes minutes.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -17,9 +17,9 @@ namespace {
 
 using namespace dolp;
 
-// A tenth of the tightest tolerance at which kernels are compared. Near q = 1 the reference stops earlier.
+// A tenth of the tightest tolerance in the tests of grooves. Near q = 1 the reference does not reach it.
 constexpr double kTolerance = 1e-7;
-// Random entries are not stored if the reference error of rho is larger than this.
+// Leaves out random entries if the relative error of the reference is larger.
 constexpr double kLeastKnown = 1e-3;
 constexpr std::uint64_t kSeed = 20261122;
 constexpr int kOrdinary = 12;  // random entries per distribution

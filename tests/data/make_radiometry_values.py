@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Prints radiometry_values.hpp: Planck radiances and smooth-surface absorptances in 50 digits, rounded to double.
 
-Usage: make_radiometry_values.py > radiometry_values.hpp. Needs python3-mpmath. The formulas are the
-textbook ones. Absorptances are 1 - |r|^2; with 50 digits the cancellation does no harm.
+Usage: make_radiometry_values.py > radiometry_values.hpp. Needs python3-mpmath. The formulas are in textbook
+form. 1 - |r|^2 cancels for small absorptances, but enough of the 50 digits remain.
 """
 import mpmath as mp
 
@@ -16,7 +16,7 @@ COSINES = ["1", "0.75", "0.5", "0.0625", "1e-6", "1e-17"]
 
 
 def double(text):
-    """The double nearest to a text: the value that the C++ compiler gives to this literal."""
+    """The double nearest to a number in text, as a C++ compiler reads it."""
     return mp.mpf(float(text))
 
 

@@ -15,7 +15,7 @@ SEED = 19
 TIMEOUT_S = 120
 OLD = b"kept\n"
 DONE, INPUT, DEVICE, IO, MEMORY, INTERRUPTED = 0, 2, 3, 4, 6, 130
-# A C library without memory ends the program, or reports that its file or device is bad.
+# Allowed ends if a C library has no memory: it ends the program, or reports a bad file or device.
 LIBRARY = (INPUT, DEVICE, IO, 255, -signal.SIGABRT, -signal.SIGSEGV, -signal.SIGBUS)
 SCENE = (pathlib.Path(__file__).resolve().parents[1] / "data/scene.toml").read_text(encoding="utf-8")
 POINTS = "theta_deg,sigma,q\n0,0.1,2\n60.0,0.4,3.5\n80.5,0.1,2\n"
@@ -23,18 +23,18 @@ COMMANDS = {"table": (["table", "scene.toml"], "out.nc"),
             "eval": (["eval", "scene.toml", "--points", "points.csv"], "out.csv"),
             "lookup": (["lookup", "in.nc", "--points", "points.csv"], "out.csv")}
 CPU = ("--evaluator", "cpu")
-# Many tiles; takes about a second on one core.
+# A table of many tiles, which takes about a second on one core.
 LARGE = ("--set", "grid.theta_deg={from=0, to=89, count=60}", "--set", "grid.sigma={from=0.05, to=1, count=20}")
 SLOW = (*CPU, "--tolerance", "1e-6", "--precision", "double", *LARGE)
-# More than one part per run; takes a second.
+# A table in more than one part, which takes about a second.
 PARTS = (*CPU, "--tolerance", "1e-2", "--set", "surface.masking=none", "--set", "surface.distribution=gaussian",
          "--set", "grid.theta_deg={from=0, to=89, count=90}", "--set", "grid.sigma={from=0.05, to=1, count=400}",
          "--set", "grid.q={from=2, to=4, count=90}")
-# HDF5 prints long messages if it has no memory to start; they cannot be switched off before it has started.
+# Lines that HDF5 prints if it has no memory to start. The program cannot switch them off before HDF5 has started.
 OF_HDF5 = re.compile(r"^(HDF5-DIAG: |  #\d+: |    (major|minor): ).*\n", re.MULTILINE)
-# Left by a process that ended while it renamed the finished file, killed or out of memory.
+# Name of the temporary file that a process leaves if it is killed or runs out of memory before it renames the file.
 LEFT_BY_THE_KILLED = re.compile(r"\.dolp-\d+-\d+\.tmp")
-# A file system on which syncing takes no time.
+# A file system in memory, where fsync takes no time.
 FOLDERS = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
 
 
@@ -43,7 +43,7 @@ class Broken(Exception):
 
 
 class Driver:
-    """The program, its inputs, and its results without faults."""
+    """The program under test, its inputs, and the results of its commands without faults."""
 
     def __init__(self, build, is_quick, inputs):
         self.program = str(build / "dolp")
@@ -60,12 +60,11 @@ class Driver:
         return {"LD_PRELOAD": str(self.faults / f"libfail_{name}.so"), **environment}
 
     def values(self, output):
-        """The content of a finished output, without parts that differ between runs; nothing if the output is
-        incomplete."""
+        """The values in a complete output file. Equal runs have equal values. Empty if the file is incomplete."""
         if output.suffix == ".nc":
             read = [self.program, "lookup", output.name, "--points", "points.csv", "-o", "-", "--quiet"]
             looked_up = subprocess.run(read, cwd=output.parent, capture_output=True, check=False).stdout
-            # The hash covers all bits, and lookup has checked it against the values.
+            # The file has a hash of all values. `lookup` compares it with the values.
             return looked_up, re.findall(rb"placed64:[0-9a-f]{16}", output.read_bytes())
         return output.read_bytes()
 
@@ -86,7 +85,7 @@ class Driver:
             yield Attempt(self, command, options, pathlib.Path(folder), **settings)
 
     def numbers(self, most, quick):
-        """The numbers 1 to `most`; in a quick run only this many of them, with both ends."""
+        """The numbers 1 to `most`. A quick run gets only `quick` of them: 1, `most` and random ones."""
         if not self.is_quick or most <= quick:
             return list(range(1, most + 1))
         return sorted({1, most, *(self.random.randint(1, most) for _ in range(quick - 2))})
@@ -109,7 +108,7 @@ class Driver:
 
 
 class Attempt:
-    """A run in a folder with the inputs and an old output."""
+    """A run of dolp in a new folder with the inputs and an old output file."""
 
     def __init__(self, driver, command, options, folder, environment=None, limit=None, prefix=(), is_same=operator.eq):
         self.driver, self.command, self.options, self.folder = driver, command, options, folder
@@ -125,7 +124,7 @@ class Attempt:
 
     def start(self):
         def prepare():
-            # a shell starts background processes with some of these ignored
+            # A shell may start this script in the background with these signals ignored.
             for number in (signal.SIGINT, signal.SIGHUP):
                 signal.signal(number, signal.SIG_DFL)
             if self.limit:

@@ -1,5 +1,4 @@
-// Preloaded into a program, makes each close of a table that was read report an error, as after the loss of a file
-// server.
+// Preloaded into a program, makes each close of a table that was read fail, as if a file server were lost.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <unistd.h>

@@ -43,7 +43,7 @@ struct Fault {
 
 std::atomic<unsigned long> submissions{0};
 
-/// VK_SUCCESS, or the result that this call of the function must return.
+/// VK_SUCCESS, or the result with which this call must fail.
 VkResult fault_of(const char* function) {
   static const Fault fault;
   static std::atomic<unsigned long> calls{0};
@@ -121,7 +121,7 @@ extern "C" VKAPI_ATTR VkResult VKAPI_CALL vkQueueSubmit(VkQueue queue, uint32_t 
   return fault == VK_SUCCESS ? next<PFN_vkQueueSubmit>("vkQueueSubmit")(queue, count, submits, fence) : fault;
 }
 
-// A lost device must have no work in flight.
+// The real call always waits first, because work on a device that is reported as lost must have ended.
 extern "C" VKAPI_ATTR VkResult VKAPI_CALL vkWaitForFences(VkDevice device, uint32_t count, const VkFence* fences,
                                                           VkBool32 all, uint64_t timeout) {
   const VkResult result = next<PFN_vkWaitForFences>("vkWaitForFences")(device, count, fences, all, timeout);

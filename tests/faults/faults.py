@@ -2,12 +2,11 @@
 """Exposes dolp to faults, and counts how its runs end.
 
 Usage: faults.py BUILD [--quick] [--json FILE] [KIND...]    BUILD is the folder that has dolp and tests/faults
-       faults.py --table FILE      what is in such a FILE, as a table for the manual
-Each try has a separate folder with an old output. After the try the old output is unchanged or replaced by a complete
-new one, and no other file is left. A failed run reports one line and the exit status of its fault, unless a C library
-ends it for lack of memory.
-With --quick there are fewer tries of each kind. Exit status: 0, or 1 after a try that broke one of these rules.
-The result has the rows of all kinds that were tried, in one run or several.
+       faults.py --table FILE      prints the results in FILE as the table of tests/README.md
+Each try runs dolp in a separate folder with an old output file. Rules: the old file is unchanged or replaced by a complete
+new one, no other file is left, and a failed run reports one line and the exit status of its fault, unless a C library ends
+it for lack of memory. With --quick each KIND has fewer tries. Exit status: 0, or 1 after a try that broke a rule.
+FILE of --json gets a row for each KIND. Rows of kinds that do not run stay in it.
 """
 import argparse
 import collections
@@ -18,7 +17,7 @@ import sys
 import tempfile
 import time
 
-sys.dont_write_bytecode = True  # writes no cache folder among the sources
+sys.dont_write_bytecode = True  # no cache folders in the sources
 
 import of_devices  # noqa: E402
 import of_files  # noqa: E402
@@ -42,14 +41,14 @@ def markdown(results):
 
 
 def rows_of(path):
-    """The content of a result by fault; empty if there is no result yet."""
+    """The rows of a result file by fault. Empty if there is no file yet."""
     if not path or not path.exists():
         return {}
     return {row["fault"]: row for row in json.loads(path.read_text(encoding="utf-8"))["kinds"]}
 
 
 def drive(driver, kinds, path):
-    """Writes the result after each kind, because all kinds together take hours. Rows of other kinds stay."""
+    """Runs the kinds. Writes the result file after each kind, because all kinds together take hours."""
     version = subprocess.run([driver.program, "--version"], capture_output=True, text=True, check=True).stdout.strip()
     for kind in kinds:
         start = time.monotonic()

@@ -89,7 +89,7 @@ def endless_compilation(driver):
         yield driver.try_once(command, (), (DEVICE,), environment=fault)
     patient = {**fault, "DOLP_COMPILATION_LIMIT_S": "1000"}
     with driver.attempt("table", environment=patient) as attempt, attempt.start() as process:
-        time.sleep(1)  # before the compilation begins a signal ends the program, too
+        time.sleep(1)  # until the driver compiles; earlier a signal would end the program anyway
         process.terminate()
         err = process.communicate(timeout=TIMEOUT_S)[1].decode()
         attempt.check(process.returncode, err, (INTERRUPTED, -signal.SIGTERM))

@@ -16,13 +16,13 @@ def file_limit(driver):
             most = attempt.output.stat().st_size
         for n in driver.numbers(20, 3):
             limit = (resource.RLIMIT_FSIZE, most * (n - 1) // 20)
-            # The smallest limits also stop what a Vulkan driver keeps in files. Mesa's software driver (from release
-            # 24) keeps its buffers in a file and does not check whether it could grow; the run then ends with SIGBUS.
+            # The smallest limits also stop files that a Vulkan driver writes. Mesa's lavapipe from release 24 keeps its
+            # buffers in a file and does not check whether the file could grow. The run then ends with SIGBUS.
             yield driver.try_once(command, (), (IO, DEVICE, MEMORY, -signal.SIGBUS), limit=limit)
 
 
 def in_small_file_system(driver, options, fill):
-    """Tries each command in a separate file system, mounted with options, after the shell command `fill`."""
+    """Runs each command in a new tmpfs with mount options, after `fill`, a shell command that fills it."""
     for command in COMMANDS:
         driver.expect(command, CPU if command != "lookup" else ())
         with driver.attempt(command, CPU if command != "lookup" else ()) as attempt:
@@ -34,7 +34,7 @@ def in_small_file_system(driver, options, fill):
             attempt.words = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c", inside, "sh", *attempt.words]
             status, err = attempt.run()
             if status == 77:
-                return  # this user may not mount here
+                return  # this user may not mount here, so there are no tries
             left = attempt.folder / "left"
             if status != IO or not left.exists():
                 raise Broken(f"{command} in a file system with {options}: exit status {status}, {err}")

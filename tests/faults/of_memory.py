@@ -10,7 +10,7 @@ from attempt import CPU, DONE, LARGE, LIBRARY, MEMORY
 
 
 def agree(ours, theirs):
-    """True if results of `eval` agree within their bounds. Two kernels of one source may differ by that much."""
+    """True if two results of `eval` agree within their stated errors, as results of different kernels do."""
     rows, others = (list(csv.DictReader(text.decode().splitlines())) for text in (ours, theirs))
     if len(rows) != len(others):
         return False
@@ -22,7 +22,7 @@ def agree(ours, theirs):
 
 
 def allocations_of(driver, command, options, quick, step, is_same=operator.eq):
-    """The n-th allocation fails; then a second try in which all later ones fail, too."""
+    """Two tries for each n: the n-th allocation fails, or the n-th and all later ones. n is a multiple of `step`."""
     driver.expect(command, options)
     count = driver.count("allocation", "DOLP_COUNT_ALLOCATIONS", command, options)
 
@@ -30,7 +30,7 @@ def allocations_of(driver, command, options, quick, step, is_same=operator.eq):
         environment = driver.preload("allocation", DOLP_FAIL_ALLOCATION=number)
         return driver.try_once(command, options, (DONE, MEMORY, *LIBRARY), environment=environment, is_same=is_same)
 
-    # Threads allocate in any order, so a try may never reach the allocation that should fail.
+    # The order of allocations differs between runs with several threads, so a try may end before its allocation.
     numbers = [f"{n}{after}" for n in driver.numbers(count // step, quick // 2) for after in ("", "+")]
     numbers = [re.sub(r"\d+", lambda n: str(int(n.group()) * step), number) for number in numbers]
     with concurrent.futures.ThreadPoolExecutor(1 if driver.is_quick else os.cpu_count()) as pool:
@@ -54,7 +54,7 @@ def allocation_in_lookup(driver):
 
 def allocation_with_driver(driver):
     """every 100th allocation of `eval` on a Vulkan device fails, in its driver too"""
-    # A kernel compiler without memory may produce another kernel, without a message.
+    # Without memory the compiler of the driver may make a slightly different kernel and not report it.
     return allocations_of(driver, "eval", (), 10, 100, agree)
 
 
@@ -69,7 +69,7 @@ def memory_limit(driver):
 def few_threads(driver):
     """the system allows n threads beside the first"""
     driver.expect("table", LARGE)
-    # The threads that lavapipe waits for, and some for the program.
+    # Threads of lavapipe, which cannot work without them, and threads of the program.
     needed = 2 * min(os.cpu_count(), 32) + 3
     for n in [0, *driver.numbers(needed, 7)] if driver.is_quick else range(needed + 20):
         fault = driver.preload("thread", DOLP_MOST_THREADS=str(n))

@@ -11,7 +11,7 @@ from attempt import Broken, CPU, DONE, FOLDERS, INTERRUPTED, IO, LEFT_BY_THE_KIL
 
 
 def kills_by(driver, number, tries):
-    """Sends a signal at a random moment of a run."""
+    """Sends a signal at a random moment of a run. Yields the exit status of each try."""
     jobs = [("table", CPU), ("eval", CPU), ("table", SLOW)]
     seconds = {job: driver.expect(*job) for job in jobs}
     for i in range(tries if driver.is_quick else 20 * tries):
@@ -46,8 +46,7 @@ def kill_and_resume(driver):
 
 
 def damage(driver, folder, victim):
-    """Damages one of the files that a killed run left, if there is one. Returns the link that replaces it, or
-    nothing."""
+    """Damages a file that a killed run left, or replaces it by a link to `victim`. Returns the link, if any."""
     left = sorted(folder.glob("out.nc.partial*"))
     how = driver.random.choice(("cut", "overwritten", "replaced", "removed", "symbolic link", "hard link"))
     if not left:

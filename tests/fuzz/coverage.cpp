@@ -1,4 +1,4 @@
-// Counts which instrumented code runs. libFuzzer reads the counters in this section.
+// Coverage counters for libFuzzer, which reads this section. GCC calls the function below at each basic block.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +10,7 @@ constexpr std::size_t kCounters = 1U << 16U;
 
 }  // namespace
 
-// Called instead of __sanitizer_cov_trace_pc: libFuzzer has that function only to refuse it.
+// The linker redirects __sanitizer_cov_trace_pc to this function, because libFuzzer's version only reports an error.
 extern "C" void __wrap___sanitizer_cov_trace_pc() {
   const auto place = reinterpret_cast<std::uintptr_t>(__builtin_return_address(0));
   ++counters[place % kCounters];

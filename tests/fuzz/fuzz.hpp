@@ -1,4 +1,4 @@
-// Common part of the fuzzers. Each passes bytes to a public reader, which accepts them or throws an InputError.
+// Shared code of the fuzzers. Each passes bytes to one public reader, which must accept them or throw InputError.
 #pragma once
 
 #include <unistd.h>
@@ -10,7 +10,7 @@
 
 namespace dolp::fuzz {
 
-/// The reader of one fuzzer. Anything except a normal return is a finding.
+/// The reader of this fuzzer. If it crashes or throws another exception, libFuzzer reports the input.
 void read(const std::string& text);
 
 template <class Reader>
@@ -18,7 +18,7 @@ void refused(const Reader& reader) {
   try {
     reader();
   } catch (const InputError&) {
-    // A bad file must be refused.
+    // InputError is the right answer to bad input.
   }
 }
 

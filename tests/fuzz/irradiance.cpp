@@ -1,4 +1,4 @@
-// Files of irradiance.
+// Fuzzes the reader of irradiance files.
 #include "fuzz.hpp"
 #include "scene/spectral_data.hpp"
 

@@ -1,4 +1,4 @@
-// Files of n and k, as CSV and as YAML.
+// Fuzzes the readers of material files in CSV and YAML.
 #include "fuzz.hpp"
 #include "scene/material_data.hpp"
 

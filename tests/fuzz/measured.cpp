@@ -1,4 +1,4 @@
-// Measured points.
+// Fuzzes the reader of measured data.
 #include <dolp/fit.hpp>
 
 #include "fuzz.hpp"

@@ -1,4 +1,4 @@
-// Overrides of a scene as in `--set`, one per line.
+// Fuzzes the overrides of a scene, one KEY=VALUE per line as in `--set`.
 #include <sstream>
 #include <string>
 #include <vector>

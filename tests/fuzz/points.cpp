@@ -1,4 +1,4 @@
-// Lists of points, of both kinds.
+// Fuzzes the readers of both kinds of points: directions, and geometries for `dolp mueller`.
 #include "scene/points.hpp"
 #include "fuzz.hpp"
 

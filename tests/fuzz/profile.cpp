@@ -1,4 +1,4 @@
-// Files of a sky over the zenith.
+// Fuzzes the reader of sky profiles.
 #include "fuzz.hpp"
 #include "scene/sky_profile.hpp"
 

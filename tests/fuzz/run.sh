@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Runs fuzzers on the corpus beside this script: run.sh FUZZER SECONDS [LIBFUZZER_OPTION...]
 #
-# FUZZER is a program or a build folder. With a folder all of its fuzzers run and share the seconds. New inputs are not
-# kept, except inputs that break a reader: they are left as crash-*, leak-*, oom-* or timeout-* in the current folder.
+# FUZZER is a program or a build folder. In a folder all fuzzers run, and each gets an equal part of SECONDS. Inputs that
+# break a reader are stored as crash-*, leak-*, oom-* or timeout-* in the current folder. Other new inputs are deleted.
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -10,7 +10,7 @@ fuzzers=("$1")
 [[ -d $1 ]] && fuzzers=("$1"/tests/fuzz/fuzz_*[a-z])
 seconds=$(($2 / ${#fuzzers[@]}))
 shift 2
-# A finding of UBSan ends the program, so that it also leaves its input.
+# UBSan ends the program at a finding, so that libFuzzer stores the input.
 export UBSAN_OPTIONS=abort_on_error=1:print_stacktrace=1
 found=$(mktemp -d)
 trap 'rm -r "$found"' EXIT

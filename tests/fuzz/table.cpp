@@ -1,8 +1,8 @@
-// Tables, which are NetCDF.
+// Fuzzes the reader of tables in NetCDF.
 #include "fuzz.hpp"
 #include "table/table_file.hpp"
 
-/// HDF5 1.10 leaks memory on some damaged files.
+/// The leak sanitizer ignores leaks of HDF5 1.10, which occur with some damaged files.
 extern "C" const char* __lsan_default_suppressions();
 const char* __lsan_default_suppressions() { return "leak:libhdf5"; }
 

@@ -1,5 +1,5 @@
-// The promise of the program: computes 2,000 random points with the Vulkan evaluator and the radiometry, as `dolp eval`
-// does, at each tolerance, and compares them with stored values of the independent reference.
+// The main promise of the program: 2,000 random points, computed by the Vulkan evaluator and the radiometry as in `dolp
+// eval`, meet each tolerance or report that they miss it. Exact values come from the reference.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,15 +22,16 @@
 namespace dolp {
 namespace {
 
-// Share of the points that miss the tolerance at every level, because of rounding or the largest order (at 1e-9).
+// Largest share of points that miss the tolerance at every level; for tolerances below kTight it is kTightMissedShare.
+// The causes are rounding and, at 1e-9, the largest order of the rules.
 constexpr double kMissedShare = 0.01;
 constexpr double kTightMissedShare = 0.04;
 constexpr double kTight = 1e-8;
-// The bound is a multiple of the distance from a rule with a fifth fewer digits. At six digits this is one and a half
-// digits, and half a digit for the multiple.
+// Largest median of stated over true error. The stated error is a multiple of the difference from a rule with a fifth
+// fewer digits. At six digits the difference is 1.5 digits above the error, its multiple another half.
 constexpr double kMedianPessimism = 100.0;
-// Errors below this are rounding. Its bound must cover the worst sum of signs and is far above a typical error: sixteen
-// units in the last place of a float's 24 bits. In double ten times the reference's bound, 1e-12.
+// The median does not count smaller errors, which are rounding. In float the limit is 16 units in the last place of 24
+// bits, far above typical rounding; in double it is ten times the error of the reference, 1e-12.
 constexpr double kFloatRounding = 1e-6;
 constexpr double kDoubleRounding = 1e-11;
 
@@ -55,7 +56,7 @@ SceneValues scene_of(Distribution distribution, Masking masking, const Setting& 
   return scene;
 }
 
-/// One point: its result, the result of the reference, and the inputs of both.
+/// A point with its result by the program and its result from the moments of the reference.
 struct Compared {
   StoredCase point;
   PointResult result;
@@ -77,7 +78,7 @@ struct Compared {
   }
 };
 
-/// All points at one setting.
+/// All points, computed with one setting.
 struct Sweep {
   std::vector<Compared> points;
   double rounding = 0.0;
@@ -145,7 +146,7 @@ void expect_moderate_estimates(const Sweep& sweep) {
 
 class RandomPoints : public testing::TestWithParam<Setting> {};
 
-// In one test, because CTest runs each test separately and computing the points takes most of the time.
+// All checks are in one test, because CTest runs each test separately and the points take most of the time.
 TEST_P(RandomPoints, EveryPoint_MeetsItsToleranceOrSaysSo_WithinItsEstimate) {
   const Sweep sweep = sweep_of(GetParam());
   std::map<std::string, int> counts;

@@ -1,4 +1,4 @@
-// Bands of materials with total reflection in a part of the band, against integrals of the smooth surface in 20 digits.
+// Bands in which a material has total reflection at some wavelengths, compared with integrals in 20 digits.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,9 +18,9 @@
 namespace dolp {
 namespace {
 
-// Emission of a smooth surface at 300 K, 8-14 um. n rises linearly from 0.90 to 0.98, so total reflection ends inside
-// the band at each of these zeniths except the last. DOLP by adaptive quadrature, split at that wavelength (mpmath, 20
-// digits).
+// DOLP of the emission of a smooth surface at 300 K, 8 to 14 um. n rises linearly from 0.90 to 0.98. At each of these
+// zeniths except the last, total reflection ends at a wavelength in the band. The values are by adaptive quadrature
+// with 20 digits (mpmath), split at this wavelength.
 struct Case {
   double theta_deg;
   double dolp;
@@ -60,7 +60,7 @@ TEST(Bands, GlassWhoseIndexPassesOneNearGrazing_IsWithinItsEstimate) {
   EXPECT_NEAR(result[Quantity::kDolp], kDolp, result[Quantity::kErrorEstimate] + 1e-12);
 }
 
-/// A check of a table of the mirror with the errors that it states. `dolp` replaces the value of its first entry.
+/// Checks a table of the mirror against the reference. `dolp` replaces the DOLP of the first entry.
 TableCheck check_with(std::optional<double> dolp) {
   SceneValues scene = scene_with("0", "1e-4");
   scene.grid[Axis::kTheta] = {66.0, 70.0, 75.0};
@@ -75,7 +75,7 @@ TableCheck check_with(std::optional<double> dolp) {
 }
 
 TEST(Bands, Verify_SeesAnErrorOfTheSpectralRule) {
-  constexpr double kFewNodes = 0.0178396;  // the value with nodes for three zeniths only
+  constexpr double kFewNodes = 0.0178396;  // wrong DOLP, from a spectral rule with too few nodes
   const TableCheck right = check_with({});
   for (const CheckedValue& failure : right.failures) ADD_FAILURE() << failure.quantity << ": " << failure.complaint;
   const TableCheck wrong = check_with(kFewNodes);

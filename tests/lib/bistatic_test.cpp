@@ -1,5 +1,5 @@
-// The bistatic mode against the formula of shaders/physics/README.md, section 4, implemented a second time, with f from
-// explicit vectors and the moments of the independent reference.
+// Bistatic mode, compared with a second implementation of shaders/physics/README.md, section 4. This one takes f from
+// explicit vectors and the moments from the reference.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -87,7 +87,7 @@ Radiance model_radiance(const SceneValues& scene, double theta_i_deg) {
   return l;
 }
 
-/// Runs each test with the kernels and with the reference.
+/// The parameter is a kernel, or nothing for the reference.
 class BistaticByEvaluator : public testing::TestWithParam<std::optional<Kernel>> {};
 
 INSTANTIATE_TEST_SUITE_P(Bistatic, BistaticByEvaluator,
@@ -106,7 +106,7 @@ TEST_P(BistaticByEvaluator, RandomScenes_AgreeWithTheModelWrittenOut) {
     const SlopeShape shape{scene.surface.sigma, scene.surface.q};
     const PointResult r = evaluate_scene(scene, {{theta_i_deg, shape, {}}}, *evaluator, {}).front();
     const Radiance l = model_radiance(scene, theta_i_deg);
-    // The stated error of DOLP is relative to I and covers Q and U. I has an error of this order, too.
+    // The stated error of DOLP covers the errors of Q and U relative to I. The factor 2 covers the error of I, too.
     const double bound = 2.0 * r[Quantity::kErrorEstimate] + 1e-9;
     EXPECT_NEAR(r[Quantity::kStokesQ] / l.i, l.q / l.i, bound) << n;
     EXPECT_NEAR(r[Quantity::kStokesU] / l.i, l.u / l.i, bound) << n;
@@ -121,7 +121,7 @@ TEST_P(BistaticByEvaluator, RandomScenes_AgreeWithTheModelWrittenOut) {
   std::printf("worst DOLP difference %.1e\n", worst);
 }
 
-/// An evaluator that states an error of 1 % of m00 for every beam in float.
+/// An evaluator that states an error of 1 % of m00 for each beam in float. In double it states its usual error.
 class BiasedBeams final : public ModelEvaluator {
  public:
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
@@ -142,7 +142,7 @@ class BiasedBeams final : public ModelEvaluator {
   CpuEvaluator own_;
 };
 
-// The stated error includes the bound of the beam. A level in double computes the beam in double, too.
+// The error of the beam is part of the stated error. So the run computes the entry again in double, with its beam.
 TEST(Bistatic, BeamWithALargeError_IsTriedAgainInDouble) {
   RandomScenes random;
   SceneValues scene = random.scene();
@@ -214,9 +214,10 @@ TEST(Bistatic, SourceAngles_ShareTheMomentsOfTheView) {
   const double three = evaluator.report().evaluations;
   evaluate_scene(scene, {{10.0, shape, {}}}, evaluator, {});
   EXPECT_GT(three, 0.0);
-  EXPECT_EQ(2.0 * three, evaluator.report().evaluations);  // sum over both calls
+  // each call needs the moments only of the view; the report adds both calls
+  EXPECT_EQ(2.0 * three, evaluator.report().evaluations);
   EXPECT_EQ(results[0][Quantity::kRhoI], results[2][Quantity::kRhoI]);
-  EXPECT_EQ(results[2].status, 0U);  // a source at 90 degrees adds nothing
+  EXPECT_EQ(results[2].status, 0U);  // at 90 degrees the source adds nothing
 }
 
 TEST(Bistatic, StokesOfATable_AreRadiances) {
@@ -237,7 +238,7 @@ PointResult seen_at(SceneValues scene, double view_zenith_deg) {
 }
 
 TEST(Bistatic, ViewAtNinetyDegrees_IsTheLimitWhereThereIsOne) {
-  constexpr double kStep = 1e-5;  // the change over 1e-4 degrees
+  constexpr double kStep = 1e-5;  // relative change of I over 1e-4 degrees
   RandomScenes random;
   for (const Masking masking : {Masking::kVCavity, Masking::kSmith}) {
     SceneValues scene = random.scene();

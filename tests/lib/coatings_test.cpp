@@ -1,4 +1,4 @@
-// Films and measured reflectances, against closed forms and the independent reference, and in scenes.
+// Films and measured reflectances, compared with closed forms and with the reference, and scenes that use them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ FacetOptics coated(const OpticalConstants& medium, std::vector<Film> films) {
   return optics;
 }
 
-/// One to three films on a dielectric, a metal or water. Some absorb, some are thick.
+/// One to three films on a metal, a dielectric or an absorber. Most films absorb. Thickness: 0.01 to 1 wavelength.
 FacetOptics random_coating(Random& random) {
   FacetOptics optics(random.chance(0.4) ? OpticalConstants{random.uniform(2.0, 30.0), random.uniform(10.0, 90.0)}
                                         : OpticalConstants{random.uniform(1.1, 3.5), random.log_uniform(1e-3, 0.5)});
@@ -94,7 +94,7 @@ TEST(Films, Amplitudes_AgreeWithCharacteristicMatrices) {
 
 // ---- Moments and beams ---------------------------------------------------------------------------------------------
 
-/// Compares random coatings with the reference, one for each model in turn.
+/// Compares moments of random coatings with the reference. Draw i uses model i modulo 8.
 void expect_within_bounds_of_reference(Precision precision, double tolerance, std::uint64_t seed, std::size_t draws) {
   Random random(seed);
   FixedPrecision evaluator(precision);
@@ -200,7 +200,7 @@ TEST(Coatings, GridOfIndices_KeepsItsFilms) {
   }
 }
 
-// A mirror has a closed form at each wavelength, so the integral over the band can be a fine sum.
+// A mirror has a closed form at each wavelength. So a sum over many wavelengths can check the integral over the band.
 TEST(Coatings, BandWithThickFilms_IsWithinItsBoundOfAFineSum) {
   for (const char* thickness : {"0.5", "5", "20"}) {
     const std::vector<std::string> film = {
@@ -309,7 +309,7 @@ TEST(Coatings, Mistakes_AreToldWithTheKeyAndWhatIsAllowed) {
 
 // ---- Measured reflectances -----------------------------------------------------------------------------------------
 
-/// The reflectances of a medium at every `step_deg`.
+/// A CSV file with the reflectances of a smooth medium at angles of incidence in steps of `step_deg`.
 std::string measured_csv(const OpticalConstants& index, double step_deg) {
   std::string csv = "beta_deg,r_s,r_p\n";
   for (double beta_deg = 0.0; beta_deg <= 90.0; beta_deg += step_deg) {

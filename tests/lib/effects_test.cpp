@@ -1,4 +1,4 @@
-// Which effects a plan drops, and that results without them equal results with them within the stated bounds.
+// Effects that a plan drops. Results without them must agree with results with them within the stated errors.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -17,7 +17,7 @@ using namespace effects_support;
 constexpr std::uint64_t kSeed = 20250901;
 constexpr std::array kParts = {Part::kMoments, Part::kSource, Part::kSurroundings, Part::kEmission,
                                Part::kPathRadiance};
-// Rounding of a quotient of Stokes sums.
+// Rounding error of a quotient of two sums of Stokes parameters.
 constexpr double kRounding = 1e-11;
 
 TEST(Dropping, RandomScenes_TheAnswerWithEverythingIsWithinTheEstimates) {
@@ -60,7 +60,7 @@ TEST(Dropping, RandomScenes_TheAnswerWithEverythingIsWithinTheEstimates) {
       EXPECT_LE(std::abs(a[Quantity::kRhoQ] - b[Quantity::kRhoQ]), allowed) << name;
     }
   }
-  // The test is meaningful only if all of this happens.
+  // The random scenes must drop each effect several times, or the test shows nothing.
   for (const Part part : kParts) EXPECT_GE(dropped[part], 5) << static_cast<int>(part);
   EXPECT_GE(without_moments, 50);
   std::cout << without_moments << " scenes without moments\n";
@@ -97,7 +97,7 @@ theta_deg = [20, 60]
   EXPECT_TRUE(plan.needs_beams);
 }
 
-// Each point belongs to one extent, and each wavelength has a separate extent, so the work is linear in both.
+// Each wavelength has one extent, which covers its points. So estimates over extents count no point twice.
 TEST(ExtentsOf, PointsAtTheirWavelengths_AreEachInOne) {
   const SceneEntries points({{10.0, {0.1, 2.0}, {}, 1}, {20.0, {0.3, 3.0}, {}, 0}, {30.0, {0.2, 4.0}, {}, 1}},
                             variants_of(axes_of({}, {}, {}, {8.0, 9.0})));

@@ -1,4 +1,4 @@
-// Estimates by a run of the effect of single scattering and of its effects, from a few entries.
+// Estimates that a run makes from a few entries: the effect of single scattering, and the effects of a scene.
 #include "run/estimates.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace dolp {
 namespace {
 
 const std::string kScene = kRoughMetal + "[grid]\ntheta_deg = [30, 60]\n";
-// Both models have an error of 1e-3, compared with better results.
+// Allows an error of 1e-3 for each of two models.
 constexpr double kAccuracy = 2e-3;
 
 using Overrides = std::vector<std::string>;
@@ -74,7 +74,7 @@ TEST(ScatteringGap, WhereNothingIsLeftToSay_NoValue) {
   for (const Overrides& scene : scenes) EXPECT_FALSE(gap_of(scene).has_value()) << scene.front();
 }
 
-// Scenes over bands, most of whose materials need many spectral samples.
+// Scenes over bands. Most of these materials need many spectral samples.
 const std::vector<Overrides> kBandScenes = {
     {"surface.material=aluminium (Ordal)", "spectrum.band_um=[8,14]"},
     {"surface.material=water 25C", "spectrum.band_um=[8,14]", "surface.masking=smith"},
@@ -97,7 +97,7 @@ SceneValues band_scene(Overrides overrides) {
   return scene;
 }
 
-/// The largest change of DOLP over the whole grid.
+/// Largest difference of Q/I between two scenes over the whole grid.
 double largest_change(const SceneValues& a, const SceneValues& b) {
   CpuEvaluator evaluator;
   const std::vector<PointResult> of_a = evaluate_scene(a, grid_entries(a), evaluator, {});

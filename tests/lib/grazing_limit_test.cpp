@@ -1,5 +1,4 @@
-// The quotients of diverging moments at 90 degrees, against an independent integral and against the kernel just below
-// 90 degrees.
+// The quotient of diverging moments at 90 degrees, compared with an integral and with the kernel just below 90 degrees.
 #include "run/closed_forms.hpp"
 
 #include <gtest/gtest.h>
@@ -25,14 +24,14 @@ constexpr std::array kAllIndices = {
     OpticalConstants{1e6, 1e6},   OpticalConstants{0.2, 3.0},   OpticalConstants{0.6, 0.0},
     OpticalConstants{0.6, 1e-4},  OpticalConstants{0.01, 0.0},  OpticalConstants{0.51444802339652151, 4.4e-12}};
 
-// The accuracy stated in the header.
+// Accuracy that run/closed_forms.hpp states.
 constexpr double kRelativeAccuracy = 1e-12;
 constexpr double kAlbedoAccuracy = 2e-15;
-// Just below 90 degrees the quotients differ from their limit by a series in c^(3 - 2q). Extrapolation removes its
-// first term, at most 2 % of the quotient at q = 1.3. The second term is the square of the first.
+// Just below 90 degrees the quotient minus its limit is a power series in cos(theta)^(3 - 2q). Extrapolation removes
+// the first term, which is at most 2 % of the quotient at q = 1.3. The second term is about the square of the first.
 constexpr double kExtrapolationAccuracy = 4e-4;
 
-/// Ends of panels that halve toward both ends of [from, to].
+/// Ends of integration panels, whose widths halve toward both ends of [from, to].
 std::vector<Real> graded_panels(Real from, Real to) {
   constexpr int kHalvings = 60;
   const Real middle = 0.5L * (from + to);
@@ -44,8 +43,7 @@ std::vector<Real> graded_panels(Real from, Real to) {
   return ends;
 }
 
-/// Integral of cos(phi)^(4-2q) M over a quarter turn, in Gauss panels that shrink toward grazing incidence and toward
-/// the angle of total reflection.
+/// Integral of `part` times cos(phi)^(4 - 2q) over a quarter turn. Panels shrink toward grazing and critical angle.
 Real integral(double q, const OpticalConstants& index, const std::function<Real(const SmoothReflectance&)>& part) {
   const Real quarter = 0.5L * std::numbers::pi_v<Real>;
   const Real squared = 1.0L - (Real(index.n) * index.n - Real(index.k) * index.k);
@@ -84,7 +82,7 @@ TEST(GrazingLimit_EveryIndex, AgreesWithAnotherQuadrature) {
       const Moments limit = grazing_limit_moments(index, q);
       const Real albedo = integral(q, index, [](const auto&) { return 1.0L; });
       const Real r_i = integral(q, index, [](const SmoothReflectance& r) { return 0.5L * (r.s + r.p); });
-      // cos(2 eta) = -1, because the facets are vertical.
+      // The facets are vertical, so cos(2 eta) = -1.
       const Real r_q = integral(q, index, [](const SmoothReflectance& r) { return -0.5L * (r.s - r.p); });
       const double bound = kRelativeAccuracy * limit.r_i + kAlbedoAccuracy * limit.albedo;
       EXPECT_NEAR(limit.albedo, static_cast<double>(albedo), kRelativeAccuracy * limit.albedo);
@@ -97,7 +95,7 @@ TEST(GrazingLimit_EveryIndex, AgreesWithAnotherQuadrature) {
   }
 }
 
-/// r_q / r_i of the kernel in double at a zenith slightly below 90 degrees.
+/// r_q / r_i by the kernel in double, `short_deg` below 90 degrees.
 double quotient_before(Masking masking, const OpticalConstants& index, double q, double short_deg) {
   MomentsRequest request;
   request.masking = masking;

@@ -1,4 +1,4 @@
-// Axes of materials, bands and temperatures: tables, points, files and lookups by name.
+// Axes of materials, bands and temperatures: tables, points, files, and lookups by name.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -104,7 +104,7 @@ TEST(GridAxes, FileReadBack_HasItsLabelsAndVerifiesWithoutTheMaterials) {
   EXPECT_TRUE(check.passed());
   EXPECT_EQ(check.checked, 6U);
 
-  // A label has another position in a part of the table than in its scene.
+  // The file of a part has only its own labels. Their positions must become those of the scene.
   TableHead part = reader.head();
   part.axes[Axis::kMaterial] = {0.0};
   part.labels[Axis::kMaterial] = {"PET"};
@@ -207,7 +207,7 @@ TEST(GridAxes, AllMaterials_AreThoseThatCoverTheSpectrum) {
   const SceneValues scene = scene_with({"grid.material=all", "grid.band_um=[[2, 3]]"});
   const std::vector<std::string>& names = scene.labels[Axis::kMaterial];
   EXPECT_GT(names.size(), 5U);
-  EXPECT_EQ(std::ranges::find(names, "SiO2 amorphous quartz"), names.end());  // n and k are known only from 7 um
+  EXPECT_EQ(std::ranges::find(names, "SiO2 amorphous quartz"), names.end());  // its n and k are known only from 7 um
 }
 
 }  // namespace

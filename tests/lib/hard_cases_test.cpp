@@ -1,4 +1,4 @@
-// The hard cases of the model: the stored values, and every evaluator against them.
+// The hard cases of the model: checks of the stored values, and all evaluators compared with them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ std::string label(const StoredCase& c) {
 
 TEST(HardCases, References_AreAsGoodAsStated) {
   constexpr double kRelative = 1.5e-13;
-  // There r_i is 3e-9, and the amplitudes r_s and r_p of 5e-5 have rounding errors of 1e-16.
+  // In the case almost-vacuum the amplitudes r_s and r_p are 5e-5, with rounding errors of 1e-16, and r_i is 3e-9.
   constexpr double kAlmostVacuum = 3e-11;
   for (const StoredCase& c : hard_cases()) {
     const Moments& m = c.moments;
@@ -50,7 +50,7 @@ Moments recomputed(const StoredCase& c, const ReferenceOptions& options) {
   return ReferenceEvaluator(options).evaluate(request, {}).at(0);
 }
 
-// All cases, but of the slow masking only every tenth.
+// All cases, except that integral masking, which is slow, has only every tenth.
 TEST(HardCases, AnotherRefinement_StaysWithinTheErrors) {
   std::size_t slow = 0;
   for (const StoredCase& c : hard_cases()) {
@@ -82,7 +82,7 @@ using Setting = std::tuple<Kernel, double>;
 
 class HardCasesOn : public testing::TestWithParam<Setting> {};
 
-// `dolp verify --hard-cases --precision double` and `dolp devices` report the precision in which they test a device.
+// `dolp verify --hard-cases --precision double` and `dolp devices` name the precision in which they test a device.
 TEST(Qualify, EvaluatorInDouble_IsExaminedInDouble) {
   CpuEvaluator evaluator;
   qualify(cases_of(hard_cases(), Distribution::kCauchy, Masking::kNone), evaluator, {1e-2, Precision::kDouble}, {});
@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(Double, HardCasesOn,
                                           testing::Values(1e-4, 1e-6, 1e-9)),
                          setting_name);
 
-// A wrong evaluator must be detected.
+// An evaluator with wrong results and too small errors, which must be detected.
 class BiasedEvaluator final : public MomentsOnly {
  public:
   explicit BiasedEvaluator(const std::vector<StoredCase>& cases) : stored_(cases) {}
@@ -140,7 +140,7 @@ class BiasedEvaluator final : public MomentsOnly {
 
 TEST(Qualify, BiasedEvaluator_IsFoundOutCaseByCase) {
   std::vector<StoredCase> cases = cases_of(hard_cases(), Distribution::kCauchy, Masking::kIntegral);
-  // Mirrors do not call the evaluator. Near grazing incidence rounding of the cosine matters.
+  // Leaves out mirrors, which do not use the evaluator, and directions where rounding of the cosine is not negligible.
   std::erase_if(cases, [](const StoredCase& c) { return c.shape.sigma == 0.0 || c.theta_deg > 89.9; });
   BiasedEvaluator evaluator(cases);
   for (const double bias : {0.0, 5e-7, 2e-6}) {
@@ -163,8 +163,8 @@ TEST(Qualify, OrdinaryCases_MeetTheToleranceInDouble) {
   }
 }
 
-// Under v-cavity and smith masking rho at 90 degrees is the limit of the stored value 1e-9 degrees below. rho
-// approaches the limit like the cosine, 2e-11, times a logarithm.
+// With v-cavity and smith masking rho has a limit at 90 degrees. 1e-9 degrees below, where values are stored, it
+// differs from the limit by about the cosine, 2e-11, times a logarithm.
 TEST(HardCases, RightAngle_IsTheLimitOfTheStoredValue) {
   constexpr double kApproach = 1e-8;
   for (const StoredCase& c : hard_cases()) {

@@ -1,4 +1,4 @@
-// Runs keep the best of several levels. A check with another rule detects wrong bounds.
+// A run computes an entry at several levels and keeps the best. A check with another rule finds wrong bounds.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -24,7 +24,7 @@ SceneValues scene() {
   return result;
 }
 
-/// Moments that miss the tolerance, by more at each call.
+/// Moments that miss the tolerance, and are worse at each call.
 class Worsens final : public MomentsOnly {
  public:
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress&) override {
@@ -45,7 +45,7 @@ TEST(EvaluateScene_Levels, ThatWorsen_LeaveTheFirst) {
   EXPECT_EQ(result[Quantity::kRhoQ], 0.1);
 }
 
-/// Moments whose check differs from them by a multiple of both bounds.
+/// Moments that the check contradicts: its r_q differs by `bounds` times the sum of both stated errors.
 class Contradicts final : public MomentsOnly {
  public:
   explicit Contradicts(double bounds) : bounds_(bounds) {}
@@ -112,7 +112,7 @@ TEST(RunScene_SelfCheck, BeyondTheBounds_NoEntryOfTheDirectionMeetsTheTolerance)
   constexpr std::size_t kDirections = 40;
   std::size_t missed = 0;
   for (std::size_t i = 0; i < results.size(); ++i) {
-    EXPECT_EQ(results[i].status, results[i - i % 20].status);  // the status of its direction
+    EXPECT_EQ(results[i].status, results[i - i % 20].status);  // all entries of a direction have the same status
     missed += i % 20 == 0 && results[i].status == kAnyToleranceNotMet ? 1 : 0;
   }
   EXPECT_GT(missed, 0U);

@@ -1,5 +1,5 @@
-// The errors that a lookup states, in random tables (some of them coarse), against the model at random points between
-// the entries. DOLP_PROPERTY_DRAWS sets the number of tables, DOLP_PROPERTY_SEED their seed.
+// Stated errors of lookups in random tables, some of them coarse, compared with the model at random points between the
+// entries. DOLP_PROPERTY_DRAWS sets the number of tables, DOLP_PROPERTY_SEED their seed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,9 +20,9 @@ using namespace scene_run_support;
 constexpr std::size_t kTables = 40;
 constexpr std::uint64_t kSeed = 2;
 constexpr std::size_t kPoints = 80;  // points per table
-constexpr double kExact = 1e-7;      // tolerance of the values for comparison
+constexpr double kExact = 1e-7;      // tolerance of the exact values
 
-/// Values of an axis in equal steps or in equal ratios.
+/// Values of an axis with equal steps, or with equal ratios of their distances from `origin`.
 std::vector<double> axis(double first, double last, std::size_t count, double origin, bool in_ratios) {
   std::vector<double> values;
   for (std::size_t i = 0; i < count; ++i) {
@@ -34,7 +34,7 @@ std::vector<double> axis(double first, double last, std::size_t count, double or
   return values;
 }
 
-/// A scene with a grid of 4 to about 60 values per axis. Sometimes n, k or the wavelength is an axis.
+/// A scene with a grid of 4 to about 60 values per axis. In some scenes n, k or the wavelength is an axis, too.
 SceneValues random_scene(Draws& draw) {
   const Distribution distribution = draw.chance(0.75) ? Distribution::kCauchy : Distribution::kGaussian;
   const bool is_metal = draw.chance(0.3);
@@ -76,7 +76,7 @@ TableValues table_of(const SceneValues& scene) {
                     evaluate_scene(scene, grid, *make_evaluator(Evaluator::kFloat), {}));
 }
 
-/// Points in the grid, uniform in the coordinates of a lookup.
+/// Random points inside the grid, uniform in the coordinates in which a lookup interpolates.
 std::vector<TableLookup::Point> random_points(const Axes& grid, Draws& draw) {
   std::vector<TableLookup::Point> points(kPoints);
   for (TableLookup::Point& point : points) {
@@ -113,18 +113,18 @@ std::vector<PointResult> exact_at(const SceneValues& scene, const std::vector<Ta
                         *make_evaluator(Evaluator::kDouble), {});
 }
 
-/// Totals over all points.
+/// Sums over all points.
 struct Tally {
   std::size_t points = 0;
-  std::size_t flagged = 0;  ///< number of points with status 2
-  std::size_t missed = 0;   ///< number of points whose error, with the bounds of the entries, exceeds the tolerance
-  double worst = 0.0;       ///< largest error over stated error
+  std::size_t flagged = 0;  ///< points with status 2: the lookup reports that DOLP misses the tolerance
+  std::size_t missed = 0;   ///< points whose true error of DOLP exceeds the tolerance
+  double worst = 0.0;       ///< largest ratio of true error to stated error
   std::vector<double> stated = {};
 };
 
 using NextScene = SceneValues (*)(Draws&);
 
-/// Looks up random points in one table of a seed and adds them to the totals.
+/// Looks up random points in one random table, checks their stated errors, and adds the points to `tally`.
 void expect_honest(NextScene next_scene, std::uint64_t seed, std::size_t table_number, Tally& tally) {
   Draws draw(seed * 1000003 + table_number);
   const SceneValues scene = next_scene(draw);
@@ -169,7 +169,7 @@ void expect_honest(NextScene next_scene) {
             << " %; median of the stated errors " << tally.stated[tally.stated.size() / 2] << "\n";
 }
 
-/// A beam that passes through the specular direction or beside it, over surfaces with few values of sigma.
+/// A scene with a beam through the specular direction or beside it, and a table with few values of sigma.
 SceneValues bistatic_scene(Draws& draw) {
   SceneValues scene = random_scene(draw);
   scene.surroundings = Surroundings{.temperature_K = 280.0};
@@ -183,7 +183,7 @@ SceneValues bistatic_scene(Draws& draw) {
   return scene;
 }
 
-/// Total reflection ends inside the axis of n.
+/// A table whose axis of n begins below 1, with total reflection, and ends above 1.
 SceneValues scene_across_total_reflection(Draws& draw) {
   SceneValues scene = make_scene(Distribution::kCauchy, kMaskings[draw.count(0, 3)], {0.7, 0.0});
   if (draw.chance(0.5)) scene.surroundings.reset();
@@ -202,20 +202,20 @@ TEST(LookupEstimates, RandomPointsAcrossTotalReflection_ErrorsAreWithinThem) {
   expect_honest(scene_across_total_reflection);
 }
 
-// Tables with lookups whose error was once 1.8 to 5.7 times the stated error, before lookups knew kinks and distrusted
-// changes that are small by chance.
+// Tables for which the true error would be 1.8 to 5.7 times the stated error if lookups did not consider kinks, or if
+// they trusted changes between cells that are small by chance.
 TEST(LookupEstimates, TablesWithKinksOrShortAxes_ErrorsAreWithinThem) {
   const struct {
     NextScene next_scene;
     std::uint64_t seed;
     std::size_t table;
   } rows[] = {
-      // A kink of v-cavity masking in one of the last two cells of theta.
+      // v-cavity masking has a kink in one of the last two cells of theta.
       {bistatic_scene, 101, 207},
       {bistatic_scene, 203, 65},
       {bistatic_scene, 211, 159},
       {bistatic_scene, 208, 61},
-      // Four to seven values of sigma.
+      // The axis of sigma has four to seven values.
       {bistatic_scene, 2, 140},
       {bistatic_scene, 102, 69},
       {bistatic_scene, 104, 1},

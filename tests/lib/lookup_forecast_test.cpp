@@ -1,4 +1,4 @@
-// Compares the plan's advice on the density of axes with tables that follow it.
+// A plan recommends how many values an axis needs for accurate lookups. Tables with these numbers test the advice.
 #include "run/lookup_run.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ SceneValues scene_with(Masking masking, std::size_t thetas, std::size_t sigmas, 
   return scene;
 }
 
-/// The share of random points that a lookup flags in a table of the scene's grid.
+/// The share of random points that a lookup in a table of the scene's grid marks as inaccurate.
 double flagged_share(const SceneValues& scene) {
   const SceneEntries grid = grid_entries(scene);
   const EffectPlan plan = keep_everything(scene);

@@ -1,4 +1,4 @@
-// The status bit for cases in which single scattering is not enough.
+// The status bit 32: single scattering is not enough.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 using enum Quantity;
 using Overrides = std::vector<std::string>;
 
-// Aluminium at 10.6 um, rough.
+// Rough aluminium at 10.6 um.
 const std::string kScene = R"toml(
 [surface]
 material = "aluminium (Ordal)"
@@ -42,7 +42,7 @@ TEST(ModelChange, RoughMetalWithAnyMasking_HasBit32UnlessAllBouncesAreFollowed) 
   const PointResult all = result_of({"surface.masking=v-cavity", "surface.scattering=multiple"});
   EXPECT_EQ(all.status, 0U);
   EXPECT_EQ(all.model_change, 0.0);
-  // The figures of section "Limits" in README.md.
+  // Section "Limits" of README.md has these values of DOLP.
   EXPECT_NEAR(result_of({"surface.masking=integral"})[kDolp], 0.154, 5e-4);
   EXPECT_NEAR(result_of({"surface.masking=smith"})[kDolp], 0.108, 5e-4);
   EXPECT_NEAR(all[kDolp], 0.519, 5e-4);
@@ -60,11 +60,11 @@ TEST(ModelChange, EmissionAndSurroundings_IsTheLostLightTimesTheDifferenceOfThei
                              {"surface.masking=none", "surroundings.temperature_K=280", "surface.specular=0.6"}};
   for (Overrides overrides : cases) {
     const PointResult result = result_of(overrides);
-    // A black surface: 1 - rho is 1.
+    // With n = 1 and k = 0 the surface reflects nothing, so I is the radiation of a black body.
     overrides.insert(overrides.end(), {"surface.material={}", "surface.n=1", "surface.k=0"});
     const double emitted = result_of(overrides)[kStokesI];
     ASSERT_GT(emitted, 0.0);
-    // I = emitted + rho (surroundings - emitted)
+    // from I = emitted + rho_i (surroundings - emitted)
     const double excess = (result[kStokesI] - emitted) / result[kRhoI];
     const double lost = (1.0 / result[kAlbedo] - 1.0) * result[kRhoI];
     EXPECT_NEAR(result.model_change, std::abs(lost * excess) / result[kStokesI], 1e-5 * result.model_change);

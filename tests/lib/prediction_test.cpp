@@ -1,4 +1,4 @@
-// The forecast of a run against the run itself: the requests of the first level.
+// The forecast of a run, compared with the requests that the run makes at its first level.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -14,7 +14,7 @@ namespace {
 using namespace dolp;
 using namespace scene_run_support;
 
-/// Counts the requests of the first level, which ends when the check of some entries begins.
+/// Counts the requests of the first level. The level is over when the check of some entries begins.
 class FirstRequests final : public ModelEvaluator {
  public:
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {

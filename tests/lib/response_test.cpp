@@ -1,4 +1,4 @@
-// Weights of response tables, against a rule of another kind, against the reference, and against closed forms.
+// Weights of response tables, compared with another rule, with the reference, and with closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 using namespace dolp;
 
-/// The responses of points.
+/// The responses at a list of points.
 EntryResponses responses(const Model& model, const std::vector<Point>& points, double tolerance,
                          ModelEvaluator& evaluator, bool has_extra_splits = false) {
   Surface surface;
@@ -40,8 +40,8 @@ double error_at(const EntryResponses& all, std::size_t entry) {
   return all.responses[ResponseVariable::kResponseError][entry];
 }
 
-/// The largest distance of the weights of any point, divided by both bounds. It must be at most 1. `step`: entries of
-/// `a` per point.
+/// Expects that weights of `a` and `b` differ by no more than the sum of their errors. Returns the largest ratio of
+/// difference to this sum. Point i is entry i of `b` and entry i times `step` of `a`.
 double expect_within_bounds(const EntryResponses& a, const EntryResponses& b, const std::vector<Point>& points,
                             std::size_t step = 1) {
   double worst = 0.0;
@@ -92,7 +92,7 @@ TEST_P(ResponsesOf, SomeEntries_AreThoseOfTheReference) {
 INSTANTIATE_TEST_SUITE_P(Models, ResponsesOf, testing::ValuesIn(kModels),
                          [](const auto& test) { return name_of(test.param); });
 
-// At 90 degrees a direction of the grid may need no computation.
+// The grid includes 90 degrees, where some models need no computation.
 TEST(Responses, OfADevice_AreThoseOfTheCpu) {
   std::vector<Point> points;
   for (const double theta_deg : {0.0, 60.0, 90.0}) {
@@ -135,7 +135,7 @@ TEST(Responses, OfADenseGrid_AreThoseOfEntriesByThemselves) {
 }
 
 TEST(Responses, OfAMirror_GiveFresnelsReflectances) {
-  constexpr double kInterpolation = 1e-8;  // distance of these curves from polynomials of degree 23
+  constexpr double kInterpolation = 1e-8;  // distance of the reflectances from their polynomials of degree 23
   CpuEvaluator evaluator;
   const std::vector<Point> points = {{0.0, {0.0, 2.0}, {}}, {40.0, {0.0, 2.0}, {}}, {89.0, {0.0, 2.0}, {}}};
   const EntryResponses mirror = responses({Distribution::kCauchy, Masking::kSmith}, points, 1e-4, evaluator);

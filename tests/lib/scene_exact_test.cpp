@@ -1,4 +1,4 @@
-// Exact identities (shaders/physics/README.md, section 6) in results of whole runs.
+// Exact results of shaders/physics/README.md, section 6, in whole runs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,14 +14,14 @@ namespace {
 
 using namespace scene_run_support;
 
-// A dozen roundings; near grazing incidence the rounding of the cosine is added.
+// A dozen roundings, and near grazing incidence the rounding of the cosine.
 constexpr double kFresnelRounding = 4e-15;
-// The 180 x 180 Gauss points of the independent integral are far more accurate for slopes of width 0.3 and more.
+// Larger than the error of the independent integral, which has 180 x 180 Gauss points, for sigma from 0.3.
 constexpr double kGgxAccuracy = 1e-9;
 
 double radians(double angle_deg) { return angle_deg * std::numbers::pi / 180.0; }
 
-/// Sum of `f` over the panels of a composite Gauss rule.
+/// Integral of `f` from 0 to `to` by a composite Gauss rule.
 template <class Function>
 double composite_gauss(double to, Function&& f) {
   constexpr int kPanels = 6;
@@ -38,8 +38,8 @@ struct GgxMoments {
   double albedo = 0.0;
 };
 
-/// Source: Walter et al. 2007, eq. (33); Heitz 2014, eqs. (72), (99). Microfacet term of GGX for one pair of
-/// directions, times cos(theta_r), and its parts with the reflectances of the smooth facet.
+/// Source: Walter et al. 2007, eq. (33); Heitz 2014, eqs. (72), (99). GGX for one pair of directions, times
+/// cos(theta_r): the albedo, and rho_i and rho_q with the reflectances of the facet.
 GgxMoments ggx_terms(double alpha_g, Masking masking, const OpticalConstants& index, double theta, double theta_r,
                      double phi) {
   const double a2 = alpha_g * alpha_g;

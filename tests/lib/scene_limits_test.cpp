@@ -1,5 +1,5 @@
-// Whole runs at the limits of the model or of the arithmetic: 90 degrees, normal incidence, extreme slopes, metals; and
-// the status for these limits.
+// Runs at limits of the model or the arithmetic (90 degrees, normal incidence, extreme slopes, metals), and their
+// status.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ using namespace scene_run_support;
 
 constexpr unsigned kSeed = 20250811;
 constexpr SlopeShape kPaperShape{0.3, 2.0};
-// The documented limits have four digits.
+// The manual has four digits of these limits.
 constexpr double kFourDigits = 5e-5;
 
 bool has_limit(Masking masking) { return masking == Masking::kVCavity || masking == Masking::kSmith; }
@@ -59,8 +59,7 @@ TEST(Limits_RightAngle, DivergingReflectanceLeavesOnlyTheDolp) {
 }
 
 TEST(Limits_RightAngle, DivergingSpecularDolpIsTheQuotientJustBefore) {
-  // Slightly below 90 degrees the emission still adds to the surroundings, in proportion to the cosine, 2e-8, over the
-  // moments.
+  // The quotient changes over the last 1e-6 degrees by about their cosine, 2e-8, divided by the moments.
   constexpr double kChange = 1e-4;
   for (const Masking masking : {Masking::kNone, Masking::kIntegral}) {
     for (const Distribution distribution : kDistributions) {
@@ -100,7 +99,7 @@ TEST(Limits_RightAngle, MirrorReflectsAllWithoutPolarisation) {
 }
 
 TEST(Limits_RightAngle, MirrorsOwnEmissionHasThePolarisationOfItsLimit) {
-  // At grazing incidence 1 - R_s = 4 c Re(w) / |w|^2 and 1 - R_p = 4 c Re(N^2* w) / |w|^2, w = sqrt(N^2 - 1).
+  // With c = cos(theta) near 0, 1 - R_s = 4 c Re(w)/|w|^2 and 1 - R_p = 4 c Re(N^2* w)/|w|^2, where w = sqrt(N^2 - 1).
   constexpr double kRelativeRounding = 1e-13;
   for (const OpticalConstants& index : {kDielectric, kAbsorbing, kMetal, OpticalConstants{1e6, 1e6}}) {
     const std::complex<double> square = std::complex(index.n, index.k) * std::complex(index.n, index.k);
@@ -136,7 +135,7 @@ TEST(Limits_TinySlopes, AreThoseOfTheMirror) {
   });
 }
 
-/// The hardest directions, slopes, exponents and indices.
+/// All combinations of hard directions, slope distributions and indices.
 std::vector<SceneEntry> hard_entries(Distribution distribution, Masking masking) {
   std::vector<SceneEntry> entries;
   for (const OpticalConstants& index : {kDielectric, kAbsorbing, kMetal, kTotallyReflecting, OpticalConstants{0.2, 3.0},
@@ -153,7 +152,7 @@ std::vector<SceneEntry> hard_entries(Distribution distribution, Masking masking)
   return entries;
 }
 
-/// Checks that a result consists of numbers, or has the status for results without a value.
+/// Expects that a result has only numbers, or the status of a result without a value.
 void expect_sound(const PointResult& r, double tolerance, const std::string& name) {
   const bool outside = (r.status & kOutsideModelDomain) != 0;
   EXPECT_EQ(outside, std::isnan(r[Quantity::kStokesI])) << name;
@@ -187,7 +186,7 @@ TEST(Limits_HardEntries, AreFiniteOrSayWhyNot) {
   });
 }
 
-/// Random metals on random surfaces.
+/// Metals with random indices, sigma, q and directions.
 std::vector<SceneEntry> metal_entries(std::size_t count) {
   std::mt19937_64 generator(kSeed);
   const auto uniform = [&](double from, double to) {
@@ -227,7 +226,7 @@ TEST(Limits_Metals, DolpIsThatOfTheReferenceOrSaysThatItIsNot) {
   });
 }
 
-/// The smallest zenith from which the reflectance is unphysical up to 90 degrees.
+/// The zenith from which rho_s or rho_p is outside [0, 1] at all larger zeniths.
 double unphysical_from_deg(Masking masking, const OpticalConstants& index, double sigma, Evaluator evaluator) {
   SceneValues scene = make_scene(Distribution::kCauchy, masking, index);
   scene.grid = axes_of({}, {sigma}, {2.0});

@@ -1,4 +1,4 @@
-// Parts of a grid: an entry keeps its bits for every cut of the grid along directions, wavelengths and indices.
+// Results in parts of a grid equal those in the whole grid bit for bit, however the grid is cut along its axes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,9 +23,9 @@ std::unique_ptr<ModelEvaluator> evaluator_on(bool device) {
   return std::make_unique<CpuEvaluator>();
 }
 
-constexpr std::size_t kFewParts = 4;  // a new evaluator takes longer than a part
+constexpr std::size_t kFewParts = 4;  // With more parts, making new evaluators would take longer than the parts.
 
-/// Results of the grid, computed part by part. With few parts each one has a new evaluator.
+/// Results of a grid that is computed in parts. Each of a few parts has a new evaluator; many parts share one.
 std::vector<PointResult> in_parts(const SceneValues& scene, const std::vector<SceneEntries>& parts, bool device) {
   const EffectPlan plan = keep_everything(scene);
   const SceneEntries whole = grid_entries(scene);
@@ -44,7 +44,7 @@ TEST(ChosenEntries, OfAGrid_HaveTheWavelengthsAmongThemAlone) {
   const SceneEntries grid = SceneEntries::of_grid(axes, {});
   const std::vector<std::size_t> positions = {2, 3, 7};
   const SceneEntries chosen = grid.chosen(positions);
-  EXPECT_EQ(chosen.variants().size(), 2U);  // for three entries
+  EXPECT_EQ(chosen.variants().size(), 2U);  // the three entries have two variants
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const SceneEntry whole = grid[positions[i]];
     EXPECT_EQ(chosen[i].theta_deg, whole.theta_deg);
@@ -75,7 +75,7 @@ class PartsOfModel : public testing::TestWithParam<std::tuple<Distribution, Mask
   double least_q() const { return scene().surface.needs_mean_slope() ? 1.51 : 1.2; }
 };
 
-// Grazing directions, which need different nodes, and tails so heavy that many entries are refined.
+// Directions near 90 degrees need other nodes, and many entries with heavy tails are computed again.
 TEST_P(PartsOfModel, InterpolatedGrid_KeepsItsBitsInParts) {
   SceneValues dense = scene();
   dense.grid =
@@ -100,7 +100,7 @@ TEST_P(PartsOfModel, AxesOfIndexAndWavelength_KeepTheirBitsInParts) {
 INSTANTIATE_TEST_SUITE_P(SceneParts, PartsOfModel,
                          testing::Combine(testing::ValuesIn(kDistributions), testing::ValuesIn(kMaskings)));
 
-// Many indices, which are combined from a few indices of the whole grid.
+// The moments of many indices are combined from a few indices. Each part must use those that the whole grid uses.
 TEST(SceneParts, CombinedIndices_KeepTheirBitsInParts) {
   for (const Masking masking : {Masking::kVCavity, Masking::kIntegral}) {
     SceneValues scene = make_scene(Distribution::kCauchy, masking, kAbsorbing);

@@ -1,4 +1,4 @@
-// Remarks on scenes: units that were probably not intended, and data that files lack.
+// Remarks on scenes: values that are probably in another unit, and data that files lack.
 #include "run/scene_remarks.hpp"
 
 #include <gtest/gtest.h>
@@ -71,7 +71,7 @@ TEST(SceneRemarks, FileThatLacksDataOrRows_IsSaid) {
     std::vector<std::string> remarks;
   };
   for (const Case& row : {
-           Case{"wl,n,k\n8,1.5,0.1\n14,1.5,0.1\n", "wavelength_um=10", {}},  // the spectrum is as sparse as the file
+           Case{"wl,n,k\n8,1.5,0.1\n14,1.5,0.1\n", "wavelength_um=10", {}},  // no gap: the file has only two rows
            {"wl,n\n8,1.5\n14,1.5\n", "wavelength_um=10", {no_k}},
            {"wl,n,k\n8,1.5,-2e-7\n14,1.5,0.1\n", "wavelength_um=10", {noise}},
            {dense, "wavelength_um=8", {gap("3.4 and 10.6")}},

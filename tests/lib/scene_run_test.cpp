@@ -1,4 +1,4 @@
-// Whole runs: points and their errors. Neither order nor grouping of points changes a bit.
+// Whole runs at points, and their errors. The order and the grouping of points do not change a bit of the results.
 #include "run/scene_run.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ SceneValues small_grid(Distribution distribution, Masking masking) {
   return scene;
 }
 
-/// A material with one index per wavelength, and a band over the wavelengths.
+/// A scene over a band, with a material that has another index at each wavelength.
 SceneValues band_scene() {
   SceneValues scene = make_scene(Distribution::kCauchy, Masking::kNone, {});
   scene.surface.material.name = "made up";
@@ -89,7 +89,7 @@ TEST(EvaluateScene_OwnIndexOfTheMaterial_GivesTheSameAsTheMaterial, OverABand) {
   const PointResult of_material = run_one(scene, 50.0, {0.3, 2.0}, Evaluator::kDouble);
   const SceneValues dispersive = band_scene();
   const PointResult of_point = run(dispersive, {{50.0, {0.3, 2.0}, kAbsorbing}}, Evaluator::kDouble).front();
-  constexpr double kBandAgreement = 1e-9;  // accuracy of the band rule
+  constexpr double kBandAgreement = 1e-9;  // accuracy of integrals over a band
   EXPECT_NEAR(of_point[Quantity::kDolp], of_material[Quantity::kDolp], kBandAgreement);
   EXPECT_NEAR(of_point[Quantity::kStokesI], of_material[Quantity::kStokesI],
               kBandAgreement * of_material[Quantity::kStokesI]);
@@ -115,7 +115,7 @@ TEST_P(RunsOfModel, PermutedEntries_KeepTheirBits) {
   }
 }
 
-// Slope samples for all slope distributions are at slopes that suit all of them.
+// With slope samples, which all entries of a grid share, results agree with separate points only within their errors.
 TEST_P(RunsOfModel, Grid_EqualsThePointsOneByOne) {
   const auto [evaluator, distribution, masking] = GetParam();
   const bool has_slope_samples = masking == Masking::kNone || masking == Masking::kVCavity;

@@ -1,4 +1,4 @@
-// Merging notices if the files of shards change between two openings.
+// A merge notices that files of shards change while it reads them.
 #include <gtest/gtest.h>
 
 #include <dolp/errors.hpp>
@@ -23,7 +23,7 @@ class ReplacedShards : public testing::Test {
  protected:
   fs::path at(const std::string& name) const { return folder_.path() / name; }
 
-  /// Makes one of two shards, for a surface with a diffuse part.
+  /// Writes shard `number` of two. A different `diffuse` makes it a shard of another table.
   void make(const std::string& name, std::size_t number, double diffuse) const {
     const SceneValues scene = parse_scene(
         "[surface]\nn = 1.5\nsigma = 0.3\nspecular = 0.4\n[emission]\ntemperature_K = 300\n[spectrum]\n"

@@ -1,4 +1,4 @@
-// The DOLP that comments in the shipped scenes state, recomputed to the given digits.
+// The scenes in host/scenes state values of DOLP in comments. The tests compute these values again.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -21,16 +21,16 @@ using namespace scene_run_support;
 
 std::string scene_path(const std::string& name) { return DOLP_HOST_DIR "/scenes/" + name + ".toml"; }
 
-/// A statement of a comment: the DOLP in percent, its sign, and the change in points for each dropped effect.
+/// What a comment states: DOLP in percent, its sign, and by how many percentage points it changes without an effect.
 struct Statement {
-  std::vector<std::string> overrides;  ///< settings for the surface of the statement
+  std::vector<std::string> overrides;  ///< settings that the comment assumes
   double theta_deg = 0.0;
   std::string dolp;
   std::string side;
   std::map<std::string, std::string> changes;
 };
 
-/// The comment of the scene in one line.
+/// The comment at the top of a scene, without line breaks.
 std::string comment_of(const std::string& name) {
   std::ifstream file(scene_path(name));
   std::string text;
@@ -107,7 +107,7 @@ TEST(RoughMetalScene, Comment_StatesTheEmissivities) {
   EXPECT_NE(comment_of("rough_metal").find(statement), std::string::npos) << statement;
 }
 
-/// The part that a comment names; none for the roughness, which is no effect.
+/// The effect that a comment names, or nothing for "roughness", which is no effect of a plan.
 std::optional<Part> part_of(const std::string& effect) {
   static const std::map<std::string, Part> kParts = {{"source", Part::kSource},
                                                      {"surroundings", Part::kSurroundings},
@@ -117,9 +117,9 @@ std::optional<Part> part_of(const std::string& effect) {
   return found == kParts.end() ? std::nullopt : std::optional(found->second);
 }
 
-// The comment states changes of DOLP. Changes of (Q/I, U/I) are at least as large.
+// Comments state changes of DOLP. The plan states changes of (Q/I, U/I), which are at least as large.
 TEST_P(ShippedScene, Plan_EstimatesTheChangesThatTheCommentStates) {
-  constexpr double kAccuracy = 0.2;  // in points: 1e-3 for each of the two values
+  constexpr double kAccuracy = 0.2;  // percentage points; both values of DOLP have a tolerance of 1e-3
   const auto [name, statement_count] = GetParam();
   for (const Statement& statement : statements_of(name)) {
     const SceneValues scene = read_scene(scene_path(name), settings_from_text(statement.overrides));

@@ -1,4 +1,4 @@
-// dolp-calibrate and its two halves: the search for the numbers of the rules, and the check of their bounds.
+// The two parts of dolp-calibrate: the fit of the constants of the rules, and the test of the error bounds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,8 +32,8 @@ HoldOutOptions few_entries() {
   return options;
 }
 
-// The median error is a tenth of its bound. If all bounds are a thousand times too small, most are detected, and the
-// worst ratio rises by this factor.
+// Bounds that are a thousand times too small must be found. Typical errors are a tenth of their bound, so most entries
+// fail, and the worst ratio of error to bound rises a thousandfold.
 TEST(HoldOut, PlantedUnderstatement_IsFound) {
   HoldOutOptions options = few_entries();
   const HoldOut honest = held_out(options);
@@ -47,7 +47,7 @@ TEST(HoldOut, PlantedUnderstatement_IsFound) {
   EXPECT_GT(planted.understated, options.entries / 2);
   EXPECT_LE(planted.understated, options.entries);
   EXPECT_GT(planted.worst.ratio, 100.0 * honest.worst.ratio);
-  // Detects bounds that are too small only for the worst entry, too.
+  // Bounds that are too small only for the worst entry must be found too.
   options.bound_share = 0.9 * honest.worst.ratio;
   const HoldOut lowered = held_out(options);
   EXPECT_GE(lowered.understated, 1U);

@@ -1,4 +1,4 @@
-// The program from outside: exit statuses, messages, and the files that a failed run leaves.
+// Failures of `dolp` as a user sees them: exit statuses, messages, and the files that a failed run leaves.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 enum Status { kDone = 0, kAccuracy = 1, kInput = 2, kDevice = 3, kIo = 4, kMemory = 6, kInterrupted = 130 };
 
 const std::vector<std::string> kInputFiles = {"points.csv", "scene.toml"};
-/// Half a million entries at a tight tolerance take minutes, so an interrupt always comes in time.
+/// 500,000 entries at a tight tolerance take minutes, so the run does not end before the signal.
 const std::vector<std::string> kLongRun = split_at(
     "--evaluator cpu --tolerance 1e-9 --precision double --set grid.theta_deg={from=0,to=89,count=5000} "
     "--set grid.sigma={from=0.05,to=1,count=100}",
@@ -35,7 +35,7 @@ std::string scene_with(const std::string& text, const std::string& replacement) 
 
 struct Mistake {
   std::string line;
-  std::vector<std::string> message;  ///< parts of the message
+  std::vector<std::string> message;  ///< text that the message must contain
   Status status = kInput;
   std::string scene = kScene;
   std::string points = kPoints;
@@ -69,7 +69,7 @@ const std::vector<Mistake> kMistakes = {
     {"materials iron --at x", {"--at x"}},
     {"keys foo", {"foo: is no key of a scene; dolp keys lists all"}},
     {"keys sgma", {"the nearest is surface.sigma"}},
-    // Scenes and points.
+    // Scene and points files.
     {"table none.toml -o out.nc", {"none.toml"}},
     {kTableLine + " --set surroundings.profile=clear",
      {"surroundings.profile=clear: no such file, and no built-in sky: clear-sky, overcast; the nearest is clear-sky"}},
@@ -80,7 +80,7 @@ const std::vector<Mistake> kMistakes = {
     {"eval scene.toml --points none.csv -o o.csv", {"none.csv"}},
     {kEvalLine, {"points.csv:1", "angle", "theta_deg"}, kInput, kScene, "angle\n10\n"},
     {kEvalLine, {"theta_deg"}, kInput, kScene, "sigma\n0.1\n"},
-    // Outputs. Even root cannot create a file in /proc.
+    // Output files. In /proc even root cannot create a file.
     {"table scene.toml -o none/out.nc", {"none/out.nc"}, kIo},
     {"table scene.toml -o /proc/out.nc", {"/proc/out.nc"}, kIo},
     {"table scene.toml -o " + kLongName + ".nc", {".nc: cannot create the file: File name too long"}, kIo},
@@ -178,7 +178,7 @@ TEST_F(CommandLine, CpuAndReference_NoDriver_Work) {
 }
 
 TEST_F(CommandLine, Strict_FloatAtTightTolerance_Exit1WithTheResults) {
-  // Float rounding, 6e-8 of each term, is far above this tolerance.
+  // Rounding in float has a relative size of 6e-8, far above this tolerance.
   const std::vector<std::string> hard = joined(kEval, {"--tolerance", "1e-10", "--precision", "float"});
   EXPECT_EQ(dolp(hard).status, kDone);
   const Outcome outcome = dolp(joined(hard, {"--strict"}));
@@ -245,7 +245,7 @@ TEST_F(CommandLine, Interrupt_LongRun_Exit130AndNothingLeft) {
   put("out.nc", "kept\n");
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     TerminalProcess process(command(joined(kTable, kLongRun)));
-    ASSERT_TRUE(process.wait_for_output());  // the progress bar appears, so the work has begun
+    ASSERT_TRUE(process.wait_for_output());  // the progress bar shows that the work has begun
     process.send_signal(signal);
     const Outcome outcome = process.finish();
     EXPECT_EQ(outcome.status, kInterrupted);
@@ -258,13 +258,15 @@ TEST_F(CommandLine, Interrupt_LongRun_Exit130AndNothingLeft) {
 TEST_F(CommandLine, Interrupt_WhileWriting_Exit130) {
   ASSERT_EQ(dolp(kTable).status, kDone);
   std::string points = "theta_deg,sigma,q\n";
-  for (int i = 0; i < 2000; ++i) points += "60,0.1,2\n";  // more results than a pipe holds
+  // The results do not fit into the buffer of a pipe, so the program waits while it writes.
+  for (int i = 0; i < 2000; ++i) points += "60,0.1,2\n";
   put("many.csv", points);
   ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"eval", "scene.toml", "--evaluator", "cpu"}, {"lookup", "out.nc"}}) {
     TerminalProcess process(command(joined(arguments, {"--points", "many.csv", "-o", "pipe"})));
-    const Descriptor reader(::open(at("pipe").c_str(), O_RDONLY | O_CLOEXEC));  // waits until the program writes
+    // returns when the program opens the pipe
+    const Descriptor reader(::open(at("pipe").c_str(), O_RDONLY | O_CLOEXEC));
     process.send_signal(SIGINT);
     const Outcome outcome = process.finish();
     EXPECT_EQ(outcome.status, kInterrupted);
@@ -281,7 +283,7 @@ TEST_F(CommandLine, Hangup_Ignored_IsNoInterrupt) {
   wanted.arguments.insert(wanted.arguments.begin(), {"nohup"});
   TerminalProcess process(wanted);
   {
-    std::ifstream reader(at("pipe"));  // waits until the program writes
+    std::ifstream reader(at("pipe"));  // returns when the program opens the pipe
     process.send_signal(SIGHUP);
     const std::string written{std::istreambuf_iterator<char>(reader), {}};
     EXPECT_EQ(std::ranges::count(written, '\n'), 2001);
@@ -308,9 +310,9 @@ TEST_F(CommandLine, OutOfMemory_Exit6InOneLine) {
 TEST_F(CommandLine, Interrupt_WaitingForInput_Ends) {
   ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
   TerminalProcess process(command({"eval", "scene.toml", "--points", "pipe", "-o", "out.csv"}));
-  const Descriptor writer(::open(at("pipe").c_str(), O_WRONLY | O_CLOEXEC));  // waits until the program reads
+  const Descriptor writer(::open(at("pipe").c_str(), O_WRONLY | O_CLOEXEC));  // returns when the program opens the pipe
   process.send_signal(SIGINT);
-  EXPECT_EQ(process.finish().status, -SIGINT);  // a shell shows this as 130
+  EXPECT_EQ(process.finish().status, -SIGINT);  // a shell reports status 130
   EXPECT_FALSE(fs::exists(at("out.csv")));
 }
 

@@ -1,4 +1,4 @@
-// The program from outside: the output of its commands.
+// Output of the commands of `dolp` as a user sees it.
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <sys/stat.h>
@@ -21,15 +21,15 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr std::size_t kSceneEntries = 16;
-// Debian's Python, for which python3-netcdf4 and python3-numpy are installed.
+// Python of the system, with the packages python3-netcdf4 and python3-numpy.
 const std::string kPython = "/usr/bin/python3";
 
-/// Compares NaN as equal to NaN, and 0 as different from -0.
+/// True if all bits are equal. NaN is then equal to NaN, and 0 differs from -0.
 bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
 }
 
-/// The grid of kScene as points, in the order of the table.
+/// The entries of the grid in kScene as lines of a points file, in the order of the table.
 std::string grid_points() {
   std::string csv = "theta_deg,sigma,q\n";
   for (const char* theta : {"80.5", "60", "30", "0"}) {
@@ -131,7 +131,7 @@ TEST_F(CommandLine, TableFormats_SameScene_HoldTheSameNumbers) {
   }
 }
 
-/// The first core that this process may run on.
+/// The first core on which this process may run.
 int an_allowed_core() {
   cpu_set_t allowed;
   EXPECT_EQ(sched_getaffinity(0, sizeof allowed, &allowed), 0);
@@ -142,7 +142,7 @@ int an_allowed_core() {
 }
 
 TEST_F(CommandLine, Table_OneCoreOrAll_SameNumbers) {
-  // Enough entries and groups for several threads in every loop over them.
+  // The grid is so large that all loops use several threads.
   const std::vector<std::string> arguments = split_at(
       "table scene.toml -o - --quiet --tolerance 1e-2 --set grid.theta_deg={from=0,to=90,count=24} "
       "--set grid.sigma={from=0.05,to=1.0,count=16} --set grid.q={from=1.6,to=8,count=24}",
@@ -218,7 +218,7 @@ TEST_F(CommandLine, Evaluators_SamePoints_AgreeWithinTheirStatedErrors) {
       const auto sum = [&](const char* name) { return vulkan.at(name)[i] + other->at(name)[i]; };
       const auto difference = [&](const char* name) { return std::abs(vulkan.at(name)[i] - other->at(name)[i]); };
       EXPECT_LE(difference("dolp"), sum("error_estimate")) << i;
-      // Each error is relative to rho_i of its entry. The two values differ by less than their mean error.
+      // rho_error_estimate is relative to rho_i. The bound is the sum of the estimates times the mean of both rho_i.
       EXPECT_LE(difference("rho_i"), sum("rho_error_estimate") * 0.5 * sum("rho_i")) << i;
       EXPECT_LE(difference("rho_q"), sum("rho_error_estimate") * 0.5 * sum("rho_i")) << i;
     }
@@ -251,7 +251,7 @@ TEST_F(CommandLine, Json_EachEvaluator_HasTheContractsKeys) {
   }
 }
 
-// A rough metal with few entries: the summary states how wrong DOLP may be with single scattering.
+// For a rough metal single scattering is wrong. Few entries suffice for the summary to report by how much.
 TEST_F(CommandLine, Summary_MaskingWithADirectEmission_SaysWhatSingleScatteringLeavesOpen) {
   const std::vector<std::string> metal = {"--set", "surface.masking=smith", "--set", "surface.n=10",
                                           "--set", "surface.k=60"};
@@ -268,14 +268,15 @@ TEST_F(CommandLine, Summary_MaskingWithADirectEmission_SaysWhatSingleScatteringL
     EXPECT_NE(text.out.find("direct emission differs by up to "), std::string::npos) << text.out;
     options.push_back("--json");
     EXPECT_GT(json::parse(with(options).out)["scattering_gap"], 0.01);
-    EXPECT_TRUE(json::parse(with({"--json"}).out)["scattering_gap"].is_null());  // null for masking integral
+    // integral masking has no direct emission
+    EXPECT_TRUE(json::parse(with({"--json"}).out)["scattering_gap"].is_null());
     EXPECT_EQ(with({}).out.find("  scattering "), std::string::npos);
   }
 }
 
 TEST_F(CommandLine, Json_WallTime_CountsTheWriting) {
   ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
-  // A pipe can be opened for writing only when it has a reader.
+  // The program waits when it opens the pipe, until a reader opens it too.
   const std::jthread reader([this] {
     std::this_thread::sleep_for(std::chrono::milliseconds(1500));
     content("pipe");
@@ -416,7 +417,7 @@ TEST_F(CommandLine, Materials_List_HasNameRangeAndSource) {
 }
 
 TEST_F(CommandLine, Materials_OneAtAWavelength_HasNAndKOfItsTable) {
-  // This row is in host/data/materials.csv. A name may be cut at a blank and written in any case.
+  // These values are from a row of host/data/materials.csv. A name may end at any blank, in upper or lower case.
   constexpr double kWaterN = 1.218;
   constexpr double kWaterK = 0.0508;
   const Outcome text = dolp({"materials", "WATER", "--at", "10"});

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# host/cluster on a real Slurm of one node: cluster_test.sh DOLP. A task is killed in the middle and queued again; the
-# table is that of one run.
+# Tests host/cluster on a real Slurm with one node: cluster_test.sh DOLP. Kills a task, which Slurm then queues again. The
+# merged table must equal the table of one run.
 set -euo pipefail
 
 ((EUID == 0)) || exec sudo --preserve-env bash "${BASH_SOURCE[0]}" "$@"
@@ -42,7 +42,7 @@ export SLURM_CONF=$dir/slurm/slurm.conf
 shards=2
 read -r tasks merge < <(bash "$tests/../../host/cluster/submit.sh" scene.toml t.nc $shards)
 
-# The first part of a task is there; the second is not.
+# Waits until a task has written its first part, and kills it before the second.
 for _ in $(seq 600); do
   compgen -G '*-of-2.nc.partial.txt' >/dev/null && break
   sleep 0.05

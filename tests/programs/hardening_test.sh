@@ -6,7 +6,7 @@ export LC_ALL=C
 program=$1
 failures=0
 
-# expect WHAT PATTERN TEXT
+# expect WHAT PATTERN TEXT: fails if no line of TEXT matches PATTERN
 expect() {
   grep -qE "$2" <<<"$3" || { echo "$program: $1: nothing matches $2"; failures=$((failures + 1)); }
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# An installation works in any folder without the build: install_test.sh BUILD SOURCES
+# Tests that an installation works in any folder and without the build: install_test.sh BUILD SOURCES
 set -euo pipefail
 
 build=$1
@@ -14,12 +14,12 @@ fail() {
 cmake --install "$build" --prefix "$work/first" > "$work/log"
 prefix=$work/moved
 mv "$work/first" "$prefix"
-# A path begins there: in a checkout at /src, /usr/include/eigen3/Eigen/src of an assertion is no path of the build.
+# The pattern matches only whole paths: with a checkout at /src, /usr/include/eigen3/Eigen/src is no path of the build.
 ! LC_ALL=C grep -rlaP "(?<![\w./-])(\Q$build\E|\Q$sources\E)/" "$prefix" || fail "files above hold paths of the build"
 mkdir "$work/empty"
 cd "$work/empty"
 
-# The program, its scenes and its pages.
+# The program, scenes and manual pages.
 "$prefix/bin/dolp" table "$prefix/share/dolp/scenes/night_paint.toml" -o t.nc --quiet
 "$prefix/bin/dolp" --cite | grep -q "cff-version" || fail "no citation"
 grep -q '^\.SS dolp table' "$prefix/share/man/man1/dolp.1" || fail "the manual page lacks a command"
@@ -42,7 +42,7 @@ fish --no-execute "$pages/fish/vendor_completions.d/dolp.fish" || fail "fish can
 completed=$(PATH=$prefix/bin:$PATH fish -c "source $pages/fish/vendor_completions.d/dolp.fish; complete -C 'dolp eval --evaluator c'")
 [[ $completed == cpu* ]] || fail "fish completes $completed"
 
-# The library, from a project outside.
+# The library, used by another CMake project.
 mkdir "$work/outside"
 cat > "$work/outside/CMakeLists.txt" <<'PROJECT'
 cmake_minimum_required(VERSION 3.20)

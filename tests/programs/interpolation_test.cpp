@@ -1,4 +1,4 @@
-// Dense tables from outside: interpolated entries, the report about them, and a check of their stated errors.
+// Dense tables as a user makes them: interpolated entries, what reports tell about them, and a check of their errors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ const std::vector<std::string> kDense = split_at(
     ' ');
 constexpr std::size_t kDenseEntries = std::size_t{2} * 40 * 36;
 const std::vector<std::string> kOff = {"--set", "accuracy.interpolation=off"};
-// Sampling error of estimates for all directions that come from only some of them.
+// Relative error of predictions that `dolp plan` makes from some of the directions.
 constexpr double kSampling = 0.2;
 
 class DenseTable : public CommandLine {

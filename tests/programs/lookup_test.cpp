@@ -1,4 +1,4 @@
-// `dolp lookup` from outside: its stated errors against `dolp eval` at the same points, and its messages.
+// `dolp lookup` as a user runs it: stated errors, compared with `dolp eval` at the same points, and messages.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -81,7 +81,7 @@ TEST_F(Lookup, AbsentColumns_ComeFromTheScene) {
   EXPECT_EQ(few.at("dolp"), looked_up().at("dolp"));
 }
 
-// The text of the scene is longer than an attribute can be.
+// With the rows of its sky the scene is longer than an attribute of NetCDF can be.
 TEST_F(Lookup, TableWithALongProfile_HasItsScene) {
   std::ostringstream text;
   text << "wavelength_um,zenith_deg,temperature_K\n";
@@ -103,7 +103,7 @@ TEST_F(Lookup, CoarseTable_SaysThatItMissesTheTolerance) {
   make_table({});
   put("points.csv", "theta_deg,sigma,q\n70,0.2,2.5\n");
   const Columns found = looked_up();
-  // DOLP and rho miss the tolerance, and the table's entries have status 32.
+  // 2: DOLP misses the tolerance. 16: rho misses it. 32: single scattering is not enough, which the table states.
   EXPECT_EQ(found.at("status")[0], 2.0 + 16.0 + 32.0);
   EXPECT_GT(found.at("error_estimate")[0], 1e-3);
   EXPECT_EQ(lookup({"--strict"}).status, 1);

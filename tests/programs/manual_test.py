@@ -2,9 +2,8 @@
 """Tests the manual: its commands work, its generated parts are current, and its links have targets.
 
 Usage: manual_test.py BUILD [TEST...]    BUILD is the folder that has dolp; ctest runs each test separately
-The blocks that are marked ```sh or ```python in FILES_WITH_COMMANDS run as they stand, in order, one folder for each file:
-a copy of a user's checkout with host, bench and the programs that quickstart.sh builds. NOT_RUN names the blocks that do not
-run, with the reason.
+The test runs the blocks ```sh and ```python of FILES_WITH_COMMANDS unchanged and in order. Each file has a folder like a
+user's checkout, with host, bench and the programs that quickstart.sh builds. Blocks that contain text of NOT_RUN do not run.
 """
 import csv
 import functools
@@ -16,14 +15,14 @@ import sys
 import tempfile
 import unittest
 
-sys.dont_write_bytecode = True  # writes no cache folder among the sources
+sys.dont_write_bytecode = True  # no cache folders in the sources
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path("build/release")
 FILES_WITH_COMMANDS = ("README.md", "host/programs/cli/README.md", "host/lib/fit/README.md", "host/core/scene/README.md")
-BLOCK_TIMEOUT_S = 300  # a sanitizer build on two busy cores; each block takes seconds in a release build
+BLOCK_TIMEOUT_S = 300  # for a sanitizer build on two busy cores; in a release build a block takes seconds
 
-# Parts of blocks that are not run, with the reason.
+# Text in blocks that do not run, with the reason.
 NOT_RUN = {
     "quickstart.sh": "builds the program",
     "tests/run.sh": "runs this test",
@@ -31,7 +30,7 @@ NOT_RUN = {
     "export PATH": "has no effect beyond its own shell; the test sets PATH likewise",
 }
 
-# Prints rho_i and rho_q of each entry in a line, then cosines and weights of each entry for the GLSL function.
+# Prints a line with rho_i and rho_q of all entries, then a line for each entry with the input of the GLSL function.
 PRINT_RHO = """
 print(*np.stack([rho_i, rho_q], axis=-1).ravel())
 for w, v in zip(table.response_i.values.reshape(-1, 24), table.response_q.values.reshape(-1, 24)):
@@ -65,7 +64,7 @@ def markdown_files():
 
 
 def anchors(text):
-    """The anchors that GitHub makes from the headings."""
+    """The anchors that GitHub makes from the headings of a Markdown file."""
     names = (re.sub(r"[^\w\- ]", "", heading.replace("`", "").lower()) for heading in HEADING.findall(text))
     return {name.strip().replace(" ", "-") for name in names}
 
@@ -75,7 +74,7 @@ def blocks_of(name):
 
 
 def words_of_commands(*targets):
-    """The words of all commands that build the targets; without targets, of all commands."""
+    """The words in the commands that build the targets, or in all commands of the build if there are no targets."""
     done = subprocess.run(["ninja", "-C", BUILD_FOLDER, "-t", "commands", *targets], check=True, text=True,
                           stdout=subprocess.PIPE)
     return set(done.stdout.split())
@@ -115,8 +114,7 @@ class Manual(unittest.TestCase):
                 self.assertEqual(done.returncode, 0, done.stdout)
 
     def test_response_functions_give_what_tables_hold(self):
-        """The Python and GLSL code of README.md turns a response table into rho_i and rho_q of a table of that
-        scene."""
+        """README.md has Python and GLSL code that computes rho_i and rho_q from a response table."""
         text = (ROOT / "README.md").read_text(encoding="utf-8")
         python, = [block for _, block in RUN_BLOCK.findall(text) if "response.nc" in block and "import" in block]
         glsl, = re.findall(r"^```glsl\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
@@ -143,13 +141,13 @@ class Manual(unittest.TestCase):
                 self.assertAlmostEqual(float(value), expected, delta=2e-5)
 
     def test_quickstart_builds_what_is_installed(self):
-        """README runs cmake --install in the build folder that quickstart.sh leaves behind."""
+        """README runs quickstart.sh and then cmake --install, which fails if quickstart.sh has not built all files."""
         built, everything = words_of_quickstart(), words_of_commands()
         checked = 0
         for script in BUILD_FOLDER.rglob("cmake_install.cmake"):
             for file in re.findall(f'"({re.escape(str(BUILD_FOLDER))}/[^"]+)"', script.read_text(encoding="utf-8")):
                 names = {file, str(pathlib.Path(file).relative_to(BUILD_FOLDER))}
-                if names & everything:  # cmake itself writes the other files
+                if names & everything:  # cmake writes the other files
                     self.assertTrue(names & built, f"{file} is installed, and quickstart.sh does not build it")
                     checked += 1
         self.assertGreater(checked, 5)
@@ -187,7 +185,7 @@ class Manual(unittest.TestCase):
                         self.assertIn(anchor, anchors(target.read_text(encoding="utf-8")))
 
     def test_model_has_one_place(self):
-        """The file shaders/physics/README.md describes the model."""
+        """Only shaders/physics/README.md describes the model. No file mentions another description."""
         former = "MODEL" + ".md"
         for path in ROOT.rglob("*"):
             parts = path.relative_to(ROOT).parts

@@ -1,4 +1,4 @@
-// `dolp mueller` from outside: columns, row order, evaluators, report, and files after an error.
+// `dolp mueller` as a user runs it: columns, row order, evaluators, report, and files after an error.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,7 +49,7 @@ TEST_F(Mueller, Points_RepeatedInOrderWithAllElements) {
   EXPECT_EQ(f.at("m00")[0], f.at("m00")[1]);
   EXPECT_EQ(f.at("m02")[0], -f.at("m02")[1]);
   EXPECT_NE(f.at("m02")[0], 0.0);
-  EXPECT_GT(f.at("m00")[3], f.at("m00")[2]);  // the third entry is farther from the specular direction
+  EXPECT_GT(f.at("m00")[3], f.at("m00")[2]);  // lines[3] is farther from the specular direction
 }
 
 TEST_F(Mueller, Evaluators_AgreeWithinTheirStatedErrors) {
@@ -67,9 +67,9 @@ TEST_F(Mueller, Evaluators_AgreeWithinTheirStatedErrors) {
   for (const char* evaluator : {"vulkan", "cpu"}) {
     const double in_float = worst({"--evaluator", evaluator});
     EXPECT_LE(in_float, 1e-5);
-    EXPECT_GT(in_float, 1e-11);  // not 0, because the reference computes differently
+    EXPECT_GT(in_float, 1e-11);  // the reference uses other formulas, so rounding differs
     EXPECT_LE(worst({"--evaluator", evaluator, "--precision", "double"}), 1e-11);
-    // precision auto selects double at this tolerance
+    // With precision auto this tolerance selects double.
     EXPECT_LE(worst({"--evaluator", evaluator, "--tolerance", "1e-8"}), 1e-11);
   }
 }
@@ -119,7 +119,7 @@ TEST_F(Mueller, Strict_FloatBelowItsAccuracy_Exit1WithTheResults) {
 struct Mistake {
   std::string points;
   std::string options;
-  std::vector<std::string> message;  ///< parts of the line
+  std::vector<std::string> message;  ///< text that the message must contain
   int status = 2;
 };
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The README's code for Octave and MATLAB works in Octave: octave_test.sh PROGRAM SOURCES
+# Runs the code for Octave and MATLAB of README.md in Octave: octave_test.sh PROGRAM SOURCES
 set -euo pipefail
 
 program=$1
@@ -9,7 +9,7 @@ trap 'rm -rf "$work"' EXIT
 cd "$work"
 "$program" table "$sources/host/scenes/night_paint.toml" -o grid.nc --quiet --set 'grid.sigma={ from = 0.05, to = 0.4, count = 36 }' \
   --set 'grid.q=[2,3,5]'
-# Everything except the picture, which needs a display.
+# Leaves out the lines that draw, because these need a display.
 sed -n '/^```matlab$/,/^```$/p' "$sources/README.md" | grep -vE '^(```|plot)' > block.m
 echo "printf('%.17g\n', between);" >> block.m
 found=$(HOME=$work octave --no-gui --quiet --no-init-file block.m | tail -n 1)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs and uses the Debian package in a separate root over this machine's: package_test.sh BUILD
+# Installs, uses and removes the Debian package in an overlay over the root file system: package_test.sh BUILD
 set -euo pipefail
 
 build=$1
@@ -25,7 +25,7 @@ dpkg --remove dolp > log
 test ! -e /usr/bin/dolp
 END
 
-# The machine does not change: all writes go to memory that vanishes with the namespace.
+# All writes go to a tmpfs that ends with the namespace, so the machine does not change.
 mkdir "$work/memory" "$work/root"
 "${as_root[@]}" env -u PYTHONPATH HOME=/empty unshare --mount bash -euo pipefail -c '
   cd "$1"

@@ -1,5 +1,4 @@
-// The commands that draw the paper's figures, and statements of shaders/physics/README.md, section 5, about their
-// curves.
+// The commands that draw the paper's figures, and what section 5 of shaders/physics/README.md states about the curves.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,8 +14,8 @@ using namespace dolp;
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-// README gives DOLP and its differences to 0.01 points, angles to 0.1 degrees and G to 0.001. The curves are accurate
-// to 1e-4 (0.01 points), the scenes' tolerance, and have a step of 0.1 degrees.
+// The manual has DOLP to 0.01 percentage points, angles to 0.1 degrees and G to 0.001. DOLP of the curves is accurate
+// to 0.01 percentage points, the tolerance of the scenes. The curves have a step of 0.1 degrees.
 constexpr double kPointTolerance = 0.02;
 constexpr double kAngleToleranceDeg = 0.2;
 constexpr double kAttenuationTolerance = 6e-4;
@@ -49,7 +48,7 @@ class PaperFigure : public testing::Test {
   TemporaryFolder folder_;
 };
 
-/// The only element of `list` that has all members of `wanted`.
+/// The only element of `list` whose members include those of `wanted`.
 const json& one_of(const json& list, const json& wanted) {
   const auto matches = [&](const json& entry) {
     return std::ranges::all_of(wanted.items(), [&](const auto& item) { return entry.at(item.key()) == item.value(); });
@@ -189,7 +188,7 @@ TEST_F(PaperFigure, Table_Sample_PrintsPeaksAndThePapersAngles) {
 }
 
 TEST_F(PaperFigure, Set_UnprintedValue_ChangesTheCurves) {
-  // Nothing is reflected, and the emission of a black surface has no polarisation.
+  // Without reflection the surface is black, and its emission is unpolarised.
   const json black = numbers("5", {"--set", "surface.diffuse=0", "--set", "surface.specular=0"});
   for (const json& curve : black["curves"])
     for (const json& value : curve["dolp_percent"]) EXPECT_LT(value.get<double>(), 1e-9) << curve.dump();
@@ -240,7 +239,7 @@ TEST_F(PaperFigure, ProgramThatFails_OneLineAndNotZero) {
 struct Values {
   std::string masking, distribution;
   double theta_i_deg;
-  std::vector<double> g;  ///< values at 30, 60, 75 and 90 degrees
+  std::vector<double> g;  ///< G at theta_r = 30, 60, 75 and 90 degrees
   double corner_deg, jump_per_rad;
 };
 

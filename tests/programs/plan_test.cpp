@@ -1,4 +1,4 @@
-// Dropped effects and `dolp plan`, from outside.
+// Dropped effects and `dolp plan` as a user runs it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,13 +15,13 @@ using nlohmann::json;
 const std::vector<std::string> kIsothermal = {"--set", "surroundings.temperature_K=300"};
 const std::vector<std::string> kBistatic = {"--set", "geometry.mode=bistatic", "--set",
                                             "source.relative_irradiance=0.5"};
-// If emission and surroundings have one temperature, their sum is unpolarised for any moments.
+// Emission and surroundings are equally warm, so only the source adds polarisation, and moments are not needed.
 const std::vector<std::string> kBeamAlone = {"--set", "surroundings.temperature_K=300",
                                              "--set", "geometry.mode=bistatic",
                                              "--set", "source.relative_irradiance=0.5"};
-// A float on the device may round an order differently than the CPU. This changes one or two circles of nodes.
+// Relative error of predictions: in float the device may round an order of a rule differently than the CPU.
 constexpr double kOrderRounding = 0.05;
-// Sampling error of estimates for all entries that come from 256 of them.
+// Relative error of predictions that are made from 256 of the entries.
 constexpr double kSampling = 0.1;
 
 std::vector<std::string> names_in(const json& rows) {
@@ -45,7 +45,7 @@ class Plan : public CommandLine {
   }
 };
 
-// The self-check computes a few entries of such a grid again. Only their shapes have masking tables.
+// As a check a run computes a few entries again. Only these few may get masking tables, or memory runs out.
 TEST_F(Plan, MillionValuesOfAnAxis_FitIntoTwoGigabytes) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "AddressSanitizer takes terabytes of addresses";
@@ -86,9 +86,9 @@ TEST_F(Plan, Memory_IsAboutThatOfTheTable) {
   const std::string peak =
       "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True); "
       "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)";
-  // allows for different drivers, and for parts that overlap in memory on a busy machine
+  // Real over predicted memory. Drivers differ, and parts of a table may overlap if the machine is busy.
   constexpr double kAbout = 1.7;
-  // one, two and six parts of a table; with more parts the memory stays constant
+  // These tables have one, two and six parts. With more parts the memory stays constant.
   for (const char* count : {"200", "1200", "6000"}) {
     const std::vector<std::string> grid =
         split_at(fmt::format("scene.toml --tolerance 1e-2 --set surface.masking=none --set grid={{theta_deg={{from=0,"
@@ -159,7 +159,8 @@ TEST_F(Plan, WhatTheResultDoesNotNeed_IsNotComputed_AndTheAnswerIsThatOfEverythi
     EXPECT_EQ(table(joined(of.options, {"--keep-all"}))["effects"]["dropped"].size(), 0U);
     const TableValues all = read_table(at("t.nc"));
     for (const Quantity quantity : kAllQuantities) {
-      const bool is_of_bracket = std::string(description_of(quantity).name).starts_with("dolp_");  // not asked for
+      // only with emission.bracket
+      const bool is_of_bracket = std::string(description_of(quantity).name).starts_with("dolp_");
       EXPECT_EQ(all[quantity].size(), is_of_bracket ? 0U : all.size()) << description_of(quantity).name;
     }
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -205,7 +206,7 @@ TEST_F(Plan, FewEntries_PredictsTheCpuRunExactly) {
 
 TEST_F(Plan, Bistatic_PredictsMomentsAndBeams) {
   const json predicted = plan(kBistatic);
-  EXPECT_EQ(predicted["moments"], 4);  // for one view and four surfaces
+  EXPECT_EQ(predicted["moments"], 4);  // one view direction, four surfaces
   EXPECT_EQ(predicted["beams"], 16);
   EXPECT_TRUE(predicted["first_attempt"]["is_exact"]);
   EXPECT_EQ(predicted["evaluations"], table(joined(kBistatic, {"--evaluator", "cpu"}))["evaluations"]);
@@ -222,7 +223,7 @@ TEST_F(Plan, Bistatic_PredictsMomentsAndBeams) {
 }
 
 TEST_F(Plan, Device_PredictsEvaluationsAndDispatches) {
-  // Cases whose entries are computed only once.
+  // Every entry of these grids meets its tolerance in the first computation.
   for (const char* masking : {"none", "v-cavity", "smith"}) {
     const std::vector<std::string> easy = split_at(
         fmt::format("--tolerance 1e-4 --set surface.masking={} --set grid.theta_deg=[65,40,10] --set grid.sigma=0.4 "
@@ -246,7 +247,8 @@ TEST_F(Plan, ManyEntries_PredictionFromSomeIsNearly) {
   const json spent = table(joined(grid, {"--evaluator", "cpu"}));
   EXPECT_FALSE(predicted["first_attempt"]["is_exact"]);
   const double evaluations = spent["evaluations"];
-  EXPECT_NEAR(predicted["evaluations"], evaluations, 2.0 * kSampling * evaluations);  // directions differ in their cost
+  // directions need different numbers of evaluations
+  EXPECT_NEAR(predicted["evaluations"], evaluations, 2.0 * kSampling * evaluations);
 }
 
 TEST_F(Plan, NoDevice_PlansAllTheSame) {

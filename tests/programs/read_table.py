@@ -2,10 +2,10 @@
 """Compares a NetCDF table with the CSV that `dolp eval` wrote for entries of its grid, without dolp's own reader.
 
 Usage: read_table.py TABLE.nc EVAL.csv
-Each row of the CSV names an entry by theta_deg, sigma and q (an axis of one value may be left out). The columns that
-the table has as variables must hold the same doubles, NaN equal to NaN. A column that the table lacks must be NaN
-throughout, as eval leaves what was not computed.
-Exit status: 0 all the same, 1 a difference, 2 a file that cannot be compared.
+theta_deg, sigma and q of a CSV row select an entry of the table. A column may be missing if the axis has one value. Other
+columns must have the same doubles as the variable with their name; NaN equals NaN. Without such a variable all their values
+must be NaN, because eval writes NaN for what it does not compute.
+Exit status: 0 if all values are equal, 1 if some differ, 2 if the files cannot be compared.
 """
 import csv
 import sys
@@ -25,7 +25,7 @@ def read_csv(path):
 
 
 def positions(dataset, columns, row_count):
-    """The position of each row's entry along each axis."""
+    """For each axis, the positions of the entries of all CSV rows."""
     result = []
     for column, axis in AXES.items():
         values = np.asarray(dataset[axis][:])

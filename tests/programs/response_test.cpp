@@ -1,4 +1,4 @@
-// `dolp response` from outside: its file, its requirements on a scene, and its error messages.
+// `dolp response` as a user runs it: its file, its requirements on a scene, and its error messages.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -57,7 +57,7 @@ TEST_F(Response, SceneWithoutAMaterial_HasOneForEachMasking) {
 TEST_F(Response, WhatItDoesNotDependOn_ChangesNoWeight) {
   ASSERT_EQ(response({"--quiet"}).status, 0);
   const std::vector<std::string> scene = {"response", "scene.toml", "-o", "same.nc", "--evaluator", "cpu", "--quiet"};
-  // Does not open files that the scene names.
+  // The files do not exist. The command must not open them.
   ASSERT_EQ(dolp(joined(scene, {"--set", "surface.masking=smith", "--set", "grid.theta_deg=[0,60,89]", "--set",
                                 "surface.material_file=missing.csv", "--set", "source.file=missing.csv"}))
                 .status,
@@ -124,7 +124,8 @@ TEST_F(Response, Verify_ComparesWithTheReference) {
 TEST_F(Response, Verify_FindsWrongWeights) {
   ASSERT_EQ(response({"--set", "grid.q=2", "--set", "surface.masking=none", "--quiet"}).status, 0);
   TableValues table = read_table(at("r.nc"));
-  table.responses[ResponseVariable::kResponseQ][30] += 1e-3;  // weight of the second entry
+  // an entry has 24 weights, so this is a weight of the second entry
+  table.responses[ResponseVariable::kResponseQ][30] += 1e-3;
   write_table(table, at("r.nc"));
   const Outcome outcome = dolp({"verify", "r.nc"});
   EXPECT_EQ(outcome.status, 1) << outcome.err;

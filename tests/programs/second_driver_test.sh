@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs dolp on SwiftShader, a Vulkan driver other than lavapipe: second_driver_test.sh DOLP SOURCE
 #
-# Debian's package chromium-common has the driver. The test downloads it and installs nothing. Exit status 77: this system
+# Downloads Debian's package chromium-common, which contains the driver, and installs nothing. Exit status 77: the system
 # has no such package.
 set -euo pipefail
 dolp=$1
@@ -11,7 +11,7 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 
 has_package() { apt-cache show chromium-common >/dev/null 2>&1; }
-has_package || apt-get -qq update 2>/dev/null || true  # the lists of packages may be missing
+has_package || apt-get -qq update 2>/dev/null || true  # the package lists may be missing
 has_package || exit 77
 apt-get -qq download chromium-common 2>/dev/null
 dpkg-deb --fsys-tarfile chromium-common_*.deb | tar -x ./usr/lib/chromium/libvk_swiftshader.so
@@ -20,13 +20,13 @@ cat > driver.json <<JSON
  "ICD": {"library_path": "$folder/usr/lib/chromium/libvk_swiftshader.so", "api_version": "1.3.0"}}
 JSON
 export VK_DRIVER_FILES=$folder/driver.json VK_ICD_FILENAMES=$folder/driver.json
-export DOLP_COMPILATION_LIMIT_S=600  # on a busy machine
+export DOLP_COMPILATION_LIMIT_S=600  # SwiftShader compiles slowly on a busy machine
 
 fail() {
   echo "second_driver_test.sh: $1" >&2
   exit 1
 }
-expect() {  # TEXT FILE
+expect() {  # expect TEXT FILE: fails if FILE does not contain TEXT
   grep -qF -- "$1" "$2" || { cat "$2"; fail "\"$1\" is not in $2"; }
 }
 
@@ -35,7 +35,7 @@ expect "   usable" devices.txt
 expect "double precision no (tolerances below 2e-06 are out of reach)" devices.txt
 expect "SwiftShader driver, Vulkan" devices.txt
 
-# The independent reference confirms tables of each masking, and of total reflection and direct emission.
+# `dolp verify` compares tables of each masking, of total reflection and of direct emission with the reference.
 grid="{from=0, to=89, count=7}"
 for settings in "masking=none" "masking=integral" "masking=smith" "masking=v-cavity" "distribution=gaussian" "n=0.7"; do
   "$dolp" table "$source/host/scenes/stainless_steel.toml" -o table.nc --quiet --set "surface.$settings" \

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# On an unexpected system the scripts end with a line that names what is missing: setup_test.sh SOURCES
+# Tests that the scripts report in one line what an unsuitable system lacks: setup_test.sh SOURCES
 set -euo pipefail
 
 sources=$1
 folder=$(mktemp -d)
 trap 'rm -r "$folder"' EXIT
 
-# expect NAME STATUS TEXT COMMAND...: one line with TEXT, and STATUS.
+# expect NAME STATUS TEXT COMMAND...: fails unless COMMAND prints one line with TEXT and exits with STATUS.
 expect() {
   local out status=0
   out=$("${@:4}" 2>&1) || status=$?
@@ -25,7 +25,7 @@ chmod +x "$folder/clang-format"
 for command in git dirname; do ln -s "$(command -v $command)" "$folder/"; done
 expect "another clang-format" 1 "it takes clang-format 14" env PATH="$folder" "$bash" "$sources/tests/format.sh"
 
-# A compiler that reports another version.
+# A compiler that claims to be GCC 11.
 printf '#!%s\nexec c++ -U__GNUC__ -D__GNUC__=11 -Wno-builtin-macro-redefined "$@"\n' "$bash" > "$folder/c++-11"
 chmod +x "$folder/c++-11"
 out=$(cmake -S "$sources" -B "$folder/build" -G Ninja -DCMAKE_CXX_COMPILER="$folder/c++-11" 2>&1) && exit 1

@@ -1,4 +1,4 @@
-// Tables in parts: shards and their merge, runs that are killed and continued, and axes of wavelength, n and k.
+// Tables in parts: shards and their merge, runs that are killed and resumed, and axes of wavelength, n and k.
 #include <signal.h>
 
 #include <bit>
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Sigma and q are dense enough for interpolation. Axes are uneven and descending.
+// Theta and sigma descend or are unordered. Sigma and q are so dense that they are interpolated.
 const std::string kGrid = R"(title = "in parts"
 [surface]
 k = 0.2
@@ -31,7 +31,7 @@ sigma = { from = 0.8, to = 0.05, count = 20 }
 q = { from = 1.6, to = 6, count = 20 }
 )";
 
-// More than one part per run.
+// A table that a run computes in more than one part.
 const std::vector<std::string> kLarge = split_at(
     "--set grid.theta_deg={from=0,to=89,count=320} --set grid.sigma={from=0.1,to=0.8,count=64} --set "
     "grid.q={from=1.8,to=6,count=64} --set grid.wavelength_um=[10.0,8.0] --set grid.n=[1.5] --tolerance 1e-2",
@@ -84,7 +84,7 @@ TEST_F(Shards, MergedAgain_AreTheTableOfOneRun_WithEveryMasking) {
   }
 }
 
-// There are more shards than directions, so wavelengths and n are cut, too.
+// 14 shards are more than the grid has directions, so shards also divide the wavelengths and n.
 TEST_F(Shards, OfSeveralAxes_MergeIntoTheTableAndItsCsv) {
   ASSERT_EQ(dolp({"table", "grid.toml", "-o", "one.csv"}).status, 0);
   for (int i = 1; i <= 14; ++i) {
@@ -150,7 +150,7 @@ TEST_F(Shards, BadNumbers_OneLineEach) {
   }
 }
 
-// submit.sh in host/cluster relies on this name.
+// host/cluster/submit.sh needs this name.
 TEST_F(Shards, OneOfOne_HasTheNameOfAShard_AndMerges) {
   ASSERT_EQ(dolp({"table", "grid.toml", "-o", "t.nc", "--shard", "1/1"}).status, 0);
   EXPECT_FALSE(fs::exists(at("t.nc")));
@@ -160,7 +160,7 @@ TEST_F(Shards, OneOfOne_HasTheNameOfAShard_AndMerges) {
   expect_same("one.nc", "t.nc");
 }
 
-// Files that a scene names, and options, which are not in the scene's text.
+// A scene with data files. Shards must notice changes of files and options that the scene's text does not show.
 class Inputs : public Shards {
  protected:
   void SetUp() override {
@@ -222,7 +222,7 @@ TEST_F(Inputs, OtherEvaluatorOrOptions_AreNamed_AndAShardOfThemIsNotKept) {
   }
 }
 
-/// Changes a shard as another program might. `edit` is Python code in which `table` is the open file.
+/// Changes the file of a shard as another program might. `text` is Python code; `table` in it is the open file.
 class Edited : public Inputs {
  protected:
   void edit(const std::string& name, const std::string& text) {
@@ -240,7 +240,7 @@ TEST_F(Edited, HashOfValuesMissing_IsRefusedByMergeAndLookup) {
     put("p.csv", "theta_deg,sigma,q\n60,0.1,2\n");
     expect_refused(dolp({"lookup", "t.2-of-2.nc", "--points", "p.csv", "-o", "l.csv"}),
                    "t.2-of-2.nc: has no text attribute values_hash");
-    // It must not be kept either.
+    // A later run computes the shard again.
     EXPECT_EQ(shard(2).out.find("is there already"), std::string::npos);
     EXPECT_EQ(merge().status, 0);
   }
@@ -274,7 +274,7 @@ class Resume : public Shards {
 
   void make_whole() { ASSERT_EQ(dolp(joined({"table", "grid.toml", "-o", "one.nc"}, kLarge)).status, 0); }
 
-  /// Runs until the first part is written, then sends the signal.
+  /// Starts a run and sends it the signal after it has written its first part.
   Outcome interrupted(int signal) { return interrupted(signal, command_); }
   Outcome interrupted(int signal, const std::vector<std::string>& words) {
     TerminalProcess process(command(words));
@@ -305,7 +305,7 @@ TEST_F(Resume, AfterCtrlC_SaysHowToGoOn_AndGivesTheSameBits) {
   EXPECT_NE(resumed.out.find("2621440"), std::string::npos) << resumed.out;
 }
 
-// The files of an interrupted run, damaged in several ways.
+// The values (t.nc.partial) or progress (t.nc.partial.txt) of an interrupted run are damaged before it resumes.
 TEST_F(Resume, OverADamagedPartialFile_GivesTheSameBits) {
   make_whole();
   ASSERT_EQ(interrupted(SIGINT).status, 130);
@@ -314,13 +314,13 @@ TEST_F(Resume, OverADamagedPartialFile_GivesTheSameBits) {
     return bytes.replace(offset, 64, std::string(64, 'x'));
   };
   const std::vector<std::pair<std::string, std::string>> damaged = {
-      {"", progress},                                         // removed
-      {values.substr(0, 1000), progress},                     // cut
-      {values.substr(0, 5'000'000), progress},                //
+      {"", progress},                      // removed
+      {values.substr(0, 1000), progress},  // cut before the end of the first part
+      {values.substr(0, 5'000'000), progress},
       {content("one.nc") + values, progress},                 // another file, longer than the finished table
-      {overwritten(values, 400'000), progress},               // inside its first part
-      {values, overwritten(progress, 30)},                    // the identity
-      {values, overwritten(progress, progress.size() - 80)},  // the summary of the last part
+      {overwritten(values, 400'000), progress},               // first part overwritten
+      {values, overwritten(progress, 30)},                    // identity of the table overwritten
+      {values, overwritten(progress, progress.size() - 80)},  // summary of the last part overwritten
       {values, progress.substr(0, progress.size() - 3)},
       {values, ""}};
   for (std::size_t i = 0; i < damaged.size(); ++i) {
@@ -331,7 +331,7 @@ TEST_F(Resume, OverADamagedPartialFile_GivesTheSameBits) {
     const Outcome resumed = dolp(command_);
     ASSERT_EQ(resumed.status, 0) << resumed.err;
     expect_same("t.nc", "one.nc");
-    // equal except for times and similar attributes
+    // Sizes differ only because attributes contain times and command lines.
     EXPECT_EQ(fs::file_size(at("t.nc")) / 10'000, fs::file_size(at("one.nc")) / 10'000);
     EXPECT_FALSE(fs::exists(at("t.nc.partial")) || fs::exists(at("t.nc.partial.txt")));
   }

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# A real Slurm of one node on the loopback, without systemd, as root:
+# Runs a Slurm cluster of this one machine, as root and without systemd:
 #
-#   slurm_one_node.sh DIR        starts it with all its files in DIR; its clients need SLURM_CONF=DIR/slurm.conf
-#   slurm_one_node.sh DIR stop   ends it
+#   slurm_one_node.sh DIR        starts Slurm with all its files in DIR; clients need SLURM_CONF=DIR/slurm.conf
+#   slurm_one_node.sh DIR stop   ends Slurm
 set -euo pipefail
 
 dir=$1
@@ -16,7 +16,7 @@ fi
 
 mkdir -p "$dir"/{state,spool,log}
 host=$(hostname -s)
-# A job that is queued again waits until its old credentials are no longer valid: cred_expire.
+# cred_expire: a job that is queued again waits until its old credentials expire, here 5 s.
 cat >"$dir/slurm.conf" <<CONF
 ClusterName=one
 SlurmctldHost=$host(127.0.0.1)

@@ -1,4 +1,4 @@
-// Checks of tables: the choice of entries, the comparison, and `dolp verify` from outside.
+// `dolp verify`: its choice of entries, its comparison, and the command as a user runs it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -51,7 +51,7 @@ std::string refusal(const TableValues& table, const std::string& scene_text) {
 TEST(CheckTable, NothingToCompare_IsRefused) {
   TableValues table = small_table();
   table[Quantity::kAlbedo] = {1.0};
-  table[Quantity::kDolp] = {0.1};  // its error estimate is missing
+  table[Quantity::kDolp] = {0.1};  // without an error estimate DOLP is not compared
   EXPECT_NE(refusal(table, kScene).find("t.nc: has nothing to compare"), std::string::npos);
 }
 
@@ -76,14 +76,14 @@ TEST(CheckTable, EmptyStatusAndNoEstimates_PromiseNothing) {
 
 // ---- The program ---------------------------------------------------------------------------------------------------
 
-/// Rewrites a table file with one changed value.
+/// Changes one value in a table file.
 void put_value(const std::filesystem::path& path, Quantity quantity, std::size_t position, double value) {
   TableValues table = read_table(path);
   table[quantity].at(position) = value;
   write_table(table, path);
 }
 
-/// Rewrites a table file with one changed attribute.
+/// Changes one attribute of a table file.
 void put_attribute(const std::filesystem::path& path, const std::string& name, const std::string& text) {
   TableValues table = read_table(path);
   const auto found = std::ranges::find(table.attributes, name, &Attribute::name);
@@ -94,7 +94,7 @@ void put_attribute(const std::filesystem::path& path, const std::string& name, c
 
 class Verify : public CommandLine {
  protected:
-  /// Makes a table of four by two by two entries on the CPU.
+  /// Makes a table of the grid in scene.toml: 16 entries.
   TableValues make_table(const std::vector<std::string>& options = {}) const {
     const Outcome outcome =
         dolp(joined({"table", "scene.toml", "-o", "t.nc", "--quiet", "--evaluator", "cpu"}, options));
@@ -134,7 +134,7 @@ TEST_F(Verify, ValueOfAnyQuantityThatIsOff_IsFound) {
   const TableValues table = make_table({"--set", "grid.theta_deg=[0.001, 40, 60, 80]"});
   for (const Quantity quantity : quantities) {
     const double right = table[quantity][0];
-    // The first entry is near the normal, where the error estimate of DOLP does not apply to I.
+    // Entry 0 is near theta = 0, where DOLP is so small that its error estimate is no bound for the error of I.
     put_value(at("t.nc"), quantity, 0, right + 0.05 * std::max(1.0, std::abs(right)));
     const nlohmann::json json = verify_json(kAccuracy);
     EXPECT_EQ(json["failures"].size(), 1U) << description_of(quantity).name;
@@ -199,7 +199,7 @@ TEST_F(Verify, OneCorruptedValue_Exit1AndIsNamed) {
                                       : table[Quantity::kRhoErrorEstimate][at_entry] * table[Quantity::kRhoI][at_entry];
     if (name.starts_with("stokes")) bound *= table[Quantity::kStokesI][at_entry];
     if (corruption.quantity == Quantity::kStokesI) bound /= table[Quantity::kDolp][at_entry];
-    // Adds three bounds. The true error is at most one, so two remain.
+    // The true error is at most one bound, so after this change the error is at least two.
     put_value(at("t.nc"), corruption.quantity, at_entry, table[corruption.quantity][at_entry] + 3.0 * bound);
     const nlohmann::json json = verify_json(kAccuracy);
     EXPECT_EQ(json["passed"], false);
@@ -231,7 +231,7 @@ TEST_F(Verify, EstimateBeyondTheToleranceWithoutStatus2_IsFoundByTheTolerance) {
 }
 
 TEST_F(Verify, EntriesThatAreNan_AreComparedAsSuch) {
-  // Without masking rho diverges at 90 degrees: NaN with status 1 and 4.
+  // Without masking rho diverges at 90 degrees. It is NaN there, with the status bits 1 and 4.
   const TableValues table = make_table({"--set", "surface.masking=none", "--set", "grid.theta_deg=[30, 90]"});
   const std::size_t diverges = table.position(1, 0, 0);
   ASSERT_TRUE(std::isnan(table[Quantity::kRhoI][diverges]));
@@ -311,7 +311,7 @@ TEST_F(Verify, TheTableAlone_IsSufficient) {
     const TableValues table = make_table(options);
     EXPECT_FALSE(table.index_n.values.empty());
     const nlohmann::json before = verify_json(kDone, {"--named-files", "--samples", "3"})["quantities"];
-    // The current content of the file does not matter.
+    // The table has the data with which it was computed, so a change of the file has no effect.
     put("index.csv", "wavelength_um,n,k\n7,2.4,0.1\n13,2.6,0.1\n");
     EXPECT_EQ(verify_json(kDone, {"--samples", "3"})["quantities"], before) << options[1];
   }
@@ -395,7 +395,8 @@ TEST_F(Verify, HardCases_OneLinePerModelAndAllRowsOnRequest) {
     const std::string out = dolp(arguments).out;
     return static_cast<std::size_t>(std::ranges::count(out, '\n'));
   };
-  constexpr std::size_t kFrame = 3 + 8;  // title, device, verdict, and one line per distribution and masking
+  // Lines for the title, the device, the verdict, and each distribution with each masking. Failed cases add lines.
+  constexpr std::size_t kFrame = 3 + 8;
   EXPECT_EQ(lines(command), kFrame + static_cast<std::size_t>(failed));
   std::vector<std::string> with_all = command;
   with_all.push_back("--all");

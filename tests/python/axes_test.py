@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Axes of materials, bands and temperatures, and lookups over keys: axes_test.py, with the package on PYTHONPATH."""
+"""Tests axes of materials, bands and temperatures, and lookups over keys. Usage: axes_test.py, package on PYTHONPATH."""
 import unittest
 import warnings
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Scenes as values, wrong calls, threads and processes. Usage: calls_test.py, with the package on PYTHONPATH."""
+"""Tests scenes as values, wrong calls, threads and processes. Usage: calls_test.py, with the package on PYTHONPATH."""
 import copy
 import multiprocessing
 import os
@@ -18,7 +18,7 @@ import xarray as xr
 import dolp
 from package_case import TEXT, PackageCase
 
-# Takes some seconds of one core.
+# A table with these settings and axes takes some seconds of one core.
 LONG = {"accuracy.tolerance": 1e-9, "surface.masking": "integral"}
 LONG_AXES = "theta_deg=np.linspace(0, 89, 200), sigma=np.linspace(0.05, 2, 100), q=np.linspace(1.6, 6, 50)"
 

@@ -1,4 +1,4 @@
-"""A scene in a separate folder, for tests of the package."""
+"""Base of tests of the package: a scene, and a new folder for files."""
 import pathlib
 import tempfile
 import unittest

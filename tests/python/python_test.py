@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Tests the Python package. Usage: python_test.py PROGRAM, with the package on PYTHONPATH. PROGRAM is the command
-line."""
+"""Tests the Python package. Usage: python_test.py DOLP, with the package on PYTHONPATH. DOLP is the program."""
 import csv
 import doctest
 import importlib
@@ -19,11 +18,11 @@ import dolp
 from package_case import TEXT, PackageCase
 
 matplotlib.use("Agg")
-PROGRAM = sys.argv.pop(1) if __name__ == "__main__" else ""  # spawned processes import this file
+PROGRAM = sys.argv.pop(1) if __name__ == "__main__" else ""  # other processes import this file without arguments
 
 
 def fresnel(index, beta):
-    """(R_s + R_p) / 2 and (R_s - R_p) / 2."""
+    """(R_s + R_p) / 2 and (R_s - R_p) / 2 of a smooth surface."""
     cosine = np.cos(np.deg2rad(beta))
     root = np.sqrt(index ** 2 - 1 + cosine ** 2)
     r_s = abs((cosine - root) / (cosine + root)) ** 2
@@ -56,7 +55,7 @@ theta_deg = {from = 0, to = 80, count = 5}
         self.assertGreater(sum(tried for _, tried in results), 25)
 
     def assert_same(self, table, expected):
-        """The values and attributes of two Datasets, and their encodings."""
+        """Expects equal values, attributes and encodings of two Datasets."""
         run = ("history", "wall_time_s")
         self.assertEqual(set(table.attrs), set(expected.attrs))
         for name, value in expected.attrs.items():
@@ -437,7 +436,7 @@ theta_deg = {from = 0, to = 80, count = 5}
         found = dolp.fit(scene, data, {"surface.n": (1.2, 2)}, starts=4)
         self.assertAlmostEqual(found.params["surface.n"], 1.5, delta=1e-3)
         self.run_program("table", "scene.toml", "-o", "t.nc", "--set", "surroundings.profile=sky.csv")
-        sky.write_text("zenith_deg,temperature_K\n0,100\n90,100\n")  # a table keeps the sky with which it was computed
+        sky.write_text("zenith_deg,temperature_K\n0,100\n90,100\n")  # the table keeps the sky with which it was computed
         self.run_program("verify", "t.nc")
 
     def test_a_response_is_what_the_file_holds(self):
@@ -445,7 +444,7 @@ theta_deg = {from = 0, to = 80, count = 5}
         self.assert_same(dolp.response(self.scene, evaluator="cpu"), xr.load_dataset(self.folder / "r.nc"))
 
     def test_moments_of_a_response_are_those_of_tables(self):
-        """Checks water, aluminium, glass, and an index near total reflection, within the sum of the stated errors."""
+        """Compares indices like water, aluminium, glass and silver, within the sum of the stated errors."""
         axes = {"theta_deg": [0, 30, 60, 80, 89.5], "sigma": [0.05, 0.3, 1], "q": [1.75, 3], "evaluator": "cpu"}
         indices = [1.2 + 0.05j, 27 + 90j, 1.5 + 0j, 0.5 + 3j]
         for masking in ("none", "v-cavity", "integral", "smith"):
@@ -537,7 +536,7 @@ theta_deg = {from = 0, to = 80, count = 5}
             if table.bracket:
                 self.assertLess(np.nanmax(table.bracket), drawn[0].get_ylim()[1])
             plot_table.plt.close(figure)
-        # By default a picture shows the q, n and k of the scene, and one of its curves has the scene's sigma.
+        # By default a picture is drawn for the q, n and k of the scene, and one of its curves for the scene's sigma.
         own = self.scene.with_({"surface.n": 1.4, "surface.k": 0.2, "surface.q": 5, "surface.sigma": 0.24})
         dolp.write_table(own, self.folder / "t.nc", evaluator="cpu", theta_deg=[0, 60], n=[1.4, 1.5, 1.6], k=[0.2],
                          sigma=np.linspace(0.1, 0.5, 41), q=[2, 3, 5])
@@ -545,7 +544,7 @@ theta_deg = {from = 0, to = 80, count = 5}
             table = plot_table.Slice(dataset, dict.fromkeys(plot_table.SYMBOLS))
         self.assertEqual(table.place, "q = 5, n = 1.4, k = 0.2")
         np.testing.assert_allclose(table.sigma[plot_table.drawn_columns(table)], [0.1, 0.18, 0.24, 0.34, 0.42, 0.5])
-        # A peak in one of many curves stays in the frame, and no line leads to a limit at 90 degrees.
+        # The frame contains the peak of every curve. If DOLP is only a limit at 90 degrees, no line leads there.
         for diffuse in (0, 0.1):
             dolp.write_table(self.scene.with_({"surface.diffuse": diffuse, "surface.masking": "v-cavity"}), self.folder / "t.nc",
                              evaluator="cpu", theta_deg=np.linspace(0, 90, 91), sigma=[0, *np.linspace(0.5, 2, 60)], q=2)

@@ -1,5 +1,4 @@
-// dolp-reference-values: writes reference moments of the hard cases and of random points. Tests compare every evaluator
-// with them.
+// dolp-reference-values: writes reference moments of hard cases and random points, with which tests compare evaluators.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -30,20 +29,21 @@ using dolp::name_of;
 using dolp::reference::Case;
 using dolp::reference::Group;
 
-// Reflection below this share of the albedo is rounding: N = 1.
+// Smaller shares of the albedo are rounding errors of a reflection that is 0, with n = 1 and k = 0.
 constexpr double kNegligible = 1e-12;
-// Rounding of a closed form: fewer than 16 operations.
+// Relative rounding error of a closed form, which has fewer than 16 operations.
 constexpr double kClosedFormRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
-/// Two settings of the quadrature. The values of the finer one are stored.
+/// Two accuracies of the reference. The file gets values of `fine`, with errors of at least their distance from
+/// `coarse`.
 struct Refinements {
   dolp::ReferenceOptions coarse;
   dolp::ReferenceOptions fine;
 };
-// The finest settings at which the nested quadratures still agree within rounding in double.
+// The finest settings whose results differ only by rounding in double.
 constexpr Refinements kForHardCases{{.relative_tolerance = 3e-13, .subdivisions = 1},
                                     {.relative_tolerance = 1e-13, .subdivisions = 2}};
-// A thousandth of 1e-9, the tightest tolerance at which random points are compared.
+// Tests compare random points at tolerances down to 1e-9; these values are a thousand times more accurate.
 constexpr Refinements kForRandomPoints{{.relative_tolerance = 1e-11, .subdivisions = 1},
                                        {.relative_tolerance = 1e-12, .subdivisions = 2}};
 
@@ -65,7 +65,7 @@ dolp::MomentsRequest request_of(const Group& group, const std::vector<Case>& cas
   return request;
 }
 
-/// The finer of two results. Its errors are at least the distance of both.
+/// The finer result. Its errors are raised to its distance from the coarser result.
 Moments compared(const Moments& coarse, const Moments& fine) {
   Moments result = fine;
   result.r_i_error = std::max(fine.r_i_error, std::abs(coarse.r_i - fine.r_i));
@@ -80,8 +80,8 @@ void replace(double& value, double& error, double exact) {
   error = kClosedFormRounding * std::abs(exact);
 }
 
-/// Equation: at theta = 0 without masking A = 1 - (m^2/(1 + m^2))^(q - 1) (cauchy) or 1 - exp(-1/m^2) (gaussian). With
-/// smith masking, q = 2 and sigma = 1/sqrt(2), A = 1 - ln 2.
+/// Equation (A is the albedo at theta = 0): A = 1 - (m^2/(1 + m^2))^(q - 1) for cauchy and A = 1 - exp(-1/m^2) for
+/// gaussian without masking; A = 1 - ln 2 for smith masking with q = 2 and sigma = 1/sqrt(2).
 bool put_normal_albedo(const Row& row, Moments& moments) {
   const double m2 = 2.0 * row.input.shape.sigma * row.input.shape.sigma;
   const double q = row.input.shape.q;
@@ -96,7 +96,7 @@ bool put_normal_albedo(const Row& row, Moments& moments) {
   return is_ln2;
 }
 
-/// Replaces results of quadratures by closed forms if they exist. The row names its source.
+/// Replaces moments by closed forms where these exist. Row::origin tells which.
 void put_closed_forms(Row& row) {
   Moments& moments = row.moments;
   if (row.input.shape.sigma == 0.0) {
@@ -116,7 +116,7 @@ void put_closed_forms(Row& row) {
       put_normal_albedo(row, moments) ? "; r_q albedo closed form: theta = 0" : "; r_q closed form: theta = 0";
 }
 
-/// The larger error of r_i and r_q, relative to r_i.
+/// The larger of the errors of r_i and r_q, divided by r_i.
 double relative_error(const Moments& moments) {
   const double scale = std::max(moments.r_i, kNegligible * moments.albedo);
   return scale > 0.0 ? std::max(moments.r_i_error, moments.r_q_error) / scale : 0.0;
@@ -156,14 +156,14 @@ std::string csv_line(const Row& row) {
   }
   for (const double error : {m.r_i_error, m.r_q_error, m.albedo_error, m.deficit_error}) {
     std::array<char, 32> text{};
-    // Three digits, rounded up.
+    // three digits; the factor 1.01 keeps rounding from making the error smaller
     std::snprintf(text.data(), text.size(), ",%.2e", 1.01 * error);
     line += text.data();
   }
   return line + "," + c.name + "," + row.origin + "\n";
 }
 
-// Readers see either the old or the complete new file.
+// A program that reads the file meanwhile gets either the old or the complete new file.
 void write(const std::filesystem::path& path, const std::string& command, const std::vector<Row>& rows) {
   const std::filesystem::path part = path.string() + ".part";
   std::ofstream file(part);

@@ -7,16 +7,16 @@
 namespace dolp::reference {
 namespace {
 
-// Random cases with smith masking and the Cauchy distribution have q above this. The masking exists only above 1.5.
+// Random cases of smith masking with the Cauchy distribution have a larger q than this. The moments exist for q > 1.5.
 constexpr double kSmallestSmithQ = 1.53;
-// Distance of a neighbour from a special angle: far more than rounding, far less than the distance of a rule's nodes.
+// Distance from a special angle: much more than rounding, much less than the distance of nodes of a rule.
 constexpr double kBeside_deg = 1e-7;
 
 constexpr OpticalConstants kMetal{27.0, 90.0};
 constexpr OpticalConstants kGoodConductor{1000.0, 1000.0};
 constexpr OpticalConstants kAlmostTotal{0.5, 1e-3};
 
-// Random numbers that are equal with every standard library.
+// Random numbers that are equal on every machine, because only the engine comes from the standard library.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : engine_(seed) {}
@@ -29,7 +29,7 @@ class Draw {
   std::mt19937_64 engine_;
 };
 
-/// The ranges of a domain of random cases.
+/// A range from which random points are drawn.
 struct Domain {
   const char* name;
   double sigma_min, sigma_max, q_min, q_max, theta_max_deg;

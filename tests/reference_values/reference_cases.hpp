@@ -1,4 +1,4 @@
-// The points with stored reference values: the model's hard cases, and random points with a fixed seed.
+// The points whose reference moments are stored: hard cases of the model, and random points.
 #pragma once
 
 #include <array>
@@ -13,7 +13,6 @@
 
 namespace dolp::reference {
 
-/// One point of one distribution and masking.
 struct Case {
   std::string name;
   double theta_deg = 60.0;
@@ -21,7 +20,6 @@ struct Case {
   OpticalConstants index{1.508, 0.0};
 };
 
-/// The settings that all cases of a list share.
 struct Group {
   Distribution distribution;
   Masking masking;
@@ -37,13 +35,11 @@ inline constexpr std::array<Group, 8> kGroups{{{Distribution::kCauchy, Masking::
                                                {Distribution::kGaussian, Masking::kSmith}}};
 
 /// The hard cases of a group: ends of every range, coinciding split lines, indices that reflect nothing or everything.
-///
-/// Moments with v-cavity and smith masking vanish at 90 degrees. So these groups have a case just below
-/// ("grazing-limit") instead of the case at 90 degrees.
+/// With v-cavity and smith masking moments vanish at 90 degrees; a case just below ("grazing-limit") replaces it.
 std::vector<Case> hard_cases(const Group& group);
 
-/// Random points: `count_a` of domain A ("random-a": sigma 0.01-1.2, q 1.06-13, theta to 89.5 degrees) and `count_b` of
-/// domain B ("random-b": sigma 0.001-5, q 1.01-45, theta to 89.9 degrees); one in five is near grazing.
+/// Random points: `count_a` of domain A (sigma 0.01 to 1.2, q 1.06 to 13, theta to 89.5 degrees), `count_b` of domain B
+/// (sigma 0.001 to 5, q 1.01 to 45, theta to 89.9 degrees). One in five is near 90 degrees.
 std::vector<Case> random_cases(const Group& group, std::uint64_t seed, std::size_t count_a, std::size_t count_b);
 
 }  // namespace dolp::reference

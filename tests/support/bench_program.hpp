@@ -1,4 +1,4 @@
-// dolp-bench and its plot script, run from outside.
+// Runs dolp-bench and its plot script as a user does.
 #pragma once
 
 #include <set>
@@ -20,7 +20,7 @@ class BenchProgram : public CommandLine {
   Outcome plot(const std::vector<std::string>& arguments) const {
     return run({.arguments = joined({"/usr/bin/python3", DOLP_BENCH_PLOT}, arguments), .folder = at("")});
   }
-  /// The results of a study.
+  /// The JSON result of a study that must succeed.
   nlohmann::json study_of(const std::vector<std::string>& arguments) const {
     const Outcome outcome = bench(joined(arguments, {"--json", "-"}));
     EXPECT_EQ(outcome.status, 0) << outcome.err;

@@ -1,4 +1,4 @@
-// A scene, points and a folder, for tests that run the program.
+// A scene, points and a folder for tests that run `dolp` as a user does.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ inline const std::vector<std::string> kResultColumns = {
     "stokes_u",     "stokes_v",     "dolp",     "error_estimate", "rho_error_estimate",
     "emissivity_s", "emissivity_p", "q_over_i", "status"};
 
-/// With neither variable naming a driver, the loader finds none.
+/// Environment in which the Vulkan loader finds no driver.
 inline const std::vector<std::pair<std::string, std::string>> kNoDriver = {{"VK_DRIVER_FILES", "/nonexistent.json"},
                                                                            {"VK_ICD_FILENAMES", "/nonexistent.json"}};
 
@@ -34,21 +34,21 @@ inline std::vector<std::string> joined(std::vector<std::string> a, const std::ve
   return a;
 }
 
-/// Expects a message of one line that contains `part`.
+/// Expects a message of dolp that is one line and contains `part`.
 inline void expect_one_line(const std::string& err, const std::string& part = "") {
   EXPECT_EQ(std::ranges::count(err, '\n'), 1) << err;
   EXPECT_TRUE(err.starts_with("dolp: ") && err.ends_with('\n')) << err;
   EXPECT_NE(err.find(part), std::string::npos) << err;
 }
 
-/// Expects that wrong input produces only such a message.
+/// Expects no output, the exit status of wrong input, and one line of message that contains `part`.
 inline void expect_refused(const Outcome& outcome, const std::string& part, int status = 2) {
   EXPECT_EQ(outcome.status, status);
   EXPECT_EQ(outcome.out, "");
   expect_one_line(outcome.err, part);
 }
 
-/// Columns of a CSV file by name, without lines that begin with #.
+/// Columns of a CSV file, by name.
 using Columns = std::map<std::string, std::vector<double>>;
 
 inline std::vector<std::string> split_at(const std::string& text, char separator) {
@@ -58,7 +58,7 @@ inline std::vector<std::string> split_at(const std::string& text, char separator
   return parts;
 }
 
-/// The lines with data. Leaves out the attributes of a table, which contain time and command line.
+/// The lines of a CSV file without its attributes (#), which contain time and command line.
 inline std::vector<std::string> data_lines(const std::string& csv) {
   std::vector<std::string> lines = split_at(csv, '\n');
   std::erase_if(lines, [](const std::string& line) { return line.starts_with('#'); });
@@ -82,7 +82,7 @@ inline Columns parse_csv(const std::string& csv) {
   return columns;
 }
 
-/// Each test has a folder with scene.toml and points.csv. The program runs in it.
+/// Runs `dolp` in a new folder with scene.toml and points.csv.
 class CommandLine : public testing::Test {
  protected:
   void SetUp() override {
@@ -113,19 +113,19 @@ class CommandLine : public testing::Test {
     wanted.input = input;
     return run(wanted);
   }
-  /// Runs the program as on a machine without a Vulkan device.
+  /// Runs `dolp` without a Vulkan device.
   Outcome without_device(const std::vector<std::string>& arguments) const {
     Command wanted = command(arguments);
     wanted.environment = kNoDriver;
     return run(wanted);
   }
-  /// The report of a command that succeeds.
+  /// The JSON report of a command that must succeed.
   nlohmann::json report(const std::vector<std::string>& arguments) const {
     const Outcome outcome = dolp(joined(arguments, {"--json"}));
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return nlohmann::json::parse(outcome.out);
   }
-  /// The result of `dolp eval` at points.csv.
+  /// The output of `dolp eval` for points.csv.
   Columns eval(const std::vector<std::string>& options) const {
     const Outcome outcome =
         dolp(joined({"eval", "scene.toml", "--points", "points.csv", "-o", "-", "--quiet"}, options));

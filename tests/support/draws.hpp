@@ -1,4 +1,4 @@
-// Numbers for tests: random ones, equal on every machine, and equal steps.
+// Numbers for tests: random numbers, the same on every machine, and equally spaced numbers.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace dolp {
 
-/// The number of draws that the environment variable sets.
+/// The number of random draws from an environment variable, or `otherwise` if it is not set.
 inline std::size_t draws_wanted(std::size_t otherwise, const char* variable = "DOLP_PROPERTY_DRAWS") {
   const char* text = std::getenv(variable);
   return text != nullptr ? std::strtoul(text, nullptr, 10) : otherwise;
@@ -22,7 +22,6 @@ class Draws {
   double uniform(double low, double high) { return low + (high - low) * std::generate_canonical<double, 53>(engine_); }
   double log_uniform(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
   bool chance(double probability) { return uniform(0.0, 1.0) < probability; }
-  /// A whole number from `low` to `high`, including both.
   std::size_t count(std::size_t low, std::size_t high) { return low + engine_() % (high - low + 1); }
 
  private:

@@ -1,4 +1,4 @@
-// Random scenes of every kind for the tests of dropped effects.
+// Random scenes for tests of dropped effects.
 #pragma once
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ namespace effects_support {
 
 using namespace dolp;
 
-/// Scenes with and without each effect. Many have an effect that is almost negligible.
+/// Random scenes with any choice of effects. Many scenes have an effect that changes the DOLP by almost nothing.
 class RandomScenes {
  public:
   explicit RandomScenes(std::uint64_t seed) : random_(seed) {}
@@ -132,7 +132,7 @@ inline std::vector<PointResult> run(const SceneValues& scene, const SceneEntries
   return evaluate_scene(scene, entries, evaluator, {}, plan);
 }
 
-/// Length of the difference of (Q, U) / I.
+/// Distance of two results in the plane of Q/I and U/I.
 inline double polarisation_change(const PointResult& a, const PointResult& b) {
   return std::hypot(a[Quantity::kStokesQ] / a[Quantity::kStokesI] - b[Quantity::kStokesQ] / b[Quantity::kStokesI],
                     a[Quantity::kStokesU] / a[Quantity::kStokesI] - b[Quantity::kStokesU] / b[Quantity::kStokesI]);

@@ -1,4 +1,3 @@
-// Messages of exceptions.
 #pragma once
 
 #include <dolp/errors.hpp>
@@ -6,7 +5,7 @@
 
 namespace dolp {
 
-/// The message of the exception of type Error that a call throws.
+/// The message of the exception that a call throws. `Error` is the type of the exception.
 template <class Error = InputError, class Call>
 std::string error_text(const Call& call) {
   try {

@@ -1,4 +1,4 @@
-// A scene, and a session with a worker on the CPU.
+// A scene of paint, and a session without its window, for tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -46,12 +46,12 @@ inline Evaluate on_the_cpu(Evaluator& evaluator) {
   };
 }
 
-/// A session with a worker on the CPU.
+/// A session and its worker, which computes on the CPU.
 class Driver {
  public:
   explicit Driver(SceneEdits edits) : session(std::move(edits)), worker_(on_the_cpu(evaluator_), [] {}) { settle(); }
 
-  /// Takes finished results and requests wanted ones. Returns false if nothing remains.
+  /// Does what the window does for each frame: takes results and requests new ones. Returns false if all is done.
   bool frame() {
     const bool was_idle = worker_.is_idle();
     session.take(worker_.take_news());
@@ -78,14 +78,14 @@ inline std::vector<Point> truth(const Scene& scene, const PointList& list) {
   return points_of(list, evaluator.evaluate(scene, list.columns()));
 }
 
-/// The exact results at the zeniths of a curve.
+/// Accurate results of the scene at the zeniths of `points`.
 inline std::vector<Point> truth(const Scene& scene, const std::vector<Point>& points) {
   std::vector<double> theta_deg;
   for (const Point& point : points) theta_deg.push_back(point.theta_deg);
   return truth(scene, points_at(scene, theta_deg));
 }
 
-/// A worker's result for a job of one part, at the job's tolerance.
+/// The result of a job that has only one part.
 inline JobPart done(const Job& job) {
   return {.key = job.key, .scene = job.scene, .points = truth(job.scene, job.parts.front()), .is_last = true};
 }

@@ -17,7 +17,7 @@ void* operator new(std::size_t size) {
   throw std::bad_alloc();
 }
 
-// Replaces every form that `operator delete` frees, because the address sanitizer has different ones.
+// operator delete below frees with std::free, so memory must not come from operator new of the address sanitizer.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   try {
     return ::operator new(size);

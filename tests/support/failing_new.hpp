@@ -1,9 +1,9 @@
-// Makes an allocation of C++ fail, in programs that link failing_new.cpp.
+// Lets a C++ allocation fail, in programs that link failing_new.cpp.
 #pragma once
 
 namespace dolp {
 
-/// While the object exists, one allocation of its thread throws std::bad_alloc: the one after `before` others.
+/// While the object exists, the allocation of this thread that follows `before` successful ones throws std::bad_alloc.
 class FailingNew {
  public:
   explicit FailingNew(long before);

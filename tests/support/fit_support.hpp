@@ -30,7 +30,7 @@ inline constexpr double kNoise = 0.002;
 
 inline FitRange number(const std::string& key, double low, double high) { return {key, low, high, {}}; }
 
-/// Q/I of the scene at zeniths up to 80 degrees, exact except for `noise` times random deviates of a seed.
+/// Fits to synthetic data: Q/I of the scene at zeniths up to 80 degrees, plus `noise` times random deviates.
 class FitTest : public testing::Test {
  protected:
   MeasuredData measured(double noise, const std::vector<std::string>& overrides = {}, bool has_uncertainties = true,
@@ -49,7 +49,7 @@ class FitTest : public testing::Test {
     const Prediction exact = model.predict({truth}, 1e-8, evaluator_, {}).front();
     std::mt19937_64 engine(seed);
     for (std::size_t i = 0; i < data.measurements.size(); ++i) {
-      double deviate = -6.0;  // the sum of twelve uniform numbers is close enough to normal
+      double deviate = -6.0;  // The sum of twelve uniform numbers, less 6, is nearly normal.
       for (int j = 0; j < 12; ++j) deviate += static_cast<double>(engine() >> 11U) * 0x1p-53;
       data.measurements[i].value = exact.components(static_cast<Eigen::Index>(i), 0) + noise * deviate;
     }

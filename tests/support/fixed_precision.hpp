@@ -1,4 +1,3 @@
-// An evaluator with one precision, whatever precision requests have.
 #pragma once
 
 #include <memory>
@@ -10,7 +9,8 @@
 
 namespace dolp {
 
-/// Scenes request float first, and double for entries that miss. This evaluator computes everything in one of them.
+/// An evaluator that computes every request in one precision, whatever the request wants. (A run first requests float,
+/// then double for entries that miss their tolerance.)
 class FixedPrecision final : public ModelEvaluator {
  public:
   explicit FixedPrecision(Precision precision,

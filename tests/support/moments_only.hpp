@@ -1,4 +1,3 @@
-// Base class of evaluators whose moments tests define.
 #pragma once
 
 #include <stdexcept>
@@ -8,7 +7,7 @@
 
 namespace dolp {
 
-/// An evaluator without pBRDFs; no test requests them from it.
+/// Base of evaluators that tests write. Such an evaluator has only moments, no pBRDF.
 class MomentsOnly : public ModelEvaluator {
  public:
   std::vector<ScatteringMatrix> scatter(const ScatteringRequest&, const Progress&) override {

@@ -1,4 +1,4 @@
-// Random surfaces and pairs of beams for tests of the pBRDF, including hard ones.
+// Random surfaces and pairs of directions for tests of the pBRDF, including hard cases.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,6 @@
 
 namespace dolp {
 
-/// One entry with all its values.
 struct ScatteringPoint {
   BeamAngles angles;
   SlopeShape shape;
@@ -41,7 +40,7 @@ inline ScatteringRequest request_of(Distribution distribution, Masking masking,
   return request;
 }
 
-/// Draws over sigma 1e-3 ... 5, q 1.01 ... 1001 (smith: from 1.51), all kinds of indices, zeniths to 89.99 degrees.
+/// Points with sigma 1e-3 to 5, q 1.01 to 1001 (smith masking: from 1.51), any index, and zeniths to 89.99 degrees.
 class RandomPoints : public Draws {
  public:
   RandomPoints(std::uint64_t seed, Masking masking) : Draws(seed), masking_(masking) {
@@ -78,7 +77,7 @@ class RandomPoints : public Draws {
     }
   }
 
-  // Half of the pairs are near the specular direction, within some widths of the slope distribution.
+  // About half of the pairs are near the specular direction, within three widths of the slope distribution.
   BeamAngles angles(double sigma, const OpticalConstants& index) {
     BeamAngles a{zenith(), zenith(), uniform(-180.0, 180.0)};
     const double width_deg = 60.0 * std::min(sigma, 0.5);
@@ -91,7 +90,7 @@ class RandomPoints : public Draws {
         return {0.0, clamped(uniform(0.0, width_deg)), a.delta_phi_deg};
       case 3:
         return {clamped(std::abs(nearly_zero())), clamped(std::abs(nearly_zero())), a.delta_phi_deg};
-      case 4:  // both near the critical angle
+      case 4:  // both directions near the critical angle, if there is one
         if (index.k == 0.0 && index.n < 1.0) a.theta_i_deg = std::asin(index.n) * 180.0 / 3.14159265358979323846;
         return {clamped(a.theta_i_deg), clamped(a.theta_i_deg + nearly_zero()), 180.0 - nearly_zero()};
       case 5:

@@ -29,13 +29,13 @@ int open_file(const fs::path& path, int flags) {
   return ::open(path.c_str(), flags | O_CLOEXEC | O_NOCTTY, kMode);
 }
 
-/// The other end of a pseudo-terminal.
+/// Opens the terminal end of a pseudo-terminal, which the program gets.
 int open_partner(const Descriptor& terminal) {
   require(::grantpt(terminal.number()) == 0 && ::unlockpt(terminal.number()) == 0, "cannot open a terminal");
   return open_file(::ptsname(terminal.number()), O_RDWR);
 }
 
-/// Arguments and environment of a program in the form that the kernel needs.
+/// Arguments and environment of a program as arrays for execve.
 class Image {
  public:
   explicit Image(const Command& command) : texts_(command.arguments) {
@@ -60,7 +60,7 @@ class Image {
 };
 
 pid_t start(const Command& command, const Descriptor& in, const Descriptor& out, const Descriptor& err) {
-  // Made before the fork: another thread, which the child lacks, may hold the lock of the allocator.
+  // Allocates memory, which the child must not do: at the fork another thread may hold the lock of the allocator.
   const Image image(command);
   const pid_t process = ::fork();
   require(process >= 0, "cannot fork");
@@ -91,7 +91,7 @@ Descriptor::Descriptor(int number) : number_(number) { require(number_ >= 0, "ca
 Descriptor::~Descriptor() { ::close(number_); }
 
 Outcome run(const Command& command) {
-  // Files instead of pipes, because nobody must read them while the program runs.
+  // The program writes into files. Pipes would have to be read while it runs.
   const TemporaryFolder folder;
   const fs::path in_path = folder.path() / "in";
   const fs::path out_path = command.out_path.empty() ? folder.path() / "out" : command.out_path;

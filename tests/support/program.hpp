@@ -1,4 +1,4 @@
-// Runs programs for tests with arguments in a folder. Returns exit status and both outputs.
+// Runs programs for tests and returns their exit status and output.
 #pragma once
 
 #include <sys/types.h>
@@ -12,7 +12,7 @@
 
 namespace dolp {
 
-/// An open file. The destructor closes it.
+/// A file descriptor that the destructor closes.
 class Descriptor {
  public:
   explicit Descriptor(int number);
@@ -25,17 +25,17 @@ class Descriptor {
   int number_;
 };
 
-/// A command to run. The program is searched on PATH.
+/// A program with its arguments. If arguments[0] has no slash, PATH is searched for it.
 struct Command {
   std::vector<std::string> arguments;
   std::filesystem::path folder;
   std::string input = {};
-  std::filesystem::path out_path = {};  ///< file for standard output; if given, Outcome::out stays empty
+  std::filesystem::path out_path = {};  ///< receives standard output; if empty, Outcome::out does
   std::vector<std::pair<std::string, std::string>> environment = {};
 };
 
 struct Outcome {
-  int status = 0;  ///< the exit status, or minus the number of the signal that ended the program
+  int status = 0;  ///< exit status, or minus the number of the signal that ended the program
   std::string out;
   std::string err;
 };
@@ -43,7 +43,7 @@ struct Outcome {
 /// Runs a program to its end. SIGALRM ends a program that takes longer than a minute.
 Outcome run(const Command& command);
 
-/// A running program whose standard error is a terminal. Its standard output is discarded, its input is empty.
+/// A running program. Its standard error is a terminal; its standard output is discarded; its input is empty.
 class TerminalProcess {
  public:
   explicit TerminalProcess(const Command& command);
@@ -52,10 +52,10 @@ class TerminalProcess {
   TerminalProcess(const TerminalProcess&) = delete;
   TerminalProcess& operator=(const TerminalProcess&) = delete;
 
-  /// Waits until the program writes to the terminal. Returns false if it ends without output.
+  /// Waits until the program writes to the terminal. Returns false if the program ends without output there.
   bool wait_for_output();
   void send_signal(int number) const;
-  /// Waits for the end. `err` contains everything that the terminal showed.
+  /// Waits until the program ends. Outcome::err contains all text that the terminal received.
   Outcome finish();
 
  private:

@@ -1,4 +1,4 @@
-// Random points of the whole range of scenes, and evaluators to compute them, for tests of properties.
+// Random points from the whole range of scenes, and the evaluators of all kernels, for tests of properties.
 #pragma once
 
 #include <fmt/format.h>
@@ -20,7 +20,6 @@
 
 namespace dolp {
 
-/// A distribution and a masking.
 struct Model {
   Distribution distribution;
   Masking masking;
@@ -41,7 +40,6 @@ inline std::string name_of(const Model& model) {
          kMaskings[static_cast<std::size_t>(model.masking)];
 }
 
-/// A point at which moments are wanted.
 struct Point {
   double theta_deg = 60.0;
   SlopeShape shape{0.3, 2.0};
@@ -53,7 +51,6 @@ inline std::string text_of(const Point& p) {
                      p.index.n, p.index.k);
 }
 
-/// Directions of the two beams of a pBRDF.
 struct Beams {
   double theta_i_deg, theta_r_deg, delta_phi_deg;
 };
@@ -67,7 +64,7 @@ class Random : public Draws {
  public:
   using Draws::Draws;
 
-  /// A direction. One in five is near the normal, one in five near grazing incidence, a few exactly there.
+  /// A zenith. About one in five is near 0, one in five near 90 degrees; 2 % are exactly 0, 2 % exactly 90 degrees.
   double theta_deg() {
     const double kind = uniform(0.0, 1.0);
     if (kind < 0.02) return 0.0;
@@ -77,13 +74,13 @@ class Random : public Draws {
     return uniform(0.0, 90.0);
   }
 
-  /// sigma 1e-4 to 10; q from 1e-3 above its lower end to 1e4.
+  /// sigma 1e-4 to 10; q from 0.001 above its lower limit to 1e4.
   SlopeShape shape(const Model& model) {
     const bool is_smith_cauchy = model.masking == Masking::kSmith && model.distribution == Distribution::kCauchy;
     return {log_uniform(1e-4, 10.0), (is_smith_cauchy ? 1.5 : 1.0) + log_uniform(1e-3, 9998.0)};
   }
 
-  /// Dielectrics, absorbers and metals: n 1e-3 to 1000, one in four near 1; k = 0 or 1e-4 to 1000.
+  /// Dielectrics, absorbers and metals. n is 0.001 to 1000, in one of four cases 0.7 to 1.5; k is 0 or 1e-4 to 1000.
   OpticalConstants index() {
     const double n = chance(0.25) ? uniform(0.7, 1.5) : log_uniform(1e-3, 1000.0);
     return {n, chance(0.4) ? 0.0 : log_uniform(1e-4, 1000.0)};
@@ -106,7 +103,7 @@ class Random : public Draws {
   }
 };
 
-/// A request with each point as a separate entry, in order.
+/// A request for the moments at a list of points.
 inline MomentsRequest request_of(const Model& model, const std::vector<Point>& points, double tolerance) {
   MomentsRequest request;
   request.distribution = model.distribution;
@@ -116,7 +113,7 @@ inline MomentsRequest request_of(const Model& model, const std::vector<Point>& p
   return request;
 }
 
-/// The four builds of the kernel source.
+/// The compiled versions of the kernel source.
 enum class Kernel { kCpuFloat, kCpuDouble, kVulkanFloat, kVulkanDouble };
 
 inline constexpr std::array kKernels{Kernel::kCpuFloat, Kernel::kCpuDouble, Kernel::kVulkanFloat,
@@ -144,7 +141,7 @@ inline std::string kernel_and_model_name(const testing::TestParamInfo<KernelAndM
   return name_of(std::get<0>(test.param)) + name_of(std::get<1>(test.param));
 }
 
-/// One of the four results and its stated error.
+/// A member of Moments, and the member with its stated error.
 struct MomentField {
   const char* name;
   double Moments::*value;
@@ -156,12 +153,12 @@ inline constexpr std::array<MomentField, 4> kMomentFields{{{"r_i", &Moments::r_i
                                                            {"albedo", &Moments::albedo, &Moments::albedo_error},
                                                            {"deficit", &Moments::deficit, &Moments::deficit_error}}};
 
-/// The largest distance of two results, divided by the sum of their bounds. A value above 1 is a failure.
+/// Expects that all moments agree within both stated errors. Returns the largest ratio of difference to their sum.
 inline double expect_within_bounds(const Moments& a, const Moments& b, const std::string& where, double slack = 0.0) {
   double worst = 0.0;
   for (const auto& [value, error] : kMomentMembers) {
     const bool is_direct = value == &Moments::direct_i || value == &Moments::direct_q;
-    if (is_direct && std::isnan(b.*value)) continue;  // not requested
+    if (is_direct && std::isnan(b.*value)) continue;  // b has no direct emission
     const double distance = std::abs(a.*value - b.*value);
     const double bound = a.*error + b.*error + slack;
     EXPECT_TRUE(distance <= bound) << where << ": " << a.*value << " states " << a.*error << ", " << b.*value

@@ -1,5 +1,4 @@
-// The formulas of radiometry as printed in shaders/physics/README.md, section 4, implemented a second time in long
-// double; and scenes and moments to test them.
+// The radiometry of shaders/physics/README.md, section 4, once more in long double, with scenes and moments to test.
 #pragma once
 
 #include <algorithm>
@@ -23,10 +22,9 @@ using Real = long double;
 inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 inline constexpr unsigned kSeed = 20250811;
 inline constexpr int kRandomScenes = 2000;
-// Double sums of a few terms against long double: the largest error is Planck's exponent (below 50 in these scenes)
-// times an ulp.
+// Rounding in double, mainly of Planck's exponent, which is below 50 in these scenes.
 inline constexpr double kAgreement = 1e-12;
-// The stated accuracy of the band rule for tabulated materials.
+// Stated accuracy of integrals over a band for tabulated materials.
 inline constexpr double kBandAgreement = 1e-9;
 
 // ---- The printed formulas -------------------------------------------------------------------------------------------
@@ -58,8 +56,7 @@ struct PrintedStokes {
   Real q = 0.0L;
 };
 
-/// Equation (18) as shaders/physics/README.md, section 4, reads it, at one wavelength. `specular` has rho_s and rho_p
-/// for k_s = 1.
+/// Hemispherical mode, eq. (18), at one wavelength. `specular` has rho_s and rho_p of the specular part, without k_s.
 inline PrintedStokes printed_stokes(const SceneValues& scene, Real wavelength_um, Real c,
                                     const PrintedReflectance& specular) {
   const Real pi = std::numbers::pi_v<Real>;
@@ -95,7 +92,7 @@ inline PrintedStokes printed_stokes(const SceneValues& scene, Real wavelength_um
   return stokes;
 }
 
-/// Integral over the segments between ascending points. `f` must be analytic on each segment.
+/// Integral of `f` from the first to the last point. `f` may have corners only at the points, which ascend.
 inline Real integral(const std::vector<double>& points, const std::function<Real(Real)>& f) {
   boost::math::quadrature::tanh_sinh<Real> rule;
   Real sum = 0.0L;
@@ -178,7 +175,7 @@ class RandomScenes {
   std::mt19937_64 generator_;
 };
 
-/// An index that falls through a resonance-like shape, on an uneven grid.
+/// A material whose index varies as at a resonance. n and k have different, uneven wavelengths.
 inline Material tabulated_material() {
   Material material;
   material.name = "test glass";
@@ -189,7 +186,7 @@ inline Material tabulated_material() {
   return material;
 }
 
-/// All wavelengths at which something has a corner, for the reference integrals.
+/// The ends of the band, and all wavelengths inside it at which n, k or the irradiance has a corner.
 inline std::vector<double> corners(const SceneValues& scene) {
   std::vector<double> points = {scene.spectrum.min_um, scene.spectrum.max_um};
   const auto add = [&](const SpectralTable& table) {

@@ -1,4 +1,4 @@
-// A rough metal, for which several bounces matter most.
+// A rough metal. Multiple bounces change its DOLP more than that of other surfaces.
 #pragma once
 
 #include <string>

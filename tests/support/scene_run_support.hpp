@@ -30,7 +30,7 @@ inline constexpr OpticalConstants kMetal{27.0, 90.0};
 inline constexpr OpticalConstants kTotallyReflecting{0.6, 0.0};
 inline constexpr std::array kIndices = {kDielectric, kAbsorbing, kMetal, kTotallyReflecting};
 
-/// A surface at 300 K under surroundings at 240 K, at 10.6 um, without a diffuse part.
+/// A scene at 300 K under surroundings of 240 K at 10.6 um. The surface has no diffuse part.
 inline SceneValues make_scene(Distribution distribution, Masking masking, const OpticalConstants& index) {
   SceneValues scene;
   scene.surface.material.constant = index;
@@ -49,7 +49,7 @@ inline std::unique_ptr<ModelEvaluator> make_evaluator(Evaluator evaluator) {
   return std::make_unique<FixedPrecision>(evaluator == Evaluator::kFloat ? Precision::kFloat : Precision::kDouble);
 }
 
-/// Runs only in the evaluator's precision: an entry that misses is not computed again in the other precision.
+/// Runs a scene only in the precision of the evaluator: a run in float does not go on in double.
 inline std::vector<PointResult> run(const SceneValues& scene, const SceneEntries& entries, Evaluator evaluator) {
   SceneValues own = scene;
   if (evaluator == Evaluator::kFloat) own.accuracy.precision = Precision::kFloat;
@@ -57,7 +57,7 @@ inline std::vector<PointResult> run(const SceneValues& scene, const SceneEntries
   return evaluate_scene(own, entries, *make_evaluator(evaluator), {});
 }
 
-/// Entries as a list of points.
+/// The entries of a grid as a list.
 inline std::vector<SceneEntry> list_of(const SceneEntries& entries) {
   std::vector<SceneEntry> list;
   for (const SceneEntry& entry : entries.all()) list.push_back(entry);
@@ -68,7 +68,7 @@ inline PointResult run_one(const SceneValues& scene, double theta_deg, const Slo
   return run(scene, {{theta_deg, shape, {}}}, evaluator).front();
 }
 
-/// R_s and R_p of a smooth surface, from the reflection coefficients.
+/// Fresnel reflectances of a smooth surface.
 struct SmoothReflectance {
   long double s = 0.0L;
   long double p = 0.0L;
@@ -83,14 +83,14 @@ inline SmoothReflectance smooth_reflectance(const OpticalConstants& index, long 
   return {std::norm((cosine - w) / (cosine + w)), std::norm((square * cosine - w) / (square * cosine + w))};
 }
 
-/// The bits of all numbers of a result, so that NaNs are comparable.
+/// All numbers of a result as bits, because NaN is not equal to NaN.
 inline std::vector<std::uint64_t> bits_of(const PointResult& result) {
   std::vector<std::uint64_t> bits = {result.status};
   for (const Quantity quantity : kAllQuantities) bits.push_back(std::bit_cast<std::uint64_t>(result[quantity]));
   return bits;
 }
 
-/// Text for messages: the scene and the entry of a check.
+/// Scene and entry for the message of a failed check.
 inline std::string text_of(const SceneValues& scene, const SceneEntry& entry) {
   const OpticalConstants index = entry.index.value_or(scene.surface.material.constant);
   return std::string(name_of(scene.surface.distribution)) + " " + name_of(scene.surface.masking) + " theta " +
@@ -98,7 +98,7 @@ inline std::string text_of(const SceneValues& scene, const SceneEntry& entry) {
          std::to_string(entry.shape.q) + " N " + std::to_string(index.n) + " + " + std::to_string(index.k) + "i";
 }
 
-/// Calls `check(distribution, masking)` for every pair.
+/// Calls `check` for every distribution with every masking.
 template <class Check>
 void for_each_model(Check&& check) {
   for (const Distribution distribution : kDistributions) {

@@ -10,7 +10,7 @@
 
 namespace dolp {
 
-/// A valid scene that sets no optional key. [surface] is line 1, [emission] 4, [spectrum] 6.
+/// A scene with only the required keys. [surface] is in line 1, [emission] in line 4, [spectrum] in line 6.
 inline const std::string kMinimal =
     "[surface]\n"
     "n = 1.5\n"

@@ -1,4 +1,4 @@
-// Stored reference moments behind the interface of evaluators, so that any scene can have its reference results.
+// An evaluator that returns stored reference moments, so that tests can run a scene with exact moments.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 
 namespace dolp {
 
-/// Returns the moments of stored cases of one distribution and masking. Any other request is a failure of the test.
+/// Has the cases of one distribution and masking. A request for an entry that is not stored fails the test.
 class StoredEvaluator final : public MomentsOnly {
  public:
   explicit StoredEvaluator(const std::vector<StoredCase>& cases) {
@@ -40,7 +40,6 @@ class StoredEvaluator final : public MomentsOnly {
   std::map<Key, Moments> moments_;
 };
 
-/// The cases of one distribution and masking.
 inline std::vector<StoredCase> cases_of(const std::vector<StoredCase>& cases, Distribution distribution,
                                         Masking masking) {
   std::vector<StoredCase> own;

@@ -1,4 +1,4 @@
-// Tables and their files in tests.
+// Tables and files for tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ class TableFiles : public testing::Test {
 
 inline void put(const std::filesystem::path& path, const std::string& text) { std::ofstream(path) << text; }
 
-/// A table of numbers without a short text, including NaN and infinity.
+/// A table with numbers that need many digits, NaN and infinity.
 inline TableValues sample_table(std::size_t thetas, std::size_t sigmas, std::size_t qs) {
   TableValues table;
   for (std::size_t i = 0; i < thetas; ++i)

@@ -1,4 +1,3 @@
-// Folders and files that tests write and read.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +14,7 @@ inline std::string read_file(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// A file in a separate folder.
+/// A file in a new folder. The destructor removes both.
 class TemporaryFile {
  public:
   TemporaryFile(const std::string& name, const std::string& content) : path_((folder_.path() / name).string()) {

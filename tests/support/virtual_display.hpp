@@ -1,4 +1,4 @@
-// A display without a screen, and functions that move mouse and keyboard.
+// An X display in memory, and a function that sends it events of mouse and keyboard.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 
 namespace dolp {
 
-/// Xvfb with a new display number. DISPLAY of this process and its children names it.
+/// Starts Xvfb, an X server without a screen, and sets DISPLAY for this process and its children.
 class VirtualDisplay {
  public:
   explicit VirtualDisplay(const std::string& size = "1440x900") {
@@ -25,7 +25,7 @@ class VirtualDisplay {
     const std::string screen = size + "x24";
     process_ = ::fork();
     if (process_ == 0) {
-      // Without repetition of keys, because a slow machine holds them down for long.
+      // -r: no repetition of held keys, because a slow machine holds them down for long
       ::execlp("Xvfb", "Xvfb", "-r", "-displayfd", end.c_str(), "-screen", "0", screen.c_str(), "-fbdir",
                folder_.path().c_str(), "-noreset", "-nolisten", "tcp", nullptr);
       ::_exit(127);
@@ -44,9 +44,9 @@ class VirtualDisplay {
   VirtualDisplay(const VirtualDisplay&) = delete;
   VirtualDisplay& operator=(const VirtualDisplay&) = delete;
 
-  /// The pixels in a rectangle of the screen: rows of pixels with four bytes.
+  /// The pixels of a rectangle, row by row, with four bytes for each pixel.
   std::string pixels(std::size_t left, std::size_t top, std::size_t width, std::size_t height) const {
-    // The XWD format has a header of big-endian numbers, a colour table with 12 bytes per entry, and the rows.
+    // XWD format: a header of big-endian numbers, a colour table with 12 bytes per entry, rows of pixels.
     const std::string screen = read_file(folder_.path() / "Xvfb_screen0");
     const auto field = [&](std::size_t position) {
       std::size_t value = 0;
@@ -65,7 +65,7 @@ class VirtualDisplay {
   pid_t process_ = -1;
 };
 
-/// Creates real events on the display through the X server.
+/// Runs xdotool, which sends events of mouse and keyboard to the display. Returns its output.
 inline std::string xdotool(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "xdotool");
   const Outcome outcome = run({.arguments = arguments, .folder = "/"});

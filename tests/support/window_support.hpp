@@ -1,4 +1,4 @@
-// The window on a virtual display, and functions that move its mouse and keyboard.
+// The window on a virtual display, and functions that use it with mouse and keyboard.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,15 +18,15 @@ namespace dolp::explore_test {
 using explore::App;
 using explore::Area;
 
-// A slider jumps to the mouse. Position of the mouse on the slider.
+// Where drag_slider ends, as a share of the slider's length. A slider jumps to the mouse.
 inline constexpr float kPartOfSlider = 0.7F;
-// Number of frames after which ImGui has processed an event.
+// Frames that ImGui needs to process an event.
 inline constexpr int kFrames = 4;
 
-// Share of a slider's length that the handle covers.
+// Tolerance of a dragged value, as a share of the slider's range. The handle may cover this share of the slider.
 inline constexpr double kGrab = 0.2;
 
-// A cheap scene, because each test waits for its whole map.
+// Cheap to compute, because most tests wait for the whole map.
 inline const std::string kEdited = R"(title = "Painted"
 [surface]
 n = 1.5
@@ -55,7 +55,7 @@ class Window : public CommandLine {
     put("scene.toml", kEdited);
     open({});
   }
-  /// Opens the window with settings of a command line.
+  /// Opens the window on scene.toml. `settings` are those of the command line.
   void open(const std::vector<Setting>& settings) {
     app_.reset();
     explore::AppOptions options;
@@ -114,7 +114,7 @@ class Window : public CommandLine {
     xdotool({"type", "--delay", "12", "--", text});
     frames();
   }
-  /// Holds Ctrl and clicks a slider.
+  /// Clicks a slider while Ctrl is pressed.
   void ctrl_click(const std::string& slider) {
     xdotool({"keydown", "ctrl"});
     frames();
@@ -124,21 +124,21 @@ class Window : public CommandLine {
   }
   std::optional<double> number(const std::string& key) const { return app_->session().scene().number(key); }
   std::optional<std::string> word(const std::string& key) const { return app_->session().scene().word(key); }
-  /// True if a field has the background colour for refused text.
+  /// True if the background of a field is red, which marks refused text.
   bool is_marked(const std::string& field) {
     frames();
     const Area area = app_->control_area(field);
     const auto left = static_cast<std::size_t>(area.max.x) - 12;
     const std::string pixel = display_.pixels(left, static_cast<std::size_t>(area.min.y) + 6, 1, 1);
     const auto channel = [&](std::size_t byte) { return static_cast<int>(static_cast<unsigned char>(pixel.at(byte))); };
-    return channel(2) > 2 * channel(0);  // more red than blue
+    return channel(2) > 2 * channel(0);
   }
   static std::string root_window() {
     const std::string tree = run({.arguments = {"xwininfo", "-root"}, .folder = "/"}).out;
     const std::size_t number = tree.find("0x");
     return tree.substr(number, tree.find(' ', number) - number);
   }
-  /// The values of `dolp eval` at the zeniths of the curve, with the changes from the window.
+  /// `dolp eval` of the scene with the changes made in the window, at the zeniths of the curve.
   Columns evaluated() const {
     std::string points = "theta_deg\n";
     for (const explore::Point& point : app_->session().curve().points()) {

@@ -10,10 +10,12 @@ namespace dolp {
 /// The points cos(pi i / (count - 1)) on [-1, 1], descending. Domain: count >= 2.
 std::vector<double> lobatto_points(Eigen::Index count);
 
-/// Weights of the values at `points` in the interpolant at x in [-1, 1]; the weights add up to 1.
+/// Weights of the values at the Chebyshev-Lobatto `points` in the interpolating polynomial at x in [-1, 1]. They add up
+/// to 1.
 Eigen::RowVectorXd cardinal_values(const std::vector<double>& points, double x);
 
-/// Turns the values at lobatto_points(count) into the coefficients of Chebyshev polynomials of degree 0, 1, ...
+/// Matrix that turns values at lobatto_points(count) into the coefficients of Chebyshev polynomials of degree 0 to
+/// count - 1.
 Eigen::MatrixXd chebyshev_coefficients(Eigen::Index count);
 
 }  // namespace dolp

@@ -1,4 +1,4 @@
-// The choices of a scene, and their names in scene files, reports and case files.
+// Enumerations of the choices in a scene, such as the masking, and their words in scene files, reports and case files.
 #pragma once
 
 #include <algorithm>
@@ -12,20 +12,20 @@ namespace dolp {
 
 enum class Distribution : std::uint32_t { kCauchy = 0, kGaussian = 1 };
 enum class Masking : std::uint32_t { kNone = 0, kVCavity = 1, kIntegral = 2, kSmith = 3 };
-/// True if the facets that a direction sees have the projected area of the surface, whatever their slopes: direct
-/// emission needs it, no more light is reflected than arrives, and rho and f have limits at 90 degrees. With the other
-/// maskings they diverge there.
+/// True if the facets that are visible from a direction have the same projected area as the macroscopic surface. Then
+/// no more light is reflected than arrives, and rho and f have limits at 90 degrees. With the other maskings rho and f
+/// diverge there. Direct emission needs such a masking.
 constexpr bool keeps_projected_area(Masking masking) {
   return masking == Masking::kVCavity || masking == Masking::kSmith;
 }
-/// Number of bounces that the light is followed for: one, or all bounces in a V-groove.
+/// How far light is followed: to its first facet, or through all bounces in a V-groove.
 enum class Scattering : std::uint32_t { kSingle = 0, kMultiple = 1 };
 enum class EmissionModel { kMoments, kFresnel, kDirect };
 enum class DiffusePolarisation { kNone, kTransmission };
 enum class Mode { kHemispherical, kBistatic };
 enum class Precision { kAuto, kFloat, kDouble };
 
-/// The words of an enumeration, in its order.
+/// The words of an enumeration, in the order of its values.
 constexpr auto words_of(Distribution) { return std::array{"cauchy", "gaussian"}; }
 constexpr auto words_of(Masking) { return std::array{"none", "v-cavity", "integral", "smith"}; }
 constexpr auto words_of(Scattering) { return std::array{"single", "multiple"}; }
@@ -40,7 +40,7 @@ constexpr const char* name_of(Choice choice) requires requires {
 }
 { return words_of(choice)[static_cast<std::size_t>(choice)]; }
 
-/// The choice of that name, nullopt for another word.
+/// The value of an enumeration for a word; nullopt for an unknown word.
 template <class Choice>
 constexpr std::optional<Choice> named(std::string_view word) {
   const auto words = words_of(Choice{});

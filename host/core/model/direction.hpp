@@ -6,18 +6,21 @@
 
 namespace dolp {
 
-/// Method that gives the moments.
+/// How the moments are obtained.
 enum class Treatment {
-  kIntegrated,      ///< an evaluator computes them
-  kMirror,          ///< R at the direction itself: sigma is so small that the slopes' density overflows a float
-  kDivergentLimit,  ///< at 90 degrees moments of a heavy tail diverge, and only their quotients have a limit
+  kIntegrated,  ///< an evaluator computes them
+  /// Reflectances of the smooth surface at theta, because sigma is so small that the slope density overflows a float.
+  kMirror,
+  /// At 90 degrees the moments of a heavy-tailed distribution diverge; only their quotients have limits.
+  kDivergentLimit,
 };
 
-/// A direction with the treatment of its moments.
+/// A direction, and how its moments are obtained.
 struct Direction {
   double theta_deg = 0.0;
-  double cos_theta = 1.0;  ///< cosine for the moments: exact, except for limits at 90 degrees
-  double used_deg = 0.0;   ///< passed to an evaluator: `theta_deg`, or just before 90 degrees for a limit there
+  double cos_theta = 1.0;  ///< cosine of `used_deg`; for a mirror at 90 degrees a tiny positive number
+  /// Zenith for the evaluator: `theta_deg`, or just below 90 degrees to approach a limit at 90 degrees.
+  double used_deg = 0.0;
   Treatment treatment = Treatment::kIntegrated;
 };
 
@@ -27,8 +30,8 @@ Direction direction_of(Distribution distribution, Masking masking, double theta_
 
 bool is_mirror(const SlopeShape& shape);
 
-/// The zenith itself, or just before 90 degrees where rho and f have a limit there, which they approach like the
-/// cosine.
+/// The zenith itself, or just below 90 degrees if it is 90 degrees and `masking` gives rho and f a limit there. Near 90
+/// degrees rho and f differ from their limits in proportion to the cosine of the zenith.
 double zenith_before_limit_deg(Masking masking, double zenith_deg);
 
 }  // namespace dolp

@@ -11,14 +11,15 @@
 
 namespace dolp {
 
-/// The cost of some evaluations.
+/// The cost of computing moments.
 struct Work {
   double evaluations = 0.0;  ///< number of evaluations of the integrand
-  double kernel_s = 0.0;     ///< time on the device (timestamps), or of the loop on the CPU
-  double sums_s = 0.0;       ///< time of the host for sums over slopes, and between slope distributions or indices
+  double kernel_s = 0.0;     ///< time of the kernels: timestamps of the device, or duration of the loop on the CPU
+  /// Time of the host for sums over slopes, for interpolation, and for combining indices from responses.
+  double sums_s = 0.0;
   std::uint64_t dispatches = 0;
-  std::uint64_t interpolated = 0;         ///< moments that were interpolated or combined from others
-  std::uint64_t interpolation_nodes = 0;  ///< moments from which these follow
+  std::uint64_t interpolated = 0;  ///< entries whose moments are interpolated or combined, not computed by a kernel
+  std::uint64_t interpolation_nodes = 0;  ///< moments that a kernel computes for these entries
 
   Work& operator+=(const Work& other) {
     evaluations += other.evaluations;
@@ -33,38 +34,38 @@ struct Work {
 
 /// Evaluator, device and cost of a run, for the report.
 struct EvaluationReport : Work {
-  std::string evaluator;           ///< vulkan | cpu | reference
-  std::string device;              ///< device name, or the processor
-  std::string driver;              ///< driver name and version; empty for cpu and reference
-  std::string precision;           ///< float | double | float and double, as used
+  std::string evaluator;           ///< vulkan, cpu or reference
+  std::string device;              ///< name of the device, or of the processor
+  std::string driver;              ///< name and version of the driver; empty for cpu and reference
+  std::string precision;           ///< precision that was used: float, double, or float and double
   std::uint32_t devices_lost = 0;  ///< devices lost and replaced by a new one
-  double setup_s = 0.0;            ///< creation of pipelines, and of the device since clear_report
-  double pipelines_s = 0.0;        ///< creation of pipelines only
+  double setup_s = 0.0;            ///< time to create pipelines and, if the run needed a new one, the device
+  double pipelines_s = 0.0;        ///< time to create pipelines only
 };
 
-/// Adds a precision to EvaluationReport::precision.
+/// Adds a precision to `used`, which is EvaluationReport::precision.
 inline void note_precision(std::string& used, bool in_double) {
   const char* name = in_double ? "double" : "float";
   if (used.empty()) used = name;
   if (used != name) used = "float and double";
 }
 
-/// Computes the model's moments and matrices, in the order of the request's entries and in its precision.
+/// Computes the moments or Mueller matrices of a request, in the order of its entries and in its precision.
 class ModelEvaluator {
  public:
   virtual ~ModelEvaluator() = default;
   virtual std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) = 0;
   virtual std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) = 0;
-  /// Announces a later call of `scatter` with this request; preparation may run in parallel with other calls until
-  /// then.
+  /// Announces that `scatter` will be called with this request. The evaluator may prepare for it in parallel with other
+  /// calls.
   virtual void prepare(const ScatteringRequest& /*request*/) {}
-  /// True if requests in double are possible.
+  /// True if the evaluator can compute in double.
   virtual bool has_double() const { return true; }
-  /// True if each entry is to be computed by itself, without interpolation or responses.
+  /// True if the evaluator must compute each entry separately. Then a run uses neither interpolation nor responses.
   virtual bool computes_each_entry() const { return false; }
   /// Totals over all calls since clear_report.
   virtual EvaluationReport report() const = 0;
-  /// Begins a new run: the report, and all that follows from it, no longer contains earlier runs.
+  /// Begins a new run: clears the report, so that it no longer contains earlier runs.
   virtual void clear_report() {}
 };
 

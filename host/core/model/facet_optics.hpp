@@ -7,7 +7,7 @@
 
 namespace dolp {
 
-/// Complex refractive index n + ik; time factor e^(-i omega t), so k >= 0.
+/// Complex refractive index n + ik. The time factor is e^(-i omega t), so k >= 0.
 struct OpticalConstants {
   double n = 1.0;
   double k = 0.0;
@@ -21,15 +21,15 @@ struct Film {
   friend auto operator<=>(const Film&, const Film&) = default;
 };
 
-/// Measured reflectances of a smooth surface, at one wavelength: straight lines between angles. Up to the second angle
-/// R_s - R_p goes as sin^2(beta).
+/// Measured reflectances of a smooth surface at one wavelength. Between two angles they are linear in the angle. Only
+/// below the second angle R_s - R_p is proportional to sin^2(beta).
 struct MeasuredReflectance {
-  std::vector<double> beta_deg;  ///< ascending, from 0 to 90; both reflectances agree at 0
+  std::vector<double> beta_deg;  ///< angles of incidence, ascending from 0 to 90; r_s and r_p are equal at 0
   std::vector<double> r_s;
   std::vector<double> r_p;
 };
 
-/// A medium, bare or under films, or measured reflectances instead of both.
+/// What a facet consists of: a bare medium, a medium under films, or a surface with measured reflectances.
 struct FacetOptics {
   OpticalConstants index;   ///< n and k of the medium
   std::vector<Film> films;  ///< from the outside in; they interfere

@@ -1,4 +1,4 @@
-// The hemispherical moments of the specular microfacet term (k_s = 1, no diffuse part).
+// The hemispherical moments of the specular part of the pBRDF (k_s = 1).
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ namespace dolp {
 class ResponseBasis;
 class SkyBasis;
 
-/// The tightest tolerance of a rule in float; rounding dominates tighter ones.
+/// The tightest tolerance of a rule in float. Below it rounding errors dominate.
 inline constexpr double kLeastFloatTolerance = 2e-6;
 
 /// A point at which moments are computed.
@@ -30,80 +30,89 @@ struct MomentsPoint {
   friend bool operator==(const MomentsPoint&, const MomentsPoint&) = default;
 };
 
-/// Responses to the local angle of incidence (response_basis.hpp). In a request they replace the functions of its sky.
+/// Makes a request compute responses to the local angle of incidence (response_basis.hpp), instead of moments with the
+/// functions of a sky.
 struct Response {
   enum class Of : std::uint8_t {
-    kReflected,  ///< the light reflected
-    kSky,        ///< this light, weighted with the function of the sky, which has one
-    kDirect      ///< the direct emission
+    kReflected,  ///< responses of the reflected light
+    kSky,        ///< responses of the reflected light times the only function of the request's sky
+    kDirect      ///< responses of the direct emission
   };
   std::size_t count = 0;
   double c0 = 1.0;
-  double bend = 1.0;  ///< ResponseBasis::bend, which the rules take up
+  double bend = 1.0;  ///< distance of a singularity that the rules must resolve (ResponseBasis::bend)
   Of of = Of::kReflected;
 };
 
-/// The entries whose moments are wanted: the grid optics x theta x sigma x q, q fastest, as in a table, or points, for
-/// which the four lists have one value each. An entry is its position in that order.
+/// A request for the moments of a grid or of a list. A grid has all combinations of optics, theta, sigma and q, and q
+/// varies fastest, as in a table. A list has one value per entry in each of these four vectors. An entry is identified
+/// by its position in this order.
 struct MomentsRequest {
   enum class Layout { kGrid, kList };
 
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
-  Scattering scattering = Scattering::kSingle;  ///< kMultiple: with v-cavity
-  bool wants_direct = false;                    ///< direct_i and direct_q too; with v-cavity or smith
+  Scattering scattering = Scattering::kSingle;  ///< kMultiple only with v-cavity
+  bool wants_direct = false;                    ///< asks for direct_i and direct_q too; only with v-cavity or smith
   double tolerance = 1e-4;                      ///< tolerance of the rule, relative to r_i
-  Precision precision = Precision::kAuto;       ///< kAuto: float
-  bool may_interpolate = true;                  ///< between slope distributions, to the same tolerance
-  bool has_extra_splits = false;                ///< a rule of another kind, to check others with
-  std::shared_ptr<const ResponseBasis> basis;   ///< combines the moments of all optics; null: none
-  std::shared_ptr<const SkyBasis> sky;          ///< its functions give Moments::columns; null: none
-  std::optional<Response> response;             ///< the responses give Moments::columns
+  Precision precision = Precision::kAuto;       ///< kAuto means float
+  bool may_interpolate = true;                  ///< allows interpolation between slope distributions, to `tolerance`
+  bool has_extra_splits = false;                ///< adds split lines, so that the result can check a rule without them
+  std::shared_ptr<const ResponseBasis> basis;   ///< basis from which all optics are combined; null: each is integrated
+  /// Moments::columns has one column for each function of this sky; null: no columns.
+  std::shared_ptr<const SkyBasis> sky;
+  std::optional<Response> response;  ///< asks for responses, which Moments::columns then has instead
   Layout layout = Layout::kGrid;
   std::vector<double> theta_deg;
   std::vector<FacetOptics> optics;  ///< bare facets, or facets with films
   std::vector<double> sigma;
   std::vector<double> q;
-  std::vector<char> wanted;  ///< flag of each entry of a grid; empty: all. The moments of other entries are undefined
+  /// One flag per entry of a grid; empty: all are wanted. Moments of unwanted entries are undefined.
+  std::vector<char> wanted;
 
   std::size_t size() const;
   bool is_wanted(std::size_t entry) const { return wanted.empty() || wanted[entry] != 0; }
   std::size_t wanted_count() const;
-  /// A share of the tolerance, but no less than the precision allows.
+  /// `share` times the tolerance. In float the result is at least kLeastFloatTolerance, or at least the tolerance if
+  /// that is tighter.
   double finer_tolerance(double share) const;
-  /// Slope distributions of one direction and index of a grid.
+  /// Number of slope distributions in a grid, sigma x q.
   std::size_t shapes() const { return sigma.size() * q.size(); }
   MomentsPoint operator[](std::size_t entry) const;
-  /// The request for some directions of a grid, by their positions.
+  /// The same request for only some directions of a grid, given by their positions in `theta_deg`.
   MomentsRequest of_directions(std::span<const std::size_t> directions) const;
-  /// Adds a point, which makes it a request for points.
+  /// Adds an entry to a list. The first call makes the request a list.
   void append(const MomentsPoint& point);
 };
 
-/// The moments with a function g of each facet, |g| <= 1. For a sky, g depends on the zenith of the reflected ray and
-/// multiplies r_i and r_q. For responses, g depends on the local angle of incidence and replaces (R_s + R_p) / 2 and
-/// (R_s - R_p) / (2 sin^2).
+/// Moments of one entry whose integrands contain a function g of the facet, |g| <= 1. For a sky, g depends on the
+/// zenith of the reflected ray and multiplies the integrands of r_i and r_q. For a response, g depends on the local
+/// angle of incidence and replaces (R_s + R_p) / 2 in r_i and (R_s - R_p) / (2 sin^2) in r_q.
 struct ColumnMoments {
   double i = 0.0;
   double q = 0.0;
-  double error = 0.0;  ///< bound of the absolute error of both; for a response, without the next three
-  // For a response: bounds of the error that sums over responses share, with its sign, and relative to the sum.
+  double error = 0.0;  ///< bound of the absolute errors of i and q; for a response the next three add to it
+  // Only for a response. i_apart and q_apart are differences between two rules, with their signs. If responses are
+  // summed with weights, so are these differences, and the magnitude of their sum is a bound of the error.
+  // relative_error is relative to the sum of the responses.
   double i_apart = 0.0;
   double q_apart = 0.0;
   double relative_error = 0.0;
 };
 
-/// The moments of one entry, all multiplied by cos(theta), which keeps them finite at theta = 90 degrees.
-/// r = rho cos(theta); rho_s = rho_I + rho_Q, rho_p = rho_I - rho_Q.
+/// The moments of one entry. All have the factor cos(theta), which keeps them finite at theta = 90 degrees: r = rho
+/// cos(theta). For s and p polarisation, rho_s = rho_I + rho_Q and rho_p = rho_I - rho_Q.
 struct Moments {
-  double r_i = 0.0;      ///< rho_I cos(theta)
-  double r_q = 0.0;      ///< rho_Q cos(theta), signed
-  double albedo = 0.0;   ///< A cos(theta): the same integral with R = 1
-  double deficit = 0.0;  ///< cos(theta) - r_i, summed directly: no cancellation where rho_I is near 1
-  /// Emission of the facets straight to the viewer: eps_I cos(theta) of the direct emission; NaN where not wanted.
+  double r_i = 0.0;     ///< rho_I cos(theta)
+  double r_q = 0.0;     ///< rho_Q cos(theta), with its sign
+  double albedo = 0.0;  ///< A cos(theta): the integral of r_i for R = 1
+  /// The value of cos(theta) - r_i, summed without a subtraction, so that it keeps its digits where rho_I is near 1.
+  double deficit = 0.0;
+  /// Emission of the facets straight to the viewer: eps_I cos(theta). NaN if the request does not want direct emission.
   double direct_i = std::numeric_limits<double>::quiet_NaN();
-  double direct_q = std::numeric_limits<double>::quiet_NaN();  ///< eps_Q cos(theta); eps_s, eps_p = eps_I +- eps_Q
-  // Bounds of the absolute errors of the six, in the same units (quadrature, masking tables and rounding).
+  /// The value of eps_Q cos(theta). For s and p polarisation, eps_s = eps_I + eps_Q and eps_p = eps_I - eps_Q.
+  double direct_q = std::numeric_limits<double>::quiet_NaN();
+  // Bounds of the absolute errors of these six numbers. They include quadrature, masking tables and rounding.
   double r_i_error = 0.0;
   double r_q_error = 0.0;
   double albedo_error = 0.0;
@@ -111,7 +120,7 @@ struct Moments {
   double direct_i_error = 0.0;
   double direct_q_error = 0.0;
   double evaluations = 0.0;                 ///< integrand evaluations spent on this entry
-  std::vector<ColumnMoments> columns = {};  ///< with each function of the request's sky or responses
+  std::vector<ColumnMoments> columns = {};  ///< one column for each function of the request's sky, or for each response
 };
 
 /// A moment and the bound of its error.
@@ -119,7 +128,7 @@ struct MomentMember {
   double Moments::*value;
   double Moments::*error;
 };
-/// All members; the two of the direct emission come last.
+/// All moments. The last two (kDirectMembers) are those of the direct emission.
 inline constexpr std::array<MomentMember, 6> kMomentMembers = {{{&Moments::r_i, &Moments::r_i_error},
                                                                 {&Moments::r_q, &Moments::r_q_error},
                                                                 {&Moments::albedo, &Moments::albedo_error},

@@ -12,20 +12,22 @@
 namespace dolp {
 namespace {
 
-// Cosines at which the polynomials bend: metals need the smallest, at the pole of R_p, dielectrics the largest.
+// Choices of c0, the cosine below which the polynomials resolve most finely. Metals need the smallest, because of the
+// pole of R_p; dielectrics need the largest.
 constexpr std::array<double, 5> kScales = {1.0, 0.3, 0.1, 0.03, 0.01};
-constexpr Eigen::Index kCoefficients = 65;  // known coefficients of a curve
+constexpr Eigen::Index kCoefficients = 65;  // coefficients that are computed for a curve
 constexpr Eigen::Index kLastOfCurve = 4;
-constexpr double kReach = 0.25;  // largest error of a combined curve over the tolerance
-// Time of a pass without responses, and what each response adds.
+constexpr double kReach = 0.25;  // largest error of a combined curve, as a share of the tolerance
+// Time that each response adds to a kernel pass, as a share of the time of a pass without responses.
 constexpr double kTimeOfResponse = 0.08;
-constexpr double kLeastGain = 1.25;  // least factor that the passes must save
-// Numbers of responses. A driver compiles kernels for each of them.
+// Passes with responses must be faster than separate indices by at least this factor.
+constexpr double kLeastGain = 1.25;
+// Allowed numbers of responses. They are few because a driver compiles separate kernels for each of them.
 constexpr std::array<std::size_t, 3> kCounts = {8, 16, kMostResponses};
-constexpr std::size_t kMostCandidates = 256;  // indices of the run to which the basis is fitted
-constexpr std::size_t kMostTried = 32;        // indices of the run for which scale and count are chosen
+constexpr std::size_t kMostCandidates = 256;  // most indices of a run among which the reference index is chosen
+constexpr std::size_t kMostTried = 32;  // most indices of a run from which c0 and the number of responses are chosen
 
-/// All known coefficients of the curves of an index; columns: absorbed, split.
+/// All kCoefficients coefficients of the curves of an index. Columns: ResponseWeights::absorbed and split.
 using CurveCoefficients = Eigen::Matrix<double, kCoefficients, 2>;
 
 CurveCoefficients coefficients_of(const FacetOptics& index, double c0) {
@@ -40,14 +42,14 @@ CurveCoefficients coefficients_of(const FacetOptics& index, double c0) {
   return transform * values;
 }
 
-/// Bounds of the curves' distance from their first `count` polynomials: the known coefficients left out, and as many
-/// unknown ones, each as large as the largest of the last four.
+/// Bounds of the errors of both curves if only the first `count` coefficients are kept: the sum of the other computed
+/// coefficients, plus kCoefficients unknown ones, each as large as the largest of the last kLastOfCurve.
 Eigen::RowVector2d errors_of(const CurveCoefficients& all, Eigen::Index count) {
   return all.bottomRows(kCoefficients - count).cwiseAbs().colwise().sum() +
          kCoefficients * all.bottomRows<kLastOfCurve>().cwiseAbs().colwise().maxCoeff();
 }
 
-/// The fewest polynomials for an index; more than kMostResponses where it is not reached.
+/// The fewest polynomials that represent an index to the tolerance; kMostResponses + 1 if kMostResponses do not.
 std::size_t needed(const FacetOptics& index, double c0, double tolerance) {
   const CurveCoefficients all = coefficients_of(index, c0);
   const double most = kReach * tolerance * reflectance_level(index);
@@ -56,7 +58,7 @@ std::size_t needed(const FacetOptics& index, double c0, double tolerance) {
   return count;
 }
 
-/// At most `most` different indices, spread evenly.
+/// At most `most` different indices, evenly spaced in the list.
 std::vector<FacetOptics> candidates_of(const std::vector<FacetOptics>& indices, std::size_t most) {
   std::vector<FacetOptics> candidates;
   const std::size_t count = std::min(indices.size(), most);
@@ -67,7 +69,7 @@ std::vector<FacetOptics> candidates_of(const std::vector<FacetOptics>& indices, 
   return candidates;
 }
 
-/// Distance of the nearest singularity of the curves from the cosines of angles.
+/// Distance in the complex plane from the cosines [0, 1] to the nearest singularity of the curves.
 double distance_of_bend(const OpticalConstants& index) {
   const std::complex<double> n(index.n, index.k);
   const std::complex<double> pole = 1.0 / std::sqrt(n * n + 1.0);
@@ -110,7 +112,7 @@ std::shared_ptr<const ResponseBasis> ResponseBasis::of(const std::vector<FacetOp
   for (const FacetOptics& index : candidates_of(indices, kMostCandidates)) {
     if (needed(index, basis->c0_, tolerance) > basis->count_) continue;
     basis->bend_ = std::min(basis->bend_, distance_of_bend(index));
-    // Without total reflection, whose kink would add to the errors of responses.
+    // Excludes indices with total reflection: its kink would add to the errors of the responses.
     if (critical_cosine(index) > 0.0 || reflectance_level(index) >= lowest) continue;
     lowest = reflectance_level(index);
     basis->reference_ = index;

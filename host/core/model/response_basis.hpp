@@ -1,9 +1,11 @@
-// Combines the moments of many indices from one index and responses to the local angle of incidence.
+// Combines the moments of many indices from the moments of one index and from responses to the local angle of
+// incidence.
 //
-// The moments of single scattering are linear in the Fresnel reflectances along the cosine c of the local angle of
-// incidence. A response is a moment with a Chebyshev polynomial of u = asinh(c / c0) / asinh(1 / c0) instead of the
-// reflectances: the coefficients of an index's curves times the responses are its moments, at every direction, slope
-// distribution and masking, and the coefficients left out bound the error.
+// The moments of single scattering are linear in the Fresnel reflectances as functions of c, the cosine of the local
+// angle of incidence. A response is a moment in which a Chebyshev polynomial of 2 u - 1, u = asinh(c / c0) / asinh(1 /
+// c0), replaces the reflectances. The Chebyshev coefficients of an index's curves are the weights with which the
+// responses sum to its moments. This holds at every direction, slope distribution and masking. The omitted coefficients
+// bound the error.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,33 +17,34 @@
 
 namespace dolp {
 
-/// Chebyshev coefficients of the curves of an index.
+/// Chebyshev coefficients of the two curves of an index over the local angle of incidence.
 struct ResponseWeights {
   Eigen::VectorXd absorbed;     ///< coefficients of 1 - (R_s + R_p) / 2
   Eigen::VectorXd split;        ///< coefficients of (R_s - R_p) / (2 sin^2)
-  double absorbed_error = 0.0;  ///< bound of the distance from the curve, at any angle
+  double absorbed_error = 0.0;  ///< bound of the error of the truncated series, at any angle
   double split_error = 0.0;
 };
 
-/// The responses of a run from which its indices are combined.
+/// The choice of responses from which the indices of a run are combined.
 class ResponseBasis {
  public:
-  /// Errors of the combined curves stay below the tolerance, relative to the reflectance or to the absorptance at
-  /// normal incidence, whichever is less. `passes`: kernel passes with responses. Null where they cost more than
-  /// integrating each index.
+  /// Chooses a basis for some indices. Errors of the combined curves stay below the tolerance, relative to the
+  /// reflectance_level of the index. `passes`: number of kernel passes that compute responses. Null if the passes cost
+  /// more than integrating each index.
   static std::shared_ptr<const ResponseBasis> of(const std::vector<FacetOptics>& indices, double tolerance,
                                                  std::size_t passes);
 
-  /// The index integrated along with the responses: sums relative to it have less noise. It has the smallest
-  /// reflectance or absorptance.
+  /// The index that a pass integrates in addition to the responses: the one with the lowest reflectance_level. Another
+  /// index may be computed as this index plus a sum of differences, which has a smaller error.
   const FacetOptics& reference() const { return reference_; }
   std::size_t count() const { return count_; }
   double c0() const { return c0_; }
-  /// Distance of the nearest singularity of the polynomials and the curves from the cosines of angles.
+  /// Distance in the complex plane from the cosines [0, 1] to the nearest singularity of the polynomials or of the
+  /// curves.
   double bend() const { return bend_; }
   const ResponseWeights& of_reference() const { return of_reference_; }
-  /// None for an index whose curves need more responses, for example with total reflection. Depends only on the basis
-  /// and the index.
+  /// The coefficients of an index; nullopt if its curves need more responses, for example because of total reflection.
+  /// The result depends only on the basis and the index.
   std::optional<ResponseWeights> weights_of(const FacetOptics& index) const;
 
  private:
@@ -55,7 +58,7 @@ class ResponseBasis {
   double tolerance_ = 0.0;
 };
 
-/// Most responses of a basis: the most columns that kernels take.
+/// Most responses of a basis. Kernels have no more columns.
 inline constexpr std::size_t kMostResponses = 24;
 
 }  // namespace dolp

@@ -6,8 +6,8 @@
 namespace dolp {
 namespace {
 
-// A direction of all materials, wavelengths and indices stays together as long as possible, so that shared work is done
-// once.
+// Axes in the order in which a grid is cut into parts. All materials, wavelengths and indices of a direction stay
+// together as long as possible, so that their shared work is done once.
 constexpr std::array kCuttingOrder = {Axis::kTheta, Axis::kMaterial,    Axis::kBand,  Axis::kWavelength, Axis::kN,
                                       Axis::kK,     Axis::kTemperature, Axis::kSigma, Axis::kQ};
 static_assert(kCuttingOrder.size() == kAxisCount);
@@ -190,7 +190,7 @@ std::vector<SceneEntries> SceneEntries::parts(std::size_t most) const {
 
 void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& whole,
                   const std::function<void(const GridRun&)>& use) {
-  // A run covers the fastest axes that the part has in full, and one more.
+  // A run covers the fastest axes of which the part has all values, and the next slower axis.
   std::size_t slowest = count.size() - 1;
   while (slowest > 0 && count[slowest] == whole[slowest]) --slowest;
   const auto from = static_cast<std::ptrdiff_t>(slowest);

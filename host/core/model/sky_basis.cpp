@@ -13,19 +13,23 @@
 namespace dolp {
 namespace {
 
-// Points of a part between two ends. Chosen: Planck's function of a linear temperature needs fewer.
+// Chebyshev points in each part of the zeniths. Chosen: Planck's function of a temperature that is linear in zenith
+// needs fewer.
 constexpr Eigen::Index kPoints = 17;
 
-// Largest factor between the distances off the nodes and at the nodes: the functions are smooth between the ends.
+// Between the nodes, a sum of functions may miss a sky by up to this factor more than at the nodes. The functions are
+// smooth within a part.
 constexpr double kBetweenNodes = 1.5;
 constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
-// The coefficients of a part fall at least geometrically where it has enough points; then what follows them is less
-// than this times the last few. Where they do not fall, the error is of their size.
+// If a part has enough points, its Chebyshev coefficients fall at least geometrically. Then the sum of the omitted ones
+// is less than kBeyondLast times the sum of the last kLastCoefficients. If they do not fall, the error is as large as
+// these.
 constexpr Eigen::Index kLastCoefficients = 4;
 constexpr double kBeyondLast = 2.0;
 
-// In the last part the cosine c is c_0 y^4, which makes its powers smooth at the horizon.
+// In the last part of the zeniths, which ends at the horizon, the integral runs over y in [0, 1] with the cosine c_0
+// y^4, where c_0 is the cosine at the start of the part. So fractional powers of the cosine are smooth in y.
 constexpr double kHorizonPower = 4.0;
 
 }  // namespace
@@ -67,7 +71,7 @@ Eigen::RowVectorXd SkyNodes::at(double zenith_deg, const Eigen::MatrixXd& values
   const double start = *(above - 1);
   const double x = std::clamp((end - zenith_deg + (start - zenith_deg)) / (end - start), -1.0, 1.0);
   const Eigen::Index first = (above - ends_deg_.begin() - 1) * kPoints;
-  // cardinal_values without its allocations, because tables of a sky need some 10,000 zeniths.
+  // This loop computes cardinal_values without their allocations, because tables of a sky need some 10,000 zeniths.
   Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(values.cols());
   double total = 0.0;
   for (Eigen::Index i = 0; i < kPoints; ++i) {
@@ -116,7 +120,7 @@ Eigen::VectorXd SkyNodes::mean_weights(double power, const std::function<double(
       add(0.5 * (1.0 - Rule::abscissa()[i]), Rule::weights()[i]);
     }
   }
-  return weights / weights.sum();  // a constant keeps its value
+  return weights / weights.sum();  // normalised, so that the mean of a constant is the constant
 }
 
 SkyBasis::SkyBasis(SkyNodes nodes, const std::vector<Eigen::VectorXd>& functions, double tolerance)

@@ -8,7 +8,7 @@
 namespace dolp {
 namespace {
 
-constexpr double kLargestExponent = 500.0;  // exponent of e, so that nothing overflows
+constexpr double kLargestExponent = 500.0;  // largest exponent of e, which prevents overflow
 
 }  // namespace
 
@@ -29,7 +29,7 @@ double power_law_reach(double share, double exponent) {
 }
 
 double gamma_ratio(double x) {
-  // In long double, Boost's default, it would dominate the host's cost of a slope distribution.
+  // In long double, Boost's default, these functions would take most of the host's time for a slope distribution.
   const boost::math::policies::policy<boost::math::policies::promote_double<false>> in_double;
   if (x < 1.0) return boost::math::tgamma_ratio(x + 0.5, x, in_double);
   return boost::math::tgamma_delta_ratio(x + 0.5, -0.5, in_double);

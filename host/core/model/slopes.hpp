@@ -12,28 +12,28 @@ struct SlopeShape {
   friend bool operator==(const SlopeShape&, const SlopeShape&) = default;
 };
 
-/// m = sqrt(2) sigma, the unit of the slopes.
+/// m = sqrt(2) sigma. Slopes are measured in this unit.
 double slope_width(const SlopeShape& shape);
 
-/// sigma of the sea's slopes in a wind, over all directions.
+/// Slope width sigma of the sea in a wind of U m/s. The slopes are summed over all directions.
 ///
 /// Equation: 2 sigma^2 = m^2 = 0.003 + 0.00512 U.
 /// Source: Cox and Munk, J. Opt. Soc. Am. 44 (1954) 838: clean sea, U from 1 to 14 m/s, 12.5 m above the water.
 double sigma_of_wind(double wind_m_s);
-/// Its inverse.
+/// Inverse of sigma_of_wind.
 double wind_of_sigma(double sigma);
 
 /// Share of the facets that are steeper than a slope.
 ///
-/// Equation: with u = slope / m, exp(-u^2) of the gaussian, (1 + u^2)^(1 - q) of the cauchy distribution.
-/// Domain: slope >= 0; sigma = 0 has no facet steeper than any.
+/// Equation: exp(-u^2) for the gaussian, (1 + u^2)^(1 - q) for the cauchy distribution, with u = slope / m.
+/// Domain: slope >= 0. With sigma = 0 no facet is steeper.
 double steeper_share(Distribution distribution, const SlopeShape& shape, double slope);
 
-/// The slope u in units of m beyond which the power law (1 + u^2)^-exponent is less than `share`.
-/// Domain: share in (0, 1], exponent > 0; finite for any tail.
+/// The slope u, in units of m, beyond which the power law (1 + u^2)^-exponent is less than `share`.
+/// Domain: share in (0, 1], exponent > 0. The result is finite even for a tiny exponent.
 double power_law_reach(double share, double exponent);
 
-/// Gamma(x + 1/2) / Gamma(x), to a few roundings. Domain: x > 0 of any size.
+/// Gamma(x + 1/2) / Gamma(x) with an error of a few roundings. Domain: x > 0 of any size.
 double gamma_ratio(double x);
 
 }  // namespace dolp

@@ -37,12 +37,14 @@ ReflectedAmplitudes interface_amplitudes(const Wave& above, const Wave& below) {
 using Complex = std::complex<double>;
 
 SmoothAbsorptance bare_absorptance(const OpticalConstants& index, double cosine) {
-  // Squares of squares of what is smaller underflow, and what it absorbs is less than 4e-75.
+  // If n and k are smaller than this, fourth powers of N underflow. Such a medium absorbs less than 4e-75, so this n
+  // may replace its n.
   constexpr double kLeast = 1e-75;
   const double n = index.k < kLeast ? std::max(index.n, kLeast) : index.n;
   const double k = index.k;
   const Complex square((n - k) * (n + k), 2.0 * n * k);
-  // N^2 - sin^2, keeping the digits of N^2 where it is small, and of N^2 - 1 where n is close to 1.
+  // Real part of N^2 - sin^2(beta). The first form keeps the digits of a small N^2, the second those of N^2 - 1 for n
+  // near 1.
   const bool is_small = n < 0.5 && k < 0.5;
   const double real =
       is_small ? square.real() - (1.0 - cosine) * (1.0 + cosine) : (n - 1.0) * (n + 1.0) - k * k + cosine * cosine;
@@ -54,7 +56,7 @@ SmoothAbsorptance bare_absorptance(const OpticalConstants& index, double cosine)
           transmitted / of_s * (std::norm(square - 1.0) / of_p)};
 }
 
-/// 1 - R_s and 1 - R_p of films, or of measured reflectances.
+/// 1 - R_s and 1 - R_p of a medium under films, or from measured reflectances.
 SmoothAbsorptance covered_absorptance(const FacetOptics& optics, double cosine) {
   if (!optics.measured) {
     const ReflectedAmplitudes r = film_amplitudes(optics, cosine);
@@ -69,14 +71,15 @@ SmoothAbsorptance covered_absorptance(const FacetOptics& optics, double cosine) 
   const double r_s = std::lerp(measured.r_s[i - 1], measured.r_s[i], share);
   const double r_p = std::lerp(measured.r_p[i - 1], measured.r_p[i], share);
   if (i > 1) return {1.0 - r_s, 1.0 - r_p};
-  // Next to normal incidence the difference goes as sin^2.
+  // Below the second angle R_s - R_p is proportional to sin^2(beta).
   const double end = std::sin(measured.beta_deg[1] * std::numbers::pi / 180.0);
   const double half = 0.5 * (measured.r_s[1] - measured.r_p[1]) * (1.0 - cosine) * (1.0 + cosine) / (end * end);
   const double mean = 0.5 * (r_s + r_p);
   return {1.0 - mean - half, 1.0 - mean + half};
 }
 
-/// (R_s - R_p) / sin^2: both reflectances agree at normal incidence, next to which it is a straight line in sin^2.
+/// (R_s - R_p) / sin^2(beta). At normal incidence this is 0 / 0; near it the quotient is extrapolated linearly in
+/// sin^2(beta).
 double split_of(const FacetOptics& optics, double cosine, const SmoothAbsorptance& absorbed_here) {
   constexpr double kStep = 1e-5;
   const double sin2 = (1.0 - cosine) * (1.0 + cosine);
@@ -141,7 +144,8 @@ double reflectance_level(const FacetOptics& optics) {
 double critical_cosine(const FacetOptics& optics) {
   if (optics.measured) return 0.0;
   const OpticalConstants& index = optics.index;
-  constexpr double kSoft = 0.3;  // chosen, of Im N^2: from there on the rules need no line
+  // Chosen; if Im N^2 is larger, total reflection begins so gradually that rules need no split line.
+  constexpr double kSoft = 0.3;
   const double squared = (1.0 - index.n) * (1.0 + index.n) + index.k * index.k;
   const bool is_sharp = 2.0 * index.n * index.k < kSoft;
   return is_sharp && squared > 0.0 && squared < 1.0 ? std::sqrt(squared) : 0.0;
@@ -155,7 +159,7 @@ Moments mirror_moments(const FacetOptics& optics, double cosine) {
   moments.deficit = 0.5 * (absorbed.s + absorbed.p) * cosine;
   moments.r_i = cosine - moments.deficit;
   moments.r_q = 0.5 * (absorbed.p - absorbed.s) * cosine;
-  // Vacuum reflects nothing, exactly.
+  // Vacuum reflects exactly nothing, without an error.
   moments.r_i_error = moments.r_i == 0.0 ? 0.0 : rounding;
   moments.r_q_error = moments.r_i == 0.0 ? 0.0 : rounding;
   moments.albedo_error = rounding;

@@ -7,24 +7,24 @@
 
 namespace dolp {
 
-/// Amplitudes that a facet reflects.
+/// Reflection coefficients of a facet, for amplitudes.
 struct ReflectedAmplitudes {
   std::complex<double> s;
   std::complex<double> p;
 };
 
-/// Amplitudes of a medium under films.
+/// Amplitude reflection coefficients of a medium under films.
 ///
-/// Equation: the recursion r = (r_j + r e^(2 i delta)) / (1 + r_j r e^(2 i delta)) from the medium outward,
-/// delta = 2 pi d q / lambda, q = sqrt(N^2 - sin^2 beta).
+/// Equation: the recursion r = (r_j + r e^(2 i delta)) / (1 + r_j r e^(2 i delta)) from the medium outward, with the
+/// coefficient r_j of interface j, delta = 2 pi d q / lambda and q = sqrt(N^2 - sin^2 beta) of the film below it.
 /// Source: Born and Wolf, Principles of Optics, section 1.6. Conventions: r_p = -r_s at normal incidence.
 /// Domain: cosine in (0, 1].
 ReflectedAmplitudes film_amplitudes(const FacetOptics& optics, double cosine);
 
-/// Fringes that the films add between grazing and normal incidence: periods of e^(2 i delta).
+/// Number of fringes that the films add between grazing and normal incidence. A fringe is a period of e^(2 i delta).
 double fringe_count(const FacetOptics& optics);
 
-/// Parts absorbed by a smooth surface, 1 - R_s and 1 - R_p.
+/// Absorptances of a smooth surface, s = 1 - R_s and p = 1 - R_p.
 struct SmoothAbsorptance {
   double s = 1.0;
   double p = 1.0;
@@ -33,24 +33,26 @@ struct SmoothAbsorptance {
 
 /// Absorptance of a smooth surface at an angle of incidence.
 ///
-/// Equation: 1 - R_s = 4 c Re(w) / |c + w|^2, 1 - R_p = 4 c Re(N^2* w) / |N^2 c + w|^2, w = sqrt(N^2 - 1 + c^2); with
-/// films 1 - |r|^2 of film_amplitudes.
-/// Domain: cosine c in (0, 1], n > 0, k >= 0; total reflection (n < 1, k = 0) gives exactly 0.
-/// Accuracy: a bare medium: no cancellation, however good the reflector. Films: 1e-14; their split 1e-10 of it.
+/// Equation: a bare medium has 1 - R_s = 4 c Re(w) / |c + w|^2 and 1 - R_p = 4 c Re(N^2* w) / |N^2 c + w|^2, with w =
+/// sqrt(N^2 - 1 + c^2). With films it is 1 - |r|^2, with r of film_amplitudes.
+/// Domain: cosine c in (0, 1], n > 0, k >= 0. Total reflection (n < 1, k = 0) gives exactly 0.
+/// Accuracy: nothing cancels for a bare medium, even if it reflects nearly everything. With films the error is 1e-14,
+/// and the relative error of `split` is 1e-10.
 SmoothAbsorptance smooth_absorptance(const FacetOptics& optics, double cosine);
 
-/// The smaller of reflectance and absorptance, to which errors are relative: at normal incidence, and under films their
-/// means over a few angles, because films may reflect nothing at one of them.
+/// The smaller of reflectance and absorptance; errors of curves are relative to it. For a bare medium both are taken at
+/// normal incidence. Otherwise both are means over four angles, because films may reflect nothing at one angle.
 double reflectance_level(const FacetOptics& optics);
 
-/// Cosine of the angle at which total reflection begins, sqrt(1 - Re N^2), where that is a kink (k = 0) or nearly one;
-/// 0 elsewhere.
+/// Cosine of the angle at which total reflection begins, sqrt(1 - Re N^2), if the reflectances have a kink there (k =
+/// 0) or nearly one; else 0.
 double critical_cosine(const FacetOptics& optics);
 
-/// Moments of the mirror, the limit sigma -> 0 of every surface: R_s and R_p at the direction itself, no masking.
+/// Moments of a mirror, which is the limit of every surface for sigma -> 0: R_s and R_p at the direction, without
+/// masking.
 ///
 /// Domain: cosine in (0, 1].
-/// Accuracy: as smooth_absorptance.
+/// Accuracy: the same as for smooth_absorptance.
 Moments mirror_moments(const FacetOptics& optics, double cosine);
 
 }  // namespace dolp

@@ -9,7 +9,7 @@
 
 namespace dolp {
 
-/// Diffusely reflected light for unpolarised incident light, in the frame of the view: Q > 0 is s-polarised.
+/// Diffusely reflected light if the incident light is unpolarised. In the frame of the view, Q > 0 is s-polarised.
 struct DiffuseLight {
   double i = 0.0;
   double q = 0.0;
@@ -17,21 +17,23 @@ struct DiffuseLight {
 
 /// The diffuse part of a pBRDF.
 ///
-/// Equation: f = k_d / pi (cos theta_i cos theta_r)^c, times t(theta_r) t(theta_i)^T / t_+(0)^2 with
-/// diffuse_polarisation "transmission": t = (t_+, t_-, 0, 0), t_+- = (T_s +- T_p) / 2 of the smooth surface. Light
-/// enters the body, loses its polarisation there and leaves. Source: Baek, Jeon, Tong, Kim 2018, Simultaneous
-/// acquisition of polarimetric SVBRDF and normals, section 4. Domain: a bare medium.
+/// Equation: f = k_d / pi (cos theta_i cos theta_r)^c. With diffuse_polarisation "transmission" the light enters the
+/// body, loses its polarisation there and leaves. Then f also has the factor t(theta_r) t(theta_i)^T / t_+(0)^2, with t
+/// = (t_+, t_-, 0, 0) and t_+- = (T_s +- T_p) / 2 of the smooth surface; the angle 0 is normal incidence.
+/// Source: Baek, Jeon, Tong, Kim 2018, Simultaneous acquisition of polarimetric SVBRDF and normals, section 4.
+/// Domain: a bare medium.
 class DiffuseReflection {
  public:
   DiffuseReflection(const Surface& surface, const FacetOptics& optics);
 
-  /// The diffuse part of rho. By reciprocity it also holds for uniform incident light. Domain: cosine in [0, 1].
+  /// The diffuse part of rho. By reciprocity it is also the reflectance for uniform incident light. Domain: cosine in
+  /// [0, 1].
   DiffuseLight rho(double cosine) const;
-  /// pi cos(theta_i) f.
+  /// The diffuse pBRDF times pi cos(theta_i).
   DiffuseLight beam(double cos_theta_i, double cos_theta_r) const;
-  /// (t_+, t_-) at a direction, each divided by t_+(0); (1, 0) for unpolarised reflection.
+  /// t_+ and t_- at a direction, each divided by t_+ at normal incidence. (1, 0) without diffuse_polarisation.
   DiffuseLight transmitted(double cosine) const;
-  /// Weights of a sky's values at nodes. Their sum is the mean radiance that this reflection receives.
+  /// Weights of a sky's values at nodes. The weighted sum is the mean radiance that the diffuse part receives.
   Eigen::VectorXd mean_weights(const SkyNodes& nodes) const;
 
  private:
@@ -40,7 +42,7 @@ class DiffuseReflection {
   bool is_polarised_;
   FacetOptics optics_;
   double normal_ = 1.0;    ///< t_+(0)
-  double integral_ = 0.0;  ///< integral of mu^(c + 1) t_+(mu) / t_+(0) over mu from 0 to 1
+  double integral_ = 0.0;  ///< integral of mu^(c + 1) t_+(mu) over the cosine mu from 0 to 1, divided by `normal_`
 };
 
 /// True if the diffuse part of rho has no limit at 90 degrees.

@@ -26,7 +26,7 @@ EmissionModel emission_model(const SceneModel& scene) {
 
 void set_dolp(PointResult& result, const Stokes& sum) {
   result[kDolp] = std::hypot(sum.q, sum.u) / sum.i;
-  result[kQOverI] = sum.q / sum.i + 0.0;  // turns -0 into 0
+  result[kQOverI] = sum.q / sum.i + 0.0;  // adding 0 turns -0 into 0
   const double i = std::abs(sum.i);
   const double margin = i - sum.i_error;
   if (std::isnan(result[kDolp])) {
@@ -53,15 +53,15 @@ void add_emissivity(PointResult& result, const SpectralRule& rule, std::span<con
 }
 
 std::uint32_t tolerance_status(const PointResult& result, double tolerance) {
-  const bool is_outside = (result.status & kOutsideModelDomain) != 0;  // rho diverges; the DOLP is a limit, or NaN
+  const bool is_outside = (result.status & kOutsideModelDomain) != 0;  // then rho diverges, and DOLP is a limit or NaN
   const bool dolp_missed = (is_outside || promises_dolp(result.status)) && result[kErrorEstimate] > tolerance;
   const bool rho_missed = !is_outside && result[kRhoErrorEstimate] > tolerance;
   return (dolp_missed ? std::uint32_t{kToleranceNotMet} : 0U) | (rho_missed ? std::uint32_t{kRhoToleranceNotMet} : 0U);
 }
 
-/// Estimated change of I by light that single scattering loses at a second facet, or that a masking creates. The
-/// estimate compares rho_I with rho_I / A, for which every facet counts once. With direct emission the lost light is
-/// neither emitted nor reflected.
+/// Estimated change of I by light that single scattering loses at a second facet, or by light that a masking adds. The
+/// estimate compares rho_I with rho_I / A, where A is the albedo; this quotient counts every facet once. With direct
+/// emission the change is the light that is neither emitted nor reflected.
 double change_by_model(const SceneModel& scene, const SpectralRule& rule, std::span<const Moments> moments,
                        std::span<const Reflectance> reflectances, std::span<const Emissivity> emissivities,
                        double cos_theta) {
@@ -95,7 +95,8 @@ bool is_known(const Moments& moments) {
   return !std::isnan(moments.r_i) && !std::isnan(moments.r_q) && !std::isnan(moments.deficit);
 }
 
-// A specular part that stays below 2 as the cosine vanishes belongs to a mirror or to n = 1, and has a limit.
+// The specular part of rho has a limit if it belongs to a mirror or to n = 1. Then it stays below 2 as the cosine
+// vanishes.
 bool reflectance_diverges(const Surface& surface, const Direction& direction, std::span<const Moments> moments) {
   if (direction.theta_deg != kRightAngle_deg) return false;
   if (direction.cos_theta == 0.0 || diffuse_diverges(surface)) return true;
@@ -104,9 +105,10 @@ bool reflectance_diverges(const Surface& surface, const Direction& direction, st
   });
 }
 
-/// Equation: the terms of I and Q that grow fastest as cos(theta) -> 0, times a factor that makes them finite. With D,
-/// the surroundings minus the emission that the moments subtract, they are D r. If D = 0 they are pi B + E0 r_i, E0 r_q
-/// and the path. The fresnel emission vanishes in this limit.
+/// The terms of I and Q that grow fastest as cos(theta) -> 0, times a factor that makes them finite.
+///
+/// Equation: let D be the exitance of the surroundings, minus pi B unless the emission is fresnel. If D is not 0, the
+/// terms are D r_i and D r_q. If D is 0, they are E0 r_i, E0 r_q, the path and, unless the emission is fresnel, pi B.
 Stokes grazing_stokes(const SceneModel& scene, const SpectralRule& rule, std::span<const SkyWeights> sky,
                       std::span<const Moments> moments) {
   const Surface& surface = scene.surface;
@@ -131,7 +133,7 @@ bool is_isothermal(const SpectralRule& rule) {
                              [](const SpectralSample& sample) { return sample.excess == 0.0 && sample.sky.empty(); });
 }
 
-/// Result at 90 degrees where rho diverges.
+/// The result at 90 degrees if rho diverges there.
 PointResult grazing_limit(const SceneModel& scene, const SpectralRule& rule, std::span<const SkyWeights> sky,
                           const Direction& direction, std::span<const Moments> moments) {
   const Surface& surface = scene.surface;
@@ -140,8 +142,8 @@ PointResult grazing_limit(const SceneModel& scene, const SpectralRule& rule, std
   result[kRhoErrorEstimate] = 0.0;
   if (keeps_projected_area(surface.masking)) {
     if (direction.cos_theta > 0.0) result[kAlbedo] = moments.front().albedo / direction.cos_theta;
-    // A diverging diffuse part is unpolarised. It cancels only with a fresnel emission of equal temperature; the rest
-    // is too small to need a formula.
+    // A diverging diffuse part is unpolarised, so DOLP is 0. A fresnel emission at the temperature of the surroundings
+    // is an exception, for which no limit is given.
     const bool cancels = emission_model(scene) == EmissionModel::kFresnel && is_isothermal(rule);
     if (diffuse_diverges(surface) && !cancels) result[kDolp] = result[kQOverI] = result[kErrorEstimate] = 0.0;
     return result;
@@ -227,7 +229,7 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
                                  double cos_theta_i, std::span<const Scattered> scattered) const {
   const bool bistatic = scene_.geometry.mode == Mode::kBistatic;
   PointResult result;
-  boost::container::small_vector<Reflectance, 1> reflected;  // most scenes have one sample and many entries
+  boost::container::small_vector<Reflectance, 1> reflected;  // needs no allocation in most scenes, which have one sample
   boost::container::small_vector<DiffuseSample, 1> diffuse;
   boost::container::small_vector<DiffuseLight, 1> diffuse_beam;
   for (std::size_t j = 0; j < moments.size(); ++j) {
@@ -261,10 +263,10 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   if (bistatic)
     add_beam(sum, beam_specular_, kept_rule_, scattered, {diffuse_beam.data(), diffuse_beam.size()}, cos_theta);
   add_path(sum, scene_.path, kept_rule_.path_exitance);
-  const double unit = bistatic ? 1.0 / pi : 1.0;  // an exitance, or the radiance whose integral it is
+  const double unit = bistatic ? 1.0 / pi : 1.0;  // sums are exitances; bistatic results are radiances
   const MeanReflectance mean = mean_reflectance(rule_, reflectances, cos_theta);
   result[kStokesI] = unit * sum.i;
-  result[kStokesQ] = unit * sum.q + 0.0;  // turns -0 into 0
+  result[kStokesQ] = unit * sum.q + 0.0;  // adding 0 turns -0 into 0
   result[kStokesU] = unit * sum.u + 0.0;
   result[kStokesV] = unit * sum.v + 0.0;
   result[kRhoI] = mean.rho_i;

@@ -16,33 +16,34 @@
 
 namespace dolp {
 
-/// Radiometry of a scene: prepares once everything that does not depend on the entry.
+/// Radiometry of a scene. The constructor prepares everything that does not depend on the entry.
 ///
-/// Equation: I = pi B (1 - rho_I) + X rho_I, Q = (X - pi B) rho_Q, X = E0 cos(theta) + pi B(T_surr), then the path.
-/// With emission.model = "fresnel", the emission uses 1 - R_s(theta) and 1 - R_p(theta) of the smooth surface instead
-/// of 1 - rho_s and 1 - rho_p, for any k_s and diffuse part. In bistatic mode X has no E0, the sums are divided by pi,
-/// and E0 cos(theta_i) f at the view direction is added. With emission.bracket the error estimate also bounds the
-/// errors of dolp_low and dolp_high.
+/// Equation: I = pi B (1 - rho_I) + X rho_I and Q = (X - pi B) rho_Q, with X = E0 cos(theta) + pi B(T_surr); then the
+/// path is applied. With emission.model = "fresnel" the emission uses 1 - R_s(theta) and 1 - R_p(theta) of the smooth
+/// surface instead of 1 - rho_s and 1 - rho_p, for any k_s and diffuse part. In bistatic mode X has no E0, the sums are
+/// divided by pi, and E0 cos(theta_i) f is added, with the pBRDF f from the source to the view. With emission.bracket
+/// the error estimate also bounds the errors of dolp_low and dolp_high.
 /// Source: shaders/physics/README.md, section 4; Wang, Li, Wang 2025, eqs. (16), (18).
 class Radiometry {
  public:
-  /// Disabled terms contribute nothing. Without the moments the specular part of rho counts as 0, `point` ignores the
-  /// numbers in its Moments, and quantities that need them are NaN. `dropped` widens the error estimates. `sky` is the
-  /// basis of the moments with a sky; null means the basis of this scene.
+  /// `kept`: effects that contribute. If the moments are not kept, the specular part of rho counts as 0, `point`
+  /// ignores the numbers in its Moments, and quantities that need them are NaN. `dropped`: bound by which the other
+  /// effects change DOLP; it is added to the error estimates. `sky`: basis with which the moments were computed; null
+  /// means the basis of this scene.
   explicit Radiometry(const SceneModel& scene, const KeptEffects& kept = {}, double dropped = 0.0,
                       const std::shared_ptr<const SkyBasis>& sky = nullptr);
 
-  /// The indices for which `point` needs moments, in its order, and their weights.
+  /// The spectral rule of the scene. `point` needs moments for the index of each of its samples, in this order.
   const SpectralRule& rule() const { return rule_; }
 
   /// Result at one entry.
-  /// Shape: one Moments per sample of rule(), in its order.
-  /// Domain: moments with a NaN are outside the model's domain; the status is 4 and everything is NaN. At 90 degrees
-  /// rho diverges with masking none or integral, or with k_d > 0 and c < 0. Then rho and Stokes are NaN with status 1 |
-  /// 4, and dolp is the limit.
+  /// Shape: one Moments per sample of rule(), in the order of the samples.
+  /// Domain: if a moment is NaN, the entry is outside the model's domain, the status is 4 and every quantity is NaN. At
+  /// 90 degrees rho diverges with masking none or integral, or with k_d > 0 and c < 0. Then rho and the Stokes
+  /// parameters are NaN with status 1 | 4, and dolp is the limit.
   PointResult point(const Direction& direction, std::span<const Moments> moments) const;
 
-  /// Facet optics at each sample, and the diffuse reflection for them.
+  /// Facet optics of each sample, and the diffuse reflection with these optics.
   struct Optics {
     std::vector<FacetOptics> facets;
     std::vector<DiffuseReflection> diffuse;
@@ -50,13 +51,13 @@ class Radiometry {
   };
   Optics optics_with(std::vector<FacetOptics> facets) const;
 
-  /// Result at one entry with other facets than the facets of rule(), for entries with a separate n or k. Only the
-  /// fresnel emission and a polarised diffuse part use them.
+  /// Result at an entry with a separate n or k, so that its facets are not those of rule(). Only the fresnel emission
+  /// and a polarised diffuse part use `optics`.
   PointResult point(const Direction& direction, std::span<const Moments> moments, const Optics& optics) const;
 
-  /// Bistatic result: `moments` and rho at the view direction, the source at theta_i.
-  /// Shape: one Moments and one Scattered per sample of rule(), in its order.
-  /// Domain: as for `point`, but where rho diverges at 90 degrees everything is NaN with status 1 | 4.
+  /// Result in bistatic mode. `moments` and rho belong to the direction of the view; the source is at theta_i.
+  /// Shape: one Moments and one Scattered per sample of rule(), in the order of the samples.
+  /// Domain: as for `point`, but if rho diverges at 90 degrees, every quantity is NaN with status 1 | 4.
   PointResult bistatic_point(const Direction& view, double cos_theta_i, std::span<const Moments> moments,
                              const Optics& optics, std::span<const Scattered> scattered) const;
   const Optics& optics() const { return optics_; }
@@ -67,16 +68,16 @@ class Radiometry {
 
   PointResult finished(PointResult result) const;
 
-  SceneModel scene_;  ///< its surface is the one that the terms of the moments use
+  SceneModel scene_;  ///< the surface lacks its specular or diffuse part if that is dropped
   double beam_specular_;
   KeptEffects kept_;
-  double dropped_;  ///< bound of the change of DOLP by dropped effects
+  double dropped_;  ///< bound by which dropped effects change DOLP
   bool knows_rho_;
   SpectralRule rule_;
-  SpectralRule kept_rule_;                 ///< the rule without the factors that are not kept
-  std::shared_ptr<const SkyBasis> basis_;  ///< basis of the sky, if the sky is kept
-  std::vector<SkyWeights> sky_;            ///< one per sample; empty without a profile
-  Optics optics_;                          ///< optics of the rule
+  SpectralRule kept_rule_;                 ///< rule_ with the factors of dropped effects set to 0
+  std::shared_ptr<const SkyBasis> basis_;  ///< basis of the sky; null if the sky is absent or dropped
+  std::vector<SkyWeights> sky_;            ///< weights of the sky in each sample; empty without a profile
+  Optics optics_;                          ///< optics of rule_
 };
 
 }  // namespace dolp

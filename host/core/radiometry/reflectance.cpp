@@ -9,10 +9,11 @@
 namespace dolp {
 namespace {
 
-// Rounding of the reflectances: fewer than 8 operations on positive terms.
+// Rounding of reflectances, which are computed by fewer than 8 operations on positive terms.
 constexpr double kReflectanceRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
-/// The weight of a sample in the mean reflectance. It depends on the kind of radiation that the scene has.
+/// The weight of a sample in the mean reflectance: its emission if the scene emits, else the light that falls on the
+/// surface, else the width of its band.
 double mean_weight(const SpectralSample& sample, double total_emitted, double total_incident, double cos_theta) {
   if (total_emitted != 0.0) return sample.emitted;
   if (total_incident != 0.0) return sample.irradiance * cos_theta + sample.surroundings;
@@ -21,7 +22,7 @@ double mean_weight(const SpectralSample& sample, double total_emitted, double to
 
 }  // namespace
 
-// 1 - rho comes from the absorbed part. Subtracting rho from 1 would lose the digits of a metal's emission.
+// 1 - rho is computed from the absorbed part, because subtracting rho from 1 would lose digits of a metal's emission.
 Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta, const DiffuseLight& diffuse) {
   const double scale = surface.specular / cos_theta;
   const double absorbed_terms = (1.0 - surface.specular) + scale * std::abs(moments.deficit) + diffuse.i;

@@ -14,11 +14,11 @@ namespace dolp {
 struct Reflectance {
   double rho_i = 0.0;
   double rho_q = 0.0;
-  double absorbed = 0.0;  ///< 1 - rho_i without cancellation
+  double absorbed = 0.0;  ///< 1 - rho_i, computed without cancellation
   double rho_i_error = 0.0;
   double rho_q_error = 0.0;
   double absorbed_error = 0.0;
-  double mismatch = 0.0;  ///< |rho_i + absorbed - 1|; not exactly 0, because the two moments are summed independently
+  double mismatch = 0.0;  ///< |rho_i + absorbed - 1|; not exactly 0, because rho_i and absorbed come from separate sums
 };
 
 /// Polarised emissivity at one index: i + q for s polarisation, i - q for p polarisation.
@@ -27,35 +27,35 @@ struct Emissivity {
   double q = 0.0;
   double i_error = 0.0;
   double q_error = 0.0;
-  double terms = 0.0;  ///< sum of the magnitudes in either of them
+  double terms = 0.0;  ///< sum of the magnitudes of the terms of i, or of q; rounding is relative to it
 };
 
-/// rho over the spectral samples.
+/// Mean of rho over the spectral samples.
 struct MeanReflectance {
   double rho_i = 0.0;
   double rho_q = 0.0;
-  double error = 0.0;  ///< error of the less accurate of the two
+  double error = 0.0;  ///< error of rho_i or of rho_q, whichever is larger
 };
 
-/// `diffuse` is the diffuse part of rho.
+/// Reflectance that follows from the moments. `diffuse`: the diffuse part of rho.
 Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta, const DiffuseLight& diffuse);
 
-/// True if rho_s or rho_p is outside [0, 1] beyond doubt.
+/// True if rho_s or rho_p is outside [0, 1] by more than its error.
 bool is_unphysical(const Reflectance& r);
 
-/// The mean weighted by the kind of radiation that the scene has; see Quantity.
+/// Mean of rho over the samples. Its weights depend on the radiation that the scene has (see Quantity).
 MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances, double cos_theta);
 
 /// Emissivity of the smooth surface.
 Emissivity fresnel_emissivity(const FacetOptics& index, double cos_theta);
 
-/// Emissivity of the facets for light that goes straight to the viewer.
+/// Emissivity for the light that facets emit straight to the viewer (direct emission).
 ///
 /// Equation: eps_I = k_s eps_I,direct + 1 - k_s - diffuse_I, eps_Q = k_s eps_Q,direct - diffuse_Q.
 Emissivity direct_emissivity(const Surface& surface, const Moments& moments, double cos_theta,
                              const DiffuseLight& diffuse);
 
-/// Emissivities 1 - rho for s and for p polarisation.
+/// Emissivity by Kirchhoff's law: 1 - rho_s and 1 - rho_p.
 Emissivity kirchhoff_emissivity(const Reflectance& r);
 
 }  // namespace dolp

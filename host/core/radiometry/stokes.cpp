@@ -11,20 +11,21 @@ namespace {
 
 using std::numbers::pi;
 
-// Rounding of the Stokes sums, relative to the terms: Planck's exponent, at most 745, times one or two ulp.
+// Rounding of the Stokes sums, relative to their terms: one or two units in the last place, times Planck's exponent,
+// which is at most 745.
 constexpr double kRadianceRounding = 1e-12;
 
-/// Contribution of one sample to I with Kirchhoff's emission.
+/// Contribution of one sample to I, with the emission 1 - rho of Kirchhoff's law.
 struct Intensity {
   double value = 0.0;
-  double terms = 0.0;  ///< sum of the magnitudes of the summed terms; rounding is relative to it
-  double error = 0.0;  ///< error because of the errors of the moments
+  double terms = 0.0;  ///< sum of the magnitudes of its terms; rounding is relative to this sum
+  double error = 0.0;  ///< error that follows from the errors of the moments
 };
 
-/// Equation: I = pi B (1 - rho_I) + X rho_I = pi B + (X - pi B) rho_I. The form with the smaller terms is used: the
-/// first keeps the digits of a metal, the second the digits of a reflectance far above 1 and of equal temperatures. The
-/// errors of r_i and of the absorbed part are correlated, so one may replace the other, and their mismatch is added to
-/// the error.
+/// Equation: I = pi B (1 - rho_I) + X rho_I = pi B + (X - pi B) rho_I. The function uses the form with the smaller
+/// terms. The first form keeps digits for a metal; the second keeps them for a reflectance far above 1, and for equal
+/// temperatures. The errors of rho_I and of the absorbed part are correlated. So the error bound may use only one of
+/// them and add their mismatch.
 Intensity moments_intensity(double emitted, double incident, double net, double net_terms, const Reflectance& r) {
   const double split_terms = std::abs(emitted * r.absorbed) + std::abs(incident * r.rho_i);
   const double whole_terms = std::abs(emitted) + net_terms * std::abs(r.rho_i);
@@ -38,11 +39,11 @@ Intensity moments_intensity(double emitted, double incident, double net, double 
   return {emitted * r.absorbed + incident * r.rho_i, split_terms, std::min({apart, by_reflected, by_absorbed})};
 }
 
-/// One sample's part of the Stokes sums with Kirchhoff's emission; `rounding` is relative to each term.
+/// Adds one sample with Kirchhoff's emission to the sums. `rounding`: relative error of each term.
 void add_moments_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, double direct,
                         double rounding) {
   const double net = direct + sample.excess;
-  // Equal temperatures cancel exactly. Then the excess has no rounding either.
+  // At equal temperatures the excess is exactly 0, without rounding.
   const double thermal = sample.excess == 0.0 ? 0.0 : std::abs(sample.emitted) + std::abs(sample.surroundings);
   const double net_terms = std::abs(direct) + thermal;
   const Intensity intensity = moments_intensity(sample.emitted, direct + sample.surroundings, net, net_terms, r);
@@ -52,7 +53,7 @@ void add_moments_sample(Stokes& sum, const SpectralSample& sample, const Reflect
   sum.q_error += std::abs(net) * r.rho_q_error + rounding * net_terms * std::abs(r.rho_q);
 }
 
-/// One sample's part of the Stokes sums with an emission that is not 1 - rho.
+/// Adds one sample whose emission is not 1 - rho to the sums.
 void add_emitting_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, const Emissivity& e,
                          double direct, double rounding) {
   const double incident = direct + sample.surroundings;
@@ -66,7 +67,7 @@ void add_emitting_sample(Stokes& sum, const SpectralSample& sample, const Reflec
                  rounding * (emitted_terms + std::abs(incident * r.rho_q));
 }
 
-/// The middle of some values, and half of the distance between the largest and the smallest; 0 without values.
+/// The middle of the range of some values, and half of its width. Both are 0 without values.
 struct Span {
   double middle = 0.0;
   double half = 0.0;
@@ -195,9 +196,9 @@ Bracket bracket(const SceneModel& scene, const SpectralRule& rule, std::span<con
   single.i += sky.i;
   single.i_error += sky.i_error;
   double q = sky.q;
-  double unknown = 0.0;    // largest change of Q if all of D is emitted
+  double unknown = 0.0;    // largest change of Q if the surface emits all of D (see Bracket)
   double unreached = 0.0;  // largest change of Q and of I if all of D comes from an unknown part of the sky
-  double reflected = 0.0;  // change of I if D comes from the middle of the sky
+  double reflected = 0.0;  // change of I if D has the middle radiance of the sky
   double error = sky.q_error;
   for (std::size_t j = 0; j < reflectances.size(); ++j) {
     const SpectralSample& sample = rule.samples[j];

@@ -14,7 +14,7 @@
 
 namespace dolp {
 
-/// Sums over the spectral samples, with bounds of their errors.
+/// Stokes parameters summed over the spectral samples, with bounds of their errors.
 struct Stokes {
   double i = 0.0;
   double q = 0.0;
@@ -25,57 +25,60 @@ struct Stokes {
   double u_error = 0.0;
 };
 
-/// Lower and upper bound of the DOLP of a surface with these facets and all bounces.
+/// Lower and upper bound of the DOLP that the surface has with all bounces.
 ///
-/// Equation: its eps_I exceeds the direct one by d <= D = 1 - rho_I - eps_I,direct, which changes eps_Q by at most d. I
-/// = X + N eps_I and Q = N eps_Q with N = pi B - X, where X is the exitance of source and surroundings. Both ends lie
-/// at d = D, where I equals the I of single scattering: (|sum N eps_Q,direct| -+ sum |N| D) / I. Under a sky X is the
-/// middle of its radiance, and single scattering adds the reflected difference from the middle. The light D - d of
-/// later bounces comes from an unknown part of the sky, which is within M of the middle. So the ends may also lie at d
-/// = 0, where Q and I are within M D of their values with X.
+/// Equation: the true eps_I exceeds the direct eps_I by some d with 0 <= d <= D = 1 - rho_I - eps_I,direct, and eps_Q
+/// changes by at most d. Let X be the exitance of source and surroundings, and N = pi B - X. Then I = X + N eps_I and Q
+/// = N eps_Q. The extreme values of DOLP are at d = D, where I is the I of single scattering: (|sum N eps_Q,direct| -+
+/// sum |N| D) / I.
+/// Under a sky, X is the middle of the range of its exitance, and M is half of this range. The reflection of the sky's
+/// difference from X is taken from single scattering. The light D - d of later bounces comes from an unknown part of
+/// the sky; it changes Q and I by at most M (D - d). So the extreme values may also be at d = 0.
 struct Bracket {
   double low = 0.0;
   double high = 0.0;
   double error = 0.0;  ///< bound of the absolute error of each end
 };
 
-/// Exitances by emission, by reflection of the surroundings and, with `with_source`, by reflection of the source into
-/// the hemisphere.
+/// Sums the exitances of the emission, of the reflected surroundings and, if `with_source`, of the source's light that
+/// is reflected into the hemisphere.
 Stokes stokes_sum(const SpectralRule& rule, std::span<const Reflectance> reflectances,
                   std::span<const Emissivity> emissivities, EmissionModel model, double cos_theta, bool with_source);
 
-/// Adds a specular term `net` * r, with cos(theta) in r.
+/// Adds net * r_i to I and net * r_q to Q. So the sum has the factor cos(theta) of the moments.
 void add_specular(Stokes& sum, double net, const Moments& moments);
 
-/// The diffuse part of rho in a sample, and what a sky adds to the mean of its exitance.
+/// The diffuse part of rho in a sample. `beyond_mean`: mean exitance of the sky that this part receives, minus the
+/// plain mean.
 struct DiffuseSample {
   DiffuseLight rho;
   double beyond_mean = 0.0;
 };
 
-/// Adds what a sky reflects beyond its mean; `weights` is empty without one.
+/// Adds the reflection of a sky's difference from its mean. `weights` is empty without a sky.
 ///
-/// Equation: pi (S - mean(L) rho) = k_s / cos(theta) sum w_k r_k + rho_diffuse (mean_diffuse(L) - mean(L)) in I and in
-/// Q: r_k are the moments with the functions of the basis, w_k the sample's weights.
+/// Equation: in I and in Q, pi (S - mean(L) rho) = k_s / cos(theta) sum_k w_k r_k + pi rho_diffuse (mean_diffuse(L) -
+/// mean(L)). r_k is the moment with function k of the basis, w_k its weight in pi (L - mean(L)) of the sample.
 void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std::span<const SkyWeights> weights,
              std::span<const DiffuseSample> diffuse, std::span<const Moments> moments, double cos_theta);
 
-/// Adds only the specular part of what a sky reflects beyond its mean, with cos(theta) in r.
+/// Adds only the specular part of add_sky: `specular` times the weighted sum of the moments with the functions.
 void add_specular_sky(Stokes& sum, double specular, double rounding, const SkyWeights& weights, const Moments& moments);
 
-/// Adds pi E0 cos(theta_i) f of the beam from the source. The factor pi converts to the exitances of the sum. `diffuse`
-/// is pi cos(theta_i) f of the diffuse part.
+/// Adds pi E0 cos(theta_i) f, the reflected beam of the source. The factor pi converts this radiance to the exitances
+/// of the sum. `diffuse`: pi cos(theta_i) f of the diffuse part.
 void add_beam(Stokes& sum, double k_s, const SpectralRule& rule, std::span<const Scattered> scattered,
               std::span<const DiffuseLight> diffuse, double cos_theta_r);
 
-/// Applies a path: multiplies the sums by its transmittance and adds its radiance.
+/// Applies a path: multiplies the sums by its transmittance, then adds its exitance to I.
 void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance);
 
-/// `sky` is the result of add_sky.
+/// Computes the bracket of DOLP. `direct`: emissivities of the direct emission. `sky`: Stokes parameters that add_sky
+/// adds.
 Bracket bracket(const SceneModel& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,
                 std::span<const Emissivity> direct, const Stokes& sky, double cos_theta);
 
-/// Bound of the relative error, from the bound of the absolute error.
+/// Bound of the relative error of `value`, which has an absolute error of at most `error`.
 double relative_bound(double error, double value);
 
 }  // namespace dolp

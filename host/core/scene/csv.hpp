@@ -1,4 +1,4 @@
-// Comma-separated text, as people and programs write it.
+// Reads comma-separated text (CSV) written by people or programs.
 #pragma once
 
 #include <cstddef>
@@ -12,36 +12,37 @@
 namespace dolp {
 
 struct CsvForm {
-  char separator = ',';         ///< with ' ', any number of blanks separates two cells
-  bool has_blank_lines = true;  ///< leaves blank lines out; lines that begin with # are always left out
+  char separator = ',';         ///< if it is ' ', any number of blanks separates two cells
+  bool has_blank_lines = true;  ///< true: skips blank lines. Lines that begin with # are always skipped
   std::size_t first_line = 1;
 };
 
 /// Goes through a text line by line: `for (CsvReader row(text, name); row.next();)`.
 ///
-/// Accepts what split_lines does. A cell in double quotes may hold separators; its value is the text between the
-/// quotes. Leaves out rows without any value at the end of the text. All views are into `text`.
+/// Accepts the line ends and byte order mark that split_lines accepts. A cell in double quotes may contain separators;
+/// its value is the text between the quotes. Leaves out lines at the end of the text that have no value. All views
+/// point into `text`.
 class CsvReader {
  public:
   CsvReader(std::string_view text, std::string name, CsvForm form = {});
 
-  /// The next line that holds cells; false after the last.
+  /// Goes to the next line that has cells; false after the last line.
   bool next();
 
-  /// The line, and its cells, without blanks at both ends.
+  /// The line and its cells, without blanks at both ends.
   std::string_view line() const { return line_; }
   const std::vector<std::string_view>& cells() const { return cells_; }
-  /// True if a cell is a number.
+  /// True if at least one cell is a number.
   bool has_numbers() const;
 
   std::size_t line_number() const;
 
-  /// "file:line: ", the beginning of every message about the line, or about the first before there is one.
+  /// "file:line: ", with which every message about the line begins. Before the first next() it names the first line.
   std::string where() const;
   [[noreturn]] void fail(const std::string& what) const;
 
-  /// The number in a cell, whose column is called `column`.
-  /// Errors: InputError that names file, line, column and value and, with `range`, what is allowed.
+  /// The number in a cell. `column` is the name of its column, for messages.
+  /// Errors: InputError that names file, line, column and value and, if `range` is given, what is allowed.
   double number(std::size_t cell, std::string_view column, const NumberRange* range = nullptr) const;
 
  private:
@@ -58,35 +59,35 @@ struct CsvColumn {
   std::string name;
   NumberRange range = {};
   bool is_required = false;
-  std::string other_name = {};  ///< another name that the column may have
-  std::string unit = {};        ///< for messages, if the name has no unit
+  std::string other_name = {};  ///< a second name that the column may have
+  std::string unit = {};        ///< unit for messages, if `name` does not contain it
 };
 
-/// The columns of a file, found by the names in its header, in any order and in upper or lower case.
+/// The columns of a file, found by the names in its header. The names may be in any order and in upper or lower case.
 class CsvColumns {
  public:
-  /// Leaves out columns whose names are in `ignored`.
-  /// Errors: InputError for a name that is unknown, with the nearest known one if it is near, or appears twice; for a
-  /// required column that is missing; for another separator; for a line of numbers.
+  /// Reads a header; leaves out columns whose names are in `ignored`.
+  /// Errors: InputError for an unknown name (the message suggests a known one that is near), for a name that appears
+  /// twice, for a missing required column, for a separator other than the comma, and for numbers instead of names.
   CsvColumns(const CsvReader& header, std::vector<CsvColumn> known, const std::vector<std::string>& ignored = {});
 
-  /// All known columns in their order, for rows without a header.
+  /// For rows without a header: all known columns, in their order.
   explicit CsvColumns(std::vector<CsvColumn> known);
-  /// Reads the header as well. Errors: InputError for a text without one.
+  /// Reads the first line as a header. Errors: also InputError for a text without lines.
   static CsvColumns first_of(CsvReader& reader, std::vector<CsvColumn> known,
                              const std::vector<std::string>& ignored = {});
 
   bool has(std::string_view name) const { return cell_of(name).has_value(); }
 
-  /// The position of each cell's column among the known columns; nullopt for a column that is left out.
+  /// For each cell of a row, the position of its column among the known columns; nullopt for a column that is left out.
   const std::vector<std::optional<std::size_t>>& cells() const { return cells_; }
 
-  /// The number that a row has in a column; nullopt for a column that the file lacks.
-  /// Errors: InputError with column, value and range, and for a row with more cells than the header.
+  /// The number that a row has in the column `name`; nullopt if the file lacks the column.
+  /// Errors: InputError that names column, value and range; InputError for a row with more cells than the header.
   std::optional<double> number(const CsvReader& row, std::string_view name) const;
   double number_at(const CsvReader& row, std::size_t cell) const;
 
-  /// Refuses a row with other separators, or with more cells than the header.
+  /// Refuses a row with a separator other than the comma, or with more cells than the header.
   void check_width(const CsvReader& row) const;
 
  private:
@@ -94,10 +95,10 @@ class CsvColumns {
 
   std::vector<CsvColumn> known_;
   std::vector<std::optional<std::size_t>> cells_;
-  std::vector<std::string> names_;  // in the file
+  std::vector<std::string> names_;  // names in the header of the file
 };
 
-/// Message about an unknown column: the allowed columns, and the nearest name if it is near.
+/// Message about an unknown column. It lists the allowed columns, and suggests one with a similar name.
 std::string unknown_column(std::string_view name, const std::vector<CsvColumn>& known);
 
 }  // namespace dolp

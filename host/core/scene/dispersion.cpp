@@ -9,7 +9,7 @@ namespace {
 
 using Coefficients = std::span<const double>;
 
-/// The terms whose two coefficients begin at `first` (0 is C1) and every second place after it.
+/// The sum of term(c[i], c[i + 1]) over i = first, first + 2, ... The coefficient C1 of a formula is c[0].
 template <class Term>
 double sum_of_pairs(Coefficients c, std::size_t first, const Term& term) {
   double sum = 0.0;
@@ -17,10 +17,10 @@ double sum_of_pairs(Coefficients c, std::size_t first, const Term& term) {
   return sum;
 }
 
-/// One coefficient; 0 if the formula leaves it out.
+/// A coefficient, or 0 if the list ends before it.
 double at_or_zero(Coefficients c, std::size_t i) { return i < c.size() ? c[i] : 0.0; }
 
-/// C2 l^C3 / (l^2 - C4^C5) and the like. Without its coefficients it would be 0 / (l^2 - 1).
+/// A term such as C2 l^C3 / (l^2 - C4^C5), with C2 = c[first]. 0 if the list ends before it.
 double resonance(Coefficients c, std::size_t first, double l) {
   if (first + 3 >= c.size() || c[first] == 0.0) return 0.0;
   return c[first] * std::pow(l, c[first + 1]) / (l * l - std::pow(c[first + 2], c[first + 3]));

@@ -8,19 +8,19 @@ namespace dolp {
 
 inline constexpr int kDispersionFormulas = 9;
 
-/// A refractive index as a formula of wavelength with coefficients C1, C2, …
+/// A refractive index n as one of nine formulas of the wavelength, with the coefficients C1, C2, …
 ///
-/// Source: M. Polyanskiy, "Dispersion formulas", the document of the refractiveindex.info database, which numbers them.
-/// Accuracy: published indices to their last digit (test Dispersion_Formulas_*).
+/// Source: M. Polyanskiy, "Dispersion formulas", in the refractiveindex.info database, which numbers the formulas.
+/// Accuracy: reproduces published indices to their last digit (test Dispersion_Formulas_*).
 struct Dispersion {
-  int number = 0;                    ///< 1 to kDispersionFormulas; 0 is none
-  std::vector<double> coefficients;  ///< as many as coefficient_counts allows
+  int number = 0;                    ///< number of the formula, 1 to kDispersionFormulas; 0 means no formula
+  std::vector<double> coefficients;  ///< C1, C2, …; coefficient_counts lists how many there may be
 
-  /// n at a wavelength; NaN where n^2 would be negative.
+  /// n at a wavelength; NaN if the formula gives a negative n^2.
   double at(double wavelength_um) const;
 };
 
-/// Numbers of coefficients that a formula may have. Terms left out at the end are zero.
+/// The numbers of coefficients that a formula may have. Coefficients missing at the end are zero.
 std::vector<std::size_t> coefficient_counts(int number);
 
 }  // namespace dolp

@@ -19,13 +19,14 @@ namespace {
 
 constexpr int kFormulaSteps = 1000;
 
-/// A line of host/data/materials.csv.
+/// Positions of the columns of host/data/materials.csv.
 enum IndexColumn : std::size_t { kIndexName = 0, kWavelength = 1, kN = 2, kK = 3, kIndexColumns = 4 };
 
-/// A line of host/data/materials_sources.csv: name, rii_path, from_um, to_um, points_in_table, points_kept, source.
+/// Positions of the used columns of host/data/materials_sources.csv, which has name, rii_path, from_um, to_um,
+/// points_in_table, points_kept, source.
 enum SourceColumn : std::size_t { kName = 0, kSource = 6, kSourceColumns = 7 };
 
-/// The names and sources, still without values.
+/// The materials with their names and sources, but without n and k.
 std::vector<Material> read_sources() {
   std::vector<Material> materials;
   CsvReader row(embedded_materials_sources_csv(), "materials_sources.csv (built in)");
@@ -51,7 +52,7 @@ std::vector<Material> read_built_in_materials() {
   return materials;
 }
 
-/// True if `words` stands in a name with no letter or digit before or behind it; case does not matter.
+/// True if a name contains `words`, with no letter or digit before or after them. Case does not matter.
 bool has_words(const std::string& name, std::string_view words) {
   const std::string known = lower_case(name);
   const std::string wanted = lower_case(words);
@@ -72,8 +73,8 @@ std::vector<const Material*> materials_with(std::string_view words) {
   return found;
 }
 
-/// The material of that name, else the only one whose name begins with it up to a blank, else the only one that has the
-/// words.
+/// Finds a material by its full name, else by the first words of its name, else by any whole words of its name. Null if
+/// not exactly one material fits.
 const Material* match_name(std::string_view name) {
   const std::string wanted = lower_case(trim(name));
   std::vector<const Material*> beginning;
@@ -86,7 +87,7 @@ const Material* match_name(std::string_view name) {
   return beginning.size() == 1 ? beginning.front() : nullptr;
 }
 
-/// Materials that a name may mean: materials with its words or beginning, else materials with the nearest name or word.
+/// Suggests materials: those whose names contain or begin with `name`, else those with the most similar name or word.
 std::string name_hint(std::string_view name) {
   std::vector<std::string> alike;
   for (const Material* material : materials_with(trim(name))) alike.push_back(material->name);

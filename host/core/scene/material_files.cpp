@@ -1,4 +1,4 @@
-// The user's own refractive indices: refractiveindex.info database records and CSV files.
+// The user's files of refractive indices: refractiveindex.info database records, and CSV.
 #include <fmt/format.h>
 #include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/yaml.h>
@@ -19,15 +19,15 @@
 namespace dolp {
 namespace {
 
-// The longest record of the database has 2.6 MB. A text of this size takes up to 2 s and 0.7 GB.
+// The longest record of the database has 2.6 MB. A text of 4 MiB takes up to 2 s and 0.7 GB.
 constexpr std::size_t kMostRecordBytes = 4U << 20U;
-// Wavelengths at which the range of a formula is cut where it has no index.
+// Number of steps in which the range of a formula is searched for wavelengths at which n is allowed.
 constexpr int kRangeSteps = 1000;
-// Noise of a measured k around 0. More than this below 0 is another convention, or a mistake.
+// A measured k near 0 may be negative by this noise. A lower k follows another sign convention, or is a mistake.
 constexpr double kKNoise = 1e-5;
 constexpr NumberRange kNoisyKRange{-kKNoise, kKRange.max};
 
-/// n and k of a file, table by table. Rows of a table are in any order.
+/// Collects the rows of n and k of a file, table by table. The rows of a table may be in any order.
 class IndexRows {
  public:
   explicit IndexRows(Material& material) : material_(material) {}
@@ -42,7 +42,7 @@ class IndexRows {
     }
   }
 
-  /// Appends the rows to the material's tables.
+  /// Ends a table: appends the collected rows to the material.
   void end_table() {
     append_rows(material_.n, std::exchange(n_, {}), {"n", 0.0, kNRange}, material_.source);
     append_rows(material_.k, std::exchange(k_, {}), {"k", 0.0, kKRange}, material_.source);
@@ -53,7 +53,7 @@ class IndexRows {
   std::vector<SpectralRow> n_, k_;
 };
 
-/// The columns of a table of n, k or both. Rows outside of kWavelengthUmRange are left out.
+/// The columns of a table of n, k or both.
 std::vector<CsvColumn> index_columns(bool has_n = true, bool has_k = true) {
   std::vector<CsvColumn> columns = {{"wavelength_um", kPositiveRange, true, "wl"}};
   if (has_n) columns.push_back({"n", kNRange});
@@ -61,7 +61,7 @@ std::vector<CsvColumn> index_columns(bool has_n = true, bool has_k = true) {
   return columns;
 }
 
-/// True for a text that has the list of a record.
+/// True for a text that has the list DATA of a record of refractiveindex.info.
 bool is_record_text(std::string_view text) { return text.starts_with("DATA:") || text.find("\nDATA:") != text.npos; }
 
 void parse_csv(Material& material, IndexRows& rows, std::string_view text) {
@@ -87,14 +87,14 @@ std::string where(const Material& material, const YAML::Mark& mark) {
   throw InputError(where(material, node.Mark()) + what);
 }
 
-/// The text of a key that the item must have.
+/// The text of a key of a DATA item. Errors: InputError if the item lacks the key.
 YAML::Node text_of(const Material& material, const YAML::Node& item, const char* key) {
   const YAML::Node text = item[key];
   if (!text || !text.IsScalar()) fail(material, item, fmt::format("{}: missing; a DATA item must have it", key));
   return text;
 }
 
-/// Reader of the numbers in a text. The text of "data: |" begins on the next line.
+/// Reader of the numbers in a YAML text. The text of a block ("data: |") begins one line below its mark.
 CsvReader rows_of(const Material& material, const YAML::Node& text) {
   const bool is_block = text.Scalar().find('\n') != std::string::npos;
   return {text.Scalar(),
@@ -110,7 +110,7 @@ std::vector<double> numbers_of(const Material& material, const YAML::Node& text,
   return numbers;
 }
 
-/// The table of a formula holds the ends of its range; in between the formula itself is evaluated.
+/// Reads a formula. The table of n contains only the ends of the range; between them the formula is evaluated.
 void read_formula(Material& material, const YAML::Node& item, int number) {
   const YAML::Node range = text_of(material, item, "wavelength_range");
   const YAML::Node coefficients = text_of(material, item, "coefficients");
@@ -142,7 +142,7 @@ void read_formula(Material& material, const YAML::Node& item, int number) {
   material.n.formula = formula;
 }
 
-/// 1 to kDispersionFormulas; 0 for a type that is no formula.
+/// The number of the formula, 1 to kDispersionFormulas, or 0 if the type is not a formula.
 int formula_of(std::string_view type) {
   int number = kDispersionFormulas;
   while (number > 0 && type != fmt::format("formula {}", number)) --number;
@@ -178,13 +178,13 @@ void read_item(Material& material, IndexRows& rows, const YAML::Node& item) {
     check_keys(material, item, {"type", "wavelength_range", "coefficients"});
     return read_formula(material, item, formula);
   }
-  check_keys(material, item, {"type", "data", "wavelength_range"});  // records have a range beside tables too
+  check_keys(material, item, {"type", "data", "wavelength_range"});  // records have wavelength_range beside tables too
   const CsvColumns columns(index_columns(has_n, !has_n || is_nk));
   for (CsvReader row = rows_of(material, text_of(material, item, "data")); row.next();) rows.add(row, columns);
   rows.end_table();
 }
 
-/// What a YAML text without values of n is instead.
+/// For a message: what a YAML text without values of n is.
 std::string kind_without_data(const YAML::Node& root) {
   if (root.IsSequence()) return "it is a catalogue, a list of records";
   if (!root.IsMap()) return "it has no keys; a CSV must have another name than .yml";
@@ -192,7 +192,7 @@ std::string kind_without_data(const YAML::Node& root) {
   return "it has no list DATA";
 }
 
-/// Reads the DATA items; everything else in the record is ignored.
+/// Reads the DATA items of a record and ignores everything else in it.
 void parse_yaml(Material& material, IndexRows& rows, const std::string& text) {
   try {
     const YAML::Node record = YAML::Load(text);

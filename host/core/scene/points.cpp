@@ -22,13 +22,13 @@ constexpr std::size_t kMostPointsBytes = 1U << 30U;
 
 using FilmColumn = std::pair<std::size_t, FilmValue::Part>;
 
-/// A column that a file may have: a coordinate, one of a pair of directions, which has to be there, or a number of a
-/// film.
+/// A column that a file may have: the coordinate on an axis, or a number of a film, or an angle of a pair of
+/// directions, which is required.
 struct ColumnRule {
   std::string name;
   NumberRange range;
   std::variant<Axis, Points::Column Points::*, FilmColumn> column;
-  bool is_wind = false;  ///< replaces sigma
+  bool is_wind = false;  ///< the column has winds, from which the values of sigma follow
 
   double value(double number) const { return is_wind ? sigma_of_wind(number) : number; }
   bool is_required() const { return column.index() == 1; }
@@ -40,7 +40,7 @@ struct ColumnRule {
   }
 };
 
-/// The rules of the keys of films among some names.
+/// Adds a rule for each of `names` that is the key of a number of a film.
 void append_film_rules(std::vector<ColumnRule>& rules, const std::vector<std::string>& names) {
   static const std::map<std::string, FilmValue::Part> kParts = {
       {"n", FilmValue::Part::kN}, {"k", FilmValue::Part::kK}, {"thickness_um", FilmValue::Part::kThickness}};
@@ -54,7 +54,8 @@ void append_film_rules(std::vector<ColumnRule>& rules, const std::vector<std::st
   }
 }
 
-/// `names`: the columns that are given.
+/// The columns that points may have. `names`: the columns that are given, because only given columns of films get a
+/// rule.
 std::vector<ColumnRule> column_rules(PointsKind kind, const std::vector<std::string>& names) {
   std::vector<ColumnRule> rules;
   const bool has_pairs = kind == PointsKind::kGeometries;
@@ -79,7 +80,7 @@ std::vector<CsvColumn> csv_columns(const std::vector<ColumnRule>& rules) {
   return columns;
 }
 
-/// End of the first line that is no comment.
+/// Position of the end of the first line that is neither blank nor a comment.
 std::size_t end_of_header(std::string_view text) {
   std::size_t begin = 0;
   for (;;) {
@@ -90,7 +91,7 @@ std::size_t end_of_header(std::string_view text) {
   }
 }
 
-/// Errors: InputError that begins with the place of the points.
+/// The rule for a column. Errors: InputError that begins with Points::where().
 const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_view name, const Points& points) {
   const auto found = std::ranges::find(rules, name, &ColumnRule::name);
   if (found == rules.end())
@@ -98,7 +99,7 @@ const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_vi
   return *found;
 }
 
-/// Makes a column present.
+/// Adds an empty column. Errors: InputError if the points have it already.
 std::vector<double>& add_column(Points& points, const ColumnRule& rule) {
   if (rule.of(points)) {
     const bool is_other = rule.is_wind != points.has_winds && std::holds_alternative<Axis>(rule.column) &&
@@ -110,7 +111,7 @@ std::vector<double>& add_column(Points& points, const ColumnRule& rule) {
   return rule.of(points).emplace();
 }
 
-/// Refuses points that lack columns, and names all of them.
+/// Refuses points that lack required columns. The message names all of them.
 void check_required(Points& points, const std::vector<ColumnRule>& rules) {
   std::vector<std::string> missing;
   for (const ColumnRule& rule : rules) {
@@ -120,7 +121,7 @@ void check_required(Points& points, const std::vector<ColumnRule>& rules) {
   if (!missing.empty()) throw InputError(fmt::format("{}: {}", points.where(), fmt::join(missing, "; ")));
 }
 
-/// Makes the columns of a file that are not left out present in `points`.
+/// Adds the columns of a file to `points`, except columns that are left out.
 void add_columns(const CsvReader& header, const CsvColumns& columns, const std::vector<ColumnRule>& rules,
                  Points& points) {
   std::vector<std::string_view> kept;

@@ -1,4 +1,4 @@
-// Reads the CSV of scattered points that `eval`, `lookup` and `mueller` take.
+// Reads the CSV of scattered points for the commands `eval`, `lookup` and `mueller`.
 #pragma once
 
 #include <cstddef>
@@ -16,61 +16,67 @@
 namespace dolp {
 
 enum class PointsKind {
-  kDirections,  ///< eval, lookup: any of theta_deg, sigma, q, n, k, wavelength_um and numbers of films, at least one
-  kGeometries,  ///< mueller: theta_i_deg, theta_r_deg, delta_phi_deg, and any of sigma, q, n, k and numbers of films
+  /// For `eval` and `lookup`: at least one axis (theta_deg, sigma, q, n, k, wavelength_um, ...) or number of a film.
+  kDirections,
+  /// For `mueller`: theta_i_deg, theta_r_deg and delta_phi_deg, and any of sigma, q, n, k and numbers of films.
+  kGeometries,
 };
 
-/// The points in their order; a column that they do not have is nullopt.
+/// Scattered points, in their order. A column that they lack is nullopt.
 struct Points {
-  std::string name;  ///< for messages: the path of the file, "stdin", or "points" for arrays
+  std::string name;  ///< name for messages: the path of the file, "stdin", or "points" for arrays
   std::size_t count = 0;
-  std::string header;             ///< column names as given, joined by commas, no blanks around them
-  std::vector<std::string> rows;  ///< input cells as typed, joined by commas, no blanks around them; empty for arrays
-  std::vector<std::string> left_out;  ///< columns of the file that are results
+  std::string header;                 ///< column names as given, joined by commas without blanks
+  std::vector<std::string> rows;      ///< cells of each row as typed, joined by commas without blanks; empty for arrays
+  std::vector<std::string> left_out;  ///< columns of the file that are results, and not used
   using Column = std::optional<std::vector<double>>;
   AxisArray<Column> coordinates;
-  AxisLabels labels;  ///< texts in columns of a file; the values of these columns are positions in this list
-  /// Numbers of films, by layer (from 0) and part: columns called as the keys, "surface.coating.1.thickness_um".
+  /// Labels in the columns of a file, for axes with labels. The values of such a column are positions in this list.
+  AxisLabels labels;
+  /// Numbers of films, by layer (from 0) and part. The columns have the names of scene keys, for example
+  /// "surface.coating.1.thickness_um".
   std::map<std::pair<std::size_t, FilmValue::Part>, Column> films;
-  bool has_winds = false;                          ///< sigma was given as winds
-  Column theta_i_deg, theta_r_deg, delta_phi_deg;  ///< for kGeometries, which has no theta_deg and wavelength_um
-  std::size_t header_line = 0;                     ///< 0 for arrays
-  std::vector<std::uint32_t> row_lines;            ///< the line of each row; empty for arrays
+  bool has_winds = false;                          ///< true if winds were given instead of sigma
+  Column theta_i_deg, theta_r_deg, delta_phi_deg;  ///< only for kGeometries, which have no theta_deg and wavelength_um
+  std::size_t header_line = 0;                     ///< line of the header in the file; 0 for arrays
+  std::vector<std::uint32_t> row_lines;            ///< line of each row in the file; empty for arrays
   std::size_t size() const { return count; }
   Column& operator[](Axis axis) { return coordinates[axis]; }
   const Column& operator[](Axis axis) const { return coordinates[axis]; }
-  /// The value of a row as messages show it.
+  /// The value in a row of an axis's column, as messages show it.
   std::string text_at(Axis axis, std::size_t row) const;
-  /// The numbers of films of a row.
+  /// The numbers of films in a row.
   std::vector<FilmValue> films_at(std::size_t row) const;
-  /// The beginning of a message about a row, "file:line" or "points[row]", and about the columns.
+  /// The place of a row, with which messages begin: "file:line" or "points[row]". Without a row, the place of the
+  /// header.
   std::string where(std::size_t row) const;
   std::string where() const;
 };
 
-/// The value of a row, or `fallback` without such a column.
+/// The value of a column in a row, or `fallback` if the points lack the column.
 inline double value_or(const Points::Column& column, std::size_t row, double fallback) {
   return column ? (*column)[row] : fallback;
 }
 
-/// For each point, the position in `known` of the label in its column. Case does not matter. A part of a label is
-/// enough if no other label has it. Errors: InputError with the known labels.
+/// For each point, the position in `known` of its label on an axis. Case does not matter. A part of a label is enough
+/// if no other label contains it. Errors: InputError that lists the known labels.
 std::vector<double> label_positions(const Points& points, Axis axis, const AxisLabels& known);
 
-/// Points in memory: `count` of them.
-/// Errors: InputError as for a file, and for a column of another length.
+/// Makes `count` points from arrays in memory.
+/// Errors: the InputErrors of read_points for names and values, and InputError for a column whose length is neither 1
+/// nor `count`.
 Points points_of(std::span<const Column> columns, std::size_t count, PointsKind kind);
 
-/// Reads the points at `path` ("-" is stdin). A header without rows is a valid list of no points.
+/// Reads the points in the CSV file at `path` ("-" is stdin). A header without rows is a valid list of no points.
 ///
-/// Accepts CRLF line ends, a UTF-8 byte order mark, blanks and double quotes around cells, lines that begin with # and
+/// Accepts CRLF line ends, a UTF-8 byte order mark, blanks and double quotes around cells, lines that begin with #, and
 /// empty lines at the end of the file. Leaves out columns whose names are in `results`.
-/// Units: degrees; delta_phi_deg = 180 is the specular side, range [-360, 360].
-/// Errors: InputError, one line that names file, line, column, value and allowed range; a file that cannot be opened is
-/// an InputError too.
+/// Units: angles in degrees. delta_phi_deg is in [-360, 360], and 180 is the specular side.
+/// Errors: InputError, one line that names file, line, column, value and allowed range; also if the file cannot be
+/// opened.
 Points read_points(const std::string& path, PointsKind kind, const std::vector<std::string>& results = {});
 
-/// Reads points from a text in memory; `path_name` is for messages.
+/// Reads points from a text in memory. `path_name` is the name of the text in messages.
 Points parse_points(const std::string& text, const std::string& path_name, PointsKind kind,
                     const std::vector<std::string>& results = {});
 

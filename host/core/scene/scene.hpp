@@ -1,4 +1,4 @@
-// A validated scene: the contents of the TOML file in its units, degrees, micrometres and kelvins.
+// A validated scene: the values of the TOML file, in its units (degrees, micrometres, kelvins).
 #pragma once
 
 #include <dolp/setting.hpp>
@@ -15,9 +15,9 @@
 
 namespace dolp {
 
-/// A quantity tabulated over wavelength (strictly ascending), with its interpolation; where there is a formula,
-/// it applies between the first wavelength and the last.
-/// Outside the table the scene reader refuses the scene, so `at` is only called inside.
+/// A quantity tabulated over strictly ascending wavelengths, and the kind of interpolation between them. If there is a
+/// formula, it replaces the interpolation. `at` is only called between the first and the last wavelength, because the
+/// scene reader refuses other scenes.
 struct SpectralTable {
   enum class Interpolation { kLinear, kLogLog };
   std::vector<double> wavelength_um;
@@ -27,15 +27,16 @@ struct SpectralTable {
   double at(double wavelength_um) const;
 };
 
-/// n + ik over wavelength. A constant index has `n.wavelength_um` empty and is `constant` everywhere.
+/// A refractive index n + ik over wavelength. If `n.wavelength_um` is empty, the index is `constant` at every
+/// wavelength.
 struct Material {
-  std::string name;    ///< empty for n, k given in the scene
-  std::string source;  ///< where the values come from; empty for n, k given in the scene
+  std::string name;    ///< empty if the scene gives n and k as numbers
+  std::string source;  ///< origin of the values; empty if the scene gives n and k as numbers
   OpticalConstants constant;
   SpectralTable n, k;
-  /// For a constant from a table: the whole table.
+  /// The whole table, if `constant` was read from a table at one wavelength.
   std::shared_ptr<const Material> tabulated = {};
-  double least_k = 0.0;  ///< least k in the file; noise below 0 counts as 0
+  double least_k = 0.0;  ///< least k in the file if it is below 0, else 0; a k below 0 counts as 0
   bool is_constant() const { return n.wavelength_um.empty(); }
   OpticalConstants at(double wavelength_um) const;
 };
@@ -46,65 +47,66 @@ struct Layer {
   double thickness_um = 0.0;
 };
 
-/// Reflectances of a smooth surface at ascending wavelengths; a single one is for all wavelengths.
+/// Measured reflectances of a smooth surface at ascending wavelengths. A single element of `measured` holds at every
+/// wavelength.
 struct ReflectanceTable {
   std::vector<double> wavelength_um;
   std::vector<std::shared_ptr<const MeasuredReflectance>> measured;
-  /// Straight lines between wavelengths.
+  /// The reflectances at a wavelength, interpolated linearly.
   std::shared_ptr<const MeasuredReflectance> at(double wavelength_um) const;
 };
 
 struct Surface {
   Material material;
-  std::vector<Layer> coating;                                     ///< from the outside in
-  std::shared_ptr<const ReflectanceTable> reflectance = nullptr;  ///< instead of material and coating
+  std::vector<Layer> coating;                                     ///< films from the outside in
+  std::shared_ptr<const ReflectanceTable> reflectance = nullptr;  ///< replaces material and coating
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
-  Scattering scattering = Scattering::kSingle;  ///< kMultiple: with v-cavity
+  Scattering scattering = Scattering::kSingle;  ///< kMultiple only with v-cavity
   double sigma = 0.0;
-  std::optional<double> wind_m_s = {};  ///< wind that gives sigma; none if the scene has sigma
+  std::optional<double> wind_m_s = {};  ///< wind from which sigma follows; nullopt if the scene gives sigma
   double q = 2.0;
   double specular = 1.0;           ///< k_s in [0, 1]
   double diffuse = 0.0;            ///< k_d in [0, 1]
   double diffuse_exponent = -0.5;  ///< c in (-1, 0]
   DiffusePolarisation diffuse_polarisation = DiffusePolarisation::kNone;
-  /// True if the masking needs the mean slope, which the distribution does not always have: kSmithCauchyQRange.
+  /// True if the masking needs a finite mean slope. The cauchy distribution has one only for q in kSmithCauchyQRange.
   bool needs_mean_slope() const { return masking == Masking::kSmith && distribution == Distribution::kCauchy; }
   bool is_bare() const { return coating.empty() && !reflectance; }
-  /// True if the reflectances of facets do not depend on the wavelength.
+  /// True if the reflectances of facets are the same at every wavelength.
   bool has_constant_optics() const;
   FacetOptics optics_at(double wavelength_um) const;
-  /// Wavelengths at which the optics bend: the rows of tables.
+  /// Wavelengths at which the optics may have corners: the rows of tables.
   std::vector<double> optics_rows_um() const;
 };
 
 struct Emission {
   double temperature_K = 0.0;
   EmissionModel model = EmissionModel::kMoments;
-  bool has_bracket = false;  ///< dolp_low and dolp_high too
+  bool has_bracket = false;  ///< true adds the results dolp_low and dolp_high
 };
 
-/// Irradiance at normal incidence; exactly one of the three kinds.
+/// Irradiance of the source at normal incidence, given in one of three kinds.
 struct Source {
   enum class Kind { kFlat, kRelative, kTabulated };
   Kind kind = Kind::kFlat;
-  double irradiance = 0.0;           ///< W m-2 um-1, flat over a band (kFlat)
-  double relative_irradiance = 0.0;  ///< E0 / (pi B(T)) at each wavelength, T of the emission (kRelative)
-  SpectralTable table;               ///< W m-2 um-1 (kTabulated)
-  double scale = 1.0;                ///< multiplies all three
+  double irradiance = 0.0;           ///< for kFlat: W m-2 um-1, constant over a band
+  double relative_irradiance = 0.0;  ///< for kRelative: E0 / (pi B(T)) at each wavelength, with the T of the emission
+  SpectralTable table;               ///< for kTabulated: W m-2 um-1
+  double scale = 1.0;                ///< factor that multiplies the irradiance of each kind
 };
 
 struct Surroundings {
-  double temperature_K = 0.0;                           ///< if there is no profile
+  double temperature_K = 0.0;                           ///< used if there is no profile
   SkyAir air = {};                                      ///< air of a built-in profile
   std::shared_ptr<const SkyProfile> profile = nullptr;  ///< null for a uniform sky
 };
 
-/// Path to the sensor: I -> tau I + L (times pi in hemispherical mode); Q, U, V -> tau Q, U, V.
+/// Path to the sensor. It changes I to tau I + L (hemispherical mode: tau I + pi L) and multiplies Q, U and V by tau.
 struct Path {
   double transmittance = 1.0;
-  std::optional<double> temperature_K;  ///< path radiance (1 - tau) B(T)
-  std::optional<double> radiance;       ///< W m-2 sr-1 um-1, instead of a temperature
+  std::optional<double> temperature_K;  ///< gives the path the radiance L = (1 - tau) B(T)
+  std::optional<double> radiance;       ///< radiance L in W m-2 sr-1 um-1, instead of a temperature
 };
 
 struct Spectrum {
@@ -115,17 +117,18 @@ struct Spectrum {
 
 struct Geometry {
   Mode mode = Mode::kHemispherical;
-  double view_zenith_deg = 60.0;        ///< bistatic only
-  double relative_azimuth_deg = 180.0;  ///< bistatic only; 180 is the specular side
+  double view_zenith_deg = 60.0;        ///< only for bistatic mode
+  double relative_azimuth_deg = 180.0;  ///< only for bistatic mode; 180 is the specular side
 };
 
 struct Accuracy {
   double tolerance = 1e-4;
   Precision precision = Precision::kAuto;
-  bool may_interpolate = true;  ///< between slope distributions, where the grid is dense
+  bool may_interpolate = true;  ///< allows interpolation between slope distributions, and responses
 };
 
-/// Names in a scene; empty where the scene gives no name. The name of the material is in full.
+/// Names that a scene gives; a name is empty if the scene does not give it. `material` is the full name of the
+/// material.
 struct SceneNames {
   struct OfLayer {
     std::string material, material_file;
@@ -133,12 +136,12 @@ struct SceneNames {
   std::string material, material_file, reflectance_file;
   std::vector<OfLayer> coating;
   std::string source_preset, source_file;
-  std::string profile;  ///< built-in, or a file
+  std::string profile;  ///< name of a built-in sky, or path of a file
 };
 
 class SceneDocument;
 
-/// What the model reads: a scene without its grid, names and texts.
+/// The part of a scene that determines the physics: everything except grid, names and texts.
 struct SceneModel {
   Surface surface;
   std::optional<Emission> emission;
@@ -148,30 +151,31 @@ struct SceneModel {
   Spectrum spectrum;
   Geometry geometry;
   Accuracy accuracy;
-  std::shared_ptr<const std::vector<Material>> materials = {};  ///< on the grid's axis of materials
-  std::vector<Spectrum> bands = {};                             ///< on the grid's axis of bands
+  std::shared_ptr<const std::vector<Material>> materials = {};  ///< materials of the grid's axis kMaterial
+  std::vector<Spectrum> bands = {};                             ///< bands of the grid's axis kBand
 };
 
 struct SceneValues : SceneModel {
   std::string title;
   SceneNames names;
-  Axes grid;                       ///< in the user's order; sigma and q fall back to [surface]
-  AxisLabels labels;               ///< labels of the grid's materials and bands
-  std::vector<double> wind_m_s;    ///< winds that give the grid's values of sigma; empty if the scene has sigma
-  std::string path_name;           ///< as given on the command line, for messages
-  std::string text;                ///< the file, verbatim
-  std::vector<std::string> files;  ///< files that the scene names, as the process finds them
+  Axes grid;                     ///< values in the user's order; sigma and q come from [surface] if [grid] lacks them
+  AxisLabels labels;             ///< labels of the grid's materials and bands
+  std::vector<double> wind_m_s;  ///< winds from which the grid's values of sigma follow; empty if the scene gives sigma
+  std::string path_name;         ///< path from the command line, for messages
+  std::string text;              ///< text of the scene file, unchanged
+  std::vector<std::string> files;  ///< files that the scene names, with the paths by which the process opens them
   std::vector<Setting> settings;   ///< settings that were applied to the text
-  std::shared_ptr<const SceneDocument> document;  ///< text and settings as TOML; null for a scene that was not read
+  std::shared_ptr<const SceneDocument> document;  ///< TOML of text and settings; null for a scene that was not read
 };
 
-/// The scene at one wavelength. Errors: InputError, where n, k or E0 are not known there.
+/// The scene at one wavelength. Errors: InputError if n, k or E0 are not known at this wavelength.
 SceneModel at_wavelength(const SceneModel& scene, double wavelength_um);
 
-/// Gives the films of a surface other numbers.
+/// Replaces numbers of the films of a surface.
 void set_films(Surface& surface, const std::vector<FilmValue>& films);
 
-/// The scene as a variant changes it. Domain: films that the scene has. Errors: errors of at_wavelength.
+/// The scene with the changes of a variant. Domain: the scene has the films that the variant changes. Errors: errors of
+/// at_wavelength.
 SceneModel with_variant(const SceneModel& scene, const SceneVariant& variant);
 
 }  // namespace dolp

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMostDepth = 100;
 
-/// The end of the string that begins at `begin`, as TOML has four kinds of them.
+/// The end of the string that begins at `begin`. TOML has strings in one or in three quotation marks, single or double.
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
   const char quote = text[begin];
   const std::string three(3, quote);
@@ -33,9 +33,10 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// The line on which keys and values are nested deeper than kMostDepth, 0 for none: the parser recurses on them.
+/// The line on which keys and values are nested deeper than kMostDepth, or 0. Such a text is refused, because the TOML
+/// parser recurses at each level.
 std::size_t line_of_deep_nesting(std::string_view text) {
-  std::vector<std::size_t> around = {0};  // depths outside of the open brackets
+  std::vector<std::size_t> around = {0};  // depths at the beginning of the text and of each open bracket
   std::size_t depth = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -60,7 +61,8 @@ std::size_t line_of_deep_nesting(std::string_view text) {
   return 0;
 }
 
-/// Position in a list, whose elements count from 1 in a key; beyond every list for anything else.
+/// The position in a list that a part of a key means. Keys count elements from 1. A text that is no such number means a
+/// position beyond every list.
 std::size_t list_position(std::string_view part) {
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
@@ -70,13 +72,13 @@ std::size_t list_position(std::string_view part) {
 
 std::string last_part(std::string_view key) { return std::string(key.substr(key.find_last_of('.') + 1)); }
 
-/// The table of a dotted key; empty at the top.
+/// The part of a dotted key that names the table; empty for a key at the top.
 std::string_view table_part(std::string_view key) {
   const std::size_t dot = key.find_last_of('.');
   return dot == std::string_view::npos ? std::string_view{} : key.substr(0, dot);
 }
 
-/// Calls `insert` with the value of a text: TOML, else a number in another notation, else a word.
+/// Reads a text as TOML, else as a number in a notation that TOML lacks, else as a word. Calls `insert` with the value.
 template <class Insert>
 void insert_text(const std::string& text, bool is_text_key, const Insert& insert) {
   try {
@@ -168,7 +170,7 @@ void SceneDocument::apply(const Setting& setting) {
 
 toml::table& SceneDocument::create_table(const std::vector<std::string_view>& path, const std::string& origin) {
   toml::table* table = &root_;
-  toml::array* list = nullptr;  // whose element comes next
+  toml::array* list = nullptr;  // not null if the next part of the path is an element of this list
   std::string key;
   for (const std::string_view part : path) {
     if (list) {
@@ -246,7 +248,8 @@ unsigned SceneDocument::line_of(std::string_view key) const {
 
 std::string SceneDocument::prefix(std::string_view key) const {
   const toml::node* node = find(key);
-  // The message about a missing key does not point to a table that a setting created, but to an axis without it.
+  // If a key is missing, the message does not name the setting that created its table. But it names the setting that
+  // created an axis without a required key.
   const bool is_of_value = node != nullptr || find_scene_key(table_part(key)) != nullptr;
   if (const std::string* origin = is_of_value ? origin_of(key) : nullptr; origin)
     return *origin + ": " + (node ? "" : last_part(key) + ": ");

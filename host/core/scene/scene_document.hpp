@@ -1,4 +1,4 @@
-// The TOML of a scene with settings applied, which knows where each value came from.
+// The TOML of a scene after its settings were applied. It knows the origin of each value, for messages.
 #pragma once
 
 #include <toml++/toml.h>
@@ -12,37 +12,37 @@
 
 namespace dolp {
 
-/// True for a setting that removes a key or a table, as a value of a program or as text.
+/// True for a setting that removes a key or a table: an empty value, `{}`, or `none` where it removes
+/// (is_removed_by_none).
 bool is_removal(const Setting& setting);
 
-/// A value in one line, as one would write it in TOML. Without `is_escaped`, for messages: texts between double quotes
-/// as they are.
+/// A value as one line of TOML. Without `is_escaped`, which is for messages, texts are quoted without escapes.
 std::string toml_text(const toml::node& node, bool is_escaped = true);
 
 class SceneDocument {
  public:
-  /// Errors: InputError for a TOML syntax error, with its line, for nesting deeper than 100 and for a text longer than
-  /// kMostTextBytes.
+  /// Errors: InputError for a TOML syntax error, which names its line; for nesting deeper than 100; and for a text
+  /// longer than kMostTextBytes.
   SceneDocument(const std::string& text, const std::string& path_name);
 
-  /// Gives a key another value, or takes it away. Errors: InputError.
+  /// Gives a key another value, or removes it. Errors: InputError.
   void apply(const Setting& setting);
 
   const toml::table& root() const { return root_; }
   const toml::node* find(std::string_view key) const;
   bool is_set(std::string_view key) const { return origin_of(key) != nullptr; }
 
-  /// The first of these keys that a setting gave, else the first key. A message about a contradiction names it.
+  /// For a message about keys that contradict each other: the first of them that a setting gave, else the first.
   std::string first_set(std::initializer_list<std::string> keys) const;
 
-  /// Throws InputError with the place of the key's value, the key, its value and the problem. For an absent key it
-  /// names the line of its table.
+  /// Throws InputError that names the line or the setting of the key, the key, its value and the problem. For an absent
+  /// key it names the line of the table.
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
 
-  /// The beginning of such a message.
+  /// The beginning of such a message, before the problem.
   std::string prefix(std::string_view key) const;
 
-  /// The line of a key's value, or the line of the nearest table around it, or 1.
+  /// The line of a key's value, else of the nearest table around it, else 1.
   unsigned line_of(std::string_view key) const;
 
  private:
@@ -53,7 +53,7 @@ class SceneDocument {
 
   std::string name_;
   toml::table root_;
-  std::map<std::string, std::string, std::less<>> origins_;  // for each key that was set: the beginning of its messages
+  std::map<std::string, std::string, std::less<>> origins_;  // for each key that a setting gave: where it comes from
 };
 
 }  // namespace dolp

@@ -18,7 +18,7 @@ namespace {
 
 using Type = Key::Type;
 
-// From what a scene holds to the value of a key, and back.
+// Convert a value of a scene to the value of a key, and back.
 KeyValue value_of(double number) { return {.number = number}; }
 KeyValue value_of(bool flag) { return {.word = flag ? 1U : 0U, .text = flag ? "true" : "false"}; }
 KeyValue value_of(const std::string& text) { return {.text = text}; }
@@ -39,7 +39,7 @@ void assign(Choice& choice, const KeyValue& v) requires std::is_enum_v<Choice> {
   choice = static_cast<Choice>(v.word);
 }
 
-/// The value at an address in a scene; none for a null pointer, and for a number, text or list that is empty.
+/// The value at an address in a scene. nullopt for a null pointer, and for a number, text or list that is empty.
 template <class Content>
 std::optional<KeyValue> value_at(const Content* at) {
   if (!at) return std::nullopt;
@@ -122,7 +122,7 @@ void set_wind(SceneValues& s, const KeyValue& v) {
   s.surface.wind_m_s = v.number;
 }
 
-/// A key that gives E0, and with it the kind of the source.
+/// Makes a key that gives E0. Setting it also sets the kind of the source.
 SceneKey source_number(const char* key, const char* unit, const char* meaning, Source::Kind kind,
                        double Source::*number_of) {
   const auto is_kind = [kind](const SceneValues& s) { return s.source && s.source->kind == kind; };
@@ -149,7 +149,7 @@ SceneKey wind_axis() {
                   set);
 }
 
-/// The layer of a key, counted from 1 in its name; made if a scene that changes has fewer.
+/// A layer of the coating; keys count layers from 1. Adds missing layers if the scene may be changed.
 template <class Scene>
 auto& layer_of(Scene& s, std::size_t layer) {
   if constexpr (!std::is_const_v<Scene>) {
@@ -176,12 +176,13 @@ std::vector<SceneKey> layer_keys(std::size_t layer) {
     };
   };
   std::vector<SceneKey> keys = {
-      number(begin + "n", "1", kNRange, "", "n of a film on the surface; layers count from the outside in",
+      number(begin + "n", "1", kNRange, "",
+             "n of a film on the surface; the number in the key counts films from the outside in",
              index_address(&OpticalConstants::n), has_index),
       number(begin + "k", "1", kKRange, "0", "k of the film, with n", index_address(&OpticalConstants::k), has_index),
       text(begin + "material", "a built-in material by name, instead of the film's n and k",
            name_address(&SceneNames::OfLayer::material), has_layer),
-      text(begin + "material_file", "your own n and k of the film, instead of n and k",
+      text(begin + "material_file", "file with your own values of the film's n and k, instead of n and k",
            name_address(&SceneNames::OfLayer::material_file), has_layer),
       number(
           begin + "thickness_um", "um", kThicknessUmRange, "required", "thickness of the film",
@@ -195,29 +196,31 @@ std::vector<SceneKey> surface_keys() {
   return {
       text("title", "name of the scene, for the table and the window", [](auto& s) { return &s.title; }),
       number(
-          "surface.n", "1", kNRange, "", "real part n of the refractive index n + ik; or material, or material_file",
+          "surface.n", "1", kNRange, "",
+          "real part n of the refractive index n + ik (instead of n: material, material_file or reflectance_file)",
           [](auto& s) { return &s.surface.material.constant.n; }, has_own_index),
       number(
-          "surface.k", "1", kKRange, "0", "imaginary part k of the refractive index n + ik, with surface.n",
+          "surface.k", "1", kKRange, "0", "imaginary part k of the refractive index n + ik, only together with n",
           [](auto& s) { return &s.surface.material.constant.k; }, has_own_index),
-      text("surface.material", "a built-in material by name (dolp materials lists them), instead of n and k",
+      text("surface.material", "name of a built-in material (dolp materials lists the names), instead of n and k",
            [](auto& s) { return &s.names.material; }),
-      text("surface.material_file", "your own n and k: refractiveindex.info YAML or CSV, instead of n and k",
+      text("surface.material_file",
+           "file with your own values of n and k (refractiveindex.info YAML, or CSV), instead of n and k",
            [](auto& s) { return &s.names.material_file; }),
       text("surface.reflectance_file",
-           "measured reflectances of the smooth surface: CSV of beta_deg, r_s, r_p, maybe wavelength_um; instead of n, "
-           "k and a coating",
+           "CSV file with measured reflectances of the smooth surface (columns beta_deg, r_s, r_p, and wavelength_um "
+           "if they depend on it), instead of n, k and a coating",
            [](auto& s) { return &s.names.reflectance_file; }),
       choice("surface.distribution", Surface().distribution, "slope distribution D",
              [](auto& s) { return &s.surface.distribution; }),
-      with_set(
-          number("surface.sigma", "1", kSigmaRange, "required",
-                 "slope width sigma (m^2 = 2 sigma^2); may be absent with grid.sigma, whose first value it then is",
-                 [](auto& s) { return &s.surface.sigma; }),
-          set_sigma),
+      with_set(number("surface.sigma", "1", kSigmaRange, "required",
+                      "slope width sigma, with m^2 = 2 sigma^2; the first value of grid.sigma replaces an absent "
+                      "surface.sigma",
+                      [](auto& s) { return &s.surface.sigma; }),
+               set_sigma),
       with_set(
           number("surface.wind_m_s", "m s-1", kWindRange, "",
-                 "wind over a sea, instead of sigma, with distribution gaussian: m^2 = 0.003 + 0.00512 times the wind",
+                 "wind over a sea, instead of sigma: m^2 = 0.003 + 0.00512 times the wind (only distribution gaussian)",
                  [](auto& s) { return &s.surface.wind_m_s; }),
           set_wind),
       number("surface.q", "1", kQRange, "2", "tail exponent q of the cauchy distribution; 2 is GGX",
@@ -225,7 +228,8 @@ std::vector<SceneKey> surface_keys() {
       choice("surface.masking", Surface().masking, "geometric attenuation G; smith with cauchy needs every q > 1.5",
              [](auto& s) { return &s.surface.masking; }),
       choice("surface.scattering", Surface().scattering,
-             "light followed to its first facet, or through all bounces in V-grooves (masking v-cavity)",
+             "single: light is followed to its first facet; multiple: through all bounces in V-grooves (only masking "
+             "v-cavity)",
              [](auto& s) { return &s.surface.scattering; }),
       number("surface.specular", "1", kFractionRange, "1", "specular factor k_s",
              [](auto& s) { return &s.surface.specular; }),
@@ -234,10 +238,10 @@ std::vector<SceneKey> surface_keys() {
       number("surface.diffuse_exponent", "1", kDiffuseExponentRange, "-0.5",
              "exponent c of the diffuse term (cos theta_i cos theta_r)^c",
              [](auto& s) { return &s.surface.diffuse_exponent; }),
-      choice(
-          "surface.diffuse_polarisation", Surface().diffuse_polarisation,
-          "none, or polarised by transmission through the smooth surface on the way out (paint; n and k without films)",
-          [](auto& s) { return &s.surface.diffuse_polarisation; }),
+      choice("surface.diffuse_polarisation", Surface().diffuse_polarisation,
+             "none: diffuse light is unpolarised; transmission: it is polarised when it leaves the body through the "
+             "smooth surface, as in paint (without coating and reflectance_file)",
+             [](auto& s) { return &s.surface.diffuse_polarisation; }),
   };
 }
 
@@ -247,54 +251,58 @@ std::vector<SceneKey> radiation_keys() {
              [](auto& s) { return s.emission ? &s.emission->temperature_K : nullptr; }),
       choice(
           "emission.model", Emission().model,
-          "emissivity 1 - rho of the rough surface, 1 - R of the smooth surface, or what the facets emit straight to "
-          "the viewer (masking smith or v-cavity)",
+          "moments: emissivity 1 - rho of the rough surface; fresnel: emissivity 1 - R of the smooth surface; direct: "
+          "light that facets emit straight to the viewer (only masking smith or v-cavity)",
           [](auto& s) { return s.emission ? &s.emission->model : nullptr; }),
       flag("emission.bracket",
-           "adds dolp_low, dolp_high: what DOLP lies between with all bounces (masking smith or v-cavity)",
+           "adds dolp_low and dolp_high, two values between which DOLP lies with all bounces (only masking smith or "
+           "v-cavity)",
            [](auto& s) { return s.emission ? &s.emission->has_bracket : nullptr; }),
-      source_number("source.irradiance", "W m-2 um-1", "E0 at normal incidence, flat over a band", Source::Kind::kFlat,
+      source_number("source.irradiance", "W m-2 um-1",
+                    "irradiance E0 of the source at normal incidence, constant over a band", Source::Kind::kFlat,
                     &Source::irradiance),
       source_number("source.relative_irradiance", "1",
-                    "e = E0/(pi B(T)) at each wavelength, T of the emission; instead of irradiance",
+                    "E0/(pi B(T)) at each wavelength, with T = emission.temperature_K; instead of irradiance",
                     Source::Kind::kRelative, &Source::relative_irradiance),
       key_at(
           described("source.preset", Type::kWord, "", {}, "",
-                    "E0 of the sun at the top of the atmosphere; instead of irradiance", {"sun"}),
+                    "E0 of the sun at the top of the atmosphere, instead of irradiance", {"sun"}),
           [](auto& s) { return &s.names.source_preset; }, always),
-      text("source.file", "your own E0: CSV of wavelength_um, irradiance; instead of irradiance",
+      text("source.file", "CSV file with your own E0 (columns wavelength_um, irradiance), instead of irradiance",
            [](auto& s) { return &s.names.source_file; }),
-      number("source.scale", "1", kNonNegativeRange, "1", "factor on E0, whatever its kind",
+      number("source.scale", "1", kNonNegativeRange, "1", "factor that multiplies E0, however E0 is given",
              [](auto& s) { return s.source ? &s.source->scale : nullptr; }),
       number(
           "surroundings.temperature_K", "K", kBackgroundTemperatureRange, "",
-          "temperature T_surr of the black surroundings that the surface reflects; or profile",
+          "temperature T_surr of the black surroundings that the surface reflects (instead of it: profile)",
           [](auto& s) { return s.surroundings ? &s.surroundings->temperature_K : nullptr; },
           [](const SceneValues& s) { return s.names.profile.empty(); }),
       text("surroundings.profile",
-           "a sky over zenith: clear-sky, overcast or your own CSV of zenith_deg, temperature_K or radiance, "
-           "wavelength_um; instead of temperature_K",
+           "sky that changes with the zenith: clear-sky, overcast, or your own CSV file (columns zenith_deg, "
+           "temperature_K or radiance, and wavelength_um if they depend on it); instead of temperature_K",
            [](auto& s) { return &s.names.profile; }),
       number("surroundings.vapour_cm", "cm", kVapourRange, "",
-             "precipitable water of the air of clear-sky or overcast; without it 1.27 cm, or all that colder air holds",
+             "precipitable water of the air of clear-sky or overcast; if absent, 1.27 cm, or all that the air holds "
+             "if this is less",
              [](auto& s) { return s.surroundings ? &s.surroundings->air.vapour_cm : nullptr; }),
       number("surroundings.air_temperature_K", "K", kAirTemperatureRange, "",
-             "temperature of the air at the ground under clear-sky or overcast; 288.15 K without it",
+             "temperature of the air at the ground under clear-sky or overcast; if absent, 288.15 K",
              [](auto& s) { return s.surroundings ? &s.surroundings->air.temperature_K : nullptr; }),
       number("path.transmittance", "1", kFractionRange, "1", "transmittance tau of the path to the sensor",
              [](auto& s) { return s.path ? &s.path->transmittance : nullptr; }),
       number("path.temperature_K", "K", kBackgroundTemperatureRange, "",
-             "temperature of the path, whose radiance is (1 - tau) B(T); without it and radiance, none",
+             "temperature T of the path, which then has the radiance (1 - tau) B(T); a path without temperature_K and "
+             "radiance has none",
              [](auto& s) { return s.path ? &s.path->temperature_K : nullptr; }),
       number("path.radiance", "W m-2 sr-1 um-1", kNonNegativeRange, "",
-             "path radiance L_path; instead of path.temperature_K",
+             "radiance L_path of the path, instead of path.temperature_K",
              [](auto& s) { return s.path ? &s.path->radiance : nullptr; }),
   };
 }
 
 std::vector<SceneKey> geometry_keys() {
   return {
-      {{"spectrum.wavelength_um", Type::kNumber, "um", kWavelengthUmRange, {}, "", "wavelength lambda; or band_um"},
+      {{"spectrum.wavelength_um", Type::kNumber, "um", kWavelengthUmRange, {}, "", "a single wavelength lambda"},
        [](SceneValues& s, const KeyValue& v) {
          s.spectrum = {v.number, v.number};
        },
@@ -308,23 +316,23 @@ std::vector<SceneKey> geometry_keys() {
          return KeyValue{.numbers = {s.spectrum.min_um, s.spectrum.max_um}};
        }},
       choice("geometry.mode", Geometry().mode,
-             "exitances, with rho(theta) for emission, surroundings and a source at zenith theta; or radiances in a "
-             "fixed view, with a source at zenith theta",
+             "hemispherical: exitances, in which emission, surroundings and a source at zenith theta all use "
+             "rho(theta); bistatic: radiances toward a fixed view, with a source at zenith theta",
              [](auto& s) { return &s.geometry.mode; }),
-      number("geometry.view_zenith_deg", "degree", kZenithDegRange, "60", "bistatic: view zenith theta_v",
+      number("geometry.view_zenith_deg", "degree", kZenithDegRange, "60", "view zenith theta_v in bistatic mode",
              [](auto& s) { return &s.geometry.view_zenith_deg; }),
       number("geometry.relative_azimuth_deg", "degree", kAzimuthDegRange, "180",
-             "bistatic: azimuth Delta phi between source and view; 180 is the specular side",
+             "azimuth Delta phi between source and view in bistatic mode; 180 is the specular side",
              [](auto& s) { return &s.geometry.relative_azimuth_deg; }),
       grid_axis(Axis::kTheta, "{ from = 0, to = 90, count = 91 }",
-                "zenith theta: of the view (hemispherical) or of the source (bistatic)"),
+                "zenith theta of the view (hemispherical mode) or of the source (bistatic mode)"),
       grid_axis(Axis::kSigma, "surface.sigma", "slope widths sigma of the table"),
       wind_axis(),
       key_at(
           described("grid.material", Type::kNames, "", {}, "",
-                    "materials of the table instead of n and k: names, or \"all\""),
+                    "names of built-in materials for the table, or \"all\"; instead of n and k"),
           [](auto& s) { return &s.labels[Axis::kMaterial]; }, always),
-      {{"grid.band_um", Type::kPairs, "um", kWavelengthUmRange, {}, "", "bands of the table instead of a spectrum"},
+      {{"grid.band_um", Type::kPairs, "um", kWavelengthUmRange, {}, "", "bands of the table, instead of [spectrum]"},
        [](SceneValues& s, const KeyValue& v) {
          for (std::size_t i = 0; i < v.numbers.size(); i += 2) s.bands.push_back({v.numbers[i], v.numbers[i + 1]});
        },
@@ -333,23 +341,24 @@ std::vector<SceneKey> geometry_keys() {
          for (const Spectrum& band : s.bands) ends.insert(ends.end(), {band.min_um, band.max_um});
          return value_at(&ends);
        }},
-      grid_axis(
-          Axis::kTemperature, "",
-          "temperatures of the surface in the table; emission.temperature_K may then be absent, and is the first"),
+      grid_axis(Axis::kTemperature, "",
+                "temperatures of the surface in the table; the first one replaces an absent emission.temperature_K"),
       grid_axis(Axis::kQ, "surface.q", "tail exponents q of the table"),
-      grid_axis(
-          Axis::kWavelength, "",
-          "wavelengths of the table, without a band; spectrum.wavelength_um may then be absent, and is the first"),
-      grid_axis(Axis::kN, "", "n of the table, without a material; surface.n may then be absent"),
-      grid_axis(Axis::kK, "", "k of the table, without a material"),
+      grid_axis(Axis::kWavelength, "",
+                "wavelengths of the table, instead of a band; the first one replaces an absent spectrum.wavelength_um"),
+      grid_axis(Axis::kN, "",
+                "values of n in the table, instead of a material; the first one replaces an absent surface.n"),
+      grid_axis(Axis::kK, "",
+                "values of k in the table, instead of a material; the first one replaces an absent surface.k"),
       number("accuracy.tolerance", "1", kToleranceRange, "1e-4",
-             "largest error of rho, relative to rho_I, and of DOLP, absolute",
+             "largest error of rho relative to rho_I, and largest absolute error of DOLP",
              [](auto& s) { return &s.accuracy.tolerance; }),
-      choice("accuracy.precision", Accuracy().precision, "arithmetic of the device",
+      choice("accuracy.precision", Accuracy().precision,
+             "arithmetic of the kernels; auto takes float, and double for what float cannot compute to the tolerance",
              [](auto& s) { return &s.accuracy.precision; }),
       {described("accuracy.interpolation", Type::kWord, "", {}, "auto",
-                 "between slope distributions of a dense grid and over many indices by responses, within the "
-                 "tolerance; off: every entry is integrated by itself",
+                 "auto: the program may interpolate between slope distributions of a dense grid and combine many "
+                 "indices from responses, within the tolerance; off: it integrates every entry",
                  {"auto", "off"}),
        [](SceneValues& s, const KeyValue& v) { s.accuracy.may_interpolate = v.word == 0; },
        [](const SceneValues& s) -> std::optional<KeyValue> {

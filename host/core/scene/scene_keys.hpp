@@ -1,4 +1,4 @@
-// The list of all scene keys: allowed values, and how a scene holds them.
+// The table of all scene keys: their descriptions, and how a scene stores their values.
 #pragma once
 
 #include <functional>
@@ -12,19 +12,20 @@
 
 namespace dolp {
 
-/// A value that its Key allows.
+/// A value of a key. Which members are set depends on Key::type.
 struct KeyValue {
   double number = 0.0;
   std::size_t word = 0;              ///< position in Key::words
-  std::string text = {};             ///< also the text of a word or a flag
-  std::vector<double> numbers = {};  ///< values of a pair, an axis, or pairs one after the other
+  std::string text = {};             ///< value of a text; also the text of a word or a flag
+  std::vector<double> numbers = {};  ///< values of a pair, of several pairs one after the other, or of an axis
   std::vector<std::string> names = {};
 };
 
 struct SceneKey {
   Key description;
   std::function<void(SceneValues& scene, const KeyValue& value)> set;
-  /// None if the scene has no such value: n beside a material, the temperature of an absent emission.
+  /// The value in a scene. nullopt if the scene does not have it, for example n of a named material, or the temperature
+  /// without emission.
   std::function<std::optional<KeyValue>(const SceneValues& scene)> value;
 };
 
@@ -40,8 +41,8 @@ struct KeyAlternative {
 struct KeyChoice {
   std::string table;
   std::vector<KeyAlternative> alternatives;
-  bool is_required = true;   ///< if the table is there, or must be
-  bool is_of_layer = false;  ///< the table is a layer of a coating, which a scene may lack
+  bool is_required = true;   ///< one alternative must be chosen, unless an optional table is absent
+  bool is_of_layer = false;  ///< the table is a layer of a coating, so it may be absent
 };
 
 inline constexpr std::size_t kMostLayers = 16;  ///< most layers of a coating
@@ -53,24 +54,24 @@ const SceneKey* find_scene_key(std::string_view key);
 /// The keys that a setting of `key` replaces: the keys of other alternatives.
 std::vector<std::string> keys_replaced_by(std::string_view key);
 
-/// The tables in the order of the keys.
+/// The tables of a scene, in the order of the keys.
 std::vector<std::string> scene_tables();
 
-/// True if a scene without that table has no such effect.
+/// True for a table whose absence removes an effect: emission, source, surroundings, path.
 bool is_effect_table(std::string_view table);
 
-/// True for the coating of a scene and for one of its layers: "surface.coating", "surface.coating.2".
+/// True for the coating or one of its layers: "surface.coating", "surface.coating.2".
 bool is_coating(std::string_view key);
 
-/// True if the word none removes a key or a table. If none may be a value, `{}` removes it.
+/// True if the value `none` removes a key or a table. Where `none` may be a value, only `{}` removes the key.
 bool is_removed_by_none(std::string_view key);
 
-/// Makes the table's effect present in the scene.
+/// Adds the effect that a table describes to the scene.
 void add_effect(SceneValues& scene, std::string_view table);
 
 class SceneDocument;
 
-/// The value of a key that the document has. Errors: InputError through SceneDocument::fail.
+/// Reads the value of a key that the document has. Errors: InputError by SceneDocument::fail.
 KeyValue read_value(const SceneDocument& document, const Key& description);
 
 }  // namespace dolp

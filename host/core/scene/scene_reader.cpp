@@ -19,8 +19,8 @@
 namespace dolp {
 namespace {
 
-/// The nearest known key or table. A known name in another table, a name without its table, or the beginning of a name
-/// counts as near.
+/// The known key or table that is most similar to `key`. A known name in another table, a known name without its table,
+/// and the beginning of a known name count as similar.
 std::string key_hint(const std::string& key) {
   std::vector<std::string> known = scene_tables();
   for (const Key& description : dolp::keys()) known.push_back(description.key);
@@ -33,7 +33,7 @@ std::string key_hint(const std::string& key) {
                            [&](const std::string& a, const std::string& b) { return distance(a) < distance(b); });
 }
 
-/// The keys of a coating, a list of tables.
+/// Appends the keys of a coating, which is a list of tables.
 void append_layer_keys(const SceneDocument& document, const std::string& coating, const toml::node& node,
                        std::vector<std::string>& keys) {
   const std::string allowed = fmt::format(
@@ -49,7 +49,7 @@ void append_layer_keys(const SceneDocument& document, const std::string& coating
   }
 }
 
-/// Every key of the document that should be in the list of keys, in the order of the lines.
+/// Every key of the document, known or not, in the order of the lines. Keys in tables and layers are dotted.
 std::vector<std::string> document_keys(const SceneDocument& document) {
   std::vector<std::string> keys;
   const std::vector<std::string> tables = scene_tables();
@@ -103,7 +103,7 @@ void check_choice(const SceneDocument& document, const KeyChoice& choice) {
                                            find_scene_key(heads.front())->description.allowed(), join(heads)));
 }
 
-/// Refuses a key with unmet needs, and names all of them.
+/// Refuses a key whose needs are not met. The message names all of these needs.
 struct Needs {
   bool are_met;
   const char* text;
@@ -135,7 +135,7 @@ void check_required(const SceneDocument& document, const Key& known) {
   if (document.find(table) || !may_lack) document.fail(known.key, "missing; must be " + known.allowed());
 }
 
-/// Errors that are told together, in one line.
+/// Collects errors, so that one message can report up to kMostTold of them.
 class Mistakes {
  public:
   template <class Check>
@@ -183,15 +183,15 @@ SceneValues read_keys(const SceneDocument& document) {
   return scene;
 }
 
-/// A file named in a scene, as the process finds it.
+/// The path, relative to the process, of a file that a scene names.
 std::string resolve_path(const std::string& file, const std::string& scene_path) {
   const std::size_t slash = scene_path.find_last_of('/');
   const bool is_as_given = file.starts_with('/') || slash == std::string::npos;
   return is_as_given ? file : scene_path.substr(0, slash + 1) + file;
 }
 
-/// Result of `read` for a file that the scene names; an InputError that begins with `prefix` where no file may be
-/// opened.
+/// Calls `read` for a file that the scene names. Errors: those of `read`; with `known`, an InputError that begins with
+/// `prefix` if the file may not be opened or cannot be read.
 template <class Read>
 auto read_file_of(SceneValues& scene, const std::string& file, const std::string& prefix, const KnownData* known,
                   const Read& read) {
@@ -202,12 +202,12 @@ auto read_file_of(SceneValues& scene, const std::string& file, const std::string
   }
   try {
     return read(path);
-  } catch (const InputError&) {  // its message quotes the file, and a table may name any file
+  } catch (const InputError&) {  // its message quotes the file, and a table may name any file on this machine
     throw InputError(prefix + "cannot be read, or holds nothing of the kind");
   }
 }
 
-/// From the shortest wavelength that a table or its scene has to the longest.
+/// The range from the shortest to the longest wavelength of a scene, including its axes.
 Spectrum all_wavelengths(const SceneValues& scene) {
   Spectrum all = scene.spectrum;
   for (const double wavelength_um : scene.grid[Axis::kWavelength]) {
@@ -221,8 +221,8 @@ Spectrum all_wavelengths(const SceneValues& scene) {
   return all;
 }
 
-/// Loads the material of the table `prefix_key`: the surface, or a layer of its coating. `own`: the material that a
-/// table has.
+/// Loads the material of a table: "surface", or a layer of the coating. `own`: the material that a table file contains;
+/// null if there is none.
 void load_material(SceneValues& scene, const SceneDocument& document, const std::string& table, Material& material,
                    std::string& name, const std::string& file, const KnownData* known, const Material* stored) {
   const bool is_file = document.find(table + ".material_file") != nullptr;
@@ -252,7 +252,7 @@ void load_material(SceneValues& scene, const SceneDocument& document, const std:
   check_axis(material);
 }
 
-/// The full names of the built-in materials on a grid's axis; "all" means the materials that cover the spectrum.
+/// The full names of the built-in materials on the grid's axis. "all" means all materials that cover the spectrum.
 std::vector<std::string> axis_names(const SceneValues& scene, const std::string& prefix) {
   std::vector<std::string> names;
   const std::vector<std::string>& given = scene.labels[Axis::kMaterial];
@@ -271,7 +271,8 @@ std::vector<std::string> axis_names(const SceneValues& scene, const std::string&
   return names;
 }
 
-/// Loads the materials of the grid's axis; the first is the scene's material. `known` has the materials of a table.
+/// Loads the materials of the grid's axis; the first becomes the scene's material. `known` has the materials of a table
+/// file.
 void load_axis_materials(SceneValues& scene, const SceneDocument& document, const KnownData* known) {
   if (!document.find("grid.material")) return;
   const std::string prefix = document.prefix("grid.material");
@@ -367,7 +368,7 @@ void load_profile(SceneValues& scene, const SceneDocument& document, const Known
   scene.surroundings->profile = std::make_shared<const SkyProfile>(std::move(*profile));
 }
 
-/// Fills in quantities that the scene gives only as an axis: each takes the first value of its axis.
+/// Fills in quantities that the scene gives only as an axis. Each gets the first value of its axis.
 void fill_from_grid(SceneValues& scene, const SceneDocument& document) {
   Axes& grid = scene.grid;
   OpticalConstants& index = scene.surface.material.constant;
@@ -404,7 +405,7 @@ void fill_grid(SceneValues& scene, const SceneDocument& document) {
   if (grid[Axis::kQ].empty()) grid[Axis::kQ] = {scene.surface.q};
 }
 
-/// Refuses a scene whose masking needs a finite mean slope that the distribution lacks.
+/// Refuses smith masking with a cauchy distribution whose mean slope is infinite.
 void check_smith(const SceneValues& scene, const SceneDocument& document) {
   if (!scene.surface.needs_mean_slope()) return;
   const std::string what = "masking = \"smith\" with distribution = \"cauchy\" needs q in " + kSmithCauchyQRange.text();
@@ -414,7 +415,8 @@ void check_smith(const SceneValues& scene, const SceneDocument& document) {
   }
 }
 
-/// Refuses effects beyond single scattering for maskings that do not define them.
+/// Refuses multiple scattering, bracket, direct emission and polarised diffuse light in scenes for which they are not
+/// defined.
 void check_scattering(const SceneValues& scene, const SceneDocument& document) {
   const Surface& surface = scene.surface;
   const Emission emission = scene.emission.value_or(Emission());
@@ -455,7 +457,7 @@ void check_radiation(const SceneValues& scene, const SceneDocument& document) {
   }
 }
 
-/// Applies a setting. Errors: InputError, also where it takes a key away that no scene has.
+/// Applies a setting. Errors: InputError, also if it removes a key that scenes cannot have.
 void apply(SceneDocument& document, const Setting& setting) {
   const std::vector<std::string> tables = scene_tables();
   const bool is_known =
@@ -467,7 +469,7 @@ void apply(SceneDocument& document, const Setting& setting) {
   document.apply(setting);
 }
 
-/// The scene of a document, with files found from the folder of `path_name`.
+/// The scene of a document. Paths of files are relative to the folder of `path_name`.
 SceneValues scene_of(const SceneDocument& document, const std::string& path_name, const KnownData* known) {
   SceneValues scene = read_keys(document);
   fill_from_grid(scene, document);

@@ -1,4 +1,4 @@
-// Reads a scene file (TOML) into a validated Scene.
+// Reads a scene file (TOML) into validated SceneValues.
 #pragma once
 
 #include <dolp/key.hpp>
@@ -11,16 +11,17 @@
 
 namespace dolp {
 
-/// Reads the scene at `path` ("-" is stdin), applies the settings in order and validates the result. Files named in a
-/// scene are relative to the folder of the scene (of the process for "-").
-/// Errors: InputError, one line: `file:line: key = value: what is wrong and what is allowed`. For a setting its origin
-/// begins the line. A file that cannot be opened is an InputError too.
+/// Reads the scene at `path` ("-" is stdin), applies the settings in order and validates the result. Paths in a scene
+/// are relative to the folder of the scene; for "-", to the working folder of the process.
+/// Errors: InputError, one line: `file:line: key = value: what is wrong and what is allowed`. If a setting is wrong,
+/// its origin begins the line. A file that cannot be opened is an InputError too.
 SceneValues read_scene(const std::string& path, const std::vector<Setting>& settings = {});
 
-/// The scene with more settings. Domain: a scene that was read. Errors: InputError, as read_scene.
+/// The scene after more settings. Domain: a scene that was read. Errors: InputError, in the form of read_scene.
 SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& settings);
 
-/// n, k, E0 and the sky as they were when the table was computed. They replace the names in its scene.
+/// Data of a table file: n, k, E0 and sky, as they were when the table was computed. They replace the files and
+/// built-in data that the scene of the table names.
 struct KnownData {
   std::optional<Material> material = {};
   std::vector<std::optional<Material>> layers = {};  ///< layers of a coating
@@ -28,19 +29,20 @@ struct KnownData {
   std::optional<ReflectanceTable> reflectance = {};
   std::optional<SpectralTable> irradiance = {};
   std::optional<SkyProfile> profile = {};
-  bool may_open_files = false;  ///< for missing data; messages then do not quote their contents
+  /// Allows opening files for data that are missing here; messages then do not quote the files.
+  bool may_open_files = false;
 };
 
-/// Reads a scene from a text in memory, for example the scene in a table file. `path_name` is for messages and gives
-/// the folder of the files that the scene names. With `known` no file is opened unless `may_open_files` is set: data
-/// that `known` lacks are an InputError.
+/// Reads a scene from a text in memory, for example from a table file. `path_name` is for messages, and its folder is
+/// the folder for the paths in the scene. With `known`, the reader opens files only if `may_open_files` is set.
+/// Otherwise data of files that `known` lacks are an InputError.
 SceneValues parse_scene(const std::string& text, const std::string& path_name,
                         const std::vector<Setting>& settings = {}, const KnownData* known = nullptr);
 
-/// TOML that reads back as the scene: its keys in the order of dolp::keys(), numbers as the shortest text that reads
-/// back as the same double, no comments.
+/// Writes a scene as TOML that reads back as the same scene. Keys are in the order of dolp::keys(), a number is the
+/// shortest text that reads back as the same double, and there are no comments.
 ///
-/// Files that the scene names are written as they are found from `folder`, where the text will be saved.
+/// Paths of files are relative to `folder`, where the text will be saved.
 /// Domain: a scene that was read.
 std::string scene_toml(const SceneValues& scene, const std::filesystem::path& folder);
 

@@ -21,27 +21,29 @@ namespace {
 
 constexpr std::size_t kMostZeniths = 1000;
 
-// Zeniths that divide smooth stretches: Chebyshev points do not reach far beside a horizon where exp(-1/cos) is flat.
+// Zeniths at which smooth parts of a sky are divided. Near a horizon where the sky is as flat as exp(-1/cos),
+// polynomials through Chebyshev points need short parts.
 constexpr std::array<double, 2> kDivisions_deg = {60.0, 85.0};
 constexpr std::array<double, 11> kLayerDivisions_deg = {0.0,  30.0, 60.0,  75.0,  82.0, 86.0,
                                                         88.0, 89.0, 89.75, 89.94, 90.0};
 
-// Planck's function is smooth between temperatures of this ratio. What is colder than a share of the warmest radiates
-// too little to matter.
+// Planck's function is smooth between two temperatures whose ratio is at most kDivisionRatio. Temperatures below
+// kColdestShare of the warmest radiate too little to matter.
 constexpr double kDivisionRatio = 2.0;
 constexpr double kColdestShare = 1.0 / 256.0;
 
-// Air at sea level of the US Standard Atmosphere, 1976: 15 degrees C, and 5.9 g m-3 of water vapour, 7.85 hPa.
+// Air of the US Standard Atmosphere 1976 at sea level: 15 degrees C, and 5.9 g m-3 of water vapour, which is 7.85 hPa.
 constexpr double kAir_K = 288.15;
 constexpr double kVapour_hPa = 7.85;
-// Prata, Q. J. R. Meteorol. Soc. 122, 1127 (1996): precipitable water in cm over vapour pressure in hPa, times kelvins.
+// Precipitable water in cm is this times the vapour pressure in hPa over the temperature in K. Source: Prata, Q. J. R.
+// Meteorol. Soc. 122, 1127 (1996).
 constexpr double kWater_cmK_hPa = 46.5;
 constexpr double kWindowFrom_um = 10.5;
 constexpr double kWindowTo_um = 12.5;
 constexpr double kBandFrom_um = 8.0;
 constexpr double kBandTo_um = 14.0;
 
-// Idso, Water Resources Research 17, 295 (1981): emittance of a cloudless sky at 8-14 um and at 10.5-12.5 um.
+// Emittance of a cloudless sky at 8-14 um, and at 10.5-12.5 um. Source: Idso, Water Resources Research 17, 295 (1981).
 double clear_emissivity(double vapour_hPa, double air_K) {
   return std::min(0.24 + 2.98e-8 * vapour_hPa * vapour_hPa * std::exp(3000.0 / air_K), 1.0);
 }
@@ -49,10 +51,10 @@ double window_emissivity(double vapour_hPa, double air_K) {
   return std::min(0.10 + 3.53e-8 * vapour_hPa * vapour_hPa * std::exp(3000.0 / air_K), 1.0);
 }
 
-// Alduchov and Eskridge, J. Appl. Meteorol. 35, 601 (1996): vapour pressure of saturated air.
+// Vapour pressure of saturated air. Source: Alduchov and Eskridge, J. Appl. Meteorol. 35, 601 (1996).
 double saturated_hPa(double air_K) { return 6.1094 * std::exp(17.625 * (air_K - 273.15) / (air_K - 30.11)); }
 
-/// The pressure of the water vapour in hPa. Errors: InputError for more than the air holds.
+/// The pressure of the water vapour in hPa. Errors: InputError if the air cannot hold so much.
 double vapour_pressure(const SkyAir& air, double air_K, const std::string& prefix) {
   if (!air.vapour_cm) return air.temperature_K ? std::min(kVapour_hPa, saturated_hPa(air_K)) : kVapour_hPa;
   const double vapour_hPa = *air.vapour_cm * air_K / kWater_cmK_hPa;
@@ -60,11 +62,12 @@ double vapour_pressure(const SkyAir& air, double air_K, const std::string& prefi
   if (*air.vapour_cm <= most_cm) return vapour_hPa;
   throw InputError(fmt::format("{}air at {} K holds at most {:.3g} cm of water vapour", prefix, air_K, most_cm));
 }
-// The band of carbon dioxide at 4.3 um, in which a few metres of air are opaque: an idealisation with sharp edges.
+// The band of carbon dioxide at 4.3 um, in which a few metres of air are opaque. Sharp edges are an idealisation.
 constexpr double kOpaqueFrom_um = 4.17;
 constexpr double kOpaqueTo_um = 4.45;
-// A black cloud whose base is 1 km high, below 1 km of the standard atmosphere's 2 km of vapour (scale height) and
-// 6.5 K/km. Martin and Berdahl, Solar Energy 33, 321 (1984): low clouds are black at the temperature of their base.
+// A black cloud with its base at 1 km. Below it the temperature falls by 6.5 K per km, and the vapour has a scale
+// height of 2 km, as in the standard atmosphere. Low clouds are black at the temperature of their base (Martin and
+// Berdahl, Solar Energy 33, 321 (1984)).
 constexpr double kCloudBase_km = 1.0;
 constexpr double kLapse_K_km = 6.5;
 constexpr double kVapourHeight_km = 2.0;
@@ -188,7 +191,8 @@ std::optional<SkyProfile> built_in_sky(std::string_view name, const SkyAir& air,
   sky.air_K = air.temperature_K.value_or(kAir_K);
   if (is_overcast) sky.beyond_K = sky.air_K - kLapse_K_km * kCloudBase_km;
   const double vapour_hPa = vapour_pressure(air, sky.air_K, prefix);
-  const double below = is_overcast ? -std::expm1(-kCloudBase_km / kVapourHeight_km) : 1.0;  // share of the vapour
+  // Share of the vapour that lies below the cloud, if there is one.
+  const double below = is_overcast ? -std::expm1(-kCloudBase_km / kVapourHeight_km) : 1.0;
   const auto visible = [&](double vertical) { return is_overcast ? 1.0 - std::pow(1.0 - vertical, below) : vertical; };
   const double mean = clear_emissivity(vapour_hPa, sky.air_K);
   sky.emissivity = visible(mean);

@@ -1,4 +1,4 @@
-// The radiance of the surroundings over the zenith, and over wavelength.
+// The radiance of the surroundings as a function of zenith, and of wavelength.
 #pragma once
 
 #include <cstdint>
@@ -10,68 +10,70 @@
 
 namespace dolp {
 
-/// A sky: brightness temperatures or radiances at zeniths, straight lines between them, or layers of air in front of a
-/// black background.
+/// A sky. Either it has brightness temperatures or radiances at some zeniths, with straight lines between them, or it
+/// is a layer of air in front of a black background.
 ///
-/// Equation: of layers L = t^(1 / cos(zenith)) B(beyond_K) + (1 - t^(1 / cos(zenith))) B(air_K), t = 1 - emissivity.
-/// Source: Granqvist and Hjortsberg, J. Appl. Phys. 52, 4205 (1981): a plane-parallel atmosphere of one temperature.
-/// The emissivities of clear air in the vertical, at 8-14 um and in the window at 10.5-12.5 um, are those of Idso,
-/// Water Resources Research 17, 295 (1981); the rest of 8-14 um has what leaves the mean, other wavelengths have the
-/// mean.
+/// Equation: the layer has L = t^(1 / cos(zenith)) B(beyond_K) + (1 - t^(1 / cos(zenith))) B(air_K), t = 1 -
+/// emissivity.
+/// Source: Granqvist and Hjortsberg, J. Appl. Phys. 52, 4205 (1981), for a plane-parallel atmosphere of one
+/// temperature. Idso, Water Resources Research 17, 295 (1981), for the vertical emissivities of clear air at 8-14 um
+/// and in the window at 10.5-12.5 um. The rest of 8-14 um has the emissivity that gives this mean over 8-14 um; other
+/// wavelengths have the mean.
 struct SkyProfile {
   enum class Kind { kTemperature, kRadiance, kLayers };
   Kind kind = Kind::kTemperature;
   std::vector<double> zenith_deg;     ///< ascending from 0 to 90
-  std::vector<double> wavelength_um;  ///< ascending; empty where nothing depends on it
-  std::vector<double> values;         ///< K or W m-2 sr-1 um-1: wavelength x zenith
+  std::vector<double> wavelength_um;  ///< ascending; empty if the values are the same at every wavelength
+  std::vector<double> values;  ///< temperatures in K or radiances in W m-2 sr-1 um-1. Shape: wavelengths x zeniths
   double air_K = 0.0;
   double beyond_K = 0.0;
-  double emissivity = 0.0;                   ///< of the air in the vertical, where it is not opaque
-  std::optional<double> window = {};         ///< the same at 10.5-12.5 um; none: as elsewhere
-  std::optional<double> beside_window = {};  ///< the same in the rest of 8-14 um
+  double emissivity = 0.0;                   ///< vertical emissivity of the air, where it is not opaque
+  std::optional<double> window = {};         ///< vertical emissivity at 10.5-12.5 um; nullopt: `emissivity`
+  std::optional<double> beside_window = {};  ///< vertical emissivity in the rest of 8-14 um; nullopt: `emissivity`
 
-  /// Two black bodies, of which the surroundings are a mixture; or a radiance.
+  /// Radiance of the sky as a mixture of two black bodies, plus a radiance.
   struct Emission {
-    double share = 1.0;  ///< of the first
+    double share = 1.0;  ///< share of the first black body; the second has the rest
     double first_K = 0.0;
     double second_K = 0.0;
     double radiance = 0.0;  ///< W m-2 sr-1 um-1, in addition
   };
   Emission at(double wavelength_um, double zenith_deg) const;
 
-  /// Zeniths that divide an interval of rows in which the temperature changes much.
+  /// Zeniths that divide an interval between two rows in which the temperature changes by more than a factor of two.
   std::vector<double> temperature_divisions_deg(std::size_t interval) const;
-  /// Zeniths between which the profile is smooth, from 0 to 90.
+  /// Zeniths from 0 to 90 between which the profile is a smooth function of zenith.
   std::vector<double> ends_deg() const;
-  /// Wavelengths between which it is smooth.
+  /// Wavelengths between which the profile is a smooth function of wavelength.
   std::vector<double> breaks_um() const;
-  /// The temperature of a profile that is the same everywhere.
+  /// The temperature, if it is the same at every zenith and wavelength; else nullopt.
   std::optional<double> only_temperature() const;
-  /// As a file, which parse_sky_profile reads; empty for layers.
+  /// The text of a file that parse_sky_profile reads; empty for kLayers.
   std::string text() const;
   std::uint64_t hash() const;
 };
 
-/// The words for the built-in profiles, and their sources.
+/// A built-in profile: the word for it in scenes, and its source.
 struct BuiltInSky {
   const char* name;
   const char* source;
 };
 const std::vector<BuiltInSky>& built_in_skies();
 
-/// Air of a built-in sky. Without either value: the sky of the US Standard Atmosphere 1976, without the window.
+/// Air of a built-in sky. Without both values it is the air of the US Standard Atmosphere 1976, without the window.
 struct SkyAir {
   std::optional<double> vapour_cm = {};  ///< precipitable water
   std::optional<double> temperature_K = {};
   bool is_standard() const { return !vapour_cm && !temperature_K; }
 };
 
-/// A built-in profile; none of that name: nullopt. Errors: InputError for more vapour than air of this temperature
-/// holds; it begins with `prefix`.
+/// The built-in profile called `name`; nullopt for another name. Errors: InputError that begins with `prefix` if air of
+/// this temperature cannot hold the vapour.
 std::optional<SkyProfile> built_in_sky(std::string_view name, const SkyAir& air = {}, const std::string& prefix = {});
 
-/// Reads a CSV file: columns zenith_deg, temperature_K or radiance, and maybe wavelength_um; rows by wavelength, then
-/// by zenith from 0 to 90. Errors: InputError with file, line, column, value and what is allowed.
+/// Reads a CSV file with the columns zenith_deg, temperature_K or radiance, and wavelength_um if they depend on it.
+/// Each wavelength has the same zeniths, from 0 to 90. Errors: InputError with file, line, column, value and what is
+/// allowed.
 SkyProfile parse_sky_profile(std::string_view text, const std::string& name);
 SkyProfile read_sky_profile(const std::string& path, const std::string& prefix);
 

@@ -133,7 +133,7 @@ std::string wavelength_text(double min_um, double max_um) {
 SceneModel at_wavelength(const SceneModel& scene, double wavelength_um) {
   SceneModel at{.surface = scene.surface,
                 .emission = scene.emission,
-                .source = std::nullopt,  // its table may be long
+                .source = std::nullopt,  // not copied, because its table may be long; set below
                 .surroundings = scene.surroundings,
                 .path = scene.path,
                 .spectrum = {wavelength_um, wavelength_um},

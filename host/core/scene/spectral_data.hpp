@@ -1,4 +1,4 @@
-// Quantities tabulated over wavelength: the sun and the user's own irradiance files.
+// Quantities tabulated over wavelength: the irradiance of the sun, and the user's irradiance files.
 #pragma once
 
 #include <cstddef>
@@ -11,37 +11,38 @@
 
 namespace dolp {
 
-/// Solar irradiance at the top of the atmosphere at normal incidence.
-/// Source: host/data/sun.csv (Gueymard 2003). Units: W m-2 um-1. Accuracy: interpolated log-log in wavelength.
+/// Irradiance of the sun at the top of the atmosphere, at normal incidence, interpolated log-log in wavelength.
+/// Source: host/data/sun.csv (Gueymard 2003). Units: W m-2 um-1.
 SpectralTable sun_irradiance();
 
-/// A user's CSV with the columns wavelength_um and irradiance (W m-2 um-1), interpolated linearly. Without a line of
-/// names the columns have this order.
+/// Reads a user's CSV with the columns wavelength_um and irradiance (W m-2 um-1), interpolated linearly. A file without
+/// a line of names has these columns in this order.
 ///
-/// Skips blank lines and lines that begin with #. append_rows takes the rows.
+/// Skips blank lines and lines that begin with #. append_rows checks the rows.
 /// Domain: irradiance >= 0, at least one row.
-/// Errors: InputError; `prefix` begins the message when the file cannot be opened.
+/// Errors: InputError; if the file cannot be opened, the message begins with `prefix`.
 SpectralTable read_irradiance_file(const std::string& path, const std::string& prefix);
 
-/// A number that a file has, and what is allowed.
+/// A number from a file, its name for messages, and its allowed range.
 struct NamedValue {
   const char* name;
   double value;
   NumberRange range;
 };
 
-/// Appends a row and checks that both numbers are in range and the wavelength ascends; `where` begins the message.
+/// Checks that both numbers are in range and that the wavelength ascends, and appends the row. Messages begin with
+/// `where`.
 void append_row(SpectralTable& table, double wavelength_um, const NamedValue& value, const std::string& where);
 
-/// A row of a file: its line is for messages.
+/// A row of a file. `line` is for messages.
 struct SpectralRow {
   double wavelength_um;
   double value;
   std::size_t line;
 };
 
-/// Appends the rows of a file in the order of their wavelengths. Leaves out rows outside of kWavelengthUmRange, and
-/// rows that repeat another. `named` has the name and the range of the values.
+/// Sorts the rows of a file by wavelength and appends them. Leaves out rows outside of kWavelengthUmRange, and rows
+/// that repeat another row. `named` gives the name and the range of the values.
 /// Errors: InputError with file and line for two values at one wavelength; errors of append_row.
 void append_rows(SpectralTable& table, std::vector<SpectralRow> rows, const NamedValue& named, const std::string& file);
 
@@ -66,7 +67,7 @@ struct Between {
 /// The first or the last interval for a value beyond an end. A list of one value has one interval, without a length.
 Between between(const std::vector<double>& list, double value);
 
-/// Refuses a table that has no values over the whole spectrum; `prefix` begins the message.
+/// Refuses a table that lacks values in a part of the spectrum. The message begins with `prefix`.
 void check_covers(const SpectralTable& table, const Spectrum& spectrum, const std::string& prefix);
 
 /// "10.6 um" or "8 to 14 um".

@@ -7,8 +7,8 @@
 namespace dolp {
 namespace {
 
-// Share of the scene's tolerance for the functions that a basis leaves out. Chosen: one more function costs a sixth of
-// a kernel.
+// Largest error by which sums over a basis may miss a sky, as a share of the scene's tolerance. Chosen: each further
+// function of a basis adds a sixth to the time of a kernel.
 constexpr double kBasisShare = 0.02;
 
 Eigen::VectorXd vector_of(const std::vector<double>& values) {

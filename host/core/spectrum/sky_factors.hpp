@@ -1,4 +1,4 @@
-// The sky of a scene over the zenith, for each spectral sample.
+// The sky of a scene as a function of the zenith, for each spectral sample.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,8 +14,8 @@ namespace dolp {
 /// The radiance of a scene's profile at a wavelength. Units: W m-2 sr-1 um-1.
 double sky_radiance(const SkyProfile& profile, double wavelength_um, double zenith_deg);
 
-/// Exitances pi L of a scene's profile at its nodes, and their mean, the exitance of a uniform sky with equal
-/// irradiance.
+/// Gives the exitances pi L of a scene's profile at the nodes of a SkyNodes, and their mean. A uniform sky with the
+/// mean exitance gives the same irradiance.
 class SkySampler {
  public:
   explicit SkySampler(const SkyProfile& profile);
@@ -29,11 +29,12 @@ class SkySampler {
   Eigen::VectorXd mean_weights_;
 };
 
-/// A basis of what the sky adds to its mean, over all samples of a scene's variants. Null if it adds nothing.
+/// A basis for the sky's differences from its mean, in all samples of a scene's variants. Null if all differences are
+/// 0.
 std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, const std::vector<SceneVariant>& variants);
 
-/// Weights of the moments with the functions of a basis, for what the sky adds to its mean in each sample of a rule.
-/// Empty if no sample has a sky.
+/// For each sample of a rule, the weights with which the functions of a basis sum to the sky's difference from its
+/// mean. Empty without a basis or a sky.
 std::vector<SkyWeights> sky_weights(const SpectralRule& rule, const SkyBasis* basis);
 
 }  // namespace dolp

@@ -18,42 +18,45 @@ namespace {
 
 using FineRule = boost::math::quadrature::gauss<double, 16>;
 
-// All are chosen. With half and double of each but kPieceWavelengthRatio, which is above 1, evaluations and bounds of
-// the tables of night_paint, bare_aluminium and water stay the same.
+// The constants below are chosen. With half or double of each, except kPieceWavelengthRatio, which must be above 1, the
+// evaluations and bounds of the tables of night_paint, bare_aluminium and water stay the same.
 
-// A piece of the band on which 16 Gauss nodes integrate Planck's function to rounding: its exponent changes by no more
-// than this, the wavelength by no more than that factor.
+// The band is cut into pieces on which 16 Gauss nodes integrate Planck's function to rounding. Within a piece, these
+// constants limit the change of the exponent h c / (lambda k_B T) and the ratio of the wavelengths.
 constexpr double kPieceExponentChange = 4.0;
 constexpr double kPieceWavelengthRatio = 1.5;
-// h c / k_B in um K, to choose pieces with, and the exponent beyond which Planck's function underflows.
+// h c / k_B in um K, used to choose pieces, and the exponent beyond which Planck's function underflows.
 constexpr double kExponentScale_umK = 14388.0;
 constexpr double kLargestPlanckExponent = 750.0;
-// Pieces are good to rounding; this bounds the error of their sums.
+// Bound of the relative error of sums over pieces. Each piece is accurate to rounding.
 constexpr double kPieceRelativeError = 1e-12;
 
-// Nodes of a segment of the material: enough for the smooth surface's absorptances to this, which is relative to the
-// smaller of the reflectance and the absorptance (but not below a small part of the whole: n = 1 reflects nothing).
+// A segment of the material gets so many nodes that absorptances of the smooth surface have at most this relative
+// error. The error is relative to reflectance or absorptance, whichever is smaller, but to no less than kSmallestPart
+// of the whole, because with n = 1 the reflectance is 0.
 constexpr double kNodesRelativeError = 1e-10;
 constexpr double kSmallestPart = 1e-4;
 constexpr int kMostNodes = 24;
-// The rough surface averages the smooth one's absorptances over angles. The probes are some of them, and those at
-// which total reflection begins at a few wavelengths of the segment: there an absorptance has a root in the wavelength.
-// Where n passes 1, it begins near grazing.
+// The nodes of a segment are checked with absorptances of the smooth surface at these probes, because a rough surface
+// averages such absorptances over angles. Other probes are the critical angles at a few wavelengths of the segment:
+// there an absorptance has a square root in wavelength. The bound is kProbeSafety times the largest error at the
+// probes.
 constexpr double kProbeSafety = 10.0;
 constexpr std::array<double, 7> kProbeCosines = {1.0, 0.5, 0.25, 0.15, 0.1, 0.07, 0.04};
 constexpr std::array<double, 7> kCriticalShares = {0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};  // positions in a segment
-// A segment that more nodes do not bring to this share of the scene's tolerance is cut into equal panels, each with its
-// own nodes, until the error that the probes show is below kPanelShareOfTolerance of the band, or a band has about
-// kMostPanels. Mirrors have closed forms, and rough surfaces smooth roots. Entries state what they see of the panels'
-// errors (panel_error).
+// If more nodes do not reduce the error of a segment to kShareOfTolerance of the scene's tolerance, the segment is cut
+// into equal panels, each with separate nodes. The number of panels grows until the error at the probes is below
+// kPanelShareOfTolerance of the tolerance, or until the whole band would have about kMostPanels. Mirrors may have more
+// panels, because their moments are cheap and their roots are not smoothed by roughness. panel_error estimates the
+// remaining error.
 constexpr double kShareOfTolerance = 0.005;
 constexpr double kPanelShareOfTolerance = 0.03;
 constexpr int kLeastPanels = 4;
 constexpr double kMostPanels = 32.0;
 constexpr double kMostMirrorPanels = 512.0;
-constexpr double kMostFringes = 256.0;  // most fringes that films add to a band, each with its own nodes
+constexpr double kMostFringes = 256.0;  // most parts into which the fringes of films divide a band
 
-/// A node of the fine rule with the spectral factors there, all multiplied by the node's weight.
+/// A node of the fine rule: the spectral factors at its wavelength, all multiplied by the weight of the node.
 struct FineNode : SpectralFactors {
   double wavelength_um = 0.0;
   double path = 0.0;
@@ -82,7 +85,7 @@ const SkyProfile* profile_of(const SceneModel& scene) {
   return scene.surroundings ? scene.surroundings->profile.get() : nullptr;
 }
 
-/// None for a scene without a profile.
+/// nullopt for a scene without a profile.
 std::optional<SkySampler> sampler_of(const SceneModel& scene) {
   const SkyProfile* profile = profile_of(scene);
   return profile ? std::optional<SkySampler>(*profile) : std::nullopt;
@@ -155,7 +158,7 @@ void append_fine_nodes(const SceneModel& scene, const std::optional<SkySampler>&
   }
 }
 
-/// The ends of the band and the table wavelengths inside it.
+/// The ends of the band and the tabulated wavelengths inside it, ascending.
 std::vector<double> segment_ends(double from_um, double to_um,
                                  std::initializer_list<const std::vector<double>*> wavelengths_um) {
   std::vector<double> ends = {from_um, to_um};
@@ -180,7 +183,7 @@ std::vector<FineNode> fine_nodes(const SceneModel& scene, double from_um, double
   return nodes;
 }
 
-/// The nodes of both halves of an interval.
+/// The fine nodes of both halves of an interval.
 std::vector<FineNode> finer_nodes(const SceneModel& scene, double from_um, double to_um) {
   const double middle_um = 0.5 * (from_um + to_um);
   std::vector<FineNode> nodes = fine_nodes(scene, from_um, middle_um);
@@ -199,7 +202,7 @@ std::vector<double> gauss_wavelengths(double from_um, double to_um, int count) {
   return wavelengths_um;
 }
 
-/// Lagrange polynomials of the nodes, at one wavelength.
+/// The values of the nodes' Lagrange polynomials at one wavelength.
 std::vector<double> lagrange(const std::vector<double>& nodes_um, double wavelength_um) {
   std::vector<double> values(nodes_um.size(), 1.0);
   for (std::size_t j = 0; j < nodes_um.size(); ++j)
@@ -222,7 +225,7 @@ std::vector<SpectralSample> samples_at(const SceneModel& scene, const std::vecto
   return samples;
 }
 
-/// Wavelengths that divide a band so that films add no more than a fringe to a segment.
+/// Wavelengths that divide a band into parts in which films add at most one fringe each.
 std::vector<double> fringe_ends(const SceneModel& scene) {
   const double from = 1.0 / scene.spectrum.max_um;
   const double to = 1.0 / scene.spectrum.min_um;
@@ -237,7 +240,7 @@ std::vector<double> fringe_ends(const SceneModel& scene) {
   return ends_um;
 }
 
-/// The cosines at which the rule of a segment is probed.
+/// The cosines at which the nodes of a segment are checked.
 std::vector<double> probe_cosines(const Surface& surface, double from_um, double to_um) {
   std::vector<double> cosines(kProbeCosines.begin(), kProbeCosines.end());
   for (const double share : kCriticalShares) {
@@ -248,7 +251,7 @@ std::vector<double> probe_cosines(const Surface& surface, double from_um, double
   return cosines;
 }
 
-/// One of the spectral factors, and its integrals with the smooth surface's absorptances.
+/// The integral of one spectral factor, and its integrals times the absorptances of the smooth surface.
 struct ProbeSum {
   double whole = 0.0;
   double s = 0.0;
@@ -267,7 +270,7 @@ void add_probe(ProbeSums& sums, const Node& node, const FacetOptics& index, doub
   }
 }
 
-/// The integrals at each cosine by the fine rule.
+/// The integrals by the fine rule, at each cosine.
 std::vector<ProbeSums> exact_sums(const Surface& surface, const std::vector<FineNode>& fine,
                                   const std::vector<double>& cosines) {
   std::vector<ProbeSums> sums(cosines.size());
@@ -278,8 +281,8 @@ std::vector<ProbeSums> exact_sums(const Surface& surface, const std::vector<Fine
   return sums;
 }
 
-/// The largest error of the samples' absorptances, relative to the smaller of the reflectance and the absorptance, but
-/// at least to `least` of the whole.
+/// The largest error of the samples' integrals of an absorptance. It is relative to the integral of reflectance or
+/// absorptance, whichever is smaller, but to no less than `least` of the whole integral.
 double nodes_error(const std::vector<SpectralSample>& samples, const std::vector<ProbeSums>& exact,
                    const std::vector<double>& cosines, double least) {
   double worst = 0.0;
@@ -306,7 +309,7 @@ void append_merged(std::vector<SpectralSample>& samples, const SpectralSample& s
   same->add(sample, 1.0);
 }
 
-/// The samples of one segment, and their error.
+/// The samples of one segment, and their relative error at the probes.
 struct SegmentRule {
   std::vector<SpectralSample> samples;
   double error = 0.0;
@@ -320,9 +323,9 @@ SegmentRule smooth_segment(const SceneModel& scene, double from_um, double to_um
                            const std::vector<double>& cosines) {
   if (scene.surface.has_constant_optics()) return {samples_at(scene, gauss_wavelengths(from_um, to_um, 1), fine), 0.0};
   SegmentRule rule;
-  // Fringes take many nodes: no more than the tolerance needs.
+  // With films the fringes need many nodes. So films get no more nodes than the tolerance requires.
   const double enough = scene.surface.coating.empty() ? kNodesRelativeError : enough_for_tolerance(scene);
-  // The nodes to compare with are never nodes of the rule.
+  // The exact integrals use the halves of the segment, so that no node of theirs is a node of the rule.
   const std::vector<ProbeSums> exact = exact_sums(scene.surface, finer_nodes(scene, from_um, to_um), cosines);
   for (int count = 1; count <= kMostNodes; ++count) {
     rule.samples = samples_at(scene, gauss_wavelengths(from_um, to_um, count), fine);
@@ -332,7 +335,8 @@ SegmentRule smooth_segment(const SceneModel& scene, double from_um, double to_um
   return rule;
 }
 
-/// `panels` equal parts, each with its own nodes. A half of a panel has twice the nodes of a panel to compare with.
+/// Cuts a segment into `panels` equal parts, each with kPanelNodes nodes. To check them, each half of a panel has twice
+/// as many nodes.
 SegmentRule segment_of_panels(const SceneModel& scene, double from_um, double to_um, int panels,
                               const std::vector<double>& cosines) {
   SegmentRule rule;
@@ -349,7 +353,7 @@ SegmentRule segment_of_panels(const SceneModel& scene, double from_um, double to
   return rule;
 }
 
-/// Adds one segment of the material to a rule, or its panels to `panels`.
+/// Adds the samples of one segment of the material to a rule, or to `panels` if the segment is cut into panels.
 void append_segment(const SceneModel& scene, double from_um, double to_um, SpectralRule& rule,
                     std::vector<SpectralSample>& panels) {
   const std::vector<FineNode> fine = fine_nodes(scene, from_um, to_um);

@@ -8,67 +8,68 @@
 
 namespace dolp {
 
-/// The parts of a scene that the radiometry adds. Flags of absent parts have no effect.
+/// The effects of a scene that the radiometry includes. Flags of effects that the scene lacks change nothing.
 struct KeptEffects {
   bool emission = true;
   bool source = true;
   bool surroundings = true;
-  bool profile = true;        ///< what the profile of the surroundings adds to their mean
-  bool path_radiance = true;  ///< the transmittance, which cancels in DOLP, always stays
+  bool profile = true;        ///< difference of the surroundings' profile from its mean
+  bool path_radiance = true;  ///< only the radiance; the transmittance, which cancels in DOLP, always stays
   bool diffuse = true;
-  bool further_bounces = true;  ///< bounces in grooves after the first
-  bool moments = true;          ///< the specular part of rho, which the evaluators integrate: at theta, or at the view
+  bool further_bounces = true;  ///< bounces in V-grooves after the first bounce
+  bool moments = true;  ///< specular part of rho, from the evaluator's moments at theta or (bistatic) at the view
   friend bool operator==(const KeptEffects&, const KeptEffects&) = default;
 };
 
-/// Integrals of the radiation with a weight. Units: exitances and irradiances in W m-2 um-1 at a single wavelength, in
-/// W m-2 over a band.
+/// Integrals over wavelength of the radiation times a weight function. Units: exitances and irradiances are in W m-2
+/// um-1 at a single wavelength, in W m-2 over a band.
 struct SpectralFactors {
   double emitted = 0.0;          ///< pi B(T); 0 without [emission]
-  double surroundings = 0.0;     ///< pi B(T_surr), the mean of a profile; 0 without [surroundings]
-  double excess = 0.0;           ///< surroundings - emitted, exactly 0 where the temperatures are equal
+  double surroundings = 0.0;     ///< pi B(T_surr), or the mean of a profile; 0 without [surroundings]
+  double excess = 0.0;           ///< surroundings - emitted; exactly 0 if the temperatures are equal
   double irradiance = 0.0;       ///< E0 at normal incidence; 0 without [source]
-  double width = 0.0;            ///< um; 1 at a single wavelength
-  std::vector<double> sky = {};  ///< what a profile adds to its mean at its nodes (SkySampler); empty without one
+  double width = 0.0;            ///< integral of the weight function in um; 1 at a single wavelength
+  std::vector<double> sky = {};  ///< profile minus its mean, at the nodes of SkySampler; empty without a profile
 
   void add(const SpectralFactors& more, double factor);
 };
 
-/// One refractive index at which moments are wanted, and the integrals of the radiation for it.
+/// One refractive index at which moments are needed, and the integrals of the radiation that multiply these moments.
 ///
 /// The moments rho(lambda) depend on the wavelength only through the index. On each segment between rows of the
-/// material they are the polynomial through the Gauss nodes of that segment. So a band integral of a factor F times rho
-/// is the sum over the nodes of rho times the integral of F times the node's Lagrange polynomial. These integrals can
-/// be negative, for a node that other nodes outweigh; their sums are the band integrals.
+/// material, rho is taken as the polynomial through its values at the Gauss nodes of the segment. So the band integral
+/// of F rho, for a factor F, is a sum over the nodes: rho at the node times the integral of F times the node's Lagrange
+/// polynomial. Such an integral may be negative. The integrals of all nodes add up to the band integral of F.
 struct SpectralSample : SpectralFactors {
   FacetOptics index;
-  double wavelength_um = 0.0;  ///< where the index was first met
+  double wavelength_um = 0.0;  ///< first wavelength at which the index occurs
 };
 
-/// Samples of a panel, ascending: a part of a segment in which total reflection begins, where at each zenith rho has a
-/// root in the wavelength.
+/// Number of samples in a panel, in ascending order of wavelength. A panel is a part of a segment in which total
+/// reflection begins. At each zenith rho has a square root in the wavelength there.
 inline constexpr std::size_t kPanelNodes = 8;
 
-/// The distinct indices of a scene, with their spectral weights.
+/// The different indices of a scene, with their spectral weights.
 struct SpectralRule {
   std::vector<SpectralSample> samples;
   double path_exitance = 0.0;   ///< pi times the path radiance; 0 without [path]
-  double relative_error = 0.0;  ///< bound of the relative error of the band sums; 0 at a single wavelength
-  std::size_t panels = 0;       ///< the last samples are this many panels of kPanelNodes each, apart from the error
+  double relative_error = 0.0;  ///< bound of the relative error of band sums, without panels; 0 at a single wavelength
+  std::size_t panels = 0;       ///< number of panels; their samples, kPanelNodes each, are the last of `samples`
   std::vector<FacetOptics> indices() const;
 };
 
-/// Spectral rule of a scene: one sample at a single wavelength or for a constant index, Gauss nodes on each segment of
-/// the material otherwise, as many as the reflectances of the smooth surface require.
+/// Makes the spectral rule of a scene. A single wavelength or a constant index needs one sample. Otherwise each segment
+/// of the material gets Gauss nodes, as many as the reflectances of the smooth surface require.
 ///
-/// Accuracy: band sums to 1e-9 relative (tests SpectralRule_*Band*), except for panels.
+/// Accuracy: 1e-9 relative for band sums (tests SpectralRule_*Band*), except for panels.
 SpectralRule spectral_rule(const SceneModel& scene);
 
-/// Error of a sum over the panels of a rule. `term(j, m)`: the part of sample j, with the moments of sample m.
+/// Estimates the error of a sum over the panels of a rule. `term(j, m)`: the term of sample j, with the moments of
+/// sample m.
 ///
-/// Every second value of a panel is predicted from the other values; the error is the sum of the predictions' errors.
-/// For a square root that begins at any place among the nodes, this is 2.3 times the error and more, in the median 6
-/// times (tests Bands_*).
+/// The term at every second node of a panel is predicted from the terms at the other nodes. The estimate is the sum of
+/// the errors of these predictions. For a square root that begins anywhere in a panel, the estimate is at least 2.3
+/// times the error, and 6 times in the median (tests Bands_*).
 template <typename Term>
 double panel_error(const SpectralRule& rule, const Term& term) {
   double error = 0.0;
@@ -90,7 +91,7 @@ double panel_error(const SpectralRule& rule, const Term& term) {
   return error;
 }
 
-/// The rule with the factors of dropped effects set to 0.
+/// A rule with the factors of dropped effects set to 0.
 SpectralRule kept_rule(SpectralRule rule, const KeptEffects& kept);
 
 }  // namespace dolp

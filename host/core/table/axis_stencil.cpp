@@ -8,7 +8,8 @@
 namespace dolp {
 namespace {
 
-// Values that differ by less were typed with fewer digits than the table keeps.
+// Two values with a smaller relative difference count as equal: one of them was typed with fewer digits than a double
+// has.
 constexpr double kSame = 4.0 * std::numeric_limits<double>::epsilon();
 
 bool is_same(double a, double b) { return std::abs(a - b) <= kSame * std::max(std::abs(a), std::abs(b)); }

@@ -1,4 +1,4 @@
-// Selects the values of a table's axis that an interpolation reads, and their weights.
+// Selects the values of a table's axis from which a lookup interpolates, and computes their weights.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace dolp {
 
-/// Most values that an interpolation reads of an axis, or compares.
+/// Most values of an axis that an interpolation uses, including the additional value of an error estimate.
 inline constexpr std::size_t kMostStencil = 7;
 
 /// Neighbouring values of an axis, by their rank in ascending order; the weights add up to 1.
@@ -18,32 +18,32 @@ struct Stencil {
   std::array<double, kMostStencil> weights{};
 };
 
-/// An axis as an interpolation sees it: a coordinate in which the table's quantities are smooth, ascending.
+/// The values of an axis, with an ascending coordinate in which the table's quantities are smooth.
 class LookupAxis {
  public:
   enum class Scale {
     kLinear,     ///< x
-    kLogarithm,  ///< ln(x - origin), x > origin
+    kLogarithm,  ///< ln(x - origin), for x > origin
   };
 
-  /// Values in any order, all different. Where a value is not above `origin` a logarithmic scale becomes linear.
+  /// `values`: in any order, all different. If the smallest is not above `origin`, a logarithmic scale becomes linear.
   LookupAxis(const std::vector<double>& values, Scale scale, double origin = 0.0);
 
   double min() const { return values_.front(); }
   double max() const { return values_.back(); }
   double coordinate_at(std::size_t rank) const { return coordinates_[rank]; }
   std::size_t size() const { return values_.size(); }
-  /// The axis has a single value, within rounding of its last digits, or the range contains it.
+  /// True if a value lies between the smallest and the largest value of the axis, or equals one of them up to rounding.
   bool contains(double value) const;
 
   /// The position in the table of a value, by its rank in ascending order.
   std::size_t position(std::size_t rank) const { return positions_[rank]; }
 
-  /// Where a value lies. Domain: contains(value).
+  /// Where a value lies among the values of the axis. Domain: contains(value).
   struct Location {
     double coordinate = 0.0;
-    std::size_t next = 0;   ///< the first value above it, or the value itself
-    bool is_value = false;  ///< true if it is a value of the axis
+    std::size_t next = 0;   ///< number of an equal value, or of the first value above
+    bool is_value = false;  ///< true if an equal value is on the axis
   };
   Location locate(double value) const;
 
@@ -52,8 +52,8 @@ class LookupAxis {
   /// contains the location. Domain: count from 2 to kMostStencil.
   Stencil stencil(const Location& location, std::size_t count, int shift = 0) const;
 
-  /// The factors by which `count` values from `first` give the divided difference over them: 1 / product of x_i - x_j
-  /// over the other values. Domain: count from 2 to kMostStencil, first + count <= size().
+  /// Factors of `count` values from number `first` in their divided difference. The factor of coordinate x_i is 1 /
+  /// product of (x_i - x_j) over the other values j. Domain: count from 2 to kMostStencil, first + count <= size().
   std::span<const double> divided_difference(std::size_t first, std::size_t count) const {
     return std::span(factors_[count][first]).first(count);
   }
@@ -66,9 +66,9 @@ class LookupAxis {
   Scale scale_;
   double origin_;
   std::vector<double> values_;          ///< ascending
-  std::vector<double> coordinates_;     ///< coordinate of each of values_
-  std::vector<std::size_t> positions_;  ///< position in the table of each of values_
-  /// For each count, window and value: divided_difference.
+  std::vector<double> coordinates_;     ///< coordinates of values_
+  std::vector<std::size_t> positions_;  ///< positions of values_ in the table
+  /// factors_[count][first] is divided_difference(first, count).
   std::array<std::vector<std::array<double, kMostStencil>>, kMostStencil + 1> factors_;
 };
 

@@ -1,4 +1,4 @@
-// Handles of objects in an HDF5 file, closed with the object. A NetCDF-4 file is an HDF5 file.
+// Owners of HDF5 objects, which they close. A NetCDF-4 file is an HDF5 file.
 #pragma once
 
 #include <hdf5.h>
@@ -7,7 +7,7 @@
 
 namespace dolp {
 
-/// An HDF5 identifier and the call that closes it; negative after a call that failed.
+/// An HDF5 identifier, and the call that closes it. A failed call gives a negative identifier, which is not closed.
 class Hdf5Handle {
  public:
   using Close = herr_t (*)(hid_t);

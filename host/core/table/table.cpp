@@ -30,7 +30,7 @@ std::uint64_t sum_of_values(std::span<const Value> values, std::size_t first_pos
   return sum;
 }
 
-/// Some neighbours in a list.
+/// The elements first, ..., first + count - 1 of a list.
 std::vector<double> slice(const std::vector<double>& list, std::size_t first, std::size_t count) {
   const auto begin = list.begin() + static_cast<std::ptrdiff_t>(first);
   return {begin, begin + static_cast<std::ptrdiff_t>(count)};
@@ -110,7 +110,7 @@ ResultColumns columns_of(std::span<const PointResult> results, const Quantities&
 
 std::vector<TableBox> boxes_in_order(const PerAxis& counts, std::size_t most) {
   if (size_of(counts) == 0) return {};
-  // Boxes have all of the fastest axes, some of one, and one value of the slowest.
+  // A box has all values of the fastest axes, some values of one axis, and a single value of each slower axis.
   std::size_t cut = counts.size() - 1;
   std::size_t of_one = 1;
   while (cut > 0 && of_one * counts[cut] <= most) of_one *= counts[cut--];
@@ -166,9 +166,9 @@ std::string values_hash(const TableLayout& layout, const ValueSums& sums) {
   std::uint64_t hash = kHashStart;
   for (const Axis axis : kAllAxes) {
     const std::vector<double>& values = head.axes[axis];
-    if (description_of(axis).has_labels) {  // positions differ between a table and its parts
+    if (description_of(axis).has_labels) {  // a label has another position in a part of the table
       for (const double value : values) hash = hashed(hashed(hash, head.label(axis, value)), std::uint64_t{0});
-    } else if (axis != Axis::kTemperature || !values.empty()) {  // files that could not have it keep their hash
+    } else if (axis != Axis::kTemperature || !values.empty()) {  // an absent axis temperature is not hashed
       hash = hashed(hash, std::span(values));
     }
   }

@@ -17,8 +17,8 @@
 namespace dolp {
 namespace {
 
-constexpr std::size_t kRowsAtOnce = 4096;         // rows of a thread
-constexpr std::size_t kBlock = 16 * kRowsAtOnce;  // rows that are text in memory at a time
+constexpr std::size_t kRowsAtOnce = 4096;         // rows that a thread converts to text in one step
+constexpr std::size_t kBlock = 16 * kRowsAtOnce;  // rows whose text is in memory at a time
 
 namespace fs = std::filesystem;
 
@@ -29,7 +29,7 @@ std::vector<Axis> present_axes(const Axes& axes) {
   return present;
 }
 
-/// Calls use(axis, value) for the coordinates of an entry on the axes of the table.
+/// Calls use(axis, value) for each axis of the table, with the coordinate of an entry on it.
 template <class Use>
 void each_coordinate(const Axes& axes, std::size_t position, const Use& use) {
   const PerAxis on_axes = positions_on_axes(position, counts_of(axes));
@@ -82,7 +82,8 @@ std::string csv_rows(const TableValues& part, const TableLayout& layout) {
   });
 }
 
-/// Source: the NumPy enhancement proposal "A Simple File Format for NumPy Arrays", version 1.0.
+/// The header of a .npy file. Source: the NumPy enhancement proposal "A Simple File Format for NumPy Arrays", version
+/// 1.0.
 std::string npy_header(const TableLayout& layout) {
   constexpr std::size_t kAlignment = 64;
   constexpr std::size_t kPreambleSize = 10;

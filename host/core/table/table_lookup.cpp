@@ -18,37 +18,41 @@ namespace {
 
 constexpr auto kTheta = static_cast<std::size_t>(Axis::kTheta);
 constexpr auto kQ = static_cast<std::size_t>(Axis::kQ);
-constexpr std::array<std::size_t, kAxisCount> kWindow = {2, 2, 4, 4, 4, 4, 6, 6, 6};  // values of each axis
+// Values of each axis that are read.
+constexpr std::array<std::size_t, kAxisCount> kWindow = {2, 2, 4, 4, 4, 4, 6, 6, 6};
 constexpr std::size_t kMostRows =
-    std::size_t{4} * 4 * 4 * 4 * 6 * 6;  // rows of values along q; a point is at one value of an axis with labels
-constexpr int kMostShift = 3;            // shift of a window away from unknown entries
-constexpr std::size_t kLeastValues = 4;  // values of an axis: fewer give no reliable estimate
-// Tuned. Stated error over the change by one value more: where the window has a value to add on both sides, and
-// elsewhere. Of 581,000 bistatic lookups with half, this and double 147, 2 and 0 err by more than stated; the median of
-// what is stated: 1.56, 3.02, 6.00e-4.
+    std::size_t{4} * 4 * 4 * 4 * 6 * 6;  // most rows along q in a window; on an axis with labels a point is at a value
+constexpr int kMostShift = 3;            // values by which a window may move away from unknown entries
+constexpr std::size_t kLeastValues = 4;  // fewer values of an axis give no reliable estimate of the error
+// Tuned. Ratio of the stated error to the change that one more value makes: kInside if the window has a value to add on
+// both sides, else kAtEnds. Of 581,000 bistatic lookups, 147, 2 and 0 err by more than the stated error with half, this
+// and double. The medians of the stated errors are 1.56e-4, 3.02e-4 and 6.00e-4.
 constexpr double kInside = 16.0;
 constexpr double kAtEnds = 37.0;
-// Tuned. A change that falls faster in one step, or on a short axis in two steps, is small by chance. With half, this
-// and double: 44, 2 and 0 of these lookups; the median: 2.65, 3.02, 3.95e-4.
+// Tuned. The change by one more value counts as at least kFastestFall times the change with one value fewer, and on a
+// short axis as at least kFastestFallOfTwo times the change with two values fewer. A smaller change is small by chance.
+// With half, this and double, 44, 2 and 0 of these lookups err by more than the stated error; the medians of the stated
+// errors are 2.65e-4, 3.02e-4 and 3.95e-4.
 constexpr double kFastestFall = 0.2;
 constexpr double kFastestFallOfTwo = 0.25;
-// Tuned. Stated error by a kink over the error of a ramp. Without, with half, this and double: 38, 4, 2 and 2 of these
-// lookups; the median: 2.99, 3.01, 3.02, 3.04e-4.
+// Tuned. Ratio of the stated error at a kink to the interpolation error of a ramp. With no error for kinks, and with
+// half, this and double, 38, 4, 2 and 2 of these lookups err by more than the stated error; the medians of the stated
+// errors are 2.99e-4, 3.01e-4, 3.02e-4 and 3.04e-4.
 constexpr double kKinkMargin = 2.0;
 
 using enum Quantity;
 
-// Smooth over the axes, so that they are interpolated.
+// Quantities that are smooth functions of the axes. Only these are interpolated.
 constexpr std::array kSmooth = {kStokesI, kStokesQ,     kStokesU,     kStokesV, kRhoI,    kRhoQ,
                                 kAlbedo,  kEmissivityS, kEmissivityP, kDolpLow, kDolpHigh};
 
-/// True if a stated error depends on the quantity.
+/// True if an error that lookup states depends on the interpolation error of the quantity.
 bool has_error(Quantity quantity) {
   constexpr std::array kWithout = {kStokesV, kAlbedo, kEmissivityS, kEmissivityP};
   return std::ranges::find(kWithout, quantity) == kWithout.end();
 }
 
-/// Quantities that lookup needs; it also needs the status.
+/// Quantities that a table must have for lookup, in addition to the status.
 constexpr std::array kNeeded = {kDolp, kStokesI, kStokesQ, kStokesU, kStokesV, kErrorEstimate};
 
 const std::vector<double>& checked(const std::vector<double>& values, const char* axis, const std::string& name) {
@@ -58,7 +62,7 @@ const std::vector<double>& checked(const std::vector<double>& values, const char
   return values;
 }
 
-/// The axes of a table; an axis that it lacks has one value.
+/// The axes of a table. An axis that the table lacks gets one value.
 std::vector<LookupAxis> axes_of(const TableValues& table, const std::string& name) {
   std::vector<LookupAxis> axes;
   for (const Axis axis : kAllAxes) {
@@ -77,7 +81,7 @@ PointResult unknown() {
   return result;
 }
 
-/// Refuses a table that lacks quantities that every result needs, and names all of them.
+/// Refuses a table without the quantities that every result needs. The message names all that are missing.
 void check_variables(const TableValues& table, const std::string& name) {
   std::vector<std::string> missing;
   for (const Quantity quantity : kAllQuantities) {
@@ -102,7 +106,7 @@ std::vector<double> masking_kinks(const SceneModel& scene) {
   if (masking != Masking::kVCavity) return {};
   const CosSin view = cos_sin_deg(view_deg);
   const double cos_azimuth = cos_sin_deg(scene.geometry.relative_azimuth_deg).cos;
-  // (1 - G) cos^2(beta) before G is limited to 1, with 2 cos(alpha) cos(beta) = cos(theta) + cos(theta_view).
+  // (1 - G) cos^2(beta), if G were not limited to 1. This uses 2 cos(alpha) cos(beta) = cos(theta) + cos(theta_view).
   const auto hidden = [&](double theta_deg) {
     const CosSin theta = cos_sin_deg(theta_deg);
     const double cos2_beta = 0.5 * (1.0 + theta.cos * view.cos + theta.sin * view.sin * cos_azimuth);
@@ -113,13 +117,13 @@ std::vector<double> masking_kinks(const SceneModel& scene) {
   for (int theta_deg = 0; theta_deg < 90; ++theta_deg) {
     const double below = hidden(theta_deg);
     const double above = hidden(theta_deg + 1);
-    // A secant of a degree is right within some 0.01 degrees, which the size of a kink's error hardly depends on.
+    // A secant over one degree finds the kink within some 0.01 degrees. The size of its error hardly depends on that.
     if ((below > 0.0) != (above > 0.0)) kinks_deg.push_back(theta_deg + below / (below - above));
   }
   return kinks_deg;
 }
 
-/// The entries that are read: a product of stencils.
+/// The entries that an interpolation reads: the product of one stencil per axis.
 struct TableLookup::Window {
   std::array<LookupAxis::Location, kAxisCount> locations;
   std::array<Stencil, kAxisCount> stencils;
@@ -135,12 +139,12 @@ struct TableLookup::Window {
   bool is_entry() const {
     return std::ranges::all_of(stencils, [](const Stencil& of_axis) { return of_axis.count == 1; });
   }
-  /// The place of an axis's value at or below the point.
+  /// The number of the last value of an axis that is not above the point.
   std::size_t below(std::size_t axis) const {
     return locations[axis].is_value ? locations[axis].next : locations[axis].next - 1;
   }
 
-  /// The positions of the corners of the point's cell, without the part of one axis.
+  /// Positions in the table of the corners of the point's cell. They are 0 along the axis `without`.
   using Corners = boost::container::static_vector<std::size_t, std::size_t{1} << kAxisCount>;
   Corners corners(const TableLookup& lookup, std::size_t without) const {
     Corners corners = {0};
@@ -158,14 +162,14 @@ struct TableLookup::Window {
   }
 };
 
-/// The entries of a window as rows along q, the same in every column.
+/// The entries of a window as rows along q. All columns of the table have the same rows.
 struct TableLookup::Rows {
   struct Row {
     std::size_t begin = 0;
     double weight = 1.0;
   };
   boost::container::static_vector<Row, kMostRows> rows;
-  std::array<std::size_t, kMostStencil> along{};  ///< position along a row
+  std::array<std::size_t, kMostStencil> along{};  ///< position of each value of a row, from the beginning of the row
   Stencil q;
 
   Rows(const TableLookup& lookup, const Window& window) : q(window.stencils[kQ]) {
@@ -173,7 +177,7 @@ struct TableLookup::Rows {
     for (std::size_t axis = 0; axis < kQ; ++axis) {
       const Stencil& stencil = window.stencils[axis];
       const std::size_t before = rows.size();
-      for (std::size_t i = stencil.count; i-- > 0;) {  // the first last, because it takes the place of what is read
+      for (std::size_t i = stencil.count; i-- > 0;) {  // i = 0 is last, because it overwrites the row that the others read
         const std::size_t begin = lookup.position(axis, stencil.first + i);
         for (std::size_t row = 0; row < before; ++row) {
           const Row next = {rows[row].begin + begin, rows[row].weight * stencil.weights[i]};
@@ -187,7 +191,7 @@ struct TableLookup::Rows {
   /// The sum of weight x value(position), or with `kOfSizes` of |weight| x value(position).
   template <bool kOfSizes = false, class Value>
   double sum(const Value& value) const {
-    bool is_dense = true;  // neighbours along q are neighbours in memory
+    bool is_dense = true;  // true if neighbours along q are neighbours in memory
     for (std::size_t k = 1; k < q.count; ++k) is_dense = is_dense && along[k] == along[0] + k;
     if (is_dense && q.count == kWindow[kQ]) return sum_dense<kWindow[kQ], kOfSizes>(value);
     if (is_dense && q.count == kWindow[kQ] - 1) return sum_dense<kWindow[kQ] - 1, kOfSizes>(value);
@@ -206,7 +210,7 @@ struct TableLookup::Rows {
   static double used(double weight) {
     return kOfSizes ? std::abs(weight) : weight;
   }
-  /// Loops of a length that the compiler knows, in two sums side by side.
+  /// The same sum with loops whose length the compiler knows. Two partial sums run side by side.
   template <std::size_t kCount, bool kOfSizes, class Value>
   double sum_dense(const Value& value) const {
     std::array<double, kCount> weights;
@@ -230,26 +234,31 @@ struct TableLookup::Rows {
   }
 };
 
-/// Changes by one more value of an axis, on the lines along the axis through the corners of the point's cell.
+/// How much one more value of an axis changes the result, on the lines along this axis through the corners of the
+/// point's cell.
 struct TableLookup::Lines {
-  /// An interpolation with one value more, at one of its ends: by how much it changes the result.
+  /// The change of an interpolation if one value is added at one of its ends. It is a divided difference of `count`
+  /// values.
   struct Change {
-    std::size_t first = 0;  ///< position in the values of a line
+    std::size_t first = 0;  ///< position on a line of the first value that the change uses
     std::size_t count = 0;
-    std::size_t level = 0;  ///< 0: beyond the window, or all values; then one value fewer each; kLevels: a kink
+    /// 0: `count` is the window and one value more, or the whole axis; each next level has one value fewer; kLevels: a
+    /// kink.
+    std::size_t level = 0;
   };
-  static constexpr std::size_t kLevels = 3;       // for a short axis; others have one fewer
-  static constexpr std::size_t kMostChanges = 6;  // a short axis has one of level 0
+  static constexpr std::size_t kLevels = 3;  // levels of a short axis; other axes have one level fewer
+  // Two for each level, and one for a kink; a short axis has only one at level 0.
+  static constexpr std::size_t kMostChanges = 6;
   static constexpr std::size_t kMostValues = kMostStencil + 1;
   boost::container::static_vector<Change, kMostChanges> changes;
   std::array<std::array<double, kMostChanges>, kMostValues>
-      factors{};                                 ///< factor of each value of a line in each change
-  std::array<std::size_t, kMostValues> along{};  ///< position along a line
+      factors{};                                 ///< factors[i][j] multiplies value i of a line in change j
+  std::array<std::size_t, kMostValues> along{};  ///< position of each value along a line
   std::size_t count = 0;
   Window::Corners begin;
-  double factor = 1.0;  ///< factor of the error, including the weights of the other axes
+  double factor = 1.0;  ///< factor from the change to the error, including the weights of the other axes
   bool has_error = false;
-  bool is_short = false;  ///< the window and one value more are the whole axis
+  bool is_short = false;  ///< true if the window and one more value are the whole axis
   bool is_unknown = false;
 
   Lines(const TableLookup& lookup, const Window& window, std::size_t number) {
@@ -269,7 +278,8 @@ struct TableLookup::Lines {
       const std::size_t centred = below + 1 > before / 2 ? below + 1 - before / 2 : 0;
       const std::size_t first = std::clamp(centred, stencil.first, stencil.first + stencil.count - before);
       const double distances = axis.distances(window.locations[number], first, before);
-      for (const std::size_t with : {first - 1, first}) {  // wraps below the axis
+      // The number first - 1 wraps around if first is 0; then `with` is skipped.
+      for (const std::size_t with : {first - 1, first}) {
         if (with + values > axis.size() || with > first) continue;
         const std::span<const double> of_change = axis.divided_difference(with, values);
         for (std::size_t i = 0; i < values; ++i) factors[with - start + i][changes.size()] = distances * of_change[i];
@@ -290,8 +300,9 @@ struct TableLookup::Lines {
     }
   }
 
-  /// Adds the error of a ramp that begins at a kink in the window, as steep as the second difference there shows. Takes
-  /// the kink whose ramp errs most.
+  /// Adds a change for the kink of the masking in the window. The kink is modelled as a ramp that begins there, as
+  /// steep as the second difference at the kink. Of several kinks, takes the one whose ramp has the largest
+  /// interpolation error.
   void add_kink(const LookupAxis& axis, double theta_deg, const Stencil& stencil, std::size_t start,
                 const std::vector<double>& kinks_deg) {
     const std::size_t last = stencil.first + stencil.count - 1;
@@ -308,7 +319,7 @@ struct TableLookup::Lines {
       kink_deg = kink;
     }
     if (largest == 0.0 || stencil.count < 3) return;
-    std::size_t middle = stencil.first + 1;  // the closest to the kink
+    std::size_t middle = stencil.first + 1;  // middle of the three values around the kink
     while (middle + 1 < last && axis.coordinate_at(middle) + axis.coordinate_at(middle + 1) < 2.0 * kink_deg) ++middle;
     const std::span<const double> difference = axis.divided_difference(middle - 1, 3);
     const double of_ramp = difference[1] * std::max(axis.coordinate_at(middle) - kink_deg, 0.0) +
@@ -319,7 +330,8 @@ struct TableLookup::Lines {
     changes.push_back({middle - 1 - start, 3, kLevels});
   }
 
-  /// The changes on a line with unknown entries, from the entries that each change needs.
+  /// The changes on a line with unknown entries. Each change uses only the entries that it needs, so some changes are
+  /// known.
   void known_changes(const double* values, double* sums) const {
     for (std::size_t j = 0; j < changes.size(); ++j) {
       sums[j] = 0.0;
@@ -329,7 +341,7 @@ struct TableLookup::Lines {
     }
   }
 
-  /// Estimate of the interpolation error of a column along the axis.
+  /// Estimate of the interpolation error along the axis, for a column of the table.
   double error(const std::vector<double>& column) const {
     if (!has_error) return 0.0;
     if (is_unknown) return kInfinity;
@@ -345,7 +357,7 @@ struct TableLookup::Lines {
 #pragma GCC unroll 6
         for (std::size_t j = 0; j < kMostChanges; ++j) sums[j] += of_value[j] * value;
       }
-      // With an entry that is not known a sum is NaN, which is not larger.
+      // A sum with an unknown entry is NaN. The comparison below then keeps the earlier value.
       if (!std::isfinite(sums[0])) known_changes(values, sums);
 #pragma GCC unroll 6
       for (std::size_t j = 0; j < kMostChanges; ++j) {
@@ -360,7 +372,8 @@ struct TableLookup::Lines {
     }
     if (largest[0] < 0.0) return kInfinity;
     if (largest[0] == 0.0) return 0.0;
-    // All lines of a coarse axis may pass through 0 together.
+    // On a coarse axis the changes of all lines may pass through 0 together. So changes at the next levels limit the
+    // fall.
     largest[0] = std::max(largest[0], kFastestFall * largest[1]);
     if (is_short) largest[0] = std::max(largest[0], kFastestFallOfTwo * largest[2]);
     return factor * (largest[0] + std::max(largest[kLevels], 0.0));
@@ -402,7 +415,7 @@ bool TableLookup::make_known(Window& window, double theta_deg) const {
   std::size_t count = kWindow[kTheta];
   const int away = theta_deg > 45.0 ? -1 : 1;
   while (!is_known(window)) {
-    // Away from the horizon, where they are, then closer together.
+    // First the window moves away from the unknown entries, up to kMostShift values. Then it gets one value fewer.
     if (++shift > kMostShift) {
       shift = 0;
       if (--count < 2) return false;
@@ -454,7 +467,7 @@ PointResult TableLookup::at(const Point& point) const {
 }
 
 void TableLookup::finish(PointResult& result, const PointResult& change, double error, double rho_error) const {
-  // Error of a quotient: (error of the numerator + quotient x error of the denominator) / least denominator.
+  // Error of the quotient above / below: (error of above + |quotient| * error of below) / least |below|.
   const auto over = [](double below, double below_error, double quotient, double above_error) {
     const double least = std::abs(below) - below_error;
     // A quotient of 0 stays 0 even if the error of the denominator is infinite.

@@ -14,19 +14,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kConvertedRowsAtOnce = std::size_t{1} << 17U;  // that a .csv or .npy is made of
+// Rows of a .csv or .npy that are in memory at a time.
+constexpr std::size_t kConvertedRowsAtOnce = std::size_t{1} << 17U;
 constexpr std::string_view kIdentityEnd = "; ";
 
-// Beside the file itself, not beside a link to it, which may be on another file system.
+// The partial file is beside the file to which a link leads, because the link may be on another file system.
 fs::path partial_path(const fs::path& path) { return follow_links(path).string() + ".partial"; }
 fs::path progress_path(const fs::path& path) { return partial_path(path).string() + ".txt"; }
 
-/// A line of a progress file: its text and, before it, a hash of that, so that damage is seen.
+/// A line of a progress file: a hash, which reveals damage, and the text. `hash`: start value of the hash.
 std::string progress_line(std::uint64_t hash, std::string_view text) {
   return fmt::format("{:016x} {}\n", hashed(hash, text), text);
 }
 
-/// The text of the first line, if progress_line made it.
+/// The text of the first of some lines; nullopt if progress_line did not make this line from the text and `hash`.
 std::optional<std::string_view> first_text(std::string_view lines, std::uint64_t hash) {
   constexpr std::size_t kHashSize = 17;
   const std::string_view line = lines.substr(0, lines.find('\n') + 1);
@@ -35,7 +36,7 @@ std::optional<std::string_view> first_text(std::string_view lines, std::uint64_t
   return line == progress_line(hash, text) ? std::optional(text) : std::nullopt;
 }
 
-/// Takes the pieces of a text one by one.
+/// Removes the first piece of a text, up to a separator, and returns this piece.
 std::string_view next_piece(std::string_view& text, std::string_view separator) {
   const std::size_t end = text.find(separator);
   const std::string_view piece = text.substr(0, end);
@@ -91,7 +92,7 @@ void TableOutput::open_progress() {
   if (parts_done_ == 0) file_->resize(0);
 }
 
-/// Reuses the parts that are there. Returns the length of their lines in the progress file.
+/// Reuses finished parts of an earlier run. Returns the length of their lines in the progress file.
 std::uint64_t TableOutput::reuse_finished_parts() {
   std::string text(progress_->size(), '\0');
   progress_->read_at(0, text.data(), text.size());
@@ -116,7 +117,7 @@ std::uint64_t TableOutput::reuse_finished_parts() {
   return parts_done_ > 0 ? taken : 0;
 }
 
-/// The hash of the next part in the progress file.
+/// The start value of progress_line for the next part, which has these sums.
 std::uint64_t TableOutput::part_hash(const ValueSums& of_part) const {
   std::uint64_t hash = hashed(hashed(kHashStart, job_.identity), std::uint64_t{parts_done_});
   for (const std::uint64_t sum : of_part) hash = hashed(hash, sum);

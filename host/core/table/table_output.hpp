@@ -1,4 +1,4 @@
-// Resumable table writer: writes part by part, so that an interrupted run can continue.
+// Writes a table part by part, so that an interrupted run can continue.
 #pragma once
 
 #include <dolp/errors.hpp>
@@ -14,37 +14,38 @@
 
 namespace dolp {
 
-/// A table file that is being written. A resumable table of several parts stays in PATH.partial until it is complete;
-/// PATH.partial.txt has a line for each finished part, with a hash of its values. Other tables have no name before they
-/// are complete. A .csv or .npy is converted at the end.
+/// A table file that is being written. A resumable table of several parts is in PATH.partial until it is complete, and
+/// PATH.partial.txt has a line for each finished part, with a hash of its values. Any other table is in a file without
+/// a name until it is complete. A .csv or .npy is made from the values at the end.
 class TableOutput {
  public:
   struct Job {
     std::filesystem::path path;
     TableLayout layout;
-    std::vector<TableBox> parts = {};  ///< in the order of write(); none: any number of parts, in any order
-    std::string identity = {};  ///< for a resumable table: names and values that all parts share, see difference()
-    bool is_resumed = false;    ///< continues PATH.partial, if it is there
-    Progress progress = {};     ///< called, with nothing done, while finished parts are read
+    std::vector<TableBox> parts = {};  ///< parts in the order of write(); empty: any number of parts, in any order
+    std::string identity = {};  ///< names and values that all parts share, see difference(); empty: not resumable
+    bool is_resumed = false;    ///< continues PATH.partial if it exists
+    Progress progress = {};     ///< called while finished parts are read, with 0 as the number of done entries
   };
-  /// Reuses finished parts of an earlier run, up to the first that is missing or changed. Errors: errors of
-  /// check_output_path; InputError for a partial file of another identity, or one that another process writes; IoError
-  /// if PATH.partial or PATH.partial.txt is a link; Cancelled.
+  /// Opens the output. If `is_resumed`, reuses finished parts of an earlier run, up to the first that is missing or
+  /// changed. Errors: errors of check_output_path; InputError if the partial file has another identity, or another
+  /// process writes it; IoError if PATH.partial or PATH.partial.txt is a link; Cancelled.
   explicit TableOutput(Job job);
   ~TableOutput();
   TableOutput(const TableOutput&) = delete;
   TableOutput& operator=(const TableOutput&) = delete;
 
-  /// Number of parts that exist already, and the note of the last of them.
+  /// Number of finished parts, and the note of the last part that was reused.
   std::size_t parts_done() const { return parts_done_; }
   const std::string& note() const { return note_; }
 
-  /// Writes the next part, which begins at `first`, and a note, one line. Errors: IoError, Cancelled.
+  /// Writes the next part, which begins at the positions `first`. `note`: a line to store with it. Errors: IoError,
+  /// Cancelled.
   void write(TableValues part, const PerAxis& first, const std::string& note);
-  /// Makes the file, with more attributes. Errors: IoError, Cancelled; PATH is as it was then.
+  /// Adds attributes and makes the file at PATH. Errors: IoError, Cancelled; then PATH is unchanged.
   void finish(const std::vector<Attribute>& more);
 
-  /// One sentence on how to continue from the partial file, if there is one.
+  /// A sentence that tells how to continue from the partial file; nullopt if there is none.
   std::optional<std::string> rest() const;
 
  private:
@@ -65,7 +66,8 @@ class TableOutput {
   std::string note_;
 };
 
-/// The first difference between two identities, "name value; name value": "evaluator cpu, not vulkan". None: nothing.
+/// The first difference between two identities of the form "name value; name value", for example "evaluator cpu, not
+/// vulkan". nullopt if they are equal.
 std::optional<std::string> difference(const std::string& identity, const std::string& wanted);
 
 }  // namespace dolp

@@ -1,4 +1,4 @@
-// Reads tables through HDF5 itself: the netCDF library follows dimension scales, on which damaged files hang it.
+// Reads tables with HDF5 instead of the netCDF library, which follows the dimension scales of damaged files and hangs.
 #include "table/table_reader.hpp"
 
 #include <fcntl.h>
@@ -21,32 +21,32 @@
 namespace dolp {
 namespace {
 
-constexpr std::size_t kEntriesAtOnce = std::size_t{1} << 18U;  // entries of a part
-constexpr std::size_t kMostAngles = 1024;                      // angles of a response table
+constexpr std::size_t kEntriesAtOnce = std::size_t{1} << 18U;  // entries that read_entries reads at a time
+constexpr std::size_t kMostAngles = 1024;                      // most angles of a response table
 
 namespace fs = std::filesystem;
 
-// deflate, which other tools apply, leaves no less than a 1032nd of the bytes.
+// Other tools may compress a table with deflate, which leaves at least a 1032nd of the bytes.
 constexpr std::size_t kMostShrinking = 1032;
-// The text of a scene has at most 16 MiB.
+// Limit for texts in a file. The longest text is the scene, with at most 16 MiB.
 constexpr std::size_t kMostStoredTextBytes = 64U << 20U;
 
 constexpr const char* kPartHint =
     "as in a part of a table; in Python dolp.lookup(xarray.load_dataset(FILE), ...) takes parts";
 
-/// An open file, whose errors are InputErrors with its name.
+/// An open file. Errors: InputError that begins with the file's name.
 class Reader {
  public:
   explicit Reader(const fs::path& path) : path_(path) {
     check_regular_file(path.string(), path.string() + ": ");
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // messages are ours
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // keeps HDF5 from printing
     file_ = {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
     if (!file_ || H5Fget_filesize(file_.id(), &bytes_) < 0) fail("is not a NetCDF table of dolp, or cannot be read");
   }
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
-  /// If a file cannot be closed, for example because a server is gone, HDF5 keeps half of it and crashes at exit. So
-  /// HDF5 gets another file to close; dup2 always closes the real one.
+  /// If a file cannot be closed, for example because its server is gone, HDF5 keeps it half closed and crashes at exit.
+  /// So dup2 closes the real file and gives its descriptor to /dev/null, which HDF5 can close.
   ~Reader() {
     void* descriptor = nullptr;
     const int other = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
@@ -60,7 +60,7 @@ class Reader {
     if (code < 0) fail(what + ": cannot be read; the file is damaged");
   }
 
-  /// An object of HDF5. `name`: for the message if there is none.
+  /// Takes over an HDF5 object. Errors: InputError that names `name`, if there is no object.
   Hdf5Handle take(hid_t id, Hdf5Handle::Close close, const std::string& name) const {
     check(id < 0 ? -1 : 0, name);
     return {id, close};
@@ -68,7 +68,7 @@ class Reader {
 
   const Hdf5Handle& file() const { return file_; }
 
-  /// A variable whose values are in this file; nothing where it is not there.
+  /// A variable of the file; an empty handle if there is none. Refuses a variable whose values are in another file.
   Hdf5Handle find(const std::string& name) const {
     const htri_t exists = H5Lexists(file_.id(), name.c_str(), H5P_DEFAULT);
     check(exists, name);
@@ -93,7 +93,7 @@ class Reader {
     return shape;
   }
 
-  /// Refuses values that a file of this size cannot hold, before memory is taken for them.
+  /// Refuses more values than a file of this size can hold, before memory is allocated for them.
   void check_claim(const std::string& name, std::size_t bytes) const {
     if (bytes / kMostShrinking <= bytes_) return;
     fail(fmt::format("{}: {} bytes are claimed, which a file of {} cannot hold", name, bytes, bytes_));
@@ -111,7 +111,7 @@ class Reader {
 
 bool is_of_class(hid_t type, H5T_class_t wanted) { return H5Tget_class(type) == wanted; }
 
-/// The values of a list; none where it is not there. Errors: InputError for more than `most`.
+/// The values of a list; empty if the file lacks it. Errors: InputError for more than `most` values.
 std::vector<double> read_list(const Reader& reader, const std::string& name, std::size_t most,
                               bool may_be_scalar = false) {
   const Hdf5Handle variable = reader.find(name);
@@ -168,7 +168,7 @@ std::vector<std::string> read_labels(const Reader& reader, const std::string& na
   });
 }
 
-/// A text or a number; nothing for other attributes.
+/// The value of an attribute that is a text or a number; nullopt for any other attribute.
 std::optional<std::variant<std::string, double>> read_value(const Reader& reader, const Hdf5Handle& attribute,
                                                             const std::string& name) {
   const Hdf5Handle space = reader.take(H5Aget_space(attribute.id()), H5Sclose, name);
@@ -185,7 +185,7 @@ std::optional<std::variant<std::string, double>> read_value(const Reader& reader
   return value;
 }
 
-/// A text attribute of the file or of a variable.
+/// A text attribute of the file or of a variable; nullopt if there is none.
 std::optional<std::string> find_text(const Reader& reader, const Hdf5Handle& object, const char* name) {
   const htri_t exists = H5Aexists(object.id(), name);
   reader.check(exists, name);
@@ -196,7 +196,8 @@ std::optional<std::string> find_text(const Reader& reader, const Hdf5Handle& obj
   return text ? std::optional(*text) : std::nullopt;
 }
 
-/// The attribute at a position, in the order in which they were made where the file knows it.
+/// The attribute at a position, in the order in which attributes were made. If the file lacks this order, in the order
+/// of names.
 Hdf5Handle attribute_at(const Reader& reader, hsize_t position) {
   for (const H5_index_t index : {H5_INDEX_CRT_ORDER, H5_INDEX_NAME}) {
     Hdf5Handle attribute(
@@ -206,7 +207,7 @@ Hdf5Handle attribute_at(const Reader& reader, hsize_t position) {
   reader.fail("an attribute cannot be read; the file is damaged");
 }
 
-/// All attributes, except attributes of the file format.
+/// All attributes except those that belong to the file format.
 std::vector<Attribute> read_attributes(const Reader& reader) {
   H5O_info_t info{};
   reader.check(H5Oget_info2(reader.file().id(), &info, H5O_INFO_NUM_ATTRS), "the attributes");
@@ -222,7 +223,7 @@ std::vector<Attribute> read_attributes(const Reader& reader) {
   return attributes;
 }
 
-/// The texts that are variables because they are too long for attributes.
+/// Appends texts that are stored as variables because they are too long for attributes.
 void append_long_texts(const Reader& reader, std::vector<Attribute>& attributes) {
   for (const char* name : {"title", "history", "scene", "scene_path", "scene_overrides", "surroundings_profile",
                            "coating", "reflectance", "materials", kSpectralData}) {
@@ -305,7 +306,7 @@ struct TableReader::Impl {
   void read_curves() {
     for (const TableCurve& described : kTableCurves) {
       Curve& curve = head.*described.curve;
-      // Files of dolp 0.2 have the scene's curves over wavelengths of their own instead of an attribute.
+      // Files of dolp 0.2 store the scene's curves as variables over separate wavelengths, not as the attribute.
       curve.wavelength_um = read_list(reader, described.name + std::string("_wavelength"), kMostTableEntries);
       const bool is_of_scene = !curve.wavelength_um.empty();
       std::vector<double>& values = is_of_scene ? curve.values : curve.used;
@@ -316,7 +317,7 @@ struct TableReader::Impl {
     }
   }
 
-  /// Reads a part of a variable that has `width` values for each entry.
+  /// Reads a part of a variable with `width` values per entry.
   template <class Value>
   void read(std::size_t number, const TableBox& box, std::vector<Value>& values, std::size_t width) const {
     const auto& [name, variable] = open[number];
@@ -326,7 +327,7 @@ struct TableReader::Impl {
       first.push_back(box.first[axis]);
       count.push_back(box.count[axis]);
     }
-    if (reader.shape_of(variable, name).size() > count.size()) {  // over beta too
+    if (reader.shape_of(variable, name).size() > count.size()) {  // the variable also has the dimension beta
       first.push_back(0);
       count.push_back(width);
     }

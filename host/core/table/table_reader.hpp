@@ -1,4 +1,4 @@
-// A table in a file, read part by part.
+// Reads a table from a file, part by part.
 #pragma once
 
 #include <dolp/errors.hpp>
@@ -10,7 +10,7 @@
 
 namespace dolp {
 
-/// An open .nc table. Errors of all calls: InputError for a file that cannot be opened, is not such a table, is
+/// An open .nc table. Errors of all calls: InputError for a file that cannot be opened, is not a table of dolp, is
 /// damaged, or claims more values than a file of its size can hold.
 class TableReader {
  public:
@@ -23,13 +23,13 @@ class TableReader {
   const TableHead& head() const { return layout().head; }
 
   TableValues read(const TableBox& box) const;
-  /// The values of the entries at ascending positions: each variable has one value for each of them. Reads the whole
-  /// table, part by part, and refuses what check_hash refuses. Errors: also Cancelled.
+  /// The entries at ascending positions; each variable has one value per position. Reads the whole table, part by part,
+  /// and refuses what check_hash refuses. Errors: also Cancelled.
   TableValues read_entries(std::span<const std::size_t> positions, const Progress& progress) const;
 
-  /// Hash contribution of a part that has been read.
+  /// The sums of a part that was read, for check_hash.
   ValueSums sums_of(const TableValues& part, const TableBox& box) const;
-  /// Refuses values that differ from the written ones, and a file without a hash. `sums`: sums over all parts.
+  /// Refuses a file whose values differ from those that dolp wrote, or that has no hash. `sums`: sums over all parts.
   void check_hash(const ValueSums& sums) const;
 
  private:

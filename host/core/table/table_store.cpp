@@ -27,13 +27,13 @@
 namespace dolp {
 namespace {
 
-/// Room for what HDF5 adds to values and texts: shapes, names, units.
+/// Most bytes that HDF5 adds to values and texts, for shapes, names and units.
 constexpr std::uint64_t kMostOverhead = 1U << 20U;
 
-/// A file without a name. Only bytes that are written take memory; the rest reads as zero.
+/// A file in memory, without a name. Only written bytes take memory; the other bytes read as zero.
 class MemoryFile {
  public:
-  /// `table`: for messages. Errors: IoError.
+  /// `table`: path of the table, for messages. Errors: IoError.
   explicit MemoryFile(std::string table) : table_(std::move(table)), descriptor_(::memfd_create("dolp", MFD_CLOEXEC)) {
     if (descriptor_ < 0) fail(std::strerror(errno));
   }
@@ -66,8 +66,8 @@ class MemoryFile {
 
 /// Why the last call of HDF5 failed.
 struct Hdf5Failure {
-  std::string reason;      ///< in HDF5's words; empty where it has no memory for them
-  bool is_memory = false;  ///< lack of memory
+  std::string reason;      ///< reason in HDF5's words; empty if HDF5 had no memory for them
+  bool is_memory = false;  ///< true if the reason is lack of memory
 
   static herr_t add(unsigned, const H5E_error2_t* error, void* failure) {
     auto& first_failure = *static_cast<Hdf5Failure*>(failure);
@@ -78,19 +78,20 @@ struct Hdf5Failure {
   }
 };
 
-/// Makes the objects of one file in memory. A call that fails throws std::bad_alloc, or IoError with HDF5's reason.
+/// Makes the HDF5 objects of a table in a MemoryFile. If a call fails, throws std::bad_alloc, or IoError with HDF5's
+/// reason.
 class Writer {
  public:
   explicit Writer(const MemoryFile& memory) : memory_(memory) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // messages are ours
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // keeps HDF5 from printing
     const Hdf5Handle access = take(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    check(H5Pset_fapl_stdio(access.id()));  // HDF5's usual driver needs the name of a file
+    check(H5Pset_fapl_stdio(access.id()));  // the default driver needs a file with a name
     check(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18));
     const Hdf5Handle creation = take(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-    // Without an order of creation the netCDF library opens a file for reading only.
+    // Without this order the netCDF library can open a file only for reading.
     check(H5Pset_link_creation_order(creation.id(), kOrdered));
     check(H5Pset_attr_creation_order(creation.id(), kOrdered));
-    check(H5Pset_obj_track_times(creation.id(), false));  // same scene, same bytes
+    check(H5Pset_obj_track_times(creation.id(), false));  // so that the same scene gives the same bytes
     file_ = take(H5Fcreate(memory.path().c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
   }
 
@@ -109,7 +110,7 @@ class Writer {
     put(object, name, type.id(), type.id(), take(H5Screate(text.empty() ? H5S_NULL : H5S_SCALAR), H5Sclose),
         text.empty() ? nullptr : text.data());
   }
-  /// Texts of `width` bytes, or of any length.
+  /// The type of texts with `width` bytes. H5T_VARIABLE means any length.
   Hdf5Handle text_type(std::size_t width) const {
     Hdf5Handle type = take(H5Tcopy(H5T_C_S1), H5Tclose);
     check(H5Tset_size(type.id(), width));
@@ -121,7 +122,7 @@ class Writer {
     const hsize_t count = 1;
     put(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, take(H5Screate_simple(1, &count, nullptr), H5Sclose), &value);
   }
-  // CF-1.8 has no unsigned int; the masks must have the type of the variable.
+  // CF-1.8 has no unsigned int, and the masks must have the type of the status variable.
   void put_status_bits(const Hdf5Handle& object) const {
     std::array<int, kStatusBits.size()> masks{};
     std::array<const char*, kStatusBits.size()> meanings{};
@@ -133,14 +134,15 @@ class Writer {
     put_text(object, "flag_meanings", fmt::format("{}", fmt::join(meanings, " ")));
   }
 
-  /// A variable without values, which has its place in the file. Uncompressed: zlib saves half of the file and takes
-  /// longer than everything else of a table. In one piece, because pointers to pieces have no checksum.
+  /// Creates a variable without values, and reserves its space in the file. The variable is not compressed, because
+  /// zlib saves half of the file but takes longer than everything else in writing a table. It is contiguous, because
+  /// pointers to chunks have no checksum.
   Hdf5Handle define(const char* name, hid_t type, const std::vector<hsize_t>& shape, const void* fill,
                     H5D_alloc_time_t allocation = H5D_ALLOC_TIME_EARLY) const {
     const Hdf5Handle creation = take(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     check(H5Pset_attr_creation_order(creation.id(), kOrdered));
     check(H5Pset_obj_track_times(creation.id(), false));
-    // Every variable is written whole; to fill it first would write it twice. HDF5 insists on it for texts of any
+    // Filling would write every variable twice, because each is written whole. HDF5 requires it for texts of variable
     // length.
     if (H5Tis_variable_str(type) <= 0) check(H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER));
     check(H5Pset_alloc_time(creation.id(), allocation));
@@ -171,12 +173,13 @@ class Writer {
   Hdf5Handle file_;
 };
 
-/// Writes a text as a variable over its length.
+/// Stores a text as a variable, whose dimension is the length of the text.
 void put_long_text(const Writer& writer, const std::string& name, const std::string& text) {
   const std::vector<hsize_t> shape = {text.size()};
-  const Hdf5Handle length =  // never written, so that it takes no place in the file
+  const Hdf5Handle length =  // never written, so that it takes no space in the file
       writer.define((name + "_length").c_str(), H5T_IEEE_F32BE, shape, nullptr, H5D_ALLOC_TIME_LATE);
-  // How the netCDF library marks a dimension without coordinates; the number is the length in ten digits.
+  // The netCDF library marks a dimension without coordinates by this text. The number at its end is the length, as ten
+  // characters.
   std::string digits = std::to_string(text.size());
   digits.insert(0, 10 - std::min<std::size_t>(digits.size(), 10), ' ');
   writer.check(H5DSset_scale(length.id(), ("This is a netCDF dimension but not a netCDF variable." + digits).c_str()));
@@ -203,7 +206,8 @@ void put_attributes(const Writer& writer, const TableHead& head) {
   if (const std::string data = spectral_data_of(head); !data.empty()) put_more(writer, {{kSpectralData, data}});
 }
 
-/// A coordinate: a dimension of its own, or over the dimension `along`, which may be missing.
+/// Writes a coordinate. Without `along` it is a dimension. With `along` it is a variable over this dimension, or a
+/// single value if the handle is empty.
 template <class Described>
 Hdf5Handle put_coordinate(const Writer& writer, const Described& described, const std::vector<double>& values,
                           const Hdf5Handle* along = nullptr) {
@@ -217,7 +221,7 @@ Hdf5Handle put_coordinate(const Writer& writer, const Described& described, cons
   return variable;
 }
 
-/// The coordinate of an axis with labels. Texts of one length crash the netCDF library.
+/// Writes the labels of an axis as texts of variable length, because texts of one length crash the netCDF library.
 Hdf5Handle put_labels(const Writer& writer, const TableHead& head, Axis axis) {
   const AxisDescription& described = description_of(axis);
   std::vector<const char*> labels;
@@ -230,7 +234,7 @@ Hdf5Handle put_labels(const Writer& writer, const TableHead& head, Axis axis) {
   return variable;
 }
 
-/// The coordinate variables; an axis that the table lacks has none.
+/// The coordinate variables of the axes. An axis that the table lacks has an empty handle.
 using AxisVariables = AxisArray<Hdf5Handle>;
 
 AxisVariables put_axes(const Writer& writer, const TableHead& head) {
@@ -249,7 +253,7 @@ AxisVariables put_axes(const Writer& writer, const TableHead& head) {
   return axes;
 }
 
-/// `beta`: the last coordinate of the variable, after the axes; null for most variables.
+/// Creates a variable over the axes of the table. `beta`: coordinate of its last dimension; null for most variables.
 Hdf5Handle define_over_axes(const Writer& writer, const TableHead& head, const AxisVariables& axes, const char* name,
                             hid_t type, const void* fill, const Hdf5Handle* beta = nullptr) {
   std::vector<hsize_t> shape;
@@ -267,14 +271,15 @@ Hdf5Handle define_over_axes(const Writer& writer, const TableHead& head, const A
   return variable;
 }
 
-/// Where the values of a variable are in the file.
+/// Offset in the file at which the values of a variable begin.
 std::uint64_t offset_of(const Writer& writer, const Hdf5Handle& variable) {
   const haddr_t offset = H5Dget_offset(variable.id());
   writer.check(offset == HADDR_UNDEF ? -1 : 0);
   return offset;
 }
 
-/// `qualifiers`: names of the variables that qualify it, or "".
+/// Creates a variable of doubles, and returns the offset of its values. `qualifiers`: names of the variables that
+/// qualify it (its error, the status), or "".
 template <class Described>
 std::uint64_t put_variable(const Writer& writer, const TableHead& head, const AxisVariables& axes,
                            const Described& described, const std::string& units, const char* qualifiers,
@@ -305,7 +310,7 @@ std::uint64_t bytes_of(const std::vector<Attribute>& attributes) {
   return bytes;
 }
 
-/// Upper bound of the length of a file with this layout.
+/// Upper bound for the length of a file with this layout.
 std::uint64_t most_bytes(const TableLayout& layout) {
   const TableHead& head = layout.head;
   const std::size_t of_entry =
@@ -319,7 +324,7 @@ std::uint64_t most_bytes(const TableLayout& layout) {
   return numbers * sizeof(double) + bytes_of(head.attributes) + spectral_data_of(head).size() + kMostOverhead;
 }
 
-/// Refuses a file longer than the system allows, because HDF5 does not survive a file that cannot grow.
+/// Refuses a file that is longer than the system allows, because HDF5 crashes if a file cannot grow.
 void check_room(const AtomicFile& file, std::uint64_t bytes) {
   rlimit limit{};
   if (::getrlimit(RLIMIT_FSIZE, &limit) != 0 || bytes <= limit.rlim_cur) return;
@@ -334,7 +339,7 @@ struct TableStore::Impl {
   AtomicFile& file;
   MemoryFile memory;
   Writer writer{memory};
-  /// Where the values of each variable begin in the file, in the order of for_each_variable.
+  /// Offset in the file at which the values of each variable begin, in the order of for_each_variable.
   std::vector<std::uint64_t> offsets;
 
   Impl(TableLayout of_file, AtomicFile& of_table)
@@ -356,7 +361,7 @@ struct TableStore::Impl {
     if (layout.has_status) offsets.push_back(put_status(writer, head, axes));
   }
 
-  /// Calls use(offset, values) for each run of values of a part that is one run in the file too.
+  /// Calls use(offset, values) for each run of values that are consecutive in a part and in the file.
   template <class Values, class Use>
   void each_run(Values& part, const PerAxis& first, const Use& use) const {
     std::size_t variable = 0;
@@ -369,7 +374,7 @@ struct TableStore::Impl {
     });
   }
 
-  /// Writes the bytes of the file between and around the values.
+  /// Writes all bytes of the file except the values.
   void write_gaps() {
     writer.check(H5Fflush(writer.file().id(), H5F_SCOPE_GLOBAL));
     std::vector<std::pair<std::uint64_t, std::uint64_t>> values;
@@ -387,7 +392,7 @@ struct TableStore::Impl {
       file.write_at(end, bytes.data(), bytes.size());
       end = last;
     }
-    file.resize(end);  // a file from before may be longer
+    file.resize(end);  // an earlier file with this name may be longer
   }
 };
 
@@ -417,7 +422,7 @@ TableValues TableStore::read(const TableBox& box) const {
 std::optional<ValueSums> TableStore::measured(const TableBox& box) const {
   try {
     return sums_of(read(box), impl_->layout, box.first);
-  } catch (const IoError&) {  // cut short, for one
+  } catch (const IoError&) {  // for example because the file is cut short
     return std::nullopt;
   }
 }

@@ -1,4 +1,4 @@
-// The axes of a table: the only place that names and orders them.
+// The axes of a table. Only this file names and orders them.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace dolp {
 
-/// In the order of a table; the last axis varies fastest.
+/// The axes, in the order in which tables have them. The last axis varies fastest.
 enum class Axis : std::uint8_t { kMaterial, kBand, kWavelength, kTemperature, kN, kK, kTheta, kSigma, kQ };
 inline constexpr std::size_t kAxisCount = static_cast<std::size_t>(Axis::kQ) + 1;
 
@@ -22,13 +22,16 @@ using AxisArray = EnumArray<Axis, Value, kAxisCount>;
 inline constexpr std::array<Axis, kAxisCount> kAllAxes = enumerators<Axis, kAxisCount>();
 
 struct AxisDescription {
-  const char* name;    ///< name of the coordinate in table files and Datasets
-  const char* column;  ///< name in points, in .csv and .npy tables, in [grid] and as a keyword
+  const char* name;  ///< name of the coordinate in table files and Datasets
+  /// Name of the column in points and in .csv and .npy tables, and of the key in [grid]. In Python, name of the
+  /// keyword.
+  const char* column;
   const char* units;
   const char* long_name;
   NumberRange range;
-  bool is_required;         ///< every table has the axis; for other axes, a table without one has the scene's value
-  bool has_labels = false;  ///< its values are positions, from 0, in the list of labels
+  /// True if every table has the axis. The other axes are optional: a table without one has the scene's value.
+  bool is_required;
+  bool has_labels = false;  ///< the values of the axis are positions, from 0, in its list of labels
 };
 
 inline constexpr std::array<AxisDescription, kAxisCount> kAxes = {{
@@ -47,12 +50,12 @@ static_assert(kAxes.back().name != nullptr, "each axis has a row");
 
 constexpr const AxisDescription& description_of(Axis axis) { return kAxes[static_cast<std::size_t>(axis)]; }
 
-/// Wind speeds. In [grid] and in points they replace values of sigma; tables have them as a second coordinate along
-/// sigma.
+/// Describes wind speeds, which are no axis of their own. In [grid] and in points, wind speeds replace values of sigma.
+/// Tables have them as a second coordinate along sigma.
 inline constexpr AxisDescription kWind = {
     "wind_m_s", "wind_m_s", "m s-1", "wind speed that gives sigma (Cox and Munk 1954)", kWindRange, false};
 
-/// In the order in which messages list the columns of points.
+/// The axes in the order in which messages list the columns of points.
 inline constexpr std::array<Axis, kAxisCount> kColumnOrder = {Axis::kTheta,    Axis::kSigma,       Axis::kQ,
                                                               Axis::kN,        Axis::kK,           Axis::kWavelength,
                                                               Axis::kMaterial, Axis::kTemperature, Axis::kBand};
@@ -61,7 +64,7 @@ inline constexpr std::array<Axis, kAxisCount> kColumnOrder = {Axis::kTheta,    A
 using Axes = AxisArray<std::vector<double>>;
 /// The names of the values of axes with labels: materials by name, bands as "8-14". Empty for other axes.
 using AxisLabels = AxisArray<std::vector<std::string>>;
-/// One number per axis: positions, or counts.
+/// One number per axis, such as a position along it or its number of values.
 using PerAxis = AxisArray<std::size_t>;
 
 }  // namespace dolp

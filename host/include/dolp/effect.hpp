@@ -1,4 +1,4 @@
-// The effects of a scene, and their treatment.
+// The effects of a scene, and whether a run computes or drops them.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,10 @@
 namespace dolp {
 
 enum class EffectState : std::uint8_t {
-  kAbsent,     ///< the scene does not have it
+  kAbsent,     ///< the scene does not have the effect
   kKept,       ///< computed
-  kDropped,    ///< left out, because a bound shows that its effect is negligible
-  kNotNeeded,  ///< a choice of the model that affects nothing that is kept
+  kDropped,    ///< left out, because a bound shows that it changes the result negligibly
+  kNotNeeded,  ///< a choice of the model that changes nothing in the kept effects
 };
 
 /// "absent", "kept", "dropped", "not_needed".
@@ -20,7 +20,7 @@ constexpr const char* name_of(EffectState state) {
   return kNames[static_cast<std::uint8_t>(state)];
 }
 
-/// The parts of the sums of radiation that can be dropped.
+/// The contributions to the radiation that a run can drop.
 enum class Part : std::uint8_t {
   kFurtherBounces,
   kMoments,
@@ -32,16 +32,16 @@ enum class Part : std::uint8_t {
   kProfile  ///< variation of the surroundings around their mean
 };
 
-/// An effect that a scene can have, and its treatment at some points.
+/// An effect that a scene can have, and how a run at some points treats it.
 struct Effect {
   std::string name;
   EffectState state = EffectState::kKept;
   std::string reason = {};
-  std::string needs = {};         ///< quantities that it needs; empty if it is not kept
-  std::optional<Part> part = {};  ///< empty for choices of the model
-  /// for a dropped effect: bound of the change of (Q/I, U/I) without it, at the worst point
+  std::string needs = {};         ///< quantities that the effect needs; empty if it is not kept
+  std::optional<Part> part = {};  ///< contribution that the effect adds; empty for choices of the model
+  /// For a dropped effect: bound of the change of (Q/I, U/I) by dropping it, at the worst point.
   std::optional<double> bound = {};
-  /// for a kept effect: estimate of the change of (Q/I, U/I) without it, the largest of a few points
+  /// For a kept effect: estimate of the change of (Q/I, U/I) if it were dropped, the largest at a few points.
   std::optional<double> influence = {};
 };
 

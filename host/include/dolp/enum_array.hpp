@@ -1,4 +1,4 @@
-// Arrays that an enumeration indexes.
+// Arrays with one value per enumerator of an enumeration.
 #pragma once
 
 #include <array>
@@ -6,7 +6,7 @@
 
 namespace dolp {
 
-/// An array with one value per enumerator. The enumeration counts from 0.
+/// An array with one value per enumerator. The values of the enumerators count up from 0.
 template <class Key, class Value, std::size_t kCount>
 struct EnumArray : std::array<Value, kCount> {
   using std::array<Value, kCount>::operator[];
@@ -14,7 +14,7 @@ struct EnumArray : std::array<Value, kCount> {
   constexpr const Value& operator[](Key key) const { return (*this)[static_cast<std::size_t>(key)]; }
 };
 
-/// All enumerators, in their order.
+/// All enumerators, in ascending order.
 template <class Key, std::size_t kCount>
 constexpr std::array<Key, kCount> enumerators() {
   std::array<Key, kCount> all{};

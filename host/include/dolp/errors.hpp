@@ -1,5 +1,5 @@
-// Errors that the library throws; each belongs to an exit status of the command line. And the progress function, which
-// can cancel a call.
+// Errors that the library throws, and the progress function, which can cancel a call. Each error belongs to an exit
+// status of the command line.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,14 @@
 
 namespace dolp {
 
-/// A scene, points, a table or an argument is wrong (exit 2). The message is one line: place, value, allowed range.
+/// A scene, points, a table or an argument is wrong (exit 2). The message is one line with the place, the value and the
+/// allowed range.
 class DOLP_EXPORT InputError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
 };
 
-/// There is no usable Vulkan device, it was lost, or this process was forked from one that uses it (exit 3).
+/// No Vulkan device is usable, the device was lost, or this process was forked from one that uses Vulkan (exit 3).
 class DOLP_EXPORT DeviceError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -41,8 +42,8 @@ class DOLP_EXPORT Cancelled : public std::runtime_error {
   explicit Cancelled(const std::string& left = "no file was written") : std::runtime_error(left) {}
 };
 
-/// Receives the number of finished items; the first call is with 0 when all inputs are read. Calls come from one thread
-/// at a time, which may not be the caller's. If it returns false, the call ends with Cancelled.
+/// Receives the number of finished items. The first call has 0 and comes when all inputs are read. Calls come from one
+/// thread at a time, which may not be the caller's. If it returns false, the call of the library ends with Cancelled.
 using Progress = std::function<bool(std::size_t done, std::size_t total)>;
 
 }  // namespace dolp

@@ -15,7 +15,7 @@
 
 namespace dolp {
 
-/// A measured quantity: a column of the data, and a quantity of the model.
+/// A quantity that is measured (a column of the data) and that the model computes.
 enum class Observable { kDolp, kQOverI, kEmissivityS, kEmissivityP };
 
 /// "dolp", "q_over_i" (signed), "emissivity_s", "emissivity_p".
@@ -27,32 +27,33 @@ struct Measurement {
   double theta_deg = 0.0;  ///< in bistatic mode: zenith of the source
   double value = 0.0;
   std::optional<double> uncertainty;    ///< one standard deviation
-  std::optional<double> wavelength_um;  ///< empty: the scene's wavelength
+  std::optional<double> wavelength_um;  ///< empty means the scene's wavelength
 };
 
 /// A set of measured data, with settings that change the scene for these data.
 struct DOLP_EXPORT MeasuredData {
   std::string name = "data";  ///< name of its file, for messages
   std::vector<Setting> settings = {};
-  std::string zenith_column = "theta_deg";  ///< or theta_i_deg, which needs the bistatic mode
-  bool has_uncertainties = false;           ///< whether all measurements have an uncertainty
+  std::string zenith_column = "theta_deg";  ///< theta_deg, or theta_i_deg, which needs the bistatic mode
+  bool has_uncertainties = false;           ///< true if all measurements have an uncertainty
   std::vector<Measurement> measurements = {};
   std::vector<std::string> remarks = {};  ///< one line for each unit that was probably meant differently
 
-  /// Reads a CSV. Columns: theta_deg or theta_i_deg; dolp, or q_over_i (signed), or emissivity_s and emissivity_p or
-  /// one of them; and any of uncertainty, wavelength_um. dolp must not be negative. Values are fractions, not percent.
-  /// Lines that begin with # are comments. Errors: InputError; its one line names file, line, column, value and what is
-  /// allowed.
+  /// Reads a CSV with these columns: theta_deg or theta_i_deg; then dolp, or q_over_i (signed), or one or both of
+  /// emissivity_s and emissivity_p; and, if wanted, uncertainty and wavelength_um. dolp must not be negative. Values
+  /// are fractions, not percent. Lines that begin with # are comments. Errors: InputError in one line with file, line,
+  /// column, value and what is allowed.
   static MeasuredData from_csv(const std::string& csv, const std::string& name = "data",
                                std::vector<Setting> settings = {});
-  /// Reads "FILE" or "FILE:KEY=VALUE,KEY=VALUE"; FILE "-" is stdin. Errors: InputError.
+  /// Reads the CSV that "FILE" or "FILE:KEY=VALUE,KEY=VALUE" names, and the settings after the colon. FILE "-" is
+  /// stdin. Errors: InputError.
   static MeasuredData read(const std::string& argument);
 };
 
 /// A number of the scene, and the range in which a fit searches for it.
 ///
-/// Its coordinate runs from 0 at `low` to 1 at `high`: logarithmically if the range is positive and spans a decade or
-/// more, otherwise linearly.
+/// The fit searches along a coordinate, from 0 at `low` to 1 at `high`. It is logarithmic in the number if the range is
+/// positive and spans a decade or more, otherwise linear.
 struct DOLP_EXPORT FitRange {
   std::string key;
   double low = 0.0;
@@ -62,14 +63,14 @@ struct DOLP_EXPORT FitRange {
   bool is_logarithmic() const { return low > 0.0 && high >= 10.0 * low; }
   double at(double coordinate) const;
   double coordinate(double value) const;
-  /// d value / d coordinate.
+  /// Derivative of the value with respect to the coordinate.
   double slope(double value) const;
 
   /// Reads "KEY=LOW:HIGH" or "KEY=LOW:HIGH:START". Errors: InputError.
   static FitRange from_text(const std::string& argument);
 };
 
-/// Values of a key for which separate fits are made and ranked.
+/// Alternative words for a key of the scene. Each word gets a fit of its own; the fits are then ranked.
 struct DOLP_EXPORT Comparison {
   std::string key;
   std::vector<std::string> words;
@@ -78,7 +79,7 @@ struct DOLP_EXPORT Comparison {
   static Comparison from_text(const std::string& argument);
 };
 
-/// The contribution of a residual r to the objective: r^2 or, for points more than one uncertainty away, less.
+/// The contribution of a residual r to the objective. It is r^2 or, mainly for residuals above one uncertainty, less.
 enum class Loss { kSquares, kHuber, kSoftL1, kCauchy, kTukey };
 
 /// "squares", "huber", "soft-l1", "cauchy", "tukey", in the order of Loss.
@@ -88,8 +89,8 @@ DOLP_EXPORT const std::vector<std::string>& loss_names();
 enum class ModelError {
   kNone,
   /// The truth may lie anywhere in the model's bracket (emission.bracket), independently at each point. A residual is
-  /// the distance to the nearer end. An interval contains the values at which chi^2 itself is below its quantile, with
-  /// as many degrees of freedom as points.
+  /// the distance to the nearer end of the bracket, and 0 inside. An interval contains the values at which chi^2 itself
+  /// is below its quantile, with as many degrees of freedom as there are points.
   kBracket,
 };
 
@@ -103,18 +104,18 @@ struct FitOptions {
   std::vector<FitRange> vary;
   std::size_t starts = 24;                             ///< number of descents that search for minima: 1 to kMostStarts
   std::uint64_t seed = 1;                              ///< seed of the starting points
-  Progress progress = {};                              ///< counts the items of a phase; may be empty
+  Progress progress = {};                              ///< counts the items of each phase; may be empty
   std::function<void(const std::string&)> phase = {};  ///< gets the name of each phase before it begins; may be empty
-  Loss loss = Loss::kSquares;                          ///< all except squares need uncertainties
+  Loss loss = Loss::kSquares;                          ///< all losses except squares need uncertainties
   ModelError model_error = ModelError::kNone;          ///< kBracket needs uncertainties
-  std::vector<Comparison> compare = {};                ///< all combinations are fitted and ranked
-  std::filesystem::path output = {};  ///< file for the scene with the results; "-" is stdout; empty: none
-  /// .png, .pdf or .svg with data, model and residuals, drawn by Matplotlib; empty: none
+  std::vector<Comparison> compare = {};                ///< each combination of the compared words gets a fit
+  std::filesystem::path output = {};  ///< file for the scene with the fitted values; "-" is stdout; empty: no file
+  /// File (.png, .pdf or .svg) for a picture with data, model and residuals, which Matplotlib draws. Empty: no picture.
   std::filesystem::path plot = {};
 };
 
-/// A profile-likelihood interval: from the smallest to the largest value that the data do not exclude, over all minima.
-/// An end is empty if the range ends before the data exclude values.
+/// A profile-likelihood interval. It reaches from the smallest to the largest value that the data do not exclude, over
+/// all minima. An end is empty if the data do not exclude the values up to that end of the parameter's range.
 struct FitInterval {
   std::optional<double> low, high;
   /// The pieces of the interval in ascending order. There are several if the data exclude values between minima.
@@ -126,12 +127,14 @@ struct FitInterval {
 struct FitParameter {
   std::string key;
   double value = 0.0;
-  std::optional<double> standard_error;  ///< from the covariance; parameters at a bound stay there
-  FitInterval interval_68, interval_95;  ///< 68.27 % and 95 %; both ends are empty if the residuals have no scale
-  /// If the fit is doubtful or bad: the intervals with all uncertainties multiplied by sqrt(reduced chi^2).
+  /// Standard error from the covariance, in which the parameters at a bound are fixed.
+  std::optional<double> standard_error;
+  /// Intervals at 68.27 % and 95 %. Both ends are empty if the data give no scale for the residuals.
+  FitInterval interval_68, interval_95;
+  /// Only if the fit is doubtful or bad: the intervals with all uncertainties multiplied by sqrt(reduced chi^2).
   std::optional<FitInterval> scaled_68 = {}, scaled_95 = {};
   bool is_at_bound = false;
-  std::string why_no_error = {};  ///< why standard_error is empty, in words
+  std::string why_no_error = {};  ///< in words; empty if there is a standard error
 };
 
 /// A local minimum of a fit.
@@ -143,13 +146,14 @@ struct FitMinimum {
 /// The numbers of a fit.
 struct FitNumbers {
   std::vector<FitParameter> parameters = {};  ///< in the order of FitOptions::vary
-  double chi_square = 0.0;                    ///< sum of the squares of the residuals, or of their loss
-  /// number of points minus number of parameters; with a model error the number of points
+  double chi_square = 0.0;  ///< sum of the squared residuals; with another loss the sum of their losses
+  /// Number of points minus number of parameters. With a model error, number of points.
   std::size_t degrees_of_freedom = 0;
-  std::optional<double> p_value = {};          ///< only with uncertainties and the loss "squares"
-  std::string fit_quality = {};                ///< "good", "doubtful" (p < 0.05) or "bad" (p < 0.001); empty without p
+  std::optional<double> p_value = {};  ///< only with uncertainties and the loss "squares"
+  /// "good", "doubtful" (p < 0.05) or "bad" (p < 0.001); empty without a p-value.
+  std::string fit_quality = {};
   std::vector<FitMinimum> minima = {};         ///< all minima found, the best first
-  std::vector<std::string> degeneracies = {};  ///< combinations that the data do not determine, in words
+  std::vector<std::string> degeneracies = {};  ///< combinations of parameters that the data do not determine, in words
 };
 
 }  // namespace dolp

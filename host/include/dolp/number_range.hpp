@@ -24,16 +24,17 @@ inline constexpr NumberRange kNonNegativeRange{0.0, std::numeric_limits<double>:
 inline constexpr NumberRange kPositiveRange{0.0, std::numeric_limits<double>::infinity(),
                                             NumberRange::Ends::kOpenBelow};
 inline constexpr NumberRange kWavelengthUmRange{0.1, 1e4};
-/// Wavelengths in um that are all above this number are probably in nm.
+/// If all wavelengths in um are above this number, they are probably in nm.
 inline constexpr double kLikelyNanometres = 1000.0;
-/// Colder than this are few surfaces, and warmer than -213 degrees Celsius all.
+/// A temperature in K below this number is probably in degrees Celsius: few surfaces are colder than 60 K, which is
+/// -213 degrees Celsius.
 inline constexpr double kLikelyCelsius_K = 60.0;
 inline constexpr NumberRange kToleranceRange{1e-10, 1e-2};
 inline constexpr NumberRange kAxisCountRange{1.0, 1e6};
 /// Positions on an axis with labels.
 inline constexpr NumberRange kLabelRange{0.0, 1e6};
 
-/// For the Cauchy distribution smith masking needs a finite mean slope (shaders/physics/README.md, section 2).
+/// With the Cauchy distribution, smith masking needs a finite mean slope (shaders/physics/README.md, section 2).
 inline constexpr NumberRange kSmithCauchyQRange{1.5, 1e4, NumberRange::Ends::kOpenBelow};
 
 }  // namespace dolp

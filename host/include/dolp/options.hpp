@@ -11,34 +11,37 @@
 
 namespace dolp {
 
-/// A column of points. Its name is the one in CSV files: theta_deg, sigma, q, n, k, wavelength_um; for Mueller matrices
-/// theta_i_deg, theta_r_deg, delta_phi_deg.
+/// A column of points. Its name is the name of the column in CSV files: theta_deg, sigma, q, n, k, wavelength_um, and
+/// so on; for Mueller matrices also theta_i_deg, theta_r_deg, delta_phi_deg.
 struct Column {
   std::string name;
-  std::span<const double> values;  ///< one per point, or one for all
+  std::span<const double> values;  ///< one value per point, or one value for all points
 };
 
 /// The 4 x 4 Mueller pBRDF of a pair of directions, row by row. Units: 1/sr.
 using MuellerMatrix = std::array<double, 16>;
 
-/// Evaluator, device and dispatch options.
+/// Options of an evaluator: its kind, its device, and the length of its dispatches.
 struct EvaluatorOptions {
-  std::string evaluator = "vulkan";  ///< vulkan; cpu: the kernel source compiled as C++; reference: adaptive quadrature
-  /// for vulkan: position in devices(), or a part of the name; empty: the best device
+  /// "vulkan"; "cpu" (the kernel source compiled as C++); "reference" (adaptive quadrature).
+  std::string evaluator = "vulkan";
+  /// For the evaluator "vulkan": position in devices(), or a part of the name of a device. Empty means the best device.
   std::string device = {};
-  /// dispatches are short: a call ends soon after Progress returns false, and a window on the device continues to draw
+  /// True for short dispatches. A call then ends soon after Progress returns false, and a window on the device
+  /// continues to draw.
   bool is_interactive = false;
 };
 
 /// Options for one table or list of points.
 struct RunOptions {
-  bool keep_all = false;     ///< drop no effect, however small
+  bool keep_all = false;     ///< compute all effects, even negligible ones
   Progress progress = {};    ///< may be empty
-  std::string history = {};  ///< text for the attribute "history" of a table, besides the time
-  bool resume = false;       ///< for write_table: continues a cancelled or killed call of the same scene
+  std::string history = {};  ///< text after the time in the attribute "history" of a table
+  bool resume = false;       ///< for write_table: continue a cancelled or killed call for the same scene
 };
 
-/// One of `count` equal parts of a table that several processes compute. The default is the whole table.
+/// One of `count` parts of a table, of about equal size, which several processes can compute. The default is the whole
+/// table.
 struct Shard {
   std::size_t number = 0;  ///< from 1 to count
   std::size_t count = 0;
@@ -47,20 +50,22 @@ struct Shard {
 
 /// Options for the check of a table.
 struct TableCheckOptions {
-  std::size_t samples = 64;  ///< number of different entries to compute again; all if the table has fewer
+  std::size_t samples = 64;  ///< number of entries to compute again; all entries if the table has fewer
   std::uint64_t seed = 1;    ///< seed for the choice of entries
-  bool named_files = false;  ///< reads n, k and E0 from the files that the scene names instead of from the table
-  Progress progress = {};    ///< may be empty
+  /// Reads n, k and E0 from the files that the scene names. If false, takes them from the table.
+  bool named_files = false;
+  Progress progress = {};  ///< may be empty
 };
 
 /// Options for the check of a device.
 struct DeviceCheckOptions {
   std::string evaluator = "vulkan";  ///< vulkan; cpu: the kernel source compiled as C++
   std::string device = {};           ///< same meaning as in EvaluatorOptions
-  std::string precision = "auto";    ///< float, double; auto is both
+  std::string precision = "auto";    ///< float, double, or auto, which checks both
   double tolerance = 1e-4;           ///< requested tolerance
-  bool all = false;                  ///< report every case, not only those that fail
-  Progress progress = {};            ///< may be empty
+  /// Report every case. If false, report only the cases that fail.
+  bool all = false;
+  Progress progress = {};  ///< may be empty
 };
 
 }  // namespace dolp

@@ -12,13 +12,13 @@
 
 namespace dolp {
 
-/// A number that results have for each entry or point, in the order of table files. The status follows after the last
-/// one.
+/// A quantity of results: one number per entry or point. The order is the order in table files, in which the status
+/// follows the last quantity.
 ///
 /// Units: Stokes parameters are exitances, in W m-2 um-1 at one wavelength and W m-2 over a band; in bistatic mode they
 /// are radiances, in W m-2 sr-1 um-1 and W m-2 sr-1. The other quantities have unit 1.
-/// Conventions: Q = I_s - I_p keeps its sign; U = V = 0 in hemispherical mode. Over a band, rho is a mean weighted by
-/// the emission pi B(T); without emission by the incident radiation; without both by the wavelength.
+/// Conventions: Q = I_s - I_p keeps its sign; U = V = 0 in hemispherical mode. Over a band, rho is a weighted mean. The
+/// weight is the emission pi B(T), or the incident radiation if there is no emission; without both it is constant.
 enum class Quantity : std::uint8_t {
   kDolp,    ///< sqrt(Q^2 + U^2) / I; negative with a negative I, NaN with I = 0
   kQOverI,  ///< Q / I, signed: it crosses zero where contributions cancel
@@ -27,14 +27,14 @@ enum class Quantity : std::uint8_t {
   kStokesU,
   kStokesV,
   kRhoI,         ///< includes k_s and the diffuse part
-  kRhoQ,         ///< includes k_s
-  kAlbedo,       ///< A(theta): reflectance if R = 1, without k_s and the diffuse part
-  kEmissivityS,  ///< the value that the emission uses; over a band weighted by pi B(T)
+  kRhoQ,         ///< includes k_s and the polarisation of the diffuse part
+  kAlbedo,       ///< A(theta): reflectance with R = 1, without k_s and the diffuse part
+  kEmissivityS,  ///< emissivity that the emission uses; over a band a mean weighted by pi B(T)
   kEmissivityP,
-  kDolpLow,  ///< with dolp_high: bounds of the DOLP of a surface with these facets and all bounces
+  kDolpLow,  ///< dolp_low and dolp_high: bounds of the DOLP of the surface with all bounces
   kDolpHigh,
-  kErrorEstimate,     ///< bound of |d DOLP|, also for q_over_i, dolp_low and dolp_high; infinite without a bound
-  kRhoErrorEstimate,  ///< bound of max(|d rho_I|, |d rho_Q|) / rho_I; infinite without a bound
+  kErrorEstimate,     ///< bound of the error of dolp, q_over_i, dolp_low and dolp_high; infinite if unknown
+  kRhoErrorEstimate,  ///< bound of the errors of rho_i and rho_q, relative to rho_i; infinite if unknown
 };
 inline constexpr std::size_t kQuantityCount = static_cast<std::size_t>(Quantity::kRhoErrorEstimate) + 1;
 
@@ -43,20 +43,20 @@ using QuantityArray = EnumArray<Quantity, Value, kQuantityCount>;
 
 inline constexpr std::array<Quantity, kQuantityCount> kAllQuantities = enumerators<Quantity, kQuantityCount>();
 
-/// Some quantities, in the order of Quantity.
+/// Some of the quantities, in the order of the enumeration.
 using Quantities = std::vector<Quantity>;
 
-/// Condition on a scene for a quantity.
+/// The condition that a scene must meet so that its results have a quantity.
 enum class QuantityNeeds : std::uint8_t { kNothing, kReflectance, kMoments, kEmission, kBracket };
 
 struct QuantityDescription {
   const char* name;
   const char* long_name;
   bool has_stokes_units;  ///< false: the unit is 1
-  const char* ancillary;  ///< names of the variables that describe its quality, or ""
+  const char* ancillary;  ///< names of the variables with its error bound and status; "" if none
   QuantityNeeds needs;
 
-  /// True if points have its column only if the scene needs it.
+  /// True if results at points lack the column when the scene does not meet the condition.
   constexpr bool is_optional() const { return needs == QuantityNeeds::kEmission || needs == QuantityNeeds::kBracket; }
 };
 
@@ -98,12 +98,12 @@ constexpr const QuantityDescription& description_of(Quantity quantity) {
   return kQuantities[static_cast<std::size_t>(quantity)];
 }
 
-/// `stokes_units` is the unit of the Stokes parameters.
+/// The unit of a quantity. `stokes_units`: unit of the Stokes parameters.
 inline std::string units_of(Quantity quantity, const std::string& stokes_units) {
   return description_of(quantity).has_stokes_units ? stokes_units : "1";
 }
 
-/// In the order of CSV files of points.
+/// The quantities in the order of their columns in CSV files of results at points.
 inline constexpr std::array<Quantity, kQuantityCount> kCsvOrder = {
     Quantity::kRhoI,          Quantity::kRhoQ,
     Quantity::kAlbedo,        Quantity::kStokesI,

@@ -10,14 +10,17 @@
 
 namespace dolp {
 
-/// A variable of a response table. With the reflectances R_s and R_p of a facet at the local angle of incidence beta, R
-/// = (R_s + R_p) / 2 and D = (R_s - R_p) / 2, the sums over beta are moments, for k_s = 1 and without a diffuse part.
+/// A variable of a response table. The table has weights at local angles of incidence beta. Let R = (R_s + R_p) / 2 and
+/// D = (R_s - R_p) / 2 be reflectances of a facet at beta. Sums over beta of weights times R or D are the moments for
+/// k_s = 1 without a diffuse part.
 ///
-/// Accuracy: let a_m and b_m be the coefficients of the Chebyshev polynomials T_m(x), x = 2 asinh(cos(beta) / c0) /
-///   asinh(1 / c0) - 1, m < beta.size(), through R (of emission 1 - R) and D / sin^2(beta) at the angles beta. Errors
-///   are at most response_error times the largest of 2^m |a_m| and 2^m |b_m|, for any values R and D. That is 0.7
-///   to 1.3 for bare materials, more where total reflection begins. A curve also adds its largest distance from the sum
-///   of polynomials, of b_m times sin^2(beta), times the albedo (of emission times 1).
+/// Accuracy: let x = 2 asinh(cos(beta) / c0) / asinh(1 / c0) - 1, where c0 is an attribute of the table. Interpolate R
+/// (for emission 1 - R) at the angles beta by a sum of Chebyshev polynomials T_m(x), m < beta.size(), with the
+/// coefficients a_m. Interpolate D / sin^2(beta) in the same way, with the coefficients b_m. The error of a sum is at
+/// most response_error times the largest of all 2^m |a_m| and 2^m |b_m|, whatever R and D are. This largest value is
+/// 0.7 to 1.3 for bare materials, and more if total reflection begins at some beta.
+/// Between the angles beta, R differs from its polynomial, and D from its polynomial times sin^2(beta). The largest of
+/// these differences, times the albedo (for emission times 1), adds to the error.
 enum class ResponseVariable : std::uint8_t { kResponseI, kResponseQ, kEmissionI, kEmissionQ, kResponseError };
 inline constexpr std::size_t kResponseVariableCount = static_cast<std::size_t>(ResponseVariable::kResponseError) + 1;
 
@@ -48,7 +51,7 @@ constexpr const ResponseDescription& description_of(ResponseVariable variable) {
   return kResponseVariables[static_cast<std::size_t>(variable)];
 }
 
-/// The coordinate beta in files.
+/// The coordinate beta of table files.
 struct BetaDescription {
   const char* name;
   const char* long_name;

@@ -12,9 +12,11 @@ namespace dolp {
 
 /// Results of one entry of a grid or one scattered point.
 struct PointResult {
-  QuantityArray<double> values;  ///< NaN without a value
-  std::uint32_t status = 0;      ///< bits of status.hpp
-  double model_change = 0.0;     ///< change of I that sets kModelInaccurate, as a share of I; not stored in files
+  QuantityArray<double> values;  ///< NaN for a quantity without a value
+  std::uint32_t status = 0;      ///< bits of the enumeration Status
+  /// Estimated change of I, as a fraction of I, by light that the model loses or creates. Above kLargestModelChange the
+  /// status has kModelInaccurate. Not stored in files.
+  double model_change = 0.0;
 
   PointResult() { values.fill(std::numeric_limits<double>::quiet_NaN()); }
   double& operator[](Quantity quantity) { return values[quantity]; }
@@ -24,7 +26,7 @@ struct PointResult {
 /// Results of many entries: one column per quantity, and the status.
 struct ResultColumns {
   QuantityArray<std::vector<double>> columns;  ///< empty if a quantity was not computed
-  std::vector<std::uint32_t> status;           ///< empty if it was not computed
+  std::vector<std::uint32_t> status;           ///< empty if the status was not computed
 
   std::vector<double>& operator[](Quantity quantity) { return columns[quantity]; }
   const std::vector<double>& operator[](Quantity quantity) const { return columns[quantity]; }

@@ -1,4 +1,4 @@
-// Keys of a scene with new values.
+// Settings: keys of a scene, each with a new value.
 #pragma once
 
 #include <concepts>
@@ -14,7 +14,7 @@
 
 namespace dolp {
 
-/// Values of an axis between two ends, which are included.
+/// `count` values of an axis in equal (linear or logarithmic) steps. Both ends are included.
 struct AxisRange {
   double from = 0.0;
   double to = 0.0;
@@ -23,14 +23,14 @@ struct AxisRange {
   friend bool operator==(const AxisRange&, const AxisRange&) = default;
 };
 
-/// A value in the syntax of a scene file: 0.2, [0.1, 0.2], { from = 0, to = 60, count = 7 }. Text that is not TOML is a
-/// word: smith.
+/// A value in the syntax of a scene file, for example 0.2, [0.1, 0.2] or { from = 0, to = 60, count = 7 }. Text that is
+/// not valid TOML is a word, for example smith.
 struct TomlText {
   std::string text;
   friend bool operator==(const TomlText&, const TomlText&) = default;
 };
 
-/// A value of a key, or no value. No value removes the key, or the whole table of an effect.
+/// A value of a key, or no value. A setting without a value removes its key, or the whole table of an effect.
 class DOLP_EXPORT Value {
  public:
   using Content = std::variant<std::monostate, bool, double, std::string, std::vector<double>, AxisRange, TomlText>;
@@ -54,7 +54,7 @@ class DOLP_EXPORT Value {
   // NOLINTEND(google-explicit-constructor)
 
   const Content& content() const { return content_; }
-  /// The value in the syntax of a scene file; "none" without a value.
+  /// The value in the syntax of a scene file; "none" if there is no value.
   std::string text() const;
 
   friend bool operator==(const Value&, const Value&) = default;
@@ -63,16 +63,17 @@ class DOLP_EXPORT Value {
   Content content_;
 };
 
-/// A dotted key of a scene ("surface.sigma", "grid.theta_deg") and its value. A missing table is created. A setting
-/// replaces alternatives that the scene has (surface.n, .material, .material_file; source.irradiance,
-/// .relative_irradiance, .preset, .file; path.temperature_K, .radiance; spectrum.wavelength_um, .band_um).
+/// A dotted key of a scene ("surface.sigma", "grid.theta_deg") and its value. If the scene lacks the table of the key,
+/// applying the setting creates it. The setting also removes alternatives to its key. The groups of alternatives are:
+/// surface.n, .material, .material_file; source.irradiance, .relative_irradiance, .preset, .file; path.temperature_K,
+/// .radiance; spectrum.wavelength_um, .band_um.
 struct DOLP_EXPORT Setting {
   std::string key;
   Value value;
-  std::string origin = {};  ///< beginning of error messages; empty: the key and the value
+  std::string origin = {};  ///< beginning of error messages; if empty, they begin with the key and the value
 
-  /// Reads "KEY=VALUE" with a value as in TomlText. `option` is the option of a command line with which messages begin.
-  /// Errors: InputError for anything else.
+  /// Reads "KEY=VALUE". VALUE is written as in TomlText. Error messages begin with `option`, the command-line option to
+  /// which the argument belongs. Errors: InputError for anything else.
   static Setting from_text(const std::string& argument, const std::string& option = {});
 
   /// "KEY=VALUE".
@@ -81,7 +82,7 @@ struct DOLP_EXPORT Setting {
   friend bool operator==(const Setting& a, const Setting& b) { return a.key == b.key && a.value == b.value; }
 };
 
-/// Setting::from_text of each argument.
+/// Applies Setting::from_text to each argument.
 DOLP_EXPORT std::vector<Setting> settings_from_text(const std::vector<std::string>& arguments,
                                                     const std::string& option = {});
 

@@ -11,18 +11,18 @@ enum Status : std::uint32_t {
   kReflectanceOutsideZeroToOne = 1,
   /// DOLP misses the scene's tolerance.
   kToleranceNotMet = 2,
-  /// Outside the model's domain; undefined quantities are NaN.
+  /// The entry is outside the model's domain; undefined quantities are NaN.
   kOutsideModelDomain = 4,
   /// I <= 0: such radiation does not exist.
   kIntensityNotPositive = 8,
   /// rho misses the scene's tolerance. DOLP may be right.
   kRhoToleranceNotMet = 16,
-  /// Light that single scattering loses, or that a masking creates, changes I by more than 5 % (an estimate). If it is
-  /// the only bit, the numbers are right for the model, but the model is wrong for the surface.
+  /// According to an estimate, light that single scattering loses, or that a masking creates, changes I by more than 5
+  /// %. If this is the only bit, the numbers are right for the model, but the model is wrong for the surface.
   kModelInaccurate = 32,
 };
 
-/// Largest change of I that does not set kModelInaccurate.
+/// Largest change of I, as a fraction of I, that does not set kModelInaccurate.
 inline constexpr double kLargestModelChange = 0.05;
 
 /// A bit of Status with its name in files.
@@ -31,7 +31,7 @@ struct StatusBit {
   const char* meaning;
 };
 
-/// In the order of files.
+/// The bits in the order in which table files describe them.
 inline constexpr std::array<StatusBit, 6> kStatusBits = {{
     {kReflectanceOutsideZeroToOne, "reflectance_outside_zero_to_one"},
     {kToleranceNotMet, "tolerance_not_met"},
@@ -41,7 +41,7 @@ inline constexpr std::array<StatusBit, 6> kStatusBits = {{
     {kModelInaccurate, "model_inaccurate"},
 }};
 
-/// DOLP or rho misses the tolerance.
+/// Bits for a missed tolerance, of DOLP or of rho.
 inline constexpr std::uint32_t kAnyToleranceNotMet = kToleranceNotMet | kRhoToleranceNotMet;
 
 /// With any of these bits the DOLP has no guaranteed accuracy.

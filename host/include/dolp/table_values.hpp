@@ -20,29 +20,31 @@ struct Attribute {
   friend bool operator==(const Attribute&, const Attribute&) = default;
 };
 
-/// Longer texts are stored as variables of characters, because the netCDF library limits attributes to less than 64
-/// KiB.
+/// Largest size of a text attribute in a file. Longer texts are stored as variables of characters, because the netCDF
+/// library limits attributes to less than 64 KiB.
 inline constexpr std::size_t kMostAttributeBytes = 64'000;
 
-/// A quantity over wavelength in the scene; a constant has one row.
+/// A quantity of the scene as a function of the wavelength. A constant has one row.
 struct Curve {
   std::vector<double> wavelength_um;
   std::vector<double> values;
-  std::vector<double> used;  ///< at each value of the wavelength axis; one value without the axis; empty over a band
+  /// Values at the wavelength axis of the table, or one value if there is no such axis. Empty if the quantity varies
+  /// over a band.
+  std::vector<double> used;
   friend bool operator==(const Curve&, const Curve&) = default;
 };
 
 /// All data of a table except its values.
 struct TableHead {
-  Axes axes;                     ///< in the user's order; required axes, and other axes that the table has
+  Axes axes;                     ///< values in the user's order; empty for an axis that the table lacks
   AxisLabels labels;             ///< all labels of the scene's axes, also in a part of a table
-  std::vector<double> wind_m_s;  ///< wind speeds that give the values of sigma; empty if the scene gives sigma
+  std::vector<double> wind_m_s;  ///< wind speeds from which sigma follows; empty if the scene gives sigma
   std::vector<double> beta_deg;  ///< local angles of incidence of a response table, ascending
-  Curve index_n;                 ///< n, k and E0 of the computation; empty if there is none
+  Curve index_n;                 ///< n, k and E0 of the computation; each is empty if the table has none
   Curve index_k;
   Curve irradiance;                         ///< before multiplication by source.scale
   std::string stokes_units = "W m-2 um-1";  ///< UDUNITS; "W m-2" over a band
-  /// in the order of the file, without the additional ones of Table::file_attributes
+  /// Attributes in the order of the file, without the additional ones that Table::file_attributes() returns.
   std::vector<Attribute> attributes;
 
   /// Number of values of each axis, 1 for an axis that the table lacks.
@@ -62,7 +64,7 @@ struct TableHead {
   std::size_t width_of(ResponseVariable variable) const {
     return description_of(variable).has_beta ? beta_deg.size() : 1;
   }
-  /// Position of an entry at the first wavelength, n and k.
+  /// Position in the columns of an entry at the first wavelength, n and k.
   std::size_t position(std::size_t theta, std::size_t sigma_index, std::size_t q_index) const {
     return (theta * axes[Axis::kSigma].size() + sigma_index) * axes[Axis::kQ].size() + q_index;
   }
@@ -70,13 +72,13 @@ struct TableHead {
 
 /// A lookup table in memory, or a part of one.
 ///
-/// Shape: columns in C order of the axes.
+/// Shape: each column is an array over all axes, flattened in C order (the last axis varies fastest).
 struct TableValues : TableHead, ResultColumns {
-  /// Only in response tables: width_of values per entry.
+  /// Empty except in response tables. For each entry, width_of() consecutive values of a variable.
   ResponseArray<std::vector<double>> responses;
 };
 
-/// One curve of a table.
+/// A curve of a table: its description in files, and the member of TableHead that holds it.
 struct TableCurve {
   const char* name;
   const char* long_name;

@@ -20,7 +20,7 @@
 namespace dolp {
 namespace {
 
-/// The attributes that a table of a run has.
+/// All attributes of a table: those of its layout, and those of the run that computed it.
 std::vector<Attribute> all_attributes(const SceneValues& scene, const TableLayout& layout, const RunOutcome& run,
                                       const std::string& history) {
   std::vector<Attribute> attributes = layout.head.attributes;
@@ -46,7 +46,7 @@ ReportBuilder response_report(const SceneValues& scene, const TableHead& head, c
   return report;
 }
 
-/// The scene of the surface, which it may be already.
+/// Applies surface_settings() to a scene, unless the scene has them already.
 SceneValues surface_of(const SceneValues& scene) {
   const std::vector<Setting> settings = surface_settings();
   const auto last = std::span(scene.settings).last(std::min(scene.settings.size(), settings.size()));
@@ -68,7 +68,7 @@ std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, b
   VulkanOptions options;
   options.device = wanted.device;
   options.needs_double = needs_double;
-  if (wanted.is_interactive) options.max_tile_invocations = 2'048;  // some milliseconds on two cores
+  if (wanted.is_interactive) options.max_tile_invocations = 2'048;  // a dispatch takes a few ms on two cores
   return std::make_unique<VulkanEvaluator>(options);
 }
 
@@ -89,7 +89,8 @@ Evaluator::Evaluator(Evaluator&&) noexcept = default;
 Evaluator& Evaluator::operator=(Evaluator&&) noexcept = default;
 
 Evaluator::~Evaluator() {
-  // In a forked process the driver's threads do not exist, so that waiting for their end would block.
+  // In a forked process the driver's threads do not exist, and the destructor would wait for them without end. So the
+  // evaluator is not destroyed.
   if (impl_ && impl_->owner != getpid()) static_cast<void>(impl_.release());
 }
 

@@ -1,4 +1,4 @@
-// Plans, lists, and checks of tables and devices.
+// Calls that plan a run, list what is built in, and check tables and devices.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@
 namespace dolp {
 namespace {
 
-/// The precisions to examine. `left_out`: why a precision of auto is missing.
+/// The precisions to examine. Sets `left_out` to the reason if "auto" leaves out a precision.
 std::vector<Precision> precisions_of(const DeviceCheckOptions& options, std::string& left_out) {
   const std::optional<Precision> wanted = named<Precision>(options.precision);
   if (!wanted) throw InputError("precision " + one_line(options.precision) + ": must be auto, float or double");

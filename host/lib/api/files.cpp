@@ -28,8 +28,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The points of a file. Columns that are results, as write_points and write_lookup write them, are left out. Refuses
-/// an `output` that is this file or another input.
+/// The points of a file. Leaves out columns that are results, such as those that write_points and write_lookup write.
+/// Refuses an `output` that is this file or another input.
 Points load_points(const std::filesystem::path& path, PointsKind kind, std::vector<std::string> inputs,
                    const std::filesystem::path& output) {
   inputs.push_back(path.string());
@@ -39,7 +39,7 @@ Points load_points(const std::filesystem::path& path, PointsKind kind, std::vect
   return read_points(path.string(), kind, results);
 }
 
-/// Adds that wavelengths are likely in nm, and temperatures in degrees Celsius.
+/// Adds a remark if wavelengths are probably in nm or temperatures in degrees Celsius.
 void add_remarks(Report& report, const Points& points) {
   const Points::Column& um = points[Axis::kWavelength];
   if (um && !um->empty() && std::ranges::min(*um) > kLikelyNanometres)
@@ -55,7 +55,7 @@ void add_left_out(ReportBuilder& report, const Points& points) {
   report.value("left_out", points.left_out);
 }
 
-/// The CSV of points of a file, whose cells it has as they were given.
+/// A CSV for results. Each line begins with the cells of a point, as the file of the points has them.
 ResultCsv csv_of(const std::filesystem::path& path, const Points& points, const Quantities& quantities) {
   return {path, points.header, quantities,
           [&points](std::string& text, std::size_t row) { (text += points.rows[row]) += ','; }};
@@ -89,7 +89,7 @@ std::vector<std::string> files_of(const SceneValues& scene) {
 
 void check_output_is_no_input(const std::filesystem::path& output, const std::vector<std::string>& inputs) {
   for (const std::string& input : inputs) {
-    std::error_code missing;  // a file that is not there is not the same file
+    std::error_code missing;  // set if a file does not exist; then the files differ
     if (std::filesystem::equivalent(output, input, missing)) {
       throw InputError(output.string() + ": the output would overwrite an input");
     }

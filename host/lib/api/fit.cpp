@@ -1,4 +1,4 @@
-// Numbers of a scene from measured data.
+// The call that fits numbers of a scene to measured data.
 #include "fit/fit.hpp"
 
 #include <fmt/format.h>
@@ -61,7 +61,7 @@ void check_comparison(const Comparison& comparison, const FitOptions& options) {
   }
 }
 
-/// All combinations of the compared settings, one list each; one empty list where nothing is compared.
+/// All combinations of the compared settings, one list per combination. One empty list if nothing is compared.
 std::vector<Settings> combinations(const FitOptions& options) {
   std::vector<Settings> all = {{}};
   for (const Comparison& comparison : options.compare) {
@@ -78,18 +78,18 @@ std::vector<Settings> combinations(const FitOptions& options) {
   return all;
 }
 
-/// The best of the compared models.
+/// The best of the compared models, with its fit.
 struct Best {
   std::unique_ptr<fit::Model> model;
   std::optional<fit::FitResult> result;
   Settings compared;
-  SceneValues scene;  ///< with the compared settings
+  SceneValues scene;  ///< scene with the compared settings
 
   Eigen::VectorXd values() const {
     return Eigen::Map<const Eigen::VectorXd>(result.value().minima.front().values.data(),
                                              static_cast<Eigen::Index>(result->parameters.size()));
   }
-  /// The compared settings, with the fitted values.
+  /// The compared settings, and settings with the fitted values.
   Settings settings() const {
     Settings all = compared;
     std::ranges::copy(model->settings(values()), std::back_inserter(all));
@@ -97,7 +97,7 @@ struct Best {
   }
 };
 
-/// Refuses a name whose suffix is no format of a picture.
+/// Refuses a file of a picture whose suffix is not .png, .pdf or .svg.
 void check_plot(const std::filesystem::path& path) {
   const std::string suffix = lower_case(path.extension().string());
   if (path.empty() || suffix == ".png" || suffix == ".pdf" || suffix == ".svg") return;
@@ -119,7 +119,7 @@ void check_outputs(const FitOptions& options, const SceneValues& scene, const st
   }
 }
 
-/// Zeniths of the curves of a picture: from the least to the largest zenith of the data.
+/// The zeniths at which the curves of a picture are computed: from the smallest to the largest zenith of the data.
 std::vector<double> fine_zeniths(const MeasuredData& data) {
   constexpr int kSteps = 120;
   const auto [least, largest] = std::ranges::minmax(data.measurements, {}, &Measurement::theta_deg);
@@ -130,12 +130,14 @@ std::vector<double> fine_zeniths(const MeasuredData& data) {
   return zeniths;
 }
 
-/// The fitted model at the measurements of a data set; with the bracket, its value that is nearest to each of them.
-/// Empty where the scene has no bracket, or the set by itself does not take an end of a range.
+/// The values of the fitted model at the measurements of a data set. With the bracket as `error`, the value between
+/// both ends that is nearest to each measurement. Empty if the scene has no bracket, or if the scene of this data set
+/// refuses an end of a range.
 std::vector<double> model_values(const Best& best, MeasuredData data, const FitOptions& options, ModelError error,
                                  ModelEvaluator& evaluator) {
   const std::size_t count = data.measurements.size();
-  data.measurements.resize(std::max(count, options.vary.size()), data.measurements.front());  // as many as parameters
+  // A Model refuses fewer measurements than parameters.
+  data.measurements.resize(std::max(count, options.vary.size()), data.measurements.front());
   try {
     const fit::Model model(best.scene, {data}, options.vary, error);
     fit::Residuals residuals(model, best.result->tolerance, fit::Differences::kForward, evaluator, {});
@@ -152,8 +154,8 @@ struct Bracketed {
   double model, low, high;
 };
 
-/// The measured quantity of one data set at zeniths, with its bracket; empty where the scene has no bracket, other
-/// quantities were measured, or the measurements have wavelengths.
+/// The measured quantity of one data set at given zeniths, with its bracket. Empty if the scene has no bracket, if
+/// emissivities were measured, or if the measurements have wavelengths.
 std::vector<Bracketed> bracketed(const Best& best, MeasuredData data, const std::vector<double>& theta_deg,
                                  const FitOptions& options, ModelEvaluator& evaluator) {
   const Measurement first = data.measurements.front();
@@ -174,7 +176,7 @@ std::vector<Bracketed> bracketed(const Best& best, MeasuredData data, const std:
   return all;
 }
 
-/// The bracket of each data set over zenith, null where there is none.
+/// The bracket of each data set over zenith; null if there is none.
 Json brackets(const Best& best, const FitOptions& options, ModelEvaluator& evaluator) {
   Json all = Json::array();
   for (const MeasuredData& data : best.model->data()) {
@@ -213,7 +215,7 @@ Json curves(const Best& best, const FitOptions& options, ModelEvaluator& evaluat
   return all;
 }
 
-/// Adds how far the model itself may be off: the largest distance of the fit from an end of its bracket.
+/// Adds how wrong the model itself may be: the largest distance of the fit from an end of its bracket.
 void add_model_gap(ReportBuilder& report, const Best& best, const FitOptions& options, ModelEvaluator& evaluator) {
   std::optional<double> gap, share;
   for (const MeasuredData& data : best.model->data()) {
@@ -235,8 +237,9 @@ void add_model_gap(ReportBuilder& report, const Best& best, const FitOptions& op
   report.value("model_gap_in_uncertainties", share);
 }
 
-/// Fits all combinations that the scene has, and gives the best; `models` gets all, the best first. `begin` gets the
-/// first scene and gives the evaluator. Errors: InputError if the scene has no combination.
+/// Fits all combinations of the compared settings that the scene accepts, and returns the best one. `models` gets all
+/// combinations, the best first. `begin` is called once: it gets the first scene and returns the evaluator. Errors:
+/// InputError if the scene accepts no combination.
 Best best_of(std::vector<ComparedModel>& models, const SceneValues& scene, const std::vector<MeasuredData>& data,
              const FitOptions& options, const std::function<ModelEvaluator*(const SceneValues&)>& begin) {
   ModelEvaluator* evaluator = nullptr;

@@ -31,47 +31,49 @@ struct Scene::Impl {
 
 struct Table::Impl {
   Impl(TableValues values, std::string of_messages) : table(std::move(values)), name(std::move(of_messages)) {}
-  /// Made at the first request. Errors: errors of table_scene and TableLookup.
+  /// The lookup in the table. The first call makes it. Errors: errors of table_scene and TableLookup.
   const TableLookup& lookup() const;
 
   const TableValues table;
-  const std::string name;  ///< for messages
+  const std::string name;  ///< beginning of error messages
 
   mutable std::once_flag is_made;
-  mutable std::optional<SceneValues> scene;  ///< the table's scene; given, as `between`, from the first lookup
+  mutable std::optional<SceneValues> scene;  ///< scene of the table; empty, like `between`, before the first lookup
   mutable std::optional<TableLookup> between;
 };
 
-/// `output`: the file that was written.
+/// The report that a public call returns. `output`: the file that was written.
 Report public_report(const ReportBuilder& report, bool is_good = true, const std::filesystem::path& output = {});
 
-/// The files that a scene is read from.
+/// The files from which a scene was read.
 std::vector<std::string> files_of(const SceneValues& scene);
 
 /// Refuses an output that would overwrite an input. "-" is stdin and stdout. Errors: InputError.
 void check_output_is_no_input(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
-/// `head`: the head of the table that a run over the points would write, or of the table that was read.
+/// The results that a public call returns. `head`: the head of the table that a run over the points would write, or of
+/// the table in which the points were looked up.
 Results results_of(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head);
 
-/// Points of columns. Columns of one value hold for all points; without longer columns there is one point.
+/// Makes points from columns. A column with one value holds for all points. If all columns have one value, there is one
+/// point.
 /// Errors: InputError for a column that is unknown, has another length, or has a value out of range.
 Points points_of_columns(const std::vector<Column>& columns, PointsKind kind);
 
-/// Refuses Vulkan in a process that was forked from one that has used it: drivers keep threads and locks that a fork
-/// does not copy, so that calls would wait without end.
+/// Refuses Vulkan in a process that was forked from one that has used it. A fork does not copy the driver's threads and
+/// locks, so calls would wait without end.
 void check_no_fork();
 
-/// Evaluator factory. `needs_double`: a device must have double precision in kernels.
-/// Errors: InputError for another name, and for a device beside cpu or reference; DeviceError when vulkan is asked for
-/// and there is no usable device.
+/// Makes an evaluator. `needs_double`: its device must support double precision.
+/// Errors: InputError for an unknown name, and for a device with cpu or reference; DeviceError for vulkan if no device
+/// is usable.
 std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, bool needs_double);
 
 struct Evaluator::Impl {
   explicit Impl(EvaluatorOptions given) : options(std::move(given)) {}
 
-  /// The evaluator for a scene, before a run; a scene in double gets a device with double. Errors:
-  /// errors of make_evaluator.
+  /// The evaluator for a run of a scene, with an empty report. For a scene in double precision its device supports
+  /// double precision. Errors: errors of make_evaluator.
   ModelEvaluator* begin(const SceneValues& scene) {
     const bool needs_double = scene.accuracy.precision == Precision::kDouble;
     if (evaluator && (evaluator->has_double() || !needs_double)) {
@@ -85,8 +87,8 @@ struct Evaluator::Impl {
     return [this, &scene] { return begin(scene); };
   }
 
-  /// Calls `body` with the scene and the options of the call while no other thread uses the evaluators; a device that
-  /// failed is not used again. Errors: InputError for a call from a callback of another.
+  /// Calls `body` with the scene and the options of the call, while no other thread uses this object. After a
+  /// DeviceError the evaluator is not used again. Errors: InputError if a callback of this object makes the call.
   template <class Options, class Body>
   auto exclusively(const Scene& scene, Options of_call, const Body& body) {
     if (in_callback == std::this_thread::get_id())
@@ -103,7 +105,7 @@ struct Evaluator::Impl {
     }
   }
 
-  /// A callback, from which this object must not be called: that would wait without end.
+  /// Wraps a callback so that exclusively() can refuse calls from inside it. Such a call would wait without end.
   template <class Result, class... Arguments>
   std::function<Result(Arguments...)> guard_reentry(const std::function<Result(Arguments...)>& callback) {
     if (!callback) return callback;
@@ -117,7 +119,7 @@ struct Evaluator::Impl {
 
   EvaluatorOptions options;
   std::mutex mutex;
-  std::atomic<std::thread::id> in_callback;  ///< the thread that is in a callback
+  std::atomic<std::thread::id> in_callback;  ///< the thread that runs a callback of this object
   std::unique_ptr<ModelEvaluator> evaluator;
   pid_t owner = getpid();
 };

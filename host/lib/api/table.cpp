@@ -41,7 +41,8 @@ bool is_variable(std::string_view name) {
          std::ranges::any_of(kAllAxes, is_described) || std::ranges::any_of(kAllQuantities, is_described);
 }
 
-/// Refuses attributes that a file cannot have; a long text is a variable there.
+/// Refuses attributes that a file cannot have. A file stores a long text as a variable, so it must not have the name of
+/// another variable.
 void check_attributes(const std::vector<Attribute>& attributes, const std::string& name) {
   std::set<std::string_view> names;
   for (const Attribute& attribute : attributes) {
@@ -74,8 +75,8 @@ void check_values(const TableValues& table, const std::string& name) {
   }
 }
 
-/// Refuses a table that lost an axis of its scene, which would be looked up with the scene's value. Refuses values of
-/// an axis that were not computed: entries that another program put between others have no error.
+/// Refuses lookups in a table that lacks an axis of its scene, because they would take the scene's value. Also refuses
+/// values of an axis that were not computed: the error of entries that another program inserted is not known.
 void check_computed(const TableHead& table, const SceneValues& scene, const std::string& name) {
   constexpr double kFloatRounding = 0x1p-23;  // rounding of an axis in single precision
   for (const Axis axis : kAllAxes) {

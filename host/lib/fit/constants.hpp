@@ -1,7 +1,7 @@
-// Constants that steer the cost or the accuracy of fits. All are chosen, except where "proved" stands beside one.
-// The numbers beside a constant are the parameter sets that a fit evaluates with half the constant, with it, and with
-// twice the constant: the mean of the 20 sets 900 to 919 of the study
-// (`dolp-bench fit --first-set 900 --entries 20`). All settings find all global minima. Constants without numbers
+// Constants that steer the cost or the accuracy of fits. Their values are chosen, except one that is marked "Proved".
+// Three numbers beside a constant are costs: the parameter sets that a fit evaluates with half the constant, with the
+// constant, and with twice the constant. They are means over the 20 sets 900 to 919 of the study (`dolp-bench fit
+// --first-set 900 --entries 20`). With all these values the fits find all global minima. Constants without numbers
 // change no result when they are halved or doubled.
 #pragma once
 
@@ -11,93 +11,103 @@ namespace dolp::fit {
 
 // ---- Tolerances (fit.cpp) ------------------------------------------------------------------------------------------
 
-/// Tolerances of the model's values over the smallest uncertainty: final, and during the search.
+/// Tolerance of the model's values, divided by the smallest uncertainty: kFineShare for the final values, kCoarseShare
+/// during the search. kMostTolerance is the largest tolerance of the search.
 inline constexpr double kFineShare = 1e-2;      // 1412, 1421, 1448
 inline constexpr double kCoarseShare = 0.25;    // 1410, 1421, 1420
 inline constexpr double kMostTolerance = 1e-3;  // 1350, 1421, 1425
-/// Uncertainty from which the tolerances follow where the data have none.
+/// Uncertainty from which the tolerances follow if the data have no uncertainties.
 inline constexpr double kAssumedUncertainty = 1e-3;
 
-// ---- Words of a fit (fit.cpp) --------------------------------------------------------------------------------------
+// ---- Statements about a fit (fit.cpp) ------------------------------------------------------------------------------
 
-/// A parameter whose coordinate is as near to an end of its range is at its bound.
+/// A parameter counts as at its bound if its coordinate is closer than this to an end of its range.
 inline constexpr double kAtBound = 1e-6;
-/// Components of a direction, over the largest one, that its words name.
+/// The description of a direction names the parameters whose component exceeds this share of the largest one.
 inline constexpr double kInDirection = 0.1;
-/// P-values below which a fit is doubtful and bad: the usual levels.
+/// A fit is doubtful or bad if its p-value is below these usual levels.
 inline constexpr double kDoubtfulBelow = 0.05;
 inline constexpr double kBadBelow = 0.001;
 
 // ---- Derivatives (residuals.cpp) -----------------------------------------------------------------------------------
 
-/// Steps of differences, in coordinates.
+/// Steps of finite differences, in coordinates (0 to 1): the first step, the smallest and the largest.
 inline constexpr double kFirstStep = 0.01;  // 1354, 1421, 1425
 inline constexpr double kLeastStep = 1e-6;
 inline constexpr double kMostStep = 0.05;  // 1363, 1421, 1354
-/// A step changes a value by this share of an uncertainty, or by this multiple of the value's error.
+/// A step should change the model's values by at most this share of an uncertainty or, if that is more, by this
+/// multiple of the numerical error of the values.
 inline constexpr double kSeenShare = 0.2;          // 1398, 1421, 1425
 inline constexpr double kErrorsOfAChange = 100.0;  // 1416, 1421, 1379
-/// Largest factor between the steps of two linearisations.
+/// Largest factor by which a step changes from one linearisation to the next.
 inline constexpr double kMostChangeOfStep = 10.0;  // 1414, 1421, 1415
 
 // ---- Descent (descent.cpp) -----------------------------------------------------------------------------------------
 
-/// Decrease of the objective over the promised decrease: a step is taken above the first ratio, and derivatives may be
-/// updated from the steps above the second.
+/// Ratios of the decrease of the objective to the decrease that derivatives promise. A step is taken if its ratio is
+/// above kLeastRatio. Above kPredictedRatio, derivatives may be updated from the step.
 inline constexpr double kLeastRatio = 1e-3;         // 1421, 1421, 1421
 inline constexpr double kPredictedRatio = 0.5;      // 1402, 1421, 1505
 inline constexpr double kRadiusOfNeighbours = 1.0;  // 1400, 1421, 1412
-/// A way is straight if derivatives miss less than this share of the squared change of the residuals.
+/// A path is straight if the derivatives predict the residuals at its end: the squared error is below this share of the
+/// squared change of the residuals.
 inline constexpr double kBent = 0.05;  // 1458, 1421, 1381
 
 // ---- Search (search.cpp) -------------------------------------------------------------------------------------------
 
-/// Points of the Sobol sequence for each start.
+/// Number of points of the Sobol sequence per start.
 inline constexpr std::size_t kPointsOfAStart = 8;  // 1324, 1421, 1593
 inline constexpr int kStepsOfARound = 3;           // 1334, 1421, 1573
 inline constexpr int kMostRounds = 15;             // 1417, 1421, 1421
-/// Promised gain, in standard deviations squared, that ends a descent of the search.
+/// A descent of the search ends when derivatives promise a decrease of the objective below this. Unit: the change of
+/// the objective by one standard deviation.
 inline constexpr double kCoarseGain = 0.1;  // 1358, 1421, 1416
-/// Minima that lie higher, in standard deviations squared, are left as the search found them.
+/// Minima that lie farther than this above the lowest one are left as the search found them. Unit: the change of the
+/// objective by one standard deviation.
 inline constexpr double kFarAbove = 30.0;  // 1413, 1421, 1428
-/// Points on the line between two minima.
+/// The line between two minima is divided into so many parts.
 inline constexpr int kPointsOfALine = 8;  // 1386, 1421, 1489
 
 // ---- Profiles (profile.cpp) ----------------------------------------------------------------------------------------
 
-/// Relative error of the root of the growth at an end.
+/// Largest relative error that the square root of the growth of the objective has at an end of an interval.
 inline constexpr double kRootTolerance = 5e-3;  // 1435, 1421, 1404
-/// Promised gain, in standard deviations squared, that ends a descent of a profile.
+/// A descent of a profile ends when derivatives promise a decrease of the objective below this. Unit: the change of the
+/// objective by one standard deviation.
 inline constexpr double kProfileGain = 1e-3;  // 1442, 1421, 1401
-/// Points of a side for each rise, and how many of them are secants; a profile that jumps needs halves.
+/// Largest number of points that a side of a profile tries for each rise. After kProfileSecants secants it halves the
+/// distances, which a profile that jumps needs.
 inline constexpr int kMostProfilePoints = 25;  // 1415, 1421, 1421
 inline constexpr int kProfileSecants = 8;      // 1415, 1421, 1416
-/// Two points whose distances from the minimum agree to this share enclose a jump.
+/// A profile jumps between two points if their distances from the minimum differ by less than this share.
 inline constexpr double kLeastGap = 1e-3;  // 1422, 1421, 1418
-/// Largest factor between the distances of two points from the minimum.
+/// Largest factor between the distances of two consecutive points from the minimum.
 inline constexpr double kMostGrowth = 3.0;  // 1414, 1421, 1427
-/// Share of the first rise below which derivatives may be updated from steps.
+/// Below this share of the first rise, derivatives may be updated from steps.
 inline constexpr double kTrustedShare = 0.8;  // 1424, 1421, 1329
 inline constexpr double kFirstProbe = 0.01;   // 1411, 1421, 1415
-/// Distance beyond an end at which other branches are looked for, over the width of the interval.
+/// Other branches are searched at this distance beyond an end. Unit: the width of the interval.
 inline constexpr double kBeyond = 0.02;  // 1425, 1421, 1410
-/// A point below this share of a rise lies on another branch. Proved: 2 kRootTolerance are 0.01 of it.
+/// A point beyond an end lies on another branch if its growth is below this share of the rise. Proved: at the end
+/// itself the growth is at most the share 2 kRootTolerance, or 0.01, below the rise.
 inline constexpr double kClearlyLower = 0.97;  // 1421, 1421, 1793
 
-// ---- Contours (contours.cpp), which the study does not draw --------------------------------------------------------
+// ---- Contours (contours.cpp); the study draws no contours -----------------------------------------------------------
 
-/// Promised gain, in standard deviations squared, that ends a descent of a node.
+/// A descent of a node ends when derivatives promise a decrease of the objective below this. Unit: the change of the
+/// objective by one standard deviation.
 inline constexpr double kNodeGain = 1e-2;
-/// Step of the first grid in standard deviations along its axis, which lie between these shares of the range.
+/// Step of the first grid along each axis, in standard deviations. A standard deviation counts as at least
+/// kLeastDeviation and at most kMostDeviation of the range.
 inline constexpr double kStepOfDeviation = 0.5;
 inline constexpr double kLeastDeviation = 1e-4;
 inline constexpr double kMostDeviation = 1.0 / 12.0;
-/// Growth up to which the neighbours of nodes are computed. Above the higher level, because its line may cross a cell
-/// between corners that lie above.
+/// The neighbours of a node are computed if its growth is below this. It is above the higher level, because the line of
+/// that level may cross a cell whose corners all lie above it.
 inline constexpr double kSpreadGrowth = 9.0;
-/// Grids that are tried, each of twice the step of the one before.
+/// Largest number of grids that are tried. Each has twice the step of the one before.
 inline constexpr std::size_t kMostGrids = 3;
-/// Points of the drawn grid for each step.
+/// Number of points of the drawn grid per step of the computed grid.
 inline constexpr int kPartsOfACell = 4;
 
 }  // namespace dolp::fit

@@ -16,7 +16,7 @@ namespace {
 
 using GridNode = std::pair<int, int>;  // steps along both axes from the best minimum
 
-/// The positions of two parameters; none where no correlation is known.
+/// The positions of the two parameters with the largest correlation. Empty if no correlation is known.
 std::optional<std::array<Eigen::Index, 2>> most_correlated(const Eigen::MatrixXd& correlation) {
   const auto strength_of = [](double r) { return std::isnan(r) ? 0.0 : 1.0 + std::abs(r); };
   const Eigen::MatrixXd strength = correlation.unaryExpr(strength_of);
@@ -25,7 +25,7 @@ std::optional<std::array<Eigen::Index, 2>> most_correlated(const Eigen::MatrixXd
   return largest > 0.0 ? std::optional(pair) : std::nullopt;
 }
 
-/// The growth of the objective at the nodes of a regular grid.
+/// Computes the growth of the objective at the nodes of a regular grid.
 class GrowthMap {
  public:
   GrowthMap(const Model& model, ModelEvaluator& evaluator, const FitResult& result, const FitOptions& options,
@@ -42,7 +42,7 @@ class GrowthMap {
   }
 
   Contours contours() {
-    // A valley that is too long for its share of the evaluations gets a grid of twice the step.
+    // If a grid needs too many evaluations, the next one has twice the step.
     for (std::size_t grid = 1; !spread((grid + 1) * result_.evaluations / 2) && grid < kMostGrids; ++grid) {
       nodes_.clear();
       steps_ *= 2.0;
@@ -51,7 +51,8 @@ class GrowthMap {
   }
 
  private:
-  /// Steps of the grid: the principal axes of the covariance of both parameters, a share of a standard deviation each.
+  /// The steps of the grid, one per column. They go along the principal axes of the covariance of both parameters, and
+  /// are kStepOfDeviation standard deviations long.
   Eigen::Matrix2d first_steps() const {
     const Eigen::MatrixXd& jacobian = result_.valley_points.front().where.jacobian;
     Eigen::MatrixXd information = jacobian.transpose() * jacobian / result_.scale;
@@ -65,21 +66,21 @@ class GrowthMap {
   Eigen::Vector2d position(const GridNode& node) const {
     return result_.valley_points.front().where.at(pair_) + steps_ * Eigen::Vector2d(node.first, node.second);
   }
-  /// True for nodes in the range and up to about a step beyond it; these are moved to its bound.
+  /// True for nodes inside the range and up to about a step outside. Nodes outside are moved to its bound.
   bool is_near_range(const GridNode& node) const {
     const Eigen::Vector2d at = position(node);
     return (steps_.inverse() * (at - at.cwiseMax(0.0).cwiseMin(1.0))).norm() < 1.5;
   }
   double growth(double objective) const { return (objective - result_.chi_square) / result_.scale; }
 
-  /// The way to a node from a known point.
+  /// A node as a neighbour of a known point, from which a descent reaches it.
   Neighbour beside(const Minimum& near, const GridNode& node) const {
     Neighbour neighbour{&near, {pair_.begin(), pair_.end()}, near.where.at};
     neighbour.to(pair_) = position(node).cwiseMax(0.0).cwiseMin(1.0);
     return neighbour;
   }
 
-  /// Nodes to compute, with the points from which they are reached.
+  /// Nodes to compute, each with the known point from which a descent reaches it.
   using Wanted = std::map<GridNode, const Minimum*>;
 
   /// The nodes nearest to the minimum and to the points of the profiles.
@@ -93,7 +94,8 @@ class GrowthMap {
     return wanted;
   }
 
-  /// The unknown nodes around the known ones whose growth is low, each with its lowest neighbour.
+  /// The nodes that are not computed yet, around computed nodes whose growth is low. Each has its lowest computed
+  /// neighbour.
   Wanted next_nodes() const {
     Wanted wanted;
     for (const auto& [node, point] : nodes_) {
@@ -108,7 +110,7 @@ class GrowthMap {
     return wanted;
   }
 
-  /// Computes nodes until the higher level is enclosed; false where that takes more evaluations in all.
+  /// Computes nodes until the higher level is enclosed. False if that needs more than `most_evaluations` in all.
   bool spread(std::size_t most_evaluations) {
     for (Wanted wanted = first_nodes(); !wanted.empty(); wanted = next_nodes()) {
       if (residuals_.evaluations() >= most_evaluations) return false;
@@ -121,8 +123,8 @@ class GrowthMap {
     return true;
   }
 
-  /// A grid of parts of the cells. Between nodes the residuals are interpolated, which shows valleys narrower than a
-  /// cell.
+  /// The growth on a finer grid, which divides the cells. Between nodes the residuals are interpolated; this shows
+  /// valleys that are narrower than a cell.
   Contours drawn() const {
     GridNode low, high;
     for (const auto& [node, point] : nodes_) {
@@ -148,7 +150,7 @@ class GrowthMap {
     return contours;
   }
 
-  /// Fills the cell that begins at a row and column.
+  /// Fills the points of the cell whose first corner is at this row and column.
   void fill(Contours& contours, Eigen::Index row, Eigen::Index column,
             const std::vector<const Linearisation*>& corners) const {
     for (int i = 0; i <= kPartsOfACell; ++i) {
@@ -170,7 +172,7 @@ class GrowthMap {
   std::array<Eigen::Index, 2> pair_;
   Residuals residuals_;
   DescentOptions descent_;
-  Eigen::Matrix2d steps_;  ///< one in each column
+  Eigen::Matrix2d steps_;  ///< one step per column
   std::map<GridNode, Minimum> nodes_;
 };
 

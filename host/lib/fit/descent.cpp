@@ -8,7 +8,8 @@
 namespace dolp::fit {
 namespace {
 
-/// A robust loss and its derivative at a squared residual. The widths give 95 % efficiency for normal errors.
+/// A loss and its derivative with respect to the squared residual. The widths give 95 % efficiency if errors are
+/// normally distributed.
 std::pair<double, double> loss_of(double square, Loss loss) {
   switch (loss) {
     case Loss::kSquares:
@@ -36,13 +37,14 @@ std::pair<double, double> loss_of(double square, Loss loss) {
   return {square, 1.0};
 }
 
-/// A step that ends on a bound may round to a point next to it.
+/// True at a bound, also if rounding ends a step slightly beside it.
 bool is_on_bound(double coordinate) {
   constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
   return coordinate <= kRounding || coordinate >= 1.0 - kRounding;
 }
 
-/// `step`, which moves held coordinates, with steps of the others to the least sum of squares within the bounds.
+/// Completes `step`, which already moves the held coordinates. The other coordinates get the steps that minimise the
+/// damped sum of squares within the bounds.
 Eigen::VectorXd bounded_step(const Linearisation& where, Eigen::VectorXd step, const std::vector<Eigen::Index>& held,
                              double damping, const Eigen::VectorXd& weights) {
   std::vector<Eigen::Index> free;
@@ -56,7 +58,7 @@ Eigen::VectorXd bounded_step(const Linearisation& where, Eigen::VectorXd step, c
     Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
     normal.diagonal().array() += damping;
     step(free) = -principal_axes(normal).inverse() * (jacobian.transpose() * residuals);
-    // Parameters that leave the bounds stay on them, and the others are solved again.
+    // A parameter whose step leaves the range goes to its bound. The steps of the others are then computed again.
     const auto leaves = [&](Eigen::Index j) {
       const double to = where.at[j] + step[j];
       if (to >= 0.0 && to <= 1.0) return false;
@@ -68,7 +70,7 @@ Eigen::VectorXd bounded_step(const Linearisation& where, Eigen::VectorXd step, c
   return step;
 }
 
-/// The Jacobian of `near` at a point whose residuals are known, by Broyden's update.
+/// The point `to`, whose residuals are known, with a Jacobian that Broyden's update makes from the Jacobian of `near`.
 Linearisation moved(const Linearisation& near, Linearisation to) {
   to.jacobian = near.jacobian;
   to.steps = near.steps;
@@ -79,24 +81,24 @@ Linearisation moved(const Linearisation& near, Linearisation to) {
   return to;
 }
 
-/// A descent on its way.
+/// A descent that is still going on.
 struct Walk {
   Minimum* minimum;
   bool is_stale;        ///< its derivatives belong to an earlier point
   bool is_updated;      ///< its derivatives were updated from steps
-  double shrink = 2.0;  ///< divides the radius where the next step fails
+  double shrink = 2.0;  ///< divides the radius if the next step fails
   bool is_done = false;
   double promised = 0.0;
   Eigen::VectorXd point = {};
 
-  /// Chooses the next point to try; the descent is done where derivatives promise too little there.
+  /// Chooses the next point to try. The descent is done if derivatives promise too small a decrease there.
   void aim(const DescentOptions& options) {
     const Linearisation& where = minimum->where;
     if (!where.jacobian.allFinite()) minimum->objective = std::numeric_limits<double>::infinity();
     is_done = !std::isfinite(minimum->objective);
     if (is_done) return;
-    // A parameter leaves a bound when the others are done: where the model is even in it, as in k at 0, differences
-    // promise much that is not there.
+    // A parameter at its bound stays there until the others are done. If the model is even in the parameter, as in k at
+    // 0, the differences promise a decrease that does not exist.
     std::vector<Eigen::Index> held = minimum->held;
     for (Eigen::Index j = 0; j < where.at.size(); ++j) {
       if (is_on_bound(where.at[j])) held.push_back(j);
@@ -118,9 +120,9 @@ struct Walk {
     is_done = !(promised >= options.least_gain * options.scale) || step.norm() <= kLeastStepLength;
   }
 
-  /// Goes to a point that was tried, or takes a shorter step next time. The rules of the radius are from Nielsen
-  /// (1999); Levenberg's damping is the scale over the radius. Marquardt's damping, by the derivatives, would allow
-  /// leaps along directions that the data hardly constrain.
+  /// Moves to the tried point if it is lower; otherwise the next step is shorter. The rules of the radius are those of
+  /// Nielsen (1999). Levenberg's damping is the scale over the radius. Marquardt's damping, by the derivatives, would
+  /// allow leaps along directions that the data hardly constrain.
   void judge(Linearisation tried, const DescentOptions& options) {
     constexpr double kLeastRadius = 1e-8, kMostRadius = 1e8;
     constexpr double kLeastDecrease = 1e-8;  // relative
@@ -143,7 +145,7 @@ struct Walk {
   }
 };
 
-/// Fresh derivatives for all walks that need them, which then aim.
+/// Computes fresh derivatives for all walks whose derivatives are stale. These walks then choose their next points.
 void refresh(Residuals& residuals, std::vector<Walk>& walks, const DescentOptions& options) {
   std::vector<Linearisation*> stale;
   for (Walk& walk : walks) {
@@ -157,7 +159,7 @@ void refresh(Residuals& residuals, std::vector<Walk>& walks, const DescentOption
   }
 }
 
-/// Fresh derivatives for the walks that their last step ended, where DescentOptions ask for them.
+/// Computes fresh derivatives for walks that the last step ended, if DescentOptions demand it.
 void finish(Residuals& residuals, std::vector<Walk>& walks, const DescentOptions& options) {
   std::vector<Linearisation*> guessed;
   for (Walk& walk : walks) {
@@ -239,8 +241,8 @@ std::pair<Eigen::VectorXd, double> predict_step(const Neighbour& neighbour, doub
   if (near.jacobian.size() == 0) return {near.at + step, std::numeric_limits<double>::infinity()};
   step = bounded_step(near, step, neighbour.held, scale / kRadiusOfNeighbours,
                       Eigen::VectorXd::Ones(near.residuals.size()));
-  // Where the model is even in a parameter, as in k at 0, a bound is a stationary point that no descent leaves. Others
-  // than the held come half the way to it at most.
+  // If the model is even in a parameter, as in k at 0, a bound of it is a stationary point, which no descent leaves. So
+  // a parameter that is not held goes at most half the way to its bound.
   for (Eigen::Index j = 0; j < step.size(); ++j) {
     const bool is_held = std::ranges::find(neighbour.held, j) != neighbour.held.end();
     const double to = near.at[j] + step[j];

@@ -1,4 +1,4 @@
-// Descents from points of the parameters to the minima below them, all at once.
+// Descents from many points in the space of the parameters to minima. All descents advance together.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,18 +11,20 @@
 
 namespace dolp::fit {
 
-/// Orthonormal eigenvectors of a symmetric matrix without negative eigenvalues, the largest eigenvalue first.
+/// Eigenvalues and orthonormal eigenvectors of a symmetric matrix without negative eigenvalues, the largest eigenvalue
+/// first.
 struct PrincipalAxes {
   Eigen::VectorXd values;
-  Eigen::MatrixXd directions;  ///< one in each column
+  Eigen::MatrixXd directions;  ///< one eigenvector per column
 
-  /// The inverse on the axes whose eigenvalue is above this share of the largest one, and 0 across them.
+  /// The inverse of the matrix on the axes whose eigenvalue is above this share of the largest one, and 0 on the
+  /// others.
   Eigen::MatrixXd inverse(double least_share = 0.0) const;
 };
 
 PrincipalAxes principal_axes(const Eigen::MatrixXd& symmetric);
 
-/// The sum of the loss over all residuals: chi^2 without a robust loss; infinite where a residual is not finite.
+/// The sum of the losses of all residuals; chi^2 with Loss::kSquares. Infinite if a residual is not finite.
 double objective(const Eigen::VectorXd& residuals, Loss loss);
 
 /// The weight of each residual in the normal equations, at most 1.
@@ -30,42 +32,45 @@ Eigen::VectorXd loss_weights(const Eigen::VectorXd& residuals, Loss loss);
 
 struct DescentOptions {
   Loss loss = Loss::kSquares;
-  double scale = 1.0;  ///< change of the objective by one standard deviation, at least about
+  double scale = 1.0;  ///< change of the objective by one standard deviation, or a guess of it
   int most_steps = 40;
-  double least_gain = 1e-5;  ///< over the scale: a descent ends where derivatives promise less
-  /// Derivatives are updated from the steps (Broyden) as long as they predict them. Descents below this objective may
-  /// end with updated derivatives; descents above end with fresh ones. None: all derivatives are fresh.
+  /// A descent ends when derivatives promise a decrease of the objective below this times the scale.
+  double least_gain = 1e-5;
+  /// If set, derivatives are updated from the steps (Broyden) as long as the derivatives predict the steps. A descent
+  /// that ends below this objective may end with updated derivatives; one that ends above it gets fresh ones. If empty,
+  /// all derivatives are fresh.
   std::optional<double> secant_below = {};
 };
 
-/// The beginning of a descent, and its end.
+/// The point where a descent begins and, after descend(), where it has ended.
 struct Minimum {
-  Linearisation where;                  ///< coordinates; residuals and Jacobian where they are known already
-  std::vector<Eigen::Index> held = {};  ///< parameters that stay
-  double objective = 0.0;               ///< infinite where the model has no value
+  Linearisation where;                  ///< coordinates; also residuals and Jacobian if they are known already
+  std::vector<Eigen::Index> held = {};  ///< positions of parameters that do not move
+  double objective = 0.0;               ///< infinite if the model has no value here
   bool has_converged = false;
-  double radius = 0.1;  ///< radius of the trust region: with 1, to move over a whole range costs one standard deviation
+  /// Radius of the trust region. With radius 1, a move across a whole range costs one standard deviation.
+  double radius = 0.1;
 };
 
-/// Levenberg-Marquardt within the bounds: in each step one batch of the points that are tried, and one of all
-/// differences. Errors: errors of the evaluator; Cancelled.
+/// Descends from all points by Levenberg-Marquardt within the bounds. Each step computes one batch of the tried points,
+/// and one batch of all finite differences. Errors: errors of the evaluator; Cancelled.
 void descend(Residuals& residuals, std::vector<Minimum>& all, const DescentOptions& options);
 
-/// Coordinates that are held at new values, beside a known point from which the others follow.
+/// A point to be found beside a known one. Some of its coordinates are given and held; the others follow by a descent.
 struct Neighbour {
   const Minimum* near;
   std::vector<Eigen::Index> held;
-  Eigen::VectorXd to;  ///< coordinates; only the held coordinates count
+  Eigen::VectorXd to;  ///< coordinates of the point; only the held ones are used
 };
 
-/// The least objective at held coordinates: derivatives lead the other parameters to the bottom of the valley there,
-/// and they descend.
+/// Finds, for each neighbour, the least objective at its held coordinates. Derivatives at the known point lead the
+/// other parameters to the bottom of the valley; from there they descend.
 std::vector<Minimum> follow(Residuals& residuals, const std::vector<Neighbour>& all, const DescentOptions& options);
 
-/// The coordinates to which derivatives lead, and the sum of squares that they predict there.
+/// The coordinates to which the derivatives at the known point lead, and the sum of squares that they predict there.
 std::pair<Eigen::VectorXd, double> predict_step(const Neighbour& neighbour, double scale);
 
-/// True where the derivatives at a point predict the residuals at another point.
+/// True if the derivatives at `from` predict the residuals at `to`.
 bool is_straight(const Linearisation& from, const Linearisation& to, double scale);
 
 }  // namespace dolp::fit

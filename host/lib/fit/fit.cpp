@@ -32,7 +32,7 @@ double least_uncertainty(const Model& model) {
   return least;
 }
 
-/// The tolerance of the model's values; at most the scene's own.
+/// The tolerance of the model's final values; at most the tolerance of the scene.
 double fine_tolerance(const Model& model) {
   return std::min(model.scene().accuracy.tolerance,
                   std::max(kFineShare * least_uncertainty(model), kToleranceRange.min));
@@ -45,22 +45,29 @@ double coarse_tolerance(const Model& model) {
 
 bool is_at_bound(double coordinate) { return coordinate < kAtBound || coordinate > 1.0 - kAtBound; }
 
-/// A direction of coordinates, the largest component 1, along which the data do not constrain the parameters.
+/// A direction in the space of the coordinates along which the data do not constrain the parameters. The absolute value
+/// of its largest component is 1.
 struct Direction {
   Eigen::VectorXd along;
-  bool is_null = false;  ///< no residual changes; else the whole range changes less than the data can tell
+  /// True if no residual changes along the direction. Otherwise the whole range changes the residuals by less than one
+  /// standard deviation.
+  bool is_null = false;
 };
 
 /// Covariance of the parameters, from the Jacobian at a minimum.
 struct Covariance {
-  Eigen::MatrixXd of_coordinates;  ///< infinite variance where a null direction points; NaN at a bound
+  /// Covariance of the coordinates. A parameter in a null direction has an infinite variance, a parameter at its bound
+  /// NaN.
+  Eigen::MatrixXd of_coordinates;
   std::vector<Direction> unconstrained;
   std::size_t rank = 0;
 };
 
 Covariance covariance_of(const Minimum& minimum, Loss loss, double scale) {
-  constexpr double kNullShare = 1e-4;        // share of the largest singular value: the data do not see the direction
-  constexpr double kLeastDeviations = 1e-3;  // a parameter whose range changes the residuals by less is not seen
+  // A direction is null if its singular value is below this share of the largest one.
+  constexpr double kNullShare = 1e-4;
+  // A parameter is ignored if its whole range changes the residuals by less than so many standard deviations.
+  constexpr double kLeastDeviations = 1e-3;
   Eigen::MatrixXd jacobian =
       loss_weights(minimum.where.residuals, loss).cwiseSqrt().asDiagonal() * minimum.where.jacobian;
   const Eigen::Index count = jacobian.cols();
@@ -99,7 +106,7 @@ Covariance covariance_of(const Minimum& minimum, Loss loss, double scale) {
   return result;
 }
 
-/// NaN where a variance is not finite.
+/// The correlation matrix; NaN for parameters whose variance is not finite.
 Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance) {
   const auto known = [](double variance) { return variance > 0.0 && std::isfinite(variance) ? variance : kNaN; };
   const Eigen::VectorXd inverses = covariance.diagonal().unaryExpr(known).cwiseSqrt().cwiseInverse();
@@ -108,7 +115,7 @@ Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance) {
   return correlation;
 }
 
-/// A direction in words.
+/// Describes a direction in words.
 std::string words_of(const Direction& direction, const std::vector<FitRange>& parameters) {
   std::vector<std::string> rising, falling;
   const Eigen::VectorXd& along = direction.along;
@@ -127,7 +134,7 @@ std::string words_of(const Direction& direction, const std::vector<FitRange>& pa
                      falling.size() == 1 ? "falls" : "fall");
 }
 
-/// Sets the standard error of a value, or why it has none.
+/// Sets the standard error of a parameter, or the reason why it has none.
 void set_error(FitParameter& fitted, const FitRange& range, double deviation, bool has_scale) {
   const double error = deviation * range.slope(fitted.value);
   if (fitted.is_at_bound) {
@@ -158,7 +165,7 @@ FitInterval interval_of(const FitRange& parameter, const std::vector<Stretch>& s
   return interval;
 }
 
-/// One fit while it runs.
+/// One fit, with its minima and results so far.
 class Fit {
  public:
   Fit(const Model& model, ModelEvaluator& evaluator, const FitOptions& options)
@@ -170,7 +177,7 @@ class Fit {
         profile_(model, fine_tolerance(model), Differences::kForward, evaluator, poll_) {}
 
   std::optional<FitResult> run(double most_aic) {
-    constexpr int kMostRestarts = 4;  // where profiles lead to lower and lower minima
+    constexpr int kMostRestarts = 4;  // the fit restarts at most so often from a lower minimum that a profile found
     SearchOptions search{options_.starts, options_.seed, options_.loss, model_.has_uncertainties(), guess_scale()};
     search.count = [this](std::size_t done, std::size_t total) { count(done, total); };
     if (options_.phase) options_.phase("descents of the search");
@@ -194,15 +201,17 @@ class Fit {
     total_ = total;
   }
 
-  /// With a model error the parameters only choose the bracket: each point is a separate condition.
+  /// The number of degrees of freedom. With a model error it is the number of points: the parameters only choose the
+  /// bracket, and each point is a condition by itself.
   std::size_t freedom() const {
     return model_.observation_count() - (model_.has_model_error() ? 0 : model_.parameters().size());
   }
 
-  /// True where the growth of the objective has a scale to be measured with.
+  /// True if the change of the objective by one standard deviation is known or follows from the residuals.
   bool has_scale() const { return model_.has_uncertainties() || freedom() > 0; }
 
-  /// 1, or the square of a hundredth of the largest measured value.
+  /// A guess of the scale before the search: 1 with uncertainties, else the square of a hundredth of the largest
+  /// measured value.
   double guess_scale() const {
     if (model_.has_uncertainties()) return 1.0;
     double largest = 0.0;
@@ -212,14 +221,15 @@ class Fit {
     return std::pow(std::max(0.01 * largest, fine_.tolerance()), 2);
   }
 
-  /// 1, or the mean square of the residuals, which the model's own error bounds from below.
+  /// The scale at a minimum: 1 with uncertainties, else the mean square of the residuals, but at least the square of
+  /// the model's tolerance.
   double find_scale(const Minimum& minimum) const {
     if (model_.has_uncertainties()) return 1.0;
     const double mean = freedom() > 0 ? minimum.objective / static_cast<double>(freedom()) : 0.0;
     return std::max(mean, fine_.tolerance() * fine_.tolerance());
   }
 
-  /// The growth of the objective at the ends of an interval.
+  /// The growth of the objective at the ends of an interval of this level, divided by the scale.
   double rise_at(double level) const {
     if (model_.has_uncertainties()) {
       const double freedoms = model_.has_model_error() ? static_cast<double>(freedom()) : 1.0;
@@ -229,7 +239,8 @@ class Fit {
     return std::pow(boost::math::quantile(t, 0.5 * (1.0 + level)), 2);
   }
 
-  /// The covariance at the best minimum. Inside a bracket no derivative tells parameters apart: it has none.
+  /// The covariance at the best minimum. With a model error all its elements are NaN, because inside a bracket no
+  /// derivative distinguishes the parameters.
   Covariance find_covariance() const {
     if (!model_.has_model_error()) return covariance_of(minima_.front(), options_.loss, result_.scale);
     const Eigen::Index count = minima_.front().where.at.size();
@@ -255,8 +266,8 @@ class Fit {
     result_.valley_points = {best};
   }
 
-  /// Finds the intervals of all parameters, or their scaled ones. False where a profile led to a lower minimum, which
-  /// then is the best.
+  /// Finds the intervals of all parameters, or their scaled intervals. False if a profile led to a lower minimum, which
+  /// then is the best one.
   bool find_intervals(double scale, bool may_restart, bool is_scaled) {
     const std::optional<Profiles> profiles = find_profiles(scale, may_restart);
     if (!profiles) return false;
@@ -271,8 +282,8 @@ class Fit {
     return true;
   }
 
-  /// The profiles around the best minimum, and around others that the data do not exclude; none where one of them led
-  /// to a lower minimum, which then is the best.
+  /// The profiles around all minima that the data do not exclude. Empty if a profile led to a lower minimum, which then
+  /// is the best one.
   std::optional<Profiles> find_profiles(double scale, bool may_restart) {
     ProfileOptions options{{rise_at(kLevel68), rise_at(kLevel95)}, 0.0, scale, options_.loss, {}};
     if (!model_.has_model_error()) options.from = minima_.front().objective;
@@ -288,14 +299,15 @@ class Fit {
     return profiles;
   }
 
-  /// Descends from a point; true where that gives the new best minimum.
+  /// Descends from a point. True if this gives a new best minimum.
   bool take(const Minimum& lower) {
     std::vector<Minimum> bottoms(1);
     bottoms.front().where.at = lower.where.at;
     descend(fine_, bottoms, {options_.loss, result_.scale});
     Minimum& bottom = bottoms.front();
     if (!bottom.has_converged || bottom.objective >= minima_.front().objective) return false;
-    if (bottom.objective > minima_.front().objective - result_.scale) minima_.erase(minima_.begin());  // the same
+    // A bottom that is lower by less than one standard deviation is the same minimum.
+    if (bottom.objective > minima_.front().objective - result_.scale) minima_.erase(minima_.begin());
     minima_.insert(minima_.begin(), std::move(bottom));
     return true;
   }
@@ -327,7 +339,8 @@ class Fit {
     add_criteria();
   }
 
-  /// A weakly constrained direction counts only where a profile confirms that a parameter in it is open.
+  /// A weakly constrained direction counts only if a profile confirms it: the interval of one of its parameters is open
+  /// at both ends.
   void name_degeneracies() {
     result_.determined = covariance_.rank;
     for (const Direction& direction : covariance_.unconstrained) {
@@ -349,7 +362,7 @@ class Fit {
     double misfit = result_.chi_square;
     if (!model_.has_uncertainties()) {
       misfit = points * std::log(std::max(result_.chi_square, std::numeric_limits<double>::min()) / points);
-      parameters += 1.0;  // the scale
+      parameters += 1.0;  // the scale is a parameter too
     }
     result_.aic = misfit + 2.0 * parameters;
     result_.bic = misfit + std::log(points) * parameters;

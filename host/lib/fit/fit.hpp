@@ -17,30 +17,32 @@
 
 namespace dolp::fit {
 
-/// The result of a fit. Lists over observations are in the order of the data.
+/// The result of a fit. Vectors with one value per measurement are in the order of the data.
 struct FitResult : FitNumbers {
-  Eigen::MatrixXd correlation;               ///< NaN for a parameter at its bound, or that the data do not determine
-  std::optional<double> reduced_chi_square;  ///< none without degrees of freedom
-  double scale = 1.0;  ///< change of chi_square that is one standard deviation: 1, or the residuals' mean square
-  std::size_t determined = 0;          ///< parameters less degeneracies
-  double numerical_error = 0.0;        ///< largest bound of the model's error, in uncertainties
+  /// NaN for parameters at a bound and for parameters that the data do not determine.
+  Eigen::MatrixXd correlation;
+  std::optional<double> reduced_chi_square;  ///< empty without degrees of freedom
+  /// Change of chi_square by one standard deviation: 1 or, without uncertainties, the mean square of the residuals.
+  double scale = 1.0;
+  std::size_t determined = 0;          ///< rank of the Jacobian: number of parameters that the data determine
+  double numerical_error = 0.0;        ///< largest bound of the model's numerical error, in uncertainties
   double tolerance = 0.0;              ///< tolerance of the model's values
-  std::uint32_t status = 0;            ///< bits of any point
+  std::uint32_t status = 0;            ///< status bits of all points together
   Eigen::VectorXd residuals;           ///< (measured - model) / uncertainty; without uncertainties measured - model
   Eigen::VectorXd predicted;           ///< the model's values
   std::size_t evaluations = 0;         ///< parameter sets for which the model was computed
-  std::vector<Minimum> valley_points;  ///< the best minimum, and points of the profiles
-  double aic = 0.0;                    ///< Akaike's information criterion, up to a constant of the data
-  double bic = 0.0;                    ///< Bayes' information criterion, up to a constant of the data
+  std::vector<Minimum> valley_points;  ///< the best minimum first, then points of the profiles
+  double aic = 0.0;  ///< Akaike's information criterion, up to a constant that only depends on the data
+  double bic = 0.0;  ///< Bayes' information criterion, up to a constant that only depends on the data
 };
 
 /// "good", "doubtful" or "bad"; empty without a p-value.
 std::string fit_quality(const std::optional<double>& p_value);
 
-/// Fits the model to its data: minima by descents from many starts, then intervals of the best one. The tolerance of
-/// the model's values is a hundredth of the least uncertainty; the search uses a wider one. Scaled intervals are given
-/// if `aic` is at most `most_aic`, because a model that lies behind others needs none.
-/// None when no descent converged. Errors: errors of the evaluator; Cancelled.
+/// Fits the model to its data. Descents from many starts find the minima; then the intervals around the best one are
+/// computed. The tolerance of the model's values is a hundredth of the smallest uncertainty, and wider during the
+/// search. A doubtful or bad fit gets scaled intervals only if its AIC is at most `most_aic`: a model that is worse
+/// than others needs none. Empty if no descent converged. Errors: errors of the evaluator; Cancelled.
 std::optional<FitResult> fit(const Model& model, ModelEvaluator& evaluator, const FitOptions& options,
                              double most_aic = std::numeric_limits<double>::infinity());
 

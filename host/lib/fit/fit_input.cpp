@@ -1,4 +1,4 @@
-// What a fit is given: measured data, ranges of parameters, comparisons.
+// The input of a fit: measured data, ranges of parameters, comparisons.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +21,8 @@ constexpr std::array kObservables = {Observable::kDolp, Observable::kQOverI, Obs
                                      Observable::kEmissivityP};
 constexpr NumberRange kFractionOfOneRange{-1.0, 1.0};
 constexpr NumberRange kUncertaintyRange{0.0, std::numeric_limits<double>::infinity(), NumberRange::Ends::kOpenBelow};
-// Zeniths of a quarter turn at most, and DOLP that no surface has over a range of zeniths, are likely in another unit.
+// If all zeniths are below kLikelyRadians, they are probably in radians. If DOLP reaches kLikelyPercent, it is probably
+// in percent, because no surface has so much over a range of zeniths.
 constexpr double kLikelyRadians = 1.6;
 constexpr double kLikelyPercent = 0.9;
 
@@ -37,7 +38,7 @@ const std::vector<CsvColumn>& known_columns() {
   return columns;
 }
 
-/// Refuses columns that contradict each other or carry no information.
+/// Refuses data without exactly one column of zeniths or without exactly one measured quantity.
 void check_columns(const CsvReader& header, const CsvColumns& columns) {
   if (columns.has("theta_deg") == columns.has("theta_i_deg")) {
     header.fail(columns.has("theta_deg")
@@ -71,7 +72,7 @@ void add_row(MeasuredData& data, const CsvReader& row, const CsvColumns& columns
   }
 }
 
-/// Signs of a unit that was probably not meant.
+/// Remarks on values that probably have another unit than their column.
 std::vector<std::string> remarks_on(const MeasuredData& data) {
   double highest_deg = 0.0, highest_dolp = 0.0, least_um = std::numeric_limits<double>::infinity();
   for (const Measurement& measurement : data.measurements) {
@@ -95,8 +96,8 @@ std::vector<std::string> remarks_on(const MeasuredData& data) {
   return remarks;
 }
 
-/// The position at which the keys of "FILE:KEY=VALUE,..." begin: behind the colon before the first dotted key of a
-/// scene.
+/// The position of the colon that separates the file from the settings in "FILE:KEY=VALUE,...". It is the first colon
+/// with an equals sign after it and, between them, no slash, space or colon.
 std::size_t keys_begin(const std::string& argument) {
   for (std::size_t colon = argument.find(':'); colon != std::string::npos; colon = argument.find(':', colon + 1)) {
     const std::string_view rest = std::string_view(argument).substr(colon + 1);
@@ -106,7 +107,7 @@ std::size_t keys_begin(const std::string& argument) {
   return std::string::npos;
 }
 
-/// The parts of "KEY=VALUE,KEY=VALUE"; a comma inside of brackets or quotes separates nothing.
+/// The parts of "KEY=VALUE,KEY=VALUE". A comma inside brackets or quotes does not separate parts.
 std::vector<std::string> pieces_of(std::string_view text) {
   std::vector<std::string> pieces(1);
   int depth = 0;
@@ -126,7 +127,7 @@ std::vector<std::string> pieces_of(std::string_view text) {
 
 constexpr const char* kForm = "must be KEY=LOW:HIGH or KEY=LOW:HIGH:START";
 
-/// The scene's numeric keys, except the accuracy of the model itself.
+/// The numeric keys of a scene that a fit may vary: all except those of [accuracy], which are not part of the model.
 std::vector<std::string> number_keys() {
   std::vector<std::string> keys;
   for (const Key& description : dolp::keys()) {

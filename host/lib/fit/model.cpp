@@ -19,13 +19,13 @@
 namespace dolp::fit {
 namespace {
 
-// Each point of a list has its own values of these keys, so that sets which differ only in them share a call.
+// Each point of a list has its own values of these keys. So parameter sets that differ only in these keys share a call.
 constexpr std::array<std::string_view, 5> kPointKeys = {"surface.n", "surface.k", "surface.sigma", "surface.wind_m_s",
                                                         "surface.q"};
 
 bool is_point_key(const std::string& key) { return std::ranges::find(kPointKeys, key) != kPointKeys.end(); }
 
-/// A value for each parameter.
+/// A vector with one value_of(parameter) per parameter.
 template <class ValueOf>
 Eigen::VectorXd each(const std::vector<FitRange>& parameters, ValueOf value_of) {
   Eigen::VectorXd values(static_cast<Eigen::Index>(parameters.size()));
@@ -37,12 +37,12 @@ Eigen::VectorXd starts_of(const std::vector<FitRange>& parameters) {
   return each(parameters, [](const FitRange& range) { return range.start.value_or(range.at(0.5)); });
 }
 
-/// The components of an observable at a point.
+/// The components of an observable at a point, as in a row of Prediction::components.
 Eigen::RowVector2d components_of(Observable observable, const PointResult& point) {
   const Eigen::RowVector2d q_u(point[Quantity::kStokesQ] / point[Quantity::kStokesI],
                                point[Quantity::kStokesU] / point[Quantity::kStokesI]);
   switch (observable) {
-    case Observable::kDolp:  // at 90 degrees it may have a limit where the Stokes parameters have none
+    case Observable::kDolp:  // at 90 degrees DOLP may have a limit, and Q/I none
       return q_u.allFinite() ? q_u : Eigen::RowVector2d(point[Quantity::kDolp], 0.0);
     case Observable::kQOverI:
       return {q_u[0], 0.0};
@@ -54,7 +54,7 @@ Eigen::RowVector2d components_of(Observable observable, const PointResult& point
   return {};
 }
 
-/// The emission model at the other end of a scene's bracket. Errors: InputError where the scene has none.
+/// The emission model at the other end of a scene's bracket. Errors: InputError if the scene has no bracket.
 EmissionModel other_end_of(const SceneValues& scene) {
   const std::string origin = "model error of the bracket: ";
   if (!scene.emission) throw InputError(origin + "needs the table [emission]");
@@ -66,7 +66,8 @@ EmissionModel other_end_of(const SceneValues& scene) {
   return scene.emission->model == EmissionModel::kDirect ? EmissionModel::kMoments : EmissionModel::kDirect;
 }
 
-/// The value nearest to a measured one between both ends of a bracket. Equation: DOLP is |Q/I|, least where Q/I is 0.
+/// The value between both ends of a bracket that is nearest to the measured one. Equation: DOLP is |Q/I|. If Q/I has
+/// different signs at both ends, the smallest DOLP between them is 0.
 double nearest_between(const Eigen::RowVector2d& end, const Eigen::RowVector2d& other, const Measurement& measured) {
   if (std::isnan(end[0] + other[0])) return end[0] + other[0];
   const auto [low, high] = std::minmax(end[0], other[0]);
@@ -156,7 +157,8 @@ Model::Group Model::group_of(const SceneValues& scene, const MeasuredData& data,
   if (!wavelengths.empty() && (std::ranges::any_of(data.settings, sets_spectrum) || varies("spectrum.wavelength_um"))) {
     throw InputError(data.name + ": column \"wavelength_um\" and a spectrum key contradict each other");
   }
-  // The scene must take all wavelengths, and has the shortest one.
+  // Checks that the scene accepts the longest and the shortest wavelength. The group keeps the scene at the shortest
+  // one.
   for (const double at_um : group.wavelength_um | std::views::reverse) {
     if (at_um != group.wavelength_um.back() && at_um != group.wavelength_um.front()) continue;
     const Setting wavelength{"spectrum.wavelength_um", at_um,
@@ -204,7 +206,7 @@ std::vector<Prediction> Model::predict(const std::vector<Eigen::VectorXd>& value
 void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>& values, double tolerance,
                           ModelEvaluator& evaluator, const Progress& progress,
                           std::vector<Prediction>& predictions) const {
-  // Sets that differ only in the keys of points make one call.
+  // Parameter sets that differ only in the keys of points share a call.
   std::map<std::vector<double>, std::vector<std::size_t>> calls;
   for (std::size_t set = 0; set < values.size(); ++set) {
     std::vector<double> common;

@@ -13,14 +13,15 @@
 namespace dolp::fit {
 namespace {
 
-/// A point of the profile.
+/// A point of a profile.
 struct ProfilePoint {
-  double distance = 0.0;  ///< from the start, in coordinates of the parameter
-  double root = 0.0;      ///< root of the growth of the objective, from where rises count
+  double distance = 0.0;  ///< distance from the start, in the coordinate of the parameter
+  /// Square root of the growth of the objective above ProfileOptions::from, divided by the scale.
+  double root = 0.0;
   Minimum found;
 };
 
-/// The way from a point of a profile in one direction of the parameter.
+/// One side of a profile: from its start in one direction of the parameter.
 class Side {
  public:
   Side(Minimum start, Eigen::Index parameter, int direction, double most, double least, const ProfileOptions& options)
@@ -34,9 +35,9 @@ class Side {
   std::size_t parameter() const { return static_cast<std::size_t>(parameter_); }
   const std::vector<ProfilePoint>& points() const { return points_; }
   const std::optional<Minimum>& lower() const { return lower_; }
-  /// The coordinate at which a rise is met, or the last one where none is. None if the start lies above the rise.
+  /// The coordinate at which a rise is met, or the last one if it is not met. Empty if the start lies above the rise.
   const std::optional<double>& end(std::size_t rise) const { return ends_[rise]; }
-  /// The last point below a rise.
+  /// The last point below a rise; null if there is none.
   const Minimum* last_below(std::size_t rise) const {
     const double most = (1.0 + kRootTolerance) * std::sqrt(options_->rises[rise]);
     const auto last =
@@ -44,7 +45,7 @@ class Side {
     return last == points_.rend() ? nullptr : &last->found;
   }
 
-  /// The point of the profile to compute next, and the known point beside it.
+  /// The next point of the profile to compute, as a neighbour of the nearest known point.
   Neighbour next() {
     ++tries_;
     distance_ = std::clamp(next_distance(), 0.0, most_);
@@ -58,7 +59,8 @@ class Side {
   }
 
   void add(Minimum found) {
-    constexpr double kLowerMinimum = 0.01;  // standard deviations squared below the minimum: another minimum
+    // A point that is lower than the best minimum by more than this, times the scale, belongs to another minimum.
+    constexpr double kLowerMinimum = 0.01;
     if (found.objective < least_ - kLowerMinimum * options_->scale) {
       lower_ = std::move(found);
       finish(distance_);
@@ -87,12 +89,13 @@ class Side {
     return std::ranges::find_if(points_, [&](const ProfilePoint& point) { return point.root >= wanted(); });
   }
 
-  /// Ends the rises that are met, or cannot be.
+  /// Sets the ends of the rises that are met or cannot be met.
   void settle() {
     for (; !is_done(); ++rise_, tries_ = 0) {
       const PointPosition above = first_above();
       if (above == points_.cbegin()) continue;
-      // A start just below a rise has not met it, and on the way down again it does not.
+      // A start just below a rise does not count as meeting it; nor do points of about its height. Only higher points
+      // do.
       const double least = std::min(wanted(), points_.front().root + kRootTolerance * wanted());
       const auto met = std::find_if(points_.cbegin() + 1, points_.cend(), [&](const ProfilePoint& p) {
         return p.root >= least && std::abs(p.root - wanted()) <= kRootTolerance * wanted();
@@ -111,12 +114,13 @@ class Side {
     }
   }
 
-  /// All rises that are left end at this distance.
+  /// Ends all remaining rises at this distance.
   void finish(double distance) {
     for (; !is_done(); ++rise_) ends_[rise_] = coordinate(distance);
   }
 
-  /// The intersection of the wanted root with a straight line through the two points beside it, or the last two.
+  /// The distance at which a straight line through two points meets the wanted root. The points are the two beside it
+  /// or, if all points are lower, the last two.
   double next_distance() const {
     if (points_.size() == 1) return first_distance();
     const PointPosition above = first_above();
@@ -133,7 +137,7 @@ class Side {
                        : farthest;
   }
 
-  /// The distance at which derivatives predict the rise.
+  /// The distance at which the derivatives at the start predict the rise.
   double first_distance() const {
     const ProfilePoint& first = points_.front();
     Neighbour probe{&first.found, {parameter_}, first.found.where.at};
@@ -149,7 +153,7 @@ class Side {
   double most_;   ///< largest distance
   double least_;  ///< objective of the best minimum
   const ProfileOptions* options_;
-  std::vector<ProfilePoint> points_;  ///< by distance
+  std::vector<ProfilePoint> points_;  ///< points in the order of their distances
   std::size_t rise_ = 0;
   int tries_ = 0;
   double distance_ = 0.0;
@@ -157,7 +161,7 @@ class Side {
   std::optional<Minimum> lower_;
 };
 
-/// Adds a stretch; stretches that meet become one.
+/// Adds a stretch to a sorted list. Stretches that meet become one.
 void merge(std::vector<Stretch>& all, Stretch stretch) {
   std::erase_if(all, [&](const Stretch& other) {
     if (other.high < stretch.low || stretch.high < other.low) return false;
@@ -194,7 +198,8 @@ class Profiler {
 
   Profiles run() {
     constexpr int kMostSearches = 4;
-    constexpr double kKeptRise = 1.6;  // over the second rise: contours have a higher level than intervals
+    // Points up to this multiple of the second rise are returned, because contours have a higher level than intervals.
+    constexpr double kKeptRise = 1.6;
     complete(0);
     for (int i = 0; i < kMostSearches && !result_.lower && search_other_branches(); ++i) {
     }
@@ -207,7 +212,7 @@ class Profiler {
   }
 
  private:
-  /// Completes the sides from a position. Sides come in pairs from one start.
+  /// Computes points until all sides from position `first` of sides_ are done. Sides come in pairs with a common start.
   void complete(std::size_t first) {
     const auto is_done = [](const Side& side) { return side.is_done(); };
     for (;;) {
@@ -236,14 +241,14 @@ class Profiler {
     }
   }
 
-  /// The ends that lie inside of the ranges, and from which no other branch was looked for.
+  /// The ends inside of the ranges beyond which other branches were not searched yet.
   std::vector<ProfileEnd> new_ends() {
     std::vector<ProfileEnd> ends;
     for (std::size_t j = 0; j < result_.stretches.size(); ++j) {
       for (std::size_t rise = 0; rise < options_.rises.size(); ++rise) {
         const std::vector<Stretch>& all = result_.stretches[j][rise];
         const auto parameter = static_cast<Eigen::Index>(j);
-        if (all.empty()) continue;  // the minimum lies above
+        if (all.empty()) continue;  // all minima lie above the rise
         for (const ProfileEnd& end :
              {ProfileEnd{parameter, rise, -1, all.front().low}, {parameter, rise, 1, all.back().high}}) {
           if (end.at >= kAtBound && end.at <= 1.0 - kAtBound && searched_.insert(end).second) ends.push_back(end);
@@ -255,7 +260,7 @@ class Profiler {
 
   double objective_at(double rise) const { return options_.from + rise * options_.scale; }
 
-  /// Looks for other branches of the valley beyond new ends; true where there are some.
+  /// Searches for other branches of the valley beyond new ends. True if there are some.
   bool search_other_branches() {
     std::vector<Neighbour> ways;
     std::vector<ProfileEnd> end_of_way;
@@ -284,8 +289,9 @@ class Profiler {
     return first < sides_.size();
   }
 
-  /// Ways from the ends of other sides to just beyond an end, except where a straight way leads there, and from points
-  /// of other sides that lie beyond it, clearly below the rise.
+  /// The paths on which to search beyond an end. They lead from the ends of other sides to just beyond this end, unless
+  /// a straight path joins both ends. They also start at points of other sides beyond this end that lie clearly below
+  /// the rise.
   std::vector<Neighbour> ways_beyond(const ProfileEnd& end) const {
     if (result_.stretches.size() == 1) return {};  // the profile of a single parameter has no other branch
     const std::vector<Stretch>& all = result_.stretches[static_cast<std::size_t>(end.parameter)][end.rise];

@@ -1,4 +1,4 @@
-// Weighted residuals of a model and their derivatives.
+// The weighted residuals of a model, and their derivatives.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,42 +9,44 @@
 
 namespace dolp::fit {
 
-/// Residuals at a point of the parameters' coordinates, and their derivatives.
+/// The residuals at a point in the space of the coordinates, and their derivatives.
 struct Linearisation {
-  Eigen::VectorXd at;              ///< coordinates in [0, 1]
-  Eigen::VectorXd residuals = {};  ///< (model - measured) / uncertainty; without uncertainties model - measured. Empty
-                                   ///< where they are not known, NaN where the model has no value
-  Eigen::MatrixXd jacobian = {};   ///< observations x parameters; empty where it is not known
-  Eigen::MatrixX2d components = {};  ///< components of the model's prediction
-  Eigen::VectorXd steps = {};        ///< steps of the next differences; empty: not known yet
+  Eigen::VectorXd at;  ///< coordinates in [0, 1]
+  /// (model - measured) / uncertainty; without uncertainties model - measured. Empty if not known yet; NaN where the
+  /// model has no value.
+  Eigen::VectorXd residuals = {};
+  Eigen::MatrixXd jacobian = {};     ///< measurements x parameters; empty if not known yet
+  Eigen::MatrixX2d components = {};  ///< Prediction::components at the point
+  Eigen::VectorXd steps = {};        ///< steps of the next differences; empty before the first
 };
 
 enum class Differences {
-  kForward,  ///< one more point for each parameter: enough to find the way
-  kCentral,  ///< two more points for each parameter, on both sides inside of the range
+  kForward,  ///< one neighbour per parameter, which is enough to find the way
+  kCentral,  ///< two neighbours per parameter, on both sides if the range allows it
 };
 
 /// The residuals as a function of the parameters' coordinates.
 class Residuals {
  public:
-  /// `tolerance`: tolerance of the model's values. The model and the evaluator outlive the object.
+  /// `tolerance`: tolerance of the model's values. The model and the evaluator must outlive the object.
   Residuals(const Model& model, double tolerance, Differences differences, ModelEvaluator& evaluator,
             Progress progress);
 
   const Model& model() const { return model_; }
   double tolerance() const { return tolerance_; }
-  /// Parameter sets computed so far.
+  /// The number of parameter sets computed so far.
   std::size_t evaluations() const { return evaluations_; }
 
-  /// The residuals at several points in one batch, and their derivatives by differences in another.
+  /// at() computes the residuals at several points in one batch. linearise() computes their derivatives by differences
+  /// in another batch.
   std::vector<Linearisation> at(const std::vector<Eigen::VectorXd>& points);
   void linearise(const std::vector<Linearisation*>& points);
 
   Eigen::VectorXd values(const Eigen::VectorXd& point) const;
   std::vector<Prediction> predict(const std::vector<Eigen::VectorXd>& points);
-  /// The observables of a prediction.
+  /// The values of the observables from Prediction::components.
   Eigen::VectorXd observed(const Eigen::MatrixX2d& components) const;
-  /// The factors of the differences: 1 / uncertainty, or 1.
+  /// The factors of model - measured in the residuals: 1 / uncertainty, or 1 without uncertainties.
   const Eigen::VectorXd& weights() const { return weights_; }
 
  private:
@@ -57,7 +59,7 @@ class Residuals {
   ModelEvaluator& evaluator_;
   Progress progress_;
   Eigen::VectorXd measured_, weights_;
-  std::vector<bool> is_length_;  ///< for DOLP: the observable is the length of its components
+  std::vector<bool> is_length_;  ///< per measurement: true for DOLP, which is the length of its components
   std::size_t evaluations_ = 0;
 };
 

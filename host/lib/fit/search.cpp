@@ -12,7 +12,8 @@
 namespace dolp::fit {
 namespace {
 
-/// Points of the Sobol sequence in the unit cube, all shifted by one vector, modulo 1.
+/// Points of the Sobol sequence in the unit cube. Unless the seed is 1, all are shifted by the same random vector,
+/// modulo 1.
 std::vector<Eigen::VectorXd> sobol_points(std::size_t count, Eigen::Index dimensions, std::uint64_t seed) {
   boost::random::sobol sequence(static_cast<std::size_t>(dimensions));
   std::mt19937_64 engine(seed);
@@ -31,7 +32,7 @@ std::vector<Eigen::VectorXd> sobol_points(std::size_t count, Eigen::Index dimens
   return points;
 }
 
-/// The starting points of the descents: the best points, no two of them close together.
+/// The starting points of the descents: the lowest points, but no two that are close together.
 std::vector<Minimum> choose_starts(Residuals& residuals, const SearchOptions& options) {
   const std::vector<FitRange>& parameters = residuals.model().parameters();
   const auto dimensions = static_cast<Eigen::Index>(parameters.size());
@@ -64,26 +65,28 @@ std::vector<Minimum> choose_starts(Residuals& residuals, const SearchOptions& op
   return starts;
 }
 
-/// The change of the objective that is one standard deviation: 1 with uncertainties, else the mean square residual.
+/// The change of the objective by one standard deviation: options.scale with uncertainties, else the mean square
+/// residual.
 double scale_of(const SearchOptions& options, const Minimum& minimum) {
   if (options.has_uncertainties) return options.scale;
   const auto freedom = static_cast<double>(minimum.where.residuals.size() - minimum.where.at.size());
   return minimum.objective / std::max(1.0, freedom);
 }
 
-/// Moves a point across a line to the position where the residuals are least, as their derivatives predict.
+/// Moves a point perpendicular to a line, to where the residuals are least according to their derivatives.
 Eigen::VectorXd on_floor(const Eigen::VectorXd& point, const Eigen::VectorXd& residuals,
                          const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& line) {
   const Eigen::VectorXd along = line.normalized();
   const Eigen::MatrixXd across = jacobian - jacobian * along * along.transpose();
-  // The residuals do not change along axes of less. Far above the rounding of a normal matrix.
+  // Along axes with a smaller share the residuals count as constant. The share is far above the rounding of a normal
+  // matrix.
   constexpr double kFlatShare = 1e-12;
   const PrincipalAxes axes = principal_axes(across.transpose() * across);
   const Eigen::VectorXd moved = point - axes.inverse(kFlatShare) * across.transpose() * residuals;
   return moved.cwiseMax(0.0).cwiseMin(1.0);
 }
 
-/// True where the objective falls from point to point, or never rises by more than `scale`.
+/// True if the objective falls from point to point. Rises by at most `scale` above the lowest point so far are allowed.
 bool falls(double from, std::span<const Linearisation> points, Loss loss, double scale) {
   double least = from;
   return std::ranges::all_of(points, [&](const Linearisation& point) {
@@ -94,8 +97,8 @@ bool falls(double from, std::span<const Linearisation> points, Loss loss, double
   });
 }
 
-/// True where the objective falls from a point along the straight line to a minimum, or along the floor of the valley
-/// beside it, except for rises of less than one standard deviation.
+/// True if the objective falls on the way from a point to a minimum, except for rises of less than one standard
+/// deviation. The way is the straight line or the floor of the valley beside it.
 bool leads_down(Residuals& residuals, const Minimum& from, const Minimum& to, const SearchOptions& options) {
   const double scale = scale_of(options, to);
   const Eigen::VectorXd line = to.where.at - from.where.at;
@@ -114,7 +117,7 @@ bool leads_down(Residuals& residuals, const Minimum& from, const Minimum& to, co
   return falls(from.objective, residuals.at(points), options.loss, scale);
 }
 
-/// The minima, the lowest first. A minimum from which a path leads down to a lower one is left out.
+/// The minima in ascending order, without those from which a path leads down to a lower one.
 std::vector<Minimum> distinct(std::vector<Minimum> all, Residuals& residuals, const SearchOptions& options) {
   std::erase_if(all, [](const Minimum& minimum) { return !std::isfinite(minimum.objective); });
   std::ranges::stable_sort(all, {}, &Minimum::objective);
@@ -130,8 +133,8 @@ std::vector<Minimum> distinct(std::vector<Minimum> all, Residuals& residuals, co
   return kept;
 }
 
-/// The lowest of descents from several points, all in rounds of a few steps. A descent ends with its round if
-/// derivatives lead it to a point of a lower one: it would take the same path.
+/// Descends from several points, in rounds of a few steps, and returns the ends that remain. After a round a descent
+/// ends if derivatives lead it to a point of a lower descent, because it would take the same path.
 std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> starts, const SearchOptions& options,
                                    const DescentOptions& descent) {
   std::vector<Minimum> arrived, passed;

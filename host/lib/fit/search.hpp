@@ -1,4 +1,4 @@
-// The minima that a fit finds from many starts, and intervals from the profile likelihood.
+// How a fit finds minima from many starts, and intervals from the profile likelihood.
 #pragma once
 
 #include <array>
@@ -14,50 +14,58 @@ namespace dolp::fit {
 
 struct SearchOptions {
   std::size_t starts = 24;  ///< largest number of descents
-  std::uint64_t seed = 1;   ///< 1: the Sobol sequence itself; other seeds shift it by a random vector
+  /// 1 gives the Sobol sequence itself; other seeds shift it by a random vector.
+  std::uint64_t seed = 1;
   Loss loss = Loss::kSquares;
-  bool has_uncertainties = true;  ///< else the residuals of a minimum give the standard deviation
-  double scale = 1.0;             ///< a change of the objective by one standard deviation, or a guess of it
-  std::function<void(std::size_t done, std::size_t total)> count = {};  ///< descents
+  /// If false, the residuals of a minimum give the standard deviation.
+  bool has_uncertainties = true;
+  double scale = 1.0;  ///< change of the objective by one standard deviation, or a guess of it
+  std::function<void(std::size_t done, std::size_t total)> count = {};  ///< counts finished descents
 };
 
-/// Finds all distinct minima in which descents from the best points of a Sobol sequence end, the lowest first.
-/// Parameters with a start add one descent from there. All descents advance together, in rounds of a few steps; after
-/// each round, a descent that has reached the path of a lower one ends. `coarse` has a wider tolerance than `fine`: it
-/// finds the minima, and `fine` goes to the bottom of each that lies less than 30 standard deviations of the objective
-/// above the lowest. A point from which the floor of a valley leads down to a minimum, or that only a rise of less than
-/// a standard deviation separates from it, is not a separate minimum. Empty when no descent converged. Errors:
-/// errors of the evaluator; Cancelled.
+/// Finds all distinct minima in which descents from the best points of a Sobol sequence end, the lowest first. If
+/// parameters have a start, one more descent begins there.
+///
+/// All descents advance together, in rounds of a few steps. After each round, a descent ends if it has reached the path
+/// of a lower one. `coarse` has a wider tolerance than `fine`. It finds the minima; `fine` descends to the bottom of
+/// those whose objective is less than 30 above the lowest one, in units of its change by one standard deviation. Two
+/// minima count as one if the floor of a valley leads down from the higher to the lower one, or rises by less than a
+/// standard deviation. Empty if no descent converged. Errors: errors of the evaluator; Cancelled.
 std::vector<Minimum> find_minima(Residuals& coarse, Residuals& fine, const SearchOptions& options);
 
-/// An interval of coordinates that the data do not exclude. At 0 and 1 the range ends.
+/// An interval of coordinates that the data do not exclude. 0 and 1 are the ends of the parameter's range.
 struct Stretch {
   double low = 0.0;
   double high = 1.0;
 };
 
 struct ProfileOptions {
-  std::array<double, 2> rises{};  ///< growth of the objective at the ends, ascending
-  double from = 0.0;              ///< the objective that rises count from: the least, or 0
-  double scale = 1.0;             ///< change of the objective by one standard deviation
+  std::array<double, 2> rises{};  ///< growths of the objective at the ends of both intervals, divided by the scale
+  /// Objective above which growth is counted: that of the best minimum, or 0.
+  double from = 0.0;
+  double scale = 1.0;  ///< change of the objective by one standard deviation
   Loss loss = Loss::kSquares;
-  std::function<void(std::size_t done, std::size_t total)> count;  ///< counts sides
+  std::function<void(std::size_t done, std::size_t total)> count;  ///< counts finished sides of profiles
 };
 
 struct Profiles {
-  /// For each parameter and rise, where the objective, least over all others, lies below. Apart, ascending.
+  /// For each parameter and rise: the stretches in which the objective, minimised over all other parameters, is below
+  /// the rise. They are disjoint and in ascending order.
   std::vector<std::array<std::vector<Stretch>, 2>> stretches;
   std::vector<Minimum> points = {};  ///< known points of the profiles
-  /// A point below the best minimum. Then there is another minimum, and the profiles are not complete.
+  /// A point below the best minimum. If there is one, another minimum exists, and the profiles are incomplete.
   std::optional<Minimum> lower = {};
 };
 
-/// The profiles of all parameters around minima, the best first, that lie below the second rise.
+/// The profiles of all parameters around the given minima, which lie below the second rise; the best one comes first.
 ///
-/// Each side follows the valley from a minimum: at each coordinate of the parameter, the other parameters descend from
-/// where the derivatives at the nearest point lead, until the root of the growth is met to 0.5 %. A bent valley has
-/// several branches. Beyond each end, the ends of the other sides descend too, unless a straight way leads to them: if
-/// one comes below the rise, the profile continues from there. Errors: errors of the evaluator; Cancelled.
+/// Each side of a profile follows the valley from a minimum. At each coordinate of the parameter, derivatives at the
+/// nearest known point lead the other parameters to a start, from which they descend. This goes on until the square
+/// root of the growth meets the rise to 0.5 %.
+///
+/// A bent valley has several branches. Descents beyond each end therefore also start from the ends of the other sides,
+/// unless a straight path joins both ends. If one of them arrives below the rise, the profile continues from there.
+/// Errors: errors of the evaluator; Cancelled.
 Profiles profiles_of(Residuals& residuals, const std::vector<Minimum>& minima, const ProfileOptions& options);
 
 }  // namespace dolp::fit

@@ -17,9 +17,9 @@ using fit::FitResult;
 using Json = ReportBuilder::Json;
 
 constexpr double kStrongCorrelation = 0.9;
-constexpr double kTooGood = 0.999;  // p-value
-// Akaike's criterion above the least: models below the first value cannot be told apart; models below the second may
-// be true.
+constexpr double kTooGood = 0.999;  // at a higher p-value the uncertainties look too large
+// Akaike's criterion of a model minus the smallest one. Models up to kAlike cannot be distinguished; models up to
+// kPossible may be true.
 constexpr double kAlike = 1.3;
 constexpr double kPossible = 4.0;
 
@@ -27,7 +27,7 @@ Json json_of(const std::optional<double>& value) { return value ? Json(*value) :
 
 Json json_of(const Eigen::VectorXd& values) { return std::vector<double>(values.begin(), values.end()); }
 
-/// Its rows.
+/// The rows of a matrix as an array.
 Json json_of(const Eigen::MatrixXd& matrix) {
   Json rows = Json::array();
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) rows.push_back(json_of(Eigen::VectorXd(matrix.row(i).transpose())));
@@ -47,7 +47,7 @@ std::string text_of(const FitInterval& interval) {
                            : fmt::format("{} .. {}", text_of(interval.low, "open"), text_of(interval.high, "open"));
 }
 
-/// Both intervals of a parameter, with their names in JSON and in text.
+/// An interval of a parameter, with its names in JSON and in text.
 struct NamedInterval {
   std::string key, name;
   const FitInterval& interval;
@@ -71,7 +71,7 @@ Json parameter_json(const FitParameter& parameter) {
   return json;
 }
 
-/// Adds lines on a parameter that its row of the table has no room for.
+/// Adds lines about a parameter for which its row of the table has no room.
 void add_remarks(ReportBuilder& report, const FitParameter& parameter, const FitResult& result) {
   report.row_if(!parameter.standard_error, "no error", "{}: {}", parameter.key, parameter.why_no_error);
   for (const auto& [key, name, interval] : intervals_of(parameter)) {
@@ -86,7 +86,7 @@ void add_remarks(ReportBuilder& report, const FitParameter& parameter, const Fit
              text_of(*parameter.scaled_95));
 }
 
-/// Adds a line for each parameter.
+/// Adds the table of the parameters, with one row per parameter, and remarks.
 void add_parameters(ReportBuilder& report, const FitResult& result) {
   Json list = Json::array();
   std::size_t width = 9;
@@ -124,7 +124,7 @@ void add_correlations(ReportBuilder& report, const FitResult& result) {
   }
 }
 
-/// Adds the misfit of the model, and its measure.
+/// Adds how well the model fits: chi^2, p-value, and words for them.
 void add_misfit(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   const std::string& quality = result.fit_quality;
   report.row("minimum", "chi_square {:.6g}, {} degrees of freedom{}{}", key("chi_square", result.chi_square),
@@ -150,7 +150,7 @@ void add_misfit(ReportBuilder& report, const fit::Model& model, const FitResult&
                 "as many parameters as points: no interval can be given");
 }
 
-/// Adds the shares of the ranges that intervals with a model error leave, and names the model that leaves less.
+/// With a model error, adds the share of each range that the intervals leave, and names the model that leaves less.
 void add_model_error(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   if (!model.has_model_error()) return;
   const auto is_empty_95 = [](const auto& parameter) { return parameter.interval_95.is_empty; };
@@ -213,7 +213,7 @@ std::vector<std::string> settings_of(const ComparedModel& model) {
 
 std::string model_text(const ComparedModel& model) { return fmt::format("{}", fmt::join(settings_of(model), " ")); }
 
-/// Why a picture has no contours, in a sentence; empty where it has some, or where only one number was fitted.
+/// Why a picture has no contours, in words. Empty if it has some, or if only one number was fitted.
 std::string why_no_contours(const FitResult& result, const std::optional<fit::Contours>& drawn) {
   if (result.parameters.size() < 2) return "";
   if (drawn && !(drawn->growth.array() > fit::kContourLevels.front()).any()) {
@@ -231,7 +231,7 @@ std::string why_no_contours(const FitResult& result, const std::optional<fit::Co
                      fmt::join(reasons, "; "));
 }
 
-/// The least interval that contains the interval of each model; an end is none where one of theirs is.
+/// The smallest interval that contains the intervals of all models. An end is open if it is open for one of the models.
 FitInterval hull(const std::vector<const FitResult*>& results, std::size_t j, FitInterval FitParameter::*interval) {
   std::optional<FitInterval> hull;
   for (const FitResult* const result : results) {
@@ -244,7 +244,8 @@ FitInterval hull(const std::vector<const FitResult*>& results, std::size_t j, Fi
   return hull.value_or(FitInterval{.is_empty = true});
 }
 
-/// Adds the models that the data cannot tell apart, and the ranges of parameters over all models that may be true.
+/// Adds the models that the data cannot distinguish. Also adds, for each parameter, an interval over all models that
+/// may be true.
 void add_alike(ReportBuilder& report, const std::vector<ComparedModel>& models, double least_aic) {
   std::vector<const FitResult*> possible;
   Json alike = Json::array(), ranges = Json::array();

@@ -1,4 +1,4 @@
-// Report on a fit.
+// The report on a fit.
 #pragma once
 
 #include <string>
@@ -11,16 +11,16 @@ namespace dolp {
 
 /// One of the models that are compared.
 struct ComparedModel {
-  std::vector<Setting> settings;         ///< settings that distinguish it from the others
-  std::optional<fit::FitResult> result;  ///< none where no minimum was found
-  std::string refusal;                   ///< why the scene does not have this combination; empty where it does
+  std::vector<Setting> settings;         ///< settings that distinguish the model from the others
+  std::optional<fit::FitResult> result;  ///< empty if no minimum was found
+  std::string refusal;                   ///< why the scene refuses these settings; empty if it accepts them
 };
 
 /// Adds the minimum, the parameters with their intervals, correlations, degeneracies, other minima, and the list of the
-/// data.
+/// measurements.
 void add_fit(ReportBuilder& report, const fit::Model& model, const fit::FitResult& result);
 
-/// Adds the growth of the objective around the minimum, or why it is not drawn.
+/// Adds the growth of the objective around the minimum, or the reason why it is not drawn.
 void add_contours(ReportBuilder& report, const fit::Model& model, const fit::FitResult& result,
                   const std::optional<fit::Contours>& drawn);
 

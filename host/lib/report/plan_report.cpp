@@ -23,19 +23,20 @@ struct PlannedRun {
   SceneValues scene;
   EffectPlan plan;
   std::vector<Effect> effects;
-  Looked looked;              ///< by the influences
+  Looked looked;              ///< entries that were computed for the influences
   double model_change = 0.0;  ///< estimated_model_change
   RunPrediction run;
   double rule_digits = 0.0;
-  int most_nodes = 0;                  ///< nodes of a piece of the slope axis or an arc of azimuth; 0 without moments
-  std::vector<std::string> pipelines;  ///< pipelines of the first attempt; empty if nothing is left for the evaluator
+  /// Largest number of nodes on a piece of the slope axis or an arc of azimuth; 0 without moments.
+  int most_nodes = 0;
+  std::vector<std::string> pipelines;  ///< pipelines of the first attempt; empty if the evaluator has no work
   vulkan::DispatchCount dispatches;    ///< dispatches of the first attempt
-  std::vector<AxisForecast> lookup;    ///< forecasts for the axes of more than one value
-  std::string device;                  ///< its name; empty without one
+  std::vector<AxisForecast> lookup;    ///< forecasts for the axes with more than one value
+  std::string device;                  ///< name of the device; empty if there is none
   std::string why_no_device;
 };
 
-/// The device that a run would use; without one, limits that every device keeps.
+/// The device that a run would use. If there is none, a device with limits that every device keeps.
 Device device_of(const std::string& choice, const SceneValues& scene, PlannedRun& planned) {
   const bool in_double = scene.accuracy.precision == Precision::kDouble;
   const DeviceList list = list_devices();
@@ -62,7 +63,7 @@ void add_dispatches(PlannedRun& planned, const vulkan::DispatchCount& of_request
   planned.dispatches.device_bytes = std::max(planned.dispatches.device_bytes, of_request.device_bytes);
 }
 
-/// `more`: further properties that distinguish the pipeline.
+/// Adds a pipeline, unless it is known already. `more`: further properties that distinguish it.
 void add_pipeline(PlannedRun& planned, const char* kernel, Precision precision, const std::string& more = {}) {
   const Surface& surface = planned.scene.surface;
   const std::string text = fmt::format("{}, {}: distribution {}, masking {}{}", kernel, name_of(precision),
@@ -91,7 +92,7 @@ PlannedRun planned_run(const SceneValues& scene, const std::string& device, Effe
   PlannedRun planned;
   planned.scene = scene;
   const Device limits = device_of(device, scene, planned);
-  const std::size_t without_a_run = peak_resident_bytes();  // with the scene and the driver
+  const std::size_t without_a_run = peak_resident_bytes();  // memory of the scene and the driver
   const SceneEntries entries = grid_entries(scene);
   planned.plan = std::move(plan);
   planned.effects = effects_of(scene, entries, planned.plan);
@@ -101,7 +102,8 @@ PlannedRun planned_run(const SceneValues& scene, const std::string& device, Effe
                             {[&](const MomentsRequest& request) { add_request(planned, request, limits); },
                              [&](const ScatteringRequest& request) { add_request(planned, request, limits); }});
   if (planned.dispatches.row_width > 1) {
-    // Counted entry by entry; a device evaluates the entries of a row together, with the nodes that the hardest needs.
+    // The counting was entry by entry. A device evaluates the entries of a row together, with the nodes that the
+    // hardest of them needs.
     planned.run.first_evaluations *=
         static_cast<double>(planned.dispatches.rows) / static_cast<double>(planned.run.moments);
     planned.run.is_exact = false;
@@ -177,7 +179,7 @@ std::string how_counted(const RunPrediction& run) {
                                : fmt::format("estimated from {} entries", kCountedEntries);
 }
 
-/// Adds the work of the first attempt and of the repeated ones; `is_idle`: there is none.
+/// Adds the work of the first attempt and of repeated attempts. `is_idle`: there is no work.
 void add_attempts(ReportBuilder& report, const PlannedRun& plan, bool is_idle) {
   const RunPrediction& run = plan.run;
   report.row_if(
@@ -234,7 +236,7 @@ std::string needed_text(const AxisForecast& axis) {
   return fmt::format("{} values are about enough for {:.1g}", axis.needed_values, axis.wanted);
 }
 
-/// Adds the density of axes that lookups need.
+/// Adds how many values of each axis lookups need.
 void add_lookup(ReportBuilder& report, const PlannedRun& plan) {
   std::vector<ReportBuilder> axes;
   for (const AxisForecast& axis : plan.lookup) {

@@ -1,4 +1,4 @@
-// A command's report: one list of values, rendered for people or for programs.
+// The report of a command: text for people and JSON for programs, built from the same values.
 #pragma once
 
 #include <fmt/format.h>
@@ -15,10 +15,10 @@
 namespace dolp {
 
 inline constexpr double kMebibyte = 1048576.0;
-inline constexpr double kPoints = 100.0;  ///< points of DOLP in 1
+inline constexpr double kPoints = 100.0;  ///< one point of DOLP is 0.01
 inline constexpr double kPercent = 100.0;
 
-/// A value and its key in JSON: a path, whose parts are separated by slashes.
+/// A value with its position in the JSON: a path of keys, separated by slashes.
 template <class T>
 struct Keyed {
   const char* path;
@@ -30,28 +30,28 @@ Keyed<T> key(const char* path, const T& value) {
   return {path, value};
 }
 
-/// Lines of text whose arguments are values; Keyed arguments are values of the JSON too.
+/// Builds a report from lines of text. The arguments of a line that are Keyed also become values of the JSON.
 class ReportBuilder {
  public:
   using Json = nlohmann::ordered_json;
 
-  /// Texts follow their labels, in a column of their own.
+  /// Labels fill a column of `label_width` characters; the text of a row follows it.
   explicit ReportBuilder(int label_width = 10) : label_width_(label_width) {}
 
-  /// A line that begins with `text`.
+  /// Adds a line without a label.
   template <class... Args>
   void line(fmt::format_string<const Args&...> text, const Args&... args) {
     text_ += printable_line(fmt::format(text, args...)) + '\n';
     (record(args), ...);
   }
 
-  /// A line with a label.
+  /// Adds a row, that is, a line with a label.
   template <class... Args>
   void row(std::string_view label, fmt::format_string<const Args&...> text, const Args&... args) {
     row_if(true, label, text, args...);
   }
 
-  /// A line with a label that people see on a condition; programs always get its values.
+  /// Adds a row to the text if `is_shown`. The JSON gets its values in any case.
   template <class... Args>
   void row_if(bool is_shown, std::string_view label, fmt::format_string<const Args&...> text, const Args&... args) {
     if (is_shown) {
@@ -61,7 +61,8 @@ class ReportBuilder {
     (record(args), ...);
   }
 
-  /// A value that the text words otherwise or leaves out. NaN, infinity and missing values become null.
+  /// Adds a value only to the JSON: the text leaves it out or words it differently. NaN, infinity and missing values
+  /// become null.
   template <class T>
   void value(const char* path, const T& value) {
     json_[Json::json_pointer(std::string("/") + path)] = value;
@@ -71,22 +72,22 @@ class ReportBuilder {
     optional ? value(path, *optional) : value(path, nullptr);
   }
 
-  /// Several such values.
+  /// Adds several values only to the JSON.
   void values(const Json& object) { json_.update(object); }
 
-  /// Adds the lines of a part, without its values.
+  /// Adds the lines of another report, without its values.
   void show(const ReportBuilder& part) {
     text_ += part.text_;
     rows_.insert(rows_.end(), part.rows_.begin(), part.rows_.end());
   }
 
-  /// Adds a part: its lines follow, and its values are at the path.
+  /// Adds another report: its lines, and its values under the path.
   void add(const char* path, const ReportBuilder& part) {
     show(part);
     value(path, part.json_);
   }
 
-  /// Adds a list of parts, which may be empty.
+  /// Adds a list of reports, which may be empty: their lines, and an array of their values under the path.
   void add(const char* path, const std::vector<ReportBuilder>& parts) {
     Json list = Json::array();
     for (const ReportBuilder& part : parts) {
@@ -97,10 +98,11 @@ class ReportBuilder {
   }
 
   const Json& json() const { return json_; }
-  /// Only ASCII, so that a terminal shows it safely; names of files need not be UTF-8.
+  /// The JSON in ASCII, so that a terminal shows it safely. Bytes that are not UTF-8, as in names of files, are
+  /// replaced.
   std::string json_text() const { return json_.dump(2, ' ', true, Json::error_handler_t::replace); }
   const std::string& text() const { return text_; }
-  /// The rows that are shown: label and text.
+  /// The shown rows: label and text.
   const std::vector<std::pair<std::string, std::string>>& rows() const { return rows_; }
 
  private:
@@ -119,7 +121,7 @@ class ReportBuilder {
 
 }  // namespace dolp
 
-/// Formats as its value does.
+/// Formats a Keyed value like the value itself.
 template <class T>
 struct fmt::formatter<dolp::Keyed<T>> : fmt::formatter<T> {
   template <class Context>

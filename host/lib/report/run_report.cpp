@@ -8,7 +8,7 @@
 namespace dolp {
 namespace {
 
-constexpr double kFewEvaluations = 1e6;  // a tenth of a second of one core
+constexpr double kFewEvaluations = 1e6;  // about what one core computes in a tenth of a second
 
 ReportBuilder range_report(const char* what, double limit, const EnergyRange& range) {
   ReportBuilder report;
@@ -19,7 +19,7 @@ ReportBuilder range_report(const char* what, double limit, const EnergyRange& ra
   return report;
 }
 
-/// The part of the grid over which the surface model itself gains or loses energy.
+/// Adds the range of the albedo, and the parts of the grid in which the surface model itself loses or gains energy.
 void add_energy(ReportBuilder& report, const RunSummary& summary, bool is_computed) {
   if (summary.albedos == 0) {
     report.row("albedo", "{}", is_computed ? "not given for any entry" : "not computed: nothing kept depends on it");
@@ -34,7 +34,7 @@ void add_energy(ReportBuilder& report, const RunSummary& summary, bool is_comput
   report.add("albedo/gains_energy", range_report("gains it (above", kAlbedoMax, summary.gains));
 }
 
-/// Adds the effects that are kept, and a line for each effect that is dropped.
+/// Adds a line with the kept effects, and one line per dropped effect.
 void add_effects(ReportBuilder& report, const RunOutcome& run) {
   std::string kept;
   for (const Effect& row : run.effects) {
@@ -71,7 +71,7 @@ void add_errors(ReportBuilder& report, const RunOutcome& run, double tolerance) 
 
 void add_status(ReportBuilder& report, const RunSummary& summary) {
   std::vector<ReportBuilder> parts;
-  using Bit = std::pair<std::uint32_t, const char*>;  // fmt 10 formats no enumerations
+  using Bit = std::pair<std::uint32_t, const char*>;  // fmt 10 cannot format enumerations
   for (const auto& [bit, meaning] :
        {Bit{kReflectanceOutsideZeroToOne, "reflectance outside [0, 1]"},
         Bit{kToleranceNotMet, "DOLP misses the tolerance"}, Bit{kOutsideModelDomain, "outside the model's domain"},

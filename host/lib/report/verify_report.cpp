@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kMostFailureLines = 20;
 
-/// "theta 60, sigma 0.1, q 3.5".
+/// The position of a value, for example "theta 60, sigma 0.1, q 3.5".
 std::string position_text(const CheckedValue& value) {
   std::vector<std::string> texts;
   for (const auto& [axis, number, label] : value.position)
@@ -96,7 +96,7 @@ ReportBuilder case_report(const CaseOutcome& outcome) {
   return report;
 }
 
-/// A line for the cases of one distribution and masking.
+/// Adds a line about all cases of one distribution and masking.
 void add_group(ReportBuilder& report, const char* precision, const std::vector<const CaseOutcome*>& group) {
   const CaseOutcome& worst = **std::ranges::max_element(group, {}, &CaseOutcome::worst_ratio);
   const bool is_rho = worst.rho.ratio() >= worst.dolp.ratio() || std::isinf(worst.dolp.estimate);
@@ -138,7 +138,7 @@ std::string hard_case_verdict(const HardCaseReport& report) {
                                 : fmt::format("failed: {} cases are wrong", report.failures());
 }
 
-/// The requested tolerance: near the best that the arithmetic can reach.
+/// The tolerance that ordinary cases are computed with. It is near the best that the arithmetic can reach.
 double tolerance_in(Precision precision) { return precision == Precision::kDouble ? 1e-9 : 1e-6; }
 
 /// The results of ordinary cases in one precision, or the reason why there are none.

@@ -15,14 +15,14 @@ namespace dolp {
 ReportBuilder table_report(const TableCheck& check, const std::string& path, const std::string& title,
                            std::uint64_t seed, double wall_s);
 
-/// The hard cases in one precision.
+/// The hard cases on one device in one precision.
 struct PrecisionReport {
   EvaluationReport evaluation;
   std::vector<CaseOutcome> outcomes;
   std::size_t failures() const;
 };
 
-/// A device that was examined.
+/// The hard cases on one device, in all precisions that were examined.
 struct HardCaseReport {
   double tolerance = 0.0;
   std::size_t cases = 0;
@@ -30,7 +30,8 @@ struct HardCaseReport {
   std::string left_out;  ///< why a precision is missing; empty if all are there
   std::size_t failures() const;
 };
-/// One line for each precision, distribution and masking, and one for each case that fails; `all`: for every case.
+/// The report of the hard cases. It has one line for each precision, distribution and masking, and one for each case
+/// that fails or, with `all`, for every case.
 ReportBuilder hard_case_report(const HardCaseReport& cases, bool all);
 
 /// The limits of the devices, and the accuracy of each on a few ordinary cases in float and double.

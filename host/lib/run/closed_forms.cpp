@@ -11,8 +11,8 @@
 namespace dolp {
 namespace {
 
-// A rough surface that counts as a mirror has facets that are steeper than this all the same; the error estimate then
-// carries their share.
+// A surface that counts as a mirror may still have facets with slopes above this value. The error estimate includes
+// their share of all facets.
 constexpr double kMirrorSlope = 1e-6;
 
 double steep_share(const Surface& surface, const SlopeShape& shape) {
@@ -22,16 +22,17 @@ double steep_share(const Surface& surface, const SlopeShape& shape) {
 }
 
 constexpr double kRelativeError = 1e-12;
-// The quadrature stops when two levels agree to this, far later than its error needs.
+// The quadrature stops when two levels agree to this relative difference. Their error is then far below kRelativeError.
 constexpr double kAgreement = 1e-13;
-// Rounding of 1 - absorptance, a few operations on numbers up to 1.
+// Bound of the rounding error of 1 - absorptance: a few operations with numbers up to 1.
 constexpr double kReflectanceRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
-// Cosines below it, whose squares may underflow, weigh nothing: the integrand falls at least like the cosine.
+// At cosines below this value the integrand is taken as 0, because their squares may underflow. The integrand falls at
+// least as fast as the cosine.
 constexpr double kSmallestCosine = 1e-100;
 
-/// The angle at which total reflection begins, abruptly (k = 0) or nearly so; 0 without one. Units: rad from grazing
-/// incidence.
+/// The angle from grazing incidence, in rad, at which total reflection begins, suddenly (k = 0) or nearly so (small k).
+/// 0 if there is no total reflection.
 double critical_angle(const FacetOptics& optics) {
   if (optics.measured) return 0.0;
   const OpticalConstants& index = optics.index;
@@ -44,7 +45,7 @@ double critical_angle(const FacetOptics& optics) {
 constexpr double kHorizon_deg = 90.0;
 constexpr double kMirrorSpread_deg = 2.0 * kMirrorSlope * 180.0 / std::numbers::pi;  // spread of the reflected rays
 
-/// Adds the moments with the functions of a sky if all rays leave toward one zenith, within a spread.
+/// Adds the moments with the functions of a sky. All rays leave within `spread_deg` of the zenith `zenith_deg`.
 void add_sky(Moments& moments, const SkyBasis& sky, double zenith_deg, double spread_deg) {
   const Eigen::RowVectorXd at = sky.at(zenith_deg);
   const Eigen::RowVectorXd above = sky.at(std::max(zenith_deg - spread_deg, 0.0));
@@ -75,9 +76,11 @@ Moments closed_form(const Surface& surface, const Direction& direction, const Sl
 Moments grazing_limit_moments(const FacetOptics& index, double q) {
   boost::math::quadrature::tanh_sinh<double> integrator;
   const double critical = critical_angle(index);
-  // phi = pi/2 - psi, so that x = sin(psi) keeps its digits at grazing incidence, where the power is not smooth.
+  // The variable is psi = pi/2 - phi: x = sin(psi) then keeps its digits near x = 0, where the power of x is not
+  // smooth.
   const auto integral = [&](auto&& of_cosine) {
-    // The distance to the nearer end, unused, chooses Boost's form whose nodes may round to the ends.
+    // Boost also passes the distance to the nearer end. The integrand does not use it; but with this parameter Boost
+    // allows nodes that round to the ends.
     const auto integrand = [&](double psi, double) {
       const double x = std::sin(psi);
       return x > kSmallestCosine ? std::pow(x, 4.0 - 2.0 * q) * of_cosine(x) : 0.0;

@@ -7,19 +7,21 @@
 
 namespace dolp {
 
-/// Moments that need no evaluator: moments of a mirror, or limits at 90 degrees of moments that diverge there. With a
-/// basis of a sky (null: none) also the moments with its functions. Domain: a direction whose treatment is not
-/// kIntegrated.
+/// Moments that need no evaluator: moments of a mirror, or, where moments diverge at 90 degrees, their limits. If `sky`
+/// is not null, the result also has the moments with the functions of the sky. Domain: a direction whose treatment is
+/// not kIntegrated.
 Moments closed_form(const Surface& surface, const Direction& direction, const SlopeShape& shape,
                     const FacetOptics& index, const SkyBasis* sky);
 
-/// Moments at exactly 90 degrees where they diverge, up to their common factor: masking none or `integral`, cauchy with
-/// q <= 3/2. Their quotients are the limits theta -> 90 degrees.
+/// Moments at exactly 90 degrees where they diverge: with masking none or `integral`, and the cauchy distribution with
+/// q <= 3/2. All moments diverge by a common factor, which is left out. So their quotients are the limits theta -> 90
+/// degrees.
 ///
-/// Equation: with t = v / c the horizon is v = 2 x and rho c grows as c^(2q-3) times the integral of x^(4-2q) M over
-/// the azimuths of vertical facets, cos(beta) = x = cos(phi), cos(2 eta) = -1; G tends to a constant.
+/// Equation: let c = cos(theta), t = v / c and x = cos(phi). At grazing incidence a reflected ray leaves the surface if
+/// v < 2 x, and G tends to a constant. So rho c grows as c^(2q-3) times the integral of x^(4-2q) M over the azimuths
+/// phi of vertical facets, with cos(beta) = x and cos(2 eta) = -1.
 ///
-/// Accuracy: 1e-12 of r_i and 2e-15 of the albedo, for r_q too (tests GrazingLimit_*).
+/// Accuracy: the errors of r_i and r_q are at most 1e-12 r_i + 2e-15 albedo (tests GrazingLimit_*).
 Moments grazing_limit_moments(const FacetOptics& index, double q);
 
 }  // namespace dolp

@@ -14,7 +14,8 @@
 namespace dolp {
 namespace {
 
-/// Refuses points that lack a value which the scene does not give either.
+/// Refuses points without a column theta_deg if the scene has several, points with only one of the columns n and k
+/// beside a material that depends on the wavelength, and points with n or k beside a column of materials.
 void check_columns(const SceneValues& scene, const Points& points) {
   if (!points[Axis::kTheta] && scene.grid[Axis::kTheta].size() != 1) {
     throw InputError(
@@ -40,7 +41,7 @@ void check_columns(const SceneValues& scene, const Points& points) {
   }
 }
 
-/// The axes of points that make variants, with a value for each point.
+/// The columns of points whose values make up a variant: each with its axis and one value per point.
 std::vector<std::pair<Axis, std::vector<double>>> variant_columns(const SceneValues& scene, const Points& points) {
   std::vector<std::pair<Axis, std::vector<double>>> columns;
   for (const Axis axis : kVariantAxes) {
@@ -53,7 +54,7 @@ std::vector<std::pair<Axis, std::vector<double>>> variant_columns(const SceneVal
   return columns;
 }
 
-/// Refuses wavelengths beside a band, or where n, k or E0 are not known.
+/// Refuses a column of wavelengths if the scene has a band, and wavelengths at which n, k or E0 are not known.
 void check_wavelengths(const SceneValues& scene, const Points& points) {
   if (scene.spectrum.is_band()) {
     throw InputError(

@@ -16,23 +16,25 @@
 namespace dolp {
 namespace {
 
-// Its multiples modulo 1 fill the interval evenly and do not resonate with the axes of a grid.
+// The multiples of this number modulo 1 fill the interval from 0 to 1 evenly, and do not resonate with the axes of a
+// grid.
 constexpr double kGoldenRatio = 0.6180339887498949;
 
 using enum Quantity;
 
 constexpr double kTolerance = 1e-3;
 constexpr std::size_t kBandWavelengths = 8;
-constexpr std::size_t kDrawnPoints = 24;  // points of a list
+constexpr std::size_t kDrawnPoints = 24;  // number of points of a list that an estimate computes
 
-/// Values of each axis of a grid that are looked at. What changes DOLP is largest at an end of sigma and of q.
+/// Largest number of values of an axis that an estimate computes. For sigma and q these are the two ends: what changes
+/// DOLP is largest at one of them.
 std::size_t most_values(Axis axis) {
   if (axis == Axis::kMaterial) return 64;
   if (axis == Axis::kTheta || axis == Axis::kBand) return 8;
   return axis == Axis::kWavelength ? 3 : 2;
 }
 
-/// Positions spread evenly over an axis, its ends included.
+/// Up to `most` positions, spread evenly over an axis of `size` values, including its ends.
 std::vector<std::size_t> spread_positions(std::size_t size, std::size_t most) {
   std::vector<std::size_t> positions;
   const std::size_t count = std::min(size, most);
@@ -59,10 +61,10 @@ SceneEntries spread_entries(const SceneEntries& entries) {
   return entries.chosen(positions);
 }
 
-/// A few entries of a scene, at a few wavelengths of its band.
+/// A few entries of a scene, at a few wavelengths of the band.
 struct Sample {
   SceneValues scene;
-  SceneEntries entries;         ///< an entry is there once for each weight, side by side
+  SceneEntries entries;         ///< each entry is repeated once per weight, at the wavelength of this weight
   std::vector<double> weights;  ///< weights of the wavelengths of a band; {1} without a band
 };
 
@@ -73,7 +75,7 @@ Sample sample_of(const SceneValues& scene, const SceneEntries& entries) {
   if (sample.scene.emission) sample.scene.emission->has_bracket = false;
   if (spectral_samples(scene, entries) <= kBandWavelengths) return sample;
   using Rule = boost::math::quadrature::gauss<double, kBandWavelengths>;
-  std::vector<double> shares;  // in a band from 0 to 1
+  std::vector<double> shares;  // positions in the band: 0 at its lower end, 1 at its upper end
   sample.weights.clear();
   for (std::size_t i = 0; i < kBandWavelengths / 2; ++i) {
     for (const double sign : {-1.0, 1.0}) {
@@ -100,7 +102,7 @@ Sample sample_of(const SceneValues& scene, const SceneEntries& entries) {
   return sample;
 }
 
-/// The sums over a band of the results at its wavelengths.
+/// The result over a band: sums of the results at its wavelengths, with weights.
 PointResult sum_of(std::span<const PointResult> results, std::span<const double> weights) {
   if (results.size() == 1) return results.front();
   PointResult sum;
@@ -132,7 +134,8 @@ double polarisation_change(const PointResult& a, const PointResult& b) {
                     a[kStokesU] / a[kStokesI] - b[kStokesU] / b[kStokesI]);
 }
 
-/// The largest of `change(a, b)` over the entries that promise their DOLP both ways; none without any.
+/// The largest change(a, b) of all entries whose status promises a DOLP in both results. Empty if there is no such
+/// entry.
 template <class Change>
 std::optional<double> largest_change(const std::vector<PointResult>& a, const std::vector<PointResult>& b,
                                      const Change& change) {

@@ -1,7 +1,8 @@
-// Estimates of what a run leaves out or changes, from a few of its entries on the CPU.
+// Estimates of how much the effects of a scene change, and of how wrong its model may be. They come from a few entries,
+// which the CPU computes.
 //
-// The entries are spread over the axes, the ends of each included; a band of many spectral samples is looked at in a
-// few wavelengths.
+// The entries are spread over the axes and include the ends of each axis. In a band with many spectral samples, only a
+// few wavelengths are computed.
 #pragma once
 
 #include <cstddef>
@@ -15,42 +16,43 @@
 
 namespace dolp {
 
-/// Up to `count` of the positions below `size`, ascending: spread evenly by a fixed sequence that does not resonate
-/// with the axes of a grid.
+/// Up to `count` of the positions below `size`, in ascending order. A fixed sequence spreads them evenly; it does not
+/// resonate with the axes of a grid.
 std::vector<std::size_t> drawn_positions(std::size_t size, std::size_t count);
 
-/// All entries if there are at most `count`, else the entries at drawn positions.
+/// All entries if there are at most `count`, otherwise the entries at drawn_positions().
 SceneEntries drawn_entries(const SceneEntries& entries, std::size_t count);
 
-/// The entries that an estimate has looked at.
+/// How many entries and wavelengths an estimate has computed.
 struct Looked {
   std::size_t entries = 0;
-  std::size_t wavelengths = 1;  ///< wavelengths of each entry
+  std::size_t wavelengths = 1;  ///< number of wavelengths per entry
   std::string text() const;     ///< "32 entries and 8 wavelengths of the band"
 };
 
-/// Estimates what each kept part changes: the largest difference of (Q/I, U/I) between the scene with everything and
-/// without the part. None where no entry promises its DOLP both ways.
+/// Sets Effect::influence of the kept effects in `rows`: the largest difference of (Q/I, U/I) between the scene with
+/// everything and the scene without this effect. The influence stays empty if no entry promises its DOLP with and
+/// without the effect.
 ///
-/// Accuracy: within a factor of 2 of the largest of all entries (tests Estimates_*).
+/// Accuracy: within a factor of 2 of the largest difference at all entries (tests Estimates_*).
 Looked add_influences(std::vector<Effect>& rows, const SceneValues& scene, const SceneEntries& entries);
 
-/// How far single scattering may be off.
+/// How wrong the DOLP of single scattering may be.
 struct ScatteringGap {
   double dolp = 0.0;
   Looked looked;
 };
 
 /// The largest difference of DOLP between the emission 1 - rho, which counts all light that meets a second facet as
-/// emitted, and the direct emission, which counts no such light. None if the scene follows all bounces, if its emission
-/// is that of a smooth surface, with a masking without direct emission, in bistatic mode, and if nothing depends on the
-/// moments or no entry promises its DOLP.
+/// emitted, and the direct emission, which counts no such light. Empty in each of these cases: the scene follows all
+/// bounces, has no emission or that of a smooth surface, has a masking without direct emission, or is in bistatic mode;
+/// nothing depends on the moments; no entry promises its DOLP.
 ///
-/// Accuracy: within a factor of 2 of the largest of all entries (tests Estimates_*).
+/// Accuracy: within a factor of 2 of the largest difference at all entries (tests Estimates_*).
 std::optional<ScatteringGap> scattering_gap(const SceneValues& scene, const SceneEntries& entries,
                                             const EffectPlan& plan);
 
-/// The largest PointResult::model_change of the entries that promise their DOLP.
+/// The largest PointResult::model_change of the computed entries that promise their DOLP.
 double estimated_model_change(const SceneValues& scene, const SceneEntries& entries);
 
 }  // namespace dolp

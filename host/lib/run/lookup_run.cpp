@@ -20,7 +20,7 @@
 namespace dolp {
 namespace {
 
-/// The coordinate that points without a column of it have.
+/// The value that the scene has on an axis. Points without a column of the axis take it.
 std::optional<double> value_of(const SceneValues& scene, Axis axis) {
   const Surface& surface = scene.surface;
   AxisArray<std::optional<double>> values;
@@ -33,7 +33,8 @@ std::optional<double> value_of(const SceneValues& scene, Axis axis) {
   return values[axis];
 }
 
-/// How messages name the values of an axis: sigma as winds where the points, or the table without them, have winds.
+/// How messages name the values of an axis. Sigma appears as a wind speed if the points give wind speeds, or if they do
+/// not give sigma and the scene has wind speeds.
 struct AxisWords {
   bool is_wind = false;
   const char* name = "";
@@ -53,7 +54,8 @@ AxisWords words_of(Axis axis, const SceneValues& scene, const Points& points) {
   return {false, description_of(axis).column};
 }
 
-/// The coordinate of each point: the given one, or the only one in the table, or the coordinate of its scene.
+/// The coordinate of each point on one axis: the value in its column. Without a column it is the only value of the axis
+/// in the table, or else the value of the scene.
 std::vector<double> values_of(Axis number, const TableLookup& lookup, const SceneValues& scene, const Points& points) {
   const LookupAxis& axis = *lookup.axis(number);
   const AxisWords words = words_of(number, scene, points);
@@ -86,14 +88,15 @@ std::vector<TableLookup::Point> coordinates(const TableLookup& lookup, const Sce
   return result;
 }
 
-/// Refuses numbers of films, which a table has no axis of.
+/// Refuses columns with the thickness, n or k of films, because a table has no axis for them.
 void check_no_films(const Points& points) {
   if (points.films.empty()) return;
   throw InputError(fmt::format("{}: column of layer {}: the table is of one coating; dolp eval computes other ones",
                                points.where(), points.films.begin()->first.first + 1));
 }
 
-/// Refuses another index or wavelength than the table's, where it has no axis of these.
+/// If the table lacks an axis, refuses values in its column that differ from the value of the table's scene. With a
+/// material that depends on the wavelength, refuses any n and k.
 void check_index(const TableLookup& lookup, const SceneValues& scene, const Points& points) {
   const Material& material = scene.surface.material;
   for (const Axis axis : {Axis::kMaterial, Axis::kBand, Axis::kN, Axis::kK, Axis::kWavelength, Axis::kTemperature}) {
@@ -113,13 +116,16 @@ void check_index(const TableLookup& lookup, const SceneValues& scene, const Poin
   }
 }
 
-constexpr std::size_t kLines = 3;    // lines along an axis, at different values of the others
-constexpr std::size_t kParts = 4;    // parts of an axis, at whose ends cells are examined
-constexpr std::size_t kStretch = 8;  // values around a cell: all that the error of a lookup in its middle depends on
-constexpr std::size_t kLeastValues = 4;  // for which a lookup states an error
-// A lookup reads six values of theta, sigma and q, and four of wavelength, n and k. In dense grids the stated error is
-// a share of the change by the last of these values, and falls with this power of the spacing; the sizes of the weights
-// in the middle of a cell add up to so much, which multiplies the errors along the other axes.
+constexpr std::size_t kLines = 3;  // lines along an axis, each at different values of the other axes
+// An axis is divided into so many parts. A cell is examined at each end of a part.
+constexpr std::size_t kParts = 4;
+// Number of values around a cell. The error of a lookup in the middle of the cell depends on no other values.
+constexpr std::size_t kStretch = 8;
+constexpr std::size_t kLeastValues = 4;  // smallest number of values with which a lookup states an error
+// A lookup reads six values along theta, sigma and q, and four along the other axes. In dense grids the stated error is
+// a fraction of the change that the last of these values makes. It falls with the power kOrder of the spacing. In the
+// middle of a cell, the absolute values of the weights add up to kWeights; by this factor a lookup amplifies the errors
+// along the other axes.
 constexpr double kOrderOfSix = 5.0;
 constexpr double kOrderOfFour = 3.0;
 constexpr double kWeightsOfSix = 356.0 / 256.0;
@@ -127,7 +133,7 @@ constexpr double kWeightsOfFour = 20.0 / 16.0;
 
 bool is_read_with_four(Axis axis) { return axis < Axis::kTheta; }
 
-/// The value of an axis at a share of it from 0 to 1, mostly between two of its values.
+/// The value at a share (0 to 1) of the way along an axis, interpolated linearly between its two neighbours.
 double value_at(const std::vector<double>& values, double share) {
   const double position = share * static_cast<double>(values.size() - 1);
   const auto below = std::min(static_cast<std::size_t>(position), values.size() - 2);
@@ -159,7 +165,7 @@ class Forecast {
   }
 
  private:
-  /// The number of values that keeps the error at `wanted`; 0 without one.
+  /// The number of values of the axis with which the error is about `wanted`; 0 if kMostForecastValues are too few.
   std::size_t needed(Axis axis, double wanted, std::size_t lines) {
     const double order = is_read_with_four(axis) ? kOrderOfFour : kOrderOfSix;
     for (std::size_t values = 2 * kLeastValues; values <= kMostForecastValues; values *= 2) {
@@ -171,7 +177,8 @@ class Forecast {
     return 0;
   }
 
-  /// The largest error of a lookup along an axis of so many values, in the middle of the examined cells.
+  /// The largest error that a lookup states in the middle of the examined cells, if the axis has `values` values.
+  /// Infinite if no lookup states an error.
   double error_with(Axis axis, std::size_t values, std::size_t lines) {
     if (values < kLeastValues) return kInfinity;
     const auto value = [&](std::size_t position) {
@@ -185,7 +192,7 @@ class Forecast {
       const std::size_t first = std::min(cell - std::min(cell, kStretch / 2 - 1), values - length);
       for (std::size_t k = 0; k < length; ++k) positions.insert(first + k);
     }
-    double largest = -1.0;  // NaN is not larger
+    double largest = -1.0;  // an error that is NaN never counts as larger
     for (std::size_t line = 0; line < lines; ++line) {
       scene_.grid = values_of_line(line);
       scene_.grid[axis].clear();
@@ -203,7 +210,7 @@ class Forecast {
     return largest < 0.0 ? kInfinity : largest;
   }
 
-  /// One value of each axis.
+  /// One value of each axis. Different lines have different values.
   Axes values_of_line(std::size_t line) const {
     Axes axes;
     for (const Axis axis : kAllAxes) {
@@ -214,7 +221,8 @@ class Forecast {
     return axes;
   }
 
-  /// The table of the scene's grid, as if its entries had no error: only the error of the interpolation remains.
+  /// The table of the grid of scene_. The errors of its entries are set to 0, so that lookups state only the error of
+  /// the interpolation.
   TableValues computed_table() {
     const SceneEntries entries = grid_entries(scene_);
     TableValues table = table_part(table_layout(scene_, plan_, scene_.grid), entries,
@@ -224,8 +232,8 @@ class Forecast {
     return table;
   }
 
-  SceneValues scene_;  ///< with the grid of a line
-  const Axes& grid_;   ///< the whole grid
+  SceneValues scene_;  ///< its grid is that of the current line
+  const Axes& grid_;   ///< the grid of the given scene
   const EffectPlan& plan_;
   CpuEvaluator evaluator_;
 };

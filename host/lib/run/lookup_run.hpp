@@ -1,4 +1,4 @@
-// Interpolation of a table at scattered points, and a forecast of the density that this needs.
+// Interpolation in a table at scattered points, and a forecast of the number of values that each axis needs for it.
 #pragma once
 
 #include <dolp/errors.hpp>
@@ -14,30 +14,33 @@
 
 namespace dolp {
 
-/// Looks up a table at points. If points lack sigma, q or wavelength, the values of the table's `scene` are used.
-/// An axis of one value needs no column. n, k and wavelength must be the table's if it has no axis of them.
-/// Errors: InputError that names the point, column, value and what the table has; Cancelled when `progress` returns
-/// false.
+/// Looks up points in a table. Where points lack a column, the value of the table's `scene` is used; an axis with one
+/// value needs no column. Where the table lacks an axis of n, k or wavelength, the points must have the value of the
+/// table. Errors: InputError that names the point, column, value and what the table has; Cancelled if `progress`
+/// returns false.
 std::vector<PointResult> lookup_points(const TableLookup& lookup, const SceneValues& scene, const Points& points,
                                        const Progress& progress);
 
-/// One axis of a grid.
+/// Forecast of lookups along one axis of a grid.
 struct AxisForecast {
   Axis axis = Axis::kTheta;
-  std::size_t values = 0;  ///< values that the grid has
-  /// Absolute error of DOLP that a lookup states along this axis only, at the worst of the examined places; infinite
-  /// with fewer than four values.
+  std::size_t values = 0;  ///< number of values that the grid has
+  /// Largest absolute error of DOLP that lookups state if only this axis is interpolated, at the examined positions.
+  /// Infinite with fewer than four values.
   double error = 0.0;
-  double wanted = 0.0;            ///< share of the tolerance that the axis may take
-  std::size_t needed_values = 0;  ///< values that reach this share; 0: more than kMostForecastValues
+  double wanted = 0.0;  ///< error that the axis may have: its share of the tolerance
+  /// Number of values with which the error is at most `wanted`; 0 if it is above kMostForecastValues.
+  std::size_t needed_values = 0;
 };
 inline constexpr std::size_t kMostForecastValues = 10'000;
 
-/// Forecasts for the axes of the scene's grid that have more than one value. The values around a few cells of each axis
-/// are computed on the CPU and looked up between them: with the grid's values, and with 8, 16, 32, ... values in the
-/// same kind of steps until the error is small enough. From there the order of the interpolation gives the number.
-/// Accuracy: half the number is too few for most points (test LookupForecast_TablesOfTheAdvisedDensity_*). Features
-/// narrower than the examined cells stay undetected.
+/// Forecasts for the axes of the scene's grid that have more than one value. For each axis, the CPU computes the values
+/// around a few cells, and a lookup in the middle of each cell states its error. This is repeated with the number of
+/// values in the grid and with 8, 16, 32, ... values, until the error is small enough; the spacing stays linear or
+/// logarithmic as in the grid. The number of values that is needed then follows from the order of the interpolation.
+///
+/// Accuracy: half of needed_values is too few for most points (test LookupForecast_TablesOfTheAdvisedDensity_*).
+/// Features that are narrower than the distance of the examined cells stay undetected.
 std::vector<AxisForecast> lookup_forecast(const SceneValues& scene, const EffectPlan& plan);
 
 }  // namespace dolp

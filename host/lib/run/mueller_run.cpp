@@ -21,7 +21,7 @@ constexpr std::size_t kGeometriesAtOnce = 1U << 20U;  // bounds the memory of th
 
 bool is_grazing(const BeamAngles& angles) { return angles.theta_i_deg == 90.0 || angles.theta_r_deg == 90.0; }
 
-/// True where f has no finite value.
+/// True if the pBRDF f has no finite value.
 bool is_undefined(const Surface& surface, const MuellerPoint& point) {
   const bool has_specular = surface.specular > 0.0;
   const bool has_limit = keeps_projected_area(surface.masking);
@@ -71,9 +71,9 @@ void add_diffuse(MuellerMatrix& f, const Surface& surface, const MuellerPoint& p
   f[5] += scale * out.q * in.q;
 }
 
-/// True if the error exceeds the usual error of a pBRDF, because more bounces count than are followed.
+/// True if the error exceeds the usual error of a pBRDF, because bounces that are not computed contribute.
 bool is_inaccurate(const ScatteringMatrix& specular, Precision precision) {
-  constexpr double kRounding = 1e-3;  // rounding of the sum of errors
+  constexpr double kRounding = 1e-3;  // relative rounding error of the sum of errors
   const double accuracy = precision == Precision::kFloat ? kScatteringErrorFloat : kScatteringErrorDouble;
   return specular.error > (1.0 + kRounding) * accuracy * specular.m[0];
 }
@@ -89,7 +89,7 @@ MuellerMatrix elements(const Surface& surface, const MuellerPoint& point, const 
   if (specular != nullptr) {
     const BeamAngles angles = used_angles(surface, point.angles);
     const double cosines = cos_sin_deg(angles.theta_i_deg).cos * cos_sin_deg(angles.theta_r_deg).cos;
-    // + 0 takes the sign from a zero.
+    // Adding 0 turns -0 into +0.
     for (std::size_t i = 0; i < f.size(); ++i) f[i] = surface.specular * specular->m[i] / cosines + 0.0;
   }
   add_diffuse(f, surface, point);

@@ -10,28 +10,31 @@
 
 namespace dolp {
 
-/// One geometry and surface.
+/// One geometry, slope distribution and optics of the facets.
 struct MuellerPoint {
   BeamAngles angles;
   SlopeShape shape;
   FacetOptics index;
 };
 
-/// Scattered geometries; values that they lack come from the scene, n and k at its wavelength.
-/// Errors: InputError that names file, key or line and column, and what is allowed: a band with a material that depends
-/// on the wavelength, unless the points have n and k both; q <= 3/2 with smith masking and the cauchy distribution.
+/// The geometries and surfaces of scattered points. Values that the points lack come from the scene; n and k are those
+/// at its wavelength.
+/// Errors: InputError that names file, key or line and column, and what is allowed. It refuses a band if the material
+/// depends on the wavelength, unless the points have both n and k; and q <= 3/2 with smith masking and the cauchy
+/// distribution.
 std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points& points);
 
-/// The precision of a scene's pBRDFs. kAuto becomes float if kScatteringErrorFloat meets the tolerance or the evaluator
-/// has no double, else double.
+/// The precision in which the pBRDFs of a scene are computed. kAuto becomes float if kScatteringErrorFloat meets the
+/// tolerance or if the evaluator has no double precision, otherwise double.
 Precision mueller_precision(const Accuracy& accuracy, bool has_double);
 
-/// f of eq. (15) with k_s and the diffuse part, in the order of `points`.
+/// The pBRDF f of eq. (15) with k_s and the diffuse part, in the order of `points`.
 ///
-/// Accuracy: each element to kScatteringErrorFloat or kScatteringErrorDouble of m00.
-/// Domain: at 90 degrees the limits, which v-cavity and smith have with one beam there. Where f has no finite value all
-/// 16 are NaN: at 90 degrees otherwise, and for a mirror (sigma = 0) in its specular direction; in others its f is the
-/// diffuse part. So they are where more bounces count than are followed (plan/further_bounces.cpp).
+/// Accuracy: the error of each element is at most kScatteringErrorFloat or kScatteringErrorDouble times m00.
+/// Domain: at 90 degrees f is its limit, which v-cavity and smith have if only one of the two beams is at 90 degrees.
+/// All 16 elements are NaN where f has no finite value: elsewhere at 90 degrees, and in the specular direction for a
+/// mirror (sigma = 0) and for all bounces. They are also NaN where bounces contribute that are not computed
+/// (plan/further_bounces.cpp). In other directions f of a mirror is the diffuse part.
 /// Errors: errors of the evaluator.
 std::vector<MuellerMatrix> evaluate_mueller(const SceneValues& scene, const std::vector<MuellerPoint>& points,
                                             ModelEvaluator& evaluator, const Progress& progress);

@@ -19,7 +19,7 @@ BeamAngles angles_of(const SceneValues& scene, double theta_deg) {
           geometry.relative_azimuth_deg};
 }
 
-/// The parameters that distinguish two slope distributions: the gaussian has no q.
+/// The shape with only the parameters that the distribution has: the gaussian has no q.
 SlopeShape normalised(const SceneValues& scene, const SlopeShape& shape) {
   return scene.surface.distribution == Distribution::kGaussian ? SlopeShape{.sigma = shape.sigma} : shape;
 }
@@ -29,7 +29,7 @@ Treatment treatment(const SceneValues& scene, const SceneEntry& entry) {
                       entry.shape);
 }
 
-/// Values that are used go to `axis`, in their order.
+/// Appends the used values to `axis`, in their order. Returns the position in `axis` of each used value.
 std::vector<std::uint32_t> compact_used_values(const std::vector<double>& values, const std::vector<char>& is_used,
                                                std::vector<double>& axis) {
   std::vector<std::uint32_t> positions(values.size(), 0);
@@ -40,9 +40,11 @@ std::vector<std::uint32_t> compact_used_values(const std::vector<double>& values
   return positions;
 }
 
-constexpr std::size_t kLeastEntries = 24;  // entries of an index. Chosen: its weights take as long as some of them
-// For points: directions and slope distributions times indices, over the number of points. Each direction and slope
-// distribution is combined with all indices.
+// Smallest number of entries per index with which responses are used. Chosen: the computation of the weights of an
+// index takes as long as some entries.
+constexpr std::size_t kLeastEntries = 24;
+// Responses give the moments of each pair (direction and slope distribution, index). For points they are used if the
+// number of these pairs is at most so many times the number of moments that the points need.
 constexpr std::size_t kMostOfPoints = 2;
 
 std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const SceneEntries& entries) {
@@ -80,7 +82,7 @@ std::vector<FacetOptics> indices_of_grid(const SceneValues& scene, const SceneEn
           indices.insert(indices.end(), with_this_index.begin(), with_this_index.end());
         }
       }
-      if (samples.front().is_bare()) break;  // they are the same at all wavelengths
+      if (samples.front().is_bare()) break;  // without films, the indices are the same at all wavelengths
     }
     return indices;
   }
@@ -208,7 +210,7 @@ void PartRequests::request_grid(const Selection& selection) {
   if (!is_whole) mark_wanted(selection);
 }
 
-/// Equal sets share their indices.
+/// Consecutive sets that are equal share their indices in the request.
 void PartRequests::request_indices(const SceneEntries& grid, const std::vector<char>& is_used) {
   index_set_offset_.assign(is_used.size(), 0);
   std::vector<FacetOptics> last;
@@ -266,7 +268,8 @@ void PartRequests::request_points(const Selection& selection) {
     const double zenith_deg =
         zenith_before_limit_deg(scene_.surface.masking, moment_zenith_deg(scene_, entry.theta_deg));
     const SlopeShape shape = normalised(scene_, entry.shape);
-    // An entry without an index has the indices of its variant; no k is negative.
+    // The key of an entry without an index is its variant, whose indices it has. k = -1 marks it, because no k is
+    // negative.
     const OpticalConstants key = entry.index.value_or(OpticalConstants{static_cast<double>(entry.variant), -1.0});
     const double films_at = has_films() ? entry.variant : -1.0;
     const auto [known_span, is_new] =

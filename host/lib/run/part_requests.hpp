@@ -1,4 +1,4 @@
-// A run's requests to the evaluator for a part of its entries, and the position of each entry's answer.
+// The requests of a run to the evaluator for a part of its entries, and the position of each entry in the answers.
 #pragma once
 
 #include <cstddef>
@@ -29,31 +29,35 @@ struct Selection {
   SceneEntry operator[](std::size_t member) const { return part[position(member)]; }
 };
 
-/// The zenith that an entry's moments depend on: in bistatic mode the zenith of the view.
+/// The zenith of the moments of an entry: in bistatic mode the zenith of the view, otherwise its theta.
 double moment_zenith_deg(const SceneValues& scene, double theta_deg);
 
 bool wants_moments(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
-/// True where the evaluator must compute the beam of an entry: not for a mirror, nor with source and view both at 90
-/// degrees.
+/// True if the evaluator must compute the beam of an entry. A mirror needs no evaluator, nor does an entry with source
+/// and view both at 90 degrees.
 bool wants_beam(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
-/// The beam of an entry that needs no evaluator: a mirror reflects only toward its specular direction, where the
-/// radiance is not defined, as it is not with source and view both at 90 degrees.
+/// The beam of an entry that needs no evaluator. A mirror reflects only toward its specular direction; in others its
+/// beam is 0. In the specular direction the radiance is undefined (NaN), as it is with source and view both at 90
+/// degrees.
 Scattered beam_without_evaluator(const SceneValues& scene, double theta_deg);
 
-/// The indices at which a scene needs moments, for each variant among its entries.
+/// For each variant of the entries, the indices at its spectral samples.
 using SpectralIndices = std::vector<std::vector<FacetOptics>>;
 SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& entries);
 
-/// Samples with another medium under their films. Bare samples become equal, so that one is returned.
+/// The samples with `index` as the medium under their films. Without films all samples become equal, so one is
+/// returned. Without `index` the samples are returned as they are.
 std::vector<FacetOptics> with_index(const std::vector<FacetOptics>& samples,
                                     const std::optional<OpticalConstants>& index);
 
-/// The requests of one level for a selection. For a grid the moments form a grid again. It has the directions (in
-/// bistatic mode the view) and indices of the selection, and all slope distributions, so that the result of an entry
-/// does not depend on the entries selected in other directions. Points share moments if they differ only in values that
-/// the moments do not depend on.
+/// The requests of one level of refinement for a selection.
+///
+/// For a grid, the request for moments is a grid too. It has the directions (in bistatic mode the view) and the indices
+/// of the selection, and all slope distributions of the part. So the result of an entry does not depend on which
+/// entries are selected in other directions. Points share moments if they differ only in values on which moments do not
+/// depend.
 class PartRequests {
  public:
   PartRequests(const SceneValues& scene, const SpectralIndices& samples, const EffectPlan& plan,
@@ -62,15 +66,15 @@ class PartRequests {
   const MomentsRequest& moments() const { return moments_; }
   const ScatteringRequest& beams() const { return beams_; }
 
-  /// The position of a member's moments in the answer: `first + j * stride` for spectral sample j.
+  /// The position of the moments of a member in the answer: `first + j * stride` for spectral sample j.
   struct MomentsSpan {
     std::size_t first = 0;
     std::size_t stride = 0;
   };
   MomentsSpan moments_of(std::size_t member) const;
-  /// For a grid: the request's direction from which a member has its moments.
+  /// For a grid: the position in the request of the direction whose moments a member uses.
   std::size_t direction_of(std::size_t member) const;
-  /// The first of its beams, one for each sample.
+  /// The position of the first beam of a member, which has one beam per spectral sample.
   std::size_t beams_of(std::size_t member) const { return first_beam_[member]; }
 
  private:
@@ -89,18 +93,20 @@ class PartRequests {
   const Selection selection_;
   MomentsRequest moments_;
   ScatteringRequest beams_;
-  // For a grid: the position in the request of each value of the part's axes, and of the first index of each set: the
-  // indices of a variant, or one index of n and k.
+  // For a grid: positions in the request. The first three have one position per value of an axis of the part.
+  // index_set_offset_ has, for each set of indices, the position of its first index. A set is the indices of a variant,
+  // or one index from the axes n and k.
   std::vector<std::uint32_t> theta_at_, sigma_at_, q_at_, index_set_offset_;
-  std::vector<MomentsSpan> spans_of_points_;  ///< one for each point of a list
+  std::vector<MomentsSpan> spans_of_points_;  ///< positions of the moments of each point of a list
   std::vector<std::size_t> first_beam_;
 };
 
-/// Responses from which a run combines the moments of its many indices, at the tolerance of the scene: tighter levels
-/// are for the quadrature. They follow from the whole grid, even if the entries are a part of it.
+/// The responses from which a run combines the moments of its many indices. Their error meets the tolerance of the
+/// scene; tighter levels refine only the quadrature. The choice of responses follows from the whole grid, even if the
+/// entries are a part of it.
 ///
-/// Null where a basis saves nothing: for a grid with few entries of each index, points that mostly differ in direction
-/// or slope distribution, few indices, many bounces, and for a scene without interpolation.
+/// Null if responses save nothing: for a grid with few entries per index, for points that mostly differ in direction or
+/// slope distribution, for few indices, with several bounces, and for a scene without interpolation.
 std::shared_ptr<const ResponseBasis> run_basis(const SceneValues& scene, const SceneEntries& entries,
                                                const EffectPlan& plan);
 

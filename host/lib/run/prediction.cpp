@@ -14,8 +14,8 @@
 namespace dolp {
 namespace {
 
-/// All slope distributions of some directions of a grid, the middles of equal parts of them: at all wavelengths and
-/// indices if responses serve these together, else at one.
+/// All entries of a few directions of a grid, which are the middles of equal parts. They have all wavelengths and
+/// indices if responses serve these together, otherwise one wavelength and one index.
 SceneEntries entries_of_drawn_directions(const SceneEntries& grid, bool has_responses) {
   Axes axes = grid.axes();
   std::vector<double>& theta_deg = axes[Axis::kTheta];
@@ -32,10 +32,11 @@ SceneEntries entries_of_drawn_directions(const SceneEntries& grid, bool has_resp
   return SceneEntries::of_grid(axes, grid.index());
 }
 
-/// Sums over the requests of one kind: the first level's, which come first, and all later ones.
+/// Sums over the requests of one kind (moments or beams). The requests of the first level, which come first, are added
+/// up separately from the requests of all later levels.
 struct Count {
   std::size_t first_requests = 0;  ///< requests of the first level that are still to come
-  std::size_t first = 0;           ///< moments or beams
+  std::size_t first = 0;           ///< number of moments or beams in the first level
   std::size_t again = 0;
   double first_evaluations = 0.0;
   double again_evaluations = 0.0;
@@ -51,7 +52,7 @@ struct Count {
   }
 };
 
-/// Counts the requests of a run's levels.
+/// Computes the requests of a run on the CPU, and counts their work.
 class CountingEvaluator final : public ModelEvaluator {
  public:
   CountingEvaluator(bool has_double, std::size_t first_moments_requests)
@@ -82,12 +83,12 @@ class CountingEvaluator final : public ModelEvaluator {
   Count beams_;
 };
 
-/// The number of all entries for each counted one.
+/// Ratio of all entries to counted entries.
 double scale_of(std::size_t all, const Count& counted) {
   return counted.first == 0 ? 0.0 : static_cast<double>(all) / static_cast<double>(counted.first);
 }
 
-/// The requests of the first level for a part of a run, and their plan.
+/// The requests of the first level for a part of a run, and the plan of their moments.
 struct FirstLevel {
   FirstLevel(const SceneValues& scene, const SceneEntries& part, const EffectPlan& plan, const RefinementLevel& level)
       : indices(spectral_indices(scene, part)),
@@ -125,7 +126,7 @@ void count_work(RunPrediction& run, const SceneValues& scene, const SceneEntries
   run.cpu_s = moments_scale * moments.spent_s + beams_scale * beams.spent_s;
 }
 
-/// Memory of the responses of a step.
+/// Memory of the responses that a step computes, in bytes.
 std::size_t response_bytes(const MomentsStep& step) {
   std::size_t columns = 0;
   for (const MomentsRequest* request : step.kernel_requests())
@@ -159,7 +160,8 @@ RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries,
     }
     run.beams += beams;
     if (beams > 0) visit.beams(first.requests.beams());
-    // Memory of the results, their columns, and the columns of the part before, which are being written.
+    // Memory of this part: its results and their columns, and the columns of the previous part, which are being
+    // written.
     const std::size_t columns = part.size() * (kQuantityCount * sizeof(double) + sizeof(std::uint32_t));
     largest = std::max(largest, part.size() * sizeof(PointResult) + columns + columns_before +
                                     first.moments.size() * sizeof(Moments) + largest_step +

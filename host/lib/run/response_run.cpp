@@ -25,19 +25,20 @@ namespace dolp {
 namespace {
 
 constexpr std::size_t kBetaAngles = kMostResponses;
-constexpr double kResponseC0 = 0.01;                // cosine at which the polynomials bend
-constexpr OpticalConstants kUnusedIndex{1.5, 0.0};  // moments of it come along unused
-// Tolerance of the first rules over the table's. Chosen: million evaluations of 64 x 16 x 16 entries at 1e-4, smith and
-// integral, at half, this and double: 21.0, 22.5, 24.1 and 3.24, 3.00, 2.90.
+constexpr double kResponseC0 = 0.01;                // cosine near which the abscissa bends from linear to logarithmic
+constexpr OpticalConstants kUnusedIndex{1.5, 0.0};  // a request needs an index; moments of this one are not used
+// Ratio of the first tolerance of the rules to the tolerance of the table. Tuned for 64 x 16 x 16 entries at 1e-4.
+// Million evaluations at half, this and double: with smith 21.0, 22.5, 24.1; with integral 3.24, 3.00, 2.90.
 constexpr double kFirstShare = 0.1;
-constexpr double kFinerBy = 0.03;  // tolerance of the next rules over the last. Chosen: no difference
+// Ratio of the tolerance of each level to that of the level before. Chosen: half and double make no difference.
+constexpr double kFinerBy = 0.03;
 constexpr int kMostLevels = 6;
-constexpr std::size_t kColumnsAtOnce = std::size_t{1} << 20U;  // for the memory that they take
+constexpr std::size_t kColumnsAtOnce = std::size_t{1} << 20U;  // limits the memory for the columns of a part
 
-/// The abscissa of the polynomials, in [-1, 1].
+/// The variable x of the polynomials, from -1 at cosine 0 to 1 at cosine 1.
 double abscissa(double cosine) { return 2.0 * std::asinh(cosine / kResponseC0) / std::asinh(1.0 / kResponseC0) - 1.0; }
 
-/// T_m(x), m < kBetaAngles. Domain: x in [-1, 1].
+/// The Chebyshev polynomials T_m(x), m < kBetaAngles. Domain: x in [-1, 1].
 Eigen::VectorXd chebyshev_at(double x) {
   const double angle = std::acos(std::clamp(x, -1.0, 1.0));
   return Eigen::VectorXd::LinSpaced(kBetaAngles, 0.0, kBetaAngles - 1.0).unaryExpr([=](double m) {
@@ -45,9 +46,9 @@ Eigen::VectorXd chebyshev_at(double x) {
   });
 }
 
-/// The angles of a table.
+/// The angles beta of a table, at which x is a zero of T_24, and functions of these angles.
 struct Nodes {
-  Eigen::MatrixXd polynomials;  ///< T_m(x_j): polynomials x angles
+  Eigen::MatrixXd polynomials;  ///< T_m(x_j), one row per polynomial, one column per angle
   Eigen::ArrayXd sin2;          ///< sin^2 of beta
   std::vector<double> beta_deg;
 
@@ -67,14 +68,16 @@ const Nodes& nodes() {
   return known;
 }
 
-/// Weights of an entry, times cos(theta), and the bound of their sums for curves with coefficients 2^-m.
+/// The weights of an entry, times cos(theta). The error bounds their sums for curves whose Chebyshev coefficients are
+/// at most 2^-m.
 struct Weights {
   Eigen::ArrayXd i, q;
   double error = 0.0;
 };
 
-/// `whole_error`: bound of the sum with 1 instead of a polynomial. It adds the sizes of the distances between the
-/// rules, which may cancel by chance in the columns, and holds for all polynomials, because these are at most 1.
+/// Computes the weights from the moments with polynomials. `whole_error`: error bound of the moment with 1 instead of a
+/// polynomial. This bound adds up absolute differences between both quadrature rules. In the columns such differences
+/// may cancel by chance. The bound also holds for each polynomial, because polynomials are at most 1.
 Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error) {
   Weights own{Eigen::ArrayXd::Zero(kBetaAngles), Eigen::ArrayXd::Zero(kBetaAngles)};
   for (std::size_t m = 0; m < columns.size(); ++m) {
@@ -83,7 +86,7 @@ Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error
         (m == 0 ? 1.0 : 2.0) / kBetaAngles * nodes().polynomials.row(static_cast<Eigen::Index>(m));
     own.i += sum.i * share;
     own.q += sum.q * share / nodes().sin2;
-    // The rules of q may agree by chance too, so that the bound of i is added to the bound of q.
+    // Both quadrature rules may agree by chance for q too. So the bound of i is added to the bound of q.
     const double of_i = std::abs(sum.i_apart) + sum.relative_error * std::abs(sum.i) + sum.error;
     const double of_q = std::abs(sum.q_apart) + sum.relative_error * std::abs(sum.q) + sum.error;
     own.error += std::ldexp(std::max(of_i, whole_error) + of_q, -static_cast<int>(m));
@@ -91,7 +94,7 @@ Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error
   return own;
 }
 
-/// Moments of a mirror, whose columns are the polynomials at the direction itself.
+/// The moments of a mirror. The columns need no integral: they are the polynomials at beta = theta.
 Moments mirror_of(const MomentsRequest& request, const Direction& direction, const SlopeShape& shape) {
   Surface surface;
   surface.distribution = request.distribution;
@@ -106,7 +109,7 @@ Moments mirror_of(const MomentsRequest& request, const Direction& direction, con
 
 bool has_emission(Masking masking) { return keeps_projected_area(masking); }
 
-/// Stores an entry if its bound is below the known bound.
+/// Stores the weights of an entry if their error bound is below the bound stored before.
 void take_better(const Moments& reflected, const Moments* direct, double cosine, std::size_t entry,
                  EntryResponses& to) {
   const Weights weights = weights_of(reflected.columns, reflected.albedo_error);
@@ -139,7 +142,8 @@ EntryResponses nothing_of(const MomentsRequest& request) {
   return none;
 }
 
-/// Sets the entries without an evaluator: mirrors, and where rho has no value. Returns flags of the others.
+/// Sets the entries that need no evaluator: mirrors, and directions where rho has no value. Returns a flag per entry: 1
+/// if the entry needs the evaluator.
 std::vector<char> set_closed_forms(const MomentsRequest& request, EntryResponses& to) {
   std::vector<char> wanted(request.size(), 1);
   for (std::size_t i = 0; i < wanted.size(); ++i) {

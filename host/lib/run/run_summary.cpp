@@ -14,14 +14,15 @@ namespace dolp {
 namespace {
 
 constexpr std::size_t kMostChecked = 64;
-constexpr std::size_t kManyMoments = std::size_t{1} << 22U;  // number of moments of which kMostChecked are checked
-// A fiftieth of the run; an entry that is computed again takes about four times what it took, with two digits more and
-// no neighbour to share with.
+// For each kManyMoments moments of a table, kMostChecked more are checked.
+constexpr std::size_t kManyMoments = std::size_t{1} << 22U;
+// The check costs at most 1 / kShare of the run. An entry that is computed again takes about kCostOfOne times as long
+// as before: it has two digits more and shares work with no neighbour.
 constexpr std::size_t kShare = 50;
 constexpr std::size_t kCostOfOne = 4;
 
 double ratio(double difference, double bounds) {
-  if (!(std::abs(difference) > 0.0)) return 0.0;  // equal, or not a number in both
+  if (!(std::abs(difference) > 0.0)) return 0.0;  // equal, or NaN in both
   return std::abs(difference) / bounds;
 }
 
@@ -29,7 +30,7 @@ double rho_bound(const PointResult& result) {
   return result[Quantity::kRhoErrorEstimate] * std::abs(result[Quantity::kRhoI]);
 }
 
-constexpr std::size_t kSummaryEntriesAtOnce = 65536;  // entries of a thread
+constexpr std::size_t kSummaryEntriesAtOnce = 65536;  // entries that a thread takes at a time
 
 using Range = std::pair<double, double>;
 
@@ -168,7 +169,7 @@ std::optional<RunSummary> RunSummary::from_text(const std::string& text) {
       words >> number;
     } else {
       words >> word;
-      const double value = std::strtod(word.c_str(), nullptr);  // inf too
+      const double value = std::strtod(word.c_str(), nullptr);  // strtod reads inf too
       const bool is_none = std::is_same_v<decltype(number), std::optional<double>&> && !(value >= 0.0);
       if (!is_none) number = value;
     }

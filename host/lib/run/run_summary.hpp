@@ -1,4 +1,4 @@
-// Summary of results for reports, gathered part by part, with a self-check.
+// Summary of the results of a run for reports, added up part by part. It includes a check of the error bounds.
 #pragma once
 
 #include <array>
@@ -18,42 +18,43 @@
 
 namespace dolp {
 
-/// Check of all error bounds by the entries that were computed again.
+/// A check of the error bounds: some entries are computed a second time in another way.
 struct SelfCheck {
   std::size_t entries = 0;
-  double worst_ratio = 0.0;  ///< largest difference over the sum of the bounds of both results; above 1 a bound failed
+  /// Largest ratio of the difference of both results to the sum of their bounds. Above 1, a bound was wrong.
+  double worst_ratio = 0.0;
 
-  /// Adds the difference between `result` and `again`.
+  /// Adds the entry whose results are `result` and `again`.
   void add(const PointResult& result, const PointResult& again);
   void add(const SelfCheck& other);
 };
 
-/// The number of a table's moments to compute again: they cost a fiftieth of all, and are at most 64 and 64 more for
-/// each four million.
+/// How many moments of a table are computed again. They cost at most a fiftieth of the run. There are at most 64, and
+/// 64 more for each four million moments.
 std::size_t checked_count(std::size_t moments);
 
-/// `count` of the positions below `size`, ascending. They depend only on the seed.
+/// `count` random positions below `size`, in ascending order. They depend only on the seed.
 std::vector<std::size_t> checked_positions(std::size_t size, std::size_t count, std::uint64_t seed);
 
 inline constexpr double kAlbedoMin = 0.95;
 inline constexpr double kAlbedoMax = 1.05;
 
-/// Entries whose albedo is out of range, and the smallest box around them.
+/// The entries whose albedo is out of range, and the smallest range of theta and sigma that contains them.
 struct EnergyRange {
   std::size_t entries = 0;
-  std::pair<double, double> theta_deg;  ///< zeniths of the view in bistatic mode
+  std::pair<double, double> theta_deg;  ///< in bistatic mode: zenith of the view
   std::pair<double, double> sigma;
 };
 
 struct RunSummary {
   std::size_t entries = 0;
   std::array<std::size_t, kStatusBits.size()> status{};
-  std::optional<double> worst_error;      ///< error of DOLP, over entries that promise one
-  std::optional<double> worst_rho_error;  ///< error of rho, over entries in the model's domain
+  std::optional<double> worst_error;      ///< largest error bound of DOLP, of the entries that promise a DOLP
+  std::optional<double> worst_rho_error;  ///< largest error bound of rho, of the entries in the model's domain
   std::size_t albedos = 0;
   std::pair<double, double> albedo;
   EnergyRange loses, gains;
-  double model_change = 0.0;  ///< largest PointResult::model_change of entries that promise their DOLP
+  double model_change = 0.0;  ///< largest PointResult::model_change of the entries that promise their DOLP
   SelfCheck check;
   double radiometry_s = 0.0;
   Work work;
@@ -66,7 +67,7 @@ struct RunSummary {
   /// True if DOLP and rho of all entries meet the tolerance.
   bool meets_tolerance() const { return count(kToleranceNotMet) + count(kRhoToleranceNotMet) == 0; }
 
-  /// Writes the summary in one line, and reads it back. A line of another kind gives nothing.
+  /// text() writes the summary in one line, from_text() reads it. For other lines from_text() returns nothing.
   std::string text() const;
   static std::optional<RunSummary> from_text(const std::string& text);
 };

@@ -16,9 +16,10 @@ namespace dolp {
 namespace {
 
 constexpr double kLikelyNanometresOfFilm = 100.0;
-constexpr double kHotSky = 2.0;  // times the temperature of the surface
-// Neighbouring rows leave a gap from this ratio of their wavelengths, whatever the file's spacing, and never below the
-// other one. In between, from ten times the file's usual spacing on a logarithmic scale.
+constexpr double kHotSky = 2.0;  // a sky above this multiple of the surface's temperature gets a remark
+// Two neighbouring rows of a file leave a gap if the ratio of their wavelengths is large. The limit of this ratio
+// corresponds to ten times the file's median spacing on a logarithmic scale, but lies between kNoGapRatio and
+// kGapRatio.
 constexpr double kGapRatio = 2.0;
 constexpr double kNoGapRatio = 1.5;
 constexpr double kUsualSpacings = 10.0;
@@ -47,7 +48,7 @@ double least_gap_ratio(const std::vector<double>& wavelength_um) {
   return std::clamp(std::exp(kUsualSpacings * *median), kNoGapRatio, kGapRatio);
 }
 
-/// The widest gap between rows that a straight line bridges inside of the spectrum.
+/// The widest gap between rows in the used wavelengths, which a straight line bridges.
 std::optional<Interval> bridged_gap(const SpectralTable& table, const std::vector<Interval>& used) {
   const std::vector<double>& um = table.wavelength_um;
   if (um.size() < 2 || table.formula.number != 0) return std::nullopt;
@@ -188,7 +189,7 @@ class Remarks {
 
   void add_hot_sky(const SkyProfile* profile) {
     const double surface_K = scene_.emission ? scene_.emission->temperature_K : 0.0;
-    if (surface_K < kLikelyCelsius_K) return;  // no surface, or its own temperature is the odd one
+    if (surface_K < kLikelyCelsius_K) return;  // no emission, or its temperature gets a remark itself
     bool is_hot = !profile && scene_.surroundings->temperature_K > kHotSky * surface_K;
     const std::vector<Interval> used = used_um(scene_);
     for (const double um : {used.front().first, used.back().second}) {

@@ -1,4 +1,4 @@
-// What a scene takes that was probably meant otherwise, and what it assumes without being told.
+// Remarks on a scene: values that were probably meant differently, and assumptions about data that its files lack.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace dolp {
 
-/// One line for each: units that look like others, and data that the files of the scene lack. Each begins like an error
-/// message, with the place of the key. Domain: a scene that was read.
+/// One line per remark. A remark begins like an error message, with the place of the key. Domain: a scene that was read
+/// from text.
 std::vector<std::string> remarks_on(const SceneValues& scene);
 
 }  // namespace dolp

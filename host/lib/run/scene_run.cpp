@@ -21,15 +21,16 @@
 namespace dolp {
 namespace {
 
-// Limits on the memory of a run. Points take more of it, because they share nothing.
+// Moments that a part of a run has at most, which limits its memory. Points take more memory per moment than grids,
+// because they share nothing.
 constexpr std::size_t kMomentsAtOnce = 1U << 20U;
 constexpr std::size_t kPointsAtOnce = 1U << 17U;
-// Chosen: 1.71, 1.81, 1.99 with smith (see plan/constants.hpp). A direction is refined as a whole where more than one
-// entry in so many misses the tolerance.
+// A direction is refined as a whole if more than one of so many entries misses the tolerance. Tuned. Evaluations per
+// entry with smith at half, this and double: 1.71, 1.81, 1.99 (see plan/constants.hpp).
 constexpr std::size_t kWholeDirectionMissRatio = 8;
-constexpr std::size_t kEntriesAtOnce = 4096;  // entries of a thread: their radiometry takes longer than to start one
+constexpr std::size_t kEntriesAtOnce = 4096;  // entries of a thread, enough to outweigh the start of the thread
 
-/// The radiometry of each variant in a part.
+/// The radiometry and the spectral indices of each variant in a part.
 struct Spectra {
   Spectra(const SceneValues& scene, const EffectPlan& plan, const std::vector<SceneVariant>& variants) {
     for (const SceneVariant& variant : variants)
@@ -47,7 +48,7 @@ struct RunContext {
   const Spectra& spectra;
   ModelEvaluator* evaluator;
   std::shared_ptr<const ResponseBasis> basis;
-  RunSummary& summary;  ///< summary so far, to which the work of the host is added
+  RunSummary& summary;  ///< summary of the run so far; the steps add the work of the host to it
 };
 
 /// The evaluator's results for the requests of a part.
@@ -56,10 +57,10 @@ struct EvaluatorResults {
   std::vector<ScatteringMatrix> beams;
 };
 
-/// The first column of a pBRDF.
+/// The first column of a pBRDF: the Stokes parameters that it gives for unpolarised light.
 Scattered scattered(const ScatteringMatrix& f) { return {f.m[0], f.m[4], f.m[8], f.m[12], f.error}; }
 
-/// Results of the members of a selection, one by one; the object keeps its memory between them.
+/// Computes the results of the members of a selection, one by one. The object keeps its memory from member to member.
 class MemberResults {
  public:
   MemberResults(const RunContext& context, const Selection& selection, const PartRequests& requests,
@@ -90,7 +91,8 @@ class MemberResults {
   }
 
  private:
-  /// Neighbours in a grid mostly have one direction, and all of them one way to treat it.
+  /// The direction of an entry. It is kept for the next call, because neighbours in a grid mostly share their
+  /// direction.
   const Direction& view_direction(const SceneEntry& entry) {
     const Surface& surface = context_.scene.surface;
     const double theta_deg = moment_zenith_deg(context_.scene, entry.theta_deg);
@@ -102,10 +104,10 @@ class MemberResults {
     return direction_;
   }
 
-  /// Moments from the evaluator, or closed forms, or zeros where the plan needs none.
+  /// The moments of a member: from the evaluator, from closed forms, or zeros if the plan needs no moments.
   std::span<const Moments> moments_of(std::size_t member, const SceneEntry& entry, const Direction& direction,
                                       std::span<const FacetOptics> indices) {
-    if (!context_.plan.kept.moments) return moments_;  // never written to
+    if (!context_.plan.kept.moments) return moments_;  // still zero: nothing writes to it in this case
     if (direction.treatment != Treatment::kIntegrated) {
       for (std::size_t j = 0; j < moments_.size(); ++j) {
         moments_[j] = closed_form(context_.scene.surface, direction, entry.shape, indices[j], context_.plan.sky.get());
@@ -136,19 +138,19 @@ class MemberResults {
   const EvaluatorResults& evaluated_;
   std::vector<Moments> moments_;
   std::vector<Scattered> beams_;
-  std::optional<OpticalConstants> index_;  ///< that own_optics_ are for, with the variant
+  std::optional<OpticalConstants> index_;  ///< index of own_optics_, which are also for variant_
   std::uint32_t variant_ = 0;
   Radiometry::Optics own_optics_;
   Direction direction_;
   bool has_direction_ = false;
 };
 
-/// A part of the progress of a whole: `before` of `total` are done when it starts.
+/// Progress of one step of several: `before` of `total` items are done when the step starts.
 Progress part_of(const Progress& progress, std::size_t before, std::size_t total) {
   return [&progress, before, total](std::size_t done, std::size_t) { return progress(before + done, total); };
 }
 
-/// Moments and beams of one level, in the same precision.
+/// Computes the moments and beams of one level. All have the same precision.
 EvaluatorResults run_requests(const RunContext& context, const PartRequests& requests, const MomentsPlan& plan,
                               const Progress& progress) {
   const std::size_t moments = requests.moments().wanted_count();
@@ -189,18 +191,20 @@ bool is_better(const PointResult& a, const PointResult& b) {
                                       std::max(b[Quantity::kErrorEstimate], b[Quantity::kRhoErrorEstimate]);
 }
 
-/// True where a level improves an entry over the last one: f has no rule that a tolerance would make finer.
+/// True if `level` can improve an entry that was computed at `last`. It always can if the entry has moments. The rule
+/// of a beam does not depend on the tolerance, so a beam improves only with the precision.
 bool would_improve(const RunContext& context, const RefinementLevel& level, const RefinementLevel& last,
                    const SceneEntry& entry) {
   return wants_moments(context.scene, entry, context.plan) ||
          (wants_beam(context.scene, entry, context.plan) && level.precision != last.precision);
 }
 
-/// Entries that wait for the same level are computed together.
+/// Members that wait for the next level, which is the key. Those with the same level are computed together.
 using EntriesByLevel = std::map<RefinementLevel, std::vector<std::size_t>>;
 
-/// The next level of a whole direction. Responses have more float noise than the moments of one index, and a pass of
-/// them serves all indices: so it is in double, and in whole decades, which many indices share.
+/// The next level of a whole direction. With responses this level differs in two ways. Its precision is double, because
+/// responses have more float noise than the moments of one index. Its tolerance is rounded to whole decades, because
+/// one pass of responses serves all indices, and so more of these share a level.
 RefinementLevel level_of_direction(RefinementLevel next, const RunContext& context) {
   next.may_interpolate = true;
   if (!context.basis) return next;
@@ -211,8 +215,9 @@ RefinementLevel level_of_direction(RefinementLevel next, const RunContext& conte
   return next;
 }
 
-/// Queues the next level of one direction whose `members` were computed at `last`. If many members miss the tolerance,
-/// all are queued and interpolated again; else each of these by itself. The choice depends only on the direction.
+/// Queues the next level for one direction, whose `members` were computed at `last`. If many members miss the
+/// tolerance, all are queued and interpolated again. Otherwise only the members that miss it are queued, and each is
+/// computed without interpolation. The choice depends only on this direction.
 void queue_refinement(const RunContext& context, const SceneEntries& part, const RefinementLevel& last,
                       std::span<const std::size_t> members, std::span<const PointResult> results,
                       EntriesByLevel& by_level) {
@@ -231,11 +236,11 @@ void queue_refinement(const RunContext& context, const SceneEntries& part, const
   }
 }
 
-/// The first level's results of a part, and the directions that were interpolated.
+/// The results of the first level of a part.
 struct FirstResults {
   RefinementLevel level;
   std::vector<PointResult> results;
-  std::vector<char> is_interpolated;  ///< flag of each run of part.entries_per_direction() entries
+  std::vector<char> is_interpolated;  ///< one flag per direction, that is, per part.entries_per_direction() entries
 };
 
 FirstResults first_results(const RunContext& context, const SceneEntries& part, const Progress& progress) {
@@ -252,14 +257,14 @@ FirstResults first_results(const RunContext& context, const SceneEntries& part, 
   return first;
 }
 
-/// Computes entries of a part that miss the tolerance again. To `progress` the part is done already; it may still
-/// cancel.
+/// Computes the entries of a part that miss the tolerance again. For `progress` the part is already done, but it can
+/// still cancel.
 void refine(const RunContext& context, const SceneEntries& part, FirstResults& first, const Progress& progress) {
   const Progress is_wanted = [&](std::size_t, std::size_t) { return progress(1, 1); };
   const std::size_t entries_per_direction = part.is_grid() ? part.entries_per_direction() : 1;
   std::vector<PointResult>& results = first.results;
   EntriesByLevel by_level;
-  // Members of one direction follow each other.
+  // The members of one direction are consecutive.
   const auto plan = [&](RefinementLevel last, std::span<const std::size_t> members, std::span<const PointResult> found,
                         std::span<const char> is_interpolated) {
     for (std::size_t i = 0, end = 0; i < members.size(); i = end) {
@@ -287,7 +292,7 @@ void refine(const RunContext& context, const SceneEntries& part, FirstResults& f
   }
 }
 
-/// Computes some entries of a grid again, after its first level, by a rule of another kind.
+/// Computes some entries of a grid again, by a rule of another kind than that of the first level.
 std::vector<PointResult> recompute_for_check(const RunContext& context, const SceneEntries& part,
                                              const RefinementLevel& first, std::span<const std::size_t> positions) {
   if (positions.empty()) return {};
@@ -295,7 +300,8 @@ std::vector<PointResult> recompute_for_check(const RunContext& context, const Sc
   return computed_at(context, {part, positions}, check_level(first), none);
 }
 
-/// The table entries to check that lie in a part, as positions in it.
+/// The positions in this part of those entries to check that lie in it and have moments. `checked` has positions in the
+/// whole table.
 std::vector<std::size_t> positions_in(const RunContext& context, const SceneEntries& part,
                                       std::span<const std::size_t> checked) {
   std::vector<std::size_t> positions;
@@ -306,14 +312,15 @@ std::vector<std::size_t> positions_in(const RunContext& context, const SceneEntr
   return positions;
 }
 
-/// True where an evaluator is needed: the plan needs moments or beams, and not all entries have closed forms.
+/// True if an evaluator is needed: the plan needs moments or beams, and some entries have no closed form.
 bool wants_evaluator(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan) {
   return std::ranges::any_of(entries.all(), [&](const SceneEntry& entry) {
     return wants_moments(scene, entry, plan) || wants_beam(scene, entry, plan);
   });
 }
 
-/// Results of a part: all levels, or closed forms and zeros. `checked`: positions in the whole grid; none for points.
+/// Computes the results of a part, with all levels of refinement. `checked`: positions in the whole grid of the entries
+/// to check; empty for points.
 std::vector<PointResult> part_results(const RunContext& context, const SceneEntries& part,
                                       std::span<const std::size_t> checked, SelfCheck& check,
                                       const Progress& progress) {

@@ -1,4 +1,5 @@
-// The pipeline of every front end: entries of a scene -> moments and beams -> radiometry -> sink.
+// A run: the pipeline that every front end uses, from the entries of a scene to moments and beams, radiometry and a
+// sink.
 #pragma once
 
 #include <chrono>
@@ -18,38 +19,41 @@
 
 namespace dolp {
 
-/// The scene's grid.
-/// Errors: InputError for more than kMostTableEntries.
+/// The entries of the scene's grid. Errors: InputError for more than kMostTableEntries.
 SceneEntries grid_entries(const SceneValues& scene);
 
-/// Scattered points; values that they lack come from the scene. Points that give only the direction form a grid.
-/// Errors: InputError that names the points' file and line, column, value and what is allowed: theta_deg is neither in
-/// the points nor a single value in the grid; n without k, or k without n, beside a material that depends on the
-/// wavelength; q <= 3/2 with smith masking and the cauchy distribution.
+/// The entries of scattered points. Values that the points lack come from the scene. Points that give only theta form a
+/// grid.
+/// Errors: InputError that names the points' file and line, column, value and what is allowed. It refuses points
+/// without theta_deg if the grid has several; points with only one of n and k if the material depends on the
+/// wavelength; and q <= 3/2 with smith masking and the cauchy distribution.
 SceneEntries point_entries(const SceneValues& scene, const Points& points);
 
-/// Refuses points that do not fit the scene's surface: q <= 3/2 with smith masking and the cauchy distribution, winds
-/// without the gaussian distribution, numbers of films that the scene lacks, n and k of a film that has a material.
+/// Refuses points that do not fit the scene's surface: q <= 3/2 with smith masking and the cauchy distribution, wind
+/// speeds without the gaussian distribution, values of films that the scene lacks, and n or k of a film whose material
+/// the scene names.
 /// Errors: InputError that names the points' file and line, column, value and what is allowed.
 void check_surface(const SceneValues& scene, const Points& points);
 
-/// Refuses a scene with several materials or bands if the points do not choose among them. Without points (a Mueller
-/// matrix, a fit) the scene must have one. Errors: InputError with what to do.
+/// Refuses a scene whose grid has several materials or bands if the points have no column that chooses among them.
+/// Called without points for a Mueller matrix or a fit, which need one material and one band. Errors: InputError that
+/// tells what to do.
 void check_labels_chosen(const SceneValues& scene, const Points& points = {});
 
-/// Destination of results, part by part.
+/// A destination of results, which it receives part by part.
 class Sink {
  public:
   virtual ~Sink() = default;
-  /// The parts that an earlier run left, which come first and are not computed again, and their summary.
+  /// The number of parts that an earlier run has finished, and their summary. They are the first parts; the run does
+  /// not compute them again.
   virtual std::size_t parts_done() const { return 0; }
   virtual RunSummary summary_of_done() const { return {}; }
-  /// Takes the results of `part`. Points follow the points of the part before; a part of a grid has its position.
-  /// `so_far`: summary of all parts up to this one.
+  /// Receives the results of `part`. The parts of a list of points come in the order of the points; a part of a grid
+  /// knows its position. `so_far`: summary of all parts including this one.
   virtual void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary& so_far) = 0;
 };
 
-/// All results in memory, in the order of the entries.
+/// A sink that collects all results in memory, in the order of the entries.
 class CollectedResults final : public Sink {
  public:
   /// `entries` must outlive the object.
@@ -62,7 +66,7 @@ class CollectedResults final : public Sink {
   std::vector<PointResult> results_;
 };
 
-/// Calls a function with the results of each part.
+/// A sink that calls a function with the results of each part.
 class CallbackSink final : public Sink {
  public:
   using Take = std::function<void(const SceneEntries& part, const std::vector<PointResult>& results)>;
@@ -75,42 +79,43 @@ class CallbackSink final : public Sink {
   Take take_;
 };
 
-/// Makes the evaluator, when it is needed.
+/// A function that makes the evaluator. A run calls it only if it needs one.
 using EvaluatorMaker = std::function<ModelEvaluator*()>;
 
-/// The outcome of a run.
+/// Plan, effects, summary and cost of a finished run.
 struct RunOutcome {
   EffectPlan plan;
   std::vector<Effect> effects;
-  RunSummary summary;           ///< summary of all parts, including parts that were there already
-  EvaluationReport evaluation;  ///< evaluation of all parts
+  RunSummary summary;           ///< summary of all parts, including those that an earlier run finished
+  EvaluationReport evaluation;  ///< device, precision and work of all parts
   double wall_s = 0.0;
-  double file_s = 0.0;  ///< part of wall_s: waiting until the table was written
+  double file_s = 0.0;  ///< part of wall_s: time of waiting for the table to be written
 };
 
-/// A run of a scene over a grid, a part of one, or points: the pipeline of every front end. The constructor decides
-/// what will be computed; the results of a part of a grid follow from the whole grid.
+/// A run of a scene over a grid, a part of a grid, or points. The constructor decides what will be computed. This
+/// decision follows from the whole grid, even for a run over a part of it.
 class Run {
  public:
-  /// `scene` must outlive the object. Tells `options.progress` that all inputs are read, then makes the evaluator if
+  /// `scene` must outlive the object. Calls `options.progress` when all inputs are read, then makes the evaluator if
   /// one is needed. Errors: errors of make_evaluator; Cancelled.
   Run(const SceneValues& scene, SceneEntries entries, const RunOptions& options, const EvaluatorMaker& make_evaluator);
 
   const SceneEntries& entries() const { return entries_; }
   const EffectPlan& plan() const { return outcome_.plan; }
-  /// The evaluator in use; "none" where no work is left for one.
+  /// The report of the evaluator. Its texts are "none" if the run needs no evaluator.
   const EvaluationReport& evaluation() const { return outcome_.evaluation; }
-  /// The parts that the run processes one by one, which bounds its memory: whole directions of a grid where they fit.
+  /// The parts that the run processes one by one, which limits its memory. A part of a grid has whole directions if
+  /// they fit.
   std::vector<SceneEntries> parts() const;
 
-  /// Drives the whole pipeline, part by part: it computes what the plan keeps, and computes again where results miss
-  /// the tolerance; quantities outside the plan are NaN. Progress counts entries. Some entries of a grid are checked; a
-  /// direction in which a bound fails gets the status of a missed tolerance. The result of an entry of a grid depends
-  /// on its direction and index, and on the slope distributions of the grid, not on the parts. Errors: errors of the
-  /// evaluator, Radiometry and the sink; Cancelled.
+  /// Runs the whole pipeline, part by part. It computes what the plan keeps, and computes results that miss the
+  /// tolerance again; quantities outside the plan are NaN. Progress counts entries. Some entries of a grid are checked;
+  /// if a bound turns out wrong, all entries of the direction get the status of a missed tolerance. The result of an
+  /// entry depends on its direction and index and on the slope distributions of the grid, but not on the parts. Errors:
+  /// errors of the evaluator, Radiometry and the sink; Cancelled.
   RunOutcome compute(Sink& sink);
 
-  /// Time since the object was made.
+  /// Time since the object was made, in s.
   double wall_s() const;
 
  private:
@@ -122,20 +127,20 @@ class Run {
   RunOutcome outcome_;
 };
 
-/// The parts that a run processes one by one.
+/// The parts that a run processes one by one. `spectral_samples`: samples per entry.
 std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spectral_samples);
 
-/// The number of spectral samples of an entry; the largest, where entries differ in their band or material.
+/// The number of spectral samples of an entry. If entries differ in band, material or films, the largest number.
 std::size_t spectral_samples(const SceneValues& scene, const SceneEntries& entries);
 
-/// Calls `progress`, if there is one, with nothing done yet: all inputs are read. Errors: Cancelled.
+/// Calls `progress`, unless it is empty, with 0 finished items: all inputs are read. Errors: Cancelled.
 void report_start(const Progress& progress, std::size_t total);
 
-/// Run::compute with an existing plan and evaluator. The evaluator may be null if the plan leaves nothing for it.
+/// Does the work of Run::compute with an existing plan and evaluator. The evaluator may be null if the plan needs none.
 RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
                      ModelEvaluator* evaluator, Sink& sink, const Progress& progress);
 
-/// run_scene into memory: results in the order of `entries`. Without a plan everything is kept.
+/// Calls run_scene and returns the results in the order of `entries`. Without a plan, all effects are kept.
 std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEntries& entries,
                                         ModelEvaluator& evaluator, const Progress& progress,
                                         const std::optional<EffectPlan>& plan = {});

@@ -17,13 +17,13 @@
 namespace dolp {
 namespace {
 
-/// The material with all that is known of it, where the table has an axis of wavelengths.
+/// The material that the table records. With an axis of wavelengths, it has n and k at all wavelengths that are known.
 const Material& recorded_material(const Axes& axes, const SceneValues& scene) {
   const Material& material = scene.surface.material;
   return material.tabulated && !axes[Axis::kWavelength].empty() ? *material.tabulated : material;
 }
 
-/// n, k and E0 as the scene has them.
+/// Sets the curves of n, k and E0 from the scene.
 void fill_curves(TableHead& head, const SceneValues& scene) {
   const std::vector<double> one_um = {scene.spectrum.min_um};
   const auto curve_of = [&](const SpectralTable& tabulated, double constant) -> Curve {
@@ -44,7 +44,7 @@ void fill_curves(TableHead& head, const SceneValues& scene) {
   fill_used(head, scene);
 }
 
-/// The file of a scene's profile; empty for a built-in one, which its name describes, and without one.
+/// The text of the scene's sky profile. Empty without a profile, and for a built-in sky, which its name describes.
 std::string profile_text(const SceneValues& scene) {
   if (scene.names.profile.empty() || built_in_sky(scene.names.profile)) return {};
   if (scene.surroundings->profile) return scene.surroundings->profile->text();
@@ -52,7 +52,7 @@ std::string profile_text(const SceneValues& scene) {
   return SkyProfile{.zenith_deg = {0.0, 90.0}, .values = {everywhere_K, everywhere_K}}.text();
 }
 
-/// An exitance, in bistatic mode a radiance; per um at a single wavelength.
+/// The unit of the Stokes parameters: an exitance or, in bistatic mode, a radiance; per um at a single wavelength.
 std::string stokes_units(const SceneValues& scene) {
   std::string units = "W m-2";
   if (scene.geometry.mode == Mode::kBistatic) units += " sr-1";
@@ -60,7 +60,7 @@ std::string stokes_units(const SceneValues& scene) {
   return units;
 }
 
-/// A hash of all data of the scene: n, k, E0, films, reflectances and the sky.
+/// A hash of all data that the scene uses: n, k, E0, films, reflectances and the sky.
 std::uint64_t data_hash(const SceneValues& scene) {
   std::uint64_t hash = kHashStart;
   const auto add = [&hash](const SpectralTable& table) {

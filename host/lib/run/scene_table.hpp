@@ -14,28 +14,29 @@
 
 namespace dolp {
 
-/// The attribute with the largest PointResult::model_change of a table.
+/// The name of the attribute with the largest PointResult::model_change of a table.
 inline constexpr const char* kModelChange = "model_change";
 
-/// The quantities that results of a scene have. With a plan: without the quantities that a run by this plan leaves out,
-/// which are NaN in results at points.
+/// The quantities that results of a scene have. With a plan, the quantities that a run by this plan computes; in
+/// results at points the other ones are NaN.
 Quantities quantities_of(const SceneValues& scene, const EffectPlan* plan = nullptr);
 
-/// The table of a grid of the scene before anything is computed, with the attributes that are known at that time.
-/// `axes` may be a part of the scene's grid.
+/// The layout of the table over a grid of the scene, with the attributes that are known before the computation. `axes`
+/// may be a part of the scene's grid.
 TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const Axes& axes);
 
-/// Sets the values of the table's curves at its wavelengths.
+/// Sets Curve::used of the curves: their values at the wavelengths of the table.
 void fill_used(TableHead& head, const SceneValues& scene);
 
-/// The attribute with all that a table's values follow from, except the device: names and values, see difference().
+/// The attribute that names everything on which the values of a table depend, except the device. It is a text of names
+/// and values, which difference() compares.
 inline constexpr const char* kIdentity = "identity";
 std::string identity_of(const SceneValues& scene, const std::string& evaluator, bool keep_all);
 
-/// The values of a part of the grid.
+/// The results of a part of the grid as a part of the table.
 TableValues table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results);
 
-/// Record of a run in its table file.
+/// Data about a run that the attributes of its table record.
 struct RunRecord {
   EvaluationReport evaluation;
   std::string effects, rule;
@@ -46,7 +47,7 @@ struct RunRecord {
   std::vector<Attribute> attributes(const std::string& command_line) const;
 };
 std::vector<Attribute> attributes_of(const SceneValues& scene, const RunOutcome& run, const std::string& command_line);
-/// The attribute "history".
+/// The value of the attribute "history": time and command line.
 std::string history_text(const std::string& command_line);
 
 /// The rule in words, for reports and table attributes.

@@ -22,14 +22,15 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMergedAtOnce = std::size_t{1} << 19U;  // entries
-constexpr const char* kShard = "shard";                       // attribute of a table that is one
+constexpr const char* kShard = "shard";                       // attribute that marks a table as a shard
 
-// The axes that are cut. Sigma and q are not cut, because entries share work along them.
+// The axes that shards divide. Sigma and q are not divided, because entries share work along them.
 constexpr std::array kCutAxes = {Axis::kTheta,       Axis::kMaterial, Axis::kBand, Axis::kWavelength,
                                  Axis::kTemperature, Axis::kN,        Axis::kK};
 using Cuts = std::array<std::size_t, kCutAxes.size()>;
 
-/// Parts of each axis whose product is `count`, most of the first axes; false where there are none.
+/// Finds into how many parts each axis is cut, so that there are `count` parts in all. The first axes get as many parts
+/// as possible. False if there is no such choice.
 bool find_cuts(const PerAxis& counts, std::size_t count, std::size_t number, Cuts& cuts) {
   if (number == kCutAxes.size()) return count == 1;
   for (std::size_t parts = std::min(count, counts[kCutAxes[number]]); parts > 0; --parts) {
@@ -40,7 +41,8 @@ bool find_cuts(const PerAxis& counts, std::size_t count, std::size_t number, Cut
   return false;
 }
 
-/// The axes of a table, which may be a part of one, with the scene's positions of labels.
+/// The axes of a table, which may be a part of another one. Positions of labels are converted to positions in the
+/// scene's labels.
 Axes scene_axes(TableHead table, const SceneValues& scene, const std::string& name) {
   use_scene_labels(table, scene, name);
   return table.axes;
@@ -52,7 +54,8 @@ std::string identity_of(const SceneValues& scene, const TableJob& job) {
   return identity_of(scene, job.evaluator, job.options.keep_all);
 }
 
-/// The properties that all parts of a file share: shards may be of different devices, a file is of one.
+/// The identity of a file, which all its parts share. It includes the device: shards may come from different devices,
+/// but the parts of one file come from one.
 std::string identity_of_file(const std::string& identity, const Shard& shard, const EvaluationReport& evaluation) {
   return fmt::format("{}; shard {}; device {}, {}", identity, shard_text(shard), one_line(evaluation.device),
                      one_line(evaluation.driver));
@@ -64,7 +67,7 @@ std::vector<TableBox> boxes_of(const SceneEntries& entries, const std::vector<Sc
   return boxes;
 }
 
-/// Writes each part while the next is computed.
+/// A sink that writes each part while the next one is computed.
 class TableSink final : public Sink {
  public:
   TableSink(const SceneEntries& entries, const TableLayout& layout, TableOutput& output)
@@ -88,7 +91,7 @@ class TableSink final : public Sink {
                            note = so_far.text()]() mutable { output_.write(std::move(values), first, note); });
   }
 
-  /// Waits for the last part. Errors: errors of its writing.
+  /// Waits until the last part is written. Errors: errors of writing it.
   void finish() {
     const auto start = std::chrono::steady_clock::now();
     if (pending_.valid()) pending_.get();
@@ -106,7 +109,7 @@ class TableSink final : public Sink {
   double waited_s_ = 0.0;
 };
 
-/// Runs `body`; its errors also state how much of the file is there already.
+/// Runs `body`. Adds to its errors how much of the file is already on disk.
 template <class Body>
 void with_rest(const TableOutput& output, const Body& body) {
   const auto more = [&] {
@@ -125,13 +128,13 @@ void with_rest(const TableOutput& output, const Body& body) {
   }
 }
 
-/// A text attribute, empty where there is none.
+/// A text attribute; empty if there is none.
 std::string text_of(const TableHead& head, const char* name) {
   const auto* text = find_attribute<std::string>(head, name);
   return text ? *text : "";
 }
 
-/// A number attribute from 0 on; 0 for anything else.
+/// A number attribute; 0 if there is none or if it is negative.
 double number_of(const TableHead& head, const char* name) {
   const auto* number = find_attribute<double>(head, name);
   return number && *number >= 0.0 ? *number : 0.0;
@@ -165,7 +168,7 @@ void add_run(RunRecord& whole, const TableHead& shard) {
   if (devices.find(device) == std::string::npos) devices += (devices.empty() ? "" : "; ") + device;
 }
 
-/// A shard's attributes that also hold for the whole table.
+/// The attributes of a shard without those that describe only the shard or its run.
 std::vector<Attribute> without_run(std::vector<Attribute> attributes) {
   const std::vector<Attribute> run = RunRecord().attributes("");
   std::erase_if(attributes, [&](const Attribute& attribute) {
@@ -174,7 +177,7 @@ std::vector<Attribute> without_run(std::vector<Attribute> attributes) {
   return attributes;
 }
 
-/// Copies a shard into its place in the table.
+/// Copies the values of a shard to their position in the whole table.
 void merge_shard(TableOutput& output, const TableReader& reader, const SceneEntries& shard) {
   ValueSums sums;
   for (const TableBox& box : boxes_in_order(shard.counts(), kMergedAtOnce)) {
@@ -259,7 +262,7 @@ bool is_there(const SceneValues& scene, const TableJob& job) {
     const TableHead& head = reader.head();
     if (difference(text_of(head, kIdentity), identity_of(scene, job)) || text_of(head, kShard) != shard_text(job.shard))
       return false;
-    // Refuses values that differ from the written ones.
+    // Reads all values: this throws if they differ from the written ones.
     static_cast<void>(reader.read_entries({}, job.options.progress));
     return scene_axes(head, scene, job.path.string()) == shard_entries(scene, job.shard).axes();
   } catch (const InputError&) {

@@ -1,4 +1,4 @@
-// A scene's table, computed part by part into a file.
+// The table of a scene, which is computed part by part and written to a file; its shards, and their merge.
 #pragma once
 
 #include <filesystem>
@@ -15,49 +15,49 @@
 
 namespace dolp {
 
-/// The path with "2-of-8" before its suffix, or the path itself where there is no shard.
+/// The path of the file of a shard, such as "table.2-of-8.nc" for "table.nc". Without a shard the path itself.
 std::filesystem::path shard_path(const std::filesystem::path& path, const Shard& shard);
 
-/// The entries of a shard: a part of the values of theta. If these are too few, wavelength, n and k are cut too, so
-/// that entries that share work stay together. Errors: InputError for a number out of range, or where the axes cannot
-/// be cut into so many parts.
+/// The entries of a shard, which has a part of the values of theta. If theta has too few values, the axes material,
+/// band, wavelength, temperature, n and k are cut too. Sigma and q are never cut, so entries that share work stay
+/// together. Errors: InputError if the number is out of range or if the axes cannot be cut into so many parts.
 SceneEntries shard_entries(const SceneValues& scene, const Shard& shard);
 
-/// A scene's table, or a shard of it, as a file.
+/// A table of a scene, or one of its shards, to be written to a file.
 struct TableJob {
-  std::filesystem::path path;  ///< file that is written, with shard_path applied
+  std::filesystem::path path;  ///< file to write; shard_path() is already applied
   Shard shard;
   RunOptions options;
-  std::string evaluator;  ///< evaluator that the user asks for
+  std::string evaluator;  ///< name of the evaluator that the user chose
 };
 
-/// Computes the job's entries and writes them; a part is written while the next is computed.
-/// Errors: errors of Run and TableOutput. They, and Cancelled, say which parts are there already.
+/// Computes the entries of the job and writes them. A part is written while the next one is computed.
+/// Errors: errors of Run and TableOutput; Cancelled. The messages tell which parts are already on disk.
 RunOutcome write_table(const SceneValues& scene, const TableJob& job, const EvaluatorMaker& make_evaluator);
 
-/// True if the job's path already holds the undamaged table of its shard with this identity.
+/// True if the file of the job exists, is undamaged, and holds the table of its shard with the same identity.
 bool is_there(const SceneValues& scene, const TableJob& job);
 
-/// The complete set of a table's shards, which are opened one at a time.
+/// The complete set of the shards of a table. Only one shard is open at a time.
 class ShardSet {
  public:
-  /// Errors: InputError that names a shard that is missing, there twice, or of another table, and how that differs;
-  /// errors of TableReader.
+  /// Errors: InputError that names a missing shard, a duplicate shard, or a shard of another table and how this
+  /// differs; errors of TableReader.
   explicit ShardSet(const std::vector<std::string>& paths);
 
-  /// Joins the shards into one table. Returns its entries.
-  /// Errors: errors of the constructor, because another file may have replaced a shard; errors of TableOutput.
+  /// Joins the shards into one table. Returns the number of its entries.
+  /// Errors: errors of the constructor, because a shard may have been replaced since; errors of TableOutput.
   std::size_t merge(const std::filesystem::path& path, const std::string& command_line) const;
 
  private:
   void begin(const TableReader& first, const std::string& path);
-  /// The number of an open shard that belongs to the set.
+  /// The number of an open shard. Throws if the shard does not belong to the set.
   std::size_t checked_number(const TableReader& reader, const std::string& path) const;
 
   SceneValues scene_;
-  TableLayout layout_;  ///< with the first shard's attributes
+  TableLayout layout_;  ///< has the attributes of the first shard
   std::size_t count_ = 0;
-  std::map<std::size_t, std::string> paths_;  ///< by number
+  std::map<std::size_t, std::string> paths_;  ///< paths of the shards by their numbers
 };
 
 }  // namespace dolp

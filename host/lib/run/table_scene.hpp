@@ -1,4 +1,4 @@
-// The attributes of a table that hold its scene and its optical data, and the scene that follows from them.
+// The attributes of a table that hold its scene and its optical data, and how to get the scene back from them.
 #pragma once
 
 #include <optional>
@@ -10,62 +10,64 @@
 
 namespace dolp {
 
-/// The attribute "scene_overrides" of a table: one setting a line, KEY=VALUE. A setting whose value contains line ends
-/// stays whole, because only a scene key begins a new one.
+/// The attribute "scene_overrides" of a table: one setting KEY=VALUE per line. A value may contain line ends: a new
+/// setting begins only at a line that starts with a key of a scene.
 std::string settings_text(const std::vector<Setting>& settings);
 std::vector<Setting> settings_of(const std::string& text);
 
-/// The attribute "scene_hash": FNV-1a, 64 bits, over the scene's text and settings. It only tells whether two tables
-/// come from one scene.
+/// The attribute "scene_hash": the 64-bit FNV-1a hash of the scene's text and settings. It only tells whether two
+/// tables have the same scene.
 std::string scene_hash(const SceneValues& scene);
-std::uint64_t scene_seed(const SceneValues& scene);  ///< the number itself
+std::uint64_t scene_seed(const SceneValues& scene);  ///< the hash as a number
 
-/// Refuses a file that is not there, or is of a format that does not hold its scene. Errors: InputError.
+/// Refuses a file that does not exist or whose format does not hold the scene. Errors: InputError.
 void check_may_hold_scene(const std::string& path);
 
 /// Reads a table file that holds its scene. Errors: errors of check_may_hold_scene and read_table.
 TableValues load_table(const std::string& path);
 
-/// The sources of the n, k and E0 that a scene names.
+/// Where table_scene() gets the data that a scene names, such as n, k and E0.
 enum class NamedData {
-  kOfTable,  ///< only the table; no file is opened
-  kOfFiles,  ///< what the names stand for now: files are looked for beside the scene as the table's attribute
-             ///< "scene_path" has it, from the folder where the program runs
+  kOfTable,  ///< from the table; no file is opened
+  /// From the files that the scene names. Relative names begin at the folder of "scene_path", the attribute of the
+  /// table with the path of the scene file.
+  kOfFiles,
 };
 
-/// The scene of a table, whose settings are applied.
+/// The scene of a table, with its settings applied.
 ///
-/// Errors: InputError that begins with `name`: no scene in the table, a scene that was changed after the table was
-/// made, or a scene that the reader refuses.
+/// Errors: InputError that begins with `name` if the table has no scene, if the scene was changed after the table was
+/// made, or if the reader refuses the scene.
 SceneValues table_scene(const TableHead& table, const std::string& name, NamedData named_data = NamedData::kOfTable);
 
-/// The scene's position of a value on an axis with labels, by its label.
-/// Errors: InputError that begins with `name` for a label that the scene lacks.
+/// Converts a value of the table on an axis with labels to the position of its label in the scene.
+/// Errors: InputError that begins with `name` if the scene lacks the label.
 double scene_position(const TableHead& table, Axis axis, double value, const SceneValues& scene,
                       const std::string& name);
 
-/// Turns the table's values on axes with labels into the scene's positions, which a part of a table numbers otherwise.
-/// Errors: InputError that begins with `name` for a label that the scene lacks.
+/// Converts the values of the table on axes with labels to positions in the scene's labels. A part of a table may
+/// number its labels differently.
+/// Errors: InputError that begins with `name` if the scene lacks a label.
 void use_scene_labels(TableHead& table, const SceneValues& scene, const std::string& name);
 
-/// n and k of materials: CSV of number (from 1), quantity (name, n, k or formula), wavelength_um, value. Empty without
-/// materials.
+/// The n and k of materials as CSV. Columns: number (from 1), quantity (name, n, k or formula), wavelength_um, value.
+/// Empty if there are no materials.
 std::string materials_text(const std::vector<const Material*>& materials, bool has_wavelength_axis);
 
-/// materials_text of the films of a coating, and of the grid's materials.
+/// materials_text() of the films of a coating, and of the materials on the grid's axis.
 std::string coating_text(const Surface& surface, bool has_wavelength_axis);
 std::string axis_materials_text(const SceneModel& scene, bool has_wavelength_axis);
 
-/// The materials of such a text. Errors: InputError that begins with `name`.
+/// Reads a text that materials_text() wrote. Errors: InputError that begins with `name`.
 std::vector<std::optional<Material>> parse_materials(const std::string& text, const std::string& name);
 
-/// Measured reflectances: CSV as read_reflectance_file takes it. Empty without them.
+/// The measured reflectances as CSV in the format of read_reflectance_file(). Empty if there are none.
 std::string reflectance_text(const Surface& surface);
 
-/// Number and coefficients of a dispersion formula.
+/// The number and the coefficients of a dispersion formula, separated by spaces.
 std::string formula_text(const Dispersion& formula);
 
-/// Errors: InputError that begins with `where`.
+/// Reads a text that formula_text() wrote. Errors: InputError that begins with `where`.
 Dispersion parse_formula(const std::string& text, const std::string& where);
 
 }  // namespace dolp

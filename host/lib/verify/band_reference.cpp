@@ -17,14 +17,16 @@ using Kronrod = boost::math::quadrature::gauss_kronrod<double, 15>;
 using Gauss = boost::math::quadrature::gauss<double, 7>;
 
 constexpr std::size_t kFirstIntervals = 4;
-constexpr std::size_t kMostIntervals = 32;  // intervals of a point: 480 wavelengths
-constexpr double kQuadratureShare = 0.01;   // where a quadrature ends
+constexpr std::size_t kMostIntervals = 32;  // largest number of intervals of a point: 480 wavelengths
+constexpr double kQuadratureShare = 0.01;   // a quadrature ends at this share of the tolerance
 
-// Results of a wavelength that are integrated without a weight, and with the weight of the mean reflectance.
+// Results that are integrated over wavelength: kIntegrated without a weight, kMeans with the weight of the mean
+// reflectance.
 constexpr std::array kIntegrated = {kStokesI, kStokesQ, kStokesU, kStokesV};
 constexpr std::array kMeans = {kRhoI, kRhoQ, kEmissivityS, kEmissivityP};
 
-/// Integrals of the radiation, the weight, the means times the weight, and the errors of DOLP and rho.
+/// Positions in the array of integrals. It has the integrals of the radiation, of the weight, of the means times the
+/// weight, and of the errors of DOLP and rho.
 constexpr std::size_t kWeight = kIntegrated.size();
 constexpr std::size_t kDolpError = kWeight + 1 + kMeans.size();
 constexpr std::size_t kRhoError = kDolpError + 1;
@@ -37,14 +39,14 @@ struct BandPiece {
   Integrals error = Integrals::Zero();
 };
 
-/// The quadrature of one point.
+/// The quadrature over the band at one point.
 struct PointIntegral {
   SceneEntry entry;
-  SceneVariant variant;        ///< without a wavelength
-  std::vector<double> breaks;  ///< wavelengths in um at which its spectrum is not smooth
+  SceneVariant variant;        ///< variant of the entry, which has no wavelength
+  std::vector<double> breaks;  ///< wavelengths in um at which the integrand is not smooth
   std::vector<BandPiece> intervals;
   std::size_t first_new = 0;  ///< first interval without a value
-  PointResult last;           ///< at some wavelength
+  PointResult last;           ///< result at one of the wavelengths
 };
 
 std::vector<double> band_breaks_um(const SceneModel& scene) {
@@ -74,7 +76,7 @@ Integrals integrand(const PointResult& at, double weight) {
   for (const Quantity quantity : kIntegrated) value[i++] = at[quantity];
   value[i++] = weight;
   for (const Quantity quantity : kMeans) value[i++] = std::isnan(at[quantity]) ? 0.0 : weight * at[quantity];
-  // Beside a wavelength at which nothing is emitted the estimate has no bound, and the error is less than the
+  // Near a wavelength at which nothing is emitted, the error estimate is infinite. The error is then at most the
   // radiation.
   const double error = std::abs(at[kStokesI]) * at[kErrorEstimate];
   value[i++] = std::isfinite(error) ? error : std::abs(at[kStokesI]);
@@ -82,7 +84,7 @@ Integrals integrand(const PointResult& at, double weight) {
   return value;
 }
 
-/// The wavelengths of an interval, ascending, as shares of its half width from its middle, with both weights.
+/// A node of the quadrature: its position in the interval (-1 to 1), and its weights in the rules of Kronrod and Gauss.
 struct KronrodNode {
   double offset;
   double kronrod;
@@ -104,13 +106,13 @@ Integrals total_of(const std::vector<BandPiece>& intervals, Integrals BandPiece:
   return sum;
 }
 
-/// The error that a quadrature makes of DOLP and of the means.
+/// The error that the quadrature adds to DOLP or to the means, whichever is larger.
 double quadrature_error(const Integrals& value, const Integrals& error) {
   const double of_means = error.segment(kWeight + 1, 2).sum() / std::abs(value[kWeight + 1]);
   return std::max(error.head(kWeight).sum() / std::abs(value[0]), of_means + error[kWeight] / value[kWeight]);
 }
 
-/// Splits the worst interval, at a row in it if there is one.
+/// Splits the interval with the largest error: at a wavelength of `breaks` in it, or in the middle if it has none.
 void split_worst(PointIntegral& point) {
   const Integrals value = total_of(point.intervals, &BandPiece::value);
   const auto worst = std::ranges::max_element(
@@ -125,7 +127,7 @@ void split_worst(PointIntegral& point) {
   point.intervals.push_back({at_um, old.to_um});
 }
 
-/// Integrates the new intervals of some points together.
+/// Integrates the new intervals of several points in one batch.
 void integrate_new(const SceneValues& scene, std::vector<PointIntegral*>& points, ModelEvaluator& evaluator,
                    const Progress& progress) {
   static const std::vector<KronrodNode> kNodes = kronrod_nodes();

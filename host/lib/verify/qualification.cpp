@@ -57,26 +57,26 @@ StoredCase parse_case(const CsvReader& row) {
   return stored;
 }
 
-// Rounding of r / cos(theta) and of the quotients of stored values.
+// Bound of the relative rounding error of r / cos(theta) and of other quotients of stored values.
 constexpr double kQuotientRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
-/// Expected rho and DOLP, from the stored moments of a case.
+/// The rho and DOLP that follow from the stored moments of a case.
 struct Expected {
   double rho_i = 0.0;
   double rho_q = 0.0;
-  double rho_error = 0.0;  ///< error of both, over rho_I
+  double rho_error = 0.0;  ///< bound of the errors of both, relative to rho_I
   double dolp = 0.0;
   double dolp_error = 0.0;
   bool has_rho = true;
 };
 
-/// error / value, and 0 where the error is 0.
+/// The quotient error / value; 0 if the error is 0.
 double relative(double error, double value) {
   if (error == 0.0) return 0.0;
   return value > 0.0 ? error / value : kInfinity;
 }
 
-/// A quotient of two stored values that each have an error.
+/// Error bound of a quotient of two stored values that both have an error.
 double quotient_error(double above_error, double quotient, double below, double below_error) {
   const double margin = std::abs(below) - below_error;
   return margin > 0.0
@@ -103,7 +103,7 @@ Expected expected_of(const StoredCase& stored) {
   return expected;
 }
 
-/// The fault of a checked error; empty where it has none.
+/// What is wrong with a checked error, in words; empty if nothing is wrong.
 std::string complaint_about(const char* quantity, const ErrorCheck& check, bool is_promised, double tolerance) {
   if (std::isnan(check.error)) return fmt::format("{} is not a number", quantity);
   if (std::isnan(check.estimate)) return fmt::format("{} has no estimate", quantity);
@@ -123,7 +123,7 @@ CaseOutcome outcome_of(const StoredCase& stored, const PointResult& result, doub
   const bool meets_rho = (result.status & kRhoToleranceNotMet) == 0;
   outcome.dolp = {std::abs(result[Quantity::kDolp] - expected.dolp), result[Quantity::kErrorEstimate],
                   expected.dolp_error};
-  // At I = 0 neither side has a DOLP.
+  // At I = 0 neither the result nor the reference has a DOLP.
   const bool has_dolp = std::isfinite(expected.dolp) && std::isfinite(expected.dolp_error);
   if (!has_dolp) outcome.dolp = {0.0, kInfinity, 0.0};
   outcome.complaint = complaint_about("dolp", outcome.dolp, meets_dolp && outcome.promises_dolp, tolerance);

@@ -1,4 +1,5 @@
-// Stored reference moments, and how an evaluator compares with them, through the radiometry, as `dolp eval` computes.
+// Stored reference moments, and the comparison of an evaluator with them. The comparison includes the radiometry, as
+// `dolp eval` computes it.
 #pragma once
 
 #include <cstdint>
@@ -13,62 +14,64 @@
 
 namespace dolp {
 
-/// One point with its reference moments, k_s = 1, no diffuse part.
+/// One point with its reference moments, for k_s = 1 without a diffuse part.
 struct StoredCase {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
   double theta_deg = 0.0;
   SlopeShape shape;
   OpticalConstants index;
-  Moments moments;     ///< times cos(theta), with bounds of the reference's own errors
-  std::string name;    ///< name of the case; each distribution and masking has a case of that name
+  Moments moments;  ///< moments times cos(theta), with bounds of their errors
+  /// Name of the case. Each distribution with each masking has a case of this name.
+  std::string name;
   std::string origin;  ///< where the values come from
 };
 
-/// The model's hard cases: ends of every range, coinciding split lines, indices that reflect nothing or everything; all
-/// maskings, both distributions.
-/// Accuracy: |d r_i| and |d r_q| at most 1.5e-13 r_i, for N = 1.0001, which reflects 3e-9, 3e-11 r_i
-///   (test HardCases_References_AreAsGoodAsStated).
+/// The hard cases of the model: ends of every range, coinciding split lines, indices that reflect nothing or
+/// everything. They have all maskings and both distributions.
+/// Accuracy: the errors of r_i and r_q are at most 1.5e-13 r_i. For N = 1.0001, whose reflectance is 3e-9, they are at
+/// most 3e-11 r_i (test HardCases_References_AreAsGoodAsStated).
 std::vector<StoredCase> hard_cases();
 
-/// Cases from the text of a file that dolp-reference-values wrote; lines that begin with # are left out.
+/// Reads cases from the text of a file that dolp-reference-values wrote. Lines that begin with # are comments.
 /// Errors: InputError that names file, line and column.
 std::vector<StoredCase> parse_stored_cases(std::string_view text, const std::string& name);
 
-/// Cases from a file of that form. Errors: InputError.
+/// Reads cases from such a file. Errors: InputError.
 std::vector<StoredCase> read_stored_cases(const std::string& path);
 
-/// The error of one result, and the bound that the result states.
+/// The true error of one result, and the bound that the result states.
 struct ErrorCheck {
   double error = 0.0;      ///< distance to the reference
-  double estimate = 0.0;   ///< the stated bound; infinite where nothing is stated
-  double reference = 0.0;  ///< bound of the reference's own error, in the same units
-  /// error / estimate, after subtracting the reference's own error: above 1 the estimate is wrong.
+  double estimate = 0.0;   ///< stated bound; infinite if the result states none
+  double reference = 0.0;  ///< bound of the error of the reference, in the unit of `error`
+  /// Ratio of the error, minus the error of the reference, to the estimate. Above 1 the estimate is wrong.
   double ratio() const;
   bool is_within_estimate() const { return ratio() <= 1.0; }
-  /// True where the error certainly exceeds a tolerance.
+  /// True if the error certainly exceeds a tolerance.
   bool is_above(double tolerance) const { return error > tolerance + reference; }
 };
 
-/// The result of one case.
+/// The result of an evaluator for one case.
 struct CaseOutcome {
   StoredCase stored;
-  ErrorCheck rho;              ///< max(|d rho_I|, |d rho_Q|) / rho_I
-  ErrorCheck dolp;             ///< |d DOLP|
-  bool promises_dolp = false;  ///< the tolerance is promised for DOLP: status has no bit 1, 4 or 8
+  ErrorCheck rho;              ///< largest error of rho_I and rho_Q, relative to rho_I
+  ErrorCheck dolp;             ///< absolute error of DOLP
+  bool promises_dolp = false;  ///< the status has none of the bits 1, 4 and 8
   std::uint32_t status = 0;
-  std::string complaint;  ///< empty when the case is right: errors below estimates, tolerances met or status 2 or 16
+  /// Empty if all is right: the errors are below the estimates, and the tolerances are met or the status has 2 or 16.
+  std::string complaint;
   double worst_ratio() const;
-  bool misses_tolerance() const { return (status & kAnyToleranceNotMet) != 0; }  ///< and states it
+  bool misses_tolerance() const { return (status & kAnyToleranceNotMet) != 0; }  ///< according to its status
 };
 
-/// The scene of the cases of one distribution and masking: a surface that only emits, at 300 K and 10.6 um, so that
+/// The scene for the cases of one distribution and masking: a surface that only emits, at 300 K and 10.6 um, so that
 /// DOLP = |rho_Q| / (1 - rho_I).
 SceneValues emission_scene(Distribution distribution, Masking masking, double tolerance);
 
-/// Evaluates all cases and compares each with its reference, in the order of `cases`.
+/// Evaluates all cases, and compares each with its reference. The result has the order of `cases`.
 ///
-/// At 90 degrees, rho has no finite value with masking none and integral; DOLP is compared with |r_Q / r_I|.
+/// At 90 degrees, rho has no finite value with masking none and integral; there DOLP is compared with |r_Q / r_I|.
 /// Domain: cases at 90 degrees have one of these maskings and finite moments.
 /// Errors: errors of evaluate_scene.
 std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, ModelEvaluator& evaluator,

@@ -21,10 +21,11 @@
 namespace dolp {
 namespace {
 
-// The reference is a hundred times more accurate than the table where it can be, and has at least this accuracy.
+// The relative tolerance of the reference is a hundredth of the tolerance of the table, but not below this.
 constexpr double kReferenceTolerance = 1e-11;
 
-/// The relation of a quantity's bound to the two estimates.
+/// How the error bound of a quantity follows from the two estimates that a table stores: error_estimate, which is for
+/// DOLP, and rho_error_estimate.
 enum class Bound { kDolp, kReflectance, kPolarisedRadiation, kRadiation, kEmissivity, kAlbedo };
 
 struct Compared {
@@ -47,11 +48,11 @@ constexpr std::array<Compared, 13> kCompared{{
     {Quantity::kEmissivityP, Bound::kEmissivity},
 }};
 
-/// Where files state no error of a quantity, its error may be the largest stated one times this, relative to the terms
-/// that it is a sum of.
+/// Tables state no error for some quantities. Such an error may be this times the largest stated one, relative to the
+/// terms that add up to the quantity.
 constexpr double kUnstatedOverStated = 10.0;
 
-/// Properties of a variant that bounds depend on.
+/// Properties of a variant on which bounds depend.
 struct BoundTerms {
   double tolerance = 0.0;
   double radiation = 0.0;  ///< emitted plus reflected radiation with rho = 1, in the units of Stokes I
@@ -66,14 +67,15 @@ BoundTerms bound_terms(const SceneModel& scene) {
   return terms;
 }
 
-/// The terms of each variant.
+/// The properties of each variant on which bounds depend.
 std::vector<BoundTerms> bound_terms(const SceneValues& scene, const std::vector<SceneVariant>& variants) {
   std::vector<BoundTerms> terms;
   for (const SceneVariant& variant : variants) terms.push_back(bound_terms(with_variant(scene, variant)));
   return terms;
 }
 
-/// The bound in the quantity's own units, from the estimates of one side and the magnitudes of the reference.
+/// The error bound of a quantity in its own unit, from the two estimates of the table or of the reference, and from the
+/// values of the reference.
 double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const PointResult& reference,
                 const BoundTerms& terms) {
   const double radiation = dolp_estimate * std::abs(reference[Quantity::kStokesI]);
@@ -87,7 +89,7 @@ double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const Po
     case Bound::kPolarisedRadiation:
       return radiation;
     case Bound::kRadiation:
-      // Toward DOLP = 0 its estimate does not bound the error of I.
+      // Near DOLP = 0, its estimate does not bound the error of I.
       return std::min(dolp > 0.0 ? radiation / dolp : kInfinity, unstated * terms.radiation);
     case Bound::kEmissivity:
       return unstated;
@@ -97,8 +99,8 @@ double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const Po
   return kInfinity;
 }
 
-/// The fault of a value; empty where it has none. `allowed` is the error that the tolerance allows; infinite when
-/// nothing is promised.
+/// What is wrong with a value, in words; empty if nothing is wrong. `allowed`: the error that the tolerance allows;
+/// infinite if no tolerance is promised.
 std::string complaint_about(const CheckedValue& value, double allowed) {
   if (std::isnan(value.stored) && std::isnan(value.reference)) return {};
   if (std::isnan(value.stored)) return "is NaN in the table";
@@ -109,7 +111,7 @@ std::string complaint_about(const CheckedValue& value, double allowed) {
   return {};
 }
 
-/// The estimate of an entry; a table without estimates states nothing.
+/// The estimate of an entry; infinite if the table has no estimates.
 double estimate_at(const std::vector<double>& estimates, std::size_t i) {
   return estimates.empty() ? kInfinity : estimates[i];
 }
@@ -139,7 +141,7 @@ CheckedValue compare(const TableSample& sample, const Compared& compared, std::s
   value.stated = bound_of(compared.bound, dolp_estimate, rho_estimate, reference, terms);
   value.reference_error = bound_of(compared.bound, reference[Quantity::kErrorEstimate],
                                    reference[Quantity::kRhoErrorEstimate], reference, {0.0, terms.radiation});
-  // Where neither side has an estimate, as of an intensity that overflows, nothing is stated.
+  // If neither side has an estimate, for example because an intensity overflows, no bound is stated.
   if (std::isnan(value.stated) && !std::isfinite(value.reference_error))
     value.stated = value.reference_error = kInfinity;
   const std::uint32_t status = table.status.empty() ? kAnyToleranceNotMet : table.status[i];
@@ -166,7 +168,7 @@ bool has_rho(const TableValues& table) {
   return table.has(Quantity::kRhoErrorEstimate) && (table.has(Quantity::kRhoI) || table.has(Quantity::kRhoQ));
 }
 
-/// A request for the sample's entries.
+/// A request for the moments of the entries of the sample.
 MomentsRequest request_of(const TableSample& sample, const Surface& surface) {
   MomentsRequest request = response_request(surface);
   const OpticalConstants index = request.optics.front().index;
@@ -206,8 +208,8 @@ std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckO
     for (std::size_t i = 0; i < entries; ++i) chosen.insert(i);
     return {chosen.begin(), chosen.end()};
   }
-  // Floyd's sampling: R. Floyd, J. Bentley, Programming Pearls, Comm. ACM 30, 1987. The standard library's own may
-  // differ between libraries. The remainder of 2^64 by at most 2^24 entries is even to 1e-12.
+  // Floyd's sampling: R. Floyd, J. Bentley, Programming Pearls, Comm. ACM 30, 1987. std::sample may give other entries
+  // with other standard libraries. The remainder of a 64-bit number by at most 2^24 entries is uniform to 1e-12.
   std::mt19937_64 engine(options.seed);
   for (std::size_t last = entries - options.samples; last < entries; ++last) {
     const std::size_t candidate = engine() % (last + 1);
@@ -273,7 +275,7 @@ TableCheck check_responses(const TableSample& sample, const SceneValues& scene, 
     QuantityCheck& of_variable = check.quantities.emplace_back();
     of_variable.name = described.name;
     for (std::size_t i = 0; i < request.size(); ++i) {
-      if (std::isnan(stated[i]) && std::isnan(reference_error[i])) continue;  // there is no reflectance
+      if (std::isnan(stated[i]) && std::isnan(reference_error[i])) continue;  // rho has no value here
       const auto of_entry = [&](const std::vector<double>& weights) {
         return std::span(weights).subspan(i * table.beta_deg.size(), table.beta_deg.size());
       };

@@ -1,4 +1,4 @@
-// Recomputes entries of tables with the independent reference, and compares them with the values and errors stated.
+// Computes entries of tables again with the independent reference, and compares the stored values and errors with it.
 #pragma once
 
 #include <cstddef>
@@ -21,17 +21,17 @@ struct AxisValue {
   std::string label;
 };
 
-/// One stored value beside the reference's.
+/// A stored value and the value of the reference.
 struct CheckedValue {
   std::string quantity;
-  std::vector<AxisValue> position;  ///< on the table's axes
+  std::vector<AxisValue> position;  ///< value of each axis of the table
   double stored = 0.0;
   double reference = 0.0;
-  double stated = 0.0;           ///< the table's bound of the error, in the units of the value
-  double reference_error = 0.0;  ///< bound of the reference's own error
-  std::string complaint;         ///< empty when it is right
+  double stated = 0.0;           ///< error bound that the table states, in the unit of the value
+  double reference_error = 0.0;  ///< error bound of the reference, in the unit of the value
+  std::string complaint;         ///< what is wrong; empty if nothing is wrong
   double error() const;
-  /// error over the two bounds together; 0 where nothing is stated.
+  /// Ratio of the error to the sum of both bounds; 0 if no bound is stated.
   double ratio() const;
 };
 
@@ -40,7 +40,7 @@ struct QuantityCheck {
   std::string name;
   std::size_t compared = 0;
   std::size_t unstated = 0;  ///< compared values for which the table states no bound
-  CheckedValue worst;        ///< the value of the largest ratio
+  CheckedValue worst;        ///< value with the largest ratio()
 };
 
 struct TableCheck {
@@ -53,43 +53,44 @@ struct TableCheck {
   bool passed() const { return failures.empty(); }
 };
 
-/// The values of the axes at an entry of a table.
+/// The value of each axis at an entry of a table.
 std::vector<AxisValue> position_of(std::size_t entry, const TableHead& table);
 
-/// Positions of `samples` distinct entries out of `entries`, ascending. They depend only on the seed.
+/// Positions of `samples` different entries out of `entries`, in ascending order. They depend only on the seed.
 std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckOptions& options);
 
-/// Some entries of a table: its variables have one value for each of the ascending positions.
+/// Some entries of a table. The columns of `table` have one value per position; the positions are in ascending order.
 struct TableSample {
   TableValues table;
   std::vector<std::size_t> positions;
 };
 
-/// Compares the quantities of the sample that the table has (dolp, rho_i, rho_q, Stokes parameters) with
-/// ReferenceEvaluator through the radiometry of the table's scene, over a band with integrate_band.
+/// Compares the quantities of a sample that its table has with results of ReferenceEvaluator and of the radiometry of
+/// the table's scene; over a band with results of integrate_band.
 ///
-/// A value is wrong if its error exceeds the stated bound plus the reference's bound, if only one of both is a number,
-/// or if rho or DOLP misses the tolerance without the status for it. The bounds are rho_error_estimate rho_I for rho,
-/// error_estimate for DOLP, error_estimate |I| for Q, U and V, and error_estimate |I| / DOLP for I, which is infinite
-/// where DOLP vanishes.
-/// Not independent: closed forms of mirrors and limits, which come from the same code in every evaluator.
-/// Errors: InputError that begins with `name` for a table without anything to compare or with axes out of range;
-/// Cancelled when `progress` returns false.
+/// A value is wrong in three cases: its error exceeds the stated bound plus the bound of the reference; only one of
+/// both values is a number; rho or DOLP misses the tolerance without the status for it. The bound is rho_error_estimate
+/// rho_I for rho, error_estimate for DOLP, error_estimate |I| for Q, U and V, and error_estimate |I| / DOLP for I. For
+/// emissivities, for the albedo and for I near DOLP = 0, it is ten times the largest estimate, relative to the terms
+/// that add up to the value.
+/// Closed forms of mirrors and limits are not independent: every evaluator takes them from the same code.
+/// Errors: InputError that begins with `name` if the table has nothing to compare or has axes out of range; Cancelled
+/// if `progress` returns false.
 TableCheck check_table(const TableSample& sample, const SceneValues& scene, const std::string& name,
                        const Progress& progress);
 
-/// Compares all weights of a response table's sample with the weights of ReferenceEvaluator. They are wrong where they
-/// are farther apart, as response_distance measures it, than the table's response_error and the reference's own error
-/// together. Errors: InputError that begins with `name` for a table without response_error; Cancelled.
+/// Compares the weights of a sample of a response table with weights of ReferenceEvaluator. The weights of an entry are
+/// wrong if their response_distance() exceeds response_error of the table plus that of the reference.
+/// Errors: InputError that begins with `name` if the table has no response_error; Cancelled.
 TableCheck check_responses(const TableSample& sample, const SceneValues& scene, const std::string& name,
                            const Progress& progress);
 
-/// Results of a scene with a band at some points, without the spectral rule.
+/// Results at some points of a scene with a band, computed without the spectral rule.
 ///
-/// Method: for each point an adaptive Gauss-Kronrod quadrature over the results at single wavelengths. It begins at the
-/// rows of the material, the source and the sky, and takes at most kMostIntervals; the rest of its error is in the
-/// estimates. Only results that are not an integral over the wavelength (the bracket, a limit at 90 degrees) come from
-/// the spectral rule.
+/// Method: each point gets an adaptive Gauss-Kronrod quadrature over results at single wavelengths. Its first intervals
+/// begin and end at rows of the material, the source and the sky. A point has at most kMostIntervals intervals; the
+/// error that remains is part of the estimates. Only results that are no integral over the wavelength (the bracket, a
+/// limit at 90 degrees) come from the spectral rule.
 std::vector<PointResult> integrate_band(const SceneValues& scene, const SceneEntries& points, ModelEvaluator& evaluator,
                                         const Progress& progress);
 

@@ -34,7 +34,7 @@ std::size_t slurm_number(const char* variable) {
   return whole_number(text, variable);
 }
 
-/// The shard of "2/8"; for "auto" the shard that the Slurm array names.
+/// The shard of a text such as "2/8". "auto" is the shard of the running task of a Slurm array.
 Shard shard_of(const std::string& text) {
   if (text.empty()) return {};
   Shard shard;

@@ -12,8 +12,8 @@ namespace dolp::cli {
 
 /// The values of the command line. A missing option has an empty text.
 struct Options {
-  int (*run)(const Options&) = nullptr;  ///< the command; null without a command
-  std::string command_line;              ///< for the table's history
+  int (*run)(const Options&) = nullptr;  ///< function of the command; null if there is no command
+  std::string command_line;              ///< written into a table as its history
   std::string scene_path, points_path, table_path, output_path, measured_path, plot_path, screenshot_path;
   std::vector<std::string> overrides;  ///< KEY=VALUE of --set
   std::string tolerance, precision, device;
@@ -37,13 +37,13 @@ struct Options {
 /// Refuses to read two inputs from stdin. Errors: InputError.
 void check_one_stdin(const Options& options);
 
-/// All settings of the command line: --set first, then --tolerance and --precision. Errors: InputError.
+/// All settings of the command line: those of --set first, then --tolerance and --precision. Errors: InputError.
 std::vector<Setting> all_settings(const Options& options);
 
 /// The allowed values of a scene key: "a number in [0, 10]".
 std::string allowed(const std::string& key);
 
-/// The scene with all_settings and then `more`. Prints each remark as a warning on stderr.
+/// Reads the scene, and applies all_settings() and then `more`. Prints each remark as a warning on stderr.
 Scene load_scene(const Options& options, const std::vector<Setting>& more = {});
 
 /// The evaluator of --evaluator and --device. Errors: InputError if --device is given for an evaluator without devices.
@@ -56,7 +56,7 @@ void print(const Report& report, const Options& options);
 int finish(const Report& report, const Options& options);
 
 /// The commands and their options, for parsing, help, completions and the manual page. Parsing fills `options`, which
-/// must outlive it.
+/// must outlive the result.
 std::unique_ptr<CLI::App> command_line(Options& options);
 
 // Each command returns the exit status of a run without an error (terminal/exit_status.hpp).
@@ -66,7 +66,8 @@ int run_merge(const Options& options);
 int run_eval(const Options& options);
 int run_mueller(const Options& options);
 int run_plan(const Options& options);
-/// Returns kExitAccuracy if a stated error is too small, or if a tolerance is missed without its status.
+/// Returns kExitAccuracy if a true error exceeds its stated bound, or if an entry misses its tolerance and its status
+/// does not tell so.
 int run_verify(const Options& options);
 int run_lookup(const Options& options);
 /// Returns kExitAccuracy if no minimum is found.

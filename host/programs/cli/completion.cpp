@@ -58,7 +58,7 @@ Words names_of(const CLI::Option& option) {
 Words settings_for(const std::string& option) {
   Words all;
   for (const Key& key : dolp::keys()) {
-    if (key.layer > 1) continue;  // later layers have the keys of the first
+    if (key.layer > 1) continue;  // further films have the keys of the first
     if (option == "--vary" && key.type != Key::Type::kNumber) continue;
     if (option == "--compare" && key.words.empty()) continue;
     if (key.words.empty() || option == "--compare") {
@@ -70,7 +70,7 @@ Words settings_for(const std::string& option) {
   return all;
 }
 
-/// The allowed words of an option's value; empty if any value is allowed.
+/// The words that an option allows as its value; empty if it allows any value.
 Words choices_of(const CLI::Option& option) {
   const std::string name = option.get_name();
   if (name == "--set" || name == "--vary" || name == "--compare") return settings_for(name);
@@ -86,8 +86,8 @@ Words choices_of(const CLI::Option& option) {
   return words;
 }
 
-/// The words that complete a line, each with a tab and its description. `line` has the words after the program's name;
-/// the last one, after a colon, is incomplete.
+/// The words that may complete a command line, one per line, each with a tab and its description. `line` has the words
+/// after the program's name. The last word begins with a colon; it is what the user has typed of the incomplete word.
 std::string completing_words(const CLI::App& app, const Words& line) {
   const std::string current = line.empty() ? "" : line.back().substr(1);
   std::string found;
@@ -118,7 +118,7 @@ std::string replaced(std::string text, std::string_view what, std::string_view b
   return text;
 }
 
-/// Text with the characters escaped that roff would interpret.
+/// Escapes the characters of a text that roff would interpret.
 std::string roff(const std::string& text) {
   std::string safe = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
   if (safe.starts_with('.') || safe.starts_with('\'')) safe.insert(0, "\\&");

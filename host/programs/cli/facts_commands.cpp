@@ -32,7 +32,7 @@ void add_key(Report& report, Json& list, const Key& key) {
                   {"default", key.fallback}});
 }
 
-/// The nearest key, with or without its table, if at most half of its letters differ; otherwise empty.
+/// The key that is most similar to `wanted`, with or without its table. Empty if more than half of the letters differ.
 std::string near_key(const std::string& wanted, const std::vector<std::string>& names) {
   const auto distance = [&](const std::string& name) {
     return std::min(edit_distance(wanted, name), edit_distance(wanted, name.substr(name.find('.') + 1)));
@@ -65,7 +65,7 @@ std::vector<double> wavelengths_of(const std::string& text) {
   return wavelengths;
 }
 
-/// Prints n and k of one material as they are in a scene.
+/// Prints n and k of one material, as a scene with this material has them.
 int show_material(const Options& options) {
   const std::vector<double> wavelengths = wavelengths_of(options.wavelength_um);
   const auto [name, from_um, to_um, source] = material(options.material);
@@ -123,7 +123,7 @@ int run_keys(const Options& options) {
   std::vector<std::string> names;
   for (const Key& key : dolp::keys()) {
     names.push_back(key.key);
-    const bool is_further_layer = key.layer > 1;  // later layers have the keys of the first
+    const bool is_further_layer = key.layer > 1;  // further films have the keys of the first
     const bool is_wanted = (options.key.empty() && !is_further_layer) || key.key == options.key ||
                            (!options.key.empty() && key.key.starts_with(options.key + "."));
     if (is_wanted) add_key(report, list, key);

@@ -25,7 +25,8 @@
 namespace dolp::cli {
 namespace {
 
-/// A hint at the option that was probably meant, or at --set for a key of a scene; empty for other words.
+/// A hint for an unknown option: a known option that differs by at most two letters, or --set for a key of a scene.
+/// Empty if there is no hint.
 std::string option_hint(const CLI::App& command, const std::string& option) {
   constexpr std::size_t kMostMistakes = 2;
   const std::string given = option.substr(0, option.find('='));

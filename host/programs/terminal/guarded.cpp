@@ -16,14 +16,14 @@
 namespace dolp {
 namespace {
 
-/// True if the cause is lack of memory. A thread that gets no stack reports such an error.
+/// True if the cause is lack of memory. std::thread throws such an error if there is no memory for the thread's stack.
 bool is_of_memory(const std::system_error& error) {
   return error.code() == std::errc::not_enough_memory || error.code() == std::errc::resource_unavailable_try_again;
 }
 
 }  // namespace
 
-// fmt::print would throw if stderr cannot be written.
+// Uses fputs, because fmt::print throws if stderr cannot be written.
 int fail(const std::string& program, int status, const std::string& message) {
   std::fputs((program + ": " + printable_line(message) + "\n").c_str(), stderr);
   return status;

@@ -1,4 +1,4 @@
-// Converts errors to exit statuses. Nothing else does.
+// Converts errors to exit statuses. No other code does this.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// Progress on stderr, and the way Ctrl-C ends a run.
+// Shows progress on stderr, and lets Ctrl-C end a run.
 #pragma once
 
 #include <chrono>
@@ -19,11 +19,12 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Draws the bar; returns false after an interrupt. The callback refers to this object, whose destructor ends the
-  /// line. So pass a temporary object's callback: it lives until the call ends.
+  /// Returns a function that draws the bar, and that returns false after an interrupt. The function refers to this
+  /// object. The destructor erases the bar. So write run(..., ProgressBar(quiet).callback()): the object lives until
+  /// the run ends.
   Progress callback();
 
-  /// Restarts the bar, which then counts these items instead of entries.
+  /// Restarts the bar. It then counts `what`, a plural, instead of entries.
   void count(const std::string& what);
 
  private:

@@ -1,4 +1,4 @@
-// The library as its users see it: this file includes only its public header.
+// The library as its users see it: this file includes only the public header.
 #include <gtest/gtest.h>
 #include <dolp/dolp.hpp>
 
@@ -188,7 +188,7 @@ TEST_F(Library, Scene_SaysItsValues) {
 TEST_F(Library, EveryKeyWithADefault_HasIt) {
   for (const dolp::Key& key : dolp::keys()) {
     if (key.fallback.empty() || key.fallback == "required" || key.key.starts_with("grid.")) continue;
-    if (key.layer > 0) continue;  // the scene has no coating
+    if (key.layer > 0) continue;  // the scene has no films
     const dolp::Scene scene = scene_.with({{"source.irradiance", 1},
                                            {"path.radiance", 1},
                                            {"surface.masking", "integral"},
@@ -305,7 +305,7 @@ TEST_F(Library, AProgressThatReturnsFalse_Cancels_AndLeavesNoFile) {
   EXPECT_TRUE(std::filesystem::is_empty(at("")));
 }
 
-// An existing file is read in parts; here the second part is never read.
+// A run reads an existing shard in parts. It is cancelled before the first or before the second part.
 TEST_F(Library, Cancelled_WhileAKeptShardIsRead_IsHonoured) {
   const dolp::Scene scene =
       scene_.with({{"surface.masking", "none"}, {"surface.distribution", "gaussian"}, {"accuracy.tolerance", 1e-2}})
@@ -322,14 +322,14 @@ TEST_F(Library, Cancelled_WhileAKeptShardIsRead_IsHonoured) {
   EXPECT_EQ(std::filesystem::last_write_time(shard), written);
 }
 
-// A moved-from object throws an exception or has its old content.
+// After a move an object has its old value, or its members throw an exception.
 TEST_F(Library, MovedFromObjects_KeepTheirValueOrSayWhatTheyAre) {
   dolp::Scene scene = scene_;
-  const dolp::Scene taken_scene = std::move(scene);  // NOLINT(performance-move-const-arg): likewise
+  const dolp::Scene taken_scene = std::move(scene);  // NOLINT(performance-move-const-arg): that is the test
   EXPECT_EQ(scene.text(), taken_scene.text());       // NOLINT(bugprone-use-after-move): that is the test
   EXPECT_EQ(scene.with("surface.q", 4.0).number("surface.q"), 4.0);
   dolp::Table table = evaluator_.table(scene_);
-  const dolp::Table taken_table = std::move(table);           // NOLINT(performance-move-const-arg): likewise
+  const dolp::Table taken_table = std::move(table);           // NOLINT(performance-move-const-arg): that is the test
   EXPECT_EQ(table.values().axes, taken_table.values().axes);  // NOLINT(bugprone-use-after-move): that is the test
   const std::vector<double> theta = {30}, sigma = {0.1}, q = {2};
   const std::vector<dolp::Column> points = {{"theta_deg", theta}, {"sigma", sigma}, {"q", q}};
@@ -398,7 +398,7 @@ TEST_F(Library, EvaluatorInItsOwnCallback_IsAnInputError_AndServesAgain) {
       [&] { evaluator_.write_table(scene_, at("t.nc"), options); },
       [&] {
         evaluator_.write_table(scene_, at("t.nc"), options, {1, 2});
-      },  // one that exists already
+      },  // this shard exists already
       [&] { evaluator_.write_points(scene_, at("points.csv"), at("results.csv"), options); },
       [&] { evaluator_.write_mueller(scene_, at("pairs.csv"), at("matrices.csv"), options); },
       [&] { evaluator_.fit(scene_, {data}, fit); }};
@@ -461,7 +461,7 @@ TEST_F(Library, TableOfContentsThatDoNotFit_IsAnInputError) {
   refuses([](dolp::TableValues& table) { table.attributes.push_back(table.attributes.front()); });
 }
 
-// A table cut at one value of k, with that value lost, must not count as a table at the scene's k.
+// A table for k = 0.2 that lost its axis of k must not pass for a table at the k of its scene.
 TEST_F(Library, LookupInATableThatLostAnAxis_IsAnInputError) {
   dolp::TableValues values = evaluator_.table(scene_.with_grid({{"k", {0.2}}})).values();
   const std::vector<double> theta = {30}, sigma = {0.1}, q = {2};

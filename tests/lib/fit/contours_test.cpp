@@ -6,8 +6,8 @@
 namespace dolp::fit {
 namespace {
 
-/// The smallest growth over the third parameter at given coordinates of two others, by brute force: scans its range,
-/// and the neighbourhood of the previous minimum.
+/// For each place (two parameters) the smallest growth of chi^2 above the minimum over the third parameter. Scans the
+/// range of this parameter, then smaller and smaller ranges around the best value.
 std::vector<double> brute_growth(Residuals& residuals, const FitResult& result, const std::array<std::size_t, 2>& pair,
                                  const std::vector<Eigen::Vector2d>& places) {
   constexpr int kSteps = 40;
@@ -37,8 +37,7 @@ std::vector<double> brute_growth(Residuals& residuals, const FitResult& result, 
 
 class FitContours : public FitTest {
  protected:
-  /// Compares contours of n, k and sigma from a few points with brute force. `off` is the largest allowed error of the
-  /// root of the growth.
+  /// Compares contours of n, k and sigma with brute_growth. `off` is the tolerance of sqrt(growth).
   void expect_true(int points, std::uint64_t seed, double off) {
     const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0),
                                               number("surface.sigma", 0.02, 1.0)};
@@ -65,7 +64,7 @@ class FitContours : public FitTest {
     const std::vector<double> right = brute_growth(residuals, result, pair, places);
     for (std::size_t i = 0; i < places.size(); ++i)
       EXPECT_NEAR(roots[i], std::sqrt(std::max(0.0, right[i])), off) << places[i].transpose();
-    // Outside the contours nothing may lie well below the higher level.
+    // Outside the contours no place may have a growth far below the higher level.
     places.clear();
     for (int i = 0; i < 225; ++i) places.emplace_back(i % 15 / 14.0, i / 15 / 14.0);
     const std::vector<double> growths = brute_growth(residuals, result, pair, places);
@@ -77,10 +76,10 @@ class FitContours : public FitTest {
   }
 };
 
-// Residuals bend between nodes, and descents stop before the bottom of the valley.
+// The residuals are not linear between the nodes of the grid, and descents stop before the bottom of the valley.
 TEST_F(FitContours, EightPoints_AreWhereTheLeastOfTheThirdParameterSays) { expect_true(8, 7, 0.1); }
 
-// The data cannot distinguish n, k and sigma. The valley bends, and the affordable grid is coarse.
+// Four points cannot distinguish n, k and sigma. The valley of chi^2 is bent, and the grid is coarse.
 TEST_F(FitContours, FourPoints_AreWhereTheLeastOfTheThirdParameterSays) { expect_true(4, 7, 0.4); }
 
 }  // namespace

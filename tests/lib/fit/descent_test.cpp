@@ -4,11 +4,11 @@
 namespace dolp::fit {
 namespace {
 
-// If a step takes parameters out of the bounds, they go half the way, and the other parameters are solved again for
-// least squares. A tiny scale damps no step.
+// Least squares determine a step, with the parameters that would leave the bounds at their bound. These parameters then
+// go only half of the way. A scale as small as kScale damps no step.
 TEST(PredictStep, ParametersLeaveTheBounds_OthersAreSolvedAgain) {
   constexpr double kScale = 1e-14;
-  constexpr double kRounding = 1e-6;  // rounding of normal equations whose columns agree to a tenth
+  constexpr double kRounding = 1e-6;  // rounding error of normal equations with almost parallel columns
   std::mt19937_64 engine(5);
   const auto uniform = [&] { return static_cast<double>(engine() >> 11U) * 0x1p-53; };
   int checked = 0;
@@ -44,7 +44,7 @@ TEST_F(FitTest, Jacobian_IsThatOfFinerDifferences) {
   Residuals exact(model, 1e-10, Differences::kCentral, evaluator_, {});
   const Eigen::VectorXd point = Eigen::Vector2d(0.3, 0.6);
   Linearisation found = residuals.at({point}).front();
-  for (int i = 0; i < 2; ++i) residuals.linearise({&found});  // the first call determines its steps
+  for (int i = 0; i < 2; ++i) residuals.linearise({&found});  // the first call chooses the steps of the differences
   constexpr double kStep = 1e-4;
   for (Eigen::Index j = 0; j < 2; ++j) {
     Eigen::VectorXd below = point, above = point;

@@ -21,8 +21,7 @@ TEST_F(FitTest, ExactData_GiveTheTruth) {
                                                   number("surface.sigma", 0.02, 1.0)});
   const double truth[] = {1.6, 0.5, 0.2};
   for (std::size_t j = 0; j < 3; ++j) {
-    // Without noise the minimum is at the truth. The remaining difference is the model's numerical error, far below an
-    // uncertainty.
+    // Without noise the minimum is at the truth. Only the numerical error of the model remains.
     EXPECT_NEAR(result.parameters[j].value, truth[j], 0.02 * *result.parameters[j].standard_error);
     EXPECT_FALSE(result.parameters[j].is_at_bound);
   }
@@ -60,7 +59,7 @@ TEST_F(FitTest, ParameterWithoutInfluence_IsNamedAndOpen) {
 }
 
 TEST_F(FitTest, FactorsOfOneProduct_AreNamedAsAPair) {
-  // Only a source: I and Q are both proportional to k_s times its irradiance, and Q/I depends on neither.
+  // I and Q are both proportional to k_s times the irradiance of the source, so Q/I depends on neither.
   const std::vector<std::string> source_alone = {"emission=none", "surroundings=none", "source.irradiance=1"};
   const MeasuredData data = measured(kNoise, source_alone);
   const FitResult result = fitted(

@@ -5,13 +5,13 @@ namespace dolp::fit {
 namespace {
 
 TEST_F(FitTest, LinearParameter_IntervalsAreThoseOfTheCovariance) {
-  // rho is linear in k_s. With the emission of a body at the same temperature, Q/I is nearly linear, too.
+  // rho is linear in k_s. Emission from a surface as warm as the surroundings keeps Q/I nearly linear, too.
   const FitResult result =
       fitted(measured(kNoise), {number("surface.specular", 0.2, 1.0)}, {}, {"surface.specular=0.6"});
   const FitParameter& one = result.parameters.front();
   ASSERT_TRUE(one.interval_68.low && one.interval_95.low && one.interval_68.high && one.interval_95.high);
   const double error = *one.standard_error;
-  constexpr double kCurvature = 0.05;  // relative curvature of Q/I in k_s over the interval
+  constexpr double kCurvature = 0.05;  // relative deviation of Q/I from a linear function of k_s over the interval
   EXPECT_NEAR(one.value - *one.interval_68.low, error, kCurvature * error);
   EXPECT_NEAR(*one.interval_68.high - one.value, error, kCurvature * error);
   EXPECT_NEAR(one.value - *one.interval_95.low, 1.96 * error, 2.0 * kCurvature * error);
@@ -28,13 +28,13 @@ TEST_F(FitTest, IntervalEnds_LieWhereTheBestOfTheOthersHasGrownSo) {
       ASSERT_TRUE(end.has_value());
       const FitResult held =
           fitted(data, {number("surface.n", 1.1, 4.0)}, {}, {"surface.sigma=" + std::to_string(*end)});
-      // The profile's root is found to 0.5 %, so its square to 1 %; to_string keeps six digits.
+      // Interval ends have an error of 0.5 % of the root of the growth, so 1 % of the growth. to_string has six digits.
       EXPECT_NEAR(held.chi_square - result.chi_square, is_95 ? 3.841 : 1.0, 0.015 * (is_95 ? 3.841 : 1.0));
     }
   }
 }
 
-// The scaled intervals equal the plain intervals for data with uncertainties multiplied by sqrt(reduced chi^2).
+// The scaled intervals equal the intervals for uncertainties that are multiplied by sqrt(reduced chi^2).
 TEST_F(FitTest, DoubtfulFit_ScaledIntervalsAreThoseOfLargerUncertainties) {
   const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0)};
   MeasuredData data = measured(kNoise, {"surface.sigma=0.26"});
@@ -43,7 +43,8 @@ TEST_F(FitTest, DoubtfulFit_ScaledIntervalsAreThoseOfLargerUncertainties) {
   for (Measurement& one : data.measurements) *one.uncertainty *= std::sqrt(*result.reduced_chi_square);
   const FitResult wider = fitted(data, parameters);
   EXPECT_EQ(fit_quality(wider.p_value), "good");
-  constexpr double kRoot = 0.02;  // share of a half-width: both ends are found to 0.5 % of the root of the growth
+  // Tolerance as a share of the half-width: both ends have an error of 0.5 % of the root of the growth of chi^2.
+  constexpr double kRoot = 0.02;
   for (std::size_t j = 0; j < 2; ++j) {
     const FitParameter &one = result.parameters[j], &other = wider.parameters[j];
     ASSERT_TRUE(one.scaled_68 && one.scaled_95 && !other.scaled_68 && !other.scaled_95);
@@ -56,8 +57,8 @@ TEST_F(FitTest, DoubtfulFit_ScaledIntervalsAreThoseOfLargerUncertainties) {
   }
 }
 
-// At each k below the minimum there are two minima of n: one at its bound and a lower one inside. Without the other
-// branch, most of k's interval would be missing.
+// For each k below the minimum, chi^2 has two minima in n: one at the bound of n, and a lower one inside. Intervals
+// that follow only the first would miss most of the interval of k.
 TEST_F(FitTest, MinimumAtABound_IntervalHasTheOtherBranch) {
   MeasuredData data;
   data.name = "paint";
@@ -95,7 +96,7 @@ TEST_F(FitTest, StandardErrors_ThatReachBeyondTheRange_AreNone) {
 
 TEST_F(FitTest, Intervals_HoldTheTruthAsOftenAsTheySay) {
   constexpr int kDraws = 40;
-  constexpr double kSpread = 3.0;  // standard deviations of the binomial distribution
+  constexpr double kSpread = 3.0;  // allowed deviation in standard deviations of the binomial distribution
   const std::vector<FitRange> parameters = {number("surface.n", 1.3, 2.0), number("surface.sigma", 0.1, 0.4)};
   const double truth[] = {1.6, 0.2};
   for (const bool has_uncertainties : {true, false}) {
@@ -105,7 +106,7 @@ TEST_F(FitTest, Intervals_HoldTheTruthAsOftenAsTheySay) {
       options.starts = 1;
       const FitResult result =
           fitted(measured(kNoise, {}, has_uncertainties, 5, static_cast<std::uint64_t>(draw)), parameters, options);
-      // one parameter per draw, because the parameters of a draw are correlated
+      // Tests one parameter per draw, because both parameters of a draw are correlated.
       const std::size_t j = static_cast<std::size_t>(draw) % 2;
       const auto holds = [&](const FitInterval& interval) {
         return interval.low.value_or(0.0) <= truth[j] && truth[j] <= interval.high.value_or(10.0);

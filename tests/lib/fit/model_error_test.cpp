@@ -4,11 +4,11 @@
 namespace dolp::fit {
 namespace {
 
-constexpr double kQuantile68 = 22.436339987;  // quantile of chi^2 with 20 degrees of freedom
+constexpr double kQuantile68 = 22.436339987;  // 68 % and 95 % quantiles of chi^2 with 20 degrees of freedom
 constexpr double kQuantile95 = 31.410432844;
 
-// Data between both ends, at some points nearer to the other one. The residual is the distance from the nearer end, for
-// Q/I and for DOLP, and 0 inside.
+// Some data lie between both ends of the bracket, where the residual is 0. Others lie outside, where the residual is
+// the distance from the nearer end. This holds for Q/I and for DOLP.
 TEST_F(FitTest, ModelErrorOfTheBracket_ResidualIsTheDistanceFromTheInterval) {
   const SceneValues scene = parse_scene(kScene, "scene");
   const std::vector<FitRange> n = {number("surface.n", 1.1, 4.0)};
@@ -36,7 +36,7 @@ TEST_F(FitTest, ModelErrorOfTheBracket_ResidualIsTheDistanceFromTheInterval) {
   }
 }
 
-// An end of n lies where chi^2, minimised over sigma, is the quantile for 20 degrees of freedom.
+// At an end of the interval of n, chi^2 minimised over sigma is the quantile for 20 degrees of freedom.
 TEST_F(FitTest, ModelErrorOfTheBracket_IntervalsEndAtTheQuantileOfChiSquared) {
   const SceneValues scene = parse_scene(kScene, "scene");
   const FitRange sigma = number("surface.sigma", 0.05, 0.5);
@@ -68,7 +68,7 @@ TEST_F(FitTest, ModelErrorOfTheBracket_IntervalsEndAtTheQuantileOfChiSquared) {
                InputError);
 }
 
-// Data far from both ends exclude all values; with larger uncertainties some values remain.
+// The data are far from both ends of the bracket, so no n is possible. With scaled uncertainties some values are.
 TEST_F(FitTest, ModelErrorOfTheBracket_ThatExplainsNothing_LeavesEmptyIntervals) {
   MeasuredData data = measured(0.0);
   for (std::size_t i = 0; i < 20; i += 2) data.measurements[i].value += 20.0 * kNoise;

@@ -164,7 +164,7 @@ int run_explore(const Options& options) {
   }
   const std::vector<Setting> settings = is_session ? std::vector<Setting>{} : all_settings(options);
   explore::run_program(options.scene_path.empty() || is_session
-                           ? Scene::from_text(example_scene(), settings, "stainless_steel")
+                           ? Scene::from_text(explore::kFirstScene, settings, "night_paint")
                            : load_scene(options),
                        program);
   return kExitDone;

@@ -108,23 +108,10 @@ toml::table state_table(const SceneEdits& edits, const std::string& name, const 
                      {"changes", lasting_texts(edits.changes(), skies, opened.name(), session)}};
 }
 
-toml::table range_table(const Scale& range) {
-  return toml::table{{"from", range.from}, {"to", range.to}, {"log", range.is_log}};
-}
-
-/// The typed range with this name in the file; null if the name is the label of a map axis.
-std::optional<Scale>* fixed_range(View& view, const std::string& name) {
-  if (name == "curve zenith") return &view.curve_zoom.x;
-  if (name == "curve values") return &view.curve_zoom.y;
-  return name == "map colours" ? &view.map_colours : nullptr;
-}
-
-toml::table ranges_table(View view) {
+toml::table ranges_table(const View& view) {
   toml::table table;
-  for (const char* name : {"curve zenith", "curve values", "map colours"}) {
-    if (const auto& range = *fixed_range(view, name)) table.insert(name, range_table(*range));
-  }
-  for (const auto& [label, range] : view.map_ranges) table.insert(label, range_table(range));
+  for (const auto& [axis, range] : view.ranges)
+    table.insert(axis, toml::table{{"from", range.from}, {"to", range.to}, {"log", range.is_log}});
   return table;
 }
 
@@ -182,15 +169,8 @@ Scale read_range(Node node, const std::string& location) {
 void read_ranges(View& view, Node node, const std::string& location) {
   const toml::table* const table = node.as_table();
   if (!table) return;
-  for (const auto& [key, one] : *table) {
-    const std::string name(key.str());
-    const Scale range = read_range(Node(one), fmt::format("{}.{}", location, name));
-    if (std::optional<Scale>* fixed = fixed_range(view, name)) {
-      *fixed = range;
-    } else {
-      view.map_ranges[name] = range;
-    }
-  }
+  for (const auto& [axis, range] : *table)
+    view.ranges[std::string(axis.str())] = read_range(Node(range), fmt::format("{}.{}", location, axis.str()));
 }
 
 /// A number below `count`; 0 if it is missing.

@@ -80,11 +80,11 @@ void add_lines(const MapField& field, double level, std::size_t column, std::siz
 std::vector<MapAxis> map_axes(const Scene& scene, double theta_max_deg) {
   std::vector<MapAxis> axes = {{.scale = {0.0, theta_max_deg}}};
   for (const AxisOfNumber& one : axes_of_numbers()) {
-    const std::optional<double> value = parameter(one.key).value(scene);
+    const std::optional<double> value = control(one.key).value(scene);
     if (!value && one.name.starts_with("film")) break;
     if (!value) continue;
-    MapAxis axis{one.name, parameter(one.key).label(), one.key};
-    axis.scale = one.range.value_or(range_in(scene, parameter(one.key)));
+    MapAxis axis{one.name, control(one.key).label_with_unit(), one.key};
+    axis.scale = one.range.value_or(range_in(scene, control(one.key)));
     axis.scale = grid_range(scene, axis).including(*value);
     axes.push_back(axis);
   }

@@ -66,7 +66,7 @@ std::optional<double> rms_of(const std::vector<Measurement>& residuals) {
   return std::sqrt(sum / static_cast<double>(residuals.size()));
 }
 
-FitRange fit_range(const FitMarks& marks, const Scene& scene, const Parameter& parameter, double value) {
+FitRange fit_range(const FitMarks& marks, const Scene& scene, const Control& parameter, double value) {
   constexpr double kLeastK = 1e-3;  // positive, so that the search is logarithmic in k and finds small values
   const std::string& key = parameter.key->key;
   const auto marked = marks.find(key);

@@ -36,7 +36,7 @@ json map_json(const Session& session) {
   for (std::size_t i = 0; i < field.values.size(); ++i)
     rows[i / field.count].push_back(field.is_good[i] ? json(description.scale() * field.values[i]) : json());
   json colours;  // null unless the user typed them
-  if (const auto& typed = session.view().map_colours) {
+  if (const auto& typed = session.view().range(View::kColours)) {
     colours = {{"from", description.scale() * typed->from}, {"to", description.scale() * typed->to}};
   }
   const auto axis = [](const MapAxis& one) { return axis_json(one.label, one.scale); };

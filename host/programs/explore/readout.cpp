@@ -140,10 +140,10 @@ std::string cursor_text(const Session& session) {
   const Point& r = *shown;
   const Scene& scene = session.curve().shown_scene();
   const bool has_q = scene.word("surface.distribution") == "cauchy";
-  const Parameter& width = parameter(has_wind(scene) ? "surface.wind_m_s" : "surface.sigma");
+  const Control& width = control(has_wind(scene) ? "surface.wind_m_s" : "surface.sigma");
   std::string text =
       fmt::format("Cursor{}: θ = {:.1f}°, {} = {:.4g}{}: DOLP {:.3f} % ± {}, Q/I {:+.3f} %",
-                  remark(session, session.curve()), r.theta_deg, width.symbol, *width.value(scene),
+                  remark(session, session.curve()), r.theta_deg, width.label, *width.value(scene),
                   has_q ? fmt::format(", q = {:.4g}", *scene.number("surface.q")) : "", kPercent * r[Quantity::kDolp],
                   points_text(r[Quantity::kErrorEstimate]), kPercent * r[Quantity::kQOverI]);
   if (r.has_bracket()) {

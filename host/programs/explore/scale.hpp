@@ -42,12 +42,6 @@ struct Scale {
   friend bool operator==(const Scale&, const Scale&) = default;
 };
 
-/// The part of a plot that the user chose by mouse or by typing; empty: the whole axis.
-struct Zoom {
-  std::optional<Scale> x, y;
-  friend bool operator==(const Zoom&, const Zoom&) = default;
-};
-
 /// A range for the values of curves, with space above them. A linear range contains 0; a logarithmic range ignores
 /// values that are not positive. Values that are not finite are ignored.
 Scale range_of(std::vector<double> values, bool is_log);

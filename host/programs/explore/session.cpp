@@ -16,6 +16,12 @@ std::string text_of(const std::vector<Setting>& changes) {
   return join(texts);
 }
 
+/// True if a change gives a number of the scene another value. Other changes choose between alternatives.
+bool moves_number(const Scene& scene, const Setting& change) {
+  return std::ranges::any_of(
+      controls(), [&](const Control& control) { return control.key->key == change.key && control.value(scene); });
+}
+
 /// A list of jobs in order of their rank.
 struct JobList {
   std::vector<Job> jobs;
@@ -28,10 +34,10 @@ struct JobList {
 
 /// Gives an axis its typed range, or the range in which the scene is known. Returns false if that is only one value.
 bool find_range(const Scene& scene, const View& view, MapAxis& axis) {
-  const auto typed = view.map_ranges.find(axis.label);
+  const std::optional<Scale> typed = view.range(axis.label);
   // The scene may have changed since the user typed the range, and refuse it now.
-  if (typed != view.map_ranges.end() && refusal(scene, axis, typed->second).empty()) {
-    axis.scale = typed->second;
+  if (typed && refusal(scene, axis, *typed).empty()) {
+    axis.scale = *typed;
   } else if (axis.name == "wavelength") {
     axis.scale = known_part(scene, axis);
   }
@@ -51,6 +57,16 @@ MapAxis axis_or_another(const Scene& scene, const View& view, const std::string&
 }
 
 }  // namespace
+
+std::optional<Scale> View::range(const std::string& axis) const {
+  const auto found = ranges.find(axis);
+  return found == ranges.end() ? std::nullopt : std::optional(found->second);
+}
+
+void View::set_range(const std::string& axis, const std::optional<Scale>& range) {
+  ranges.erase(axis);
+  if (range) ranges.emplace(axis, *range);
+}
 
 Session::Session(SceneEdits edits)
     : edits_(std::move(edits)),
@@ -118,20 +134,16 @@ void Session::take_snapshot() {
 
 void Session::set(const std::vector<Setting>& changes) {
   attempt([&] {
-    const std::vector<Setting> needed = needed_with(scene(), changes);
-    std::vector<Setting> all = changes;
-    all.insert(all.end(), needed.begin(), needed.end());
-    edits_.set(all);
-    tell_needed(text_of(changes), needed);
+    const auto set = [&](SceneEdits& edits) { edits.set(changes); };
+    const auto is_moved = [&](const Setting& change) { return moves_number(scene(), change); };
+    if (std::ranges::all_of(changes, is_moved)) return set(edits_);
+    tell_needed(text_of(changes), change_with_needed(edits_, set));
   });
 }
 
 void Session::reset(const std::string& key) {
   attempt([&] {
-    const std::vector<Setting> needed = needed_with(scene(), choices_of(edits_.opened(), key));
-    edits_.set(needed);
-    edits_.reset(key);
-    tell_needed(key + " = as opened", needed);
+    tell_needed(key + " = as opened", change_with_needed(edits_, [&](SceneEdits& edits) { edits.reset(key); }));
   });
 }
 
@@ -162,7 +174,7 @@ std::string Session::set_fit_range(const std::string& key, const std::string& lo
 std::optional<FitJob> Session::fit_job() const {
   if (!residuals_.data()) return std::nullopt;
   FitJob job{edits_, *residuals_.data(), {}};
-  for (const Parameter& parameter : parameters()) {
+  for (const Control& parameter : controls()) {
     const std::optional<double> value = parameter.value(scene());
     if (value && varies(parameter.key->key)) job.vary.push_back(fit_range(marked_, scene(), parameter, *value));
   }
@@ -231,10 +243,10 @@ void Session::pin() {
 void Session::set_view(const View& view) {
   const View before = std::exchange(view_, view);
   if (view.quantity != before.quantity || view.is_log != before.is_log) {
-    view_.curve_zoom.y.reset();
-    view_.map_colours.reset();
+    view_.ranges.erase(View::kValues);
+    view_.ranges.erase(View::kColours);
   }
-  if (view.is_theta_log != before.is_theta_log) view_.curve_zoom.x.reset();
+  if (view.is_theta_log != before.is_theta_log) view_.ranges.erase(View::kZeniths);
   if (view_.map_x == view_.map_y) view_.map_y = view_.map_x == "sigma" ? "theta" : "sigma";
   view_.theta_max_deg = std::clamp(view_.theta_max_deg, kLeastThetaMaxDeg, 90.0);
   set_theta(theta_deg_);
@@ -336,7 +348,8 @@ void Session::follow_sweeps(const std::string& content) {
   if (!is_spectrum && view_.panel != Panel::kSmooth) return;
   spectral_scene_ = at_one_wavelength(scene());
   const auto [from_um, to_um] = spectrum_um(edits_.opened());
-  wavelengths_ = {"wavelength", parameter(kWavelength).label(), kWavelength, {from_um / kWidth, to_um * kWidth}};
+  wavelengths_ = {
+      "wavelength", control(kWavelength).label_with_unit(), kWavelength, {from_um / kWidth, to_um * kWidth}};
   wavelengths_.scale = wavelengths_.scale.including(spectral_scene_.number(kWavelength).value());
   const bool has_range = find_range(spectral_scene_, view_, wavelengths_);
   const auto follow_wavelengths = [&](Sweep& sweep, const Scene& one, std::size_t count, bool keep_all) {

@@ -29,13 +29,18 @@ struct View {
   double theta_max_deg = 90.0;  ///< end of the plots and of the search for the maximum
   std::string map_x = "theta";  ///< name of an axis; if the scene lacks it, the map has another one
   std::string map_y = "sigma";
-  Zoom curve_zoom = {};
-  std::map<std::string, Scale> map_ranges = {};  ///< ranges that the user typed, by the label of the axis
-  std::optional<Scale> map_colours = {};         ///< values for the first and the last colour that the user typed
+  /// Ranges that the user chose, by the label of a map axis or by one of the names below. Other axes are automatic.
+  std::map<std::string, Scale> ranges = {};
   Panel panel = Panel::kMap;
   std::size_t mueller_row = 0;  ///< position of the element that the view of the pBRDF shows
   std::size_t mueller_column = 0;
 
+  static constexpr const char* kZeniths = "curve zenith";
+  static constexpr const char* kValues = "curve values";
+  static constexpr const char* kColours = "map colours";  ///< values for the first and the last colour
+
+  std::optional<Scale> range(const std::string& axis) const;
+  void set_range(const std::string& axis, const std::optional<Scale>& range);
   friend bool operator==(const View&, const View&) = default;
 };
 

@@ -63,7 +63,7 @@ TEST(ExploreSession, TypedRangeOfTheMap_IsTakenIfTheSceneTakesIt) {
     View view = session.view();
     view.map_x = name;
     view.map_y = axis.key.empty() ? "sigma" : "theta";
-    view.map_ranges = {{axis.label, range}};
+    view.ranges = {{axis.label, range}};
     session.set_view(view);
     EXPECT_EQ(session.map().x().scale == range, !is_refused) << axis.label << ' ' << range.from;
   }

@@ -58,9 +58,11 @@ void fill(Session& session, const std::string& measured) {
             .mueller_row = 1,
             .mueller_column = 3};
   session.set_view(view);  // this resets ranges
-  view.curve_zoom = {Scale{20.0, 70.0}, Scale{0.01, 0.4, true}};
-  view.map_ranges = {{"σ", {0.05, 0.5, true}}, {"θ [°]", {10.0, 60.0}}};
-  view.map_colours = Scale{0.0, 0.3};
+  view.ranges = {{View::kZeniths, {20.0, 70.0}},
+                 {View::kValues, {0.01, 0.4, true}},
+                 {View::kColours, {0.0, 0.3}},
+                 {"σ", {0.05, 0.5, true}},
+                 {"θ [°]", {10.0, 60.0}}};
   session.set_view(view);
   EXPECT_EQ(session.view(), view);
   session.set_theta(42.5);
@@ -227,7 +229,7 @@ TEST(ExplorePlots, Json_HasTheVisibleCurvesAndTheMap) {
   driver.settle();
   const std::string name = json()["curves"][1]["name"];
   EXPECT_EQ(name, "T 290 K, n 1.5 k 0.1");
-  driver.session.set_view(&View::map_colours, Scale{0.01, 0.08});
+  driver.session.set_view(&View::ranges, {{View::kColours, {0.01, 0.08}}});
   EXPECT_EQ(json()["map"]["colours"]["to"], 8.0);
   driver.session.set_view({.panel = Panel::kSlopes});
   EXPECT_TRUE(json()["map"].is_null());

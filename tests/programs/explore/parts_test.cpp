@@ -25,18 +25,42 @@ std::string sixteen_films() {
   return "surface.coating=[" + films + "]";
 }
 
-TEST(Parameters, EndsOfEverySlider_AreAccepted) {
-  for (const Parameter& p : parameters()) {
-    for (const double end : {p.slider.from, p.slider.to}) {
-      const std::string beside = p.key->key == "source.scale"       ? "source.irradiance=1"
-                                 : p.key->key == "surface.wind_m_s" ? "surface.distribution=gaussian"
-                                 : p.key->layer > 0                 ? sixteen_films()
-                                                                    : "title=paint";
-      const Scene scene = paint({beside, p.key->key + "=" + format_number(end)}).scene();
-      EXPECT_EQ(scene.number(p.key->key), end) << p.key->key;
-    }
-    EXPECT_TRUE(!p.slider.is_log || p.slider.from > 0.0) << p.key->key;
+/// A setting that a scene needs before it takes a key.
+std::string needed_by(const Key& key) {
+  for (const auto& [begin, setting] : {std::pair{"source.scale", "source.irradiance=1"},
+                                       {"surface.wind_m_s", "surface.distribution=gaussian"},
+                                       {"surroundings.vapour_cm", "surroundings.profile=clear-sky"},
+                                       {"surroundings.air_temperature_K", "surroundings.profile=overcast"}}) {
+    if (key.key == begin) return setting;
   }
+  return key.layer > 0 ? sixteen_films() : "title=paint";
+}
+
+TEST(Controls, EndsOfEverySlider_AreAccepted) {
+  for (const Control& control : controls()) {
+    if (!control.is_number()) continue;
+    const std::string& key = control.key->key;
+    for (const double end : {control.slider.from, control.slider.to}) {
+      const Scene scene = paint({needed_by(*control.key), key + "=" + format_number(end)}).scene();
+      EXPECT_EQ(scene.number(key), end) << key;
+      EXPECT_TRUE(control.value(scene) || !control.is_shown(scene)) << key;
+    }
+    EXPECT_TRUE(!control.slider.is_log || control.slider.from > 0.0) << key;
+  }
+}
+
+TEST(Controls, OfDiffuseLightAndOfTheAir_AreShownWhereTheSceneUsesThem) {
+  const Control &light = control("surface.diffuse_polarisation"), &water = control("surroundings.vapour_cm"),
+                &air = control("surroundings.air_temperature_K");
+  EXPECT_EQ(light.word(paint().scene()), 0U);
+  EXPECT_FALSE(light.word(paint({"surface.diffuse=0"}).scene()));
+  for (const char* sky : {"clear-sky", "overcast"}) {
+    const Scene scene = paint({std::string("surroundings.profile=") + sky}).scene();
+    EXPECT_EQ(water.value(scene), 1.27);
+    EXPECT_EQ(air.value(scene), 288.15);
+    EXPECT_EQ(water.value(scene.with("surroundings.vapour_cm", 0.3)), 0.3);
+  }
+  EXPECT_FALSE(water.value(paint().scene()) || air.value(paint().scene()));
 }
 
 using Changes = std::vector<Setting>;
@@ -111,6 +135,15 @@ const std::vector<EditCase> kEditCases = {
     {{}, {"surroundings.profile=clear-sky"}, {"surroundings.temperature_K=-", "surroundings.profile=clear-sky"}},
     {{"emission.bracket=true"}, {"surroundings.profile=overcast"}, {"emission.bracket=true"}},
     {{"surroundings.profile=overcast"}, {"surroundings.temperature_K=250"}, {"surroundings.profile=-"}},
+    {{"surroundings.profile=clear-sky", "surroundings.vapour_cm=0.3"},
+     {"surroundings.temperature_K=250"},
+     {"surroundings.temperature_K=250", "surroundings.vapour_cm=-"},
+     "also sets surroundings.vapour_cm = none"},
+    {{"surface.diffuse_polarisation=transmission"},
+     {"surface.coating=[{n=1.4,thickness_um=2}]"},
+     {"surface.coating.1.n=1.4", "surface.diffuse_polarisation=none"},
+     "also sets surface.diffuse_polarisation = none"},
+    {{"surface.masking=smith"}, {"surface.q=1.2"}, {"surface.q=3", "surface.masking=smith"}, "surface.q", true},
 };
 
 void take_step(Session& session, const std::string& step) {
@@ -172,13 +205,20 @@ TEST(Conflicts, EveryChoiceInEveryScene_IsTakenWithTheLeastThatItNeeds) {
   for (const Changes& combination : combinations) {
     SceneEdits edits = paint();
     edits.set(combination);
-    for (const Choice& choice : choices()) {
+    for (const Control& choice : controls()) {
       for (const std::string& word : choice.key->words) {
         const Setting chosen = {choice.key->key, TomlText{word}};
-        Changes needed = needed_with(edits.scene(), {chosen});
+        SceneEdits changed = edits;
+        Changes needed = change_with_needed(changed, [&](SceneEdits& trial) { trial.set({chosen}); });
         EXPECT_EQ(needed.empty(), is_accepted(edits, {chosen})) << chosen.key << " = " << word;
+        EXPECT_EQ(changed.scene().word(chosen.key), word);
+        // Without any of them the choice is refused.
         needed.push_back(chosen);
-        EXPECT_TRUE(is_accepted(edits, needed)) << chosen.key << " = " << word;
+        for (std::size_t i = 0; i + 1 < needed.size(); ++i) {
+          Changes fewer = needed;
+          fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+          EXPECT_FALSE(is_accepted(edits, fewer)) << chosen.key << " = " << word;
+        }
       }
     }
   }

@@ -288,9 +288,8 @@ TEST(WindowScale, Display_At200Percent_DoublesThePlot_OrLeavesItAFifthOfTheHeigh
 TEST(WindowText, WithoutAGreekFont_IsAscii) {
   EXPECT_EQ(explore::ascii("θ ≤ 90°"), "theta <= 90 deg");
   std::string all;
-  for (const explore::Parameter& one : explore::parameters())
-    all += one.symbol + std::string(one.equation) + explore::unit_text(*one.key);
-  for (const explore::Choice& one : explore::choices()) all += one.equation;
+  for (const explore::Control& control : explore::controls())
+    all += control.label + control.equation + explore::unit_text(*control.key);
   for (const explore::PlottedDescription& one : explore::kAllPlotted) all += std::string(one.name) + one.meaning;
   const std::string plain = explore::ascii(all);
   EXPECT_TRUE(std::ranges::all_of(plain, [](char c) { return static_cast<unsigned char>(c) < 128; })) << plain;

@@ -253,11 +253,11 @@ void CurveView::edit_axes(View& view, const Plot& plot, const std::string& value
     return is_inside ? "" : fmt::format("must be numbers in [{:g}, {:g}]; \"θ up to\" sets the end", all.from, all.to);
   };
   if (const auto change = axis_editor_.draw("zenith θ [°]", plot.x_numbers(), x_, check_zeniths)) {
-    view.curve_zoom.x = change->range;
+    view.set_range(View::kZeniths, change->range);
     view.is_theta_log = change->is_log;
   }
   if (const auto change = axis_editor_.draw(values, plot.y_numbers(), y_, [](const Scale&) { return ""; })) {
-    view.curve_zoom.y = change->range;
+    view.set_range(View::kValues, change->range);
     view.is_log = change->is_log;
   }
 }
@@ -291,11 +291,14 @@ void CurveView::draw(Session& session, ImVec2 size) {
   View view = session.view();
   const Scale zeniths = Scale{0.0, view.theta_max_deg}.with_log(view.is_theta_log);
   PlotAxis values{described(quantity).label(), range_of(values_to_show(session, curves), view.is_log)};
-  choose_axes(session, view.curve_zoom, zeniths, values.scale);
+  Zoom zoom{view.range(View::kZeniths), view.range(View::kValues)};
+  choose_axes(session, zoom, zeniths, values.scale);
   const Plot plot("curve", {size.x, size.y - residual_height - gap},
                   {is_bistatic(session.scene()) ? "zenith θ of the source [°]" : "zenith θ [°]", x_}, values);
   if (plot.is_dragged()) session.set_theta(plot.x().value(plot.mouse_x()));
-  plot.follow_mouse(view.curve_zoom, zeniths);
+  plot.follow_mouse(zoom, zeniths);
+  view.set_range(View::kZeniths, zoom.x);
+  view.set_range(View::kValues, zoom.y);
   plot.clip();
   if (!plot.y().is_log) plot.list()->AddLine(plot.at(x_.from, 0.0), plot.at(x_.to, 0.0), kDimColour);
   if (quantity == Plotted::kDolp) draw_bracket(plot, curves.back());

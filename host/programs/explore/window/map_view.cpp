@@ -44,8 +44,8 @@ void draw_map_cursor(const Session& session, const Plot& plot) {
 void set_range(Session& session, const MapAxis& axis, const AxisEditor::Change& change) {
   View view = session.view();
   const bool is_automatic = !change.range && change.is_log == axis.scale.is_log;
-  view.map_ranges.erase(axis.label);
-  if (!is_automatic) view.map_ranges[axis.label] = change.range.value_or(axis.scale.with_log(change.is_log));
+  view.set_range(axis.label, is_automatic ? std::nullopt
+                                          : std::optional(change.range.value_or(axis.scale.with_log(change.is_log))));
   session.set_view(view);
 }
 
@@ -70,12 +70,13 @@ ImU32 MapView::colour(double position) const { return quantity().is_signed ? div
 void MapView::update(const Session& session) {
   const Plotted quantity = session.view().quantity;
   const bool is_log = session.view().is_log;
-  const bool is_same = quantity_ == quantity && is_log_ == is_log && typed_colours_ == session.view().map_colours;
+  const bool is_same =
+      quantity_ == quantity && is_log_ == is_log && typed_colours_ == session.view().range(View::kColours);
   if (version_ == session.map().version() && is_same) return;
   version_ = session.map().version();
   quantity_ = quantity;
   is_log_ = is_log;
-  typed_colours_ = session.view().map_colours;
+  typed_colours_ = session.view().range(View::kColours);
   field_ = session.map().field(quantity);
   // While a slider is dragged the colour scale stays fixed, so that only the map changes.
   const bool is_held = session.is_dragged() && is_same && colour_scale_.from < colour_scale_.to;
@@ -170,12 +171,12 @@ void MapView::edit_axes(Session& session, const Plot& plot) {
   }
   const float line = ImGui::GetTextLineHeight();
   const Area numbers{{plot.max().x + 0.5F * line, plot.min().y}, {plot.max().x + kBarRoom * line, plot.max().y}};
-  const auto change = axis_editor_.draw("colours: " + quantity().label(), numbers,
-                                        times(colour_scale_, quantity().scale()), [](const Scale&) { return ""; });
+  auto change = axis_editor_.draw("colours: " + quantity().label(), numbers, times(colour_scale_, quantity().scale()),
+                                  [](const Scale&) { return ""; });
   if (!change) return;
   View view = session.view();
-  view.map_colours.reset();
-  if (change->range) view.map_colours = times(*change->range, 1.0 / quantity().scale());
+  if (change->range) change->range = times(*change->range, 1.0 / quantity().scale());
+  view.set_range(View::kColours, change->range);
   if (!quantity().is_signed) view.is_log = change->is_log;
   session.set_view(view);
 }

@@ -307,7 +307,7 @@ std::optional<std::size_t> draw_minima(const Fit& fit, std::optional<std::size_t
   if (!ImGui::BeginTable("minima", columns, ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV)) return clicked;
   ImGui::TableSetupColumn("minimum");
   ImGui::TableSetupColumn(shown("χ²").c_str());
-  for (const FitParameter& one : fit.parameters) ImGui::TableSetupColumn(shown(parameter(one.key).symbol).c_str());
+  for (const FitParameter& one : fit.parameters) ImGui::TableSetupColumn(shown(control(one.key).label).c_str());
   ImGui::TableHeadersRow();
   for (std::size_t i = 0; i < fit.minima.size(); ++i) {
     ImGui::TableNextColumn();

@@ -15,6 +15,11 @@ struct PlotAxis {
   Scale scale;
 };
 
+/// The part of a plot that the user chose by mouse or by typing; empty: the whole axis.
+struct Zoom {
+  std::optional<Scale> x, y;
+};
+
 /// A rectangle on the screen with two axes.
 class Plot {
  public:

@@ -76,11 +76,9 @@ void Ui::draw_view_controls() {
   View view = session_.view();
   const float width = 6.5F * ImGui::GetFontSize();
   label("show");
-  const auto quantities = [] {
-    std::vector<ListEntry> all;
-    for (const PlottedDescription& one : kAllPlotted) all.push_back({fmt::format("{}: {}", one.name, one.meaning)});
-    return all;
-  };
+  std::vector<ListEntry> quantities;
+  for (const PlottedDescription& quantity : kAllPlotted)
+    quantities.push_back({fmt::format("{}: {}", quantity.name, quantity.meaning)});
   const auto position = static_cast<std::size_t>(view.quantity);
   if (const auto clicked = draw_list("quantity", width, described(view.quantity).name, "", position, quantities))
     view.quantity = kAllPlotted[*clicked].quantity;
@@ -110,11 +108,8 @@ void Ui::draw_view_controls() {
 void Ui::draw_map_axes(View& view) {
   label("   map over");
   const std::vector<MapAxis> axes = map_axes(session_.scene(), view.theta_max_deg);
-  const auto entries = [&] {
-    std::vector<ListEntry> all;
-    for (const MapAxis& axis : axes) all.push_back({axis.label});
-    return all;
-  };
+  std::vector<ListEntry> entries;
+  for (const MapAxis& axis : axes) entries.push_back({axis.label});
   const MapAxis &x = session_.map().x(), &y = session_.map().y();
   for (const auto& [id, axis, other] : {std::tuple{"map x", &x, &y}, {"map y", &y, &x}}) {
     const auto position = static_cast<std::size_t>(std::ranges::find(axes, axis->name, &MapAxis::name) - axes.begin());
@@ -180,7 +175,7 @@ void Ui::draw_readout() {
 }
 
 void Ui::draw_accuracy() {
-  draw_accuracy_controls(session_, controls_);
+  draw_accuracy_controls(session_, fields_);
   for (const std::string& line : cost_lines(session_)) coloured_text(kTextColour, line);
   ImGui::BeginDisabled(!session_.curve().is_finished() || actions_.true_error_task().is_running());
   if (ImGui::Button("True error (Ctrl+K)")) actions_.find_true_error();
@@ -289,7 +284,7 @@ void Ui::draw() {
   is_narrow_ = all.x - left < 46.0F * em;
   ImGui::BeginChild("controls", {left, all.y}, true);
   draw_fit();
-  draw_controls(session_, controls_);
+  draw_controls(session_, fields_);
   draw_pins();
   draw_snapshots();
   ImGui::EndChild();

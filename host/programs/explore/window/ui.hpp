@@ -133,7 +133,6 @@ class Ui {
   std::pair<std::string, std::filesystem::path> saved_;  ///< scene file, and the folder to which it was last saved
   std::function<void()> catch_up_;
   std::vector<Command> commands_;
-  ControlsState controls_;
   NumberFields fields_;
   MapView map_view_;
   SweepViews sweep_views_;

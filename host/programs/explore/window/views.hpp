@@ -9,19 +9,12 @@ namespace dolp::explore {
 
 // Each view fills the current ImGui window, or `size` in it.
 
-/// State of the controls between frames.
-struct ControlsState {
-  NumberFields fields;
-  std::string sky_file;  ///< sky file of the scene, whose content is `sky`
-  std::optional<SkyPair> sky;
-};
-
 /// Fills the current ImGui window with the controls of a scene. Names of areas: the key of a control; "vary KEY" for
 /// the box that lets a number vary in fits; "field KEY" for a field; "field fit KEY 0" and "field fit KEY 1" for the
 /// ends of its range in fits; "sky", "sky zenith" and "sky horizon".
-void draw_controls(Session& session, ControlsState& state);
+void draw_controls(Session& session, NumberFields& fields);
 /// Draws the controls of tolerance and precision, which are beside the cost.
-void draw_accuracy_controls(Session& session, ControlsState& state);
+void draw_accuracy_controls(Session& session, NumberFields& fields);
 
 /// The values of a line. All lines of a plot share their positions.
 struct NamedLine {

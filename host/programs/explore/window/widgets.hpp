@@ -51,7 +51,7 @@ struct ListEntry {
 /// `id`. Returns the position of the entry that the user clicks, unless it is `chosen`.
 std::optional<std::size_t> draw_list(const std::string& id, float width, const std::string& current,
                                      const std::string& note, std::optional<std::size_t> chosen,
-                                     const std::function<std::vector<ListEntry>()>& entries);
+                                     const std::vector<ListEntry>& entries);
 
 /// Draws text in the column of labels. The control follows beside it.
 void row_label(const std::string& text);

@@ -143,31 +143,34 @@ class Worker {
   bool is_idle() const;
 
  private:
+  /// A wanted job, and the totals of its finished parts.
   struct Task {
     Job job;
     std::size_t next_part = 0;
     double wall_s = 0.0;
     double evaluations = 0.0;
+
+    bool is_done() const { return next_part == job.parts.size(); }
   };
 
   void run();
-  /// Waits for the next task; empty if the worker must stop.
+  /// Waits for a job that is not done, and returns a copy of it. Empty if the worker must stop.
   std::optional<Task> next_task();
+  /// Computes the next part.
   JobPart advance(Task& task);
-  /// Reports the finished part of a task, and returns the rest of the task to its rank among the wanted jobs.
-  void put_back(Task task, std::optional<JobPart> part);
-  bool is_wanted(const std::string& key) const;
-  bool may_continue(const Job& job) const;
+  /// Ends the running part of a task. Reports its results, if it has any.
+  void finish_part(const Task& task, std::optional<JobPart> part);
+  /// The wanted task with this key; null if there is none.
+  Task* find(const std::string& key);
+  bool may_continue(const Job& job);
 
   Evaluate evaluate_;
   std::function<void()> on_news_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::condition_variable arrived_;
-  std::vector<Task> tasks_;            ///< all tasks except the running one
-  std::vector<std::string> wanted_;    ///< keys
-  std::vector<std::string> finished_;  ///< wanted keys whose jobs are done
-  std::string running_;                ///< key of the running job; empty if none runs
+  std::vector<Task> tasks_;  ///< the wanted jobs, in order of their rank
+  bool is_running_ = false;
   std::vector<JobPart> news_;
   bool is_stopping_ = false;
   std::future<void> end_;  ///< holds the exception that ended the worker

@@ -215,10 +215,10 @@ SavedSession session_in(const std::string& path, const toml::table& table) {
     const std::size_t colour =
         pin["colour"] ? index_in(pin["colour"], Session::kMostPins, here + ".colour") : saved.pins.size();
     saved.pins.push_back(
-        {name, colour, need<bool>(pin["visible"], here + ".visible"), state_in(pin, here, folder).scene()});
+        {name, colour, need<bool>(pin["visible"], here + ".visible"), Curve(state_in(pin, here, folder).scene())});
   });
-  for_each("snapshots", [&](Node one, const std::string& name, const std::string& here) {
-    saved.snapshots.push_back({name, state_in(one, here, folder)});
+  for_each("snapshots", [&](Node snapshot, const std::string& name, const std::string& here) {
+    saved.snapshots.push_back({name, state_in(snapshot, here, folder)});
   });
   saved.view = view_in(file["view"], location + "view.");
   saved.theta_deg = need<double>(file["view"]["cursor_deg"], location + "view.cursor_deg");
@@ -250,14 +250,14 @@ void save_session(const Session& session, const std::string& path) {
     table.insert("colour", static_cast<int>(pin.colour));
     pins.push_back(std::move(table));
   }
-  for (const Snapshot& one : session.snapshots()) snapshots.push_back(state(one.edits, one.name));
+  for (const Snapshot& snapshot : session.snapshots()) snapshots.push_back(state(snapshot.edits, snapshot.name));
   file.insert("pins", std::move(pins));
   file.insert("snapshots", std::move(snapshots));
   write_toml(path, file);
 }
 
 void save_scene(Session& session, const std::string& path) {
-  if (session.has_own_sky()) {
+  if (session.has_unsaved_sky()) {
     const fs::path sky = fs::absolute(path).replace_filename(fs::path(path).stem().string() + "_sky.csv");
     write_text_atomically(sky, read_sky_pair(sky_file(session.scene())).value().csv());
     const fs::path folder = fs::absolute(session.scene().name()).parent_path();

@@ -56,8 +56,8 @@ void add_lines(const MapField& field, double level, std::size_t column, std::siz
   std::array<double, 4> value{};
   for (std::size_t i = 0; i < 4; ++i) {
     const std::size_t at = (row + kCorners[i].y) * field.count + column + kCorners[i].x;
-    if (field.is_good[at] == 0) return;
     value[i] = field.values[at] - level;
+    if (std::isnan(value[i])) return;
   }
   std::vector<std::pair<double, double>> crossings;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -79,12 +79,12 @@ void add_lines(const MapField& field, double level, std::size_t column, std::siz
 
 std::vector<MapAxis> map_axes(const Scene& scene, double theta_max_deg) {
   std::vector<MapAxis> axes = {{.scale = {0.0, theta_max_deg}}};
-  for (const AxisOfNumber& one : axes_of_numbers()) {
-    const std::optional<double> value = control(one.key).value(scene);
-    if (!value && one.name.starts_with("film")) break;
+  for (const AxisOfNumber& number : axes_of_numbers()) {
+    const std::optional<double> value = control(number.key).value(scene);
+    if (!value && number.name.starts_with("film")) break;
     if (!value) continue;
-    MapAxis axis{one.name, control(one.key).label_with_unit(), one.key};
-    axis.scale = one.range.value_or(range_in(scene, control(one.key)));
+    MapAxis axis{number.name, control(number.key).label_with_unit(), number.key};
+    axis.scale = number.range.value_or(range_in(scene, control(number.key)));
     axis.scale = grid_range(scene, axis).including(*value);
     axes.push_back(axis);
   }
@@ -113,10 +113,11 @@ std::string MapAxis::column() const {
 }
 
 std::size_t MapAxis::rank() const {
-  const std::string own = column() == kWind.column ? description_of(Axis::kSigma).column : column();
-  const auto found = std::ranges::find_if(kAxes, [&](const AxisDescription& one) { return own == one.column; });
+  const std::string table_column = column() == kWind.column ? description_of(Axis::kSigma).column : column();
+  const auto found =
+      std::ranges::find_if(kAxes, [&](const AxisDescription& axis) { return table_column == axis.column; });
   if (found != kAxes.end()) return 2 + static_cast<std::size_t>(found - kAxes.begin());
-  return own.empty() ? 0 : 1;
+  return table_column.empty() ? 0 : 1;
 }
 
 bool MapAxis::is_of_tables() const { return rank() >= 2; }
@@ -248,14 +249,13 @@ MapField HeatMap::field(Plotted quantity) const {
   if (points_[finest].empty()) return {};
   const std::size_t count = kLevels[finest].count;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  MapField field{.count = count, .values = {}, .is_good = {}, .min = kInfinity, .max = -kInfinity};
+  MapField field{.count = count, .values = {}, .min = kInfinity, .max = -kInfinity};
   for (std::size_t i = 0; i < count * count; ++i) {
     const Point& point = point_at(finest, i / count, i % count);
     const double value = described(quantity).value(point);
-    const bool good = point.is_good() && std::isfinite(value);
-    field.values.push_back(value);
-    field.is_good.push_back(good ? 1 : 0);
-    if (!good) continue;
+    const bool is_good = point.is_good() && std::isfinite(value);
+    field.values.push_back(is_good ? value : std::numeric_limits<double>::quiet_NaN());
+    if (!is_good) continue;
     field.min = std::min(field.min, value);
     field.max = std::max(field.max, value);
   }

@@ -37,9 +37,8 @@ std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range)
 /// Shape: count x count in rows, x fastest, y upwards.
 struct MapField {
   std::size_t count = 0;
-  std::vector<double> values;  ///< NaN where there is no value
-  std::vector<std::uint8_t> is_good;
-  double min = 0.0;  ///< the smallest and the largest good value
+  std::vector<double> values;  ///< NaN where there is no value, and for entries with a bad status
+  double min = 0.0;            ///< the smallest and the largest value
   double max = 0.0;
 };
 

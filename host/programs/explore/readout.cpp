@@ -88,8 +88,8 @@ std::string no_residuals_text(const Session& session, const Scale& theta) {
   if (!session.residuals().is_known()) return "…";
   const std::vector<Measurement> residuals = session.residuals().residuals(shown);
   if (residuals.empty()) return "the model has no value at the measured points";
-  const auto is_inside = [&](const Measurement& one) {
-    return theta.from <= one.theta_deg && one.theta_deg <= theta.to;
+  const auto is_inside = [&](const Measurement& point) {
+    return theta.from <= point.theta_deg && point.theta_deg <= theta.to;
   };
   return std::ranges::any_of(residuals, is_inside) ? "" : "no measured point is at these zeniths";
 }

@@ -220,12 +220,11 @@ void Session::restore(const SavedSession& saved) {
   marked_ = saved.marked;
   residuals_.clear();
   if (saved.measured) attempt([&] { residuals_.load(*saved.measured); });
-  pins_.clear();
   view_ = saved.view;
-  for (const SavedSession::SavedPin& pin : saved.pins) {
-    Curve curve(pin.scene);
-    curve.follow(content_key(pin.scene, pin.scene.settings(), keeps_all()), pin.scene, keeps_all());
-    pins_.push_back({pin.name, pin.colour, pin.is_visible, std::move(curve)});
+  pins_ = saved.pins;
+  for (Pin& pin : pins_) {
+    const Scene scene = pin.curve.scene();
+    pin.curve.follow(content_key(scene, scene.settings(), keeps_all()), scene, keeps_all());
   }
   theta_deg_ = saved.theta_deg;
   set_view(saved.view);
@@ -352,14 +351,14 @@ void Session::follow_sweeps(const std::string& content) {
       "wavelength", control(kWavelength).label_with_unit(), kWavelength, {from_um / kWidth, to_um * kWidth}};
   wavelengths_.scale = wavelengths_.scale.including(spectral_scene_.number(kWavelength).value());
   const bool has_range = find_range(spectral_scene_, view_, wavelengths_);
-  const auto follow_wavelengths = [&](Sweep& sweep, const Scene& one, std::size_t count, bool keep_all) {
+  const auto follow_wavelengths = [&](Sweep& sweep, const Scene& swept, std::size_t count, bool keep_all) {
     if (!has_range) return;
-    PointList list = points_at(one, std::vector<double>(count, theta_deg_));
+    PointList list = points_at(swept, std::vector<double>(count, theta_deg_));
     const Scale& range = wavelengths_.scale;
     list["wavelength_um"] = range.values(count);
     const std::string key = fmt::format("{} wavelengths from {} to {}, {} at {}\n{}", count, range.from, range.to,
                                         range.is_log, theta_deg_, content);
-    sweep.follow({.key = key, .scene = one, .parts = {list}, .keep_all = keep_all}, "wavelength_um");
+    sweep.follow({.key = key, .scene = swept, .parts = {list}, .keep_all = keep_all}, "wavelength_um");
   };
   if (is_spectrum) return follow_wavelengths(spectrum_, spectral_scene_, kSpectrum, keeps_all());
   const Scene smooth = smooth_scene(scene());

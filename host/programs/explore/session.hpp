@@ -58,14 +58,8 @@ struct Message {
 
 /// The content of a session file.
 struct SavedSession {
-  struct SavedPin {
-    std::string name;
-    std::size_t colour;
-    bool is_visible;
-    Scene scene;
-  };
   SceneEdits edits;
-  std::vector<SavedPin> pins = {};
+  std::deque<Pin> pins = {};  ///< with curves that are not computed
   std::vector<Snapshot> snapshots = {};
   View view = {};
   double theta_deg = 60.0;
@@ -164,7 +158,7 @@ class Session {
   SkyFiles& skies() { return skies_; }
   const SkyFiles& skies() const { return skies_; }
   /// True if the scene names a sky of the window.
-  bool has_own_sky() const { return skies_.hold(sky_file(scene())); }
+  bool has_unsaved_sky() const { return skies_.hold(sky_file(scene())); }
   /// The fit of the marked parameters to the measured points. Empty without points, or if the scene has no marked
   /// parameter.
   std::optional<FitJob> fit_job() const;

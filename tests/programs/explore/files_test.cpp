@@ -118,7 +118,7 @@ TEST_F(ExploreFiles, Session_WithSkiesOfTheWindow_ReadsBackWhenTheWindowIsGone) 
     saved.take_snapshot();
     saved.set("surroundings.profile", saved.skies().path(kNoon));
     save_session(saved, at("all.toml"));
-    EXPECT_TRUE(saved.has_own_sky());
+    EXPECT_TRUE(saved.has_unsaved_sky());
   }
   Session opened(paint());
   open_file(opened, at("all.toml"));

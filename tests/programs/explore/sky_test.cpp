@@ -44,9 +44,9 @@ TEST(SkyPair, SavedScene_HasItsSkyBesideIt_AndReadsBackWithIt) {
   const std::string saved = (folder.path() / "saved" / "dusk.toml").string();
   Session session(SceneEdits(Scene::from_text(kPaint, {}, opened)));
   session.set("surroundings.profile", session.skies().path(kDusk));
-  EXPECT_TRUE(session.has_own_sky());
+  EXPECT_TRUE(session.has_unsaved_sky());
   save_scene(session, saved);
-  EXPECT_FALSE(session.has_own_sky() || session.edits().is_changed());
+  EXPECT_FALSE(session.has_unsaved_sky() || session.edits().is_changed());
   EXPECT_EQ(read_file(folder.path() / "saved" / "dusk_sky.csv"), kDusk.csv());
   EXPECT_NE(read_file(saved).find("profile = 'dusk_sky.csv'"), std::string::npos) << read_file(saved);
   const Scene again = Scene::from_file(saved);

@@ -42,7 +42,7 @@ App::App(SceneEdits edits, const AppOptions& options)
               }),
       actions_(session_, options.device, options.command_line, options.preferences, glfwPostEmptyEvent),
       input_(screen_.window(), [this](const std::string& path) { actions_.open(path); }),
-      ui_(session_, actions_, [this] { catch_up(); }) {}
+      ui_{session_, actions_} {}
 
 void App::exchange() {
   actions_.finish();
@@ -68,7 +68,7 @@ void App::draw() {
   screen_.follow(actions_.preferences());
   for (;;) {  // each event has a frame, and only the last one is shown
     input_.begin_frame();
-    ui_.draw();
+    draw_all(ui_, [this] { catch_up(); });
     if (!input_.has_more()) break;
     ImGui::EndFrame();
   }
@@ -76,7 +76,7 @@ void App::draw() {
   const std::string path = actions_.due_picture();
   const std::string png = screen_.show(!path.empty());
   if (png.empty()) return;
-  actions_.set_picture({});
+  actions_.picture_path.clear();
   write_text_atomically(path, png);
 }
 
@@ -84,7 +84,7 @@ bool App::frame() {
   glfwPollEvents();
   exchange();
   draw();
-  return glfwWindowShouldClose(screen_.window()) == GLFW_FALSE && !actions_.is_quitting();
+  return glfwWindowShouldClose(screen_.window()) == GLFW_FALSE && !actions_.is_quitting;
 }
 
 void App::settle() {
@@ -99,7 +99,7 @@ bool App::answer(const AfterFrame& after_frame) {
     const bool is_open = frame();
     if (after_frame) after_frame(seconds_since(start));
     if (!is_open) return false;
-    const bool has_news = input_.take_news() || actions_.has_picture_to_save();
+    const bool has_news = input_.take_news() || !actions_.picture_path.empty();
     if (session_.is_dragged()) return true;  // one frame per move leaves the processor to the curves
     left = has_news ? kFramesAfterEvent : left - 1;
   }

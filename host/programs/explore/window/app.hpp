@@ -23,8 +23,8 @@ class App {
   Session& session() { return session_; }
   /// The area of a named item in the last frame. Errors: std::out_of_range where it was not drawn.
   Area control_area(const std::string& name) { return input_.areas().at(name); }
-  const CurveView& curve_view() const { return ui_.curves(); }
-  const MapView& map_view() const { return ui_.map(); }
+  const CurveView& curve_view() const { return ui_.curves; }
+  const MapView& map_view() const { return ui_.map; }
 
   /// Takes input and results, and draws one frame. Returns false if the user has closed the window.
   /// Errors: DeviceError if no device can compute, or if it is lost.
@@ -43,11 +43,11 @@ class App {
   std::string run_frames(std::size_t count, const std::string& screenshot_path);
 
   /// True if nothing remains to be computed and the session has all results.
-  bool is_idle() { return worker_.is_idle() && is_all_taken_ && !actions_.fit_task().is_running(); }
+  bool is_idle() { return worker_.is_idle() && is_all_taken_ && !actions_.fit_task.is_running(); }
   /// Draws until is_idle() returns true.
   void settle();
   /// Writes a picture of the window with its next frame. Errors: IoError.
-  void save_picture(const std::string& path) { actions_.set_picture(path); }
+  void save_picture(const std::string& path) { actions_.picture_path = path; }
 
  private:
   /// Passes results to the session and wanted jobs to the worker.

@@ -112,7 +112,7 @@ struct Controls {
       ImGui::SetNextItemWidth(width);
       draw_fields(ids[end], [&] { fields.draw_end(id, end, ends, apply); });
     }
-    for (const std::string& one : ids) fields.draw_reason(one);
+    for (const std::string& field : ids) fields.draw_reason(field);
   }
 
   void draw_slider(const Slider& slider, double value, const Control* control = nullptr) {

@@ -61,8 +61,8 @@ std::vector<double> values_to_show(const Session& session, const std::vector<Sho
         values.push_back(described(quantity).scale() * point[limit]);
     }
   }
-  for (const Measurement& one : session.residuals().measured(quantity))
-    values.push_back(described(quantity).scale() * one.value);
+  for (const Measurement& point : session.residuals().measured(quantity))
+    values.push_back(described(quantity).scale() * point.value);
   return values;
 }
 
@@ -231,8 +231,8 @@ void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
   const PlottedDescription& quantity = described(session.view().quantity);
   const std::vector<Measurement> residuals = session.residuals().residuals(quantity.quantity);
   double largest = residuals.empty() ? 1.0 : 1e-6;
-  for (const Measurement& one : residuals)
-    largest = std::max(largest, quantity.scale() * (std::abs(one.value) + one.uncertainty.value_or(0.0)));
+  for (const Measurement& point : residuals)
+    largest = std::max(largest, quantity.scale() * (std::abs(point.value) + point.uncertainty.value_or(0.0)));
   std::string label = std::string("measured − model") + (quantity.in_percent ? " [points]" : "");
   if (const auto rms = rms_of(residuals)) label += fmt::format("; root mean square {:.3g}", quantity.scale() * *rms);
   const Plot plot("residuals", size, {"", theta}, {label, {-1.2 * largest, 1.2 * largest}});

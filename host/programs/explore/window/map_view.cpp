@@ -82,9 +82,9 @@ void MapView::update(const Session& session) {
   const bool is_held = session.is_dragged() && is_same && colour_scale_.from < colour_scale_.to;
   if (!is_held) colour_scale_ = typed_colours_.value_or(colour_range());
   colours_.clear();
-  for (std::size_t i = 0; i < field_.values.size(); ++i) {
-    const double position = colour_position(field_.values[i]);
-    colours_.push_back(field_.is_good[i] ? colour(std::round(position * kColourSteps) / kColourSteps) : kBadColour);
+  for (const double value : field_.values) {
+    const double step = std::round(colour_position(value) * kColourSteps) / kColourSteps;
+    colours_.push_back(std::isnan(value) ? kBadColour : colour(step));
   }
   runs_ = runs_along(true);
   std::vector<Run> upwards = runs_along(false);

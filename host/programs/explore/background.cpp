@@ -23,17 +23,6 @@ void BackgroundTask::start(const Work& work) {
   thread_ = run_in_background(with_progress, result_, on_change_);
 }
 
-void BackgroundTask::set_phase(const std::string& phase) {
-  progress_ = 0.0;
-  const std::scoped_lock lock(mutex_);
-  phase_ = phase;
-}
-
-std::string BackgroundTask::phase() const {
-  const std::scoped_lock lock(mutex_);
-  return phase_;
-}
-
 void BackgroundTask::finish() {
   if (!is_running() || !is_ended(result_)) return;
   try {
@@ -86,32 +75,6 @@ void Worker::want(std::vector<Job> jobs) {
     tasks_ = std::move(wanted);
   }
   changed_.notify_all();
-}
-
-std::vector<JobPart> Worker::take_news() {
-  if (end_.valid() && is_ended(end_)) end_.get();
-  const std::scoped_lock lock(mutex_);
-  return std::exchange(news_, {});
-}
-
-void Worker::await_news(std::chrono::duration<double> at_most) {
-  std::unique_lock lock(mutex_);
-  arrived_.wait_for(lock, at_most, [this] { return !news_.empty() || is_ended(end_); });
-}
-
-bool Worker::is_idle() const {
-  const std::scoped_lock lock(mutex_);
-  return (!is_running_ && std::ranges::all_of(tasks_, &Task::is_done)) || is_ended(end_);
-}
-
-Worker::Task* Worker::find(const std::string& key) {
-  const auto found = std::ranges::find(tasks_, key, [](const Task& task) { return task.job.key; });
-  return found == tasks_.end() ? nullptr : &*found;
-}
-
-bool Worker::may_continue(const Job& job) {
-  const std::scoped_lock lock(mutex_);
-  return !is_stopping_ && (job.is_brief || find(job.key));
 }
 
 std::optional<Worker::Task> Worker::next_task() {

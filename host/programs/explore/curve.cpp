@@ -116,14 +116,6 @@ std::vector<Point> Curve::drawn() const {
   return all;
 }
 
-double Curve::worst_error() const {
-  double worst = 0.0;
-  for (const Point& point : points()) {
-    if (point.is_good()) worst = std::max(worst, point[Quantity::kErrorEstimate]);
-  }
-  return worst;
-}
-
 std::string true_error(const Curve& curve, const Progress& progress) {
   std::vector<Point> stated;
   std::vector<double> theta_deg;
@@ -211,16 +203,6 @@ std::optional<double> Peak::rival(double least) const {
     if (!is_beside && point.is_good() && most_of(point) >= least) return point.theta_deg;
   }
   return std::nullopt;
-}
-
-bool Peak::is_complete() const {
-  return answer_ &&
-         std::ranges::all_of(without_, [](const WithoutEffect& removed) { return removed.result.has_value(); });
-}
-
-double Peak::contribution(const WithoutEffect& removed) const {
-  const Point& at = answer_->at;
-  return (at[Quantity::kStokesQ] - (*removed.result)[Quantity::kStokesQ]) / at[Quantity::kStokesI];
 }
 
 }  // namespace dolp::explore

@@ -318,16 +318,6 @@ void Preferences::save() const {
   write_toml(path_, toml::table{{"light", is_light}, {"zoom", zoom_steps_}, {"recent", array_of(recent(), same)}});
 }
 
-double Preferences::zoom() const {
-  constexpr double kStep = 1.1;
-  return std::pow(kStep, zoom_steps_);
-}
-
-void Preferences::zoom_by(int steps) {
-  constexpr int kMostSteps = 8;  // zoom to about twice or half the size
-  zoom_steps_ = std::clamp(zoom_steps_ + std::clamp(steps, -2 * kMostSteps, 2 * kMostSteps), -kMostSteps, kMostSteps);
-}
-
 void Preferences::remember(const fs::path& file) {
   const std::string path = fs::absolute(file).lexically_normal().string();
   std::erase(recent_, path);

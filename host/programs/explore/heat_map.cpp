@@ -106,12 +106,6 @@ Scale known_part(const Scene& scene, const MapAxis& axis) {
   return range;
 }
 
-std::string MapAxis::column() const {
-  if (key.empty()) return "theta_deg";
-  if (key == "emission.temperature_K") return {};
-  return key.starts_with("surface.coating") ? key : key.substr(key.find('.') + 1);
-}
-
 std::size_t MapAxis::rank() const {
   const std::string table_column = column() == kWind.column ? description_of(Axis::kSigma).column : column();
   const auto found =
@@ -119,8 +113,6 @@ std::size_t MapAxis::rank() const {
   if (found != kAxes.end()) return 2 + static_cast<std::size_t>(found - kAxes.begin());
   return table_column.empty() ? 0 : 1;
 }
-
-bool MapAxis::is_of_tables() const { return rank() >= 2; }
 
 std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range) {
   for (const double end : {range.from, range.to}) {
@@ -159,10 +151,6 @@ void HeatMap::follow(const std::string& key, const Scene& scene, bool keep_all, 
   x_ = x;
   y_ = y;
   theta_deg_ = theta_deg;
-}
-
-std::string HeatMap::key_of(std::size_t level) const {
-  return "map " + std::to_string(kLevels[level].count) + ' ' + key_;
 }
 
 PointList HeatMap::part(std::size_t level, std::size_t first) const {
@@ -213,23 +201,6 @@ bool HeatMap::take(const JobPart& news) {
   }
   ++version_;
   return true;
-}
-
-std::size_t HeatMap::finished_count() const {
-  std::size_t finest = 0;
-  for (std::size_t level = 0; level < kLevels.size(); ++level) {
-    if (is_complete(level)) finest = kLevels[level].count;
-  }
-  return finest;
-}
-
-double HeatMap::progress() const {
-  std::size_t done = 0, all = 0;
-  for (std::size_t level = 0; level < kLevels.size(); ++level) {
-    all += entries(level);
-    if (is_current()) done += points_[level].size();
-  }
-  return static_cast<double>(done) / static_cast<double>(all);
 }
 
 const Point& HeatMap::point_at(std::size_t finest, std::size_t row, std::size_t column) const {

@@ -133,12 +133,4 @@ void SourceSky::follow(const std::string& key, const Scene& scene) {
   }
 }
 
-std::vector<Job> SourceSky::wanted() const {
-  std::vector<Job> jobs;
-  for (const Sweep& ring : rings_) {
-    if (const std::optional<Job> job = ring.wanted()) jobs.push_back(*job);
-  }
-  return jobs;
-}
-
 }  // namespace dolp::explore

@@ -78,7 +78,13 @@ class SourceSky {
   /// Switches to the sky of a bistatic scene; `key` identifies its content without the azimuth.
   void follow(const std::string& key, const Scene& scene);
   /// Coarse jobs for the azimuths that are not known yet.
-  std::vector<Job> wanted() const;
+  std::vector<Job> wanted() const {
+    std::vector<Job> jobs;
+    for (const Sweep& ring : rings_) {
+      if (const std::optional<Job> job = ring.wanted()) jobs.push_back(*job);
+    }
+    return jobs;
+  }
   void take(const JobPart& news) {
     std::ranges::any_of(rings_, [&](Sweep& ring) { return ring.take(news); });
   }

@@ -154,14 +154,6 @@ void Session::load_measured(const std::string& path) {
   });
 }
 
-void Session::mark(const std::string& key, bool varies) {
-  if (varies) {
-    marked_.try_emplace(key);
-  } else {
-    marked_.erase(key);
-  }
-}
-
 std::string Session::set_fit_range(const std::string& key, const std::string& low, const std::string& high) {
   try {
     marked_[key] = FitRange::from_text(fmt::format("{}={}:{}", key, low, high));
@@ -202,10 +194,6 @@ void Session::visit_minimum(std::size_t position) {
     minimum_ = position;
     visited_ = edits_;
   });
-}
-
-std::optional<std::size_t> Session::minimum() const {
-  return fit_ && visited_->is_same_scene(edits_) ? std::optional(minimum_) : std::nullopt;
 }
 
 const FitParameter* Session::fitted(const std::string& key) const {
@@ -266,11 +254,6 @@ void Session::set_map_cursor(double x, double y) {
     }
   }
   set(changes);
-}
-
-double Session::map_cursor(const MapAxis& axis) const {
-  const double value = axis.key.empty() ? theta_deg_ : scene().number(axis.key).value_or(axis.scale.from);
-  return axis.scale.position(axis.scale.clamp(value));
 }
 
 const Point* Session::at_cursor() const {
@@ -367,10 +350,6 @@ void Session::follow_sweeps(const std::string& content) {
                   .parts = {points_at(smooth, zeniths(0.0, 90.0, Curve::kFineCount))},
                   .keep_all = true});
   follow_wavelengths(smooth_spectrum_, smooth_scene(spectral_scene_), kSmooth, true);
-}
-
-void Session::follow_peak() {
-  if (curve_.is_finished()) peak_.follow(curve_, edits_, view_.theta_max_deg);
 }
 
 std::vector<Job> Session::wanted_in_drag() const {

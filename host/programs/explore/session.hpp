@@ -111,7 +111,13 @@ class Session {
   void load_measured(const std::string& path);
   void clear_measured() { residuals_.clear(); }
   /// Selects whether a number varies in fits.
-  void mark(const std::string& key, bool varies);
+  void mark(const std::string& key, bool varies) {
+    if (varies) {
+      marked_.try_emplace(key);
+    } else {
+      marked_.erase(key);
+    }
+  }
   /// Lets a number vary in fits over a typed range. Returns the reason if the range is refused, otherwise nothing.
   std::string set_fit_range(const std::string& key, const std::string& low, const std::string& high);
   /// Shows a fit, and moves the parameters to the minimum that is nearest to the job's start. Returns its position.
@@ -164,7 +170,9 @@ class Session {
   std::optional<FitJob> fit_job() const;
   const std::optional<Fit>& last_fit() const { return fit_; }
   /// The minimum of the last fit that the scene shows; empty after the scene has changed.
-  std::optional<std::size_t> minimum() const;
+  std::optional<std::size_t> minimum() const {
+    return fit_ && visited_->is_same_scene(edits_) ? std::optional(minimum_) : std::nullopt;
+  }
   /// The result of the last fit for a number; null after the scene has changed.
   const FitParameter* fitted(const std::string& key) const;
   const Message& message() const { return message_; }
@@ -175,7 +183,10 @@ class Session {
   /// The effects of the last finished curve. For kept effects the influence is the one at the cursor's zenith.
   const std::vector<Effect>& effects() const { return effects_; }
   /// The position of the scene's value on an axis of the map.
-  double map_cursor(const MapAxis& axis) const;
+  double map_cursor(const MapAxis& axis) const {
+    const double value = axis.key.empty() ? theta_deg_ : scene().number(axis.key).value_or(axis.scale.from);
+    return axis.scale.position(axis.scale.clamp(value));
+  }
   /// The point on display whose zenith is nearest to the cursor; null without points.
   const Point* at_cursor() const;
 
@@ -191,7 +202,9 @@ class Session {
   void follow();
   void follow_overlay(const std::string& content);
   void follow_map();
-  void follow_peak();
+  void follow_peak() {
+    if (curve_.is_finished()) peak_.follow(curve_, edits_, view_.theta_max_deg);
+  }
   std::vector<Job> wanted_in_drag() const;
   void follow_sweeps(const std::string& content);
   bool shows_map() const { return view_.panel == Panel::kMap; }

@@ -62,16 +62,6 @@ void NumberFields::draw(const std::string& id, double value, const Apply& apply)
   }
 }
 
-std::string NumberFields::text(const std::string& id) const {
-  const auto typed = typed_.find(id);
-  return typed == typed_.end() ? "" : typed->second.text;
-}
-
-std::string NumberFields::reason(const std::string& id) const {
-  const auto typed = typed_.find(id);
-  return typed == typed_.end() ? "" : typed->second.reason;
-}
-
 void NumberFields::draw_end(const std::string& id, std::size_t end, const std::array<double, 2>& ends,
                             const ApplyEnds& apply) {
   const auto id_of = [&](std::size_t i) { return fmt::format("{} {}", id, i); };

@@ -24,9 +24,15 @@ class NumberFields {
   /// end is tried again when the other end changes.
   void draw_end(const std::string& id, std::size_t end, const std::array<double, 2>& ends, const ApplyEnds& apply);
   /// The text of a field that is not applied yet; empty: none.
-  std::string text(const std::string& id) const;
+  std::string text(const std::string& id) const {
+    const auto typed = typed_.find(id);
+    return typed == typed_.end() ? "" : typed->second.text;
+  }
   /// The reason why the text of a field was refused; empty if it was not.
-  std::string reason(const std::string& id) const;
+  std::string reason(const std::string& id) const {
+    const auto typed = typed_.find(id);
+    return typed == typed_.end() ? "" : typed->second.reason;
+  }
   /// Draws the reason below the fields.
   void draw_reason(const std::string& id) const;
 

@@ -155,8 +155,11 @@ int run_fit(const Options& options) {
 }
 
 int run_explore(const Options& options) {
-  explore::ProgramOptions program{options.device, options.command_line,    options.measured_path,
-                                  options.frames, options.screenshot_path, options.panel};
+  explore::ProgramOptions program{{options.device, options.command_line},
+                                  options.measured_path,
+                                  options.frames,
+                                  options.screenshot_path,
+                                  options.panel};
   const bool is_session = explore::is_session_file(options.scene_path);
   if (is_session) {
     program.session_path = options.scene_path;

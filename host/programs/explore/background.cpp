@@ -77,37 +77,31 @@ void Worker::want(std::vector<Job> jobs) {
   changed_.notify_all();
 }
 
-std::optional<Worker::Task> Worker::next_task() {
+void Worker::run() {
   const auto is_open = [](const Task& task) { return !task.is_done(); };
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return is_stopping_ || std::ranges::any_of(tasks_, is_open); });
-  is_running_ = !is_stopping_;
-  return is_stopping_ ? std::nullopt : std::optional(*std::ranges::find_if(tasks_, is_open));
-}
-
-void Worker::run() {
   for (;;) {
-    std::optional<Task> next = next_task();
-    if (!next) return;
+    changed_.wait(lock, [&] { return is_stopping_ || std::ranges::any_of(tasks_, is_open); });
+    if (is_stopping_) return;
+    Task task = *std::ranges::find_if(tasks_, is_open);
+    is_running_ = true;
+    lock.unlock();
     std::optional<JobPart> part;
     try {
-      part = advance(*next);
+      part = advance(task);
     } catch (const Cancelled&) {
       // The job stopped because it was no longer wanted. It may be wanted again now.
     }
-    finish_part(*next, std::move(part));
+    lock.lock();
+    is_running_ = false;
+    Task* const wanted = find(task.job.key);
+    if (part && (wanted || task.job.is_brief)) news_.push_back(std::move(*part));
+    if (part && wanted) *wanted = std::move(task);
+    lock.unlock();
+    arrived_.notify_all();
     on_news_();
+    lock.lock();
   }
-}
-
-void Worker::finish_part(const Task& task, std::optional<JobPart> part) {
-  const std::scoped_lock lock(mutex_);
-  is_running_ = false;
-  Task* const wanted = find(task.job.key);
-  if (!part || !(wanted || task.job.is_brief)) return;
-  if (wanted) *wanted = task;
-  news_.push_back(std::move(*part));
-  arrived_.notify_all();
 }
 
 JobPart Worker::advance(Task& task) {

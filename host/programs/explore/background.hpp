@@ -172,12 +172,8 @@ class Worker {
   };
 
   void run();
-  /// Waits for a job that is not done, and returns a copy of it. Empty if the worker must stop.
-  std::optional<Task> next_task();
   /// Computes the next part.
   JobPart advance(Task& task);
-  /// Ends the running part of a task. Reports its results, if it has any.
-  void finish_part(const Task& task, std::optional<JobPart> part);
   /// The wanted task with this key; null if there is none.
   Task* find(const std::string& key) {
     const auto found = std::ranges::find(tasks_, key, [](const Task& task) { return task.job.key; });

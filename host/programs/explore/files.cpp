@@ -197,13 +197,13 @@ View view_in(Node node, const std::string& location) {
   return view;
 }
 
-SavedSession session_in(const std::string& path, const toml::table& table) {
+SessionState session_in(const std::string& path, const toml::table& table) {
   const Node file(static_cast<const toml::node&>(table));
   const fs::path folder = fs::path(path).parent_path();
   const std::string location = path + ": ";
   if (need<int>(file[kVersionKey], location + kVersionKey) != kVersion)
     throw InputError(fmt::format("{}{} is not {}: the session of another version", location, kVersionKey, kVersion));
-  SavedSession saved{.edits = state_in(file["scene"], location + "scene", folder)};
+  SessionState saved{.edits = state_in(file["scene"], location + "scene", folder)};
   const auto for_each = [&](const char* key, const auto& use) {
     const toml::array* const array = file[key].as_array();
     for (std::size_t i = 0; array && i < array->size(); ++i) {
@@ -222,12 +222,16 @@ SavedSession session_in(const std::string& path, const toml::table& table) {
   });
   saved.view = view_in(file["view"], location + "view.");
   saved.theta_deg = need<double>(file["view"]["cursor_deg"], location + "view.cursor_deg");
-  if (file["measured"]) {
-    const auto data = folder / need<std::string>(file["measured"], location + "measured");
-    saved.measured = read_measured(data.lexically_normal().string());
-  }
   saved.marked = marks_in(texts_in(file["vary"]), location);
   return saved;
+}
+
+/// The measured points that a session file names.
+std::optional<MeasuredData> measured_in(const std::string& path, const toml::table& table) {
+  const Node file(static_cast<const toml::node&>(table));
+  if (!file["measured"]) return std::nullopt;
+  const auto data = fs::path(path).parent_path() / need<std::string>(file["measured"], path + ": measured");
+  return read_measured(data.lexically_normal().string());
 }
 
 }  // namespace
@@ -286,7 +290,7 @@ void open_file(Session& session, const std::string& path) {
   if (fs::path(path).extension() == ".csv") return session.load_measured(path);
   const toml::table table = read_toml(path);
   if (table.contains(kVersionKey)) {
-    session.restore(session_in(path, table));
+    session.restore(session_in(path, table), measured_in(path, table));
   } else {
     session.go_to(SceneEdits(Scene::from_file(path)));
   }

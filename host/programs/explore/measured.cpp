@@ -65,16 +65,16 @@ std::optional<double> rms_of(const std::vector<Measurement>& residuals) {
   return std::sqrt(sum / static_cast<double>(residuals.size()));
 }
 
-FitRange fit_range(const FitMarks& marks, const Scene& scene, const Control& parameter, double value) {
+FitRange fit_range(const FitMarks& marks, const Scene& scene, const Control& control, double value) {
   constexpr double kLeastK = 1e-3;  // positive, so that the search is logarithmic in k and finds small values
-  const std::string& key = parameter.key->key;
+  const std::string& key = control.key->key;
   const auto marked = marks.find(key);
   if (marked != marks.end() && marked->second) {
     FitRange typed = *marked->second;
     typed.start = std::clamp(value, typed.low, typed.high);
     return typed;
   }
-  const Scale slider = range_in(scene, parameter);
+  const Scale slider = range_in(scene, control);
   const double low = key.ends_with(".k") ? kLeastK : std::min(slider.from, value);
   return {key, low, std::max(slider.to, value), std::max(low, value)};
 }

@@ -85,7 +85,7 @@ std::vector<Control> controls_without_films() {
       {key("surface.scattering"), "scattering", "only the first facet, or all bounces in V-grooves"},
       {key("surface.diffuse_polarisation"),
        "diffuse light",
-       "(1 − R) of the smooth surface on the way out",
+       "1 − R of a smooth surface on the way out",
        {},
        is_diffuse},
       {key("surface.n"), "n", "N = n + ik", {1.0, 40.0, true}, has_index},

@@ -145,7 +145,7 @@ TEST_F(ExploreFiles, BadFile_IsRefusedInOneLine_AndChangesNothing) {
   EXPECT_NE(refusal("missing.toml"), "");
 }
 
-TEST_F(ExploreFiles, BadPlaceInASession_IsNamed) {
+TEST_F(ExploreFiles, BadValueInASession_IsNamed) {
   put("points.csv", "theta_deg,dolp\n40,0.02\n");
   ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
   Session session(paint());
@@ -166,35 +166,13 @@ TEST_F(ExploreFiles, BadPlaceInASession_IsNamed) {
         {"'points.csv'", "'pipe'", "pipe: is not a regular file"},
         {"'points.csv'", "'gone.csv'", "gone.csv"}}) {
     std::string changed = text;
-    const std::size_t place = changed.find(from);
-    ASSERT_NE(place, std::string::npos) << from << " in\n" << text;
-    put("all.toml", changed.replace(place, std::string_view(from).size(), to));
+    const std::size_t position = changed.find(from);
+    ASSERT_NE(position, std::string::npos) << from << " in\n" << text;
+    put("all.toml", changed.replace(position, std::string_view(from).size(), to));
     const std::string line = refusal("all.toml");
     EXPECT_EQ(line.empty(), *part == '\0') << line;
     EXPECT_NE(line.find(part), std::string::npos) << line;
   }
-}
-
-TEST_F(ExploreFiles, AnotherScene_IsOpenedAsOne_AndUndone) {
-  put("other.toml", "title = \"Other\"\n" + kPaint.substr(kPaint.find('\n') + 1));
-  Driver driver(paint());
-  Session& session = driver.session;
-  session.set("surface.sigma", 0.3);
-  session.hold(false);
-  session.pin();
-  open_file(session, at("other.toml"));
-  driver.settle();
-  EXPECT_EQ(session.scene().title(), "Other");
-  EXPECT_FALSE(session.edits().is_changed());
-  EXPECT_EQ(session.scene().number("surface.sigma"), 0.15);
-  EXPECT_EQ(session.pins()[0].curve.scene().title(), "Paint");
-  expect_same(session.curve().points(), truth(session.scene(), session.curve().points()));
-  session.undo();
-  EXPECT_EQ(session.scene().title(), "Paint");
-  EXPECT_EQ(session.scene().number("surface.sigma"), 0.3);
-  EXPECT_TRUE(session.edits().is_changed());
-  session.redo();
-  EXPECT_EQ(session.scene().title(), "Other");
 }
 
 TEST(ExplorePlots, Json_HasTheVisibleCurvesAndTheMap) {

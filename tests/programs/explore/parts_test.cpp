@@ -2,11 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <condition_variable>
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <mutex>
 
 #include "base/text.hpp"
 #include "explore/scene_edits.hpp"
@@ -150,25 +149,25 @@ void take_step(Session& session, const std::string& step) {
   if (step == "reset") return session.reset_all();
   if (step.starts_with("reset ")) return session.reset(step.substr(6));
   Changes changes;
-  for (const std::string_view one : split(step, ';')) changes.push_back(Setting::from_text(std::string(one)));
+  for (const std::string_view setting : split(step, ';')) changes.push_back(Setting::from_text(std::string(setting)));
   session.set(changes);
 }
 
 TEST(Edits, EachKind_GivesTheValuesAndTheMessage) {
-  for (const EditCase& one : kEditCases) {
-    SCOPED_TRACE(one.steps.front());
-    Session session(paint(one.opened));
-    for (const std::string& step : one.steps) take_step(session, step);
-    for (const std::string& setting : one.expected) {
+  for (const EditCase& edit : kEditCases) {
+    SCOPED_TRACE(edit.steps.front());
+    Session session(paint(edit.opened));
+    for (const std::string& step : edit.steps) take_step(session, step);
+    for (const std::string& setting : edit.expected) {
       const std::string key = setting.substr(0, setting.find('='));
       EXPECT_EQ(key + '=' + value_of(session.scene(), key), setting);
     }
-    EXPECT_NE(session.message().text.find(one.message), std::string::npos) << session.message().text;
-    EXPECT_EQ(session.message().text.empty(), one.message.empty()) << session.message().text;
-    EXPECT_EQ(session.message().is_error, one.is_error);
+    EXPECT_NE(session.message().text.find(edit.message), std::string::npos) << session.message().text;
+    EXPECT_EQ(session.message().text.empty(), edit.message.empty()) << session.message().text;
+    EXPECT_EQ(session.message().is_error, edit.is_error);
     session.reset_all();
     EXPECT_FALSE(session.edits().is_changed());
-    EXPECT_EQ(session.scene().toml(), paint(one.opened).scene().toml());
+    EXPECT_EQ(session.scene().toml(), paint(edit.opened).scene().toml());
   }
 }
 
@@ -251,42 +250,27 @@ TEST(SceneToml, NamedFiles_AreFoundFromTheNewFolder) {
   EXPECT_EQ(again.refractive_index(10.0), scene.refractive_index(10.0));
 }
 
+constexpr auto kMoment = std::chrono::milliseconds(1);
+
 /// An evaluator whose calls wait until the test opens it.
-class SlowEvaluator {
- public:
+struct SlowEvaluator {
   Evaluate evaluate() {
     return [this](const Scene& scene, const PointList& list, const RunOptions& options) {
-      std::unique_lock lock(mutex_);
-      ++calls_;
-      changed_.notify_all();
-      while (!is_open_) {
-        changed_.wait_for(lock, std::chrono::milliseconds(1));
+      for (++calls; !is_open; std::this_thread::sleep_for(kMoment)) {
         if (options.progress(0, 1)) continue;
         ++cancelled;
-        changed_.notify_all();
         throw Cancelled("no file was written");
       }
-      return explore::evaluate(cpu_, scene, list, options);
+      return explore::evaluate(cpu, scene, list, options);
     };
   }
-  void open() {
-    const std::scoped_lock lock(mutex_);
-    is_open_ = true;
-    changed_.notify_all();
+  static void wait_for(const std::atomic<int>& count) {
+    while (count == 0) std::this_thread::sleep_for(kMoment);
   }
-  /// Waits until a call has begun or has been cancelled.
-  void wait_for(bool is_cancelled) {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return (is_cancelled ? cancelled : calls_) > 0; });
-  }
-  int cancelled = 0;
 
- private:
-  Evaluator cpu_{EvaluatorOptions{.evaluator = "cpu"}};
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  int calls_ = 0;
-  bool is_open_ = false;
+  Evaluator cpu{EvaluatorOptions{.evaluator = "cpu"}};
+  std::atomic<int> calls = 0, cancelled = 0;
+  std::atomic<bool> is_open = false;
 };
 
 Job job_of(const std::string& key) {
@@ -295,7 +279,7 @@ Job job_of(const std::string& key) {
 }
 
 std::vector<JobPart> finish(Worker& worker) {
-  while (!worker.is_idle()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  while (!worker.is_idle()) std::this_thread::sleep_for(kMoment);
   return worker.take_news();
 }
 
@@ -311,13 +295,13 @@ TEST(ExploreWorker, RunningJob_EndsWhenItIsNoLongerWantedUnlessItIsBrief) {
     Job first = job_of("first");
     first.is_brief = is_brief;
     worker.want({first});
-    evaluator.wait_for(false);
+    evaluator.wait_for(evaluator.calls);
     std::vector<Job> jobs;
     for (const std::string& key : next) jobs.push_back(job_of(key));
     worker.want(std::move(jobs));
-    if (cancelled > 0) evaluator.wait_for(true);
+    if (cancelled > 0) evaluator.wait_for(evaluator.cancelled);
     std::this_thread::sleep_for(std::chrono::milliseconds(20));  // time for a wrong cancellation
-    evaluator.open();
+    evaluator.is_open = true;
     std::vector<std::string> keys;
     for (const JobPart& part : finish(worker)) keys.push_back(part.key);
     EXPECT_EQ(keys, expected);
@@ -333,17 +317,17 @@ TEST(ExploreWorker, Parts_ComeInOrderAtTheWiderTolerance_AJobOfHigherRankBetween
     job.tolerance = wanted;
     job.parts = {points_at(job.scene, {10.0, 20.0, 30.0}), points_at(job.scene, {40.0})};
     worker.want({job});
-    evaluator.wait_for(false);
+    evaluator.wait_for(evaluator.calls);
     worker.want({job_of("urgent"), job});
-    evaluator.open();
+    evaluator.is_open = true;
     const std::vector<JobPart> news = finish(worker);
     ASSERT_EQ(news.size(), 3U);
     EXPECT_EQ(news[1].key, "urgent");
-    for (const auto& [part, place] : {std::pair{0U, 0U}, {1U, 2U}}) {
-      EXPECT_EQ(news[place].part, part);
-      EXPECT_EQ(news[place].is_last, part == 1U);
-      EXPECT_EQ(news[place].scene.number("accuracy.tolerance"), taken);
-      expect_same(news[place].points, truth(news[place].scene, job.parts[part]));
+    for (const auto& [part, position] : {std::pair{0U, 0U}, {1U, 2U}}) {
+      EXPECT_EQ(news[position].part, part);
+      EXPECT_EQ(news[position].is_last, part == 1U);
+      EXPECT_EQ(news[position].scene.number("accuracy.tolerance"), taken);
+      expect_same(news[position].points, truth(news[position].scene, job.parts[part]));
     }
     EXPECT_GT(news[2].evaluations, 0.0);
   }
@@ -353,7 +337,7 @@ TEST(ExploreWorker, LostDevice_IsThrownToWhoAsksForNews) {
   const auto lost = [](const Scene&, const PointList&, const RunOptions&) -> Results { throw DeviceError("lost"); };
   Worker worker(lost, [] {});
   worker.want({job_of("any")});
-  while (!worker.is_idle()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  while (!worker.is_idle()) std::this_thread::sleep_for(kMoment);
   EXPECT_THROW(worker.take_news(), DeviceError);
 }
 
@@ -405,26 +389,16 @@ TEST(Measured, Residuals_AreMeasuredMinusModelAtTheMeasuredPoints) {
   }
 }
 
-TEST(BackgroundTask, Phase_HasANameAndItsOwnProgress_AndCancellingIsSaid) {
-  std::mutex mutex;
-  std::condition_variable changed;
-  int changes = 0;
-  BackgroundTask task([&] {
-    const std::scoped_lock lock(mutex);
-    ++changes;
-    changed.notify_all();
-  });
+TEST(BackgroundTask, Phase_HasANameAndAProgressFromZero_AndCancellingIsSaid) {
+  std::atomic<int> changes = 0;
+  BackgroundTask task([&] { ++changes; });
   task.start([&task](const Progress& progress) -> BackgroundTask::Ending {
     static_cast<void>(progress(3, 4));
     task.set_phase("intervals");
-    while (progress(1, 4)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    while (progress(1, 4)) std::this_thread::sleep_for(kMoment);
     throw Cancelled();
   });
-  const auto wait_for_changes = [&](int count) {
-    std::unique_lock lock(mutex);
-    changed.wait(lock, [&] { return changes >= count; });
-  };
-  wait_for_changes(2);
+  while (changes < 2) std::this_thread::sleep_for(kMoment);
   EXPECT_EQ(task.phase(), "intervals");
   EXPECT_EQ(task.progress(), 0.25);
   task.cancel();

@@ -155,10 +155,11 @@ void run_program(const Scene& scene, const ProgramOptions& options) {
       throw InputError("--screenshot needs --frames N beside it: the picture shows the last frame");
     check_writable(options.screenshot_path);
   }
-  // Pictures for manuals and measurements do not depend on the user's preferences.
-  const std::filesystem::path preferences = options.frames == 0 ? Preferences::default_path() : "";
   require_device(options.device);
-  App app(SceneEdits(scene), {options.device, options.command_line, preferences});
+  AppOptions app_options = options;
+  // Pictures for manuals and measurements do not depend on the user's preferences.
+  if (options.frames == 0) app_options.preferences = Preferences::default_path();
+  App app(SceneEdits(scene), app_options);
   Session& session = app.session();
   const auto check = [&] {
     if (session.message().is_error) throw InputError(session.message().text);

@@ -25,6 +25,7 @@ class App {
   Area control_area(const std::string& name) { return input_.areas().at(name); }
   const CurveView& curve_view() const { return ui_.curves; }
   const MapView& map_view() const { return ui_.map; }
+  const AxisEditor& axis_editor() const { return ui_.axis_editor; }
 
   /// Takes input and results, and draws one frame. Returns false if the user has closed the window.
   /// Errors: DeviceError if no device can compute, or if it is lost.
@@ -67,9 +68,8 @@ class App {
   bool is_all_taken_ = false;
 };
 
-struct ProgramOptions {
-  std::string device;                  ///< its position or a part of its name
-  std::string command_line;            ///< for the history of tables
+/// Without `preferences`.
+struct ProgramOptions : AppOptions {
   std::string measured_path;           ///< CSV of measured points; empty: none
   std::size_t frames = 0;              ///< number of frames to draw; 0: until the window is closed
   std::string screenshot_path;         ///< PNG of the last frame; empty: none

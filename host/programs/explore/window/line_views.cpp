@@ -69,18 +69,29 @@ NamedLine line_of(const Sweep& sweep, Plotted quantity, const CurveStyle& style,
   return line;
 }
 
+/// Draws lines over the wavelengths of a sweep.
+void draw_wavelengths(const char* id, Session& session, AxisEditor& editor, ImVec2 size,
+                      const std::vector<NamedLine>& lines, const Sweep& sweep, const PlotAxis& values) {
+  const MapAxis axis = session.wavelengths();
+  if (!axis.scale.refusal().empty()) return coloured_text(kDimColour, "n and k are known at only one wavelength.");
+  const Plot plot(id, size, {axis.label, axis.scale}, values);
+  mark_spectrum(plot, session.scene());
+  draw_lines(plot, sweep.at(), lines, true);
+  const Scene& scene = session.spectral_scene();
+  const auto change = editor.draw(axis.label, plot.x_numbers(), axis.scale,
+                                  [&](const Scale& range) { return refusal(scene, axis, range); });
+  if (change) set_range(session, axis, *change);
+  const bool has_wavelength = session.scene().numbers("spectrum.band_um").empty();
+  if (plot.is_dragged() && has_wavelength) session.set(axis.key, axis.scale.rounded(plot.mouse_x()));
+}
+
 }  // namespace
 
 void draw_slopes(const Session& session, ImVec2 size) {
   const Scene& scene = session.scene();
   if (!(scene.number("surface.sigma") > 0.0))
     return coloured_text(kDimColour, "A mirror: all facets lie in the mean plane.");
-  std::optional<Scene> other;
-  try {
-    other = scene.with(other_distribution(scene));
-  } catch (const InputError&) {
-    // The sigma or q of the overlay is outside the model, so the plot has one line.
-  }
+  const std::optional<Scene> other = with_other_distribution(scene);
   const std::vector<double> all_deg = zeniths(0.0, 89.5, kSlopeCount);
   const auto densities = [&](const Scene& shape) {
     std::vector<double> values;
@@ -106,30 +117,15 @@ void draw_material(const Session& session, ImVec2 size) {
   draw_lines(plot, curve.wavelength_um, lines);
 }
 
-void SweepViews::draw_wavelengths(const char* id, Session& session, ImVec2 size, const std::vector<NamedLine>& lines,
-                                  const Sweep& sweep, const PlotAxis& values) {
-  const MapAxis axis = session.wavelengths();
-  if (!axis.scale.refusal().empty()) return coloured_text(kDimColour, "n and k are known at only one wavelength.");
-  const Plot plot(id, size, {axis.label, axis.scale}, values);
-  mark_spectrum(plot, session.scene());
-  draw_lines(plot, sweep.at(), lines, true);
-  const Scene& scene = session.spectral_scene();
-  const auto change = axis_editor_.draw(axis.label, plot.x_numbers(), axis.scale,
-                                        [&](const Scale& range) { return refusal(scene, axis, range); });
-  if (change) set_range(session, axis, *change);
-  const bool has_wavelength = session.scene().numbers("spectrum.band_um").empty();
-  if (plot.is_dragged() && has_wavelength) session.set(axis.key, axis.scale.rounded(plot.mouse_x()));
-}
-
-void SweepViews::draw_spectrum(Session& session, ImVec2 size) {
+void draw_spectrum(Session& session, AxisEditor& editor, ImVec2 size) {
   const PlottedDescription& quantity = described(session.view().quantity);
   const NamedLine line =
       line_of(session.spectrum(), quantity.quantity, current_style(), fmt::format("θ = {:.4g}°", session.theta_deg()));
-  draw_wavelengths("spectrum", session, size, {line}, session.spectrum(),
+  draw_wavelengths("spectrum", session, editor, size, {line}, session.spectrum(),
                    {quantity.label(), range_of(line.values, session.view().is_log)});
 }
 
-void SweepViews::draw_smooth(Session& session, ImVec2 size) {
+void draw_smooth(Session& session, AxisEditor& editor, ImVec2 size) {
   const ImVec2 half{size.x, 0.5F * (size.y - ImGui::GetStyle().ItemSpacing.y)};
   const auto lines_of = [&](const Sweep& sweep) {
     return std::vector<NamedLine>{line_of(sweep, Plotted::kRhoS, current_style(), "R_s"),
@@ -145,7 +141,7 @@ void SweepViews::draw_smooth(Session& session, ImVec2 size) {
   const float x = plot.at_position(plot.x().position(session.theta_deg()), 0.0).x;
   plot.list()->AddLine({x, plot.min().y}, {x, plot.max().y}, kCursorColour, scaled(1.0F));
   draw_wavelengths(
-      "smooth spectrum", session, half, over, session.smooth_spectrum(),
+      "smooth spectrum", session, editor, half, over, session.smooth_spectrum(),
       {fmt::format("R_s, R_p at β = {:.4g}°", session.theta_deg()), values_range(over, session.view().is_log)});
 }
 

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <vector>
 
@@ -83,6 +84,28 @@ std::string picture(int width, int height) {
 }
 
 }  // namespace
+
+Texture::~Texture() {
+  if (id_ != 0) opengl<decltype(glDeleteTextures)>("glDeleteTextures")(1, &id_);
+}
+
+void Texture::set(const std::vector<ImU32>& colours, std::size_t count) {
+  count_ = count;
+  if (id_ == 0) opengl<decltype(glGenTextures)>("glGenTextures")(1, &id_);
+  opengl<decltype(glBindTexture)>("glBindTexture")(GL_TEXTURE_2D, id_);
+  for (const GLenum size : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    opengl<decltype(glTexParameteri)>("glTexParameteri")(GL_TEXTURE_2D, size, GL_NEAREST);
+  opengl<decltype(glTexImage2D)>("glTexImage2D")(GL_TEXTURE_2D, 0, GL_RGBA, static_cast<GLsizei>(count),
+                                                 static_cast<GLsizei>(count), 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                                                 colours.data());
+}
+
+void Texture::draw(ImDrawList* list, ImVec2 min, ImVec2 max) const {
+  if (count_ == 0) return;
+  const float first = 0.5F / static_cast<float>(count_), last = 1.0F - first;
+  // ImTextureID is a pointer or a number, depending on the version of ImGui.
+  list->AddImage((ImTextureID)(std::intptr_t)id_, min, max, {first, last}, {last, first});
+}
 
 Screen::Library::Library() {
   if (!is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY"))

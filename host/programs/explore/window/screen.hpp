@@ -1,13 +1,34 @@
 // The window on the display: GLFW opens it, OpenGL shows what Dear ImGui draws.
 #pragma once
 
+#include <imgui.h>
+
 #include <string>
+#include <vector>
 
 #include "explore/files.hpp"
 
 struct GLFWwindow;
 
 namespace dolp::explore {
+
+/// An image that ImGui draws. Needs an open screen.
+class Texture {
+ public:
+  Texture() = default;
+  Texture(const Texture&) = delete;
+  Texture& operator=(const Texture&) = delete;
+  ~Texture();
+
+  /// Replaces the image by a square of colours: rows upwards, from the left.
+  void set(const std::vector<ImU32>& colours, std::size_t count);
+  /// Draws the image between two corners. Each colour fills a cell around its position; outer cells are cut in half.
+  void draw(ImDrawList* list, ImVec2 min, ImVec2 max) const;
+
+ private:
+  unsigned id_ = 0;  ///< OpenGL's name of the texture; 0: none
+  std::size_t count_ = 0;
+};
 
 /// The open window, and ImGui with its theme and font.
 class Screen {

@@ -199,11 +199,11 @@ void draw_panel(Ui& ui, ImVec2 size) {
   using Draw = void (*)(Ui&, ImVec2);
   constexpr std::array<Draw, kPanelNames.size()> kDraw = {
       // in the order of Panel
-      [](Ui& u, ImVec2 room) { u.map.draw(u.session, room); },
+      [](Ui& u, ImVec2 room) { u.map.draw(u.session, u.axis_editor, room); },
       [](Ui& u, ImVec2 room) { draw_slopes(u.session, room); },
       [](Ui& u, ImVec2 room) { draw_material(u.session, room); },
-      [](Ui& u, ImVec2 room) { u.sweep_views.draw_smooth(u.session, room); },
-      [](Ui& u, ImVec2 room) { u.sweep_views.draw_spectrum(u.session, room); },
+      [](Ui& u, ImVec2 room) { draw_smooth(u.session, u.axis_editor, room); },
+      [](Ui& u, ImVec2 room) { draw_spectrum(u.session, u.axis_editor, room); },
       [](Ui& u, ImVec2 room) { u.scattering_view.draw(u.session, room); },
       [](Ui& u, ImVec2 room) { u.shape_view.draw(u.session, room); },
       [](Ui& u, ImVec2 room) { draw_sky(u.session, room); },
@@ -216,7 +216,7 @@ void draw_plots(Ui& ui, ImVec2 size) {
   const float curve_width = 0.54F * size.x;
   constexpr ImGuiWindowFlags kStill = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
   ImGui::BeginChild("curves", {curve_width, size.y}, false, kStill);
-  ui.curves.draw(ui.session, ImGui::GetContentRegionAvail());
+  ui.curves.draw(ui.session, ui.axis_editor, ImGui::GetContentRegionAvail());
   ImGui::EndChild();
   ImGui::SameLine();
   ImGui::BeginChild("maps", {size.x - curve_width - gap, size.y}, false, kStill);
@@ -233,7 +233,7 @@ void draw_one_page(Ui& ui) {
   draw_panel_tabs(ui);
   if (ui.page == "effects") return draw_effects(ui.session);
   if (ui.page == "accuracy") return draw_accuracy(ui);
-  if (ui.page == "curve") return ui.curves.draw(ui.session, ImGui::GetContentRegionAvail());
+  if (ui.page == "curve") return ui.curves.draw(ui.session, ui.axis_editor, ImGui::GetContentRegionAvail());
   draw_panel(ui, ImGui::GetContentRegionAvail());
 }
 

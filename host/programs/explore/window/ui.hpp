@@ -59,8 +59,8 @@ struct Ui {
   Session& session;
   Actions& actions;
   NumberFields fields = {};
+  AxisEditor axis_editor = {};
   MapView map = {};
-  SweepViews sweep_views = {};
   ScatteringView scattering_view = {};
   ShapeView shape_view = {};
   CurveView curves = {};

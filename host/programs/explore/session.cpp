@@ -276,7 +276,7 @@ void Session::follow() {
   follow_overlay(content);
   follow_map();
   follow_sweeps(content);
-  if (state_.view.panel == Panel::kSky && is_bistatic(scene()))
+  if (shows(Panel::kSky) && is_bistatic(scene()))
     source_sky_.follow(content_key(scene(), state_.edits.changes_without({"geometry.relative_azimuth_deg"}), false),
                        scene());
   estimate_influences();
@@ -321,8 +321,8 @@ void Session::follow_sweeps(const std::string& content) {
   constexpr std::size_t kSpectrum = 121;
   constexpr std::size_t kSmooth = 901;  // enough for the fringes of films; the values are closed forms
   constexpr double kWidth = 2.0;        // the axis goes from half to twice the wavelength of the opened scene
-  const bool is_spectrum = state_.view.panel == Panel::kSpectrum;
-  if (!is_spectrum && state_.view.panel != Panel::kSmooth) return;
+  const bool is_spectrum = shows(Panel::kSpectrum);
+  if (!is_spectrum && !shows(Panel::kSmooth)) return;
   spectral_scene_ = at_one_wavelength(scene());
   const auto [from_um, to_um] = spectrum_um(state_.edits.opened());
   wavelengths_ = {
@@ -350,15 +350,16 @@ void Session::follow_sweeps(const std::string& content) {
 std::vector<Job> Session::wanted_in_drag() const {
   JobList list;
   const auto add_other = [&](bool is_map) {
-    if (is_map && shows_map() && !map_.is_coarse_done()) list.add(map_.wanted(0));
-    if (is_map && state_.view.panel == Panel::kSky) list.add(source_sky_.wanted());
+    if (is_map && shows(Panel::kMap) && !map_.is_coarse_done()) list.add(map_.wanted(0));
+    if (is_map && shows(Panel::kSky)) list.add(source_sky_.wanted());
     if (!is_map && overlay_) list.add(overlay_->wanted(Curve::Stage::kCoarse));
   };
   if (!is_curve_next_) add_other(is_map_next_);
   list.add(curve_.wanted(Curve::Stage::kCoarse));
   if (is_curve_next_) add_other(is_map_next_);
-  if (state_.view.panel == Panel::kSmooth) list.add(smooth_.wanted());
-  if (state_.view.panel == Panel::kSmooth) list.add(smooth_spectrum_.wanted());
+  for (const Sweep* sweep : {&smooth_, &smooth_spectrum_}) {
+    if (shows(Panel::kSmooth)) list.add(sweep->wanted());
+  }
   add_other(!is_map_next_);
   return list.jobs;
 }
@@ -369,15 +370,17 @@ std::vector<Job> Session::wanted() const {
   list.add(curve_.wanted(Curve::Stage::kCoarse));
   list.add(curve_.wanted(Curve::Stage::kFine));
   if (overlay_) list.add(overlay_->wanted(Curve::Stage::kFine));
-  if (shows_map()) list.add(map_.wanted(0));
-  if (state_.view.panel == Panel::kSmooth) list.add(smooth_.wanted());
-  if (state_.view.panel == Panel::kSmooth) list.add(smooth_spectrum_.wanted());
-  if (state_.view.panel == Panel::kSpectrum) list.add(spectrum_.wanted());
+  if (shows(Panel::kMap)) list.add(map_.wanted(0));
+  for (const Sweep* sweep : {&smooth_, &smooth_spectrum_}) {
+    if (shows(Panel::kSmooth)) list.add(sweep->wanted());
+  }
+  if (shows(Panel::kSpectrum)) list.add(spectrum_.wanted());
   list.add(peak_.wanted());
   list.add(residuals_.wanted());
   for (const Pin& pin : state_.pins) list.add(pin.curve.wanted(Curve::Stage::kFine));
-  if (state_.view.panel == Panel::kSky) list.add(source_sky_.wanted());
-  for (std::size_t level = 1; shows_map() && level < HeatMap::kLevels.size(); ++level) list.add(map_.wanted(level));
+  if (shows(Panel::kSky)) list.add(source_sky_.wanted());
+  for (std::size_t level = 1; shows(Panel::kMap) && level < HeatMap::kLevels.size(); ++level)
+    list.add(map_.wanted(level));
   return list.jobs;
 }
 

@@ -206,7 +206,7 @@ class Session {
   }
   std::vector<Job> wanted_in_drag() const;
   void follow_sweeps(const std::string& content);
-  bool shows_map() const { return state_.view.panel == Panel::kMap; }
+  bool shows(Panel panel) const { return state_.view.panel == panel; }
   void estimate_influences();
 
   SkyFiles skies_;

@@ -88,11 +88,5 @@ TEST(LacksThreads, NoMemoryForOneOfThem_Ends) {
   ::alarm(0);
 }
 
-TEST(VulkanContext, NothingCanPresent_NamesTheDeviceAndSaysWhy) {
-  const vulkan::Presentation nowhere{{}, [](VkInstance, VkPhysicalDevice, std::uint32_t) { return false; }};
-  const std::string message = error_text<DeviceError>([&] { const vulkan::Context context(kWatched, &nowhere); });
-  EXPECT_NE(message.find("cannot show a window on this display"), std::string::npos) << message;
-}
-
 }  // namespace
 }  // namespace dolp

@@ -63,14 +63,19 @@ class Window : public CommandLine {
     options.preferences = at("config/dolp/window.toml");
     const auto scene = Scene::from_file(at("scene.toml"), settings);
     app_ = std::make_unique<App>(explore::SceneEdits(scene), options);
-    app_->settle();
-    frames();
+    settle();
     std::string found = xdotool({"search", "--name", "dolp explore"});
     window_ = found.substr(0, found.find('\n'));
     focus();
   }
   void TearDown() override { app_.reset(); }
 
+  explore::Session& session() const { return app_->session(); }
+  /// Waits for all results, and shows them.
+  void settle() {
+    app_->settle();
+    frames();
+  }
   void frames(int count = kFrames) {
     for (int i = 0; i < count; ++i) app_->frame();
   }
@@ -114,7 +119,20 @@ class Window : public CommandLine {
     xdotool({"type", "--delay", "12", "--", text});
     frames();
   }
-  /// Clicks a slider while Ctrl is pressed.
+  /// Types a text into a field and presses Enter.
+  void enter(const std::string& field, const std::string& text) {
+    click_control(field);
+    keys("ctrl+a");
+    type(text);
+    keys("Return");
+  }
+  /// Presses a shortcut whose dialog suggests a path, and accepts it.
+  void accept(const std::string& shortcut) {
+    keys(shortcut);
+    keys("Return");
+    settle();
+  }
+  /// Holds Ctrl and clicks a slider.
   void ctrl_click(const std::string& slider) {
     xdotool({"keydown", "ctrl"});
     frames();
@@ -122,9 +140,9 @@ class Window : public CommandLine {
     xdotool({"keyup", "ctrl"});
     app_->settle();
   }
-  std::optional<double> number(const std::string& key) const { return app_->session().scene().number(key); }
-  std::optional<std::string> word(const std::string& key) const { return app_->session().scene().word(key); }
-  /// True if the background of a field is red, which marks refused text.
+  std::optional<double> number(const std::string& key) const { return session().scene().number(key); }
+  std::optional<std::string> word(const std::string& key) const { return session().scene().word(key); }
+  /// True if a field has the background colour for refused text.
   bool is_marked(const std::string& field) {
     frames();
     const Area area = app_->control_area(field);
@@ -141,12 +159,12 @@ class Window : public CommandLine {
   /// `dolp eval` of the scene with the changes made in the window, at the zeniths of the curve.
   Columns evaluated() const {
     std::string points = "theta_deg\n";
-    for (const explore::Point& point : app_->session().curve().points()) {
+    for (const explore::Point& point : session().curve().points()) {
       points += std::to_string(point.theta_deg) + '\n';
     }
     put("points.csv", points);
     std::vector<std::string> options;
-    for (const Setting& change : app_->session().edits().changes()) {
+    for (const Setting& change : session().edits().changes()) {
       options.insert(options.end(), {"--set", change.text()});
     }
     return eval(options);

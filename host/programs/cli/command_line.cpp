@@ -83,7 +83,7 @@ std::vector<OptionRow> option_rows() {
   return {
       {"table! response! eval! mueller! plan! fit!", "SCENE", &Options::scene_path, "scene file (TOML); - is stdin"},
       {"explore", "SCENE", &Options::scene_path,
-       "scene, or session of the window (TOML); - is stdin; without it, stainless steel"},
+       "scene, or session of the window (TOML); - is stdin; without it, paint at night"},
       {"verify lookup!", "TABLE", &Options::table_path, "table file (.nc) that dolp table wrote"},
       {"merge!", "SHARD", &Options::shards, "all shards of one table (.nc)"},
       {"materials", "NAME", &Options::material, "n and k of this one"},

@@ -155,8 +155,11 @@ int run_fit(const Options& options) {
 }
 
 int run_explore(const Options& options) {
-  explore::ProgramOptions program{options.device, options.command_line,    options.measured_path,
-                                  options.frames, options.screenshot_path, options.panel};
+  explore::ProgramOptions program{{options.device, options.command_line},
+                                  options.measured_path,
+                                  options.frames,
+                                  options.screenshot_path,
+                                  options.panel};
   const bool is_session = explore::is_session_file(options.scene_path);
   if (is_session) {
     program.session_path = options.scene_path;
@@ -164,7 +167,7 @@ int run_explore(const Options& options) {
   }
   const std::vector<Setting> settings = is_session ? std::vector<Setting>{} : all_settings(options);
   explore::run_program(options.scene_path.empty() || is_session
-                           ? Scene::from_text(example_scene(), settings, "stainless_steel")
+                           ? Scene::from_text(explore::kFirstScene, settings, "night_paint")
                            : load_scene(options),
                        program);
   return kExitDone;

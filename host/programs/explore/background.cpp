@@ -23,17 +23,6 @@ void BackgroundTask::start(const Work& work) {
   thread_ = run_in_background(with_progress, result_, on_change_);
 }
 
-void BackgroundTask::set_phase(const std::string& phase) {
-  progress_ = 0.0;
-  const std::scoped_lock lock(mutex_);
-  phase_ = phase;
-}
-
-std::string BackgroundTask::phase() const {
-  const std::scoped_lock lock(mutex_);
-  return phase_;
-}
-
 void BackgroundTask::finish() {
   if (!is_running() || !is_ended(result_)) return;
   try {
@@ -71,7 +60,6 @@ Worker::~Worker() {
   {
     const std::scoped_lock lock(mutex_);
     is_stopping_ = true;
-    wanted_.clear();
   }
   changed_.notify_all();
 }
@@ -79,86 +67,41 @@ Worker::~Worker() {
 void Worker::want(std::vector<Job> jobs) {
   {
     const std::scoped_lock lock(mutex_);
-    std::vector<Task> old = std::exchange(tasks_, {});
-    wanted_.clear();
+    std::vector<Task> wanted;
     for (Job& job : jobs) {
-      wanted_.push_back(job.key);
-      if (job.key == running_ || std::ranges::count(finished_, job.key) > 0) continue;
-      const auto same = std::ranges::find_if(old, [&](const Task& task) { return task.job.key == job.key; });
-      if (same != old.end()) {
-        tasks_.push_back(std::move(*same));
-        same->job.key.clear();
-      } else {
-        tasks_.push_back({.job = std::move(job)});
-      }
+      const Task* const known = find(job.key);
+      wanted.push_back(known ? *known : Task{std::move(job)});
     }
-    std::erase_if(finished_, [&](const std::string& key) { return !is_wanted(key); });
+    tasks_ = std::move(wanted);
   }
   changed_.notify_all();
 }
 
-std::vector<JobPart> Worker::take_news() {
-  if (end_.valid() && is_ended(end_)) end_.get();
-  const std::scoped_lock lock(mutex_);
-  return std::exchange(news_, {});
-}
-
-void Worker::await_news(std::chrono::duration<double> at_most) {
-  std::unique_lock lock(mutex_);
-  arrived_.wait_for(lock, at_most, [this] { return !news_.empty() || is_ended(end_); });
-}
-
-bool Worker::is_idle() const {
-  const std::scoped_lock lock(mutex_);
-  return (tasks_.empty() && running_.empty()) || is_ended(end_);
-}
-
-bool Worker::is_wanted(const std::string& key) const { return std::ranges::count(wanted_, key) > 0; }
-
-bool Worker::may_continue(const Job& job) const {
-  const std::scoped_lock lock(mutex_);
-  return !is_stopping_ && (job.is_brief || is_wanted(job.key));
-}
-
-std::optional<Worker::Task> Worker::next_task() {
-  std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return is_stopping_ || !tasks_.empty(); });
-  if (is_stopping_) return std::nullopt;
-  Task task = std::move(tasks_.front());
-  tasks_.erase(tasks_.begin());
-  running_ = task.job.key;
-  return task;
-}
-
 void Worker::run() {
+  const auto is_open = [](const Task& task) { return !task.is_done(); };
+  std::unique_lock lock(mutex_);
   for (;;) {
-    std::optional<Task> next = next_task();
-    if (!next) return;
+    changed_.wait(lock, [&] { return is_stopping_ || std::ranges::any_of(tasks_, is_open); });
+    if (is_stopping_) return;
+    Task task = *std::ranges::find_if(tasks_, is_open);
+    is_running_ = true;
+    lock.unlock();
     std::optional<JobPart> part;
     try {
-      part = advance(*next);
+      part = advance(task);
     } catch (const Cancelled&) {
       // The job stopped because it was no longer wanted. It may be wanted again now.
     }
-    put_back(std::move(*next), std::move(part));
-    on_news_();
-  }
-}
-
-void Worker::put_back(Task task, std::optional<JobPart> part) {
-  const bool is_done = part && part->is_last;
-  const std::scoped_lock lock(mutex_);
-  running_.clear();
-  const bool is_still_wanted = is_wanted(task.job.key);
-  if (part && (is_still_wanted || task.job.is_brief)) {
-    news_.push_back(std::move(*part));
+    lock.lock();
+    is_running_ = false;
+    Task* const wanted = find(task.job.key);
+    if (part && (wanted || task.job.is_brief)) news_.push_back(std::move(*part));
+    if (part && wanted) *wanted = std::move(task);
+    lock.unlock();
     arrived_.notify_all();
+    on_news_();
+    lock.lock();
   }
-  if (!is_still_wanted) return;
-  if (is_done) return finished_.push_back(task.job.key);
-  const auto rank = [this](const Task& one) { return std::ranges::find(wanted_, one.job.key); };
-  const auto next = std::ranges::find_if(tasks_, [&](const Task& other) { return rank(other) > rank(task); });
-  tasks_.insert(next, std::move(task));
 }
 
 JobPart Worker::advance(Task& task) {

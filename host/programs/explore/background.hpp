@@ -1,6 +1,7 @@
 // Threads that compute for the window.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -57,8 +58,15 @@ class BackgroundTask {
   /// From 0 to 1 within the phase.
   double progress() const { return progress_; }
   /// The current phase; empty if the work has only one. The work sets it; progress then restarts from 0.
-  std::string phase() const;
-  void set_phase(const std::string& phase);
+  std::string phase() const {
+    const std::scoped_lock lock(mutex_);
+    return phase_;
+  }
+  void set_phase(const std::string& phase) {
+    progress_ = 0.0;
+    const std::scoped_lock lock(mutex_);
+    phase_ = phase;
+  }
   /// The message, or the reason for a failure, in one line.
   const std::string& message() const { return message_; }
 
@@ -134,40 +142,55 @@ class Worker {
   void want(std::vector<Job> jobs);
 
   /// The results since the last call. Errors: rethrows what ended the worker, for example a DeviceError.
-  std::vector<JobPart> take_news();
+  std::vector<JobPart> take_news() {
+    if (end_.valid() && is_ended(end_)) end_.get();
+    const std::scoped_lock lock(mutex_);
+    return std::exchange(news_, {});
+  }
 
   /// Waits for results, at most this long.
-  void await_news(std::chrono::duration<double> at_most);
+  void await_news(std::chrono::duration<double> at_most) {
+    std::unique_lock lock(mutex_);
+    arrived_.wait_for(lock, at_most, [this] { return !news_.empty() || is_ended(end_); });
+  }
 
   /// True if all wanted jobs are done. Some results may not have been taken yet.
-  bool is_idle() const;
+  bool is_idle() const {
+    const std::scoped_lock lock(mutex_);
+    return (!is_running_ && std::ranges::all_of(tasks_, &Task::is_done)) || is_ended(end_);
+  }
 
  private:
+  /// A wanted job, and the totals of its finished parts.
   struct Task {
     Job job;
     std::size_t next_part = 0;
     double wall_s = 0.0;
     double evaluations = 0.0;
+
+    bool is_done() const { return next_part == job.parts.size(); }
   };
 
   void run();
-  /// Waits for the next task; empty if the worker must stop.
-  std::optional<Task> next_task();
+  /// Computes the next part.
   JobPart advance(Task& task);
-  /// Reports the finished part of a task, and returns the rest of the task to its rank among the wanted jobs.
-  void put_back(Task task, std::optional<JobPart> part);
-  bool is_wanted(const std::string& key) const;
-  bool may_continue(const Job& job) const;
+  /// The wanted task with this key; null if there is none.
+  Task* find(const std::string& key) {
+    const auto found = std::ranges::find(tasks_, key, [](const Task& task) { return task.job.key; });
+    return found == tasks_.end() ? nullptr : &*found;
+  }
+  bool may_continue(const Job& job) {
+    const std::scoped_lock lock(mutex_);
+    return !is_stopping_ && (job.is_brief || find(job.key));
+  }
 
   Evaluate evaluate_;
   std::function<void()> on_news_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::condition_variable arrived_;
-  std::vector<Task> tasks_;            ///< all tasks except the running one
-  std::vector<std::string> wanted_;    ///< keys
-  std::vector<std::string> finished_;  ///< wanted keys whose jobs are done
-  std::string running_;                ///< key of the running job; empty if none runs
+  std::vector<Task> tasks_;  ///< the wanted jobs, in order of their rank
+  bool is_running_ = false;
   std::vector<JobPart> news_;
   bool is_stopping_ = false;
   std::future<void> end_;  ///< holds the exception that ended the worker

@@ -116,14 +116,6 @@ std::vector<Point> Curve::drawn() const {
   return all;
 }
 
-double Curve::worst_error() const {
-  double worst = 0.0;
-  for (const Point& point : points()) {
-    if (point.is_good()) worst = std::max(worst, point[Quantity::kErrorEstimate]);
-  }
-  return worst;
-}
-
 std::string true_error(const Curve& curve, const Progress& progress) {
   std::vector<Point> stated;
   std::vector<double> theta_deg;
@@ -172,9 +164,10 @@ std::vector<Job> Peak::wanted() const {
     jobs.push_back({.key = "peak " + key_, .scene = scene_, .parts = {points_at(scene_, theta_deg_)}});
     return jobs;
   }
-  for (const WithoutEffect& one : without_) {
-    if (one.result) continue;
-    jobs.push_back({.key = key_of(one), .scene = one.scene, .parts = {points_at(one.scene, {answer_->at.theta_deg})}});
+  for (const WithoutEffect& removed : without_) {
+    if (removed.result) continue;
+    jobs.push_back(
+        {.key = key_of(removed), .scene = removed.scene, .parts = {points_at(removed.scene, {answer_->at.theta_deg})}});
   }
   return jobs;
 }
@@ -184,8 +177,8 @@ bool Peak::take(const JobPart& news) {
     answer_from(news.points);
     return true;
   }
-  const auto removed =
-      std::ranges::find_if(without_, [&](const WithoutEffect& one) { return news.key == key_of(one); });
+  const auto has_key = [&](const WithoutEffect& without) { return news.key == key_of(without); };
+  const auto removed = std::ranges::find_if(without_, has_key);
   if (removed == without_.end()) return false;
   removed->result = news.points.front();
   return true;
@@ -210,15 +203,6 @@ std::optional<double> Peak::rival(double least) const {
     if (!is_beside && point.is_good() && most_of(point) >= least) return point.theta_deg;
   }
   return std::nullopt;
-}
-
-bool Peak::is_complete() const {
-  return answer_ && std::ranges::all_of(without_, [](const WithoutEffect& one) { return one.result.has_value(); });
-}
-
-double Peak::contribution(const WithoutEffect& removed) const {
-  const Point& at = answer_->at;
-  return (at[Quantity::kStokesQ] - (*removed.result)[Quantity::kStokesQ]) / at[Quantity::kStokesI];
 }
 
 }  // namespace dolp::explore

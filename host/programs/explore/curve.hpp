@@ -1,6 +1,8 @@
 // One curve over theta, from its first coarse results to its final ones, and its maximum.
 #pragma once
 
+#include <algorithm>
+
 #include "explore/background.hpp"
 #include "explore/scene_edits.hpp"
 
@@ -46,7 +48,13 @@ class Curve {
   const JobPart& finished() const { return finished_; }
 
   /// The largest error bound of DOLP among points whose status promises a bound.
-  double worst_error() const;
+  double worst_error() const {
+    double worst = 0.0;
+    for (const Point& point : points()) {
+      if (point.is_good()) worst = std::max(worst, point[Quantity::kErrorEstimate]);
+    }
+    return worst;
+  }
 
  private:
   std::string prefix_of(Stage stage) const { return (stage == Stage::kCoarse ? "coarse " : "") + name_ + ' '; }
@@ -103,10 +111,16 @@ class Peak {
   /// One element per effect of the scene.
   const std::vector<WithoutEffect>& without() const { return without_; }
   /// True if the answer and the peak without each effect are known.
-  bool is_complete() const;
+  bool is_complete() const {
+    return answer_ &&
+           std::ranges::all_of(without_, [](const WithoutEffect& removed) { return removed.result.has_value(); });
+  }
 
   /// The part that one radiating effect adds to Q/I at the peak; exact, because Stokes parameters add up.
-  double contribution(const WithoutEffect& removed) const;
+  double contribution(const WithoutEffect& removed) const {
+    const Point& at = answer_->at;
+    return (at[Quantity::kStokesQ] - (*removed.result)[Quantity::kStokesQ]) / at[Quantity::kStokesI];
+  }
 
  private:
   std::optional<double> rival(double least) const;

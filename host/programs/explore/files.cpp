@@ -108,23 +108,10 @@ toml::table state_table(const SceneEdits& edits, const std::string& name, const 
                      {"changes", lasting_texts(edits.changes(), skies, opened.name(), session)}};
 }
 
-toml::table range_table(const Scale& range) {
-  return toml::table{{"from", range.from}, {"to", range.to}, {"log", range.is_log}};
-}
-
-/// The typed range with this name in the file; null if the name is the label of a map axis.
-std::optional<Scale>* fixed_range(View& view, const std::string& name) {
-  if (name == "curve zenith") return &view.curve_zoom.x;
-  if (name == "curve values") return &view.curve_zoom.y;
-  return name == "map colours" ? &view.map_colours : nullptr;
-}
-
-toml::table ranges_table(View view) {
+toml::table ranges_table(const View& view) {
   toml::table table;
-  for (const char* name : {"curve zenith", "curve values", "map colours"}) {
-    if (const auto& range = *fixed_range(view, name)) table.insert(name, range_table(*range));
-  }
-  for (const auto& [label, range] : view.map_ranges) table.insert(label, range_table(range));
+  for (const auto& [axis, range] : view.ranges)
+    table.insert(axis, toml::table{{"from", range.from}, {"to", range.to}, {"log", range.is_log}});
   return table;
 }
 
@@ -182,15 +169,8 @@ Scale read_range(Node node, const std::string& location) {
 void read_ranges(View& view, Node node, const std::string& location) {
   const toml::table* const table = node.as_table();
   if (!table) return;
-  for (const auto& [key, one] : *table) {
-    const std::string name(key.str());
-    const Scale range = read_range(Node(one), fmt::format("{}.{}", location, name));
-    if (std::optional<Scale>* fixed = fixed_range(view, name)) {
-      *fixed = range;
-    } else {
-      view.map_ranges[name] = range;
-    }
-  }
+  for (const auto& [axis, range] : *table)
+    view.ranges[std::string(axis.str())] = read_range(Node(range), fmt::format("{}.{}", location, axis.str()));
 }
 
 /// A number below `count`; 0 if it is missing.
@@ -217,13 +197,13 @@ View view_in(Node node, const std::string& location) {
   return view;
 }
 
-SavedSession session_in(const std::string& path, const toml::table& table) {
+SessionState session_in(const std::string& path, const toml::table& table) {
   const Node file(static_cast<const toml::node&>(table));
   const fs::path folder = fs::path(path).parent_path();
   const std::string location = path + ": ";
   if (need<int>(file[kVersionKey], location + kVersionKey) != kVersion)
     throw InputError(fmt::format("{}{} is not {}: the session of another version", location, kVersionKey, kVersion));
-  SavedSession saved{.edits = state_in(file["scene"], location + "scene", folder)};
+  SessionState saved{.edits = state_in(file["scene"], location + "scene", folder)};
   const auto for_each = [&](const char* key, const auto& use) {
     const toml::array* const array = file[key].as_array();
     for (std::size_t i = 0; array && i < array->size(); ++i) {
@@ -235,19 +215,23 @@ SavedSession session_in(const std::string& path, const toml::table& table) {
     const std::size_t colour =
         pin["colour"] ? index_in(pin["colour"], Session::kMostPins, here + ".colour") : saved.pins.size();
     saved.pins.push_back(
-        {name, colour, need<bool>(pin["visible"], here + ".visible"), state_in(pin, here, folder).scene()});
+        {name, colour, need<bool>(pin["visible"], here + ".visible"), Curve(state_in(pin, here, folder).scene())});
   });
-  for_each("snapshots", [&](Node one, const std::string& name, const std::string& here) {
-    saved.snapshots.push_back({name, state_in(one, here, folder)});
+  for_each("snapshots", [&](Node snapshot, const std::string& name, const std::string& here) {
+    saved.snapshots.push_back({name, state_in(snapshot, here, folder)});
   });
   saved.view = view_in(file["view"], location + "view.");
   saved.theta_deg = need<double>(file["view"]["cursor_deg"], location + "view.cursor_deg");
-  if (file["measured"]) {
-    const auto data = folder / need<std::string>(file["measured"], location + "measured");
-    saved.measured = read_measured(data.lexically_normal().string());
-  }
   saved.marked = marks_in(texts_in(file["vary"]), location);
   return saved;
+}
+
+/// The measured points that a session file names.
+std::optional<MeasuredData> measured_in(const std::string& path, const toml::table& table) {
+  const Node file(static_cast<const toml::node&>(table));
+  if (!file["measured"]) return std::nullopt;
+  const auto data = fs::path(path).parent_path() / need<std::string>(file["measured"], path + ": measured");
+  return read_measured(data.lexically_normal().string());
 }
 
 }  // namespace
@@ -270,14 +254,14 @@ void save_session(const Session& session, const std::string& path) {
     table.insert("colour", static_cast<int>(pin.colour));
     pins.push_back(std::move(table));
   }
-  for (const Snapshot& one : session.snapshots()) snapshots.push_back(state(one.edits, one.name));
+  for (const Snapshot& snapshot : session.snapshots()) snapshots.push_back(state(snapshot.edits, snapshot.name));
   file.insert("pins", std::move(pins));
   file.insert("snapshots", std::move(snapshots));
   write_toml(path, file);
 }
 
 void save_scene(Session& session, const std::string& path) {
-  if (session.has_own_sky()) {
+  if (session.has_unsaved_sky()) {
     const fs::path sky = fs::absolute(path).replace_filename(fs::path(path).stem().string() + "_sky.csv");
     write_text_atomically(sky, read_sky_pair(sky_file(session.scene())).value().csv());
     const fs::path folder = fs::absolute(session.scene().name()).parent_path();
@@ -306,7 +290,7 @@ void open_file(Session& session, const std::string& path) {
   if (fs::path(path).extension() == ".csv") return session.load_measured(path);
   const toml::table table = read_toml(path);
   if (table.contains(kVersionKey)) {
-    session.restore(session_in(path, table));
+    session.restore(session_in(path, table), measured_in(path, table));
   } else {
     session.go_to(SceneEdits(Scene::from_file(path)));
   }
@@ -336,16 +320,6 @@ void Preferences::save() const {
   if (failure) throw IoError(path_.parent_path().string() + ": " + failure.message());
   const auto same = [](const std::string& path) { return path; };
   write_toml(path_, toml::table{{"light", is_light}, {"zoom", zoom_steps_}, {"recent", array_of(recent(), same)}});
-}
-
-double Preferences::zoom() const {
-  constexpr double kStep = 1.1;
-  return std::pow(kStep, zoom_steps_);
-}
-
-void Preferences::zoom_by(int steps) {
-  constexpr int kMostSteps = 8;  // zoom to about twice or half the size
-  zoom_steps_ = std::clamp(zoom_steps_ + std::clamp(steps, -2 * kMostSteps, 2 * kMostSteps), -kMostSteps, kMostSteps);
 }
 
 void Preferences::remember(const fs::path& file) {

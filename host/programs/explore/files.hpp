@@ -1,6 +1,9 @@
 // TOML files of the window: sessions and preferences.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "explore/session.hpp"
 
 namespace dolp::explore {
@@ -44,9 +47,15 @@ class Preferences {
 
   bool is_light = false;  ///< theme
   /// Factor for the size of text and controls.
-  double zoom() const;
+  double zoom() const {
+    constexpr double kStep = 1.1;
+    return std::pow(kStep, zoom_steps_);
+  }
   /// Enlarges text and controls by some steps. Limits keep text readable and controls in the window.
-  void zoom_by(int steps);
+  void zoom_by(int steps) {
+    constexpr int kMostSteps = 8;  // zoom to about twice or half the size
+    zoom_steps_ = std::clamp(zoom_steps_ + std::clamp(steps, -2 * kMostSteps, 2 * kMostSteps), -kMostSteps, kMostSteps);
+  }
   void zoom_to_default() { zoom_steps_ = 0; }
 
  private:

@@ -56,8 +56,8 @@ void add_lines(const MapField& field, double level, std::size_t column, std::siz
   std::array<double, 4> value{};
   for (std::size_t i = 0; i < 4; ++i) {
     const std::size_t at = (row + kCorners[i].y) * field.count + column + kCorners[i].x;
-    if (field.is_good[at] == 0) return;
     value[i] = field.values[at] - level;
+    if (std::isnan(value[i])) return;
   }
   std::vector<std::pair<double, double>> crossings;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -79,12 +79,12 @@ void add_lines(const MapField& field, double level, std::size_t column, std::siz
 
 std::vector<MapAxis> map_axes(const Scene& scene, double theta_max_deg) {
   std::vector<MapAxis> axes = {{.scale = {0.0, theta_max_deg}}};
-  for (const AxisOfNumber& one : axes_of_numbers()) {
-    const std::optional<double> value = parameter(one.key).value(scene);
-    if (!value && one.name.starts_with("film")) break;
+  for (const AxisOfNumber& number : axes_of_numbers()) {
+    const std::optional<double> value = control(number.key).value(scene);
+    if (!value && number.name.starts_with("film")) break;
     if (!value) continue;
-    MapAxis axis{one.name, parameter(one.key).label(), one.key};
-    axis.scale = one.range.value_or(range_in(scene, parameter(one.key)));
+    MapAxis axis{number.name, control(number.key).label_with_unit(), number.key};
+    axis.scale = number.range.value_or(range_in(scene, control(number.key)));
     axis.scale = grid_range(scene, axis).including(*value);
     axes.push_back(axis);
   }
@@ -106,20 +106,13 @@ Scale known_part(const Scene& scene, const MapAxis& axis) {
   return range;
 }
 
-std::string MapAxis::column() const {
-  if (key.empty()) return "theta_deg";
-  if (key == "emission.temperature_K") return {};
-  return key.starts_with("surface.coating") ? key : key.substr(key.find('.') + 1);
-}
-
 std::size_t MapAxis::rank() const {
-  const std::string own = column() == kWind.column ? description_of(Axis::kSigma).column : column();
-  const auto found = std::ranges::find_if(kAxes, [&](const AxisDescription& one) { return own == one.column; });
+  const std::string table_column = column() == kWind.column ? description_of(Axis::kSigma).column : column();
+  const auto found =
+      std::ranges::find_if(kAxes, [&](const AxisDescription& axis) { return table_column == axis.column; });
   if (found != kAxes.end()) return 2 + static_cast<std::size_t>(found - kAxes.begin());
-  return own.empty() ? 0 : 1;
+  return table_column.empty() ? 0 : 1;
 }
-
-bool MapAxis::is_of_tables() const { return rank() >= 2; }
 
 std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range) {
   for (const double end : {range.from, range.to}) {
@@ -158,10 +151,6 @@ void HeatMap::follow(const std::string& key, const Scene& scene, bool keep_all, 
   x_ = x;
   y_ = y;
   theta_deg_ = theta_deg;
-}
-
-std::string HeatMap::key_of(std::size_t level) const {
-  return "map " + std::to_string(kLevels[level].count) + ' ' + key_;
 }
 
 PointList HeatMap::part(std::size_t level, std::size_t first) const {
@@ -214,23 +203,6 @@ bool HeatMap::take(const JobPart& news) {
   return true;
 }
 
-std::size_t HeatMap::finished_count() const {
-  std::size_t finest = 0;
-  for (std::size_t level = 0; level < kLevels.size(); ++level) {
-    if (is_complete(level)) finest = kLevels[level].count;
-  }
-  return finest;
-}
-
-double HeatMap::progress() const {
-  std::size_t done = 0, all = 0;
-  for (std::size_t level = 0; level < kLevels.size(); ++level) {
-    all += entries(level);
-    if (is_current()) done += points_[level].size();
-  }
-  return static_cast<double>(done) / static_cast<double>(all);
-}
-
 const Point& HeatMap::point_at(std::size_t finest, std::size_t row, std::size_t column) const {
   const std::size_t steps = kLevels[finest].count - 1;
   for (std::size_t level = finest;; --level) {
@@ -248,14 +220,13 @@ MapField HeatMap::field(Plotted quantity) const {
   if (points_[finest].empty()) return {};
   const std::size_t count = kLevels[finest].count;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  MapField field{.count = count, .values = {}, .is_good = {}, .min = kInfinity, .max = -kInfinity};
+  MapField field{.count = count, .values = {}, .min = kInfinity, .max = -kInfinity};
   for (std::size_t i = 0; i < count * count; ++i) {
     const Point& point = point_at(finest, i / count, i % count);
     const double value = described(quantity).value(point);
-    const bool good = point.is_good() && std::isfinite(value);
-    field.values.push_back(value);
-    field.is_good.push_back(good ? 1 : 0);
-    if (!good) continue;
+    const bool is_good = point.is_good() && std::isfinite(value);
+    field.values.push_back(is_good ? value : std::numeric_limits<double>::quiet_NaN());
+    if (!is_good) continue;
     field.min = std::min(field.min, value);
     field.max = std::max(field.max, value);
   }

@@ -14,11 +14,15 @@ struct MapAxis {
   Scale scale = {0.0, 90.0};
 
   /// The column of points for its values. The temperature has none, because it changes the scene.
-  std::string column() const;
+  std::string column() const {
+    if (key.empty()) return "theta_deg";
+    if (key == "emission.temperature_K") return {};
+    return key.starts_with("surface.coating") ? key : key.substr(key.find('.') + 1);
+  }
   /// Rank in the order of axes in a grid or a list; the slowest axis comes first.
   std::size_t rank() const;
   /// True if tables can have the axis.
-  bool is_of_tables() const;
+  bool is_of_tables() const { return rank() >= 2; }
   friend bool operator==(const MapAxis&, const MapAxis&) = default;
 };
 
@@ -37,9 +41,8 @@ std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range)
 /// Shape: count x count in rows, x fastest, y upwards.
 struct MapField {
   std::size_t count = 0;
-  std::vector<double> values;  ///< NaN where there is no value
-  std::vector<std::uint8_t> is_good;
-  double min = 0.0;  ///< the smallest and the largest good value
+  std::vector<double> values;  ///< NaN where there is no value, and for entries with a bad status
+  double min = 0.0;            ///< the smallest and the largest value
   double max = 0.0;
 };
 
@@ -84,9 +87,22 @@ class HeatMap {
   const MapAxis& x() const { return x_; }
   const MapAxis& y() const { return y_; }
   /// Number of rows of the finest complete level.
-  std::size_t finished_count() const;
+  std::size_t finished_count() const {
+    std::size_t finest = 0;
+    for (std::size_t level = 0; level < kLevels.size(); ++level) {
+      if (is_complete(level)) finest = kLevels[level].count;
+    }
+    return finest;
+  }
   /// The finished share of all levels, 0 to 1.
-  double progress() const;
+  double progress() const {
+    std::size_t done = 0, all = 0;
+    for (std::size_t level = 0; level < kLevels.size(); ++level) {
+      all += entries(level);
+      if (is_current()) done += points_[level].size();
+    }
+    return static_cast<double>(done) / static_cast<double>(all);
+  }
   /// Changes whenever the field changes.
   std::size_t version() const { return version_; }
 
@@ -97,7 +113,7 @@ class HeatMap {
   static constexpr std::size_t entries(std::size_t level) { return kLevels[level].count * kLevels[level].count; }
   bool is_current() const { return shown_key_ == key_; }
   bool is_complete(std::size_t level) const { return points_[level].size() == entries(level); }
-  std::string key_of(std::size_t level) const;
+  std::string key_of(std::size_t level) const { return "map " + std::to_string(kLevels[level].count) + ' ' + key_; }
   /// True if x is the slower axis, so the points are stored by columns.
   bool is_turned() const { return x_.rank() < y_.rank(); }
   const MapAxis& slower() const { return is_turned() ? x_ : y_; }

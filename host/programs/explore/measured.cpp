@@ -32,9 +32,9 @@ void Residuals::follow(const std::string& key, const Scene& scene) {
   scene_ = scene;
   if (!data_) return;
   std::vector<double> theta_deg, wavelength_um;
-  for (const Measurement& one : data_->measurements) {
-    theta_deg.push_back(one.theta_deg);
-    if (one.wavelength_um) wavelength_um.push_back(*one.wavelength_um);
+  for (const Measurement& point : data_->measurements) {
+    theta_deg.push_back(point.theta_deg);
+    if (point.wavelength_um) wavelength_um.push_back(*point.wavelength_um);
   }
   PointList list = points_at(scene, std::move(theta_deg));
   if (!wavelength_um.empty()) list["wavelength_um"] = std::move(wavelength_um);
@@ -42,19 +42,18 @@ void Residuals::follow(const std::string& key, const Scene& scene) {
 }
 
 std::vector<Measurement> Residuals::measured(Plotted quantity) const {
-  std::vector<Measurement> some;
-  if (data_) some = data_->measurements;
-  std::erase_if(some, [&](const Measurement& one) { return plotted(one.observable) != quantity; });
-  return some;
+  std::vector<Measurement> points = data_ ? data_->measurements : std::vector<Measurement>();
+  std::erase_if(points, [&](const Measurement& point) { return plotted(point.observable) != quantity; });
+  return points;
 }
 
 std::vector<Measurement> Residuals::residuals(Plotted quantity) const {
   std::vector<Measurement> residuals;
   if (!is_known()) return residuals;
   for (std::size_t i = 0; i < model_.points().size(); ++i) {
-    Measurement one = data_->measurements[i];
-    one.value -= described(quantity).value(model_.points()[i]);
-    if (plotted(one.observable) == quantity && std::isfinite(one.value)) residuals.push_back(one);
+    Measurement residual = data_->measurements[i];
+    residual.value -= described(quantity).value(model_.points()[i]);
+    if (plotted(residual.observable) == quantity && std::isfinite(residual.value)) residuals.push_back(residual);
   }
   return residuals;
 }
@@ -62,20 +61,20 @@ std::vector<Measurement> Residuals::residuals(Plotted quantity) const {
 std::optional<double> rms_of(const std::vector<Measurement>& residuals) {
   if (residuals.empty()) return std::nullopt;
   double sum = 0.0;
-  for (const Measurement& one : residuals) sum += one.value * one.value;
+  for (const Measurement& residual : residuals) sum += residual.value * residual.value;
   return std::sqrt(sum / static_cast<double>(residuals.size()));
 }
 
-FitRange fit_range(const FitMarks& marks, const Scene& scene, const Parameter& parameter, double value) {
+FitRange fit_range(const FitMarks& marks, const Scene& scene, const Control& control, double value) {
   constexpr double kLeastK = 1e-3;  // positive, so that the search is logarithmic in k and finds small values
-  const std::string& key = parameter.key->key;
+  const std::string& key = control.key->key;
   const auto marked = marks.find(key);
   if (marked != marks.end() && marked->second) {
     FitRange typed = *marked->second;
     typed.start = std::clamp(value, typed.low, typed.high);
     return typed;
   }
-  const Scale slider = range_in(scene, parameter);
+  const Scale slider = range_in(scene, control);
   const double low = key.ends_with(".k") ? kLeastK : std::min(slider.from, value);
   return {key, low, std::max(slider.to, value), std::max(low, value)};
 }

@@ -52,7 +52,7 @@ using FitMarks = std::map<std::string, std::optional<FitRange>>;
 
 /// The range of a parameter in fits: the typed range, or the part of the slider's range that the scene allows. The fit
 /// starts at `value`.
-FitRange fit_range(const FitMarks& marks, const Scene& scene, const Parameter& parameter, double value);
+FitRange fit_range(const FitMarks& marks, const Scene& scene, const Control& control, double value);
 
 /// All inputs of a fit, so that it can run on a separate thread.
 struct FitJob {

@@ -32,12 +32,16 @@ Panel panel_of(const std::string& name) {
   return static_cast<Panel>(found - kPanelNames.begin());
 }
 
-std::vector<Setting> other_distribution(const Scene& scene) {
+std::optional<Scene> with_other_distribution(const Scene& scene) {
   const double sigma = scene.number("surface.sigma").value();
   const double ratio = std::sqrt(scene.number("surface.q").value() - 1.0);
   const bool is_cauchy = scene.word("surface.distribution") == "cauchy";
-  return {{"surface.distribution", is_cauchy ? "gaussian" : "cauchy"},
-          {"surface.sigma", is_cauchy ? sigma / ratio : sigma * ratio}};
+  try {
+    return scene.with({{"surface.distribution", is_cauchy ? "gaussian" : "cauchy"},
+                       {"surface.sigma", is_cauchy ? sigma / ratio : sigma * ratio}});
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
 double slope_density(const Scene& scene, double alpha_deg) {
@@ -131,14 +135,6 @@ void SourceSky::follow(const std::string& key, const Scene& scene) {
                       .parts = {points_at(ring, zeniths(0.0, 90.0, kZeniths))},
                       .tolerance = Curve::kCoarseTolerance});
   }
-}
-
-std::vector<Job> SourceSky::wanted() const {
-  std::vector<Job> jobs;
-  for (const Sweep& ring : rings_) {
-    if (const std::optional<Job> job = ring.wanted()) jobs.push_back(*job);
-  }
-  return jobs;
 }
 
 }  // namespace dolp::explore

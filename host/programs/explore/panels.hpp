@@ -21,8 +21,9 @@ inline constexpr std::array kPanelNames = {"map",   "slopes", "material", "smoot
 /// The panel of a name. Errors: InputError that lists the names.
 Panel panel_of(const std::string& name);
 
-/// Changes of a scene to the other distribution with an equal density of flat facets: sigma_G = sigma / sqrt(q - 1).
-std::vector<Setting> other_distribution(const Scene& scene);
+/// The scene with the other distribution and an equal density of flat facets: sigma_G = sigma / sqrt(q - 1). Empty if
+/// this sigma or q is outside the model.
+std::optional<Scene> with_other_distribution(const Scene& scene);
 
 /// The slope distribution D at an angle alpha between facet and mean plane.
 /// Equation: (8) cauchy, (1) gaussian. Units: 1/sr. Accuracy: ExplorePanels.SlopeDensity_IsNormalised.
@@ -78,7 +79,13 @@ class SourceSky {
   /// Switches to the sky of a bistatic scene; `key` identifies its content without the azimuth.
   void follow(const std::string& key, const Scene& scene);
   /// Coarse jobs for the azimuths that are not known yet.
-  std::vector<Job> wanted() const;
+  std::vector<Job> wanted() const {
+    std::vector<Job> jobs;
+    for (const Sweep& ring : rings_) {
+      if (const std::optional<Job> job = ring.wanted()) jobs.push_back(*job);
+    }
+    return jobs;
+  }
   void take(const JobPart& news) {
     std::ranges::any_of(rings_, [&](Sweep& ring) { return ring.take(news); });
   }

@@ -34,14 +34,14 @@ json map_json(const Session& session) {
   if (session.view().panel != Panel::kMap || field.count == 0) return {};
   json rows(field.count, json::array());
   for (std::size_t i = 0; i < field.values.size(); ++i)
-    rows[i / field.count].push_back(field.is_good[i] ? json(description.scale() * field.values[i]) : json());
-  json colours;  // null unless the user typed them
-  if (const auto& typed = session.view().map_colours) {
+    rows[i / field.count].push_back(description.scale() * field.values[i]);  // NaN becomes null
+  json colours;                                                              // null unless the user typed them
+  if (const auto& typed = session.view().range(View::kColours)) {
     colours = {{"from", description.scale() * typed->from}, {"to", description.scale() * typed->to}};
   }
-  const auto axis = [](const MapAxis& one) { return axis_json(one.label, one.scale); };
-  return {{"x", axis(session.map().x())},
-          {"y", axis(session.map().y())},
+  const auto axis_of = [](const MapAxis& axis) { return axis_json(axis.label, axis.scale); };
+  return {{"x", axis_of(session.map().x())},
+          {"y", axis_of(session.map().y())},
           {"label", description.label()},
           {"is_log", session.view().is_log},
           {"is_signed", description.is_signed},
@@ -65,10 +65,10 @@ std::string plot_json(const Session& session, const Scale& x, const Scale& y) {
   curves.push_back(curve_json(session.curve(), curve_name(session), "curve", quantity));
   json measured = json::array();
   const double scale = described(quantity).scale();
-  for (const Measurement& one : session.residuals().measured(quantity)) {
-    measured.push_back({{"theta_deg", one.theta_deg},
-                        {"value", scale * one.value},
-                        {"uncertainty", scale * one.uncertainty.value_or(0.0)}});
+  for (const Measurement& point : session.residuals().measured(quantity)) {
+    measured.push_back({{"theta_deg", point.theta_deg},
+                        {"value", scale * point.value},
+                        {"uncertainty", scale * point.uncertainty.value_or(0.0)}});
   }
   return json{{"title", session.scene().title()},
               {"x", axis_json("zenith θ [°]", x)},

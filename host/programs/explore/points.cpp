@@ -66,12 +66,6 @@ std::vector<double>& PointList::operator[](const std::string& name) {
   return found == values.end() ? values.emplace_back(name, std::vector<double>()).second : found->second;
 }
 
-std::vector<Column> PointList::columns() const {
-  std::vector<Column> columns;
-  for (const auto& [name, column] : values) columns.push_back({name, column});
-  return columns;
-}
-
 bool has_wind(const Scene& scene) { return scene.number("surface.wind_m_s").has_value(); }
 
 PointList points_at(const Scene& scene, std::vector<double> theta_deg) {
@@ -90,12 +84,6 @@ std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count) {
     theta_deg[i] = ((last - done) * from_deg + done * to_deg) / last;
   }
   return theta_deg;
-}
-
-bool Point::is_good() const { return promises_dolp(status) && std::isfinite(values[Quantity::kDolp]); }
-
-bool Point::has_bracket() const {
-  return std::isfinite(values[Quantity::kDolpLow]) && std::isfinite(values[Quantity::kDolpHigh]);
 }
 
 std::vector<Point> points_of(const PointList& list, const Results& results) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <dolp/dolp.hpp>
@@ -20,7 +21,11 @@ struct PointList {
 
   /// The values of a column. Adds the column if it is missing.
   std::vector<double>& operator[](const std::string& name);
-  std::vector<Column> columns() const;
+  std::vector<Column> columns() const {
+    std::vector<Column> columns;
+    for (const auto& [name, column] : values) columns.push_back({name, column});
+    return columns;
+  }
 };
 
 /// True if the scene's sigma comes from a wind speed.
@@ -40,9 +45,11 @@ struct Point : PointResult {
   double theta_deg = 0.0;  ///< meaningless on a grid
 
   /// True if the status has no bit that makes DOLP meaningless or voids its error bound.
-  bool is_good() const;
+  bool is_good() const { return promises_dolp(status) && std::isfinite(values[Quantity::kDolp]); }
   /// True if the point has limits of the DOLP with all bounces.
-  bool has_bracket() const;
+  bool has_bracket() const {
+    return std::isfinite(values[Quantity::kDolpLow]) && std::isfinite(values[Quantity::kDolpHigh]);
+  }
 };
 
 std::vector<Point> points_of(const PointList& list, const Results& results);

@@ -88,8 +88,8 @@ std::string no_residuals_text(const Session& session, const Scale& theta) {
   if (!session.residuals().is_known()) return "…";
   const std::vector<Measurement> residuals = session.residuals().residuals(shown);
   if (residuals.empty()) return "the model has no value at the measured points";
-  const auto is_inside = [&](const Measurement& one) {
-    return theta.from <= one.theta_deg && one.theta_deg <= theta.to;
+  const auto is_inside = [&](const Measurement& point) {
+    return theta.from <= point.theta_deg && point.theta_deg <= theta.to;
   };
   return std::ranges::any_of(residuals, is_inside) ? "" : "no measured point is at these zeniths";
 }
@@ -140,10 +140,10 @@ std::string cursor_text(const Session& session) {
   const Point& r = *shown;
   const Scene& scene = session.curve().shown_scene();
   const bool has_q = scene.word("surface.distribution") == "cauchy";
-  const Parameter& width = parameter(has_wind(scene) ? "surface.wind_m_s" : "surface.sigma");
+  const Control& width = control(has_wind(scene) ? "surface.wind_m_s" : "surface.sigma");
   std::string text =
       fmt::format("Cursor{}: θ = {:.1f}°, {} = {:.4g}{}: DOLP {:.3f} % ± {}, Q/I {:+.3f} %",
-                  remark(session, session.curve()), r.theta_deg, width.symbol, *width.value(scene),
+                  remark(session, session.curve()), r.theta_deg, width.label, *width.value(scene),
                   has_q ? fmt::format(", q = {:.4g}", *scene.number("surface.q")) : "", kPercent * r[Quantity::kDolp],
                   points_text(r[Quantity::kErrorEstimate]), kPercent * r[Quantity::kQOverI]);
   if (r.has_bracket()) {

@@ -58,12 +58,6 @@ double Scale::value(double position) const {
   return is_log ? from * std::pow(to / from, position) : from + position * (to - from);
 }
 
-double Scale::position(double value) const {
-  return is_log ? std::log(value / from) / std::log(to / from) : (value - from) / (to - from);
-}
-
-double Scale::clamp(double value) const { return std::clamp(value, from, to); }
-
 double Scale::rounded(double position) const {
   const double exact = value(position);
   // Four digits, so that a file has a short number that reads back unchanged.
@@ -76,17 +70,6 @@ std::vector<double> Scale::values(std::size_t count) const {
   std::vector<double> all;
   for (std::size_t i = 0; i < count; ++i) all.push_back(value(static_cast<double>(i) / static_cast<double>(count - 1)));
   return all;
-}
-
-Scale Scale::within(const Scale& all) const {
-  const double first = all.position(from), last = all.position(to);
-  if (last - first >= 1.0) return all;
-  const double shift = std::max(-first, 0.0) + std::min(1.0 - last, 0.0);
-  return all.between(first + shift, last + shift);
-}
-
-Scale Scale::including(double value) const {
-  return is_log && !(value > 0.0) ? *this : Scale{std::min(from, value), std::max(to, value), is_log};
 }
 
 Scale Scale::with_log(bool wants_log) const {

@@ -1,6 +1,8 @@
 // Values along a line, for axes of plots and maps, sliders and colours.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -18,8 +20,10 @@ struct Scale {
   std::string refusal() const;
   /// The value at a position, and the position of a value. Both may lie outside the range.
   double value(double position) const;
-  double position(double value) const;
-  double clamp(double value) const;
+  double position(double value) const {
+    return is_log ? std::log(value / from) / std::log(to / from) : (value - from) / (to - from);
+  }
+  double clamp(double value) const { return std::clamp(value, from, to); }
   /// The value at a position with four digits, within the range.
   double rounded(double position) const;
   /// `count` values at equal steps of the position, with both ends.
@@ -27,9 +31,16 @@ struct Scale {
   /// The range between two positions, which may lie outside this range.
   Scale between(double first, double last) const { return {value(first), value(last), is_log}; }
   /// This range shifted into `all`; or `all` itself if this range is larger.
-  Scale within(const Scale& all) const;
+  Scale within(const Scale& all) const {
+    const double first = all.position(from), last = all.position(to);
+    if (last - first >= 1.0) return all;
+    const double shift = std::max(-first, 0.0) + std::min(1.0 - last, 0.0);
+    return all.between(first + shift, last + shift);
+  }
   /// This range extended to a value, if the scale can show the value.
-  Scale including(double value) const;
+  Scale including(double value) const {
+    return is_log && !(value > 0.0) ? *this : Scale{std::min(from, value), std::max(to, value), is_log};
+  }
   /// This range with a linear or a logarithmic scale. A logarithmic range from 0 begins at 1/180 of its end: 0.5 for
   /// 90.
   Scale with_log(bool wants_log) const;
@@ -40,12 +51,6 @@ struct Scale {
   std::vector<double> ticks(std::size_t most) const;
 
   friend bool operator==(const Scale&, const Scale&) = default;
-};
-
-/// The part of a plot that the user chose by mouse or by typing; empty: the whole axis.
-struct Zoom {
-  std::optional<Scale> x, y;
-  friend bool operator==(const Zoom&, const Zoom&) = default;
 };
 
 /// A range for the values of curves, with space above them. A linear range contains 0; a logarithmic range ignores

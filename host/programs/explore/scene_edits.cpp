@@ -20,6 +20,10 @@ namespace {
 bool is_cauchy(const Scene& s) { return s.word("surface.distribution") == "cauchy"; }
 bool has_no_wind(const Scene& s) { return !has_wind(s); }
 bool is_diffuse(const Scene& s) { return s.number("surface.diffuse") > 0.0; }
+bool has_air(const Scene& s) {
+  const auto sky = s.word("surroundings.profile");
+  return sky == "clear-sky" || sky == "overcast";
+}
 bool has_index(const Scene& s) { return !s.word("surface.reflectance_file"); }
 
 std::string with_number(const Scene& scene, const char* symbol, const std::string& key, const char* unit = "") {
@@ -59,11 +63,11 @@ std::string material_name(const Scene& scene) {
 /// The numbers and the sky of a scene that differ from another scene's: "T 300 K, clear-sky".
 std::string different_numbers(const Scene& scene, const Scene& other) {
   std::vector<std::string> words;
-  for (const Parameter& parameter : parameters()) {
-    const std::optional<double> value = parameter.value(scene);
-    if (!value || value == parameter.value(other)) continue;
-    const std::string unit = unit_text(*parameter.key);
-    words.push_back(fmt::format("{} {:.4g}{}{}", parameter.symbol, *value, unit.empty() ? "" : " ", unit));
+  for (const Control& control : controls()) {
+    const std::optional<double> value = control.value(scene);
+    if (!value || value == control.value(other) || !scene.number(control.key->key)) continue;
+    const std::string unit = unit_text(*control.key);
+    words.push_back(fmt::format("{} {:.4g}{}{}", control.label, *value, unit.empty() ? "" : " ", unit));
   }
   const std::string sky = scene.word("surroundings.profile").value_or("");
   if (!sky.empty() && sky != other.word("surroundings.profile"))
@@ -71,38 +75,51 @@ std::string different_numbers(const Scene& scene, const Scene& other) {
   return join(words);
 }
 
-std::vector<Parameter> parameters_without_films() {
+std::vector<Control> controls_without_films() {
   const auto key = [](const char* name) { return &described(name); };
+  constexpr const char* kDiffuse = "f_d = (k_d/π)(cos θi cos θr)^c, eq. (14)";
+  constexpr const char* kAir = "Idso (1981): radiance of the sky from vapour and temperature of the air at the ground";
   return {
-      {key("surface.n"), "n", {1.0, 40.0, true}, "N = n + ik", has_index},
-      {key("surface.k"), "k", {0.0, 100.0}, "N = n + ik, k ≥ 0 absorbs", has_index},
-      {key("surface.sigma"), "σ", {0.01, 2.0, true}, "m² = 2σ²; D(α) of eq. (8) or (1)", has_no_wind},
-      {key("surface.wind_m_s"), "U", {0.0, 30.0}, "m² = 0.003 + 0.00512 U (Cox and Munk 1954), D(α) of eq. (1)"},
-      {key("surface.q"), "q", {1.1, 20.0, true}, "D = (q−1)/(π m² cos⁴α) · (1 + tan²α/m²)^(−q), eq. (8)", is_cauchy},
-      {key("surface.specular"), "k_s", {0.0, 1.0}, "f_s = k_s D G M / (4 cos θi cos θr), eqs. (7), (15)"},
-      {key("surface.diffuse"), "k_d", {0.0, 1.0}, "f_d = (k_d/π)(cos θi cos θr)^c, eq. (14)"},
-      {key("surface.diffuse_exponent"), "c", {-0.95, 0.0}, "f_d = (k_d/π)(cos θi cos θr)^c, eq. (14)", is_diffuse},
-      {key("emission.temperature_K"), "T", {200.0, 400.0}, "emits (1 − ρ) B(λ, T), eq. (18)"},
-      {key("source.irradiance"), "E0", {0.001, 1000.0, true}, "reflects E0 cos θ ρ, eq. (18)"},
-      {key("source.relative_irradiance"), "e", {0.001, 10.0, true}, "e = E0/(π B(T)), eq. (18)"},
-      {key("source.scale"), "scale", {0.01, 100.0, true}, "E0 → scale · E0"},
-      {key("surroundings.temperature_K"), "T_surr", {0.0, 400.0}, "reflects B(λ, T_surr) ρ"},
-      {key("path.transmittance"), "τ", {0.0, 1.0}, "I → τ I + L_path"},
-      {key("path.temperature_K"), "T_path", {0.0, 400.0}, "L_path = (1 − τ) B(λ, T_path)"},
-      {key("path.radiance"), "L_path", {0.001, 100.0, true}, "I → τ I + L_path"},
-      {key("spectrum.wavelength_um"), "λ", {1.0, 20.0}, "B(λ, T), N(λ)"},
-      {key("geometry.view_zenith_deg"), "θv", {0.0, 90.0}, "direction of the view, eq. (2)", is_bistatic},
-      {key("geometry.relative_azimuth_deg"), "Δφ", {0.0, 360.0}, "cos 2β = ωi · ωr, eq. (2)", is_bistatic},
-      {key("accuracy.tolerance"), "tolerance", {1e-9, 1e-2, true}, "|δDOLP|, |δρ|/ρ_I ≤ tolerance"},
+      {key("surface.distribution"), "distribution", "D(α): eq. (8) cauchy, eq. (1) gaussian"},
+      {key("surface.masking"), "masking", "G: eqs. (9)–(13) for integral"},
+      {key("surface.scattering"), "scattering", "only the first facet, or all bounces in V-grooves"},
+      {key("surface.diffuse_polarisation"), "diffuse light", "1 − R on the way out", {}, is_diffuse},
+      {key("surface.n"), "n", "N = n + ik", {1.0, 40.0, true}, has_index},
+      {key("surface.k"), "k", "N = n + ik, k ≥ 0 absorbs", {0.0, 100.0}, has_index},
+      {key("surface.sigma"), "σ", "m² = 2σ²; D(α) of eq. (8) or (1)", {0.01, 2.0, true}, has_no_wind},
+      {key("surface.wind_m_s"), "U", "m² = 0.003 + 0.00512 U (Cox and Munk 1954), D(α) of eq. (1)", {0.0, 30.0}},
+      {key("surface.q"), "q", "D = (q−1)/(π m² cos⁴α) · (1 + tan²α/m²)^(−q), eq. (8)", {1.1, 20.0, true}, is_cauchy},
+      {key("surface.specular"), "k_s", "f_s = k_s D G M / (4 cos θi cos θr), eqs. (7), (15)", {0.0, 1.0}},
+      {key("surface.diffuse"), "k_d", kDiffuse, {0.0, 1.0}},
+      {key("surface.diffuse_exponent"), "c", kDiffuse, {-0.95, 0.0}, is_diffuse},
+      {key("emission.model"), "emissivity",
+       "1 − ρ of the rough surface, 1 − R(θ) of the smooth one, or (1 − R) G of the facets in view"},
+      {key("emission.bracket"), "bracket", "ε_I between the direct emission and 1 − ρ_I"},
+      {key("emission.temperature_K"), "T", "emits (1 − ρ) B(λ, T), eq. (18)", {200.0, 400.0}},
+      {key("source.irradiance"), "E0", "reflects E0 cos θ ρ, eq. (18)", {0.001, 1000.0, true}},
+      {key("source.relative_irradiance"), "e", "e = E0/(π B(T)), eq. (18)", {0.001, 10.0, true}},
+      {key("source.scale"), "scale", "E0 → scale · E0", {0.01, 100.0, true}},
+      {key("surroundings.temperature_K"), "T_surr", "reflects B(λ, T_surr) ρ", {0.0, 400.0}},
+      {key("surroundings.vapour_cm"), "water", kAir, {0.0, 2.7}, has_air, 1.27},
+      {key("surroundings.air_temperature_K"), "T_air", kAir, {230.0, 320.0}, has_air, 288.15},
+      {key("path.transmittance"), "τ", "I → τ I + L_path", {0.0, 1.0}},
+      {key("path.temperature_K"), "T_path", "L_path = (1 − τ) B(λ, T_path)", {0.0, 400.0}},
+      {key("path.radiance"), "L_path", "I → τ I + L_path", {0.001, 100.0, true}},
+      {key("spectrum.wavelength_um"), "λ", "B(λ, T), N(λ)", {1.0, 20.0}},
+      {key("geometry.mode"), "mode", "eq. (18) all around, or f of eq. (7) for one source and view"},
+      {key("geometry.view_zenith_deg"), "θv", "direction of the view, eq. (2)", {0.0, 90.0}, is_bistatic},
+      {key("geometry.relative_azimuth_deg"), "Δφ", "cos 2β = ωi · ωr, eq. (2)", {0.0, 360.0}, is_bistatic},
+      {key("accuracy.tolerance"), "tolerance", "|δDOLP|, |δρ|/ρ_I ≤ tolerance", {1e-9, 1e-2, true}},
+      {key("accuracy.precision"), "precision", "arithmetic of the device"},
   };
 }
 
 /// The control of n, k or the thickness of a film.
-Parameter film_parameter(const Key& key) {
-  const std::string part = key.key.substr(key.key.rfind('.') + 1);
-  if (part == "n") return {&key, fmt::format("n_{}", key.layer), {0.1, 10.0, true}, "N = n + ik of the film"};
-  if (part == "k") return {&key, fmt::format("k_{}", key.layer), {0.0, 10.0}, "N = n + ik of the film"};
-  return {&key, fmt::format("d_{}", key.layer), {1e-3, 100.0, true}, "δ = 2π d √(N² − sin²β)/λ, the phase of a film"};
+Control film_control(const Key& key) {
+  const std::string name = key.key.substr(key.key.rfind('.') + 1);
+  if (name == "n") return {&key, fmt::format("n_{}", key.layer), "N = n + ik of the film", {0.1, 10.0, true}};
+  if (name == "k") return {&key, fmt::format("k_{}", key.layer), "N = n + ik of the film", {0.0, 10.0}};
+  return {&key, fmt::format("d_{}", key.layer), "δ = 2π d √(N² − sin²β)/λ, the phase of a film", {1e-3, 100.0, true}};
 }
 
 constexpr const char* kCoating = "surface.coating";
@@ -117,43 +134,16 @@ bool replaces(const Setting& change, const std::string& other) {
   return std::ranges::count(described(key).rivals, other) > 0;
 }
 
-/// Words of one key that exclude words of another key, and the replacement word of that key.
-struct Side {
-  const char* key;
-  std::vector<std::string_view> words;
-  const char* instead;
-
-  bool excludes(std::string_view word) const { return std::ranges::count(words, word) > 0; }
-};
-
-// The replacement words exclude nothing, so one conflict never causes another.
-const std::vector<std::array<Side, 2>>& conflicts() {
-  const Side multiple{"surface.scattering", {"multiple"}, "single"};
-  const Side direct{"emission.model", {"direct"}, "moments"};
-  const Side bracket{"emission.bracket", {"true"}, "false"};
-  const Side without_direct{"surface.masking", {"none", "integral"}, "v-cavity"};
-  static const std::vector<std::array<Side, 2>> all = {
-      {multiple, {"surface.masking", {"none", "integral", "smith"}, "v-cavity"}},
-      {direct, without_direct},
-      {direct, multiple},
-      {bracket, without_direct},
-      {bracket, multiple},
-      {bracket, {"emission.model", {"fresnel"}, "moments"}},
-      {bracket, {"geometry.mode", {"bistatic"}, "hemispherical"}},
-  };
-  return all;
-}
-
-std::optional<std::string> word_in(const std::vector<Setting>& changes, const std::string& key) {
-  const auto found = std::ranges::find(changes, key, &Setting::key);
-  return found == changes.end() ? std::nullopt : std::optional(word_of(found->value));
-}
-
-std::vector<Setting> all_choices(const Scene& scene) {
-  std::vector<Setting> words;
-  for (const Choice& choice : choices()) {
-    const auto word = choice.word(scene);
-    if (word) words.push_back({choice.key->key, TomlText{choice.key->words[*word]}});
+/// For each choice that excludes other choices the word that excludes nothing. A wind excludes other slopes than
+/// Gaussian ones, and the state of the air excludes other skies than the built-in ones.
+std::vector<Setting> compatible_words(const Scene& scene) {
+  std::vector<Setting> words = {{"surface.masking", "v-cavity"},    {"surface.scattering", "single"},
+                                {"emission.model", "moments"},      {"emission.bracket", false},
+                                {"geometry.mode", "hemispherical"}, {"surface.diffuse_polarisation", "none"}};
+  std::erase_if(words, [&](const Setting& word) { return !scene.word(word.key); });
+  if (has_wind(scene)) words.push_back({"surface.sigma", scene.number("surface.sigma").value()});
+  for (const char* key : {"surroundings.vapour_cm", "surroundings.air_temperature_K"}) {
+    if (scene.number(key)) words.push_back({key, Value()});
   }
   return words;
 }
@@ -168,57 +158,44 @@ const Key& described(const std::string& key) {
   return *found;
 }
 
-std::optional<double> Parameter::value(const Scene& scene) const {
-  return is_used && !is_used(scene) ? std::nullopt : scene.number(key->key);
+std::optional<double> Control::value(const Scene& scene) const {
+  if (!is_number() || !is_shown(scene)) return std::nullopt;
+  const std::optional<double> number = scene.number(key->key);
+  return number ? number : standard;
 }
 
-std::string Parameter::label() const {
-  const std::string unit = unit_text(*key);
-  return unit.empty() ? symbol : fmt::format("{} [{}]", symbol, unit);
-}
-
-std::optional<std::size_t> Choice::word(const Scene& scene) const {
-  const std::optional<std::string> word = scene.word(key->key);
+std::optional<std::size_t> Control::word(const Scene& scene) const {
+  const std::optional<std::string> word = is_number() || !is_shown(scene) ? std::nullopt : scene.word(key->key);
   if (!word) return std::nullopt;
   return static_cast<std::size_t>(std::ranges::find(key->words, *word) - key->words.begin());
 }
 
-const std::vector<Parameter>& parameters() {
-  static const std::vector<Parameter> all = [] {
-    std::vector<Parameter> known = parameters_without_films();
+std::string Control::label_with_unit() const {
+  const std::string unit = unit_text(*key);
+  return unit.empty() ? label : fmt::format("{} [{}]", label, unit);
+}
+
+const std::vector<Control>& controls() {
+  static const std::vector<Control> all = [] {
+    std::vector<Control> known = controls_without_films();
     for (const Key& key : dolp::keys()) {
-      if (key.layer > 0 && key.type == Key::Type::kNumber) known.push_back(film_parameter(key));
+      if (key.layer > 0 && key.type == Key::Type::kNumber) known.push_back(film_control(key));
     }
     return known;
   }();
   return all;
 }
 
-const std::vector<Choice>& choices() {
-  const auto key = [](const char* name) { return &described(name); };
-  static const std::vector<Choice> all = {
-      {key("surface.distribution"), "distribution", "D(α): eq. (8) cauchy, eq. (1) gaussian"},
-      {key("surface.masking"), "masking", "G: eqs. (9)–(13) for integral"},
-      {key("surface.scattering"), "scattering", "only the first facet, or all bounces in V-grooves"},
-      {key("emission.model"), "emissivity",
-       "1 − ρ of the rough surface, 1 − R(θ) of the smooth one, or (1 − R) G of the facets in view"},
-      {key("emission.bracket"), "bracket", "ε_I between the direct emission and 1 − ρ_I"},
-      {key("geometry.mode"), "mode", "eq. (18) all around, or f of eq. (7) for one source and view"},
-      {key("accuracy.precision"), "precision", "arithmetic of the device"},
-  };
-  return all;
-}
-
-const Parameter& parameter(const std::string& key) {
-  const auto found = std::ranges::find(parameters(), key, [](const Parameter& known) { return known.key->key; });
-  if (found == parameters().end()) throw std::logic_error("no parameter " + key);
+const Control& control(const std::string& key) {
+  const auto found = std::ranges::find(controls(), key, [](const Control& known) { return known.key->key; });
+  if (found == controls().end()) throw std::logic_error("no control of " + key);
   return *found;
 }
 
-Scale range_in(const Scene& scene, const Parameter& parameter) {
+Scale range_in(const Scene& scene, const Control& control) {
   constexpr Scale kSmithQ{1.6, 20.0, true};  // smith masking needs q > 1.5
   const bool is_smith = scene.word("surface.masking") == "smith" && is_cauchy(scene);
-  return is_smith && parameter.key->key == "surface.q" ? kSmithQ : parameter.slider;
+  return is_smith && control.key->key == "surface.q" ? kSmithQ : control.slider;
 }
 
 std::string table_of(const std::string& key) { return key.substr(0, key.rfind('.')); }
@@ -254,11 +231,9 @@ std::string surface_name(const Scene& scene, const Scene* other) {
   return join(parts);
 }
 
-SceneEdits::SceneEdits(const Scene& opened)
-    : given_(opened.settings()), saved_(given_), changes_(given_), opened_(opened), scene_(opened) {}
-
 bool SceneEdits::is_same_file(const SceneEdits& other) const {
-  return opened_.name() == other.opened_.name() && opened_.text() == other.opened_.text() && given_ == other.given_;
+  return opened_.name() == other.opened_.name() && opened_.text() == other.opened_.text() &&
+         opened_.settings() == other.opened_.settings();
 }
 
 void SceneEdits::go_to(const SceneEdits& other) {
@@ -267,30 +242,25 @@ void SceneEdits::go_to(const SceneEdits& other) {
   saved_ = std::move(saved);
 }
 
-void SceneEdits::become(std::vector<Setting> changes) {
-  scene_ = Scene::from_text(opened_.text(), changes, opened_.name());
-  changes_ = std::move(changes);
-}
-
 void SceneEdits::set(const std::vector<Setting>& changes) {
-  std::vector<Setting> all = changes_;
+  std::vector<Setting> all = scene_.settings();
   for (const Setting& change : changes) {
     std::erase_if(all, [&](const Setting& old) { return replaces(change, old.key); });
   }
   all.insert(all.end(), changes.begin(), changes.end());
-  become(std::move(all));
+  become(all);
 }
 
 void SceneEdits::reset(const std::string& key) {
   const auto is_of_key = [&](const Setting& change) { return change.key == key || table_of(change.key) == key; };
-  std::vector<Setting> all = changes_;
+  std::vector<Setting> all = changes();
   std::erase_if(all, is_of_key);
-  std::ranges::copy_if(given_, std::back_inserter(all), is_of_key);
-  become(std::move(all));
+  std::ranges::copy_if(opened_.settings(), std::back_inserter(all), is_of_key);
+  become(all);
 }
 
 std::vector<Setting> SceneEdits::changes_without(const std::vector<std::string>& keys) const {
-  std::vector<Setting> left = changes_;
+  std::vector<Setting> left = changes();
   std::erase_if(left, [&](const Setting& change) { return std::ranges::count(keys, change.key) > 0; });
   return left;
 }
@@ -326,28 +296,30 @@ std::string word_of(const Value& value) {
   return word ? *word : value.text();
 }
 
-std::vector<Setting> choices_of(const Scene& scene, const std::string& table) {
-  std::vector<Setting> words = all_choices(scene);
-  std::erase_if(words, [&](const Setting& choice) { return table_of(choice.key) != table; });
-  return words;
-}
-
-std::vector<Setting> needed_with(const Scene& scene, const std::vector<Setting>& chosen) {
-  const std::vector<Setting> words = all_choices(scene);
+std::vector<Setting> change_with_needed(SceneEdits& edits, const std::function<void(SceneEdits&)>& change) {
+  const auto changed_after = [&](const std::vector<Setting>& words) -> std::optional<SceneEdits> {
+    SceneEdits trial = edits;
+    try {
+      if (!words.empty()) trial.set(words);
+      change(trial);
+      return trial;
+    } catch (const InputError&) {
+      return std::nullopt;
+    }
+  };
   std::vector<Setting> needed;
-  for (const std::array<Side, 2>& conflict : conflicts()) {
-    for (const std::size_t i : {0U, 1U}) {
-      const Side& side = conflict[i];
-      const Side& other = conflict[1 - i];
-      const auto word = word_in(chosen, side.key);
-      if (!word || !side.excludes(*word) || word_in(chosen, other.key) || word_in(needed, other.key)) continue;
-      const auto now = word_in(words, other.key);
-      if (now && other.excludes(*now)) needed.push_back({other.key, TomlText{other.instead}});
+  std::optional<SceneEdits> changed = changed_after(needed);
+  if (!changed) changed = changed_after(needed = compatible_words(edits.scene()));
+  if (!changed) change(edits);  // throws the reason
+  for (std::size_t i = needed.size(); i-- > 0;) {
+    std::vector<Setting> fewer = needed;
+    fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+    if (const std::optional<SceneEdits> other = changed_after(fewer)) {
+      needed = std::move(fewer);
+      changed = other;
     }
   }
-  // A wind implies Gaussian slopes. Another distribution starts with their sigma.
-  if (word_in(chosen, "surface.distribution") == "cauchy" && scene.number("surface.wind_m_s"))
-    needed.push_back({"surface.sigma", scene.number("surface.sigma").value()});
+  edits = *changed;
   return needed;
 }
 
@@ -368,7 +340,7 @@ std::optional<SkyPair> read_sky_pair(const std::filesystem::path& path) {
 
 std::filesystem::path sky_file(const Scene& scene) {
   const std::string name = scene.word("surroundings.profile").value_or("");
-  if (name.empty() || name == "clear-sky" || name == "overcast") return {};
+  if (name.empty() || has_air(scene)) return {};
   return std::filesystem::path(scene.name()).parent_path() / name;
 }
 

@@ -4,6 +4,7 @@
 
 #include <dolp/dolp.hpp>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,44 +14,38 @@
 
 namespace dolp::explore {
 
-/// A number of the scene that a slider moves.
-struct Parameter {
+/// The control of a key: a slider for a number, a list for words, a box for a flag.
+struct Control {
   const Key* key;
-  std::string symbol;    ///< UTF-8
-  Scale slider;          ///< a part of the key's range; the user can type other values
+  std::string label;     ///< the symbol of a number, in UTF-8
   const char* equation;  ///< in UTF-8, with its number in the paper if it has one
-  /// True if the scene uses the parameter. Null: every scene that has the parameter uses it.
+  Scale slider = {};     ///< a part of the key's range; the user can type other values
+  /// True if the scene uses the key; otherwise the window hides the control. Null: every scene that has the key uses
+  /// it.
   bool (*is_used)(const Scene& scene) = nullptr;
+  std::optional<double> standard = {};  ///< value of a number without which a scene is valid
 
-  /// The scene's value; empty if the window hides the control.
+  /// The scene's number; empty for words, and if the window hides the control.
   std::optional<double> value(const Scene& scene) const;
-  /// "λ [µm]".
-  std::string label() const;
-};
-
-/// A word of the scene, shown as a list, or a flag, shown as a box.
-struct Choice {
-  const Key* key;
-  const char* label;
-  const char* equation;
-
-  /// Position in Key::words; empty if the window hides the control.
+  /// The position of the scene's word in Key::words; empty for numbers, and if the window hides the control.
   std::optional<std::size_t> word(const Scene& scene) const;
-  bool is_flag() const { return key->words.front() == "false"; }
+  /// "λ [µm]" for a number.
+  std::string label_with_unit() const;
+  bool is_shown(const Scene& scene) const { return !is_used || is_used(scene); }
+  bool is_number() const { return key->type == Key::Type::kNumber; }
 };
 
 /// The scene key with this name. The key must exist.
 const Key& described(const std::string& key);
 
 /// All controls, in the order of the scene keys; the numbers of films come last.
-const std::vector<Parameter>& parameters();
-const std::vector<Choice>& choices();
+const std::vector<Control>& controls();
 
-/// The parameter with this key. It must exist.
-const Parameter& parameter(const std::string& key);
+/// The control of a key, which must have one.
+const Control& control(const std::string& key);
 
-/// The range of a parameter's slider, without the values that the scene's masking excludes.
-Scale range_in(const Scene& scene, const Parameter& parameter);
+/// The range of a slider, without the values that the scene's masking excludes.
+Scale range_in(const Scene& scene, const Control& control);
 
 /// The table of a dotted key: "surface" of "surface.sigma", "surface.coating.1" of "surface.coating.1.n".
 std::string table_of(const std::string& key);
@@ -67,9 +62,9 @@ std::string surface_name(const Scene& scene, const Scene* other = nullptr);
 /// A scene file with changes. The window computes what `dolp eval` computes with these settings.
 class SceneEdits {
  public:
-  explicit SceneEdits(const Scene& opened);
+  explicit SceneEdits(const Scene& opened) : opened_(opened), scene_(opened), saved_(opened.settings()) {}
   /// A scene as it was opened, with changes. Errors: the errors of set().
-  SceneEdits(const Scene& opened, std::vector<Setting> changes) : SceneEdits(opened) { become(std::move(changes)); }
+  SceneEdits(const Scene& opened, const std::vector<Setting>& changes) : SceneEdits(opened) { become(changes); }
 
   /// Changes keys together. A table without a value removes its effect, and any of its keys restores the effect.
   /// Alternatives of a key (n and k, material, material file) are removed.
@@ -78,29 +73,30 @@ class SceneEdits {
 
   /// Restores a key, or a whole table, from the scene as opened. Errors: the errors of set().
   void reset(const std::string& key);
-  void reset_all() { become(given_); }
+  void reset_all() { scene_ = opened_; }
 
   const Scene& scene() const { return scene_; }
   const Scene& opened() const { return opened_; }
-  bool is_changed() const { return changes_ != saved_; }
+  bool is_changed() const { return changes() != saved_; }
   /// Declares the current scene unchanged.
-  void note_saved() { saved_ = changes_; }
+  void note_saved() { saved_ = changes(); }
   /// Goes to another state of this file, or to another file. Remembers the saved state of this file.
   void go_to(const SceneEdits& other);
   /// True if both have equal changes of the same file.
-  bool is_same_scene(const SceneEdits& other) const { return is_same_file(other) && changes_ == other.changes_; }
-  const std::vector<Setting>& changes() const { return changes_; }
+  bool is_same_scene(const SceneEdits& other) const { return is_same_file(other) && changes() == other.changes(); }
+  /// All settings of the scene, those of the opened scene included.
+  const std::vector<Setting>& changes() const { return scene_.settings(); }
   std::vector<Setting> changes_without(const std::vector<std::string>& keys) const;
 
  private:
   bool is_same_file(const SceneEdits& other) const;
-  void become(std::vector<Setting> changes);
+  void become(const std::vector<Setting>& changes) {
+    scene_ = Scene::from_text(opened_.text(), changes, opened_.name());
+  }
 
-  std::vector<Setting> given_;  ///< settings from the command line
-  std::vector<Setting> saved_;
-  std::vector<Setting> changes_;
   Scene opened_;
   Scene scene_;
+  std::vector<Setting> saved_;
 };
 
 /// The keys of a film in its table: n and k, or material, or material_file; and thickness_um.
@@ -113,12 +109,10 @@ Setting coating_of(const std::vector<Film>& films);
 /// The word of a value, without quotes.
 std::string word_of(const Value& value);
 
-/// More changes that `chosen` needs: each choice of the scene that excludes a chosen one is replaced by a compatible
-/// word. Empty if nothing conflicts.
-std::vector<Setting> needed_with(const Scene& scene, const std::vector<Setting>& chosen);
-
-/// The choices of a scene in one table, as settings.
-std::vector<Setting> choices_of(const Scene& scene, const std::string& table);
+/// Applies a change. If the scene refuses it, replaces the choices that exclude it by compatible words, as few as
+/// possible, and returns them. Errors: InputError if no choice makes the change possible; the edits then stay
+/// unchanged.
+std::vector<Setting> change_with_needed(SceneEdits& edits, const std::function<void(SceneEdits&)>& change);
 
 /// A sky whose brightness temperature is linear in the zenith.
 struct SkyPair {

@@ -16,6 +16,12 @@ std::string text_of(const std::vector<Setting>& changes) {
   return join(texts);
 }
 
+/// True if a change gives a number of the scene another value. Other changes choose between alternatives.
+bool moves_number(const Scene& scene, const Setting& change) {
+  return std::ranges::any_of(
+      controls(), [&](const Control& control) { return control.key->key == change.key && control.value(scene); });
+}
+
 /// A list of jobs in order of their rank.
 struct JobList {
   std::vector<Job> jobs;
@@ -28,10 +34,10 @@ struct JobList {
 
 /// Gives an axis its typed range, or the range in which the scene is known. Returns false if that is only one value.
 bool find_range(const Scene& scene, const View& view, MapAxis& axis) {
-  const auto typed = view.map_ranges.find(axis.label);
+  const std::optional<Scale> typed = view.range(axis.label);
   // The scene may have changed since the user typed the range, and refuse it now.
-  if (typed != view.map_ranges.end() && refusal(scene, axis, typed->second).empty()) {
-    axis.scale = typed->second;
+  if (typed && refusal(scene, axis, *typed).empty()) {
+    axis.scale = *typed;
   } else if (axis.name == "wavelength") {
     axis.scale = known_part(scene, axis);
   }
@@ -52,8 +58,18 @@ MapAxis axis_or_another(const Scene& scene, const View& view, const std::string&
 
 }  // namespace
 
+std::optional<Scale> View::range(const std::string& axis) const {
+  const auto found = ranges.find(axis);
+  return found == ranges.end() ? std::nullopt : std::optional(found->second);
+}
+
+void View::set_range(const std::string& axis, const std::optional<Scale>& range) {
+  ranges.erase(axis);
+  if (range) ranges.emplace(axis, *range);
+}
+
 Session::Session(SceneEdits edits)
-    : edits_(std::move(edits)),
+    : state_{.edits = std::move(edits)},
       curve_(scene()),
       map_(scene()),
       spectral_scene_(scene()),
@@ -65,13 +81,13 @@ Session::Session(SceneEdits edits)
 
 void Session::attempt(const std::function<void()>& command) {
   message_ = {};
-  const SceneEdits before = edits_;
+  const SceneEdits before = state_.edits;
   try {
     command();
   } catch (const InputError& error) {
     tell(error.what(), true);
   }
-  if (!edits_.is_same_scene(before)) {
+  if (!state_.edits.is_same_scene(before)) {
     if (!is_in_gesture_) done_.push_back(before);
     undone_.clear();
     is_in_gesture_ = true;
@@ -106,32 +122,28 @@ void Session::step(std::vector<SceneEdits>& from, std::vector<SceneEdits>& to, c
   message_ = {};
   is_in_gesture_ = false;
   if (from.empty()) return tell(nothing);
-  to.push_back(edits_);
-  edits_.go_to(from.back());
+  to.push_back(state_.edits);
+  state_.edits.go_to(from.back());
   from.pop_back();
   follow();
 }
 
 void Session::take_snapshot() {
-  snapshots_.push_back({fmt::format("{}: {}", snapshots_.size() + 1, surface_name(scene())), edits_});
+  state_.snapshots.push_back({fmt::format("{}: {}", state_.snapshots.size() + 1, surface_name(scene())), state_.edits});
 }
 
 void Session::set(const std::vector<Setting>& changes) {
   attempt([&] {
-    const std::vector<Setting> needed = needed_with(scene(), changes);
-    std::vector<Setting> all = changes;
-    all.insert(all.end(), needed.begin(), needed.end());
-    edits_.set(all);
-    tell_needed(text_of(changes), needed);
+    const auto set = [&](SceneEdits& edits) { edits.set(changes); };
+    const auto is_moved = [&](const Setting& change) { return moves_number(scene(), change); };
+    if (std::ranges::all_of(changes, is_moved)) return set(state_.edits);
+    tell_needed(text_of(changes), change_with_needed(state_.edits, set));
   });
 }
 
 void Session::reset(const std::string& key) {
   attempt([&] {
-    const std::vector<Setting> needed = needed_with(scene(), choices_of(edits_.opened(), key));
-    edits_.set(needed);
-    edits_.reset(key);
-    tell_needed(key + " = as opened", needed);
+    tell_needed(key + " = as opened", change_with_needed(state_.edits, [&](SceneEdits& edits) { edits.reset(key); }));
   });
 }
 
@@ -142,17 +154,9 @@ void Session::load_measured(const std::string& path) {
   });
 }
 
-void Session::mark(const std::string& key, bool varies) {
-  if (varies) {
-    marked_.try_emplace(key);
-  } else {
-    marked_.erase(key);
-  }
-}
-
 std::string Session::set_fit_range(const std::string& key, const std::string& low, const std::string& high) {
   try {
-    marked_[key] = FitRange::from_text(fmt::format("{}={}:{}", key, low, high));
+    state_.marked[key] = FitRange::from_text(fmt::format("{}={}:{}", key, low, high));
     return "";
   } catch (const InputError& error) {
     return error.what();
@@ -161,10 +165,10 @@ std::string Session::set_fit_range(const std::string& key, const std::string& lo
 
 std::optional<FitJob> Session::fit_job() const {
   if (!residuals_.data()) return std::nullopt;
-  FitJob job{edits_, *residuals_.data(), {}};
-  for (const Parameter& parameter : parameters()) {
-    const std::optional<double> value = parameter.value(scene());
-    if (value && varies(parameter.key->key)) job.vary.push_back(fit_range(marked_, scene(), parameter, *value));
+  FitJob job{state_.edits, *residuals_.data(), {}};
+  for (const Control& control : controls()) {
+    const std::optional<double> value = control.value(scene());
+    if (value && varies(control.key->key)) job.vary.push_back(fit_range(state_.marked, scene(), control, *value));
   }
   return job.vary.empty() ? std::nullopt : std::optional(std::move(job));
 }
@@ -173,7 +177,7 @@ std::size_t Session::take_fit(Fit fit, const FitJob& job) {
   const std::size_t nearest = nearest_minimum(fit, job);
   fit_ = std::move(fit);
   fit_edits_ = job.edits;
-  view_.panel = Panel::kFit;
+  state_.view.panel = Panel::kFit;
   visit_minimum(nearest);
   return nearest;
 }
@@ -186,14 +190,10 @@ void Session::visit_minimum(std::size_t position) {
   attempt([&] {
     SceneEdits visited = *fit_edits_;
     visited.set(values);
-    edits_.go_to(visited);
+    state_.edits.go_to(visited);
     minimum_ = position;
-    visited_ = edits_;
+    visited_ = state_.edits;
   });
-}
-
-std::optional<std::size_t> Session::minimum() const {
-  return fit_ && visited_->is_same_scene(edits_) ? std::optional(minimum_) : std::nullopt;
 }
 
 const FitParameter* Session::fitted(const std::string& key) const {
@@ -202,46 +202,43 @@ const FitParameter* Session::fitted(const std::string& key) const {
   return found == fit_->parameters.end() ? nullptr : &*found;
 }
 
-void Session::restore(const SavedSession& saved) {
+void Session::restore(const SessionState& saved, const std::optional<MeasuredData>& measured) {
   go_to(saved.edits);
-  snapshots_ = saved.snapshots;
-  marked_ = saved.marked;
   residuals_.clear();
-  if (saved.measured) attempt([&] { residuals_.load(*saved.measured); });
-  pins_.clear();
-  view_ = saved.view;
-  for (const SavedSession::SavedPin& pin : saved.pins) {
-    Curve curve(pin.scene);
-    curve.follow(content_key(pin.scene, pin.scene.settings(), keeps_all()), pin.scene, keeps_all());
-    pins_.push_back({pin.name, pin.colour, pin.is_visible, std::move(curve)});
+  if (measured) attempt([&] { residuals_.load(*measured); });
+  const SceneEdits edits = state_.edits;
+  state_ = saved;
+  state_.edits = edits;
+  for (Pin& pin : state_.pins) {
+    const Scene scene = pin.curve.scene();
+    pin.curve.follow(content_key(scene, scene.settings(), keeps_all()), scene, keeps_all());
   }
-  theta_deg_ = saved.theta_deg;
   set_view(saved.view);
 }
 
 void Session::pin() {
-  if (pins_.size() == kMostPins)
+  if (state_.pins.size() == kMostPins)
     return tell(fmt::format("{} curves are pinned already: remove one first", kMostPins), true);
   std::size_t colour = 0;
-  while (std::ranges::any_of(pins_, [&](const Pin& pin) { return pin.colour == colour; })) ++colour;
-  pins_.push_back({.colour = colour, .curve = curve_});
+  while (std::ranges::any_of(state_.pins, [&](const Pin& pin) { return pin.colour == colour; })) ++colour;
+  state_.pins.push_back({.colour = colour, .curve = curve_});
   is_changed_ = true;
 }
 
 void Session::set_view(const View& view) {
-  const View before = std::exchange(view_, view);
+  const View before = std::exchange(state_.view, view);
   if (view.quantity != before.quantity || view.is_log != before.is_log) {
-    view_.curve_zoom.y.reset();
-    view_.map_colours.reset();
+    state_.view.ranges.erase(View::kValues);
+    state_.view.ranges.erase(View::kColours);
   }
-  if (view.is_theta_log != before.is_theta_log) view_.curve_zoom.x.reset();
-  if (view_.map_x == view_.map_y) view_.map_y = view_.map_x == "sigma" ? "theta" : "sigma";
-  view_.theta_max_deg = std::clamp(view_.theta_max_deg, kLeastThetaMaxDeg, 90.0);
-  set_theta(theta_deg_);
+  if (view.is_theta_log != before.is_theta_log) state_.view.ranges.erase(View::kZeniths);
+  if (state_.view.map_x == state_.view.map_y) state_.view.map_y = state_.view.map_x == "sigma" ? "theta" : "sigma";
+  state_.view.theta_max_deg = std::clamp(state_.view.theta_max_deg, kLeastThetaMaxDeg, 90.0);
+  set_theta(state_.theta_deg);
 }
 
 void Session::set_theta(double theta_deg) {
-  theta_deg_ = std::clamp(theta_deg, 0.0, view_.theta_max_deg);
+  state_.theta_deg = std::clamp(theta_deg, 0.0, state_.view.theta_max_deg);
   follow();
 }
 
@@ -249,7 +246,7 @@ void Session::set_map_cursor(double x, double y) {
   std::vector<Setting> changes;
   for (const auto& [axis, position] : {std::pair{&map_.x(), x}, {&map_.y(), y}}) {
     if (axis->key.empty()) {
-      theta_deg_ = axis->scale.value(position);
+      state_.theta_deg = axis->scale.value(position);
     } else {
       changes.push_back({axis->key, axis->scale.rounded(position)});
     }
@@ -257,15 +254,10 @@ void Session::set_map_cursor(double x, double y) {
   set(changes);
 }
 
-double Session::map_cursor(const MapAxis& axis) const {
-  const double value = axis.key.empty() ? theta_deg_ : scene().number(axis.key).value_or(axis.scale.from);
-  return axis.scale.position(axis.scale.clamp(value));
-}
-
 const Point* Session::at_cursor() const {
   const std::vector<Point>& points = curve_.points();
   if (points.empty()) return nullptr;
-  const auto distance = [&](const Point& point) { return std::abs(point.theta_deg - theta_deg_); };
+  const auto distance = [&](const Point& point) { return std::abs(point.theta_deg - state_.theta_deg); };
   return &*std::ranges::min_element(points, {}, distance);
 }
 
@@ -278,14 +270,15 @@ std::string content_key(const Scene& scene, const std::vector<Setting>& changes,
 }
 
 void Session::follow() {
-  const std::string content = content_key(scene(), edits_.changes(), keeps_all());
+  const std::string content = content_key(scene(), state_.edits.changes(), keeps_all());
   curve_.follow(content, scene(), keeps_all());
   residuals_.follow(content, scene());
   follow_overlay(content);
   follow_map();
   follow_sweeps(content);
-  if (view_.panel == Panel::kSky && is_bistatic(scene()))
-    source_sky_.follow(content_key(scene(), edits_.changes_without({"geometry.relative_azimuth_deg"}), false), scene());
+  if (shows(Panel::kSky) && is_bistatic(scene()))
+    source_sky_.follow(content_key(scene(), state_.edits.changes_without({"geometry.relative_azimuth_deg"}), false),
+                       scene());
   estimate_influences();
   follow_peak();
   is_changed_ = true;
@@ -294,59 +287,56 @@ void Session::follow() {
 void Session::estimate_influences() {
   const JobPart& curve = curve_.finished();
   // The estimate takes as long as a coarse curve. During a drag neither curve nor zenith changes.
-  std::pair<std::string, double> wanted{curve.key, theta_deg_};
+  std::pair<std::string, double> wanted{curve.key, state_.theta_deg};
   if (influences_of_ == wanted) return;
   influences_of_ = std::move(wanted);
   effects_ = curve.effects;
   if (effects_.empty()) return;
   const std::vector<Effect> at_cursor =
-      dolp::effects(curve.scene, points_at(curve.scene, {theta_deg_}).columns(), true);
+      dolp::effects(curve.scene, points_at(curve.scene, {state_.theta_deg}).columns(), true);
   for (std::size_t i = 0; i < effects_.size(); ++i) {
     if (effects_[i].state == EffectState::kKept) effects_[i].influence = at_cursor[i].influence;
   }
 }
 
 void Session::follow_overlay(const std::string& content) {
-  if (!view_.has_overlay) return overlay_.reset();
-  try {
-    const Scene other = scene().with(other_distribution(scene()));
-    if (!overlay_) overlay_.emplace(other, "overlay");
-    overlay_->follow(content, other, keeps_all());
-  } catch (const InputError&) {
-    overlay_.reset();  // the sigma or q of the overlay is outside the model
-  }
+  const std::optional<Scene> other = state_.view.has_overlay ? with_other_distribution(scene()) : std::nullopt;
+  if (!other) return overlay_.reset();
+  if (!overlay_) overlay_.emplace(*other, "overlay");
+  overlay_->follow(content, *other, keeps_all());
 }
 
 void Session::follow_map() {
   if (is_dragged() && map_.is_arriving()) return;  // during a drag only complete maps are shown
-  const MapAxis x = axis_or_another(scene(), view_, view_.map_x, view_.map_y);
-  const MapAxis y = axis_or_another(scene(), view_, view_.map_y, x.name);
-  std::string key = content_key(scene(), edits_.changes_without({x.key, y.key}), keeps_all());
-  if (!x.key.empty() && !y.key.empty()) key += "\ntheta=" + format_number(theta_deg_);
+  const MapAxis x = axis_or_another(scene(), state_.view, state_.view.map_x, state_.view.map_y);
+  const MapAxis y = axis_or_another(scene(), state_.view, state_.view.map_y, x.name);
+  std::string key = content_key(scene(), state_.edits.changes_without({x.key, y.key}), keeps_all());
+  if (!x.key.empty() && !y.key.empty()) key += "\ntheta=" + format_number(state_.theta_deg);
   for (const MapAxis& axis : {x, y})
     key += fmt::format("\n{} {} {} {}", axis.label, axis.scale.from, axis.scale.to, axis.scale.is_log);
-  map_.follow(key, scene(), keeps_all(), x, y, theta_deg_);
+  map_.follow(key, scene(), keeps_all(), x, y, state_.theta_deg);
 }
 
 void Session::follow_sweeps(const std::string& content) {
   constexpr std::size_t kSpectrum = 121;
   constexpr std::size_t kSmooth = 901;  // enough for the fringes of films; the values are closed forms
   constexpr double kWidth = 2.0;        // the axis goes from half to twice the wavelength of the opened scene
-  const bool is_spectrum = view_.panel == Panel::kSpectrum;
-  if (!is_spectrum && view_.panel != Panel::kSmooth) return;
+  const bool is_spectrum = shows(Panel::kSpectrum);
+  if (!is_spectrum && !shows(Panel::kSmooth)) return;
   spectral_scene_ = at_one_wavelength(scene());
-  const auto [from_um, to_um] = spectrum_um(edits_.opened());
-  wavelengths_ = {"wavelength", parameter(kWavelength).label(), kWavelength, {from_um / kWidth, to_um * kWidth}};
+  const auto [from_um, to_um] = spectrum_um(state_.edits.opened());
+  wavelengths_ = {
+      "wavelength", control(kWavelength).label_with_unit(), kWavelength, {from_um / kWidth, to_um * kWidth}};
   wavelengths_.scale = wavelengths_.scale.including(spectral_scene_.number(kWavelength).value());
-  const bool has_range = find_range(spectral_scene_, view_, wavelengths_);
-  const auto follow_wavelengths = [&](Sweep& sweep, const Scene& one, std::size_t count, bool keep_all) {
+  const bool has_range = find_range(spectral_scene_, state_.view, wavelengths_);
+  const auto follow_wavelengths = [&](Sweep& sweep, const Scene& swept, std::size_t count, bool keep_all) {
     if (!has_range) return;
-    PointList list = points_at(one, std::vector<double>(count, theta_deg_));
+    PointList list = points_at(swept, std::vector<double>(count, state_.theta_deg));
     const Scale& range = wavelengths_.scale;
     list["wavelength_um"] = range.values(count);
     const std::string key = fmt::format("{} wavelengths from {} to {}, {} at {}\n{}", count, range.from, range.to,
-                                        range.is_log, theta_deg_, content);
-    sweep.follow({.key = key, .scene = one, .parts = {list}, .keep_all = keep_all}, "wavelength_um");
+                                        range.is_log, state_.theta_deg, content);
+    sweep.follow({.key = key, .scene = swept, .parts = {list}, .keep_all = keep_all}, "wavelength_um");
   };
   if (is_spectrum) return follow_wavelengths(spectrum_, spectral_scene_, kSpectrum, keeps_all());
   const Scene smooth = smooth_scene(scene());
@@ -357,22 +347,19 @@ void Session::follow_sweeps(const std::string& content) {
   follow_wavelengths(smooth_spectrum_, smooth_scene(spectral_scene_), kSmooth, true);
 }
 
-void Session::follow_peak() {
-  if (curve_.is_finished()) peak_.follow(curve_, edits_, view_.theta_max_deg);
-}
-
 std::vector<Job> Session::wanted_in_drag() const {
   JobList list;
   const auto add_other = [&](bool is_map) {
-    if (is_map && shows_map() && !map_.is_coarse_done()) list.add(map_.wanted(0));
-    if (is_map && view_.panel == Panel::kSky) list.add(source_sky_.wanted());
+    if (is_map && shows(Panel::kMap) && !map_.is_coarse_done()) list.add(map_.wanted(0));
+    if (is_map && shows(Panel::kSky)) list.add(source_sky_.wanted());
     if (!is_map && overlay_) list.add(overlay_->wanted(Curve::Stage::kCoarse));
   };
   if (!is_curve_next_) add_other(is_map_next_);
   list.add(curve_.wanted(Curve::Stage::kCoarse));
   if (is_curve_next_) add_other(is_map_next_);
-  if (view_.panel == Panel::kSmooth) list.add(smooth_.wanted());
-  if (view_.panel == Panel::kSmooth) list.add(smooth_spectrum_.wanted());
+  for (const Sweep* sweep : {&smooth_, &smooth_spectrum_}) {
+    if (shows(Panel::kSmooth)) list.add(sweep->wanted());
+  }
   add_other(!is_map_next_);
   return list.jobs;
 }
@@ -383,15 +370,17 @@ std::vector<Job> Session::wanted() const {
   list.add(curve_.wanted(Curve::Stage::kCoarse));
   list.add(curve_.wanted(Curve::Stage::kFine));
   if (overlay_) list.add(overlay_->wanted(Curve::Stage::kFine));
-  if (shows_map()) list.add(map_.wanted(0));
-  if (view_.panel == Panel::kSmooth) list.add(smooth_.wanted());
-  if (view_.panel == Panel::kSmooth) list.add(smooth_spectrum_.wanted());
-  if (view_.panel == Panel::kSpectrum) list.add(spectrum_.wanted());
+  if (shows(Panel::kMap)) list.add(map_.wanted(0));
+  for (const Sweep* sweep : {&smooth_, &smooth_spectrum_}) {
+    if (shows(Panel::kSmooth)) list.add(sweep->wanted());
+  }
+  if (shows(Panel::kSpectrum)) list.add(spectrum_.wanted());
   list.add(peak_.wanted());
   list.add(residuals_.wanted());
-  for (const Pin& pin : pins_) list.add(pin.curve.wanted(Curve::Stage::kFine));
-  if (view_.panel == Panel::kSky) list.add(source_sky_.wanted());
-  for (std::size_t level = 1; shows_map() && level < HeatMap::kLevels.size(); ++level) list.add(map_.wanted(level));
+  for (const Pin& pin : state_.pins) list.add(pin.curve.wanted(Curve::Stage::kFine));
+  if (shows(Panel::kSky)) list.add(source_sky_.wanted());
+  for (std::size_t level = 1; shows(Panel::kMap) && level < HeatMap::kLevels.size(); ++level)
+    list.add(map_.wanted(level));
   return list.jobs;
 }
 
@@ -399,7 +388,7 @@ void Session::take(const std::vector<JobPart>& news) {
   for (const JobPart& part : news) {
     const bool is_curve = curve_.take(part) || curve_.take_earlier(part);
     if (overlay_ && !overlay_->take(part)) overlay_->take_earlier(part);
-    for (Pin& pin : pins_) pin.curve.take(part);
+    for (Pin& pin : state_.pins) pin.curve.take(part);
     const bool is_map = map_.take(part);
     is_curve_next_ = !is_curve;
     if (!is_curve) is_map_next_ = !is_map;
@@ -407,7 +396,7 @@ void Session::take(const std::vector<JobPart>& news) {
     source_sky_.take(part);
     for (Sweep* sweep : {&spectrum_, &smooth_, &smooth_spectrum_}) sweep->take(part);
     if (peak_.take(part) && peak_.answer()) {
-      for (Pin& pin : pins_) {
+      for (Pin& pin : state_.pins) {
         if (pin.curve.key() == curve_.key()) pin.curve.set_peak(peak_.answer()->at);
       }
       curve_.set_peak(peak_.answer()->at);

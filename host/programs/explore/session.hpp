@@ -29,13 +29,18 @@ struct View {
   double theta_max_deg = 90.0;  ///< end of the plots and of the search for the maximum
   std::string map_x = "theta";  ///< name of an axis; if the scene lacks it, the map has another one
   std::string map_y = "sigma";
-  Zoom curve_zoom = {};
-  std::map<std::string, Scale> map_ranges = {};  ///< ranges that the user typed, by the label of the axis
-  std::optional<Scale> map_colours = {};         ///< values for the first and the last colour that the user typed
+  /// Ranges that the user chose, by the label of a map axis or by one of the names below. Other axes are automatic.
+  std::map<std::string, Scale> ranges = {};
   Panel panel = Panel::kMap;
   std::size_t mueller_row = 0;  ///< position of the element that the view of the pBRDF shows
   std::size_t mueller_column = 0;
 
+  static constexpr const char* kZeniths = "curve zenith";
+  static constexpr const char* kValues = "curve values";
+  static constexpr const char* kColours = "map colours";  ///< values for the first and the last colour
+
+  std::optional<Scale> range(const std::string& axis) const;
+  void set_range(const std::string& axis, const std::optional<Scale>& range);
   friend bool operator==(const View&, const View&) = default;
 };
 
@@ -51,20 +56,13 @@ struct Message {
   bool is_error = false;
 };
 
-/// The content of a session file.
-struct SavedSession {
-  struct SavedPin {
-    std::string name;
-    std::size_t colour;
-    bool is_visible;
-    Scene scene;
-  };
+/// What a session file keeps, besides measured points.
+struct SessionState {
   SceneEdits edits;
-  std::vector<SavedPin> pins = {};
+  std::deque<Pin> pins = {};
   std::vector<Snapshot> snapshots = {};
   View view = {};
-  double theta_deg = 60.0;
-  std::optional<MeasuredData> measured = {};
+  double theta_deg = 60.0;  ///< zenith of the cursor
   FitMarks marked = {};
 };
 
@@ -82,27 +80,27 @@ class Session {
   void set(const std::vector<Setting>& changes);
   void reset(const std::string& key);
   void reset_all() {
-    attempt([&] { edits_.reset_all(); });
+    attempt([&] { state_.edits.reset_all(); });
   }
   /// Shows another state or another scene. `undo` goes back.
   void go_to(const SceneEdits& edits) {
-    attempt([&] { edits_.go_to(edits); });
+    attempt([&] { state_.edits.go_to(edits); });
   }
-  /// Replaces everything except the states that `undo` goes back to.
-  void restore(const SavedSession& saved);
+  /// Replaces everything except the states that `undo` goes back to. The curves of the pins need not be computed.
+  void restore(const SessionState& saved, const std::optional<MeasuredData>& measured);
   void undo() { step(done_, undone_, "nothing to undo"); }
   void redo() { step(undone_, done_, "nothing to redo"); }
   void take_snapshot();
   /// While the mouse button is down, all changes form one step of `undo` and only coarse results are computed.
   void hold(bool is_held);
-  void note_saved() { edits_.note_saved(); }
+  void note_saved() { state_.edits.note_saved(); }
   void pin();
   /// Changes the view. A new quantity or a new scale of its axis removes typed ranges of values; a new scale of the
   /// zenith removes typed ranges of zeniths.
   void set_view(const View& view);
   template <class T>
   void set_view(T View::*part, const std::type_identity_t<T>& value) {
-    View view = view_;
+    View view = state_.view;
     view.*part = value;
     set_view(view);
   }
@@ -112,7 +110,13 @@ class Session {
   void load_measured(const std::string& path);
   void clear_measured() { residuals_.clear(); }
   /// Selects whether a number varies in fits.
-  void mark(const std::string& key, bool varies);
+  void mark(const std::string& key, bool varies) {
+    if (varies) {
+      state_.marked.try_emplace(key);
+    } else {
+      state_.marked.erase(key);
+    }
+  }
   /// Lets a number vary in fits over a typed range. Returns the reason if the range is refused, otherwise nothing.
   std::string set_fit_range(const std::string& key, const std::string& low, const std::string& high);
   /// Shows a fit, and moves the parameters to the minimum that is nearest to the job's start. Returns its position.
@@ -129,16 +133,16 @@ class Session {
   void take(const std::vector<JobPart>& news);
 
   // ---- State.
-  const SceneEdits& edits() const { return edits_; }
-  const Scene& scene() const { return edits_.scene(); }
-  const View& view() const { return view_; }
-  double theta_deg() const { return theta_deg_; }
+  const SceneEdits& edits() const { return state_.edits; }
+  const Scene& scene() const { return state_.edits.scene(); }
+  const View& view() const { return state_.view; }
+  double theta_deg() const { return state_.theta_deg; }
   const Curve& curve() const { return curve_; }
   const std::optional<Curve>& overlay() const { return overlay_; }
-  std::deque<Pin>& pins() { return pins_; }
-  const std::deque<Pin>& pins() const { return pins_; }
-  std::vector<Snapshot>& snapshots() { return snapshots_; }
-  const std::vector<Snapshot>& snapshots() const { return snapshots_; }
+  std::deque<Pin>& pins() { return state_.pins; }
+  const std::deque<Pin>& pins() const { return state_.pins; }
+  std::vector<Snapshot>& snapshots() { return state_.snapshots; }
+  const std::vector<Snapshot>& snapshots() const { return state_.snapshots; }
   const HeatMap& map() const { return map_; }
   const SourceSky& source_sky() const { return source_sky_; }
   /// The scene at one wavelength, and its axis of wavelengths. The axis has no range if only one wavelength is known.
@@ -153,19 +157,21 @@ class Session {
   const Residuals& residuals() const { return residuals_; }
   /// True if a scene comes from another file.
   bool is_foreign(const Scene& other) const { return other.name() != scene().name() || other.text() != scene().text(); }
-  const FitMarks& marked() const { return marked_; }
-  bool varies(const std::string& key) const { return marked_.contains(key); }
+  const FitMarks& marked() const { return state_.marked; }
+  bool varies(const std::string& key) const { return state_.marked.contains(key); }
   /// The files of skies that the window edits.
   SkyFiles& skies() { return skies_; }
   const SkyFiles& skies() const { return skies_; }
   /// True if the scene names a sky of the window.
-  bool has_own_sky() const { return skies_.hold(sky_file(scene())); }
+  bool has_unsaved_sky() const { return skies_.hold(sky_file(scene())); }
   /// The fit of the marked parameters to the measured points. Empty without points, or if the scene has no marked
   /// parameter.
   std::optional<FitJob> fit_job() const;
   const std::optional<Fit>& last_fit() const { return fit_; }
   /// The minimum of the last fit that the scene shows; empty after the scene has changed.
-  std::optional<std::size_t> minimum() const;
+  std::optional<std::size_t> minimum() const {
+    return fit_ && visited_->is_same_scene(state_.edits) ? std::optional(minimum_) : std::nullopt;
+  }
   /// The result of the last fit for a number; null after the scene has changed.
   const FitParameter* fitted(const std::string& key) const;
   const Message& message() const { return message_; }
@@ -176,7 +182,10 @@ class Session {
   /// The effects of the last finished curve. For kept effects the influence is the one at the cursor's zenith.
   const std::vector<Effect>& effects() const { return effects_; }
   /// The position of the scene's value on an axis of the map.
-  double map_cursor(const MapAxis& axis) const;
+  double map_cursor(const MapAxis& axis) const {
+    const double value = axis.key.empty() ? state_.theta_deg : scene().number(axis.key).value_or(axis.scale.from);
+    return axis.scale.position(axis.scale.clamp(value));
+  }
   /// The point on display whose zenith is nearest to the cursor; null without points.
   const Point* at_cursor() const;
 
@@ -184,7 +193,7 @@ class Session {
   /// Runs a command, which may throw InputError, and records its changes.
   void attempt(const std::function<void()>& command);
   void step(std::vector<SceneEdits>& from, std::vector<SceneEdits>& to, const char* nothing);
-  bool keeps_all() const { return view_.keeps_all || described(view_.quantity).needs_rho; }
+  bool keeps_all() const { return state_.view.keeps_all || described(state_.view.quantity).needs_rho; }
   void tell_remarks(const std::vector<std::string>& remarks);
   void tell_new_remarks_on_scene();
   void tell_needed(const std::string& chosen, const std::vector<Setting>& needed);
@@ -192,23 +201,21 @@ class Session {
   void follow();
   void follow_overlay(const std::string& content);
   void follow_map();
-  void follow_peak();
+  void follow_peak() {
+    if (curve_.is_finished()) peak_.follow(curve_, state_.edits, state_.view.theta_max_deg);
+  }
   std::vector<Job> wanted_in_drag() const;
   void follow_sweeps(const std::string& content);
-  bool shows_map() const { return view_.panel == Panel::kMap; }
+  bool shows(Panel panel) const { return state_.view.panel == panel; }
   void estimate_influences();
 
   SkyFiles skies_;
-  SceneEdits edits_;
+  SessionState state_;
   std::vector<SceneEdits> done_, undone_;  ///< states before each gesture; states after each undone gesture
-  std::vector<Snapshot> snapshots_;
   bool is_held_ = false;
   bool is_in_gesture_ = false;
-  View view_;
-  double theta_deg_ = 60.0;
   Curve curve_;
   std::optional<Curve> overlay_;
-  std::deque<Pin> pins_;
   HeatMap map_;
   SourceSky source_sky_;
   Scene spectral_scene_;
@@ -216,7 +223,6 @@ class Session {
   Sweep spectrum_, smooth_, smooth_spectrum_;
   Peak peak_;
   Residuals residuals_;
-  FitMarks marked_;
   std::optional<Fit> fit_;
   std::optional<SceneEdits> fit_edits_;  ///< the scene that was fitted
   std::optional<SceneEdits> visited_;    ///< the fitted scene at the minimum that the user visited

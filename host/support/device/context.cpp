@@ -74,7 +74,7 @@ std::vector<std::string> ValidationLog::messages() const {
   return messages_;
 }
 
-Instance::Instance(ValidationLog* log, const std::vector<const char*>& extensions) {
+Instance::Instance(ValidationLog* log) {
   if (log && !has_validation_layer()) {
     throw DeviceError(std::string("validation is wanted, but the layer ") + kValidationLayer +
                       " is not installed (on Debian, vulkan-validationlayers)");
@@ -88,12 +88,10 @@ Instance::Instance(ValidationLog* log, const std::vector<const char*>& extension
                                          .pNext = &messenger,
                                          .enabledValidationFeatureCount = 1,
                                          .pEnabledValidationFeatures = &synchronization};
-  std::vector<const char*> enabled = extensions;
-  if (log) enabled.insert(enabled.end(), kValidationExtensions.begin(), kValidationExtensions.end());
   VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, .pApplicationInfo = &application};
-  info.enabledExtensionCount = static_cast<std::uint32_t>(enabled.size());
-  info.ppEnabledExtensionNames = enabled.data();
   if (log) {
+    info.enabledExtensionCount = static_cast<std::uint32_t>(kValidationExtensions.size());
+    info.ppEnabledExtensionNames = kValidationExtensions.data();
     info.pNext = &features;
     info.enabledLayerCount = 1;
     info.ppEnabledLayerNames = &kValidationLayer;
@@ -133,30 +131,14 @@ std::vector<VkPhysicalDevice> Instance::physical_devices() const {
   return devices;
 }
 
-Context::Context(const DeviceSelector& wish, const Presentation* presentation) {
-  const std::vector<const char*> extensions =
-      presentation ? presentation->instance_extensions : std::vector<const char*>{};
-  instance_ = std::make_unique<Instance>(wants_validation(wish.validation) ? &log_ : nullptr, extensions);
-  choose(wish, presentation);
-  const std::optional<std::uint32_t> window_family =
-      presentation ? presenting_family(instance(), physical_, *presentation) : std::nullopt;
-  device_ = std::make_unique<Device>(physical_, description_.has_double, window_family);
-}
-
-void Context::choose(const DeviceSelector& wish, const Presentation* presentation) {
+Context::Context(const DeviceSelector& wish)
+    : instance_(std::make_unique<Instance>(wants_validation(wish.validation) ? &log_ : nullptr)) {
   const std::vector<VkPhysicalDevice> physical = instance_->physical_devices();
   std::vector<dolp::Device> descriptions;
-  for (VkPhysicalDevice device : physical) {
-    dolp::Device description = describe(device);
-    if (description.usable && presentation && !presenting_family(instance(), device, *presentation)) {
-      description.usable = false;
-      description.why_not = "cannot show a window on this display";
-    }
-    descriptions.push_back(description);
-  }
+  for (VkPhysicalDevice device : physical) descriptions.push_back(describe(device));
   const std::size_t index = choose_device(descriptions, wish.device, wish.needs_double);
-  physical_ = physical[index];
   description_ = descriptions[index];
+  device_ = std::make_unique<Device>(physical[index], description_.has_double);
 }
 
 void Context::check_validation() const {

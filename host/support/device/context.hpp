@@ -29,9 +29,9 @@ class ValidationLog {
 class Instance {
  public:
   /// Without `log` there is no validation. With `log` the Khronos layer reports to it, with checks of synchronization,
-  /// until the instance is destroyed. `extensions` are the ones that a window needs.
+  /// until the instance is destroyed.
   /// Errors: DeviceError without a Vulkan driver, or if the validation layer is requested but not installed.
-  explicit Instance(ValidationLog* log, const std::vector<const char*>& extensions = {});
+  explicit Instance(ValidationLog* log);
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;
   ~Instance();
@@ -48,25 +48,16 @@ class Instance {
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
 };
 
-/// Requirements of a window on instance and device.
-struct Presentation {
-  std::vector<const char*> instance_extensions;
-  /// True if a queue family of a device can show images on the display.
-  std::function<bool(VkInstance, VkPhysicalDevice, std::uint32_t family)> can_present;
-};
-
-/// A device of an instance, chosen by `wish`. With `presentation` it can show a window.
+/// A device of an instance, chosen by `wish`.
 class Context {
  public:
   /// Errors: DeviceError if no usable device matches, if double precision is needed and missing, or if the validation
   /// layer is requested and missing.
-  explicit Context(const DeviceSelector& wish, const Presentation* presentation = nullptr);
+  explicit Context(const DeviceSelector& wish);
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
   const dolp::Device& description() const { return description_; }
-  VkInstance instance() const { return instance_->get(); }
-  VkPhysicalDevice physical_device() const { return physical_; }
   const Device& device() const { return *device_; }
 
   std::vector<std::string> validation_messages() const { return log_.messages(); }
@@ -74,11 +65,8 @@ class Context {
   void check_validation() const;
 
  private:
-  void choose(const DeviceSelector& wish, const Presentation* presentation);
-
   ValidationLog log_;
   std::unique_ptr<Instance> instance_;
-  VkPhysicalDevice physical_ = VK_NULL_HANDLE;
   dolp::Device description_;
   std::unique_ptr<Device> device_;
 };

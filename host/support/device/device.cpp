@@ -13,8 +13,6 @@
 namespace dolp::vulkan {
 namespace {
 
-constexpr const char* kSwapchainExtension = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
-
 struct QueueFamily {
   std::uint32_t index = 0;
   std::uint32_t timestamp_bits = 0;
@@ -113,22 +111,8 @@ dolp::Device describe(VkPhysicalDevice physical) {
   return description;
 }
 
-std::optional<std::uint32_t> presenting_family(VkInstance instance, VkPhysicalDevice physical,
-                                               const Presentation& presentation) {
-  constexpr VkQueueFlags kWanted = VK_QUEUE_COMPUTE_BIT | VK_QUEUE_GRAPHICS_BIT;
-  const std::vector<VkQueueFamilyProperties> families = queue_families(physical);
-  for (std::uint32_t i = 0; i < families.size(); ++i) {
-    const bool can_draw = (families[i].queueFlags & kWanted) == kWanted;
-    if (can_draw && presentation.can_present(instance, physical, i)) return i;
-  }
-  return std::nullopt;
-}
-
-Device::Device(VkPhysicalDevice physical, bool float64, std::optional<std::uint32_t> window_family) {
-  std::optional<QueueFamily> family = compute_family(physical);
-  if (window_family) {
-    family = QueueFamily{*window_family, queue_families(physical)[*window_family].timestampValidBits};
-  }
+Device::Device(VkPhysicalDevice physical, bool float64) {
+  const std::optional<QueueFamily> family = compute_family(physical);
   if (!family) throw DeviceError("the Vulkan device has no compute queue");
   queue_family_ = family->index;
   timestamp_bits_ = family->timestamp_bits;
@@ -148,8 +132,6 @@ Device::Device(VkPhysicalDevice physical, bool float64, std::optional<std::uint3
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                 .queueCreateInfoCount = 1,
                                 .pQueueCreateInfos = &queue,
-                                .enabledExtensionCount = window_family ? 1U : 0U,
-                                .ppEnabledExtensionNames = &kSwapchainExtension,
                                 .pEnabledFeatures = &features};
   check(vkCreateDevice(physical, &info, nullptr, &device_), "creating the device");
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);

@@ -32,18 +32,11 @@ struct MemoryType {
   VkMemoryPropertyFlags flags = 0;
 };
 
-struct Presentation;
-
-/// The first queue family that computes, draws and can show images on the display; null if there is none.
-std::optional<std::uint32_t> presenting_family(VkInstance instance, VkPhysicalDevice physical,
-                                               const Presentation& presentation);
-
-/// A logical device with one queue.
+/// A logical device with a queue that computes.
 class Device {
  public:
-  /// `float64` enables double precision in shaders, which the device must support. `window_family` is the family of a
-  /// queue that also draws and presents; without it, the queue only computes.
-  Device(VkPhysicalDevice physical, bool float64, std::optional<std::uint32_t> window_family = {});
+  /// `float64` enables double precision in shaders, which the device must support.
+  Device(VkPhysicalDevice physical, bool float64);
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
   ~Device();

@@ -58,9 +58,11 @@ void fill(Session& session, const std::string& measured) {
             .mueller_row = 1,
             .mueller_column = 3};
   session.set_view(view);  // this resets ranges
-  view.curve_zoom = {Scale{20.0, 70.0}, Scale{0.01, 0.4, true}};
-  view.map_ranges = {{"σ", {0.05, 0.5, true}}, {"θ [°]", {10.0, 60.0}}};
-  view.map_colours = Scale{0.0, 0.3};
+  view.ranges = {{View::kZeniths, {20.0, 70.0}},
+                 {View::kValues, {0.01, 0.4, true}},
+                 {View::kColours, {0.0, 0.3}},
+                 {"σ", {0.05, 0.5, true}},
+                 {"θ [°]", {10.0, 60.0}}};
   session.set_view(view);
   EXPECT_EQ(session.view(), view);
   session.set_theta(42.5);
@@ -116,7 +118,7 @@ TEST_F(ExploreFiles, Session_WithSkiesOfTheWindow_ReadsBackWhenTheWindowIsGone) 
     saved.take_snapshot();
     saved.set("surroundings.profile", saved.skies().path(kNoon));
     save_session(saved, at("all.toml"));
-    EXPECT_TRUE(saved.has_own_sky());
+    EXPECT_TRUE(saved.has_unsaved_sky());
   }
   Session opened(paint());
   open_file(opened, at("all.toml"));
@@ -143,7 +145,7 @@ TEST_F(ExploreFiles, BadFile_IsRefusedInOneLine_AndChangesNothing) {
   EXPECT_NE(refusal("missing.toml"), "");
 }
 
-TEST_F(ExploreFiles, BadPlaceInASession_IsNamed) {
+TEST_F(ExploreFiles, BadValueInASession_IsNamed) {
   put("points.csv", "theta_deg,dolp\n40,0.02\n");
   ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
   Session session(paint());
@@ -164,35 +166,13 @@ TEST_F(ExploreFiles, BadPlaceInASession_IsNamed) {
         {"'points.csv'", "'pipe'", "pipe: is not a regular file"},
         {"'points.csv'", "'gone.csv'", "gone.csv"}}) {
     std::string changed = text;
-    const std::size_t place = changed.find(from);
-    ASSERT_NE(place, std::string::npos) << from << " in\n" << text;
-    put("all.toml", changed.replace(place, std::string_view(from).size(), to));
+    const std::size_t position = changed.find(from);
+    ASSERT_NE(position, std::string::npos) << from << " in\n" << text;
+    put("all.toml", changed.replace(position, std::string_view(from).size(), to));
     const std::string line = refusal("all.toml");
     EXPECT_EQ(line.empty(), *part == '\0') << line;
     EXPECT_NE(line.find(part), std::string::npos) << line;
   }
-}
-
-TEST_F(ExploreFiles, AnotherScene_IsOpenedAsOne_AndUndone) {
-  put("other.toml", "title = \"Other\"\n" + kPaint.substr(kPaint.find('\n') + 1));
-  Driver driver(paint());
-  Session& session = driver.session;
-  session.set("surface.sigma", 0.3);
-  session.hold(false);
-  session.pin();
-  open_file(session, at("other.toml"));
-  driver.settle();
-  EXPECT_EQ(session.scene().title(), "Other");
-  EXPECT_FALSE(session.edits().is_changed());
-  EXPECT_EQ(session.scene().number("surface.sigma"), 0.15);
-  EXPECT_EQ(session.pins()[0].curve.scene().title(), "Paint");
-  expect_same(session.curve().points(), truth(session.scene(), session.curve().points()));
-  session.undo();
-  EXPECT_EQ(session.scene().title(), "Paint");
-  EXPECT_EQ(session.scene().number("surface.sigma"), 0.3);
-  EXPECT_TRUE(session.edits().is_changed());
-  session.redo();
-  EXPECT_EQ(session.scene().title(), "Other");
 }
 
 TEST(ExplorePlots, Json_HasTheVisibleCurvesAndTheMap) {
@@ -227,7 +207,7 @@ TEST(ExplorePlots, Json_HasTheVisibleCurvesAndTheMap) {
   driver.settle();
   const std::string name = json()["curves"][1]["name"];
   EXPECT_EQ(name, "T 290 K, n 1.5 k 0.1");
-  driver.session.set_view(&View::map_colours, Scale{0.01, 0.08});
+  driver.session.set_view(&View::ranges, {{View::kColours, {0.01, 0.08}}});
   EXPECT_EQ(json()["map"]["colours"]["to"], 8.0);
   driver.session.set_view({.panel = Panel::kSlopes});
   EXPECT_TRUE(json()["map"].is_null());

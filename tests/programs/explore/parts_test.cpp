@@ -2,11 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <condition_variable>
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <mutex>
 
 #include "base/text.hpp"
 #include "explore/scene_edits.hpp"
@@ -25,18 +24,42 @@ std::string sixteen_films() {
   return "surface.coating=[" + films + "]";
 }
 
-TEST(Parameters, EndsOfEverySlider_AreAccepted) {
-  for (const Parameter& p : parameters()) {
-    for (const double end : {p.slider.from, p.slider.to}) {
-      const std::string beside = p.key->key == "source.scale"       ? "source.irradiance=1"
-                                 : p.key->key == "surface.wind_m_s" ? "surface.distribution=gaussian"
-                                 : p.key->layer > 0                 ? sixteen_films()
-                                                                    : "title=paint";
-      const Scene scene = paint({beside, p.key->key + "=" + format_number(end)}).scene();
-      EXPECT_EQ(scene.number(p.key->key), end) << p.key->key;
-    }
-    EXPECT_TRUE(!p.slider.is_log || p.slider.from > 0.0) << p.key->key;
+/// A setting that a scene needs before it takes a key.
+std::string needed_by(const Key& key) {
+  for (const auto& [begin, setting] : {std::pair{"source.scale", "source.irradiance=1"},
+                                       {"surface.wind_m_s", "surface.distribution=gaussian"},
+                                       {"surroundings.vapour_cm", "surroundings.profile=clear-sky"},
+                                       {"surroundings.air_temperature_K", "surroundings.profile=overcast"}}) {
+    if (key.key == begin) return setting;
   }
+  return key.layer > 0 ? sixteen_films() : "title=paint";
+}
+
+TEST(Controls, EndsOfEverySlider_AreAccepted) {
+  for (const Control& control : controls()) {
+    if (!control.is_number()) continue;
+    const std::string& key = control.key->key;
+    for (const double end : {control.slider.from, control.slider.to}) {
+      const Scene scene = paint({needed_by(*control.key), key + "=" + format_number(end)}).scene();
+      EXPECT_EQ(scene.number(key), end) << key;
+      EXPECT_TRUE(control.value(scene) || !control.is_shown(scene)) << key;
+    }
+    EXPECT_TRUE(!control.slider.is_log || control.slider.from > 0.0) << key;
+  }
+}
+
+TEST(Controls, OfDiffuseLightAndOfTheAir_AreShownWhereTheSceneUsesThem) {
+  const Control &light = control("surface.diffuse_polarisation"), &water = control("surroundings.vapour_cm"),
+                &air = control("surroundings.air_temperature_K");
+  EXPECT_EQ(light.word(paint().scene()), 0U);
+  EXPECT_FALSE(light.word(paint({"surface.diffuse=0"}).scene()));
+  for (const char* sky : {"clear-sky", "overcast"}) {
+    const Scene scene = paint({std::string("surroundings.profile=") + sky}).scene();
+    EXPECT_EQ(water.value(scene), 1.27);
+    EXPECT_EQ(air.value(scene), 288.15);
+    EXPECT_EQ(water.value(scene.with("surroundings.vapour_cm", 0.3)), 0.3);
+  }
+  EXPECT_FALSE(water.value(paint().scene()) || air.value(paint().scene()));
 }
 
 using Changes = std::vector<Setting>;
@@ -111,31 +134,40 @@ const std::vector<EditCase> kEditCases = {
     {{}, {"surroundings.profile=clear-sky"}, {"surroundings.temperature_K=-", "surroundings.profile=clear-sky"}},
     {{"emission.bracket=true"}, {"surroundings.profile=overcast"}, {"emission.bracket=true"}},
     {{"surroundings.profile=overcast"}, {"surroundings.temperature_K=250"}, {"surroundings.profile=-"}},
+    {{"surroundings.profile=clear-sky", "surroundings.vapour_cm=0.3"},
+     {"surroundings.temperature_K=250"},
+     {"surroundings.temperature_K=250", "surroundings.vapour_cm=-"},
+     "also sets surroundings.vapour_cm = none"},
+    {{"surface.diffuse_polarisation=transmission"},
+     {"surface.coating=[{n=1.4,thickness_um=2}]"},
+     {"surface.coating.1.n=1.4", "surface.diffuse_polarisation=none"},
+     "also sets surface.diffuse_polarisation = none"},
+    {{"surface.masking=smith"}, {"surface.q=1.2"}, {"surface.q=3", "surface.masking=smith"}, "surface.q", true},
 };
 
 void take_step(Session& session, const std::string& step) {
   if (step == "reset") return session.reset_all();
   if (step.starts_with("reset ")) return session.reset(step.substr(6));
   Changes changes;
-  for (const std::string_view one : split(step, ';')) changes.push_back(Setting::from_text(std::string(one)));
+  for (const std::string_view setting : split(step, ';')) changes.push_back(Setting::from_text(std::string(setting)));
   session.set(changes);
 }
 
 TEST(Edits, EachKind_GivesTheValuesAndTheMessage) {
-  for (const EditCase& one : kEditCases) {
-    SCOPED_TRACE(one.steps.front());
-    Session session(paint(one.opened));
-    for (const std::string& step : one.steps) take_step(session, step);
-    for (const std::string& setting : one.expected) {
+  for (const EditCase& edit : kEditCases) {
+    SCOPED_TRACE(edit.steps.front());
+    Session session(paint(edit.opened));
+    for (const std::string& step : edit.steps) take_step(session, step);
+    for (const std::string& setting : edit.expected) {
       const std::string key = setting.substr(0, setting.find('='));
       EXPECT_EQ(key + '=' + value_of(session.scene(), key), setting);
     }
-    EXPECT_NE(session.message().text.find(one.message), std::string::npos) << session.message().text;
-    EXPECT_EQ(session.message().text.empty(), one.message.empty()) << session.message().text;
-    EXPECT_EQ(session.message().is_error, one.is_error);
+    EXPECT_NE(session.message().text.find(edit.message), std::string::npos) << session.message().text;
+    EXPECT_EQ(session.message().text.empty(), edit.message.empty()) << session.message().text;
+    EXPECT_EQ(session.message().is_error, edit.is_error);
     session.reset_all();
     EXPECT_FALSE(session.edits().is_changed());
-    EXPECT_EQ(session.scene().toml(), paint(one.opened).scene().toml());
+    EXPECT_EQ(session.scene().toml(), paint(edit.opened).scene().toml());
   }
 }
 
@@ -172,13 +204,20 @@ TEST(Conflicts, EveryChoiceInEveryScene_IsTakenWithTheLeastThatItNeeds) {
   for (const Changes& combination : combinations) {
     SceneEdits edits = paint();
     edits.set(combination);
-    for (const Choice& choice : choices()) {
+    for (const Control& choice : controls()) {
       for (const std::string& word : choice.key->words) {
         const Setting chosen = {choice.key->key, TomlText{word}};
-        Changes needed = needed_with(edits.scene(), {chosen});
+        SceneEdits changed = edits;
+        Changes needed = change_with_needed(changed, [&](SceneEdits& trial) { trial.set({chosen}); });
         EXPECT_EQ(needed.empty(), is_accepted(edits, {chosen})) << chosen.key << " = " << word;
+        EXPECT_EQ(changed.scene().word(chosen.key), word);
+        // Without any of them the choice is refused.
         needed.push_back(chosen);
-        EXPECT_TRUE(is_accepted(edits, needed)) << chosen.key << " = " << word;
+        for (std::size_t i = 0; i + 1 < needed.size(); ++i) {
+          Changes fewer = needed;
+          fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+          EXPECT_FALSE(is_accepted(edits, fewer)) << chosen.key << " = " << word;
+        }
       }
     }
   }
@@ -211,42 +250,27 @@ TEST(SceneToml, NamedFiles_AreFoundFromTheNewFolder) {
   EXPECT_EQ(again.refractive_index(10.0), scene.refractive_index(10.0));
 }
 
+constexpr auto kMoment = std::chrono::milliseconds(1);
+
 /// An evaluator whose calls wait until the test opens it.
-class SlowEvaluator {
- public:
+struct SlowEvaluator {
   Evaluate evaluate() {
     return [this](const Scene& scene, const PointList& list, const RunOptions& options) {
-      std::unique_lock lock(mutex_);
-      ++calls_;
-      changed_.notify_all();
-      while (!is_open_) {
-        changed_.wait_for(lock, std::chrono::milliseconds(1));
+      for (++calls; !is_open; std::this_thread::sleep_for(kMoment)) {
         if (options.progress(0, 1)) continue;
         ++cancelled;
-        changed_.notify_all();
         throw Cancelled("no file was written");
       }
-      return explore::evaluate(cpu_, scene, list, options);
+      return explore::evaluate(cpu, scene, list, options);
     };
   }
-  void open() {
-    const std::scoped_lock lock(mutex_);
-    is_open_ = true;
-    changed_.notify_all();
+  static void wait_for(const std::atomic<int>& count) {
+    while (count == 0) std::this_thread::sleep_for(kMoment);
   }
-  /// Waits until a call has begun or has been cancelled.
-  void wait_for(bool is_cancelled) {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return (is_cancelled ? cancelled : calls_) > 0; });
-  }
-  int cancelled = 0;
 
- private:
-  Evaluator cpu_{EvaluatorOptions{.evaluator = "cpu"}};
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  int calls_ = 0;
-  bool is_open_ = false;
+  Evaluator cpu{EvaluatorOptions{.evaluator = "cpu"}};
+  std::atomic<int> calls = 0, cancelled = 0;
+  std::atomic<bool> is_open = false;
 };
 
 Job job_of(const std::string& key) {
@@ -255,7 +279,7 @@ Job job_of(const std::string& key) {
 }
 
 std::vector<JobPart> finish(Worker& worker) {
-  while (!worker.is_idle()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  while (!worker.is_idle()) std::this_thread::sleep_for(kMoment);
   return worker.take_news();
 }
 
@@ -271,13 +295,13 @@ TEST(ExploreWorker, RunningJob_EndsWhenItIsNoLongerWantedUnlessItIsBrief) {
     Job first = job_of("first");
     first.is_brief = is_brief;
     worker.want({first});
-    evaluator.wait_for(false);
+    evaluator.wait_for(evaluator.calls);
     std::vector<Job> jobs;
     for (const std::string& key : next) jobs.push_back(job_of(key));
     worker.want(std::move(jobs));
-    if (cancelled > 0) evaluator.wait_for(true);
+    if (cancelled > 0) evaluator.wait_for(evaluator.cancelled);
     std::this_thread::sleep_for(std::chrono::milliseconds(20));  // time for a wrong cancellation
-    evaluator.open();
+    evaluator.is_open = true;
     std::vector<std::string> keys;
     for (const JobPart& part : finish(worker)) keys.push_back(part.key);
     EXPECT_EQ(keys, expected);
@@ -293,17 +317,17 @@ TEST(ExploreWorker, Parts_ComeInOrderAtTheWiderTolerance_AJobOfHigherRankBetween
     job.tolerance = wanted;
     job.parts = {points_at(job.scene, {10.0, 20.0, 30.0}), points_at(job.scene, {40.0})};
     worker.want({job});
-    evaluator.wait_for(false);
+    evaluator.wait_for(evaluator.calls);
     worker.want({job_of("urgent"), job});
-    evaluator.open();
+    evaluator.is_open = true;
     const std::vector<JobPart> news = finish(worker);
     ASSERT_EQ(news.size(), 3U);
     EXPECT_EQ(news[1].key, "urgent");
-    for (const auto& [part, place] : {std::pair{0U, 0U}, {1U, 2U}}) {
-      EXPECT_EQ(news[place].part, part);
-      EXPECT_EQ(news[place].is_last, part == 1U);
-      EXPECT_EQ(news[place].scene.number("accuracy.tolerance"), taken);
-      expect_same(news[place].points, truth(news[place].scene, job.parts[part]));
+    for (const auto& [part, position] : {std::pair{0U, 0U}, {1U, 2U}}) {
+      EXPECT_EQ(news[position].part, part);
+      EXPECT_EQ(news[position].is_last, part == 1U);
+      EXPECT_EQ(news[position].scene.number("accuracy.tolerance"), taken);
+      expect_same(news[position].points, truth(news[position].scene, job.parts[part]));
     }
     EXPECT_GT(news[2].evaluations, 0.0);
   }
@@ -313,7 +337,7 @@ TEST(ExploreWorker, LostDevice_IsThrownToWhoAsksForNews) {
   const auto lost = [](const Scene&, const PointList&, const RunOptions&) -> Results { throw DeviceError("lost"); };
   Worker worker(lost, [] {});
   worker.want({job_of("any")});
-  while (!worker.is_idle()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  while (!worker.is_idle()) std::this_thread::sleep_for(kMoment);
   EXPECT_THROW(worker.take_news(), DeviceError);
 }
 
@@ -365,26 +389,16 @@ TEST(Measured, Residuals_AreMeasuredMinusModelAtTheMeasuredPoints) {
   }
 }
 
-TEST(BackgroundTask, Phase_HasANameAndItsOwnProgress_AndCancellingIsSaid) {
-  std::mutex mutex;
-  std::condition_variable changed;
-  int changes = 0;
-  BackgroundTask task([&] {
-    const std::scoped_lock lock(mutex);
-    ++changes;
-    changed.notify_all();
-  });
+TEST(BackgroundTask, Phase_HasANameAndAProgressFromZero_AndCancellingIsSaid) {
+  std::atomic<int> changes = 0;
+  BackgroundTask task([&] { ++changes; });
   task.start([&task](const Progress& progress) -> BackgroundTask::Ending {
     static_cast<void>(progress(3, 4));
     task.set_phase("intervals");
-    while (progress(1, 4)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    while (progress(1, 4)) std::this_thread::sleep_for(kMoment);
     throw Cancelled();
   });
-  const auto wait_for_changes = [&](int count) {
-    std::unique_lock lock(mutex);
-    changed.wait(lock, [&] { return changes >= count; });
-  };
-  wait_for_changes(2);
+  while (changes < 2) std::this_thread::sleep_for(kMoment);
   EXPECT_EQ(task.phase(), "intervals");
   EXPECT_EQ(task.progress(), 0.25);
   task.cancel();

@@ -297,52 +297,6 @@ TEST(ExploreSession, AllBounces_PeakIsComparedWithSingleScattering) {
   EXPECT_EQ(without_text(driver.session, "masking") + without_words(driver.session, "masking"), "");
 }
 
-/// The DOLP of the paint with another sigma and n, as measured data.
-std::string as_if_measured() {
-  const Scene scene = paint({"surface.sigma=0.25", "surface.n=1.7", "accuracy.tolerance=1e-6"}).scene();
-  std::string csv = "theta_deg,dolp,uncertainty\n";
-  for (const Point& point : truth(scene, points_at(scene, zeniths(10.0, 80.0, 15)))) {
-    csv += fmt::format("{},{},0.001\n", point.theta_deg, point[Quantity::kDolp]);
-  }
-  return csv;
-}
-
-TEST(ExploreSession, Fit_MovesMarkedParametersToTheTruth_AndItsIntervalsGoWithTheNextChange) {
-  Session session(paint());
-  for (const char* key : {"surface.sigma", "surface.n", "surface.k"}) session.mark(key, true);
-  session.mark("surface.k", false);
-  EXPECT_FALSE(session.fit_job().has_value());
-  session.load_measured(TemporaryFile(".csv", as_if_measured()).path());
-  const std::optional<FitJob> job = session.fit_job();
-  ASSERT_TRUE(job.has_value());
-  ASSERT_EQ(job->vary.size(), 2U);
-  Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
-  session.take_fit(run_fit(*job, evaluator, {}), *job);
-  for (const auto& [key, truth, tolerance] : {std::tuple{"surface.sigma", 0.25, 1e-3}, {"surface.n", 1.7, 5e-3}}) {
-    EXPECT_NEAR(*session.scene().number(key), truth, tolerance);
-    ASSERT_NE(session.fitted(key), nullptr);
-    const FitInterval& interval = session.fitted(key)->interval_95;
-    ASSERT_TRUE(interval.low && interval.high) << key;
-    EXPECT_LT(*interval.low, truth);
-    EXPECT_GT(*interval.high, truth);
-  }
-  EXPECT_EQ(session.fitted("surface.k"), nullptr);
-  session.set("surface.sigma", 0.3);
-  EXPECT_FALSE(session.minimum() || session.fitted("surface.n"));
-}
-
-TEST(ExploreSession, MapCursor_DrivesTheCurveAndDoesNotChangeTheMap) {
-  Driver driver(paint());
-  const std::size_t version = driver.session.map().version();
-  driver.session.set_map_cursor(0.5, 0.5);
-  driver.settle();
-  EXPECT_DOUBLE_EQ(driver.session.theta_deg(), 45.0);
-  EXPECT_NEAR(*driver.session.scene().number("surface.sigma"), 0.2, 1e-4);  // the grid has 0.1 to 0.4
-  EXPECT_FALSE(driver.session.curve().is_stale());
-  EXPECT_NEAR(driver.session.map_cursor(driver.session.map().y()), 0.5, 1e-3);
-  EXPECT_EQ(driver.session.map().version(), version);
-}
-
 TEST(ExploreSession, Map_FinishesAt128WithTheValuesOfTheScene) {
   Driver driver(paint());
   const HeatMap& map = driver.session.map();
@@ -364,7 +318,7 @@ TEST(ExploreSession, Peak_IsTheLargestOfTheCurve_IsDrawn_AndItsCausesAddUp) {
   ASSERT_TRUE(peak.is_complete());
   const Point at = peak.answer()->at;
   double sum = 0.0;
-  for (const WithoutEffect& one : peak.without()) sum += one.radiates ? peak.contribution(one) : 0.0;
+  for (const WithoutEffect& part : peak.without()) sum += part.radiates ? peak.contribution(part) : 0.0;
   EXPECT_NEAR(sum, at[Quantity::kQOverI], 2e-3);  // difference of two runs with a tolerance of 1e-3
   for (const Point& result : session.curve().points()) {
     if (!result.is_good()) continue;

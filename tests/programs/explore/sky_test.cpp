@@ -44,9 +44,9 @@ TEST(SkyPair, SavedScene_HasItsSkyBesideIt_AndReadsBackWithIt) {
   const std::string saved = (folder.path() / "saved" / "dusk.toml").string();
   Session session(SceneEdits(Scene::from_text(kPaint, {}, opened)));
   session.set("surroundings.profile", session.skies().path(kDusk));
-  EXPECT_TRUE(session.has_own_sky());
+  EXPECT_TRUE(session.has_unsaved_sky());
   save_scene(session, saved);
-  EXPECT_FALSE(session.has_own_sky() || session.edits().is_changed());
+  EXPECT_FALSE(session.has_unsaved_sky() || session.edits().is_changed());
   EXPECT_EQ(read_file(folder.path() / "saved" / "dusk_sky.csv"), kDusk.csv());
   EXPECT_NE(read_file(saved).find("profile = 'dusk_sky.csv'"), std::string::npos) << read_file(saved);
   const Scene again = Scene::from_file(saved);
@@ -61,26 +61,23 @@ TEST(SkyPair, SavedScene_HasItsSkyBesideIt_AndReadsBackWithIt) {
 namespace {
 
 using namespace dolp;
+using namespace dolp::explore;
 using namespace dolp::explore_test;
 
 /// Chooses an entry in the list of skies. Positions are in heights of the closed list.
 class Skies : public Window {
  protected:
-  void choose(float place) {
+  void choose(float entry) {
     click_control("sky");
-    click(app_->control_area("sky").at(0.5F, place));
-    app_->settle();
-    frames();
+    click(app_->control_area("sky").at(0.5F, entry));
+    settle();
   }
-  std::optional<explore::SkyPair> sky() const {
-    return explore::read_sky_pair(explore::sky_file(app_->session().scene()));
-  }
+  std::optional<SkyPair> sky() const { return read_sky_pair(sky_file(session().scene())); }
 };
 
 TEST_F(Skies, Editor_MakesASkyBetweenTwoTemperatures_WhichTheSavedSceneKeeps) {
-  const explore::Session& session = app_->session();
   choose(4.3F);  // the fourth in the list
-  ASSERT_EQ(sky(), explore::SkyPair());
+  ASSERT_EQ(sky(), SkyPair());
   drag_slider("sky zenith", kPartOfSlider);
   frames();
   ASSERT_TRUE(sky());
@@ -92,31 +89,31 @@ TEST_F(Skies, Editor_MakesASkyBetweenTwoTemperatures_WhichTheSavedSceneKeeps) {
     type(typed);
     keys("Return");
     EXPECT_EQ(is_marked("field sky horizon"), !is_good);
-    EXPECT_EQ(*sky(), (explore::SkyPair{zenith_K, is_good ? 288.5 : explore::SkyPair().horizon_K}));
+    EXPECT_EQ(*sky(), (SkyPair{zenith_K, is_good ? 288.5 : SkyPair().horizon_K}));
   }
   keys("ctrl+shift+c");
-  EXPECT_TRUE(session.message().text.starts_with("save the scene first")) << session.message().text;
+  EXPECT_TRUE(session().message().text.starts_with("save the scene first")) << session().message().text;
   keys("ctrl+s");
   keys("Return");
   frames();
   EXPECT_EQ(content("scene_scene_sky.csv"), fmt::format("zenith_deg,temperature_K\n0,{}\n90,288.5\n", zenith_K));
   EXPECT_EQ(dolp({"plan", "scene_scene.toml"}).status, 0);
   keys("ctrl+shift+c");
-  EXPECT_TRUE(session.message().text.starts_with("copied")) << session.message().text;
+  EXPECT_TRUE(session().message().text.starts_with("copied")) << session().message().text;
   ctrl_click("sky zenith");
   EXPECT_EQ(number("surroundings.temperature_K"), 240.0);
 }
 
 TEST_F(Skies, List_OffersUniformAndBuiltInSkies_AndTheFileOfTheSceneAsOpened) {
-  for (const auto& [place, name] : {std::pair{2.5F, "clear-sky"}, {3.4F, "overcast"}, {1.6F, ""}}) {
-    choose(place);
+  for (const auto& [entry, name] : {std::pair{2.5F, "clear-sky"}, {3.4F, "overcast"}, {1.6F, ""}}) {
+    choose(entry);
     EXPECT_EQ(word("surroundings.profile").value_or(""), name);
   }
   EXPECT_EQ(number("surroundings.temperature_K"), 240.0);  // the value in the opened scene
   put("sky.csv", "zenith_deg,temperature_K\n0,220\n70,240\n90,285\n");
   open({{"surroundings.profile", "sky.csv"}});
-  for (const auto& [place, name] : {std::pair{3.4F, "overcast"}, {5.2F, "sky.csv"}}) {
-    choose(place);
+  for (const auto& [entry, name] : {std::pair{3.4F, "overcast"}, {5.2F, "sky.csv"}}) {
+    choose(entry);
     EXPECT_EQ(word("surroundings.profile"), name);
   }
   keys("ctrl+s");

@@ -9,6 +9,7 @@
 namespace {
 
 using namespace dolp;
+using namespace dolp::explore;
 using namespace dolp::explore_test;
 
 class WindowFiles : public Window {
@@ -26,7 +27,7 @@ class WindowFiles : public Window {
     keys(shortcut);
     if (!path.empty()) type(path);
     keys("Return");
-    app_->settle();
+    settle();
   }
   /// Opens a file from the list of the dialog: the first click selects it, the second one opens it.
   void open_listed(const std::string& folder, const std::string& file) {
@@ -35,13 +36,14 @@ class WindowFiles : public Window {
     if (!folder.empty()) click_control(folder);
     click_control(file);
     click_control(file);
-    app_->settle();
+    settle();
   }
-  std::string title() const { return app_->session().scene().title(); }
+  std::string title() const { return session().scene().title(); }
 };
 
 TEST_F(WindowFiles, SceneOfTheList_IsOpened_IsUndone_AndIsAmongTheRecentOnes) {
   drag_slider("surface.sigma", kPartOfSlider);
+  keys("ctrl+p");
   keys("ctrl+o");
   frames();
   EXPECT_NO_THROW(app_->control_area("scene.toml"));
@@ -50,13 +52,20 @@ TEST_F(WindowFiles, SceneOfTheList_IsOpened_IsUndone_AndIsAmongTheRecentOnes) {
   click_control("other.toml");
   EXPECT_EQ(title(), "Painted");
   click_control("other.toml");
-  app_->settle();
+  settle();
   EXPECT_EQ(title(), "Other");
   EXPECT_EQ(number("surface.sigma"), 0.15);
+  EXPECT_FALSE(session().edits().is_changed());
+  EXPECT_EQ(session().pins()[0].curve.scene().title(), "Painted");
+  EXPECT_EQ(session().curve().shown_scene().title(), "Other");
   EXPECT_NE(content("config/dolp/window.toml").find("folder/other.toml"), std::string::npos);
   keys("ctrl+z");
   EXPECT_EQ(title(), "Painted");
   EXPECT_NE(number("surface.sigma"), 0.15);
+  EXPECT_TRUE(session().edits().is_changed());
+  keys("ctrl+shift+z");
+  EXPECT_EQ(title(), "Other");
+  keys("ctrl+z");
   click_control("menu File");
   click_control("recent");
   click_control("recent " + at("folder/other.toml").string());
@@ -76,14 +85,20 @@ TEST_F(WindowFiles, OpenDialog_TakesAPathByKeyboard_AndRefusesAMissingOne) {
   EXPECT_NO_THROW(app_->control_area("other.toml"));
   type("other.toml");
   keys("Return");
-  app_->settle();
+  settle();
   EXPECT_EQ(title(), "Other");
   // A scene without a folder lists the working folder.
-  app_->session().go_to(explore::SceneEdits(Scene::from_text(kEdited, {}, "built-in")));
+  session().go_to(SceneEdits(Scene::from_text(kEdited, {}, "built-in")));
   keys("ctrl+o");
   EXPECT_NO_THROW(app_->control_area("../"));
   keys("Escape");
-  EXPECT_FALSE(app_->session().message().is_error);
+  EXPECT_FALSE(session().message().is_error);
+  // A bad scene is refused in a line, and the scene stays.
+  put("bad.toml", "[surface]\nsigma = -1\n");
+  answer("ctrl+o", at("bad.toml").string());
+  EXPECT_EQ(title(), "Painted");
+  EXPECT_TRUE(session().message().is_error);
+  EXPECT_NE(session().message().text.find("bad.toml"), std::string::npos);
 }
 
 TEST_F(WindowFiles, SaveDialogs_BeginBesideTheScene_ThenInTheLastFolder) {
@@ -95,34 +110,25 @@ TEST_F(WindowFiles, SaveDialogs_BeginBesideTheScene_ThenInTheLastFolder) {
   EXPECT_FALSE(content("other_scene.toml").empty());
 }
 
-TEST_F(WindowFiles, BadScene_IsOneLine_AndTheSceneStays) {
-  put("bad.toml", "[surface]\nsigma = -1\n");
-  open_listed("", "bad.toml");
-  EXPECT_EQ(title(), "Painted");
-  EXPECT_TRUE(app_->session().message().is_error);
-  EXPECT_NE(app_->session().message().text.find("bad.toml"), std::string::npos);
-}
-
 TEST_F(WindowFiles, Plots_SavedByShortcut_AreLinesAndTextOfWhatIsShown) {
   put("measured.csv", "theta_deg,dolp,uncertainty\n40,0.02,0.001\n60,0.05,0.001\n");
-  app_->session().load_measured(at("measured.csv").string());
+  session().load_measured(at("measured.csv").string());
   keys("ctrl+p");
   drag_slider("surface.sigma", kPartOfSlider);
   const auto save = [&](const std::string& name) {
     answer("ctrl+shift+e", at(name).string());
-    const auto is_drawing = [&] { return app_->session().message().text.starts_with("drawing"); };
+    const auto is_drawing = [&] { return session().message().text.starts_with("drawing"); };
     for (int i = 0; i < 3000 && is_drawing(); ++i) {
       app_->frame();
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
-    return app_->session().message();
+    return session().message();
   };
   EXPECT_EQ(save("plot.svg").text, "saved " + at("plot.svg").string());
   const std::string svg = content("plot.svg");
-  for (const std::string& text :
-       {std::string("Painted"), explore::curve_name(app_->session()), overlay_name(app_->session()),
-        explore::surface_name(app_->session().pins()[0].curve.shown_scene()), std::string("measured"),
-        std::string("DOLP [%]"), std::string("zenith θ [°]")}) {
+  for (const std::string& text : {std::string("Painted"), curve_name(session()), overlay_name(session()),
+                                  surface_name(session().pins()[0].curve.shown_scene()), std::string("measured"),
+                                  std::string("DOLP [%]"), std::string("zenith θ [°]")}) {
     EXPECT_NE(svg.find(text), std::string::npos) << text;
   }
   EXPECT_EQ(save("plot.pdf").text, "saved " + at("plot.pdf").string());
@@ -136,7 +142,7 @@ TEST_F(WindowFiles, Snapshot_Clicked_RestoresTheState_AndTakesATypedName) {
   keys("ctrl+b");
   drag_slider("surface.sigma", kPartOfSlider);
   click_control("snapshot 0");
-  app_->settle();
+  settle();
   EXPECT_EQ(number("surface.sigma"), 0.15);
   keys("ctrl+z");
   EXPECT_NE(number("surface.sigma"), 0.15);
@@ -144,26 +150,26 @@ TEST_F(WindowFiles, Snapshot_Clicked_RestoresTheState_AndTakesATypedName) {
   xdotool({"click", "3"});
   frames();
   type("dry");
-  EXPECT_TRUE(app_->session().snapshots()[0].name.ends_with("dry")) << app_->session().snapshots()[0].name;
-  EXPECT_EQ(app_->session().pins()[0].name, "");
+  EXPECT_TRUE(session().snapshots()[0].name.ends_with("dry")) << session().snapshots()[0].name;
+  EXPECT_EQ(session().pins()[0].name, "");
 }
 
 TEST_F(WindowFiles, SceneAndSession_SavedByShortcut_AreOpenedAsTheyWere) {
   keys("ctrl+p");
   drag_slider("surface.sigma", kPartOfSlider);
   const auto sigma = number("surface.sigma");
-  EXPECT_TRUE(app_->session().edits().is_changed());
+  EXPECT_TRUE(session().edits().is_changed());
   answer("ctrl+s");
-  EXPECT_FALSE(app_->session().edits().is_changed());
+  EXPECT_FALSE(session().edits().is_changed());
   EXPECT_EQ(Scene::from_file(at("scene_scene.toml")).number("surface.sigma"), sigma);
   answer("ctrl+shift+s");
   keys("ctrl+r");
-  EXPECT_TRUE(app_->session().edits().is_changed());
-  app_->session().pins().pop_front();
+  EXPECT_TRUE(session().edits().is_changed());
+  session().pins().pop_front();
   open_listed("", "scene_session.toml");
   EXPECT_EQ(number("surface.sigma"), sigma);
-  ASSERT_EQ(app_->session().pins().size(), 1U);
-  EXPECT_TRUE(app_->session().pins()[0].curve.is_finished());
+  ASSERT_EQ(session().pins().size(), 1U);
+  EXPECT_TRUE(session().pins()[0].curve.is_finished());
 }
 
 }  // namespace

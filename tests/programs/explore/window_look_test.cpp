@@ -9,6 +9,7 @@
 namespace {
 
 using namespace dolp;
+using namespace dolp::explore;
 using namespace dolp::explore_test;
 
 class WindowLook : public Window {
@@ -40,10 +41,9 @@ TEST_F(WindowLook, LightTheme_ChosenInTheMenu_IsKept) {
 }
 
 TEST_F(WindowLook, MarkOfAMaximumAtTheEnd_IsWhole) {
-  app_->session().set_view(&explore::View::theta_max_deg, 60.0);
-  app_->settle();
-  frames();
-  ASSERT_GT(app_->session().peak().answer().value().at.theta_deg, 59.9);
+  session().set_view(&View::theta_max_deg, 60.0);
+  settle();
+  ASSERT_GT(session().peak().answer().value().at.theta_deg, 59.9);
   const auto column = [&](float right) {
     return pixels({{plot().max.x + right, plot().min.y}, {plot().max.x + right + 1.0F, plot().max.y}});
   };
@@ -52,9 +52,9 @@ TEST_F(WindowLook, MarkOfAMaximumAtTheEnd_IsWhole) {
 
 TEST_F(WindowLook, Lines_BreakAtSpacesAlone) {
   const auto width = [](const char* text) { return ImGui::CalcTextSize(text).x; };
-  EXPECT_EQ(explore::in_lines("0.09382 to 0.1154", width("0.09382 to 0.")), "0.09382 to\n0.1154");
-  EXPECT_EQ(explore::in_lines("0.09382 to 0.1154", width("0.09382 to 0.1154")), "0.09382 to 0.1154");
-  EXPECT_EQ(explore::in_lines("first\nto 1.5", width("to 1.5")), "first\nto 1.5");
+  EXPECT_EQ(in_lines("0.09382 to 0.1154", width("0.09382 to 0.")), "0.09382 to\n0.1154");
+  EXPECT_EQ(in_lines("0.09382 to 0.1154", width("0.09382 to 0.1154")), "0.09382 to 0.1154");
+  EXPECT_EQ(in_lines("first\nto 1.5", width("to 1.5")), "first\nto 1.5");
 }
 
 TEST_F(WindowLook, Scale_ByKeys_ChangesTheSizeOfTheControls) {
@@ -66,7 +66,7 @@ TEST_F(WindowLook, Scale_ByKeys_ChangesTheSizeOfTheControls) {
     EXPECT_GT(height(), before);
   }
   EXPECT_NEAR(height(), 1.21F * usual, 2.0F);  // text and margins are rounded to whole pixels
-  EXPECT_NEAR(explore::scaled(10.0F), 12.1F, 0.5F);
+  EXPECT_NEAR(scaled(10.0F), 12.1F, 0.5F);
   keys("ctrl+0");
   EXPECT_EQ(height(), usual);
   keys("ctrl+minus");
@@ -113,7 +113,7 @@ TEST_F(WindowLook, Note_WaitsForTheMouseToRest_AndLeavesTheNextValueInSight) {
   });
   app_->run();
   hand.join();
-  EXPECT_GE(ImGui::GetTime() - moved_s, static_cast<double>(explore::kTooltipDelay_s));
+  EXPECT_GE(ImGui::GetTime() - moved_s, static_cast<double>(kTooltipDelay_s));
   EXPECT_EQ(pixels(next), next_before);
 }
 

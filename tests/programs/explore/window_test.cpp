@@ -20,18 +20,16 @@
 namespace {
 
 using namespace dolp;
+using namespace dolp::explore;
 using namespace dolp::explore_test;
-using explore::App;
-using explore::Area;
 
-TEST_F(Window, Slider_Dragged_PlottedValuesChangeAndEqualEval_AndCtrlClickTakesItBack) {
-  const explore::Session& session = app_->session();
-  const std::vector<explore::Point> before = session.curve().points();
+TEST_F(Window, Slider_Dragged_PlottedValuesChangeAndEqualEval_AndTheDragIsTakenBackAndRepeated) {
+  const std::vector<Point> before = session().curve().points();
   drag_slider("surface.sigma", kPartOfSlider);
   const double wanted = 0.01 * std::pow(200.0, kPartOfSlider);
   EXPECT_NEAR(*number("surface.sigma"), wanted, kGrab * wanted);
-  ASSERT_TRUE(session.curve().is_finished());
-  const std::vector<explore::Point>& after = session.curve().points();
+  ASSERT_TRUE(session().curve().is_finished());
+  const std::vector<Point>& after = session().curve().points();
   const Columns truth = evaluated();
   ASSERT_EQ(truth.at("dolp").size(), after.size());
   std::size_t changed = 0;
@@ -43,27 +41,39 @@ TEST_F(Window, Slider_Dragged_PlottedValuesChangeAndEqualEval_AndCtrlClickTakesI
     EXPECT_EQ(after[i][Quantity::kErrorEstimate], truth.at("error_estimate")[i]) << i;
   }
   EXPECT_GT(changed, after.size() / 2);
-  ctrl_click("surface.sigma");
+  const auto dragged = number("surface.sigma");
+  click_control("emission.bracket");
+  keys("ctrl+z");
+  EXPECT_EQ(word("emission.bracket"), "false");
+  EXPECT_EQ(number("surface.sigma"), dragged);
+  keys("ctrl+z");
   EXPECT_EQ(number("surface.sigma"), 0.15);
-  EXPECT_FALSE(session.edits().is_changed());
+  keys("ctrl+z");
+  EXPECT_EQ(session().message().text, "nothing to undo");
+  keys("ctrl+shift+z");
+  EXPECT_EQ(number("surface.sigma"), dragged);
+  keys("ctrl+shift+c");
+  EXPECT_EQ(ImGui::GetClipboardText(), table_command(session().edits()));
+  ctrl_click("surface.sigma");
+  EXPECT_FALSE(session().edits().is_changed());
 }
 
 TEST_F(Window, BracketBox_GivesTheCurveABand_AndAnotherMaskingSwitchesItOff) {
   click_control("emission.bracket");
-  app_->settle();
-  EXPECT_TRUE(app_->session().curve().points()[120].has_bracket());
-  EXPECT_EQ(app_->session().edits().changes(), (std::vector<Setting>{{"emission.bracket", true}}));
+  settle();
+  EXPECT_TRUE(session().curve().points()[120].has_bracket());
+  EXPECT_EQ(session().edits().changes(), (std::vector<Setting>{{"emission.bracket", true}}));
   click_control("surface.masking");
   click(app_->control_area("surface.masking").at(0.5F, 1.6F));  // "none", the first word of the list
-  app_->settle();
+  settle();
   EXPECT_EQ(word("surface.masking"), "none");
   EXPECT_EQ(word("emission.bracket"), "false");
-  EXPECT_NE(app_->session().message().text.find("also sets emission.bracket = false"), std::string::npos);
+  EXPECT_NE(session().message().text.find("also sets emission.bracket = false"), std::string::npos);
 }
 
 TEST_F(Window, Curve_WheelAndRightButton_ZoomAndShift_ADoubleClickShowsAll) {
-  const explore::CurveView& view = app_->curve_view();
-  const explore::Scale x = view.x(), y = view.y();
+  const CurveView& view = app_->curve_view();
+  const Scale x = view.x(), y = view.y();
   const ImVec2 at = view.area().at(0.4F, 0.5F);
   move_to(at);
   xdotool({"click", "4"});
@@ -71,7 +81,7 @@ TEST_F(Window, Curve_WheelAndRightButton_ZoomAndShift_ADoubleClickShowsAll) {
   EXPECT_LT(view.x().to - view.x().from, 0.9 * (x.to - x.from));
   EXPECT_LT(view.y().to - view.y().from, 0.9 * (y.to - y.from));
   EXPECT_NEAR(view.x().value(0.4), 36.0, 0.3);  // the value under the mouse does not change
-  const explore::Scale zoomed = view.x();
+  const Scale zoomed = view.x();
   xdotool({"mousedown", "3"});
   frames();
   move_to(view.area().at(0.5F, 0.5F));
@@ -88,30 +98,13 @@ TEST_F(Window, Curve_WheelAndRightButton_ZoomAndShift_ADoubleClickShowsAll) {
   EXPECT_EQ(view.y(), y);
 }
 
-TEST_F(Window, ChangesUndone_OneDragAtATime_AndBroughtBack) {
-  drag_slider("surface.sigma", kPartOfSlider);
-  const auto sigma = number("surface.sigma");
-  click_control("emission.bracket");
-  keys("ctrl+z");
-  EXPECT_EQ(word("emission.bracket"), "false");
-  EXPECT_EQ(number("surface.sigma"), sigma);
-  keys("ctrl+z");
-  EXPECT_EQ(number("surface.sigma"), 0.15);
-  keys("ctrl+z");
-  EXPECT_EQ(app_->session().message().text, "nothing to undo");
-  keys("ctrl+shift+z");
-  EXPECT_EQ(number("surface.sigma"), sigma);
-  keys("ctrl+shift+c");
-  EXPECT_EQ(ImGui::GetClipboardText(), explore::table_command(app_->session().edits()));
-}
-
 TEST_F(Window, Legend_PinClicked_HidesIt) {
   keys("ctrl+p");
   drag_slider("surface.sigma", kPartOfSlider);
   const Area area = app_->curve_view().area();
   const float line = ImGui::GetTextLineHeight();
   // The pin's entry is in one of the two lines above the plot.
-  const auto is_visible = [&] { return app_->session().pins()[0].is_visible; };
+  const auto is_visible = [&] { return session().pins()[0].is_visible; };
   ASSERT_TRUE(is_visible());
   for (float x = area.min.x; x < area.max.x && is_visible(); x += 3.0F * line) {
     for (float y = area.min.y - 5.0F * line; y < area.min.y - 2.0F * line && is_visible(); y += 0.8F * line)
@@ -121,37 +114,34 @@ TEST_F(Window, Legend_PinClicked_HidesIt) {
 }
 
 TEST_F(Window, CurveAndMapClicked_MoveTheCursor_AndTheCurveFollowsTheMap) {
-  const explore::Session& session = app_->session();
-  const double before = session.theta_deg();
+  const double before = session().theta_deg();
   click(app_->curve_view().area().at(0.5F, 0.5F));
-  EXPECT_NE(session.theta_deg(), before);
+  EXPECT_NE(session().theta_deg(), before);
+  const std::size_t version = session().map().version();
   click(app_->map_view().area().at(0.5F, 0.5F));
-  app_->settle();
+  settle();
+  EXPECT_NEAR(session().theta_deg(), 45.0, 0.5);
   EXPECT_NE(number("surface.sigma"), 0.15);
-  EXPECT_EQ(session.curve().shown_scene().number("surface.sigma"), number("surface.sigma"));
-  EXPECT_TRUE(session.map().is_finished());
+  EXPECT_NEAR(session().map_cursor(session().map().y()), 0.5, 0.01);
+  EXPECT_EQ(session().map().version(), version);
+  EXPECT_EQ(session().curve().shown_scene().number("surface.sigma"), number("surface.sigma"));
+  EXPECT_TRUE(session().map().is_finished());
   xdotool({"key", "ctrl+q"});
   bool is_open = true;
   for (int i = 0; i < kFrames && is_open; ++i) is_open = app_->frame();
   EXPECT_FALSE(is_open);
 }
 
-TEST_F(Window, CurveCsv_ByShortcut_HasThePlottedValues) {
-  keys("ctrl+e");
-  keys("Return");
-  frames();
-  EXPECT_EQ(content("scene_curve.csv"), app_->session().curve().finished().csv);
+TEST_F(Window, CurveAndTable_ByShortcut_EqualThoseOfTheCommands) {
+  accept("ctrl+e");
+  EXPECT_EQ(content("scene_curve.csv"), session().curve().finished().csv);
   put("points.csv", "theta_deg\n45\n");
   const std::string command = dolp({"eval", "scene.toml", "--points", "points.csv", "-o", "-"}).out;
-  EXPECT_EQ(content("scene_curve.csv").substr(0, content("scene_curve.csv").find('\n')),
-            "theta_deg,sigma,q" + command.substr(command.find(','), command.find('\n') - command.find(',')));
-}
-
-TEST_F(Window, Table_ByShortcut_EqualsThatOfTheCommand) {
+  const std::string header = command.substr(command.find(','), command.find('\n') - command.find(','));
+  EXPECT_TRUE(content("scene_curve.csv").starts_with("theta_deg,sigma,q" + header + '\n'));
   ASSERT_EQ(dolp({"table", "scene.toml", "-o", "t.nc", "--quiet"}).status, 0);
   const TableValues wanted = read_table(at("t.nc"));
-  keys("ctrl+t");
-  keys("Return");
+  accept("ctrl+t");
   for (int i = 0; i < 2000 && !std::filesystem::exists(at("scene_table.nc")); ++i) app_->frame();
   const TableValues made = read_table(at("scene_table.nc"));
   EXPECT_EQ(made[Quantity::kDolp], wanted[Quantity::kDolp]);
@@ -212,7 +202,7 @@ TEST_F(Window, EventsBetweenTwoFrames_AllCount) {
   EXPECT_EQ(number("surface.q"), 4.0);
   xdotool({"key", "--delay", "12", "ctrl+p", "ctrl+p"});
   frames();
-  EXPECT_EQ(app_->session().pins().size(), 2U);
+  EXPECT_EQ(session().pins().size(), 2U);
   // A mouse that moves on at once still clicks at its old position.
   const ImVec2 box = app_->control_area("emission.bracket").at(0.5F, 0.5F);
   xdotool({"mousemove", "--window", window_, std::to_string(std::lround(box.x)), std::to_string(std::lround(box.y)),
@@ -239,12 +229,12 @@ TEST_F(Window, TypedNumber_IsTakenWhereverTypingEnds_AndStaysWhereItIsRefused) {
       frames();
       EXPECT_EQ(number("surface.sigma"), is_good ? wanted : before);
       EXPECT_EQ(is_marked("field surface.sigma"), !is_good);
-      EXPECT_EQ(app_->session().message().is_error, !is_good);
+      EXPECT_EQ(session().message().is_error, !is_good);
       if (is_good) continue;
       click_control("field surface.sigma");
       keys("Escape");
       EXPECT_FALSE(is_marked("field surface.sigma"));
-      EXPECT_EQ(app_->session().message().text, "");
+      EXPECT_EQ(session().message().text, "");
       EXPECT_EQ(number("surface.sigma"), before);
     }
     wanted += 0.125;
@@ -258,7 +248,7 @@ TEST_F(Window, EndsOfABand_OfWhichOneWasRefused_AreTakenTogether) {
   EXPECT_TRUE(is_marked("field spectrum.band_um 0"));
   xdotool({"type", "20"});
   keys("Return");
-  EXPECT_EQ(app_->session().scene().numbers("spectrum.band_um"), (std::vector<double>{15.0, 20.0}));
+  EXPECT_EQ(session().scene().numbers("spectrum.band_um"), (std::vector<double>{15.0, 20.0}));
   EXPECT_FALSE(is_marked("field spectrum.band_um 0"));
 }
 
@@ -270,7 +260,7 @@ Area plot_on(const std::string& size, const std::string& dots_per_inch) {
                  .folder = "/"})
                 .status,
             0);
-  App app(explore::SceneEdits(Scene::from_text(kEdited)), {});
+  App app(SceneEdits(Scene::from_text(kEdited)), {});
   for (int i = 0; i < kFrames; ++i) app.frame();
   return app.curve_view().area();
 }
@@ -286,13 +276,11 @@ TEST(WindowScale, Display_At200Percent_DoublesThePlot_OrLeavesItAFifthOfTheHeigh
 }
 
 TEST(WindowText, WithoutAGreekFont_IsAscii) {
-  EXPECT_EQ(explore::ascii("θ ≤ 90°"), "theta <= 90 deg");
+  EXPECT_EQ(ascii("θ ≤ 90°"), "theta <= 90 deg");
   std::string all;
-  for (const explore::Parameter& one : explore::parameters())
-    all += one.symbol + std::string(one.equation) + explore::unit_text(*one.key);
-  for (const explore::Choice& one : explore::choices()) all += one.equation;
-  for (const explore::PlottedDescription& one : explore::kAllPlotted) all += std::string(one.name) + one.meaning;
-  const std::string plain = explore::ascii(all);
+  for (const Control& control : controls()) all += control.label + control.equation + unit_text(*control.key);
+  for (const PlottedDescription& quantity : kAllPlotted) all += std::string(quantity.name) + quantity.meaning;
+  const std::string plain = ascii(all);
   EXPECT_TRUE(std::ranges::all_of(plain, [](char c) { return static_cast<unsigned char>(c) < 128; })) << plain;
 }
 
@@ -302,7 +290,7 @@ class ExploreCommand : public CommandLine {
 };
 
 TEST_F(ExploreCommand, FramesAndScreenshot_WriteAPictureAndTheTimes_AlsoOfASession) {
-  explore::Session session(explore::SceneEdits(Scene::from_file(at("scene.toml"))));
+  Session session(SceneEdits(Scene::from_file(at("scene.toml"))));
   session.pin();
   save_session(session, at("session.toml").string());
   const Outcome outcome =
@@ -312,6 +300,7 @@ TEST_F(ExploreCommand, FramesAndScreenshot_WriteAPictureAndTheTimes_AlsoOfASessi
   EXPECT_TRUE(content("shot.png").starts_with("\x89PNG"));
   EXPECT_GT(content("shot.png").size(), 50'000U);
   EXPECT_EQ(dolp({"explore", "--frames", "1"}).status, 0);
+  EXPECT_EQ(Scene::from_text(kFirstScene).title(), "Night: paint under a clear sky, 8-14 um");
   expect_refused(dolp({"explore", "session.toml", "--frames", "1", "--set", "surface.sigma=-1"}), "surface.sigma");
   put("session.toml", "dolp_session = 1\n");
   expect_refused(dolp({"explore", "session.toml", "--frames", "1"}), "session.toml: scene.file is missing");

@@ -13,10 +13,8 @@
 namespace {
 
 using namespace dolp;
+using namespace dolp::explore;
 using namespace dolp::explore_test;
-using explore::Area;
-using explore::paint;
-using explore::Scale;
 
 double projected(const Scene& scene) {
   // Midpoint rule in tan(alpha) = m t / (1 - t). It includes steep facets, and the integrand is smooth.
@@ -28,7 +26,7 @@ double projected(const Scene& scene) {
     const double slope = m * t / (1.0 - t);
     const double alpha = std::atan(slope);
     const double width = m / ((1.0 - t) * (1.0 - t)) / kCount;
-    const double density = explore::slope_density(scene, alpha * 180.0 / std::numbers::pi);
+    const double density = slope_density(scene, alpha * 180.0 / std::numbers::pi);
     if (std::isfinite(density)) sum += 2.0 * std::numbers::pi * density * std::pow(std::cos(alpha), 4) * slope * width;
   }
   return sum;
@@ -40,15 +38,15 @@ TEST(ExplorePanels, SlopeDensity_IsNormalised_AndTheOtherOneHasTheSameD0) {
     for (const double sigma : {0.05, 0.3, 1.0}) {
       const Scene scene = paint().scene().with({{"surface.distribution", distribution}, {"surface.sigma", sigma}});
       EXPECT_NEAR(projected(scene), 1.0, kRule) << distribution << ' ' << sigma;
-      const Scene other = scene.with(explore::other_distribution(scene));
-      EXPECT_NEAR(explore::slope_density(other, 0.0) / explore::slope_density(scene, 0.0), 1.0, 1e-12);
+      const Scene other = with_other_distribution(scene).value();
+      EXPECT_NEAR(slope_density(other, 0.0) / slope_density(scene, 0.0), 1.0, 1e-12);
     }
   }
 }
 
 TEST(ExplorePanels, MaterialCurve_HasTheScenesIndex_FromEndToEnd) {
   const Scene water = paint().scene().with({{"surface.material", "water 25C"}});
-  const explore::MaterialCurve curve = explore::material_curve(water, 50);
+  const MaterialCurve curve = material_curve(water, 50);
   ASSERT_EQ(curve.n.size(), 50U);
   for (std::size_t i = 0; i < curve.n.size(); i += 7) {
     EXPECT_EQ((std::pair{curve.n[i], curve.k[i]}), water.refractive_index(curve.wavelength_um[i]));
@@ -57,37 +55,35 @@ TEST(ExplorePanels, MaterialCurve_HasTheScenesIndex_FromEndToEnd) {
   const auto water_25 = std::ranges::find(known, "water 25C", &BuiltInMaterial::name);
   EXPECT_EQ(curve.wavelength_um.front(), water_25->from_um);
   EXPECT_EQ(curve.wavelength_um.back(), water_25->to_um);
-  EXPECT_EQ(explore::material_curve(paint().scene(), 5).n, std::vector<double>(5, 1.5));
+  EXPECT_EQ(material_curve(paint().scene(), 5).n, std::vector<double>(5, 1.5));
 }
 
 /// The points of a sweep, as a view receives them.
-std::vector<explore::Point> swept(explore::Sweep& sweep) {
-  sweep.take(explore::done(sweep.wanted().value()));
+std::vector<Point> swept(Sweep& sweep) {
+  sweep.take(done(sweep.wanted().value()));
   EXPECT_TRUE(sweep.is_finished());
   return sweep.points();
 }
 
 TEST(ExplorePanels, SmoothSurface_HasFresnelsReflectances_AndAQuarterWaveFilmReflectsNothing) {
-  const explore::Plotted kS = explore::Plotted::kRhoS, kP = explore::Plotted::kRhoP;
-  const auto reflectance = [](explore::Plotted one, const explore::Point& at) {
-    return explore::described(one).value(at);
-  };
-  explore::Sweep sweep;
-  const Scene glass = explore::smooth_scene(paint({"surface.k=0", "surface.specular=0.5"}).scene());
+  const Plotted kS = Plotted::kRhoS, kP = Plotted::kRhoP;
+  const auto reflectance = [](Plotted quantity, const Point& at) { return described(quantity).value(at); };
+  Sweep sweep;
+  const Scene glass = smooth_scene(paint({"surface.k=0", "surface.specular=0.5"}).scene());
   const double brewster_deg = std::atan(1.5) * 180.0 / std::numbers::pi;
-  sweep.follow({.key = "glass", .scene = glass, .parts = {explore::points_at(glass, {0.0, brewster_deg})}});
-  const std::vector<explore::Point> bare = swept(sweep);
+  sweep.follow({.key = "glass", .scene = glass, .parts = {points_at(glass, {0.0, brewster_deg})}});
+  const std::vector<Point> bare = swept(sweep);
   EXPECT_NEAR(reflectance(kS, bare[0]), 0.04, 1e-12);
   EXPECT_NEAR(reflectance(kP, bare[1]), 0.0, 1e-12);
   EXPECT_NEAR(reflectance(kS, bare[1]), std::pow((1.0 - 2.25) / (1.0 + 2.25), 2), 1e-12);
   // At normal incidence a film of index sqrt(n) reflects nothing if its optical thickness is a quarter or three
   // quarters of a wavelength.
   const double n = std::sqrt(1.5);
-  const Scene coated = glass.with({explore::coating_of({{{"n", n}, {"thickness_um", 2.0}}})});
-  explore::PointList list = explore::points_at(coated, {0.0, 0.0, 0.0});
+  const Scene coated = glass.with({coating_of({{{"n", n}, {"thickness_um", 2.0}}})});
+  PointList list = points_at(coated, {0.0, 0.0, 0.0});
   list["wavelength_um"] = {8.0 * n, 4.0 * n, 8.0 * n / 3.0};
   sweep.follow({.key = "coated", .scene = coated, .parts = {list}}, "wavelength_um");
-  const std::vector<explore::Point> film = swept(sweep);
+  const std::vector<Point> film = swept(sweep);
   for (const auto& [at, expected] : {std::pair{0U, 0.0}, {1U, 0.04}, {2U, 0.0}})
     EXPECT_NEAR(reflectance(kS, film[at]), expected, 1e-10) << at;
   EXPECT_EQ(sweep.at()[1], 4.0 * n);
@@ -95,25 +91,25 @@ TEST(ExplorePanels, SmoothSurface_HasFresnelsReflectances_AndAQuarterWaveFilmRef
 
 TEST(ExplorePanels, SmoothSceneOfAWind_AndABandOfTheWindow_AreAccepted) {
   const Scene sea = paint({"surface.distribution=gaussian", "surface.wind_m_s=8", "spectrum.band_um=[8,14]"}).scene();
-  EXPECT_EQ(explore::smooth_scene(sea).number("surface.sigma"), 0.0);
-  EXPECT_EQ(explore::at_one_wavelength(sea).number("spectrum.wavelength_um"), 11.0);
+  EXPECT_EQ(smooth_scene(sea).number("surface.sigma"), 0.0);
+  EXPECT_EQ(at_one_wavelength(sea).number("spectrum.wavelength_um"), 11.0);
 }
 
 TEST(ExplorePanels, Spectrum_IsTheCurveOverWavelengthAtTheCursor_AndIsComputedWhileItIsShown) {
-  explore::Driver driver(paint({"surface.material=water 25C", "spectrum.band_um=[8,14]", "accuracy.tolerance=1e-2"}));
-  explore::Session& session = driver.session;
+  Driver driver(paint({"surface.material=water 25C", "spectrum.band_um=[8,14]", "accuracy.tolerance=1e-2"}));
+  Session& session = driver.session;
   EXPECT_TRUE(session.spectrum().points().empty());
-  session.set_view(&explore::View::panel, explore::Panel::kSpectrum);
+  session.set_view(&View::panel, Panel::kSpectrum);
   session.set_theta(70.0);
   driver.settle();
   ASSERT_TRUE(session.spectrum().is_finished());
   EXPECT_EQ(session.wavelengths().scale, (Scale{4.0, 20.0}));  // from half of 8 um to the end of the known range
   const std::size_t at = 40;
   const Scene scene = session.spectral_scene().with("spectrum.wavelength_um", session.spectrum().at()[at]);
-  const explore::Point truth = explore::truth(scene, explore::points_at(scene, {70.0})).front();
-  const explore::Point& shown = session.spectrum().points()[at];
-  EXPECT_NEAR(shown[Quantity::kDolp], truth[Quantity::kDolp],
-              shown[Quantity::kErrorEstimate] + truth[Quantity::kErrorEstimate]);
+  const Point exact = truth(scene, points_at(scene, {70.0})).front();
+  const Point& shown = session.spectrum().points()[at];
+  EXPECT_NEAR(shown[Quantity::kDolp], exact[Quantity::kDolp],
+              shown[Quantity::kErrorEstimate] + exact[Quantity::kErrorEstimate]);
   session.set("emission.temperature_K", 310.0);
   EXPECT_FALSE(session.spectrum().is_finished());
 }
@@ -121,7 +117,7 @@ TEST(ExplorePanels, Spectrum_IsTheCurveOverWavelengthAtTheCursor_AndIsComputedWh
 TEST(ExplorePanels, ScatteringCut_HasItsLobeBeyondTheNormal_AndTheValuesOfMueller) {
   Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
   const Scene scene = paint().scene().with({{"surface.diffuse", 0.0}});
-  const explore::ScatteringCut cut = explore::scattering_cut(evaluator, scene, 40.0, 181);
+  const ScatteringCut cut = scattering_cut(evaluator, scene, 40.0, 181);
   std::size_t largest = 0;
   for (std::size_t i = 0; i < cut.matrices.size(); ++i) {
     if (cut.matrices[i][0] > cut.matrices[largest][0]) largest = i;
@@ -135,32 +131,32 @@ TEST(ExplorePanels, ScatteringCut_HasItsLobeBeyondTheNormal_AndTheValuesOfMuelle
 }
 
 TEST(ExplorePanels, SphereOfASurface_ShowsPAlongTheTiltAndSAcross) {
-  explore::Driver driver(paint());
-  const std::vector<explore::Point>& curve = driver.session.curve().points();
+  Driver driver(paint());
+  const std::vector<Point>& curve = driver.session.curve().points();
   ASSERT_LT(curve[120][Quantity::kQOverI], 0.0);
-  const std::optional<explore::ImagePolarisation> plate = explore::polarisation_at(curve, 60.0, 30.0);
+  const std::optional<ImagePolarisation> plate = polarisation_at(curve, 60.0, 30.0);
   ASSERT_TRUE(plate);
   EXPECT_DOUBLE_EQ(plate->dolp, -curve[120][Quantity::kQOverI]);
   EXPECT_NEAR(plate->angle_deg, 30.0, 1e-9);
-  EXPECT_NEAR(explore::polarisation_at(curve, 60.0, -150.0)->angle_deg, 30.0, 1e-9);
-  std::vector<explore::Point> s_polarised = curve;
-  for (explore::Point& point : s_polarised) point.values[Quantity::kQOverI] *= -1.0;
-  EXPECT_NEAR(explore::polarisation_at(s_polarised, 60.0, 30.0)->angle_deg, 120.0, 1e-9);
-  const double between = explore::polarisation_at(curve, 60.25, 0.0)->dolp;
+  EXPECT_NEAR(polarisation_at(curve, 60.0, -150.0)->angle_deg, 30.0, 1e-9);
+  std::vector<Point> s_polarised = curve;
+  for (Point& point : s_polarised) point.values[Quantity::kQOverI] *= -1.0;
+  EXPECT_NEAR(polarisation_at(s_polarised, 60.0, 30.0)->angle_deg, 120.0, 1e-9);
+  const double between = polarisation_at(curve, 60.25, 0.0)->dolp;
   EXPECT_NEAR(between, -0.5 * (curve[120][Quantity::kQOverI] + curve[121][Quantity::kQOverI]), 1e-12);
 }
 
 TEST(ExplorePanels, Sky_OfABistaticScene_IsComputedWhileItIsShown) {
-  explore::Driver driver(paint({"geometry.mode=\"bistatic\"", "source.preset=\"sun\"", "geometry.view_zenith_deg=60"}));
-  explore::Session& session = driver.session;
+  Driver driver(paint({"geometry.mode=\"bistatic\"", "source.preset=\"sun\"", "geometry.view_zenith_deg=60"}));
+  Session& session = driver.session;
   EXPECT_FALSE(session.source_sky().is_finished());
-  session.set_view(&explore::View::panel, explore::Panel::kSky);
+  session.set_view(&View::panel, Panel::kSky);
   driver.settle();
   ASSERT_TRUE(session.source_sky().is_finished());
   const std::size_t azimuth = 12;
-  const Scene scene = session.scene().with({{"geometry.relative_azimuth_deg", explore::SourceSky::azimuth_deg(azimuth)},
+  const Scene scene = session.scene().with({{"geometry.relative_azimuth_deg", SourceSky::azimuth_deg(azimuth)},
                                             {"accuracy.tolerance", explore::Curve::kCoarseTolerance}});
-  explore::expect_same(session.source_sky().at(azimuth), explore::truth(scene, session.source_sky().at(azimuth)));
+  expect_same(session.source_sky().at(azimuth), truth(scene, session.source_sky().at(azimuth)));
   session.set("geometry.relative_azimuth_deg", 77.0);
   EXPECT_TRUE(session.source_sky().is_finished());
   session.set("surface.sigma", 0.3);
@@ -173,29 +169,27 @@ TEST_F(Window, Panels_ClickedOneByOne_AreDrawn_AndTheMapIsComputedWhileItIsShown
     return display_.pixels(static_cast<std::size_t>(map.min.x), static_cast<std::size_t>(map.max.y) + 8, 300, 200);
   };
   std::vector<std::string> seen = {below()};
-  for (std::size_t i = 1; i < explore::kPanelNames.size(); ++i) {
-    click_control(std::string("panel ") + explore::kPanelNames[i]);
-    EXPECT_EQ(app_->session().view().panel, static_cast<explore::Panel>(i));
-    app_->settle();
-    frames();
-    EXPECT_EQ(std::ranges::count(seen, below()), 0) << explore::kPanelNames[i];
+  for (std::size_t i = 1; i < kPanelNames.size(); ++i) {
+    click_control(std::string("panel ") + kPanelNames[i]);
+    EXPECT_EQ(session().view().panel, static_cast<Panel>(i));
+    settle();
+    EXPECT_EQ(std::ranges::count(seen, below()), 0) << kPanelNames[i];
     seen.push_back(below());
   }
-  const std::size_t version = app_->session().map().version();
+  const std::size_t version = session().map().version();
   click_control("emission.bracket");
-  app_->settle();
-  EXPECT_EQ(app_->session().map().version(), version);
+  settle();
+  EXPECT_EQ(session().map().version(), version);
   click_control("panel map");
-  app_->settle();
-  EXPECT_NE(app_->session().map().version(), version);
+  settle();
+  EXPECT_NE(session().map().version(), version);
 }
 
 TEST_F(Window, Films_AreAddedOutside_ChangedRemovedAndSaved_AndUndoBringsThemBack) {
-  const auto films = [&] { return explore::films_of(app_->session().scene()); };
-  app_->session().set_view(&explore::View::panel, explore::Panel::kSlopes);  // a map with films would take long
-  app_->session().set({explore::coating_of({{{"material", "PMMA acrylic"}, {"thickness_um", 2.0}}})});
-  app_->settle();
-  frames();
+  const auto films = [&] { return films_of(session().scene()); };
+  session().set_view(&View::panel, Panel::kSlopes);  // a map with films would take long
+  session().set({coating_of({{{"material", "PMMA acrylic"}, {"thickness_um", 2.0}}})});
+  settle();
   click_control("add film");
   EXPECT_EQ(films().size(), 2U);
   EXPECT_EQ(word("surface.coating.2.material"), "PMMA acrylic");
@@ -205,44 +199,42 @@ TEST_F(Window, Films_AreAddedOutside_ChangedRemovedAndSaved_AndUndoBringsThemBac
   const double expected = std::pow(10.0, -3.0 + 5.0 * static_cast<double>(kPartOfSlider));
   EXPECT_NEAR(std::log10(*number("surface.coating.1.thickness_um") / expected), 0.0, 5.0 * kGrab / 2.0);
   const Columns truth = evaluated();
-  EXPECT_EQ(app_->session().curve().points()[100][Quantity::kDolp], truth.at("dolp")[100]);
-  const Scene before = app_->session().scene();
-  explore::save_scene(app_->session(), at("coated.toml"));
-  EXPECT_EQ(explore::films_of(Scene::from_file(at("coated.toml"))), films());
+  EXPECT_EQ(session().curve().points()[100][Quantity::kDolp], truth.at("dolp")[100]);
+  const Scene before = session().scene();
+  save_scene(session(), at("coated.toml"));
+  EXPECT_EQ(films_of(Scene::from_file(at("coated.toml"))), films());
   click_control("surface.coating.1.material");
   click(app_->control_area("surface.coating.1.material").at(0.5F, 2.6F));  // the first material in the list
   EXPECT_TRUE(word("surface.coating.1.material"));
   EXPECT_EQ(number("surface.coating.1.thickness_um"), before.number("surface.coating.1.thickness_um"));
   keys("ctrl+z");
-  EXPECT_EQ(app_->session().scene().toml(), before.toml());
+  EXPECT_EQ(session().scene().toml(), before.toml());
   click_control("remove surface.coating.2");
   EXPECT_EQ(films().size(), 1U);
   EXPECT_EQ(number("surface.coating.1.thickness_um"), before.number("surface.coating.1.thickness_um"));
-  app_->session().undo();
-  EXPECT_EQ(app_->session().scene().toml(), before.toml());
-  EXPECT_NE(explore::surface_name(before).find("film PMMA acrylic 2 µm"), std::string::npos);
+  session().undo();
+  EXPECT_EQ(session().scene().toml(), before.toml());
+  EXPECT_NE(surface_name(before).find("film PMMA acrylic 2 µm"), std::string::npos);
 }
 
 TEST_F(Window, SceneWithAWind_HasItsSliderAndItsAxis_InsteadOfSigma) {
-  app_->session().set({{"surface.distribution", "gaussian"}, {"surface.wind_m_s", 8.0}});
-  app_->settle();
-  frames();
+  session().set({{"surface.distribution", "gaussian"}, {"surface.wind_m_s", 8.0}});
+  settle();
   EXPECT_THROW(app_->control_area("surface.sigma"), std::out_of_range);
   drag_slider("surface.wind_m_s", kPartOfSlider);
-  const explore::Session& session = app_->session();
   const double wind = *number("surface.wind_m_s");
   EXPECT_NEAR(wind, 30.0 * static_cast<double>(kPartOfSlider), 30.0 * kGrab);
-  ASSERT_TRUE(session.curve().is_finished());
+  ASSERT_TRUE(session().curve().is_finished());
   const Columns truth = evaluated();
   for (std::size_t i = 0; i < truth.at("dolp").size(); i += 10) {
-    EXPECT_EQ(session.curve().points()[i][Quantity::kDolp], truth.at("dolp")[i]) << i;
+    EXPECT_EQ(session().curve().points()[i][Quantity::kDolp], truth.at("dolp")[i]) << i;
   }
-  EXPECT_EQ(session.map().y().label, "U [m/s]");
-  EXPECT_NE(explore::cursor_text(session).find("U = "), std::string::npos);
+  EXPECT_EQ(session().map().y().label, "U [m/s]");
+  EXPECT_NE(cursor_text(session()).find("U = "), std::string::npos);
   click(app_->map_view().area().at(0.5F, 0.5F));
-  app_->settle();
-  EXPECT_NE(session.scene().number("surface.wind_m_s"), wind);
-  EXPECT_FALSE(session.curve().is_stale());
+  settle();
+  EXPECT_NE(session().scene().number("surface.wind_m_s"), wind);
+  EXPECT_FALSE(session().curve().is_stale());
 }
 
 }  // namespace

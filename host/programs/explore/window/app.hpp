@@ -1,10 +1,9 @@
-// The window as a program: display, device, threads and the loop of frames.
+// The window as a program: display, threads and the loop of frames.
 #pragma once
 
-#include <memory>
-
 #include "explore/readout.hpp"
-#include "explore/window/views.hpp"
+#include "explore/window/screen.hpp"
+#include "explore/window/ui.hpp"
 
 namespace dolp::explore {
 
@@ -18,18 +17,18 @@ class App {
  public:
   using AfterFrame = std::function<void(double frame_s)>;
 
-  /// Opens the window. Errors: DeviceError without a display, or without a device that can show a window on it.
+  /// Opens the window. Errors: the errors of Screen.
   App(SceneEdits edits, const AppOptions& options);
-  ~App();
 
-  Session& session();
+  Session& session() { return session_; }
   /// The area of a named item in the last frame. Errors: std::out_of_range where it was not drawn.
-  Area control_area(const std::string& name) const;
-  const CurveView& curve_view() const;
-  const MapView& map_view() const;
+  Area control_area(const std::string& name) { return input_.areas().at(name); }
+  const CurveView& curve_view() const { return ui_.curves; }
+  const MapView& map_view() const { return ui_.map; }
+  const AxisEditor& axis_editor() const { return ui_.axis_editor; }
 
   /// Takes input and results, and draws one frame. Returns false if the user has closed the window.
-  /// Errors: DeviceError if the device is lost or the validation layer reports an error.
+  /// Errors: DeviceError if no device can compute, or if it is lost.
   bool frame();
   /// Handles all pending events, and those that arrive meanwhile, and draws the result. Returns false if the user has
   /// closed the window.
@@ -45,20 +44,32 @@ class App {
   std::string run_frames(std::size_t count, const std::string& screenshot_path);
 
   /// True if nothing remains to be computed and the session has all results.
-  bool is_idle() const;
+  bool is_idle() { return worker_.is_idle() && is_all_taken_ && !actions_.fit_task.is_running(); }
   /// Draws until is_idle() returns true.
   void settle();
   /// Writes a picture of the window with its next frame. Errors: IoError.
-  void save_picture(const std::string& path);
+  void save_picture(const std::string& path) { actions_.picture_path = path; }
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  /// Passes results to the session and wanted jobs to the worker.
+  void exchange();
+  /// During a drag, waits briefly for the coarse curve, so that slider and curve move in the same frame.
+  void catch_up();
+  void draw();
+
+  Session session_;
+  Screen screen_;
+  Evaluator evaluator_;
+  std::atomic<bool> is_catching_up_ = false;  ///< while true, news need not wake the window by an event
+  Worker worker_;
+  Actions actions_;
+  Input input_;
+  Ui ui_;
+  bool is_all_taken_ = false;
 };
 
-struct ProgramOptions {
-  std::string device;                  ///< its position or a part of its name
-  std::string command_line;            ///< for the history of tables
+/// Without `preferences`.
+struct ProgramOptions : AppOptions {
   std::string measured_path;           ///< CSV of measured points; empty: none
   std::size_t frames = 0;              ///< number of frames to draw; 0: until the window is closed
   std::string screenshot_path;         ///< PNG of the last frame; empty: none
@@ -66,6 +77,9 @@ struct ProgramOptions {
   std::string session_path = {};       ///< session file that replaces the scene; empty: none
   std::vector<Setting> settings = {};  ///< changes of the session
 };
+
+/// The text of the scene for a first look: host/scenes/night_paint.toml.
+extern const char* const kFirstScene;
 
 /// Shows the window. If the number of frames is given, prints their durations.
 /// Errors: the errors of the public header; DeviceError, IoError.

@@ -27,10 +27,10 @@ void heading(const char* text) {
 
 /// Draws the pieces of an interval as bars at the bottom of the last item, a slider. An open end extends to the end of
 /// the slider.
-void draw_interval(const Parameter& parameter, const FitInterval& interval) {
+void draw_interval(const Control& control, const FitInterval& interval) {
   const ImVec2 corner = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
   const auto at = [&](const std::optional<double>& value, double otherwise) {
-    const double position = value ? parameter.slider.position(parameter.slider.clamp(*value)) : otherwise;
+    const double position = value ? control.slider.position(control.slider.clamp(*value)) : otherwise;
     return corner.x + static_cast<float>(position) * (end.x - corner.x);
   };
   constexpr float kThickness = 3.0F;
@@ -40,14 +40,14 @@ void draw_interval(const Parameter& parameter, const FitInterval& interval) {
   }
 }
 
-/// Meaning, equation and range of a parameter, its value as opened, and the intervals from the last fit.
-std::string note_on(const Parameter& parameter, const Session& session) {
-  const Key& key = *parameter.key;
-  std::string note = fmt::format("{} = {}\n{}\nallowed: {} {}", key.key, key.meaning, parameter.equation, key.allowed(),
-                                 unit_text(key));
+/// Meaning, equation and range of a number, its value as opened, and the intervals from the last fit.
+std::string note_on(const Control& control, const Session& session) {
+  const Key& key = *control.key;
+  std::string note =
+      fmt::format("{} = {}\n{}\nallowed: {} {}", key.key, key.meaning, control.equation, key.allowed(), unit_text(key));
   const bool has_other_films =
       key.layer > 0 && std::ranges::count(session.edits().changes(), "surface.coating", &Setting::key) > 0;
-  const std::optional<double> opened = parameter.value(session.edits().opened());
+  const std::optional<double> opened = control.value(session.edits().opened());
   if (opened && !has_other_films) note += fmt::format("\nCtrl-click: {:.6g}, as opened", *opened);
   if (const FitParameter* const found = session.fitted(key.key))
     note += fmt::format("\n68 %: {}\n95 %: {}", interval_text(found->interval_68), interval_text(found->interval_95));
@@ -79,7 +79,7 @@ Value value_of(const std::string& text) {
 /// The controls of a session.
 struct Controls {
   Session& session;
-  ControlsState& state;
+  NumberFields& fields;
 
   /// A slider with a field beside it.
   struct Slider {
@@ -98,9 +98,9 @@ struct Controls {
 
   /// Draws fields. Removes the message about a text when the text is gone.
   void draw_fields(const std::string& id, const std::function<void()>& draw) {
-    const std::string before = state.fields.reason(id);
+    const std::string before = fields.reason(id);
     draw();
-    if (!before.empty() && state.fields.reason(id).empty() && session.message().text == before) session.tell("");
+    if (!before.empty() && fields.reason(id).empty() && session.message().text == before) session.tell("");
   }
 
   void draw_ends(const std::string& id, const std::array<double, 2>& ends, const NumberFields::ApplyEnds& apply) {
@@ -110,14 +110,14 @@ struct Controls {
     for (const std::size_t end : {0U, 1U}) {
       if (end > 0) ImGui::SameLine(0.0F, gap);
       ImGui::SetNextItemWidth(width);
-      draw_fields(ids[end], [&] { state.fields.draw_end(id, end, ends, apply); });
+      draw_fields(ids[end], [&] { fields.draw_end(id, end, ends, apply); });
     }
-    for (const std::string& one : ids) state.fields.draw_reason(one);
+    for (const std::string& field : ids) fields.draw_reason(field);
   }
 
-  void draw_slider(const Slider& slider, double value, const Parameter* parameter = nullptr) {
+  void draw_slider(const Slider& slider, double value, const Control* control = nullptr) {
     row_label(slider.label);
-    const bool can_vary = parameter && session.residuals().data() && !slider.id.starts_with("accuracy.");
+    const bool can_vary = control && session.residuals().data() && !slider.id.starts_with("accuracy.");
     if (bool varies = session.varies(slider.id); can_vary) {
       if (ImGui::Checkbox(("##vary " + slider.id).c_str(), &varies)) session.mark(slider.id, varies);
       name_item("vary " + slider.id);
@@ -129,7 +129,7 @@ struct Controls {
     const std::string id = "##slider " + slider.id;
     const bool is_moved = ImGui::SliderFloat(id.c_str(), &position, 0.0F, 1.0F, "", ImGuiSliderFlags_NoInput);
     name_item(slider.id);
-    if (const FitParameter* found = session.fitted(slider.id)) draw_interval(*parameter, found->interval_68);
+    if (const FitParameter* found = session.fitted(slider.id)) draw_interval(*control, found->interval_68);
     const bool is_ctrl = ImGui::GetIO().KeyCtrl;
     if (ImGui::IsItemClicked() && is_ctrl) session.reset(slider.reset_key);
     if (is_moved && !is_ctrl)
@@ -138,64 +138,50 @@ struct Controls {
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1.0F);
     draw_fields(slider.id, [&] {
-      state.fields.draw(slider.id, value, [&](const std::string& text) { return set(slider.change(text)); });
+      fields.draw(slider.id, value, [&](const std::string& text) { return set(slider.change(text)); });
     });
-    state.fields.draw_reason(slider.id);
+    fields.draw_reason(slider.id);
   }
 
-  void draw_parameter(const Parameter& parameter, double value) {
-    const std::string& key = parameter.key->key;
+  void draw_number(const Control& control, double value) {
+    const std::string& key = control.key->key;
     const auto change = [&](const std::string& text) { return Setting{key, value_of(text)}; };
-    draw_slider({.id = key,
-                 .label = parameter.label(),
-                 .note = note_on(parameter, session),
-                 .reset_key = key,
-                 .scale = parameter.slider,
-                 .change = change},
-                value, &parameter);
-    draw_fit_range(parameter, value);
-  }
-
-  void draw_fit_range(const Parameter& parameter, double value) {
-    const std::string& key = parameter.key->key;
+    draw_slider({key, control.label_with_unit(), note_on(control, session), key, control.slider, change}, value,
+                &control);
     if (!session.residuals().data() || !session.varies(key)) return;
-    const FitRange range = fit_range(session.marked(), session.scene(), parameter, value);
+    const FitRange range = fit_range(session.marked(), session.scene(), control, value);
     row_label("  fit from, to");
     draw_ends("fit " + key, {range.low, range.high},
               [&](const std::string& low, const std::string& high) { return session.set_fit_range(key, low, high); });
   }
 
-  void draw_table(const std::string& table) {
-    for (const Parameter& parameter : parameters()) {
-      if (table_of(parameter.key->key) != table) continue;
-      // Each control reads the value again, because an earlier control may have changed the scene.
-      if (const auto value = parameter.value(session.scene())) draw_parameter(parameter, *value);
-    }
-  }
-
-  void draw_choice(const Choice& choice, std::size_t word) {
-    const std::string& key = choice.key->key;
-    const std::vector<std::string>& words = choice.key->words;
-    const std::string note = key + ": " + choice.key->meaning + "\n" + choice.equation;
-    row_label(choice.label);
-    if (bool is_set = word != 0; choice.is_flag()) {
-      if (ImGui::Checkbox(("##" + key).c_str(), &is_set)) session.set({{key, is_set}});
+  /// Draws a list of words, or a box for a flag.
+  void draw_choice(const Control& control, std::size_t position) {
+    const std::string& key = control.key->key;
+    const std::vector<std::string>& words = control.key->words;
+    const std::string note = key + ": " + control.key->meaning + "\n" + control.equation;
+    row_label(control.label);
+    if (bool is_set = position != 0; control.key->type == Key::Type::kFlag) {
+      if (ImGui::Checkbox(("##" + key).c_str(), &is_set)) session.set(key, is_set);
       name_item(key);
-      return tooltip(note);
+      tooltip(note);
+    } else if (const auto clicked =
+                   draw_list(key, -1.0F, words[position], note, position, {words.begin(), words.end()})) {
+      session.set(key, TomlText{words[*clicked]});
     }
-    const auto entries = [&] {
-      std::vector<ListEntry> all;
-      for (const std::string& one : words) all.push_back({one});
-      return all;
-    };
-    if (const auto clicked = draw_list(key, -1.0F, words[word], note, word, entries))
-      set({key, TomlText{words[*clicked]}});
   }
 
+  // Each control reads its value again, because an earlier control may have changed the scene.
   void draw_choices(const std::string& table) {
-    for (const Choice& choice : choices()) {
-      if (table_of(choice.key->key) != table) continue;
-      if (const auto word = choice.word(session.scene())) draw_choice(choice, *word);
+    for (const Control& control : controls()) {
+      if (table_of(control.key->key) != table) continue;
+      if (const auto position = control.word(session.scene())) draw_choice(control, *position);
+    }
+  }
+  void draw_numbers(const std::string& table) {
+    for (const Control& control : controls()) {
+      if (table_of(control.key->key) != table) continue;
+      if (const auto value = control.value(session.scene())) draw_number(control, *value);
     }
   }
 
@@ -204,22 +190,19 @@ struct Controls {
   std::vector<Setting> draw_material(const std::string& table) {
     static const std::vector<BuiltInMaterial> known = materials();
     const Scene& scene = session.scene();
-    const bool is_typed = parameter(table + ".n").value(scene).has_value();
+    const bool is_typed = control(table + ".n").value(scene).has_value();
     const std::string current = is_typed ? "n and k as below" : scene.word(table + ".material").value_or("file");
     // Entry 0 comes before the built-in materials. A material from a file has no entry.
     const auto now = std::ranges::find(known, current, &BuiltInMaterial::name);
     std::optional<std::size_t> chosen;
     if (is_typed || now != known.end()) chosen = is_typed ? 0 : static_cast<std::size_t>(now - known.begin()) + 1;
-    const auto entries = [&] {
-      const auto [from_um, to_um] = spectrum_um(scene);
-      std::vector<ListEntry> all = {{"n and k as below"}};
-      for (const BuiltInMaterial& one : known) {
-        const bool is_known = one.from_um <= from_um && to_um <= one.to_um;
-        all.push_back({fmt::format("{}, {:g} to {:g} µm", one.name, one.from_um, one.to_um),
-                       one.source + (is_known ? "" : "\nnot known over the spectrum of this scene"), is_known});
-      }
-      return all;
-    };
+    const auto [from_um, to_um] = spectrum_um(scene);
+    std::vector<ListEntry> entries = {{"n and k as below"}};
+    for (const BuiltInMaterial& material : known) {
+      const bool is_known = material.from_um <= from_um && to_um <= material.to_um;
+      entries.push_back({fmt::format("{}, {:g} to {:g} µm", material.name, material.from_um, material.to_um),
+                         material.source + (is_known ? "" : "\nnot known over the spectrum of this scene"), is_known});
+    }
     row_label("material");
     const std::string note = is_typed ? "a built-in material, or your n and k" : "N = n + ik of " + surface_name(scene);
     const auto clicked = draw_list(table + ".material", -1.0F, current, note, chosen, entries);
@@ -234,7 +217,7 @@ struct Controls {
     for (Setting& setting : chosen) setting.key = "surface." + setting.key;
     if (!chosen.empty()) session.set(chosen);
     draw_choices("surface");
-    draw_table("surface");
+    draw_numbers("surface");
   }
 
   void draw_coating() {
@@ -257,19 +240,18 @@ struct Controls {
         films[layer - 1] = chosen;
       }
       if (is_removed || !chosen.empty()) return session.set({coating_of(films)});
-      draw_table(film);
+      draw_numbers(film);
     }
   }
 
   void draw_source_kind() {
     const Scene& scene = session.scene();
     const std::size_t now = scene.number("source.irradiance") ? 0 : scene.number("source.relative_irradiance") ? 1 : 2;
-    const std::array<ListEntry, 3> kinds = {{{"E0 as below"}, {"e = E0/(πB(T)) as below"}, {"the sun"}}};
+    const std::vector<ListEntry> kinds = {{"E0 as below"}, {"e = E0/(πB(T)) as below"}, {"the sun"}};
     const std::array<Setting, 3> changes = {
         {{"source.irradiance", 1.0}, {"source.relative_irradiance", 0.6}, {"source.preset", "sun"}}};
     row_label("kind");
-    const auto entries = [&] { return std::vector<ListEntry>(kinds.begin(), kinds.end()); };
-    if (const auto clicked = draw_list("source kind", -1.0F, kinds[now].text, "", now, entries)) set(changes[*clicked]);
+    if (const auto clicked = draw_list("source kind", -1.0F, kinds[now].text, "", now, kinds)) set(changes[*clicked]);
   }
 
   /// A box that removes an effect from the scene. It restores the effect as opened, or with default values.
@@ -286,12 +268,11 @@ struct Controls {
   }
 
   void draw_sky() {
-    const std::string file = sky_file(session.scene()).string();
-    if (file != state.sky_file) state.sky = read_sky_pair(file);
-    state.sky_file = file;
     draw_sky_list();
-    if (state.sky) draw_sky_temperature("zenith", &SkyPair::zenith_K);
-    if (state.sky) draw_sky_temperature("horizon", &SkyPair::horizon_K);
+    for (const auto& [name, temperature_K] :
+         {std::pair{"zenith", &SkyPair::zenith_K}, {"horizon", &SkyPair::horizon_K}}) {
+      if (const auto sky = read_sky_pair(sky_file(session.scene()))) draw_sky_temperature(name, *sky, temperature_K);
+    }
   }
 
   void draw_sky_list() {
@@ -300,13 +281,15 @@ struct Controls {
     std::vector<ListEntry> skies = {{"uniform"}, {"clear-sky"}, {"overcast"}, {"zenith and horizon"}};
     // The sky file of the opened scene remains a choice.
     if (!sky_file(session.edits().opened()).empty()) skies.push_back({file_name(opened)});
-    const std::string name = current.empty() ? "uniform" : state.sky ? "zenith and horizon" : file_name(current);
+    const std::string name = current.empty()                            ? "uniform"
+                             : read_sky_pair(sky_file(session.scene())) ? "zenith and horizon"
+                                                                        : file_name(current);
     const auto now = std::ranges::find(skies, name, &ListEntry::text);
     const auto position = static_cast<std::size_t>(now - skies.begin());
     row_label("sky");
     const auto clicked =
         draw_list("sky", -1.0F, name, fmt::format("{} {}: {}", kSkyProfile, current, described(kSkyProfile).meaning),
-                  position, [&] { return skies; });
+                  position, skies);
     if (!clicked) return;
     if (*clicked == 0) {
       session.set(kUniformSky, session.edits().opened().number(kUniformSky).value_or(kUniformSky_K));
@@ -317,13 +300,12 @@ struct Controls {
     }
   }
 
-  void draw_sky_temperature(const std::string& name, double SkyPair::*part) {
-    SkyPair sky = *state.sky;
+  void draw_sky_temperature(const std::string& name, SkyPair sky, double SkyPair::*temperature_K) {
     const auto change = [&](const std::string& text) {
       const std::optional<double> typed = parse_number(text);
       // Refuses text that is not a temperature, with the message for a uniform sky.
       if (!typed || !described(kUniformSky).range.contains(*typed)) return Setting{kUniformSky, TomlText{text}};
-      sky.*part = *typed;
+      sky.*temperature_K = *typed;
       return Setting{kSkyProfile, session.skies().path(sky)};
     };
     draw_slider({.id = "sky " + name,
@@ -332,7 +314,7 @@ struct Controls {
                  .reset_key = kSkyProfile,
                  .scale = kSkySlider,
                  .change = change},
-                state.sky.value().*part);
+                sky.*temperature_K);
   }
 
   void draw_spectrum() {
@@ -359,24 +341,24 @@ struct Controls {
       if (!has_effect(session.scene(), effect)) continue;
       if (effect == std::string_view("source")) draw_source_kind();
       if (effect == std::string_view("surroundings")) draw_sky();
-      draw_table(effect);
+      draw_numbers(effect);
     }
     heading("Spectrum and geometry");
     draw_spectrum();
-    draw_table("spectrum");
+    draw_numbers("spectrum");
     draw_choices("geometry");
-    draw_table("geometry");
+    draw_numbers("geometry");
   }
 
   void draw_accuracy() {
-    draw_table("accuracy");
+    draw_numbers("accuracy");
     draw_choices("accuracy");
   }
 };
 
 }  // namespace
 
-void draw_controls(Session& session, ControlsState& state) { Controls{session, state}.draw_all(); }
-void draw_accuracy_controls(Session& session, ControlsState& state) { Controls{session, state}.draw_accuracy(); }
+void draw_controls(Session& session, NumberFields& fields) { Controls{session, fields}.draw_all(); }
+void draw_accuracy_controls(Session& session, NumberFields& fields) { Controls{session, fields}.draw_accuracy(); }
 
 }  // namespace dolp::explore

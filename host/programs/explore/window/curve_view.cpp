@@ -22,13 +22,18 @@ struct Shown {
   CurveStyle style;
 };
 
+/// True for curves of an earlier or another scene, which are dim.
+bool is_dim(const Session& session, const Curve& curve) {
+  return session.is_outdated(curve) || session.is_foreign(curve.scene());
+}
+
 /// The style for parts in which the model fails.
 CurveStyle bad_style() { return {kBadColour, 4.0F, 4.0F}; }
 
 std::vector<Shown> shown_curves(const Session& session) {
   std::vector<Shown> curves;
   const auto add = [&](const Curve& curve, const CurveStyle& style) {
-    curves.push_back({&curve, session.is_outdated(curve) || session.is_foreign(curve.scene()) ? stale(style) : style});
+    curves.push_back({&curve, is_dim(session, curve) ? stale(style) : style});
   };
   if (session.overlay()) add(*session.overlay(), overlay_style());
   for (const Pin& pin : session.pins()) {
@@ -61,8 +66,8 @@ std::vector<double> values_to_show(const Session& session, const std::vector<Sho
         values.push_back(described(quantity).scale() * point[limit]);
     }
   }
-  for (const Measurement& one : session.residuals().measured(quantity))
-    values.push_back(described(quantity).scale() * one.value);
+  for (const Measurement& point : session.residuals().measured(quantity))
+    values.push_back(described(quantity).scale() * point.value);
   return values;
 }
 
@@ -127,9 +132,7 @@ bool add_curve(const char* id, const std::string& name, const CurveStyle& style,
 }
 
 void draw_legend(const std::vector<Shown>& curves, Session& session) {
-  const auto colour_of = [&](const Curve& curve) {
-    return session.is_outdated(curve) || session.is_foreign(curve.scene()) ? kDimColour : kTextColour;
-  };
+  const auto colour_of = [&](const Curve& curve) { return is_dim(session, curve) ? kDimColour : kTextColour; };
   add_curve("curve", curve_name(session), curves.back().style, colour_of(session.curve()));
   if (session.overlay() && add_curve("overlay", overlay_name(session), overlay_style(), colour_of(*session.overlay())))
     session.set_view(&View::has_overlay, false);
@@ -231,8 +234,8 @@ void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
   const PlottedDescription& quantity = described(session.view().quantity);
   const std::vector<Measurement> residuals = session.residuals().residuals(quantity.quantity);
   double largest = residuals.empty() ? 1.0 : 1e-6;
-  for (const Measurement& one : residuals)
-    largest = std::max(largest, quantity.scale() * (std::abs(one.value) + one.uncertainty.value_or(0.0)));
+  for (const Measurement& point : residuals)
+    largest = std::max(largest, quantity.scale() * (std::abs(point.value) + point.uncertainty.value_or(0.0)));
   std::string label = std::string("measured − model") + (quantity.in_percent ? " [points]" : "");
   if (const auto rms = rms_of(residuals)) label += fmt::format("; root mean square {:.3g}", quantity.scale() * *rms);
   const Plot plot("residuals", size, {"", theta}, {label, {-1.2 * largest, 1.2 * largest}});
@@ -246,18 +249,18 @@ void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
 
 }  // namespace
 
-void CurveView::edit_axes(View& view, const Plot& plot, const std::string& values) {
+void CurveView::edit_axes(View& view, AxisEditor& editor, const Plot& plot, const std::string& values) {
   const auto check_zeniths = [&](const Scale& range) {
     const Scale all = Scale{0.0, view.theta_max_deg}.with_log(range.is_log);
     const bool is_inside = range.from >= all.from && range.to <= all.to;
     return is_inside ? "" : fmt::format("must be numbers in [{:g}, {:g}]; \"θ up to\" sets the end", all.from, all.to);
   };
-  if (const auto change = axis_editor_.draw("zenith θ [°]", plot.x_numbers(), x_, check_zeniths)) {
-    view.curve_zoom.x = change->range;
+  if (const auto change = editor.draw("zenith θ [°]", plot.x_numbers(), x_, check_zeniths)) {
+    view.set_range(View::kZeniths, change->range);
     view.is_theta_log = change->is_log;
   }
-  if (const auto change = axis_editor_.draw(values, plot.y_numbers(), y_, [](const Scale&) { return ""; })) {
-    view.curve_zoom.y = change->range;
+  if (const auto change = editor.draw(values, plot.y_numbers(), y_, [](const Scale&) { return ""; })) {
+    view.set_range(View::kValues, change->range);
     view.is_log = change->is_log;
   }
 }
@@ -278,7 +281,7 @@ void CurveView::choose_axes(const Session& session, Zoom& zoom, const Scale& zen
   y_ = values;
 }
 
-void CurveView::draw(Session& session, ImVec2 size) {
+void CurveView::draw(Session& session, AxisEditor& editor, ImVec2 size) {
   const std::vector<Shown> curves = shown_curves(session);
   size.y -= draw_legend_above(curves, session, size);
   const Plotted quantity = session.view().quantity;
@@ -291,11 +294,14 @@ void CurveView::draw(Session& session, ImVec2 size) {
   View view = session.view();
   const Scale zeniths = Scale{0.0, view.theta_max_deg}.with_log(view.is_theta_log);
   PlotAxis values{described(quantity).label(), range_of(values_to_show(session, curves), view.is_log)};
-  choose_axes(session, view.curve_zoom, zeniths, values.scale);
+  Zoom zoom{view.range(View::kZeniths), view.range(View::kValues)};
+  choose_axes(session, zoom, zeniths, values.scale);
   const Plot plot("curve", {size.x, size.y - residual_height - gap},
                   {is_bistatic(session.scene()) ? "zenith θ of the source [°]" : "zenith θ [°]", x_}, values);
   if (plot.is_dragged()) session.set_theta(plot.x().value(plot.mouse_x()));
-  plot.follow_mouse(view.curve_zoom, zeniths);
+  plot.follow_mouse(zoom, zeniths);
+  view.set_range(View::kZeniths, zoom.x);
+  view.set_range(View::kValues, zoom.y);
   plot.clip();
   if (!plot.y().is_log) plot.list()->AddLine(plot.at(x_.from, 0.0), plot.at(x_.to, 0.0), kDimColour);
   if (quantity == Plotted::kDolp) draw_bracket(plot, curves.back());
@@ -309,7 +315,7 @@ void CurveView::draw(Session& session, ImVec2 size) {
   plot.unclip();
   draw_peak(plot, session);  // not clipped, so that the mark is complete at an end of the axis
   area_ = plot.area();
-  edit_axes(view, plot, values.label);
+  edit_axes(view, editor, plot, values.label);
   if (view != session.view()) session.set_view(view);
   if (has_residuals) draw_residuals(session, x_, {size.x, residual_height});
 }

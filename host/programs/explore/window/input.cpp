@@ -3,6 +3,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
 #include <imgui_internal.h>
 
 #include <algorithm>
@@ -102,6 +103,7 @@ void Input::begin_frame() {
     events_.front().apply();
     events_.pop_front();
   }
+  ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   // The backend would use the current position of the mouse, which may be some events later. A drag may leave the
   // window.

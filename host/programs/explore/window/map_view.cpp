@@ -10,8 +10,6 @@
 namespace dolp::explore {
 namespace {
 
-// More than the eye can distinguish, but few enough that neighbours with one colour are drawn together.
-constexpr double kColourSteps = 96.0;
 constexpr double kMostContrast = 1e3;  // largest over smallest value of a logarithmic colour scale
 constexpr std::size_t kMostLines = 7;
 constexpr ImU32 kLightLine = IM_COL32(255, 255, 255, 190);  // over the colours of a map, in both themes
@@ -44,8 +42,8 @@ void draw_map_cursor(const Session& session, const Plot& plot) {
 void set_range(Session& session, const MapAxis& axis, const AxisEditor::Change& change) {
   View view = session.view();
   const bool is_automatic = !change.range && change.is_log == axis.scale.is_log;
-  view.map_ranges.erase(axis.label);
-  if (!is_automatic) view.map_ranges[axis.label] = change.range.value_or(axis.scale.with_log(change.is_log));
+  view.set_range(axis.label, is_automatic ? std::nullopt
+                                          : std::optional(change.range.value_or(axis.scale.with_log(change.is_log))));
   session.set_view(view);
 }
 
@@ -70,57 +68,24 @@ ImU32 MapView::colour(double position) const { return quantity().is_signed ? div
 void MapView::update(const Session& session) {
   const Plotted quantity = session.view().quantity;
   const bool is_log = session.view().is_log;
-  const bool is_same = quantity_ == quantity && is_log_ == is_log && typed_colours_ == session.view().map_colours;
+  const bool is_same =
+      quantity_ == quantity && is_log_ == is_log && typed_colours_ == session.view().range(View::kColours);
   if (version_ == session.map().version() && is_same) return;
   version_ = session.map().version();
   quantity_ = quantity;
   is_log_ = is_log;
-  typed_colours_ = session.view().map_colours;
+  typed_colours_ = session.view().range(View::kColours);
   field_ = session.map().field(quantity);
   // While a slider is dragged the colour scale stays fixed, so that only the map changes.
   const bool is_held = session.is_dragged() && is_same && colour_scale_.from < colour_scale_.to;
   if (!is_held) colour_scale_ = typed_colours_.value_or(colour_range());
-  colours_.clear();
-  for (std::size_t i = 0; i < field_.values.size(); ++i) {
-    const double position = colour_position(field_.values[i]);
-    colours_.push_back(field_.is_good[i] ? colour(std::round(position * kColourSteps) / kColourSteps) : kBadColour);
-  }
-  runs_ = runs_along(true);
-  std::vector<Run> upwards = runs_along(false);
-  if (upwards.size() < runs_.size()) runs_ = std::move(upwards);
+  std::vector<ImU32> colours;
+  for (const double value : field_.values)
+    colours.push_back(std::isnan(value) ? kBadColour : colour(colour_position(value)));
+  cells_.set(colours, field_.count);
   contours_.clear();
   if (field_.min >= field_.max || colour_scale_.from >= colour_scale_.to) return;
   for (const double level : colour_scale_.ticks(kMostLines)) contours_.push_back({level, contour(field_, level)});
-}
-
-std::vector<MapView::Run> MapView::runs_along(bool rows) const {
-  const std::size_t count = field_.count;
-  std::vector<Run> runs;
-  for (std::size_t line = 0; line < count; ++line) {
-    const auto colour = [&](std::size_t i) { return colours_[rows ? line * count + i : i * count + line]; };
-    for (std::size_t begin = 0; begin < count;) {
-      std::size_t end = begin + 1;
-      while (end < count && colour(end) == colour(begin)) ++end;
-      const std::size_t length = end - begin;
-      runs.push_back(rows ? Run{begin, line, length, 1, colour(begin)} : Run{line, begin, 1, length, colour(begin)});
-      begin = end;
-    }
-  }
-  return runs;
-}
-
-void MapView::draw_cells(const Plot& plot) const {
-  const auto edge = [&](std::size_t i) {
-    // The outer entries lie on the border, so their cells are half as wide.
-    return std::clamp((static_cast<double>(i) - 0.5) / static_cast<double>(field_.count - 1), 0.0, 1.0);
-  };
-  const ImVec2 white = ImGui::GetFontTexUvWhitePixel();
-  for (const Run& run : runs_) {
-    const ImVec2 low = plot.at_position(edge(run.column), edge(run.row));
-    const ImVec2 high = plot.at_position(edge(run.column + run.columns), edge(run.row + run.rows));
-    plot.list()->PrimReserve(6, 4);
-    plot.list()->PrimRectUV({low.x, high.y}, {high.x, low.y}, white, white, run.colour);
-  }
 }
 
 void MapView::draw_contours(const Plot& plot) const {
@@ -161,26 +126,26 @@ void MapView::draw_bar(const Plot& plot) const {
   }
 }
 
-void MapView::edit_axes(Session& session, const Plot& plot) {
+void MapView::edit_axes(Session& session, AxisEditor& editor, const Plot& plot) {
   for (const auto& [axis, numbers] :
        {std::pair{session.map().x(), plot.x_numbers()}, {session.map().y(), plot.y_numbers()}}) {
     const auto check = [&](const Scale& range) { return refusal(session.scene(), axis, range); };
-    const auto change = axis_editor_.draw(axis.label, numbers, axis.scale, check);
+    const auto change = editor.draw(axis.label, numbers, axis.scale, check);
     if (change) set_range(session, axis, *change);
   }
   const float line = ImGui::GetTextLineHeight();
   const Area numbers{{plot.max().x + 0.5F * line, plot.min().y}, {plot.max().x + kBarRoom * line, plot.max().y}};
-  const auto change = axis_editor_.draw("colours: " + quantity().label(), numbers,
-                                        times(colour_scale_, quantity().scale()), [](const Scale&) { return ""; });
+  auto change = editor.draw("colours: " + quantity().label(), numbers, times(colour_scale_, quantity().scale()),
+                            [](const Scale&) { return ""; });
   if (!change) return;
   View view = session.view();
-  view.map_colours.reset();
-  if (change->range) view.map_colours = times(*change->range, 1.0 / quantity().scale());
+  if (change->range) change->range = times(*change->range, 1.0 / quantity().scale());
+  view.set_range(View::kColours, change->range);
   if (!quantity().is_signed) view.is_log = change->is_log;
   session.set_view(view);
 }
 
-void MapView::draw(Session& session, ImVec2 size) {
+void MapView::draw(Session& session, AxisEditor& editor, ImVec2 size) {
   update(session);
   const HeatMap& map = session.map();
   const float line = ImGui::GetTextLineHeight();
@@ -188,14 +153,14 @@ void MapView::draw(Session& session, ImVec2 size) {
   if (plot.is_dragged()) session.set_map_cursor(plot.mouse_x(), plot.mouse_y());
   draw_text(plot.list(), {plot.max().x, plot.min().y - 0.6F * line}, {1.0F, 1.0F}, kTextColour, title_of(session));
   plot.clip();
-  draw_cells(plot);
+  cells_.draw(plot.list(), plot.min(), plot.max());
   draw_contours(plot);
   if (map.is_stale() && !session.is_dragged()) plot.list()->AddRectFilled(plot.min(), plot.max(), kStaleVeil);
   draw_map_cursor(session, plot);
   plot.unclip();
   draw_bar(plot);
   area_ = plot.area();
-  edit_axes(session, plot);
+  edit_axes(session, editor, plot);
 }
 
 }  // namespace dolp::explore

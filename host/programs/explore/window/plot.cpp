@@ -91,28 +91,6 @@ Plot::Plot(const char* id, ImVec2 size, PlotAxis x, PlotAxis y, float right, boo
   ImGui::Dummy(size);
 }
 
-Area Plot::x_numbers() const {
-  const float line = ImGui::GetTextLineHeight();
-  return {{min().x - line, max().y + 0.1F * line}, {max().x + line, max().y + 2.2F * line}};
-}
-
-Area Plot::y_numbers() const {
-  const float line = ImGui::GetTextLineHeight();
-  return {{min().x - 3.5F * line, min().y - 0.5F * line}, {min().x - 0.1F * line, max().y + 0.5F * line}};
-}
-
-bool Plot::can_show(double x_value, double y_value) const {
-  return std::isfinite(y_value) && (!x().is_log || x_value > 0.0) && (!y().is_log || y_value > 0.0);
-}
-
-double Plot::mouse_x() const {
-  return std::clamp(static_cast<double>((ImGui::GetIO().MousePos.x - min().x) / area_.width()), 0.0, 1.0);
-}
-
-double Plot::mouse_y() const {
-  return std::clamp(static_cast<double>((max().y - ImGui::GetIO().MousePos.y) / area_.height()), 0.0, 1.0);
-}
-
 void Plot::follow_mouse(Zoom& zoom, const Scale& all_x) const {
   constexpr float kPerNotch = 1.25F;
   constexpr double kLeastPart = 1e-4;  // shortest axis, relative to the whole axis

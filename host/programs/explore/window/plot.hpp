@@ -1,6 +1,8 @@
 // Axes, curves and maps, drawn with ImGui's draw lists.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "explore/scale.hpp"
@@ -13,6 +15,11 @@ namespace dolp::explore {
 struct PlotAxis {
   std::string label;
   Scale scale;
+};
+
+/// The part of a plot that the user chose by mouse or by typing; empty: the whole axis.
+struct Zoom {
+  std::optional<Scale> x, y;
 };
 
 /// A rectangle on the screen with two axes.
@@ -29,10 +36,18 @@ class Plot {
   const Scale& y() const { return y_.scale; }
   ImDrawList* list() const { return list_; }
   // The areas of the numbers beside the axes.
-  Area x_numbers() const;
-  Area y_numbers() const;
+  Area x_numbers() const {
+    const float line = ImGui::GetTextLineHeight();
+    return {{min().x - line, max().y + 0.1F * line}, {max().x + line, max().y + 2.2F * line}};
+  }
+  Area y_numbers() const {
+    const float line = ImGui::GetTextLineHeight();
+    return {{min().x - 3.5F * line, min().y - 0.5F * line}, {min().x - 0.1F * line, max().y + 0.5F * line}};
+  }
   /// True if both axes can show a point: it is finite, and positive along logarithmic axes.
-  bool can_show(double x_value, double y_value) const;
+  bool can_show(double x_value, double y_value) const {
+    return std::isfinite(y_value) && (!x().is_log || x_value > 0.0) && (!y().is_log || y_value > 0.0);
+  }
 
   ImVec2 at(double x_value, double y_value) const { return at_position(x().position(x_value), y().position(y_value)); }
   ImVec2 at_position(double x, double y) const { return area_.at(static_cast<float>(x), 1.0F - static_cast<float>(y)); }
@@ -43,8 +58,12 @@ class Plot {
   /// y), the right button moves the plot, a double click resets it. `all_x` limits the x axis.
   void follow_mouse(Zoom& zoom, const Scale& all_x) const;
   /// The position of the mouse, or the nearest position in the plot, from 0 to 1 along both axes.
-  double mouse_x() const;
-  double mouse_y() const;
+  double mouse_x() const {
+    return std::clamp(static_cast<double>((ImGui::GetIO().MousePos.x - min().x) / area_.width()), 0.0, 1.0);
+  }
+  double mouse_y() const {
+    return std::clamp(static_cast<double>((max().y - ImGui::GetIO().MousePos.y) / area_.height()), 0.0, 1.0);
+  }
 
   void clip() const { list_->PushClipRect(area_.min, area_.max, true); }
   void unclip() const { list_->PopClipRect(); }

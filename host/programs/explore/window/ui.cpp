@@ -64,58 +64,12 @@ void draw_removable(const char* title, const char* id, Things& things, const Dra
   if (removed != things.end()) things.erase(removed);
 }
 
-}  // namespace
-
-Ui::Ui(Session& session, Actions& actions, std::function<void()> catch_up)
-    : session_(session), actions_(actions), catch_up_(std::move(catch_up)) {
-  for (std::vector<Command>& commands : std::array{file_commands(), view_commands(), scene_commands()})
-    std::ranges::move(commands, std::back_inserter(commands_));
-}
-
-void Ui::draw_view_controls() {
-  View view = session_.view();
-  const float width = 6.5F * ImGui::GetFontSize();
-  label("show");
-  const auto quantities = [] {
-    std::vector<ListEntry> all;
-    for (const PlottedDescription& one : kAllPlotted) all.push_back({fmt::format("{}: {}", one.name, one.meaning)});
-    return all;
-  };
-  const auto position = static_cast<std::size_t>(view.quantity);
-  if (const auto clicked = draw_list("quantity", width, described(view.quantity).name, "", position, quantities))
-    view.quantity = kAllPlotted[*clicked].quantity;
-  ImGui::SameLine();
-  ImGui::Checkbox("log", &view.is_log);
-  ImGui::SameLine();
-  ImGui::Checkbox("overlay", &view.has_overlay);
-  continue_row(18.0F);
-  draw_map_axes(view);
-  continue_row(14.0F);
-  label("   θ up to");
-  ImGui::SetNextItemWidth(0.5F * width);
-  fields_.draw("theta max", view.theta_max_deg, [&](const std::string& text) -> std::string {
-    const double typed = parse_number(text).value_or(-1.0);
-    if (typed < Session::kLeastThetaMaxDeg || typed > 90.0)
-      return fmt::format("θ up to = {}: must be a number in [{}, 90]", text, Session::kLeastThetaMaxDeg);
-    view.theta_max_deg = typed;
-    return {};
-  });
-  ImGui::SameLine();
-  label("°  ");
-  if (ImGui::Button("pin (Ctrl+P)")) session_.pin();
-  if (view != session_.view()) session_.set_view(view);
-  fields_.draw_reason("theta max");
-}
-
-void Ui::draw_map_axes(View& view) {
+void draw_map_axes(const Session& session, View& view) {
   label("   map over");
-  const std::vector<MapAxis> axes = map_axes(session_.scene(), view.theta_max_deg);
-  const auto entries = [&] {
-    std::vector<ListEntry> all;
-    for (const MapAxis& axis : axes) all.push_back({axis.label});
-    return all;
-  };
-  const MapAxis &x = session_.map().x(), &y = session_.map().y();
+  const std::vector<MapAxis> axes = map_axes(session.scene(), view.theta_max_deg);
+  std::vector<ListEntry> entries;
+  for (const MapAxis& axis : axes) entries.push_back({axis.label});
+  const MapAxis &x = session.map().x(), &y = session.map().y();
   for (const auto& [id, axis, other] : {std::tuple{"map x", &x, &y}, {"map y", &y, &x}}) {
     const auto position = static_cast<std::size_t>(std::ranges::find(axes, axis->name, &MapAxis::name) - axes.begin());
     if (const auto clicked = draw_list(id, 5.5F * ImGui::GetFontSize(), axis->label, "", position, entries)) {
@@ -129,22 +83,55 @@ void Ui::draw_map_axes(View& view) {
   }
 }
 
-void Ui::draw_fit() {
-  if (!session_.residuals().data()) return;
+void draw_view_controls(Session& session, NumberFields& fields) {
+  View view = session.view();
+  const float width = 6.5F * ImGui::GetFontSize();
+  label("show");
+  std::vector<ListEntry> quantities;
+  for (const PlottedDescription& quantity : kAllPlotted)
+    quantities.push_back({fmt::format("{}: {}", quantity.name, quantity.meaning)});
+  const auto position = static_cast<std::size_t>(view.quantity);
+  if (const auto clicked = draw_list("quantity", width, described(view.quantity).name, "", position, quantities))
+    view.quantity = kAllPlotted[*clicked].quantity;
+  ImGui::SameLine();
+  ImGui::Checkbox("log", &view.is_log);
+  ImGui::SameLine();
+  ImGui::Checkbox("overlay", &view.has_overlay);
+  continue_row(18.0F);
+  draw_map_axes(session, view);
+  continue_row(14.0F);
+  label("   θ up to");
+  ImGui::SetNextItemWidth(0.5F * width);
+  fields.draw("theta max", view.theta_max_deg, [&](const std::string& text) -> std::string {
+    const double typed = parse_number(text).value_or(-1.0);
+    if (typed < Session::kLeastThetaMaxDeg || typed > 90.0)
+      return fmt::format("θ up to = {}: must be a number in [{}, 90]", text, Session::kLeastThetaMaxDeg);
+    view.theta_max_deg = typed;
+    return {};
+  });
+  ImGui::SameLine();
+  label("°  ");
+  if (ImGui::Button("pin (Ctrl+P)")) session.pin();
+  if (view != session.view()) session.set_view(view);
+  fields.draw_reason("theta max");
+}
+
+void draw_fit(const Session& session, Actions& actions) {
+  if (!session.residuals().data()) return;
   ImGui::Spacing();
   // The progress bar replaces the button, and the result is elsewhere, so that the sliders below do not move.
-  if (actions_.fit_task().is_running()) return draw_task("fit", actions_.fit_task());
-  const bool is_ready = session_.fit_job().has_value();
+  if (actions.fit_task.is_running()) return draw_task("fit", actions.fit_task);
+  const bool is_ready = session.fit_job().has_value();
   ImGui::BeginDisabled(!is_ready);
-  if (ImGui::Button("Fit (Ctrl+F)")) actions_.fit();
+  if (ImGui::Button("Fit (Ctrl+F)")) actions.fit();
   ImGui::EndDisabled();
   ImGui::SameLine();
-  const std::string file = std::filesystem::path(session_.residuals().data()->name).filename().string();
+  const std::string file = std::filesystem::path(session.residuals().data()->name).filename().string();
   ImGui::TextDisabled("%s", shown(is_ready ? file : "mark what varies").c_str());
 }
 
-void Ui::draw_pins() {
-  draw_removable("Pins", "pin", session_.pins(), [](Pin& pin, const std::string&) {
+void draw_pins(Session& session) {
+  draw_removable("Pins", "pin", session.pins(), [](Pin& pin, const std::string&) {
     ImGui::PushStyleColor(ImGuiCol_Text, pin_style(pin.colour).colour);
     const std::string name = shown(pin.name.empty() ? surface_name(pin.curve.shown_scene()) : pin.name);
     const float box = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x;
@@ -154,61 +141,40 @@ void Ui::draw_pins() {
   });
 }
 
-void Ui::draw_snapshots() {
+void draw_snapshots(Session& session) {
   std::optional<SceneEdits> clicked;
-  draw_removable("Snapshots", "snapshot", session_.snapshots(), [&](Snapshot& snapshot, const std::string& id) {
+  draw_removable("Snapshots", "snapshot", session.snapshots(), [&](Snapshot& snapshot, const std::string& id) {
     const std::string name = in_lines(shown(snapshot.name), ImGui::GetContentRegionAvail().x);
-    const bool is_shown = snapshot.edits.is_same_scene(session_.edits());
+    const bool is_shown = snapshot.edits.is_same_scene(session.edits());
     if (ImGui::Selectable((name + "###go").c_str(), is_shown)) clicked = snapshot.edits;
     name_item(id);
     tooltip("shows this state of the scene; Ctrl+Z goes back, a right click edits the name");
     if (const auto typed = typed_name(snapshot.name)) snapshot.name = *typed;
   });
-  if (clicked) session_.go_to(*clicked);
+  if (clicked) session.go_to(*clicked);
 }
 
-void Ui::draw_message() {
-  const Message& message = session_.message();
+void draw_message(const Message& message) {
   if (!message.text.empty()) coloured_text(message.is_error ? kErrorColour : kTextColour, message.text);
 }
 
-void Ui::draw_readout() {
-  if (is_narrow_) draw_message();
-  coloured_text(kTextColour, peak_text(session_));
-  coloured_text(kTextColour, cause_text(session_));
-  coloured_text(kDimColour, cursor_text(session_));
-}
-
-void Ui::draw_accuracy() {
-  draw_accuracy_controls(session_, controls_);
-  for (const std::string& line : cost_lines(session_)) coloured_text(kTextColour, line);
-  ImGui::BeginDisabled(!session_.curve().is_finished() || actions_.true_error_task().is_running());
-  if (ImGui::Button("True error (Ctrl+K)")) actions_.find_true_error();
+void draw_accuracy(Ui& ui) {
+  draw_accuracy_controls(ui.session, ui.fields);
+  for (const std::string& line : cost_lines(ui.session)) coloured_text(kTextColour, line);
+  BackgroundTask &reference = ui.actions.true_error_task, &table = ui.actions.table_task;
+  ImGui::BeginDisabled(!ui.session.curve().is_finished() || reference.is_running());
+  if (ImGui::Button("True error (Ctrl+K)")) ui.actions.find_true_error();
   ImGui::EndDisabled();
-  draw_task("reference", actions_.true_error_task());
-  if (actions_.is_true_error_old()) coloured_text(kDimColour, "The true error belongs to the scene before.");
-  if (actions_.table_task().state() != BackgroundTask::State::kNone) {
+  draw_task("reference", reference);
+  if (ui.actions.is_true_error_old()) coloured_text(kDimColour, "The true error belongs to the scene before.");
+  if (table.state() != BackgroundTask::State::kNone) {
     label("table");
-    draw_task("table", actions_.table_task());
+    draw_task("table", table);
   }
-  if (!is_narrow_) draw_message();
+  if (!ui.is_narrow) draw_message(ui.session.message());
 }
 
-void Ui::draw_plots(ImVec2 size) {
-  const float gap = ImGui::GetStyle().ItemSpacing.x;
-  const float curve_width = 0.54F * size.x;
-  constexpr ImGuiWindowFlags kStill = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
-  ImGui::BeginChild("curves", {curve_width, size.y}, false, kStill);
-  curve_view_.draw(session_, ImGui::GetContentRegionAvail());
-  ImGui::EndChild();
-  ImGui::SameLine();
-  ImGui::BeginChild("maps", {size.x - curve_width - gap, size.y}, false, kStill);
-  draw_panel_tabs();
-  draw_panel(ImGui::GetContentRegionAvail());
-  ImGui::EndChild();
-}
-
-bool Ui::draw_tab(const std::string& name, bool is_shown) {
+bool draw_tab(const std::string& name, bool is_shown) {
   const float width = ImGui::CalcTextSize(name.c_str()).x + 2.0F * ImGui::GetStyle().FramePadding.x;
   if (ImGui::GetContentRegionAvail().x < width) ImGui::NewLine();
   ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(is_shown ? ImGuiCol_TabActive : ImGuiCol_Tab));
@@ -219,65 +185,96 @@ bool Ui::draw_tab(const std::string& name, bool is_shown) {
   return is_clicked;
 }
 
-void Ui::draw_panel_tabs() {
+void draw_panel_tabs(Ui& ui) {
   for (std::size_t i = 0; i < kPanelNames.size(); ++i) {
     const auto panel = static_cast<Panel>(i);
-    if (!draw_tab(kPanelNames[i], panel == session_.view().panel && (!is_narrow_ || page_.empty()))) continue;
-    session_.set_view(&View::panel, panel);
-    page_.clear();
+    if (!draw_tab(kPanelNames[i], panel == ui.session.view().panel && (!ui.is_narrow || ui.page.empty()))) continue;
+    ui.session.set_view(&View::panel, panel);
+    ui.page.clear();
   }
   ImGui::NewLine();
 }
 
-void Ui::draw_panel(ImVec2 size) {
-  switch (session_.view().panel) {
-    case Panel::kMap:
-      return map_view_.draw(session_, size);
-    case Panel::kSlopes:
-      return draw_slopes(session_, size);
-    case Panel::kMaterial:
-      return draw_material(session_, size);
-    case Panel::kSmooth:
-      return sweep_views_.draw_smooth(session_, size);
-    case Panel::kSpectrum:
-      return sweep_views_.draw_spectrum(session_, size);
-    case Panel::kScattering:
-      return scattering_view_.draw(session_, size);
-    case Panel::kShapes:
-      return shape_view_.draw(session_, size);
-    case Panel::kSky:
-      return draw_sky(session_, size);
-    case Panel::kFit:
-      return draw_fit_result(session_);
-  }
+void draw_panel(Ui& ui, ImVec2 size) {
+  using Draw = void (*)(Ui&, ImVec2);
+  constexpr std::array<Draw, kPanelNames.size()> kDraw = {
+      // in the order of Panel
+      [](Ui& u, ImVec2 room) { u.map.draw(u.session, u.axis_editor, room); },
+      [](Ui& u, ImVec2 room) { draw_slopes(u.session, room); },
+      [](Ui& u, ImVec2 room) { draw_material(u.session, room); },
+      [](Ui& u, ImVec2 room) { draw_smooth(u.session, u.axis_editor, room); },
+      [](Ui& u, ImVec2 room) { draw_spectrum(u.session, u.axis_editor, room); },
+      [](Ui& u, ImVec2 room) { u.scattering_view.draw(u.session, room); },
+      [](Ui& u, ImVec2 room) { u.shape_view.draw(u.session, room); },
+      [](Ui& u, ImVec2 room) { draw_sky(u.session, room); },
+      [](Ui& u, ImVec2) { draw_fit_result(u.session); }};
+  kDraw.at(static_cast<std::size_t>(ui.session.view().panel))(ui, size);
 }
 
-void Ui::draw_one_page() {
+void draw_plots(Ui& ui, ImVec2 size) {
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const float curve_width = 0.54F * size.x;
+  constexpr ImGuiWindowFlags kStill = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
+  ImGui::BeginChild("curves", {curve_width, size.y}, false, kStill);
+  ui.curves.draw(ui.session, ui.axis_editor, ImGui::GetContentRegionAvail());
+  ImGui::EndChild();
+  ImGui::SameLine();
+  ImGui::BeginChild("maps", {size.x - curve_width - gap, size.y}, false, kStill);
+  draw_panel_tabs(ui);
+  draw_panel(ui, ImGui::GetContentRegionAvail());
+  ImGui::EndChild();
+}
+
+/// Draws one view at a time, where there is no room for two.
+void draw_one_page(Ui& ui) {
   for (const char* name : {"curve", "effects", "accuracy"}) {
-    if (draw_tab(name, page_ == name)) page_ = name;
+    if (draw_tab(name, ui.page == name)) ui.page = name;
   }
-  draw_panel_tabs();
-  if (page_ == "effects") return draw_effects(session_);
-  if (page_ == "accuracy") return draw_accuracy();
-  if (page_ == "curve") return curve_view_.draw(session_, ImGui::GetContentRegionAvail());
-  draw_panel(ImGui::GetContentRegionAvail());
+  draw_panel_tabs(ui);
+  if (ui.page == "effects") return draw_effects(ui.session);
+  if (ui.page == "accuracy") return draw_accuracy(ui);
+  if (ui.page == "curve") return ui.curves.draw(ui.session, ui.axis_editor, ImGui::GetContentRegionAvail());
+  draw_panel(ui, ImGui::GetContentRegionAvail());
 }
 
-void Ui::draw_bottom() {
-  const float accuracy = 20.0F * ImGui::GetFontSize();
-  ImGui::BeginChild("effects", {ImGui::GetContentRegionAvail().x - accuracy, 0.0F}, true);
-  draw_effects(session_);
+/// Everything right of the controls.
+void draw_right(Ui& ui, float window_height) {
+  draw_view_controls(ui.session, ui.fields);
+  const float em = ImGui::GetFontSize();
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const float readout = (room.x < 64.0F * em ? 4.8F : 3.8F) * ImGui::GetTextLineHeightWithSpacing();
+  const float height = room.y - readout;
+  if (ui.is_narrow) {
+    ImGui::BeginChild("page", {room.x, height - ImGui::GetStyle().ItemSpacing.y});
+    draw_one_page(ui);
+    ImGui::EndChild();
+  } else {
+    // The panels below can scroll. The plots keep more than half of the height.
+    const float below = std::max(0.33F * window_height, 15.0F * ImGui::GetTextLineHeight());
+    draw_plots(ui, {room.x, height - std::min(below, 0.45F * height)});
+  }
+  ImGui::BeginChild("readout", {0.0F, readout});
+  if (ui.is_narrow) draw_message(ui.session.message());
+  coloured_text(kTextColour, peak_text(ui.session));
+  coloured_text(kTextColour, cause_text(ui.session));
+  coloured_text(kDimColour, cursor_text(ui.session));
+  ImGui::EndChild();
+  if (ui.is_narrow) return;
+  ImGui::BeginChild("effects", {ImGui::GetContentRegionAvail().x - 20.0F * em, 0.0F}, true);
+  draw_effects(ui.session);
   ImGui::EndChild();
   ImGui::SameLine();
   ImGui::BeginChild("accuracy", {0.0F, 0.0F}, true);
-  draw_accuracy();
+  draw_accuracy(ui);
   ImGui::EndChild();
 }
 
-void Ui::draw() {
-  session_.hold(ImGui::IsMouseDown(ImGuiMouseButton_Left));
-  run_shortcuts();
-  draw_menus();
+}  // namespace
+
+void draw_all(Ui& ui, const std::function<void()>& catch_up) {
+  ui.session.hold(ImGui::IsMouseDown(ImGuiMouseButton_Left));
+  run_shortcuts(ui);
+  draw_menus(ui);
   const ImGuiViewport* viewport = ImGui::GetMainViewport();
   ImGui::SetNextWindowPos(viewport->WorkPos);
   ImGui::SetNextWindowSize(viewport->WorkSize);
@@ -286,43 +283,22 @@ void Ui::draw() {
   const ImVec2 all = ImGui::GetContentRegionAvail();
   const float em = ImGui::GetFontSize();
   const float left = std::clamp(0.36F * all.x, 19.0F * em, 22.0F * em);
-  is_narrow_ = all.x - left < 46.0F * em;
+  ui.is_narrow = all.x - left < 46.0F * em;
   ImGui::BeginChild("controls", {left, all.y}, true);
-  draw_fit();
-  draw_controls(session_, controls_);
-  draw_pins();
-  draw_snapshots();
+  draw_fit(ui.session, ui.actions);
+  draw_controls(ui.session, ui.fields);
+  draw_pins(ui.session);
+  draw_snapshots(ui.session);
   ImGui::EndChild();
-  catch_up_();
+  catch_up();
   ImGui::SameLine();
   ImGui::BeginChild("right", {0.0F, all.y});
-  draw_right(all.y);
+  draw_right(ui, all.y);
   ImGui::EndChild();
   ImGui::PopItemFlag();
   ImGui::End();
-  draw_help();
-  dialog_.draw();
-}
-
-void Ui::draw_right(float window_height) {
-  draw_view_controls();
-  const float em = ImGui::GetFontSize();
-  const ImVec2 room = ImGui::GetContentRegionAvail();
-  const float readout = (room.x < 64.0F * em ? 4.8F : 3.8F) * ImGui::GetTextLineHeightWithSpacing();
-  const float height = room.y - readout;
-  if (is_narrow_) {
-    ImGui::BeginChild("page", {room.x, height - ImGui::GetStyle().ItemSpacing.y});
-    draw_one_page();
-    ImGui::EndChild();
-  } else {
-    // The panels below can scroll. The plots keep more than half of the height.
-    draw_plots({room.x, height - std::min(std::max(0.33F * window_height, 15.0F * ImGui::GetTextLineHeight()),
-                                          0.45F * height)});
-  }
-  ImGui::BeginChild("readout", {0.0F, readout});
-  draw_readout();
-  ImGui::EndChild();
-  if (!is_narrow_) draw_bottom();
+  draw_help(ui);
+  ui.dialog.draw();
 }
 
 }  // namespace dolp::explore

@@ -3,25 +3,19 @@
 
 #include "explore/session.hpp"
 #include "explore/window/plot.hpp"
+#include "explore/window/screen.hpp"
 #include "explore/window/widgets.hpp"
 
 namespace dolp::explore {
 
 // Each view fills the current ImGui window, or `size` in it.
 
-/// State of the controls between frames.
-struct ControlsState {
-  NumberFields fields;
-  std::string sky_file;  ///< sky file of the scene, whose content is `sky`
-  std::optional<SkyPair> sky;
-};
-
 /// Fills the current ImGui window with the controls of a scene. Names of areas: the key of a control; "vary KEY" for
 /// the box that lets a number vary in fits; "field KEY" for a field; "field fit KEY 0" and "field fit KEY 1" for the
 /// ends of its range in fits; "sky", "sky zenith" and "sky horizon".
-void draw_controls(Session& session, ControlsState& state);
+void draw_controls(Session& session, NumberFields& fields);
 /// Draws the controls of tolerance and precision, which are beside the cost.
-void draw_accuracy_controls(Session& session, ControlsState& state);
+void draw_accuracy_controls(Session& session, NumberFields& fields);
 
 /// The values of a line. All lines of a plot share their positions.
 struct NamedLine {
@@ -34,21 +28,19 @@ struct NamedLine {
 /// moves the cursor. The mouse controls the zoom.
 class CurveView {
  public:
-  void draw(Session& session, ImVec2 size);
+  void draw(Session& session, AxisEditor& editor, ImVec2 size);
   /// The last drawn area of the curves, and their axes.
   const Area& area() const { return area_; }
   const Scale& x() const { return x_; }
   const Scale& y() const { return y_; }
-  const AxisEditor& axis_editor() const { return axis_editor_; }
 
  private:
   /// Applies the zoom, or without a zoom the automatic axes: `zeniths` and `values`.
   void choose_axes(const Session& session, Zoom& zoom, const Scale& zeniths, Scale& values);
-  void edit_axes(View& view, const Plot& plot, const std::string& values);
+  void edit_axes(View& view, AxisEditor& editor, const Plot& plot, const std::string& values);
 
   Area area_;
   Scale x_, y_;
-  AxisEditor axis_editor_;
   Plotted quantity_ = Plotted::kDolp;
 };
 
@@ -61,20 +53,11 @@ void draw_slopes(const Session& session, ImVec2 size);
 /// Draws n and k of the material over wavelength, with the scene's spectrum marked.
 void draw_material(const Session& session, ImVec2 size);
 
-/// The curve over wavelength at the cursor's zenith; R_s and R_p of the smooth surface over the local angle of
-/// incidence; and over wavelength at the angle that equals the cursor's zenith. A drag along wavelengths changes the
-/// scene's wavelength.
-class SweepViews {
- public:
-  void draw_spectrum(Session& session, ImVec2 size);
-  void draw_smooth(Session& session, ImVec2 size);
-
- private:
-  void draw_wavelengths(const char* id, Session& session, ImVec2 size, const std::vector<NamedLine>& lines,
-                        const Sweep& sweep, const PlotAxis& values);
-
-  AxisEditor axis_editor_;
-};
+/// Draws the curve over wavelength at the cursor's zenith. A drag along wavelengths changes the scene's wavelength.
+void draw_spectrum(Session& session, AxisEditor& editor, ImVec2 size);
+/// Draws R_s and R_p of the smooth surface over the local angle of incidence, and over wavelength at the angle that
+/// equals the cursor's zenith.
+void draw_smooth(Session& session, AxisEditor& editor, ImVec2 size);
 
 /// Draws one element of the Mueller pBRDF in the plane of incidence, as a polar plot at the cursor's zenith.
 class ScatteringView {
@@ -113,17 +96,11 @@ void set_range(Session& session, const MapAxis& axis, const AxisEditor::Change& 
 /// Map, contour lines, colour bar and cursor. A click or drag moves the cursor, and the scene follows.
 class MapView {
  public:
-  void draw(Session& session, ImVec2 size);
+  void draw(Session& session, AxisEditor& editor, ImVec2 size);
   const Scale& colours() const { return colour_scale_; }
   const Area& area() const { return area_; }
 
  private:
-  /// Neighbouring cells of one colour in a row or column.
-  struct Run {
-    std::size_t column, row;
-    std::size_t columns, rows;
-    ImU32 colour;
-  };
   /// The contour lines of one value.
   struct Contour {
     double level;
@@ -134,10 +111,8 @@ class MapView {
   /// The values of the first and of the last colour.
   Scale colour_range() const;
   ImU32 colour(double position) const;
-  void edit_axes(Session& session, const Plot& plot);
+  void edit_axes(Session& session, AxisEditor& editor, const Plot& plot);
   double colour_position(double value) const;
-  std::vector<Run> runs_along(bool rows) const;
-  void draw_cells(const Plot& plot) const;
   void draw_contours(const Plot& plot) const;
   void draw_bar(const Plot& plot) const;
 
@@ -149,10 +124,8 @@ class MapView {
 
   Scale colour_scale_;  ///< from the first colour to the last; empty if all values are equal
   MapField field_;
-  std::vector<ImU32> colours_;
-  std::vector<Run> runs_;
+  Texture cells_;
   std::vector<Contour> contours_;
-  AxisEditor axis_editor_;
   Area area_;
 };
 

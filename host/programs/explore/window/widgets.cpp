@@ -62,16 +62,6 @@ void NumberFields::draw(const std::string& id, double value, const Apply& apply)
   }
 }
 
-std::string NumberFields::text(const std::string& id) const {
-  const auto typed = typed_.find(id);
-  return typed == typed_.end() ? "" : typed->second.text;
-}
-
-std::string NumberFields::reason(const std::string& id) const {
-  const auto typed = typed_.find(id);
-  return typed == typed_.end() ? "" : typed->second.reason;
-}
-
 void NumberFields::draw_end(const std::string& id, std::size_t end, const std::array<double, 2>& ends,
                             const ApplyEnds& apply) {
   const auto id_of = [&](std::size_t i) { return fmt::format("{} {}", id, i); };
@@ -88,7 +78,7 @@ void NumberFields::draw_reason(const std::string& id) const {
 
 std::optional<std::size_t> draw_list(const std::string& id, float width, const std::string& current,
                                      const std::string& note, std::optional<std::size_t> chosen,
-                                     const std::function<std::vector<ListEntry>()>& entries) {
+                                     const std::vector<ListEntry>& entries) {
   ImGui::SetNextItemWidth(width);
   const ImVec2 corner = ImGui::GetCursorScreenPos();  // taken before the list, because an open list is a different item
   name_area(id, {corner, {corner.x + ImGui::CalcItemWidth(), corner.y + ImGui::GetFrameHeight()}});
@@ -97,11 +87,10 @@ std::optional<std::size_t> draw_list(const std::string& id, float width, const s
     if (!note.empty()) tooltip(note);
     return clicked;
   }
-  const std::vector<ListEntry> all = entries();
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const auto flags = all[i].is_enabled ? ImGuiSelectableFlags_None : ImGuiSelectableFlags_Disabled;
-    if (ImGui::Selectable(shown(all[i].text).c_str(), i == chosen, flags) && i != chosen) clicked = i;
-    if (!all[i].note.empty()) tooltip(all[i].note);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const auto flags = entries[i].is_enabled ? ImGuiSelectableFlags_None : ImGuiSelectableFlags_Disabled;
+    if (ImGui::Selectable(shown(entries[i].text).c_str(), i == chosen, flags) && i != chosen) clicked = i;
+    if (!entries[i].note.empty()) tooltip(entries[i].note);
   }
   ImGui::EndCombo();
   return clicked;

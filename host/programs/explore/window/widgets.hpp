@@ -24,9 +24,15 @@ class NumberFields {
   /// end is tried again when the other end changes.
   void draw_end(const std::string& id, std::size_t end, const std::array<double, 2>& ends, const ApplyEnds& apply);
   /// The text of a field that is not applied yet; empty: none.
-  std::string text(const std::string& id) const;
+  std::string text(const std::string& id) const {
+    const auto typed = typed_.find(id);
+    return typed == typed_.end() ? "" : typed->second.text;
+  }
   /// The reason why the text of a field was refused; empty if it was not.
-  std::string reason(const std::string& id) const;
+  std::string reason(const std::string& id) const {
+    const auto typed = typed_.find(id);
+    return typed == typed_.end() ? "" : typed->second.reason;
+  }
   /// Draws the reason below the fields.
   void draw_reason(const std::string& id) const;
 
@@ -51,7 +57,7 @@ struct ListEntry {
 /// `id`. Returns the position of the entry that the user clicks, unless it is `chosen`.
 std::optional<std::size_t> draw_list(const std::string& id, float width, const std::string& current,
                                      const std::string& note, std::optional<std::size_t> chosen,
-                                     const std::function<std::vector<ListEntry>()>& entries);
+                                     const std::vector<ListEntry>& entries);
 
 /// Draws text in the column of labels. The control follows beside it.
 void row_label(const std::string& text);

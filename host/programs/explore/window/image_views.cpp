@@ -1,0 +1,303 @@
+// Views of directions and images: the pBRDF, a sphere and a plate, the sky of source directions.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "explore/readout.hpp"
+#include "explore/window/views.hpp"
+
+namespace dolp::explore {
+namespace {
+
+constexpr std::size_t kCutCount = 181;
+constexpr float kLobeWidth = 2.0F;
+constexpr int kCells = 56;  // cells across a sphere, each a few pixels large
+
+/// A disc that shows directions.
+struct Disc {
+  ImVec2 middle;
+  float radius;
+
+  /// The point at a share of the radius, and at an angle counterclockwise from the right.
+  ImVec2 at(double share, double angle_deg) const {
+    const double angle = angle_deg * kDegree;
+    return {middle.x + radius * static_cast<float>(share * std::cos(angle)),
+            middle.y - radius * static_cast<float>(share * std::sin(angle))};
+  }
+};
+
+/// The largest magnitude of one element in a cut.
+double largest_magnitude(const ScatteringCut& cut, std::size_t element) {
+  double largest = 0.0;
+  for (const MuellerMatrix& matrix : cut.matrices) {
+    if (std::isfinite(matrix[element])) largest = std::max(largest, std::abs(matrix[element]));
+  }
+  return largest;
+}
+
+/// Half rings of equal magnitude and rays of equal zenith, above a surface.
+void draw_polar_grid(ImDrawList* list, const Disc& disc, const Scale& magnitude) {
+  for (const double tick : magnitude.ticks(4)) {
+    const double part = magnitude.position(tick);
+    list->PathArcTo(disc.middle, disc.radius * static_cast<float>(part), std::numbers::pi_v<float>,
+                    2.0F * std::numbers::pi_v<float>);
+    list->PathStroke(kGridColour, ImDrawFlags_None, 1.0F);
+    draw_label(list, disc.at(part, 90.0), {0.5F, 0.5F}, kDimColour, tick_text(tick));
+  }
+  for (int degrees = -90; degrees <= 90; degrees += 30) {
+    list->AddLine(disc.middle, disc.at(1.0, 90.0 - degrees), kGridColour);
+    draw_text(list, disc.at(1.07, 90.0 - degrees), {0.5F, 0.5F}, kDimColour, fmt::format("{}°", std::abs(degrees)));
+  }
+}
+
+/// The lobe of an element: solid where positive, dashed where negative.
+void draw_lobe(ImDrawList* list, const Disc& disc, const ScatteringCut& cut, std::size_t element, double largest) {
+  for (const bool is_negative : {false, true}) {
+    std::vector<ImVec2> line;
+    for (std::size_t i = 0; i < cut.matrices.size(); ++i) {
+      const double value = cut.matrices[i][element];
+      const bool is_shown = std::isfinite(value) && (value < 0.0) == is_negative;
+      line.push_back(is_shown ? disc.at(std::abs(value) / largest, 90.0 - cut.theta_r_deg[i]) : kGap);
+    }
+    draw_line(list, line, is_negative ? overlay_style() : current_style(), kLobeWidth);
+  }
+}
+
+/// A colour for the angle of polarisation, equal at 0 and 180 degrees.
+ImU32 angle_colour(double angle_deg) {
+  float r = 0.0F, g = 0.0F, b = 0.0F;
+  ImGui::ColorConvertHSVtoRGB(static_cast<float>(angle_deg / 180.0), 0.65F, 0.95F, r, g, b);
+  return ImGui::ColorConvertFloat4ToU32({r, g, b, 1.0F});
+}
+
+/// The colours of an image, which shows DOLP or the angle of polarisation.
+struct Colours {
+  Scale dolp;  ///< range from the darkest colour to the lightest
+  bool is_angle = false;
+
+  ImU32 colour(const std::optional<ImagePolarisation>& polarisation) const {
+    if (!polarisation) return kBadColour;
+    return is_angle ? angle_colour(polarisation->angle_deg) : viridis(dolp.position(polarisation->dolp));
+  }
+};
+
+/// The range of DOLP. It begins at 0, or with `from_least` at the smallest value.
+Scale dolp_range(const std::vector<Point>& points, double theta_max_deg, bool from_least) {
+  constexpr double kLeastRange = 1e-6;
+  Scale range{1.0, 0.0};
+  for (const Point& point : points) {
+    if (!point.is_good() || point.theta_deg > theta_max_deg) continue;
+    range = {std::min(range.from, point[Quantity::kDolp]), std::max(range.to, point[Quantity::kDolp])};
+  }
+  if (!from_least || range.to < range.from) range.from = 0.0;
+  return {range.from, std::max(range.to, range.from + kLeastRange)};
+}
+
+void draw_sphere(const Session& session, ImVec2 middle, float radius, const Colours& colours) {
+  ImDrawList* const list = ImGui::GetWindowDrawList();
+  const float cell = 2.0F * radius / kCells;
+  for (int row = 0; row < kCells; ++row) {
+    for (int column = 0; column < kCells; ++column) {
+      const float x = (static_cast<float>(column) + 0.5F) * cell - radius;
+      const float y = radius - (static_cast<float>(row) + 0.5F) * cell;
+      const double sine = static_cast<double>(std::hypot(x, y) / radius);
+      if (sine >= 1.0) continue;
+      const double azimuth_deg = std::atan2(static_cast<double>(y), static_cast<double>(x)) / kDegree;
+      const ImVec2 corner{middle.x + x - 0.5F * cell, middle.y - y - 0.5F * cell};
+      list->AddRectFilled(
+          corner, {corner.x + cell, corner.y + cell},
+          colours.colour(polarisation_at(session.curve().points(), std::asin(sine) / kDegree, azimuth_deg)));
+    }
+  }
+}
+
+/// A square plate seen from afar, with a line along its polarisation.
+void draw_plate(const Session& session, ImVec2 middle, float radius, double azimuth_deg, const Colours& colours) {
+  const std::optional<ImagePolarisation> polarisation =
+      polarisation_at(session.curve().points(), session.theta_deg(), azimuth_deg);
+  const double azimuth = azimuth_deg * kDegree;
+  const double shortened = std::max(0.02, std::cos(session.theta_deg() * kDegree));
+  const auto at = [&](double along, double across) {
+    // Perspective shortens the side along the tilt.
+    const double x = along * shortened * std::cos(azimuth) - across * std::sin(azimuth);
+    const double y = along * shortened * std::sin(azimuth) + across * std::cos(azimuth);
+    return ImVec2{middle.x + radius * static_cast<float>(x), middle.y - radius * static_cast<float>(y)};
+  };
+  constexpr double kHalf = 0.75;
+  ImDrawList* const list = ImGui::GetWindowDrawList();
+  list->AddQuadFilled(at(-kHalf, -kHalf), at(kHalf, -kHalf), at(kHalf, kHalf), at(-kHalf, kHalf),
+                      colours.colour(polarisation));
+  list->AddQuad(at(-kHalf, -kHalf), at(kHalf, -kHalf), at(kHalf, kHalf), at(-kHalf, kHalf), kDimColour);
+  if (!polarisation) return;
+  const auto angle = static_cast<float>(polarisation->angle_deg * kDegree);
+  const ImVec2 half{0.4F * radius * std::cos(angle), -0.4F * radius * std::sin(angle)};
+  list->AddLine({middle.x - half.x, middle.y - half.y}, {middle.x + half.x, middle.y + half.y}, kTextColour,
+                scaled(2.0F));
+}
+
+/// A colour bar with a word at each end.
+void draw_bar(ImVec2 corner, float width, const Colours& colours) {
+  const float line = ImGui::GetTextLineHeight();
+  ImDrawList* const list = ImGui::GetWindowDrawList();
+  const Area bar{corner, {corner.x + width, corner.y + 0.6F * line}};
+  draw_colours(list, bar, false, [&](double part) {
+    return colours.colour(ImagePolarisation{colours.dolp.value(part), 180.0 * part});
+  });
+  const auto end_text = [&](double dolp, const char* angle) {
+    return colours.is_angle ? angle : fmt::format("{:.3g} %", 100.0 * dolp);
+  };
+  const float below = corner.y + 0.7F * line;
+  draw_text(list, {bar.min.x, below}, {0.0F, 0.0F}, kDimColour, end_text(colours.dolp.from, "0°"));
+  draw_text(list, {bar.max.x, below}, {1.0F, 0.0F}, kDimColour, end_text(colours.dolp.to, "180°"));
+  draw_text(list, {corner.x + 0.5F * width, below}, {0.5F, 0.0F}, kTextColour, colours.is_angle ? "angle" : "DOLP");
+}
+
+void draw_rings(const SourceSky& sky, const Disc& disc, const Colours& colours) {
+  ImDrawList* const list = ImGui::GetWindowDrawList();
+  // Anti-aliased edges would be visible as seams.
+  const ImDrawListFlags flags = std::exchange(list->Flags, ImDrawListFlags_None);
+  const double half_deg = 0.5 * SourceSky::azimuth_deg(1);
+  for (std::size_t i = 0; i < SourceSky::kAzimuths; ++i) {
+    const std::vector<Point>& ring = sky.at(i);
+    for (std::size_t j = 0; j + 1 < ring.size(); ++j) {
+      const ImU32 colour = ring[j].is_good() ? viridis(colours.dolp.position(ring[j][Quantity::kDolp])) : kBadColour;
+      const double inner = ring[j].theta_deg / 90.0, outer = ring[j + 1].theta_deg / 90.0;
+      for (const double side : {1.0, -1.0}) {
+        const double from = side * (SourceSky::azimuth_deg(i) - half_deg);
+        const double to = side * (SourceSky::azimuth_deg(i) + half_deg);
+        list->AddQuadFilled(disc.at(inner, from), disc.at(outer, from), disc.at(outer, to), disc.at(inner, to), colour);
+      }
+    }
+  }
+  list->Flags = flags;
+}
+
+/// Circles at some zeniths, a ring for the scene's source, a square for its view.
+void draw_sky_marks(const Scene& scene, double source_zenith_deg, const Disc& disc) {
+  ImDrawList* const list = ImGui::GetWindowDrawList();
+  for (const double zenith_deg : {30.0, 60.0, 90.0}) {
+    list->AddCircle(disc.middle, disc.radius * static_cast<float>(zenith_deg / 90.0), kGridColour, 96);
+  }
+  draw_text(list, disc.at(1.05, 0.0), {0.0F, 0.5F}, kDimColour, "0°");
+  draw_text(list, disc.at(1.05, 90.0), {0.5F, 1.0F}, kDimColour, "90°");
+  draw_text(list, disc.at(1.05, 180.0), {1.0F, 0.5F}, kDimColour, "180°");
+  const double azimuth_deg = scene.number("geometry.relative_azimuth_deg").value();
+  list->AddCircle(disc.at(source_zenith_deg / 90.0, azimuth_deg), scaled(5.0F), kTextColour, 0, scaled(2.0F));
+  list->AddCircle(disc.at(scene.number("geometry.view_zenith_deg").value() / 90.0, 0.0), scaled(5.0F), kTextColour, 4,
+                  scaled(2.0F));
+}
+
+std::vector<Point> all_points(const SourceSky& sky) {
+  std::vector<Point> all;
+  for (std::size_t i = 0; i < SourceSky::kAzimuths; ++i) all.insert(all.end(), sky.at(i).begin(), sky.at(i).end());
+  return all;
+}
+
+}  // namespace
+
+void ScatteringView::update(const Session& session) {
+  const std::string key = fmt::format("{} {}", session.theta_deg(), session.curve().key());
+  if (key == key_) return;
+  key_ = key;
+  reason_.clear();
+  try {
+    cut_ = scattering_cut(evaluator_, session.scene(), std::min(session.theta_deg(), 89.9), kCutCount);
+  } catch (const InputError& error) {
+    reason_ = error.what();
+  }
+}
+
+void ScatteringView::draw(Session& session, ImVec2 size) {
+  update(session);
+  View view = session.view();
+  const float top = ImGui::GetCursorPosY();
+  for (const auto& [name, position] : {std::pair{"row", &view.mueller_row}, {"column", &view.mueller_column}}) {
+    ImGui::SetNextItemWidth(4.0F * ImGui::GetFontSize());
+    auto value = static_cast<int>(*position);
+    ImGui::Combo(name, &value,
+                 "0: I\0"
+                 "1: Q\0"
+                 "2: U\0"
+                 "3: V\0");
+    *position = static_cast<std::size_t>(value);
+    ImGui::SameLine();
+  }
+  if (view != session.view()) session.set_view(view);
+  ImGui::NewLine();
+  if (!reason_.empty()) return coloured_text(kDimColour, reason_);
+  const std::size_t element = 4 * view.mueller_row + view.mueller_column;
+  const double largest = largest_magnitude(cut_, element);
+  coloured_text(kDimColour,
+                fmt::format("f{}{} [1/sr] at {:.4g} µm, light from {:.1f}° on the left; full: positive, "
+                            "dashed: negative",
+                            view.mueller_row, view.mueller_column, cut_.wavelength_um, session.theta_deg()));
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const float line = ImGui::GetTextLineHeight();
+  const float height = size.y - (ImGui::GetCursorPosY() - top) - 2.0F * line;
+  const float radius = std::max(line, std::min(0.5F * size.x - 2.5F * line, height - 1.5F * line));
+  const Disc disc{{corner.x + 0.5F * size.x, corner.y + 1.5F * line + radius}, radius};
+  ImDrawList* const list = ImGui::GetWindowDrawList();
+  if (!(largest > 0.0)) return coloured_text(kDimColour, "0 in all of these directions");
+  draw_polar_grid(list, disc, {0.0, largest});
+  draw_lobe(list, disc, cut_, element, largest);
+  // The mark of the source.
+  const ImVec2 source = disc.at(1.0, 90.0 + session.theta_deg());
+  list->AddLine(source, disc.middle, kCursorColour, scaled(1.0F));
+  list->AddCircleFilled(source, scaled(4.0F), kCursorColour);
+}
+
+void ShapeView::draw(Session& session, ImVec2 size) {
+  if (is_bistatic(session.scene())) {
+    return coloured_text(kDimColour, "Bistatic mode has only one direction of view: see the view sky.");
+  }
+  const float line = ImGui::GetTextLineHeight();
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  ImGui::InvisibleButton("shapes", {std::max(size.x, 1.0F), std::max(size.y, 1.0F)});
+  const float radius = std::max(line, std::min(0.25F * size.x - 0.8F * line, 0.25F * (size.y - 4.5F * line)));
+  const float high = corner.y + 1.4F * line + radius;
+  const float low = high + 2.0F * radius + 0.3F * line;
+  const ImVec2 plate{corner.x + 0.25F * size.x, low};
+  if (ImGui::IsItemActive()) {
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const bool is_left = mouse.x < corner.x + 0.5F * size.x;
+    const auto x = static_cast<double>(mouse.x - plate.x - (is_left ? 0.0F : 0.5F * size.x));
+    const auto y = static_cast<double>(plate.y - mouse.y);
+    azimuth_deg_ = std::atan2(y, x) / kDegree;
+    session.set_theta(std::asin(std::min(1.0, std::hypot(x, y) / static_cast<double>(radius))) / kDegree);
+  }
+  ImDrawList* const list = ImGui::GetWindowDrawList();
+  draw_text(list, corner, {0.0F, 0.0F}, kTextColour,
+            fmt::format("sphere, and a plate tilted by {:.1f}° (drag){}", session.theta_deg(),
+                        remark(session, session.curve())));
+  for (const bool is_angle : {false, true}) {
+    const Colours colours{dolp_range(session.curve().points(), session.view().theta_max_deg, false), is_angle};
+    const float x = plate.x + (is_angle ? 0.5F * size.x : 0.0F);
+    draw_sphere(session, {x, high}, radius, colours);
+    draw_plate(session, {x, low}, radius, azimuth_deg_, colours);
+    draw_bar({x - radius, low + radius + 0.3F * line}, 2.0F * radius, colours);
+  }
+}
+
+void draw_sky(const Session& session, ImVec2 size) {
+  if (!is_bistatic(session.scene())) {
+    return coloured_text(kDimColour, "This sky shows directions of a source: choose the mode bistatic.");
+  }
+  const SourceSky& sky = session.source_sky();
+  const Colours colours{dolp_range(all_points(sky), 90.0, true)};
+  const float line = ImGui::GetTextLineHeight();
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const float radius = std::max(line, std::min(0.5F * size.x - 2.0F * line, 0.5F * (size.y - 5.5F * line)));
+  const ImVec2 middle{corner.x + 0.5F * size.x, corner.y + 2.8F * line + radius};
+  ImDrawList* const list = ImGui::GetWindowDrawList();
+  draw_text(
+      list, corner, {0.0F, 0.0F}, kTextColour,
+      fmt::format("DOLP over the source's direction, view at {:.4g}°{}",
+                  session.scene().number("geometry.view_zenith_deg").value(), sky.is_finished() ? "" : ", refining"));
+  const Disc disc{middle, radius};
+  draw_rings(sky, disc, colours);
+  draw_sky_marks(session.scene(), session.theta_deg(), disc);
+  draw_bar({middle.x - radius, middle.y + radius + 0.5F * line}, 2.0F * radius, colours);
+}
+
+}  // namespace dolp::explore

@@ -1,0 +1,148 @@
+// Views of lines: slopes, n and k, the spectrum, and the smooth surface.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ranges>
+
+#include "explore/window/views.hpp"
+
+namespace dolp::explore {
+namespace {
+
+constexpr std::size_t kSlopeCount = 181;
+constexpr std::size_t kMaterialCount = 240;
+constexpr float kLineWidth = 2.0F;
+
+/// The range of values of all lines.
+Scale values_range(const std::vector<NamedLine>& lines, bool is_log) {
+  std::vector<double> all;
+  for (const NamedLine& line : lines) all.insert(all.end(), line.values.begin(), line.values.end());
+  return range_of(std::move(all), is_log);
+}
+
+/// Draws lines with gaps where they have no value. Their names are in the upper right corner, or in a row above.
+void draw_lines(const Plot& plot, const std::vector<double>& xs, const std::vector<NamedLine>& lines,
+                bool is_above = false) {
+  plot.clip();
+  for (const NamedLine& line : std::views::reverse(lines)) {  // so that the first line is on top
+    std::vector<ImVec2> points;
+    for (std::size_t i = 0; i < xs.size(); ++i)
+      points.push_back(plot.can_show(xs[i], line.values[i]) ? plot.at(xs[i], line.values[i]) : kGap);
+    draw_line(plot.list(), points, line.style, kLineWidth);
+  }
+  plot.unclip();
+  const float height = ImGui::GetTextLineHeight();
+  ImVec2 right{plot.max().x - 0.6F * height, plot.min().y + (is_above ? -1.1F : 0.8F) * height};
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const NamedLine& line = lines[is_above ? lines.size() - 1 - i : i];
+    draw_label(plot.list(), right, {1.0F, 0.5F}, kTextColour, line.name);
+    const float end = right.x - ImGui::CalcTextSize(shown(line.name).c_str()).x - 0.6F * height;
+    draw_line(plot.list(), {{end - 2.0F * height, right.y}, {end, right.y}}, line.style, kLineWidth);
+    right = is_above ? ImVec2{end - 3.0F * height, right.y} : ImVec2{right.x, right.y + 1.3F * height};
+  }
+}
+
+std::string distribution_name(const Scene& scene) {
+  const std::string name = scene.word("surface.distribution").value();
+  const std::string q = name == "cauchy" ? fmt::format(" q {:.4g}", scene.number("surface.q").value()) : "";
+  return fmt::format("{} σ {:.4g}{}", name, scene.number("surface.sigma").value(), q);
+}
+
+/// Marks the scene's wavelength or band on an axis of wavelengths.
+void mark_spectrum(const Plot& plot, const Scene& scene) {
+  const auto [from_um, to_um] = spectrum_um(scene);
+  const float from = plot.at_position(plot.x().position(from_um), 0.0).x;
+  const float to = plot.at_position(plot.x().position(to_um), 0.0).x;
+  plot.clip();
+  plot.list()->AddRectFilled({from, plot.min().y}, {std::max(to, from + 1.5F), plot.max().y},
+                             band_colour(current_style()));
+  plot.unclip();
+}
+
+/// A quantity along a sweep, with gaps where the model fails. Dim while the sweep belongs to an earlier scene.
+NamedLine line_of(const Sweep& sweep, Plotted quantity, const CurveStyle& style, const std::string& name) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  NamedLine line{name, sweep.is_finished() ? style : stale(style), {}};
+  const PlottedDescription& description = described(quantity);
+  for (const Point& point : sweep.points()) line.values.push_back(point.is_good() ? description.shown(point) : kNone);
+  return line;
+}
+
+/// Draws lines over the wavelengths of a sweep.
+void draw_wavelengths(const char* id, Session& session, AxisEditor& editor, ImVec2 size,
+                      const std::vector<NamedLine>& lines, const Sweep& sweep, const PlotAxis& values) {
+  const MapAxis axis = session.wavelengths();
+  if (!axis.scale.refusal().empty()) return coloured_text(kDimColour, "n and k are known at only one wavelength.");
+  const Plot plot(id, size, {axis.label, axis.scale}, values);
+  mark_spectrum(plot, session.scene());
+  draw_lines(plot, sweep.at(), lines, true);
+  const Scene& scene = session.spectral_scene();
+  const auto change = editor.draw(axis.label, plot.x_numbers(), axis.scale,
+                                  [&](const Scale& range) { return refusal(scene, axis, range); });
+  if (change) set_range(session, axis, *change);
+  const bool has_wavelength = session.scene().numbers("spectrum.band_um").empty();
+  if (plot.is_dragged() && has_wavelength) session.set(axis.key, axis.scale.rounded(plot.mouse_x()));
+}
+
+}  // namespace
+
+void draw_slopes(const Session& session, ImVec2 size) {
+  const Scene& scene = session.scene();
+  if (!(scene.number("surface.sigma") > 0.0))
+    return coloured_text(kDimColour, "A mirror: all facets lie in the mean plane.");
+  const std::optional<Scene> other = with_other_distribution(scene);
+  const std::vector<double> all_deg = zeniths(0.0, 89.5, kSlopeCount);
+  const auto densities = [&](const Scene& shape) {
+    std::vector<double> values;
+    for (const double alpha_deg : all_deg)
+      values.push_back(slope_density(shape, alpha_deg) * std::cos(alpha_deg * kDegree));
+    return values;
+  };
+  std::vector<NamedLine> lines = {{distribution_name(scene), current_style(), densities(scene)}};
+  const Scale range = values_range(lines, session.view().is_log);
+  if (other) lines.push_back({distribution_name(*other) + ", same D(0)", overlay_style(), densities(*other)});
+  const Plot plot("slopes", size, {"angle of the facets α [°]", {0.0, 90.0}}, {"D(α) cos α [1/sr]", range});
+  draw_lines(plot, all_deg, lines);
+}
+
+void draw_material(const Session& session, ImVec2 size) {
+  const MaterialCurve curve = material_curve(session.scene(), kMaterialCount);
+  if (curve.wavelength_um.size() < 2) return coloured_text(kDimColour, "n and k are known at only one wavelength.");
+  const std::vector<NamedLine> lines = {{"n", current_style(), curve.n}, {"k", overlay_style(), curve.k}};
+  const Scale wavelengths{curve.wavelength_um.front(), curve.wavelength_um.back(), true};
+  const Plot plot("material", size, {"wavelength λ [µm]", wavelengths},
+                  {"n, k", values_range(lines, session.view().is_log)});
+  mark_spectrum(plot, session.scene());
+  draw_lines(plot, curve.wavelength_um, lines);
+}
+
+void draw_spectrum(Session& session, AxisEditor& editor, ImVec2 size) {
+  const PlottedDescription& quantity = described(session.view().quantity);
+  const NamedLine line =
+      line_of(session.spectrum(), quantity.quantity, current_style(), fmt::format("θ = {:.4g}°", session.theta_deg()));
+  draw_wavelengths("spectrum", session, editor, size, {line}, session.spectrum(),
+                   {quantity.label(), range_of(line.values, session.view().is_log)});
+}
+
+void draw_smooth(Session& session, AxisEditor& editor, ImVec2 size) {
+  const ImVec2 half{size.x, 0.5F * (size.y - ImGui::GetStyle().ItemSpacing.y)};
+  const auto lines_of = [&](const Sweep& sweep) {
+    return std::vector<NamedLine>{line_of(sweep, Plotted::kRhoS, current_style(), "R_s"),
+                                  line_of(sweep, Plotted::kRhoP, overlay_style(), "R_p")};
+  };
+  const std::vector<NamedLine> over_angle = lines_of(session.smooth()), over = lines_of(session.smooth_spectrum());
+  const bool is_band = !session.scene().numbers("spectrum.band_um").empty();
+  const Plot plot(
+      "smooth", half, {"local angle of incidence β [°]", {0.0, 90.0}},
+      {is_band ? "R_s, R_p, mean over the band" : "R_s, R_p", values_range(over_angle, session.view().is_log)});
+  if (plot.is_dragged()) session.set_theta(plot.x().value(plot.mouse_x()));
+  draw_lines(plot, session.smooth().at(), over_angle, true);
+  const float x = plot.at_position(plot.x().position(session.theta_deg()), 0.0).x;
+  plot.list()->AddLine({x, plot.min().y}, {x, plot.max().y}, kCursorColour, scaled(1.0F));
+  draw_wavelengths(
+      "smooth spectrum", session, editor, half, over, session.smooth_spectrum(),
+      {fmt::format("R_s, R_p at β = {:.4g}°", session.theta_deg()), values_range(over, session.view().is_log)});
+}
+
+}  // namespace dolp::explore

@@ -1,0 +1,61 @@
+// The window on the display: GLFW opens it, OpenGL shows what Dear ImGui draws.
+#pragma once
+
+#include <imgui.h>
+
+#include <string>
+#include <vector>
+
+#include "explore/files.hpp"
+
+struct GLFWwindow;
+
+namespace dolp::explore {
+
+/// An image that ImGui draws. Needs an open screen.
+class Texture {
+ public:
+  Texture() = default;
+  Texture(const Texture&) = delete;
+  Texture& operator=(const Texture&) = delete;
+  ~Texture();
+
+  /// Replaces the image by a square of colours: rows upwards, from the left.
+  void set(const std::vector<ImU32>& colours, std::size_t count);
+  /// Draws the image between two corners. Each colour fills a cell around its position; outer cells are cut in half.
+  void draw(ImDrawList* list, ImVec2 min, ImVec2 max) const;
+
+ private:
+  unsigned id_ = 0;  ///< OpenGL's name of the texture; 0: none
+  std::size_t count_ = 0;
+};
+
+/// The open window, and ImGui with its theme and font.
+class Screen {
+ public:
+  /// Errors: DeviceError without a display, or if the display cannot show a window.
+  Screen();
+  Screen(const Screen&) = delete;
+  Screen& operator=(const Screen&) = delete;
+  ~Screen();
+
+  GLFWwindow* window() const { return window_; }
+  /// Applies theme and size of the text. Call it between two frames.
+  void follow(const Preferences& wanted);
+  /// Shows ImGui's frame. Does nothing while the window has no area. Returns the frame as a PNG file if that is wanted
+  /// and the frame was shown; otherwise nothing.
+  std::string show(bool wants_picture) const;
+
+ private:
+  /// Starts GLFW once and ends it, which also closes the window.
+  struct Library {
+    Library();
+    ~Library();
+  };
+
+  Library library_;
+  GLFWwindow* window_;
+  float scale_ = 0.0F;  ///< size of the text, relative to a usual display
+};
+
+}  // namespace dolp::explore

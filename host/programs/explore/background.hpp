@@ -27,16 +27,17 @@ std::jthread run_in_background(Work work, std::future<Result>& result, const std
   });
 }
 
-/// True if the work of run_in_background has ended.
+/// True if the work of run_in_background has ended, or was never started.
 template <class Result>
 bool is_ended(const std::future<Result>& result) {
   return !result.valid() || result.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
-/// One piece of work at a time, which the user starts, watches and may cancel. Call it only from the window's thread.
+/// One piece of work at a time, which the user starts, watches and may cancel. The work may call set_phase(); only the
+/// window's thread calls the other functions.
 class BackgroundTask {
  public:
-  /// Ends the work, in the window's thread. Returns the message for the user. May throw what Work throws.
+  /// The last step of the work, in the window's thread. Returns the message for the user. May throw the errors of Work.
   using Ending = std::function<std::string()>;
   /// Work for a separate thread. Throws Cancelled if its Progress returns false.
   using Work = std::function<Ending(const Progress&)>;
@@ -50,12 +51,12 @@ class BackgroundTask {
   /// Does nothing while work is running.
   void start(const Work& work);
   void cancel() { is_cancelled_ = true; }
-  /// Calls the Ending of finished work.
+  /// If the work has ended, calls its Ending.
   void finish();
 
   State state() const { return state_; }
   bool is_running() const { return state_ == State::kRunning; }
-  /// From 0 to 1 within the phase.
+  /// Progress of the current phase, from 0 to 1.
   double progress() const { return progress_; }
   /// The current phase; empty if the work has only one. The work sets it; progress then restarts from 0.
   std::string phase() const {
@@ -79,14 +80,14 @@ class BackgroundTask {
   State state_ = State::kNone;
   std::string message_;
   std::future<Ending> result_;
-  std::jthread thread_;  ///< last: it uses all other members
+  std::jthread thread_;  ///< last member, so it ends before the members that it uses
 };
 
 /// Points of a scene that the window wants, computed as `dolp eval` computes them.
 struct Job {
   std::string key;  ///< jobs with the same key have the same content
   Scene scene;
-  std::vector<PointList> parts;  ///< computed one after the other; jobs of higher rank may come in between
+  std::vector<PointList> parts;  ///< computed one after the other; more urgent jobs may come in between
   double tolerance = 0.0;        ///< replaces a lower tolerance of the scene
   bool keep_all = false;
   bool wants_effects = false;
@@ -110,13 +111,13 @@ struct JobPart {
 /// The points of a job with one part. They stay on display until the points of a later job are complete.
 class Sweep {
  public:
-  /// Switches to the points of `job`, which differ in `column`.
+  /// Switches to the points of `job`. `column` is the column in which these points differ.
   void follow(Job job, const std::string& column = "theta_deg");
   std::optional<Job> wanted() const { return is_finished() ? std::nullopt : job_; }
   bool take(const JobPart& news);
-  /// True if the points on display belong to the last job.
+  /// True if the points on display belong to the job of the last follow().
   bool is_finished() const { return job_ && shown_key_ == job_->key; }
-  // The points on display, and their values in the column.
+  // The points on display, and the values of their column.
   const std::vector<Point>& points() const { return points_; }
   const std::vector<double>& at() const { return at_; }
 
@@ -127,21 +128,21 @@ class Sweep {
   std::vector<double> at_;
 };
 
-/// Same contract as explore::evaluate. Only one thread calls it.
+/// A function like explore::evaluate. Only the worker's thread calls it.
 using Evaluate = std::function<Results(const Scene& scene, const PointList& list, const RunOptions& options)>;
 
-/// Computes the wanted jobs in order. A job that is no longer wanted stops within a tile of the device, unless it is
-/// brief.
+/// Computes the wanted jobs in order. A job that is no longer wanted stops after the current tile of the device, unless
+/// is_brief is true.
 class Worker {
  public:
   /// The worker's thread calls `on_news` after each part and after a failure.
   Worker(Evaluate evaluate, std::function<void()> on_news);
   ~Worker();
 
-  /// Replaces the list of wanted jobs, in order of their rank. A running job continues if its key is still in the list.
+  /// Replaces the list of wanted jobs, the most urgent first. A running job continues if its key is in the new list.
   void want(std::vector<Job> jobs);
 
-  /// The results since the last call. Errors: rethrows what ended the worker, for example a DeviceError.
+  /// The results since the last call. Errors: the exception that ended the worker, for example a DeviceError.
   std::vector<JobPart> take_news() {
     if (end_.valid() && is_ended(end_)) end_.get();
     const std::scoped_lock lock(mutex_);
@@ -194,7 +195,7 @@ class Worker {
   std::vector<JobPart> news_;
   bool is_stopping_ = false;
   std::future<void> end_;  ///< holds the exception that ended the worker
-  std::jthread thread_;    ///< last: it uses all other members
+  std::jthread thread_;    ///< last member, so it ends before the members that it uses
 };
 
 }  // namespace dolp::explore

@@ -11,11 +11,11 @@
 namespace dolp::explore {
 namespace {
 
-constexpr std::size_t kStride = 10;  // the reference recomputes every tenth point: steps of five degrees
+constexpr std::size_t kStride = 10;  // the reference recomputes every tenth point, in steps of five degrees
 
 double dolp_of(const Point& point) { return point[Quantity::kDolp]; }
 
-/// The largest DOLP of a point within its error bound.
+/// The largest DOLP that a point may have, given its error bound.
 double most_of(const Point& point) { return dolp_of(point) + point[Quantity::kErrorEstimate]; }
 
 /// A part of a scene that can be removed.
@@ -23,7 +23,7 @@ struct Removal {
   const char* effect;
   bool radiates;
   const char* key;  ///< tells whether the scene has the effect
-  Setting change;   ///< removes it
+  Setting change;   ///< removes the effect
 
   bool is_in(const Scene& scene) const {
     const bool is_number = described(key).type == Key::Type::kNumber;
@@ -49,7 +49,7 @@ const std::vector<Removal>& removals() {
   return all;
 }
 
-/// The scene of `edits` without each effect that `scene` has.
+/// For each effect of `scene`: the scene of `edits` without this effect.
 std::vector<WithoutEffect> without_each(const Scene& scene, const SceneEdits& edits) {
   std::vector<WithoutEffect> without;
   for (const Removal& removal : removals()) {
@@ -57,7 +57,7 @@ std::vector<WithoutEffect> without_each(const Scene& scene, const SceneEdits& ed
     try {
       without.push_back({removal.effect, removal.radiates, edits.scene().with({removal.change})});
     } catch (const InputError&) {
-      // The part cannot be removed: nothing else radiates, the source is relative to the emission, or the emission
+      // The effect cannot be removed: nothing else radiates, the source is relative to the emission, or the emission
       // needs the masking.
     }
   }

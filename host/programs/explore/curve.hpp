@@ -78,35 +78,36 @@ std::string true_error(const Curve& curve, const Progress& progress);
 /// The largest DOLP of a curve among entries without a bad status.
 struct PeakAnswer {
   Point at;
-  // Range of zeniths in which DOLP could be largest, within all errors.
+  // Zeniths between which the maximum lies, if every DOLP may be wrong by its error bound.
   double theta_low_deg = 0.0;
   double theta_high_deg = 0.0;
-  std::optional<double> rival_deg;  ///< a zenith far from the peak at which DOLP could be the largest
-  bool is_at_end = false;           ///< the maximum is next to entries that are not good, or at the end of the range
+  std::optional<double> rival_deg;  ///< a zenith away from the peak where DOLP may be larger, within the bounds
+  bool is_at_end = false;           ///< the next larger zenith has no good point, or is out of the range
 };
 
-/// The peak without one effect.
+/// The point at the zenith of the peak, computed without one effect.
 struct WithoutEffect {
   std::string effect;  ///< Effect::name, or "roughness"
-  bool radiates;       ///< the effect is a term of the sum of radiances
+  bool radiates;       ///< the effect is emission, source or surroundings, whose radiances add up
   Scene scene;
   std::optional<Point> result = {};  ///< empty until it is computed
 };
 
-/// Searches the peak of a finished curve on a fine grid. Then removes each effect there.
+/// Searches the peak of a finished curve on a fine grid of zeniths. Then removes one effect after the other, and
+/// computes the point at the peak's zenith.
 class Peak {
  public:
   static constexpr double kStepDeg = 0.02;  ///< resolution in zenith
 
   explicit Peak(const Scene& scene) : scene_(scene) {}
 
-  /// Switches to the peak of a finished curve up to a zenith. `edits` must have the curve's scene.
+  /// Switches to the peak of a finished curve, up to a largest zenith. The scene of `edits` must be the curve's.
   void follow(const Curve& curve, const SceneEdits& edits, double theta_max_deg);
 
   std::vector<Job> wanted() const;
   bool take(const JobPart& news);
 
-  /// Empty until it is known, and if no entry is good.
+  /// Empty until it is known. It stays empty if no entry is good.
   const std::optional<PeakAnswer>& answer() const { return answer_; }
   /// One element per effect of the scene.
   const std::vector<WithoutEffect>& without() const { return without_; }
@@ -116,7 +117,7 @@ class Peak {
            std::ranges::all_of(without_, [](const WithoutEffect& removed) { return removed.result.has_value(); });
   }
 
-  /// The part that one radiating effect adds to Q/I at the peak; exact, because Stokes parameters add up.
+  /// The part of Q/I at the peak that one radiating effect causes. Exact, because Stokes parameters add up.
   double contribution(const WithoutEffect& removed) const {
     const Point& at = answer_->at;
     return (at[Quantity::kStokesQ] - (*removed.result)[Quantity::kStokesQ]) / at[Quantity::kStokesI];

@@ -84,7 +84,8 @@ FitMarks marks_in(const std::vector<std::string>& texts, const std::string& loca
   return marks;
 }
 
-/// The settings, made valid without the window: copies skies of the window to a file beside the session's file.
+/// The settings as texts that stay valid when the window has closed: copies sky files of the window to files beside the
+/// session's file.
 toml::array lasting_texts(std::vector<Setting> settings, const SkyFiles& skies, const fs::path& scene,
                           const fs::path& session) {
   for (Setting& setting : settings) {
@@ -97,7 +98,7 @@ toml::array lasting_texts(std::vector<Setting> settings, const SkyFiles& skies, 
   return array_of(settings, [](const Setting& setting) { return setting.text(); });
 }
 
-/// A scene as opened, its changes and a name, for a session file.
+/// A table of a session file: a scene as opened, its changes, and a name.
 toml::table state_table(const SceneEdits& edits, const std::string& name, const SkyFiles& skies,
                         const fs::path& session) {
   const Scene& opened = edits.opened();
@@ -130,7 +131,7 @@ toml::table view_table(const Session& session) {
   return table;
 }
 
-/// A value in a file. Error messages begin with `location`. Errors: InputError.
+/// The value of a node, which must exist. Error messages begin with `location`. Errors: InputError.
 template <class T>
 T need(Node node, const std::string& location) {
   const std::optional<T> value = node ? node.value<T>() : std::nullopt;
@@ -165,7 +166,7 @@ Scale read_range(Node node, const std::string& location) {
   return range;
 }
 
-/// Missing ranges stay automatic.
+/// Reads the ranges of axes. Ranges that are missing in the file stay automatic.
 void read_ranges(View& view, Node node, const std::string& location) {
   const toml::table* const table = node.as_table();
   if (!table) return;
@@ -173,7 +174,7 @@ void read_ranges(View& view, Node node, const std::string& location) {
     view.ranges[std::string(axis.str())] = read_range(Node(range), fmt::format("{}.{}", location, axis.str()));
 }
 
-/// A number below `count`; 0 if it is missing.
+/// A whole number from 0 to `count` - 1; 0 if the node is missing.
 std::size_t index_in(Node node, std::size_t count, const std::string& location) {
   if (!node) return 0;
   const int index = need<int>(node, location);

@@ -8,34 +8,35 @@
 
 namespace dolp::explore {
 
-/// Writes scene, pins, snapshots, view, path of the measured points, and the fitted parameters. Paths in the file are
-/// relative to its folder. Copies skies of skies() into that folder as NAME_sky_ZENITH_HORIZON.csv.
+/// Writes scene, pins, snapshots, view, path of the measured points, and the parameters that vary in fits. Paths in the
+/// file are relative to its folder. Copies sky files of Session::skies() to NAME_sky_ZENITH_HORIZON.csv in this folder.
 /// Errors: IoError.
 void save_session(const Session& session, const std::string& path);
 
-/// Writes the scene, which then counts as unchanged. Writes a sky of the window to a file beside it, "NAME_sky.csv";
-/// from then on the scene names that file. Errors: IoError.
+/// Writes the scene as TOML and declares it unchanged. If its sky is a file of Session::skies(), copies the sky to
+/// NAME_sky.csv beside the scene's file, and the scene then names this copy. Errors: IoError.
 void save_scene(Session& session, const std::string& path);
 
-/// Writes the finished curve with the columns of `dolp eval`. Errors: InputError if it is not finished; IoError.
+/// Writes the finished curve as CSV with the columns of `dolp eval`. Errors: InputError if it is not finished; IoError.
 void save_curve(const Session& session, const std::string& path);
 
-/// True for a file from save_session; false also for an unreadable file.
+/// True if save_session wrote the file. False also if the file cannot be read.
 bool is_session_file(const std::string& path);
 
 /// Shows a file: measured points (.csv), a scene, or a session from save_session.
 /// Errors: InputError in one line; the session then stays unchanged.
 void open_file(Session& session, const std::string& path);
 
-/// The look of the window, and recent files.
+/// Preferences of the user: theme, size of text, recent files.
 class Preferences {
  public:
   static constexpr std::size_t kMostRecent = 10;
 
-  /// $XDG_CONFIG_HOME/dolp/window.toml, by default in ~/.config; empty without a home.
+  /// $XDG_CONFIG_HOME/dolp/window.toml. If this variable is not set, ~/.config/dolp/window.toml. Empty if HOME is not
+  /// set either.
   static std::filesystem::path default_path();
 
-  /// Reads the file if it exists. With an empty path preferences are not stored. Errors: InputError for wrong content.
+  /// Reads the file if it exists. If `path` is empty, save() does nothing. Errors: InputError for wrong content.
   void load(const std::filesystem::path& path);
   /// Errors: IoError.
   void save() const;
@@ -51,7 +52,8 @@ class Preferences {
     constexpr double kStep = 1.1;
     return std::pow(kStep, zoom_steps_);
   }
-  /// Enlarges text and controls by some steps. Limits keep text readable and controls in the window.
+  /// Enlarges text and controls by `steps` of 10 %; a negative number makes them smaller. The sum of all steps is at
+  /// most 8 in each direction, so that text stays readable and controls stay in the window.
   void zoom_by(int steps) {
     constexpr int kMostSteps = 8;  // zoom to about twice or half the size
     zoom_steps_ = std::clamp(zoom_steps_ + std::clamp(steps, -2 * kMostSteps, 2 * kMostSteps), -kMostSteps, kMostSteps);

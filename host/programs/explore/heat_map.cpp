@@ -14,10 +14,10 @@ namespace {
 /// A number of a scene that can be an axis.
 struct AxisOfNumber {
   std::string name, key;
-  std::optional<Scale> range = {};  ///< empty: the range of its slider
+  std::optional<Scale> range = {};  ///< range of the axis; empty: the range of the slider
 };
 
-/// All axes except the zenith. No scene has both numbers that share a name.
+/// All axes except the zenith. Sigma and the wind speed share a name; no scene has sliders of both.
 const std::vector<AxisOfNumber>& axes_of_numbers() {
   static const std::vector<AxisOfNumber> all = [] {
     std::vector<AxisOfNumber> axes = {{"sigma", "surface.sigma"},
@@ -45,13 +45,13 @@ Scale grid_range(const Scene& scene, const MapAxis& axis) {
   return has_range ? Scale{low, high, axis.scale.is_log} : axis.scale;
 }
 
-/// The corners of a square, in order.
+/// The corners of a square, in the order around it.
 struct Corner {
   std::size_t x, y;
 };
 constexpr std::array<Corner, 4> kCorners = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
 
-/// Adds the lines in the square at (column, row).
+/// Adds the contour lines in the square whose lower left corner is (column, row).
 void add_lines(const MapField& field, double level, std::size_t column, std::size_t row, std::vector<Segment>& lines) {
   std::array<double, 4> value{};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -70,7 +70,7 @@ void add_lines(const MapField& field, double level, std::size_t column, std::siz
     };
     crossings.emplace_back(between(column, &Corner::x), between(row, &Corner::y));
   }
-  // Joins two crossings, or four around a saddle in pairs.
+  // Two crossings of the border give one line. Four, around a saddle, give two lines.
   for (std::size_t i = 0; i + 1 < crossings.size(); i += 2)
     lines.push_back({crossings[i].first, crossings[i].second, crossings[i + 1].first, crossings[i + 1].second});
 }

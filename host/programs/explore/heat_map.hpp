@@ -13,32 +13,33 @@ struct MapAxis {
   std::string key = {};  ///< key of the scene; empty for the zenith
   Scale scale = {0.0, 90.0};
 
-  /// The column of points for its values. The temperature has none, because it changes the scene.
+  /// Name of the column of points with the axis's values. Empty for the temperature, which is a change of the scene.
   std::string column() const {
     if (key.empty()) return "theta_deg";
     if (key == "emission.temperature_K") return {};
     return key.starts_with("surface.coating") ? key : key.substr(key.find('.') + 1);
   }
-  /// Rank in the order of axes in a grid or a list; the slowest axis comes first.
+  /// Rank of the axis; the axis with the smaller rank is the slower one. 0: temperature; 1: a number of a film; from 2:
+  /// the axes that tables can have, in their order.
   std::size_t rank() const;
   /// True if tables can have the axis.
   bool is_of_tables() const { return rank() >= 2; }
   friend bool operator==(const MapAxis&, const MapAxis&) = default;
 };
 
-/// The axes that maps of a scene can have. Each range is the range of the scene's grid or of the slider, extended to
-/// the scene's value.
+/// The axes that maps of a scene can have. The range of an axis is the range of the scene's grid or of the slider,
+/// extended to the scene's value.
 std::vector<MapAxis> map_axes(const Scene& scene, double theta_max_deg);
 
-/// The part of a wavelength axis in which the scene is known: all of it for built-in materials, most of it for files.
-/// Both ends are equal if only one wavelength is known.
+/// A part of a wavelength axis in which the optical constants are known: all of it for a built-in material, maybe less
+/// for a material from a file. Both ends are equal if only one wavelength is known.
 Scale known_part(const Scene& scene, const MapAxis& axis);
 
 /// The reason why a map of a scene cannot have a range along an axis; empty if it can.
 std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range);
 
 /// The values of one quantity on a map.
-/// Shape: count x count in rows, x fastest, y upwards.
+/// Shape: `count` rows of `count` values. x grows along a row, y from row to row.
 struct MapField {
   std::size_t count = 0;
   std::vector<double> values;  ///< NaN where there is no value, and for entries with a bad status
@@ -46,7 +47,7 @@ struct MapField {
   double max = 0.0;
 };
 
-/// A piece of a contour line. Positions are 0 to 1 along both axes of the map.
+/// A piece of a contour line. Positions are from 0 to 1 along both axes of the map.
 struct Segment {
   double x0, y0, x1, y1;
 };
@@ -63,13 +64,13 @@ class HeatMap {
     double tolerance;   ///< lower limit of the tolerance; 0: the scene's tolerance
     std::size_t batch;  ///< number of values along the slower axis in one part of the job
   };
-  // The first level takes two values at a time, because each part delays the curve during a drag.
+  // A part of the first level has only two values of the slower axis, because it delays the curve during a drag.
   static constexpr std::array<Level, 3> kLevels = {{{16, 1e-2, 2}, {64, 1e-2, 8}, {128, 0.0, 4}}};
 
   explicit HeatMap(const Scene& scene) : scene_(scene) {}
 
-  /// Switches to this map. `key` identifies the content of the scene without the parameters of the axes. If no axis is
-  /// the zenith, the zenith is `theta_deg`.
+  /// Switches to the map over the axes `x` and `y`. `key` identifies it, without the scene's values of these two
+  /// parameters. If neither axis is the zenith, the zenith is `theta_deg`.
   void follow(const std::string& key, const Scene& scene, bool keep_all, const MapAxis& x, const MapAxis& y,
               double theta_deg);
 
@@ -77,7 +78,7 @@ class HeatMap {
   /// Takes results of this map. Returns false for other results. The first level is shown when it is complete.
   bool take(const JobPart& news);
   bool is_finished() const { return is_current() && is_complete(kLevels.size() - 1); }
-  /// True if the map on display belongs to the scene and has at least the first level.
+  /// True if the map on display belongs to the current scene, so that it has at least the first level.
   bool is_coarse_done() const { return is_current() && !points_[0].empty(); }
   /// True if the first level has begun but is not complete.
   bool is_arriving() const { return arriving_key_ == key_ && !arriving_.empty(); }
@@ -94,7 +95,7 @@ class HeatMap {
     }
     return finest;
   }
-  /// The finished share of all levels, 0 to 1.
+  /// The finished share of all levels, from 0 to 1.
   double progress() const {
     std::size_t done = 0, all = 0;
     for (std::size_t level = 0; level < kLevels.size(); ++level) {
@@ -106,7 +107,8 @@ class HeatMap {
   /// Changes whenever the field changes.
   std::size_t version() const { return version_; }
 
-  /// The finest level that has begun. A coarser level fills its missing rows.
+  /// The values of the finest level that has begun. Missing points take the value of the nearest point of a coarser
+  /// level.
   MapField field(Plotted quantity) const;
 
  private:
@@ -122,7 +124,7 @@ class HeatMap {
   std::size_t batch(std::size_t level) const { return slower().column().empty() ? 1 : kLevels[level].batch; }
   /// The entries of the part that begins at this position of the slower axis.
   PointList part(std::size_t level, std::size_t first) const;
-  /// The point nearest to an entry of the finest begun level.
+  /// The point at (row, column) of level `finest`. If it is missing, the nearest point of a coarser level.
   const Point& point_at(std::size_t finest, std::size_t row, std::size_t column) const;
 
   std::string key_;
@@ -131,7 +133,7 @@ class HeatMap {
   MapAxis x_, y_{.name = "sigma"};
   double theta_deg_ = 0.0;
   std::string shown_key_;                                  ///< key of the map on display
-  std::array<std::vector<Point>, kLevels.size()> points_;  ///< the faster axis varies first
+  std::array<std::vector<Point>, kLevels.size()> points_;  ///< neighbours differ along the faster axis
   std::string arriving_key_;
   std::vector<Point> arriving_;  ///< points of the first level while it is incomplete
   std::size_t version_ = 0;

@@ -12,9 +12,9 @@
 namespace dolp::explore {
 namespace {
 
-constexpr double kSpecularAzimuth_deg = 180.0;  // azimuth between the source and the reflection by a mirror
+constexpr double kSpecularAzimuth_deg = 180.0;  // azimuth from the source to its mirror reflection
 
-/// The wavelengths at which n and k are shown.
+/// The first and the last wavelength of the plot of n and k.
 std::pair<double, double> known_um(const Scene& scene) {
   const auto spectrum = spectrum_um(scene);
   for (const BuiltInMaterial& known : materials()) {

@@ -1,5 +1,5 @@
-// Values for the views beside the map: slope distributions, a material over wavelength, curves over wavelength and of
-// the smooth surface, the pBRDF in the plane of incidence, a sphere, and a sky of source directions.
+// Values for the views that can replace the map: slope distributions, a material over wavelength, curves over
+// wavelength, the smooth surface, the pBRDF in the plane of incidence, a sphere, and DOLP over source directions.
 #pragma once
 
 #include <algorithm>
@@ -18,14 +18,14 @@ enum class Panel : std::uint8_t { kMap, kSlopes, kMaterial, kSmooth, kSpectrum, 
 inline constexpr std::array kPanelNames = {"map",   "slopes", "material", "smooth", "spectrum",
                                            "pBRDF", "sphere", "sky",      "fit"};
 
-/// The panel of a name. Errors: InputError that lists the names.
+/// The panel with this name. Errors: InputError that lists the names.
 Panel panel_of(const std::string& name);
 
 /// The scene with the other distribution and an equal density of flat facets: sigma_G = sigma / sqrt(q - 1). Empty if
 /// this sigma or q is outside the model.
 std::optional<Scene> with_other_distribution(const Scene& scene);
 
-/// The slope distribution D at an angle alpha between facet and mean plane.
+/// The slope distribution D at an angle alpha between the normals of facet and mean plane.
 /// Equation: (8) cauchy, (1) gaussian. Units: 1/sr. Accuracy: ExplorePanels.SlopeDensity_IsNormalised.
 double slope_density(const Scene& scene, double alpha_deg);
 
@@ -34,27 +34,27 @@ struct MaterialCurve {
   std::vector<double> wavelength_um, n, k;
 };
 
-/// n and k over all known wavelengths of a built-in material. For other materials over the scene's spectrum, or from 20
-/// % below to 25 % above a single wavelength.
+/// n and k over wavelength. The range of a built-in material is all its known wavelengths. The range of another
+/// material is the scene's band, or from 20 % below to 25 % above a single wavelength.
 MaterialCurve material_curve(const Scene& scene, std::size_t count);
 
 /// The ends of the scene's spectrum, equal for a single wavelength.
 std::pair<double, double> spectrum_um(const Scene& scene);
 
-/// The scene at the middle of its band.
+/// The scene at its wavelength, or at the middle of its band.
 Scene at_one_wavelength(const Scene& scene);
 
-/// The scene's surface without roughness: its rho_s and rho_p are the reflectances R_s and R_p of a facet.
+/// The scene with a smooth surface, so that its rho_s and rho_p are the reflectances R_s and R_p of a facet.
 Scene smooth_scene(const Scene& scene);
 
 /// The Mueller pBRDF in the plane of incidence.
 struct ScatteringCut {
   std::vector<double> theta_r_deg;  ///< from -90 to 90; positive on the side to which a mirror reflects
   std::vector<MuellerMatrix> matrices;
-  double wavelength_um = 0.0;  ///< the middle of a band
+  double wavelength_um = 0.0;  ///< wavelength of the scene, or the middle of its band
 };
 
-/// The pBRDF for `count` directions of reflection. Errors: InputError if the scene has no pBRDF there; other errors of
+/// The pBRDF for `count` directions of reflection. Errors: InputError if the scene has no pBRDF; other errors of
 /// Evaluator::mueller.
 ScatteringCut scattering_cut(Evaluator& evaluator, const Scene& scene, double theta_i_deg, std::size_t count);
 
@@ -64,21 +64,21 @@ struct ImagePolarisation {
   double angle_deg = 0.0;  ///< direction of the electric field from the image's horizontal, counterclockwise, 0 to 180
 };
 
-/// The polarisation of a facet at `theta_deg` whose normal points to `azimuth_deg` in the image, interpolated in a
-/// curve in hemispherical mode. Empty if the model fails.
+/// The polarisation of a facet that the camera sees at the zenith `theta_deg`, and whose normal points to `azimuth_deg`
+/// in the image. Interpolates between the points of a hemispherical curve. Empty if one of them is not good.
 /// Conventions: s polarisation (Q > 0) is perpendicular to the plane of normal and view; p lies in the plane. In the
 /// image this plane is a line along the azimuth.
 std::optional<ImagePolarisation> polarisation_at(const std::vector<Point>& curve, double theta_deg, double azimuth_deg);
 
-/// DOLP of a bistatic scene over directions of the source: rings of zeniths, one per azimuth.
+/// DOLP of a bistatic scene over directions of the source: for each azimuth a curve over the zenith.
 class SourceSky {
  public:
   static constexpr std::size_t kZeniths = 31;   ///< 0 to 90 degrees
   static constexpr std::size_t kAzimuths = 37;  ///< from 0 to 180 degrees; the other half is the mirror image
 
-  /// Switches to the sky of a bistatic scene; `key` identifies its content without the azimuth.
+  /// Switches to the sky of a bistatic scene; `key` identifies the scene without its azimuth.
   void follow(const std::string& key, const Scene& scene);
-  /// Coarse jobs for the azimuths that are not known yet.
+  /// Jobs at the coarse tolerance for the azimuths that are not known yet.
   std::vector<Job> wanted() const {
     std::vector<Job> jobs;
     for (const Sweep& ring : rings_) {

@@ -12,10 +12,10 @@
 
 namespace dolp::explore {
 
-/// Points to compute: columns, each with one value or with one per point, or the axes of a grid.
+/// Points to compute: either columns, each with one value for all points or one value per point; or the axes of a grid.
 struct PointList {
-  std::vector<std::pair<std::string, std::vector<double>>> values;  ///< names as in points of `dolp eval`
-  /// all combinations of the values, in the order of a table; shared work is done once
+  std::vector<std::pair<std::string, std::vector<double>>> values;  ///< columns or axes, with the names of `dolp eval`
+  /// True: all combinations of the values, in the order of a table. Work that several entries share is done once.
   bool is_grid = false;
   std::vector<Setting> changes = {};  ///< changes of the scene for numbers that have no column
 
@@ -31,10 +31,10 @@ struct PointList {
 /// True if the scene's sigma comes from a wind speed.
 bool has_wind(const Scene& scene);
 
-/// The points of a scene's surface at some zeniths. The zenith is the first column.
+/// Points with the scene's slope distribution at some zeniths. The zenith is the first column.
 PointList points_at(const Scene& scene, std::vector<double> theta_deg);
 
-/// `count` zeniths from `from` to `to`, both included.
+/// `count` zeniths at equal steps from `from_deg` to `to_deg`, both included.
 std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count);
 
 /// Computes the points of a list. Errors: the errors of Evaluator::evaluate and Evaluator::table.
@@ -46,7 +46,7 @@ struct Point : PointResult {
 
   /// True if the status has no bit that makes DOLP meaningless or voids its error bound.
   bool is_good() const { return promises_dolp(status) && std::isfinite(values[Quantity::kDolp]); }
-  /// True if the point has limits of the DOLP with all bounces.
+  /// True if the point has limits between which DOLP lies with all bounces.
   bool has_bracket() const {
     return std::isfinite(values[Quantity::kDolpLow]) && std::isfinite(values[Quantity::kDolpHigh]);
   }
@@ -65,14 +65,14 @@ struct PlottedDescription {
   const char* name;               ///< UTF-8
   const char* meaning;            ///< text in UTF-8, with the equation
   bool in_percent;                ///< shown multiplied by 100
-  bool needs_rho;                 ///< missing if the plan drops effects
+  bool needs_rho;                 ///< known only if the plan drops no effect
   double (*value)(const Point&);  ///< NaN where the model gives no value
   bool is_signed = false;
 
   /// The value of a point in the unit of the label.
   double shown(const Point& point) const { return scale() * value(point); }
   double scale() const { return in_percent ? 100.0 : 1.0; }
-  /// "DOLP [%]".
+  /// Name and unit, for example "DOLP [%]".
   std::string label() const { return std::string(name) + (in_percent ? " [%]" : ""); }
 };
 extern const std::array<PlottedDescription, 7> kAllPlotted;

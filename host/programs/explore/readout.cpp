@@ -15,7 +15,7 @@ constexpr double kAlbedoMin = 0.95;
 constexpr double kAlbedoMax = 1.05;
 constexpr double kPercent = 100.0;
 
-/// A bound in points of DOLP.
+/// A bound of DOLP in percentage points.
 std::string points_text(double bound) { return std::isfinite(bound) ? fmt::format("{:.2g}", kPercent * bound) : "∞"; }
 
 /// A radiating effect and its contribution to Q/I at the peak.
@@ -24,7 +24,8 @@ struct Part {
   double q_over_i;
 };
 
-/// Stokes parameters add up. If a scene without emission is impossible, the emission contributes the rest.
+/// The contributions of all radiating effects, which add up to Q/I. If the scene is impossible without emission, the
+/// emission contributes the rest.
 std::vector<Part> radiating_parts(const Session& session) {
   const Peak& peak = session.peak();
   double rest = peak.answer()->at[Quantity::kQOverI];
@@ -43,7 +44,7 @@ std::vector<Part> radiating_parts(const Session& session) {
   return parts;
 }
 
-/// The point at the peak without an effect; null if there is none.
+/// The point at the peak without an effect; null if it is not known.
 const Point* point_without(const Session& session, const std::string& effect) {
   if (!session.peak().answer()) return nullptr;
   const std::vector<WithoutEffect>& all = session.peak().without();

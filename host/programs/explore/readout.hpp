@@ -5,23 +5,23 @@
 
 namespace dolp::explore {
 
-// ---- Names of curves. Each ends with its remark.
-/// Marks a curve that is not the finished one of its scene: ", coarse" or ", the scene before"; else empty.
+// ---- Names of curves. Each ends with the remark on the curve.
+/// ", the scene before" for a curve of an earlier scene, ", coarse" for a coarse curve; otherwise empty.
 const char* remark(const Session& session, const Curve& curve);
-/// The surface of the curve on display.
+/// Describes the surface of the curve on display.
 std::string curve_name(const Session& session);
 std::string overlay_name(const Session& session);
 /// The typed name of a pin, or its material with the words that distinguish it from the curve on display.
 std::string pin_name(const Session& session, const Pin& pin);
-/// ", the scene before" for outdated values.
+/// ", the scene before" if values are outdated; otherwise empty.
 const char* stale_text(bool is_stale);
 
 // ---- Lines below the plots.
 /// The position of the curve's maximum of polarisation, and its uncertainty.
 std::string peak_text(const Session& session);
-/// The radiation that causes the polarisation at the maximum: parts of Q/I that add up.
+/// The cause of the polarisation at the maximum: the parts of Q/I from emission, source and surroundings, which add up.
 std::string cause_text(const Session& session);
-/// The reason why there are no residuals between two zeniths; empty if there are some.
+/// The reason why there are no residuals in a range of zeniths; empty if there are some.
 std::string no_residuals_text(const Session& session, const Scale& theta);
 /// The values under the cursor.
 std::string cursor_text(const Session& session);
@@ -37,7 +37,8 @@ std::vector<std::string> cost_lines(const Session& session);
 std::string table_command(const SceneEdits& edits);
 /// The text of host/tools/plot_view.py.
 extern const char* const kPlotScript;
-/// The visible curves between two axes, the measured points, and the map if it is shown, as JSON for the script.
+/// The visible curves with the axes `x` and `y`, the measured points, and the map if it is shown, as JSON for the
+/// script.
 /// Units: as in the labels. Values that the model does not give are null.
 std::string plot_json(const Session& session, const Scale& x, const Scale& y);
 

@@ -9,7 +9,7 @@
 namespace dolp::explore {
 namespace {
 
-constexpr double kRounding = 1e-9;  // an end may miss a tick by this share of a step
+constexpr double kRounding = 1e-9;  // a tick may lie outside the range by this share of a step
 
 std::vector<double> linear_ticks(double low, double high, std::size_t most) {
   const double rough = (high - low) / static_cast<double>(most);
@@ -44,7 +44,7 @@ std::vector<double> log_ticks(double low, double high, std::size_t a_decade) {
 }  // namespace
 
 std::string Scale::refusal() const {
-  constexpr double kLeastSpan = 1e-9;  // relative to the ends; in a narrower range positions would be rounding errors
+  constexpr double kLeastSpan = 1e-9;  // relative to the larger end; below it positions are rounding errors
   if (!std::isfinite(to - from)) return "must be finite";
   if (!(from < to)) return "must be from < to";
   if (is_log && from <= 0.0) return "must be above 0 on a logarithmic axis";
@@ -95,7 +95,7 @@ Scale range_of(std::vector<double> values, bool is_log) {
   const auto [low, high] = std::ranges::minmax(values);
   if (is_log) {
     constexpr double kMostDecades = 1e6;
-    constexpr double kRoom = 4.0;  // space for the mark of the maximum
+    constexpr double kRoom = 4.0;  // factor above the largest value: space for the mark of the maximum
     return {std::max(low / 1.5, kRoom * high / kMostDecades), kRoom * high, true};
   }
   const double room = 0.06 * std::max(high - low, 1e-9);

@@ -10,7 +10,8 @@
 
 namespace dolp::explore {
 
-/// A range of values at positions from 0 to 1. Domain: ranges whose refusal() is empty.
+/// A linear or logarithmic range of values. The position of a value is 0 at `from` and 1 at `to`. Domain: ranges for
+/// which refusal() is empty.
 struct Scale {
   double from = 0.0;
   double to = 1.0;
@@ -24,7 +25,7 @@ struct Scale {
     return is_log ? std::log(value / from) / std::log(to / from) : (value - from) / (to - from);
   }
   double clamp(double value) const { return std::clamp(value, from, to); }
-  /// The value at a position with four digits, within the range.
+  /// The value at a position, rounded to four digits and clamped to the range.
   double rounded(double position) const;
   /// `count` values at equal steps of the position, with both ends.
   std::vector<double> values(std::size_t count) const;
@@ -41,13 +42,13 @@ struct Scale {
   Scale including(double value) const {
     return is_log && !(value > 0.0) ? *this : Scale{std::min(from, value), std::max(to, value), is_log};
   }
-  /// This range with a linear or a logarithmic scale. A logarithmic range from 0 begins at 1/180 of its end: 0.5 for
-  /// 90.
+  /// This range with a linear or a logarithmic scale. A logarithmic range cannot begin at 0; it then begins at 1/180 of
+  /// its end, for example at 0.5 of 90.
   Scale with_log(bool wants_log) const;
 
   /// Round values in the range, at most `most` of them (at least 2). Linear: multiples of 1, 2 or 5 times a power of
-  /// ten. Logarithmic: powers of ten, with 2 and 5 in between if there is room; linear ticks if fewer than three would
-  /// fit.
+  /// ten. Logarithmic: powers of ten, with 2 and 5 times these if there is room; if the range contains fewer than three
+  /// such values, the values of a linear range.
   std::vector<double> ticks(std::size_t most) const;
 
   friend bool operator==(const Scale&, const Scale&) = default;

@@ -30,7 +30,7 @@ std::string with_number(const Scene& scene, const char* symbol, const std::strin
   return fmt::format("{} {:.4g}{}", symbol, scene.number(key).value(), unit);
 }
 
-/// The material of a surface or of a film, from the table of either: a name, a file, or n and k.
+/// The material of the surface or of a film as text: a name, a file, or n and k. `table` is the table with its keys.
 std::string material_of(const Scene& scene, const std::string& table) {
   if (table == "surface" && !has_index(scene)) return *scene.word("surface.reflectance_file");
   for (const char* name : {".material", ".material_file"}) {

@@ -38,7 +38,7 @@ struct Control {
 /// The scene key with this name. The key must exist.
 const Key& described(const std::string& key);
 
-/// All controls, in the order of the scene keys; the numbers of films come last.
+/// All sliders, in the order of the scene keys, with the numbers of films last; and all lists and boxes.
 const std::vector<Control>& controls();
 
 /// The control of a key, which must have one.
@@ -55,8 +55,9 @@ std::string unit_text(const Key& key);
 
 bool is_bistatic(const Scene& scene);
 
-/// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1". With `other`, only the words of the
-/// shape that differ from it, and the material. If shape and material are equal, the other numbers that differ.
+/// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1". With `other`, only the words about the
+/// shape that `other` does not have, and the material. If shape and material are those of `other`, also the numbers
+/// that differ.
 std::string surface_name(const Scene& scene, const Scene* other = nullptr);
 
 /// A scene file with changes. The window computes what `dolp eval` computes with these settings.
@@ -66,8 +67,9 @@ class SceneEdits {
   /// A scene as it was opened, with changes. Errors: the errors of set().
   SceneEdits(const Scene& opened, const std::vector<Setting>& changes) : SceneEdits(opened) { become(changes); }
 
-  /// Changes keys together. A table without a value removes its effect, and any of its keys restores the effect.
-  /// Alternatives of a key (n and k, material, material file) are removed.
+  /// Changes several keys at once. A table name with an empty value, for example "source", removes this effect; a later
+  /// change of a key in the table restores it. A change of a key removes its alternatives, for example `material`
+  /// removes n and k.
   /// Errors: InputError; the scene then stays unchanged.
   void set(const std::vector<Setting>& changes);
 
@@ -80,7 +82,8 @@ class SceneEdits {
   bool is_changed() const { return changes() != saved_; }
   /// Declares the current scene unchanged.
   void note_saved() { saved_ = changes(); }
-  /// Goes to another state of this file, or to another file. Remembers the saved state of this file.
+  /// Goes to another state of this file, or to another file. In another state of this file, is_changed() still compares
+  /// with the state that was saved last.
   void go_to(const SceneEdits& other);
   /// True if both have equal changes of the same file.
   bool is_same_scene(const SceneEdits& other) const { return is_same_file(other) && changes() == other.changes(); }
@@ -99,7 +102,7 @@ class SceneEdits {
   std::vector<Setting> saved_;
 };
 
-/// The keys of a film in its table: n and k, or material, or material_file; and thickness_um.
+/// The settings of a film: n and k, or material, or material_file; and thickness_um, which is last.
 using Film = std::vector<Setting>;
 /// The films of a scene from the outside in.
 std::vector<Film> films_of(const Scene& scene);
@@ -119,12 +122,12 @@ struct SkyPair {
   double zenith_K = 220.0;
   double horizon_K = 285.0;
 
-  /// The text of its file, two rows, for surroundings.profile.
+  /// The text of the sky's file for surroundings.profile: the rows of the zenith and of the horizon.
   std::string csv() const;
   friend bool operator==(const SkyPair&, const SkyPair&) = default;
 };
 
-/// Reads a file from SkyPair::csv. Empty for any other or unreadable file.
+/// Reads a file with the text of SkyPair::csv. Empty if the file has another text or cannot be read.
 std::optional<SkyPair> read_sky_pair(const std::filesystem::path& file);
 
 /// The sky file that a scene names; empty for a built-in sky and without a sky.
@@ -133,7 +136,8 @@ std::filesystem::path sky_file(const Scene& scene);
 /// Files of the skies that the window edits; a scene names a sky by its file. The destructor removes their folder.
 class SkyFiles {
  public:
-  /// The path of a sky's file. If the file cannot be written, the scene refuses the path.
+  /// Writes the file of a sky and returns its path. If the file cannot be written, it does not exist, and the scene
+  /// refuses the path.
   std::string path(const SkyPair& sky);
   bool hold(const std::filesystem::path& file) const { return folder_ && file.parent_path() == folder_->path(); }
 

@@ -32,7 +32,8 @@ struct JobList {
   void add(std::vector<Job> more) { std::ranges::move(more, std::back_inserter(jobs)); }
 };
 
-/// Gives an axis its typed range, or the range in which the scene is known. Returns false if that is only one value.
+/// Gives an axis its typed range, or the range in which the scene is known. Returns false if this range has only one
+/// value.
 bool find_range(const Scene& scene, const View& view, MapAxis& axis) {
   const std::optional<Scale> typed = view.range(axis.label);
   // The scene may have changed since the user typed the range, and refuse it now.
@@ -286,7 +287,8 @@ void Session::follow() {
 
 void Session::estimate_influences() {
   const JobPart& curve = curve_.finished();
-  // The estimate takes as long as a coarse curve. During a drag neither curve nor zenith changes.
+  // The estimate takes as long as a coarse curve. So it is made only for a new finished curve or a new zenith; a drag
+  // of a slider makes neither.
   std::pair<std::string, double> wanted{curve.key, state_.theta_deg};
   if (influences_of_ == wanted) return;
   influences_of_ = std::move(wanted);
@@ -320,7 +322,7 @@ void Session::follow_map() {
 void Session::follow_sweeps(const std::string& content) {
   constexpr std::size_t kSpectrum = 121;
   constexpr std::size_t kSmooth = 901;  // enough for the fringes of films; the values are closed forms
-  constexpr double kWidth = 2.0;        // the axis goes from half to twice the wavelength of the opened scene
+  constexpr double kWidth = 2.0;        // the axis goes from half the wavelength of the opened scene to twice
   const bool is_spectrum = shows(Panel::kSpectrum);
   if (!is_spectrum && !shows(Panel::kSmooth)) return;
   spectral_scene_ = at_one_wavelength(scene());

@@ -13,7 +13,7 @@ namespace dolp::explore {
 
 /// A curve that is kept while the scene changes.
 struct Pin {
-  std::string name = {};   ///< name that the user typed; empty: the name of its surface
+  std::string name = {};   ///< name that the user typed; if empty, the legend describes the surface
   std::size_t colour = 0;  ///< position in the list of pin colours
   bool is_visible = true;
   Curve curve;
@@ -25,14 +25,14 @@ struct View {
   bool is_log = false;
   bool is_theta_log = false;    ///< curves are drawn over the logarithm of the zenith
   bool has_overlay = true;      ///< the other slope distribution with the same D(0)
-  bool keeps_all = false;       ///< computes also what the plan would drop
-  double theta_max_deg = 90.0;  ///< end of the plots and of the search for the maximum
-  std::string map_x = "theta";  ///< name of an axis; if the scene lacks it, the map has another one
+  bool keeps_all = false;       ///< also computes effects that the plan would drop
+  double theta_max_deg = 90.0;  ///< largest zenith of the plots and of the search for the maximum
+  std::string map_x = "theta";  ///< name of the x axis; if the scene lacks it, the map takes another
   std::string map_y = "sigma";
   /// Ranges that the user chose, by the label of a map axis or by one of the names below. Other axes are automatic.
   std::map<std::string, Scale> ranges = {};
   Panel panel = Panel::kMap;
-  std::size_t mueller_row = 0;  ///< position of the element that the view of the pBRDF shows
+  std::size_t mueller_row = 0;  ///< row and column, from 0, of the Mueller element in the view "pBRDF"
   std::size_t mueller_column = 0;
 
   static constexpr const char* kZeniths = "curve zenith";
@@ -66,7 +66,7 @@ struct SessionState {
   FitMarks marked = {};
 };
 
-/// State and commands of the window. A Worker computes the wanted jobs. Drawing is elsewhere.
+/// State and commands of the window. A Worker computes the jobs of wanted(); the classes in window/ draw the state.
 class Session {
  public:
   static constexpr std::size_t kMostPins = 6;
@@ -74,15 +74,15 @@ class Session {
 
   explicit Session(SceneEdits edits);
 
-  // ---- Commands. A command that the scene refuses changes nothing and leaves the reason in message(); further changes
-  // that a choice needs are named there too.
+  // ---- Commands. If the scene refuses a command, nothing changes, and message() has the reason. If a choice needs
+  // further changes, the command makes them, and message() names them.
   void set(const std::string& key, const Value& value) { set({{key, value}}); }
   void set(const std::vector<Setting>& changes);
   void reset(const std::string& key);
   void reset_all() {
     attempt([&] { state_.edits.reset_all(); });
   }
-  /// Shows another state or another scene. `undo` goes back.
+  /// Replaces the scene by another state or by another scene. `undo` goes back.
   void go_to(const SceneEdits& edits) {
     attempt([&] { state_.edits.go_to(edits); });
   }
@@ -95,8 +95,8 @@ class Session {
   void hold(bool is_held);
   void note_saved() { state_.edits.note_saved(); }
   void pin();
-  /// Changes the view. A new quantity or a new scale of its axis removes typed ranges of values; a new scale of the
-  /// zenith removes typed ranges of zeniths.
+  /// Changes the view. If the quantity changes, or its axis becomes linear or logarithmic, the chosen ranges of values
+  /// and colours are removed. If the zenith axis becomes linear or logarithmic, the chosen range of zeniths is removed.
   void set_view(const View& view);
   template <class T>
   void set_view(T View::*part, const std::type_identity_t<T>& value) {
@@ -105,7 +105,8 @@ class Session {
     set_view(view);
   }
   void set_theta(double theta_deg);
-  /// Moves the cursor of the map, and with it the parameters of its axes. Positions are 0 to 1.
+  /// Moves the cursor of the map, and gives the scene the values of both axes there. `x` and `y` are positions from 0
+  /// to 1.
   void set_map_cursor(double x, double y);
   void load_measured(const std::string& path);
   void clear_measured() { residuals_.clear(); }
@@ -119,14 +120,15 @@ class Session {
   }
   /// Lets a number vary in fits over a typed range. Returns the reason if the range is refused, otherwise nothing.
   std::string set_fit_range(const std::string& key, const std::string& low, const std::string& high);
-  /// Shows a fit, and moves the parameters to the minimum that is nearest to the job's start. Returns its position.
+  /// Shows a fit, and moves the parameters to the minimum that is nearest to the start of `job`. Returns the position
+  /// of this minimum in Fit::minima.
   std::size_t take_fit(Fit fit, const FitJob& job);
-  /// Moves the parameters to a minimum of the last fit; the rest of the scene becomes the fitted one.
+  /// Restores the scene of the last fit, with the parameters of one of its minima.
   void visit_minimum(std::size_t position);
   void tell(std::string text, bool is_error = false) { message_ = {std::move(text), is_error}; }
 
   // ---- Computing.
-  /// The wanted jobs, the most wanted first.
+  /// The jobs that the window needs, the most urgent first.
   std::vector<Job> wanted() const;
   /// True if wanted() may have changed since the last call.
   bool take_changed() { return std::exchange(is_changed_, false); }
@@ -145,52 +147,55 @@ class Session {
   const std::vector<Snapshot>& snapshots() const { return state_.snapshots; }
   const HeatMap& map() const { return map_; }
   const SourceSky& source_sky() const { return source_sky_; }
-  /// The scene at one wavelength, and its axis of wavelengths. The axis has no range if only one wavelength is known.
+  /// The scene at one wavelength, and the axis of the plots over wavelength. If the scene is known at only one
+  /// wavelength, both ends of the axis are equal.
   const Scene& spectral_scene() const { return spectral_scene_; }
   const MapAxis& wavelengths() const { return wavelengths_; }
-  // At the cursor's zenith: the scene over wavelength and the smooth surface over wavelength. Also the smooth surface
-  // over zenith.
+  // spectrum() and smooth_spectrum(): the scene and its smooth surface over wavelength, at the cursor's zenith.
+  // smooth(): the smooth surface over zenith.
   const Sweep& spectrum() const { return spectrum_; }
   const Sweep& smooth_spectrum() const { return smooth_spectrum_; }
   const Sweep& smooth() const { return smooth_; }
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
-  /// True if a scene comes from another file.
+  /// True if `other` comes from another file than the current scene.
   bool is_foreign(const Scene& other) const { return other.name() != scene().name() || other.text() != scene().text(); }
   const FitMarks& marked() const { return state_.marked; }
   bool varies(const std::string& key) const { return state_.marked.contains(key); }
   /// The files of skies that the window edits.
   SkyFiles& skies() { return skies_; }
   const SkyFiles& skies() const { return skies_; }
-  /// True if the scene names a sky of the window.
+  /// True if the sky of the scene is a file of skies().
   bool has_unsaved_sky() const { return skies_.hold(sky_file(scene())); }
   /// The fit of the marked parameters to the measured points. Empty without points, or if the scene has no marked
   /// parameter.
   std::optional<FitJob> fit_job() const;
   const std::optional<Fit>& last_fit() const { return fit_; }
-  /// The minimum of the last fit that the scene shows; empty after the scene has changed.
+  /// The position of the last fit's minimum that the scene shows; empty if the user has changed the scene since the
+  /// fit.
   std::optional<std::size_t> minimum() const {
     return fit_ && visited_->is_same_scene(state_.edits) ? std::optional(minimum_) : std::nullopt;
   }
-  /// The result of the last fit for a number; null after the scene has changed.
+  /// The result of the last fit for the parameter `key`; null if the user has changed the scene since the fit.
   const FitParameter* fitted(const std::string& key) const;
   const Message& message() const { return message_; }
-  /// True while the mouse changes the scene.
+  /// True while the mouse button is down and has changed the scene.
   bool is_dragged() const { return is_held_ && is_in_gesture_; }
-  /// True if a curve belongs to an earlier scene, but not to the current drag.
+  /// True if the points of a curve belong to an earlier scene. False during a drag, because then every curve lags
+  /// behind.
   bool is_outdated(const Curve& curve) const { return curve.is_stale() && !is_dragged(); }
-  /// The effects of the last finished curve. For kept effects the influence is the one at the cursor's zenith.
+  /// The effects of the last finished curve. The influence of a kept effect is its influence at the cursor's zenith.
   const std::vector<Effect>& effects() const { return effects_; }
-  /// The position of the scene's value on an axis of the map.
+  /// The position, from 0 to 1, of the scene's value on an axis of the map.
   double map_cursor(const MapAxis& axis) const {
     const double value = axis.key.empty() ? state_.theta_deg : scene().number(axis.key).value_or(axis.scale.from);
     return axis.scale.position(axis.scale.clamp(value));
   }
-  /// The point on display whose zenith is nearest to the cursor; null without points.
+  /// The point of the drawn curve whose zenith is nearest to the cursor; null if the curve has no points.
   const Point* at_cursor() const;
 
  private:
-  /// Runs a command, which may throw InputError, and records its changes.
+  /// Runs a command and records its changes for `undo`. If it throws InputError, the reason becomes the message.
   void attempt(const std::function<void()>& command);
   void step(std::vector<SceneEdits>& from, std::vector<SceneEdits>& to, const char* nothing);
   bool keeps_all() const { return state_.view.keeps_all || described(state_.view.quantity).needs_rho; }
@@ -211,7 +216,7 @@ class Session {
 
   SkyFiles skies_;
   SessionState state_;
-  std::vector<SceneEdits> done_, undone_;  ///< states before each gesture; states after each undone gesture
+  std::vector<SceneEdits> done_, undone_;  ///< states for `undo` and for `redo`, the next one last
   bool is_held_ = false;
   bool is_in_gesture_ = false;
   Curve curve_;
@@ -228,16 +233,16 @@ class Session {
   std::optional<SceneEdits> visited_;    ///< the fitted scene at the minimum that the user visited
   std::size_t minimum_ = 0;
   std::vector<Effect> effects_;
-  std::pair<std::string, double> influences_of_;  ///< key of the curve, zenith
+  std::pair<std::string, double> influences_of_;  ///< key of the curve and zenith for which effects_ has influences
   Message message_;
   std::vector<std::string> remarks_;  ///< remarks on the scene that message() has already shown
   bool is_changed_ = true;
-  // During a drag curve and map take turns.
+  // During a drag the curve and another view take turns; the other view is the map and the overlay in turn.
   bool is_curve_next_ = true;
   bool is_map_next_ = false;
 };
 
-/// Identifies the results of a scene file with changes.
+/// A text that identifies results. It is equal if the scene's file, the changes and `keep_all` are equal.
 std::string content_key(const Scene& scene, const std::vector<Setting>& changes, bool keep_all);
 
 }  // namespace dolp::explore

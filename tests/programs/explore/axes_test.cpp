@@ -133,7 +133,7 @@ TEST(HeatMap, Axes_FollowTheScene) {
   session.set_view(&View::map_x, "n");
   session.set("surface.material", "water 25C");
   EXPECT_EQ(session.map().x().label, "θ [°]");
-  // The wavelengths for which the material is known.
+  // The map shows only wavelengths for which the material is known.
   session.set_view(&View::map_x, "wavelength");
   session.set("surface.material", "oxidised Al mirror");
   EXPECT_EQ(session.map().x().scale, (Scale{2.0, 12.5}));
@@ -155,11 +155,11 @@ class Axes : public Window {
     xdotool({"click", "--repeat", "2", "--delay", "20", "1"});
     frames(2 * kFrames);
   }
-  /// Types both ends of an axis. "" leaves an end unchanged.
+  /// Types both ends of an axis. Empty text leaves an end as it is.
   void type_ends(ImVec2 numbers, const std::string& from, const std::string& to) {
     double_click(numbers);
     if (!from.empty()) type(from);
-    xdotool({"key", "Tab"});  // a key that stays down would move on to more fields
+    xdotool({"key", "Tab"});  // a separate call, because a key that stays down would move on to more fields
     frames();
     if (!to.empty()) type(to);
     keys("Return");
@@ -194,7 +194,7 @@ TEST_F(Axes, NumbersDoubleClicked_TakeTypedEnds_AndCloseAfterARefusedEndIsTakenB
 
 TEST_F(Axes, RangeOfTheMap_IsComputedAnew_AndARefusedEndGoesWithTheOther) {
   double_click(beside(app_->map_view().area()));
-  type("2.5");  // larger than the other end
+  type("2.5");  // larger than the upper end, so it is refused until that end changes too
   xdotool({"key", "Tab"});
   frames();
   EXPECT_NE(session().map().y().scale.from, 2.5);

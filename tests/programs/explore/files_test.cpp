@@ -1,4 +1,4 @@
-// Files of the window: sessions, plots, and preferences.
+// Files that the window writes and reads: sessions, plots, and preferences.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -18,7 +18,7 @@ class ExploreFiles : public testing::Test {
  protected:
   std::string at(const std::string& name) const { return (folder_.path() / name).string(); }
   void put(const std::string& name, const std::string& text) const { std::ofstream(at(name)) << text; }
-  /// The line that refuses a file; empty if the file is opened.
+  /// The message with which a file is refused, or nothing if it can be opened.
   std::string refusal(const std::string& name) const {
     Session session(paint());
     try {
@@ -35,14 +35,14 @@ class ExploreFiles : public testing::Test {
   TemporaryFolder folder_;
 };
 
-/// Gives a session one element of everything that a file stores.
+/// Gives a session at least one of each thing that a session file stores.
 void fill(Session& session, const std::string& measured) {
   session.load_measured(measured);
   session.mark("surface.n", true);
   EXPECT_EQ(session.set_fit_range("surface.k", "0.01", "2"), "");
   session.pin();
   session.pin();
-  session.pins().pop_front();  // the other pin keeps its colour
+  session.pins().pop_front();  // the colour of the other pin must not change
   session.pins()[0].name = "as opened";
   session.set({{"surface.sigma", 0.3}, {"surface.masking", "smith"}, {"surroundings", Value()}});
   session.take_snapshot();
@@ -57,7 +57,7 @@ void fill(Session& session, const std::string& measured) {
             .panel = Panel::kSlopes,
             .mueller_row = 1,
             .mueller_column = 3};
-  session.set_view(view);  // this resets ranges
+  session.set_view(view);  // resets ranges, so it comes before them
   view.ranges = {{View::kZeniths, {20.0, 70.0}},
                  {View::kValues, {0.01, 0.4, true}},
                  {View::kColours, {0.0, 0.3}},
@@ -101,7 +101,7 @@ TEST_F(ExploreFiles, Session_SavedAndOpened_IsTheSame) {
   EXPECT_EQ(b.marked().at("surface.k")->high, 2.0);
   EXPECT_EQ(b.view(), a.view());
   EXPECT_EQ(b.theta_deg(), 42.5);
-  // The file names no folder of this machine. Saving it again changes nothing.
+  // The file contains no path of this machine. Saving the opened session again gives the same text.
   const std::string text = read_file(at("all.toml"));
   EXPECT_EQ(text.find(at("")), std::string::npos) << text;
   save_session(opened.session, at("again.toml"));
@@ -201,7 +201,7 @@ TEST(ExplorePlots, Json_HasTheVisibleCurvesAndTheMap) {
   EXPECT_EQ(plots["map"]["rows"].size(), field.count);
   EXPECT_EQ(plots["map"]["rows"][2][5], 100.0 * field.values[2 * field.count + 5]);
   EXPECT_TRUE(plots["map"]["colours"].is_null() && !plots["map"]["is_signed"]);
-  // A pin with an equal surface is named after its radiation.
+  // The pin and the curve have the same surface, so the pin is named after its temperature.
   driver.session.pins()[0].name = "";
   driver.session.set({{"surface.sigma", 0.15}, {"emission.temperature_K", 310.0}});
   driver.settle();
@@ -239,7 +239,7 @@ TEST_F(ExploreFiles, Preferences_KeepThemeZoomAndRecentFilesThatExist) {
   EXPECT_LT(second.zoom(), 2.2);
   second.zoom_by(-100);
   EXPECT_GT(second.zoom(), 0.45);
-  // Without a file nothing is stored. A bad file is refused.
+  // Without a file nothing is saved, which is no error. A bad file is refused.
   second.load("");
   EXPECT_NO_THROW(second.save());
   put("bad.toml", "light = [\n");

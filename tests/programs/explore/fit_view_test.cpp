@@ -1,4 +1,4 @@
-// Fits in the window: the chosen minimum, the other minima, and their texts.
+// Fits in the window: the minimum on display, the other minima, and their texts.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,6 @@ TEST(NearestMinimum, IsNearestByTheCoordinatesOfTheRanges) {
   }
 }
 
-/// A session with two measured points.
 struct MeasuredSession : Session {
   explicit MeasuredSession(const std::vector<std::string>& settings = {}) : Session(paint(settings)) {
     load_measured(TemporaryFile(".csv", "theta_deg,dolp\n60,0.05\n70,0.06\n").path());
@@ -53,7 +52,8 @@ TEST(ExploreSession, Minimum_IsVisitedInTheSceneThatWasFitted) {
 }
 
 TEST(ExploreSession, RangeOfAFit_IsTheSlidersAsFarAsTheSceneTakesIt_OrTyped) {
-  // k is logarithmic, also from 0. q of smith masking begins above 1.5.
+  // Fits search k on a logarithmic scale, so its range begins at 0.001 instead of 0. The slider of q begins at 1.6; a
+  // smaller value of the scene extends the range.
   for (const auto& [key, value, low, high, start] : {std::tuple{"surface.k", 0.0, 0.001, 100.0, 0.001},
                                                      {"surface.k", 0.22, 0.001, 100.0, 0.22},
                                                      {"surface.k", 200.0, 0.001, 200.0, 200.0},
@@ -93,7 +93,7 @@ using namespace dolp::explore_test;
 
 class FitWindow : public Window {
  protected:
-  /// Loads the DOLP of the scene with another value of a key, as measured data.
+  /// Computes the DOLP of the scene with another setting, and loads it as measured data.
   void measure(const std::string& setting) {
     put("points.csv", "theta_deg\n20\n30\n40\n50\n60\n70\n80\n");
     std::string csv = "theta_deg,dolp,uncertainty\n";
@@ -139,7 +139,7 @@ TEST_F(FitWindow, RangeTypedBelowASlider_BoundsTheFit) {
     keys("Return");
   }
   fit();
-  EXPECT_EQ(number("surface.n"), 1.6);  // the end nearest to the truth
+  EXPECT_EQ(number("surface.n"), 1.6);  // the true value, 1.7, is outside the range
 }
 
 TEST_F(FitWindow, NearestMinimum_IsChosen_AndAClickVisitsTheLowest) {

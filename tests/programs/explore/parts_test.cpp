@@ -1,4 +1,4 @@
-// The parts behind the window: edits of the scene, choices that exclude each other, the worker, measured points.
+// What the window uses: edits of the scene, choices that exclude each other, the worker, measured points.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -64,7 +64,7 @@ TEST(Controls, OfDiffuseLightAndOfTheAir_AreShownWhereTheSceneUsesThem) {
 
 using Changes = std::vector<Setting>;
 
-/// The value of a key as text; "-" if the scene has none.
+/// The value of a key as text, or "-" if the scene does not have the key.
 std::string value_of(const Scene& scene, const std::string& key) {
   if (described(key).type == Key::Type::kPair)
     return scene.numbers(key).empty() ? "-" : Value(scene.numbers(key)).text();
@@ -73,10 +73,10 @@ std::string value_of(const Scene& scene, const std::string& key) {
 }
 
 struct EditCase {
-  std::vector<std::string> opened;    ///< settings from the command line
-  std::vector<std::string> steps;     ///< settings that are set together; or "reset KEY" or "reset"
-  std::vector<std::string> expected;  ///< settings
-  std::string message = "";           ///< a part of the message; empty: there is no message
+  std::vector<std::string> opened;    ///< settings with which the window opens
+  std::vector<std::string> steps;     ///< each one sets keys (several with ;), or is "reset KEY" or "reset"
+  std::vector<std::string> expected;  ///< settings of the scene afterwards
+  std::string message = "";           ///< text that the last message contains; empty: no message
   bool is_error = false;
 };
 
@@ -86,7 +86,7 @@ const std::vector<EditCase> kEditCases = {
     {{}, {"surface.sigma=99", "surface.sigma=0.2"}, {"surface.sigma=0.2"}},
     {{"surface.sigma=0.3"}, {"surface.sigma=0.5", "reset surface.sigma"}, {"surface.sigma=0.3"}},
     {{"surface.sigma=0.3"}, {"surface.sigma=0.5", "surface.n=2", "reset"}, {"surface.sigma=0.3", "surface.n=1.5"}},
-    // Alternatives replace each other.
+    // Setting one alternative removes the other.
     {{}, {"surface.material=gold (Ordal)"}, {"surface.material=gold (Ordal)", "surface.n=-"}},
     {{"surface.material=gold (Ordal)"}, {"surface.n=1.6;surface.k=0.2"}, {"surface.material=-", "surface.k=0.2"}},
     {{},
@@ -98,12 +98,12 @@ const std::vector<EditCase> kEditCases = {
      {"surface.n=1.5"},
      "known at 2 to 12.5 um",
      true},
-    // Effects can be removed and restored.
+    // An effect can be removed and restored.
     {{}, {"surroundings=none"}, {"surroundings.temperature_K=-"}},
     {{"emission.bracket=true", "emission.temperature_K=310"},
      {"emission=none", "reset emission"},
      {"emission.temperature_K=310", "emission.bracket=true"}},
-    // Choices that exclude each other.
+    // A choice also changes other choices that it excludes.
     {{"surface.masking=smith", "emission.bracket=true"},
      {"surface.scattering=multiple"},
      {"surface.masking=v-cavity", "emission.bracket=false"},
@@ -114,13 +114,13 @@ const std::vector<EditCase> kEditCases = {
      {"emission=none", "surface.masking=integral", "reset emission"},
      {"emission.model=direct", "surface.masking=v-cavity"},
      "emission = as opened also sets surface.masking = v-cavity"},
-    // A wind replaces sigma. Slopes of another distribution start with its sigma.
+    // A wind determines sigma. A change of the distribution replaces the wind by the sigma that it determined.
     {{"surface.distribution=gaussian", "surface.wind_m_s=8"}, {"surface.wind_m_s=12"}, {"surface.wind_m_s=12"}},
     {{"surface.distribution=gaussian", "surface.wind_m_s=10"},
      {"surface.distribution=cauchy"},
      {"surface.wind_m_s=-", "surface.sigma=0.1646207763315433"},
      "surface.sigma = 0.16462"},
-    // A new coating replaces all films. Numbers and materials of films change one by one.
+    // Setting the coating replaces all films. Numbers and the material of one film can be set without the others.
     {{"surface.coating=[{n=1.4,thickness_um=2}]"},
      {"surface.coating.1.k=0.3", "surface.coating=[{n=1.6,thickness_um=3},{n=1.4,k=0.3,thickness_um=2}]",
       "surface.coating.2.thickness_um=5", "surface.coating.1.n=1.7"},
@@ -130,7 +130,7 @@ const std::vector<EditCase> kEditCases = {
      {"surface.coating.1.n=1.7", "surface.coating=none"},
      {"surface.coating.1.n=-", "surface.n=1.5"}},
     {{}, {"surface.coating=[{n=1.4,thickness_um=-2}]"}, {"surface.coating.1.n=-"}, "thickness_um", true},
-    // One sky replaces another.
+    // A sky and a temperature of the surroundings replace each other.
     {{}, {"surroundings.profile=clear-sky"}, {"surroundings.temperature_K=-", "surroundings.profile=clear-sky"}},
     {{"emission.bracket=true"}, {"surroundings.profile=overcast"}, {"emission.bracket=true"}},
     {{"surroundings.profile=overcast"}, {"surroundings.temperature_K=250"}, {"surroundings.profile=-"}},
@@ -180,7 +180,7 @@ bool is_accepted(const SceneEdits& edits, const Changes& changes) {
   }
 }
 
-/// Every combination of words of some choices that the scene reader accepts.
+/// All combinations of the words of some keys that the scene reader accepts.
 std::vector<Changes> accepted_combinations(const std::vector<std::string>& keys) {
   std::vector<Changes> all = {{}};
   for (const std::string& key : keys) {
@@ -252,7 +252,7 @@ TEST(SceneToml, NamedFiles_AreFoundFromTheNewFolder) {
 
 constexpr auto kMoment = std::chrono::milliseconds(1);
 
-/// An evaluator whose calls wait until the test opens it.
+/// An evaluator whose calls do not return before open().
 struct SlowEvaluator {
   Evaluate evaluate() {
     return [this](const Scene& scene, const PointList& list, const RunOptions& options) {
@@ -285,7 +285,7 @@ std::vector<JobPart> finish(Worker& worker) {
 
 TEST(ExploreWorker, RunningJob_EndsWhenItIsNoLongerWantedUnlessItIsBrief) {
   using Keys = std::vector<std::string>;
-  // The keys that are wanted while the job "first" runs, and the keys of the results in their order.
+  // next: keys of the jobs that are wanted while the job "first" runs. expected: keys of the results, in their order.
   for (const auto& [is_brief, next, expected, cancelled] : {std::tuple{false, Keys{"new"}, Keys{"new"}, 1},
                                                             {false, Keys{"new", "first"}, Keys{"first", "new"}, 0},
                                                             {true, Keys{"new"}, Keys{"first", "new"}, 0},
@@ -300,7 +300,7 @@ TEST(ExploreWorker, RunningJob_EndsWhenItIsNoLongerWantedUnlessItIsBrief) {
     for (const std::string& key : next) jobs.push_back(job_of(key));
     worker.want(std::move(jobs));
     if (cancelled > 0) evaluator.wait_for(evaluator.cancelled);
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // time for a wrong cancellation
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // time in which a wrong cancellation would occur
     evaluator.is_open = true;
     std::vector<std::string> keys;
     for (const JobPart& part : finish(worker)) keys.push_back(part.key);

@@ -1,4 +1,4 @@
-// The whole session behind the window: curve, map, maximum, pins, cursor, effects.
+// A session with all that the window shows: curve, map, maximum, pins, cursor, effects.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ TEST(ExploreSession, Results_AreStaleUntilTheSceneIsComputed_AndKeepTheirParamet
   expect_same(session.curve().points(), truth(session.scene(), session.curve().points()));
   EXPECT_LE(session.curve().worst_error(), 1e-3);
   EXPECT_GT(session.curve().worst_error(), 0.0);
-  // The overlay is the other distribution with the same D(0).
+  // The overlay is a curve for the other slope distribution with the same D(0).
   EXPECT_EQ(session.overlay()->scene().word("surface.distribution"), "gaussian");
   EXPECT_DOUBLE_EQ(*session.overlay()->scene().number("surface.sigma"), 0.4 / std::sqrt(2.0));
   driver.session.set("surface.distribution", "gaussian");
@@ -53,7 +53,7 @@ TEST(ExploreSession, Results_AreStaleUntilTheSceneIsComputed_AndKeepTheirParamet
   EXPECT_NE(cursor_text(session).find("σ = 0.4:"), std::string::npos) << cursor_text(session);
 }
 
-/// Checks that a point on display agrees, within both bounds, with the model of the scene that the window names.
+/// Checks a point on display against accurate results for the scene that the window names beside the curve.
 void expect_point_of(const Curve& curve, std::size_t position) {
   if (curve.points().empty()) return;
   const Point& shown = curve.points()[position % curve.points().size()];
@@ -64,7 +64,7 @@ void expect_point_of(const Curve& curve, std::size_t position) {
       << surface_name(curve.shown_scene()) << " at " << shown.theta_deg;
 }
 
-/// Does one thing that a user may do.
+/// Does one random thing that a user may do.
 void act(Session& session, std::mt19937_64& random) {
   const double share = std::generate_canonical<double, 53>(random);
   const bool is_even = share < 0.5;
@@ -83,7 +83,7 @@ void act(Session& session, std::mt19937_64& random) {
   acts[random() % std::size(acts)]();
 }
 
-// One minute with 16 frames per second.
+// 960 frames are a minute of use with 16 frames per second.
 TEST(ExploreSession, RandomUse_NamesAndCurvesAgreeInEveryFrame) {
   constexpr int kFrames = 960;
   std::mt19937_64 random(20261124);
@@ -139,7 +139,7 @@ TEST(ExploreSession, Drag_GetsCoarseResultsInTurn_AndSaysSoOnce) {
     EXPECT_TRUE(curve_name(session).ends_with(", coarse"));
     EXPECT_NE(std::exchange(maps, session.map().version()), session.map().version());
   }
-  // The results of another kind arrive between two results of the curve.
+  // After a result of the curve, results of the overlay or the map come next, even if the curve has changed again.
   session.set("surface.sigma", 0.4);
   std::vector<Job> jobs = session.wanted();
   ASSERT_EQ(jobs.size(), 3U);
@@ -186,7 +186,7 @@ TEST(ExploreSession, UndoAndRedo_GoThroughGestures_AndASavedSceneIsUnchanged) {
   session.hold(false);
   session.note_saved();
   EXPECT_FALSE(session.edits().is_changed());
-  session.set("surface.sigma", -1.0);  // refused, so there is no change to undo
+  session.set("surface.sigma", -1.0);  // this value is refused, so undo must not count it
   session.hold(false);
   session.set("surroundings", Value{});
   EXPECT_TRUE(session.edits().is_changed());
@@ -279,7 +279,8 @@ TEST(ExploreSession, AllBounces_PeakIsComparedWithSingleScattering) {
   const auto named = [&](const std::string& name) {
     return std::ranges::find(peak.without(), name, &WithoutEffect::effect);
   };
-  EXPECT_EQ(named("masking"), peak.without().end());  // the bounces need v-cavity masking
+  // multiple bounces need this masking, so it cannot be left out
+  EXPECT_EQ(named("masking"), peak.without().end());
   ASSERT_NE(named("scattering"), peak.without().end());
   const Point& result = named("scattering")->result.value();
   const Scene& scene = driver.session.scene();
@@ -319,7 +320,8 @@ TEST(ExploreSession, Peak_IsTheLargestOfTheCurve_IsDrawn_AndItsCausesAddUp) {
   const Point at = peak.answer()->at;
   double sum = 0.0;
   for (const WithoutEffect& part : peak.without()) sum += part.radiates ? peak.contribution(part) : 0.0;
-  EXPECT_NEAR(sum, at[Quantity::kQOverI], 2e-3);  // difference of two runs with a tolerance of 1e-3
+  // each contribution is a difference of two runs with a tolerance of 1e-3
+  EXPECT_NEAR(sum, at[Quantity::kQOverI], 2e-3);
   for (const Point& result : session.curve().points()) {
     if (!result.is_good()) continue;
     EXPECT_LE(result[Quantity::kDolp], at[Quantity::kDolp] + result[Quantity::kErrorEstimate]);

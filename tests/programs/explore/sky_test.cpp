@@ -1,4 +1,4 @@
-// Skies with two temperatures: their files, the scenes that are saved with them, and their editor in the window.
+// Skies that the window makes from two temperatures: their files, saved scenes with them, and their editor.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -64,7 +64,7 @@ using namespace dolp;
 using namespace dolp::explore;
 using namespace dolp::explore_test;
 
-/// Chooses an entry in the list of skies. Positions are in heights of the closed list.
+/// Tests of the list of skies. `place` is how far an entry is below the top of the closed list, in list heights.
 class Skies : public Window {
  protected:
   void choose(float entry) {
@@ -76,7 +76,7 @@ class Skies : public Window {
 };
 
 TEST_F(Skies, Editor_MakesASkyBetweenTwoTemperatures_WhichTheSavedSceneKeeps) {
-  choose(4.3F);  // the fourth in the list
+  choose(4.3F);  // the fourth entry
   ASSERT_EQ(sky(), SkyPair());
   drag_slider("sky zenith", kPartOfSlider);
   frames();
@@ -109,7 +109,7 @@ TEST_F(Skies, List_OffersUniformAndBuiltInSkies_AndTheFileOfTheSceneAsOpened) {
     choose(entry);
     EXPECT_EQ(word("surroundings.profile").value_or(""), name);
   }
-  EXPECT_EQ(number("surroundings.temperature_K"), 240.0);  // the value in the opened scene
+  EXPECT_EQ(number("surroundings.temperature_K"), 240.0);  // as in the opened scene
   put("sky.csv", "zenith_deg,temperature_K\n0,220\n70,240\n90,285\n");
   open({{"surroundings.profile", "sky.csv"}});
   for (const auto& [entry, name] : {std::pair{3.4F, "overcast"}, {5.2F, "sky.csv"}}) {

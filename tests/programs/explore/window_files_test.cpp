@@ -22,14 +22,14 @@ class WindowFiles : public Window {
     put("folder/other.toml", other);
     put("folder/notes.txt", "");
   }
-  /// Presses a shortcut, then types a path or accepts the suggested one.
+  /// Opens a dialog by its shortcut. Types a path, or accepts the suggested one.
   void answer(const std::string& shortcut, const std::string& path = "") {
     keys(shortcut);
     if (!path.empty()) type(path);
     keys("Return");
     settle();
   }
-  /// Opens a file from the list of the dialog: the first click selects it, the second one opens it.
+  /// Opens a file from the list of the dialog. The first click selects the file, the second one opens it.
   void open_listed(const std::string& folder, const std::string& file) {
     keys("ctrl+o");
     frames();
@@ -87,7 +87,7 @@ TEST_F(WindowFiles, OpenDialog_TakesAPathByKeyboard_AndRefusesAMissingOne) {
   keys("Return");
   settle();
   EXPECT_EQ(title(), "Other");
-  // A scene without a folder lists the working folder.
+  // If the scene does not come from a file, the dialog lists the current folder.
   session().go_to(SceneEdits(Scene::from_text(kEdited, {}, "built-in")));
   keys("ctrl+o");
   EXPECT_NO_THROW(app_->control_area("../"));

@@ -18,7 +18,7 @@ class WindowLook : public Window {
     const auto whole = [](float length) { return static_cast<std::size_t>(length); };
     return display_.pixels(whole(area.min.x), whole(area.min.y), whole(area.width()), whole(area.height()));
   }
-  /// Mean of the red bytes in the upper left part of the screen.
+  /// Mean brightness of the red channel in the upper left part of the screen.
   double brightness() const {
     const std::string rows = display_.pixels(0, 0, 300, 300);
     double sum = 0.0;
@@ -47,7 +47,7 @@ TEST_F(WindowLook, MarkOfAMaximumAtTheEnd_IsWhole) {
   const auto column = [&](float right) {
     return pixels({{plot().max.x + right, plot().min.y}, {plot().max.x + right + 1.0F, plot().max.y}});
   };
-  EXPECT_TRUE(column(3.0F) != column(7.0F));  // only the mark is drawn beside the plot
+  EXPECT_TRUE(column(3.0F) != column(7.0F));  // the mark of the maximum ends between the two
 }
 
 TEST_F(WindowLook, Lines_BreakAtSpacesAlone) {
@@ -65,7 +65,7 @@ TEST_F(WindowLook, Scale_ByKeys_ChangesTheSizeOfTheControls) {
     keys(larger);
     EXPECT_GT(height(), before);
   }
-  EXPECT_NEAR(height(), 1.21F * usual, 2.0F);  // text and margins are rounded to whole pixels
+  EXPECT_NEAR(height(), 1.21F * usual, 2.0F);  // sizes of text and margins are whole pixels
   EXPECT_NEAR(scaled(10.0F), 12.1F, 0.5F);
   keys("ctrl+0");
   EXPECT_EQ(height(), usual);
@@ -99,14 +99,14 @@ TEST_F(WindowLook, LeastSize_ShowsOneThingAtATime) {
 TEST_F(WindowLook, Note_WaitsForTheMouseToRest_AndLeavesTheNextValueInSight) {
   const Area slider = app_->control_area("surface.sigma");
   Area next = app_->control_area("surface.q");
-  next.max = next.at(0.6F, 1.0F);  // the pointer does not reach this area
-  // The area right of the panel at the height of the slider.
+  next.max = next.at(0.6F, 1.0F);  // without the part that the mouse pointer covers
+  // The note appears here, right of the panel.
   const Area note{{slider.max.x + 150.0F, slider.min.y}, {slider.max.x + 300.0F, slider.max.y + 40.0F}};
   const std::string without = pixels(note);
   const double moved_s = ImGui::GetTime();
   move_to(slider.at(0.9F, 0.5F));
   const std::string next_before = pixels(next);
-  // Nothing moves until the note appears.
+  // The mouse does not move while the test waits for the note.
   std::jthread hand([&] {
     while (pixels(note) == without) std::this_thread::sleep_for(std::chrono::milliseconds(10));
     app_->close();
@@ -125,7 +125,7 @@ TEST_F(WindowLook, Escape_ClosesWhatIsOpen) {
     frames();
     EXPECT_NE(pixels(plot()), closed) << open;
     keys("Escape");
-    std::this_thread::sleep_for(std::chrono::milliseconds(400));  // time for the dialog to fade
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));  // the dialog fades out
     frames();
     EXPECT_EQ(pixels(plot()), closed) << open;
   }

@@ -1,4 +1,4 @@
-// The window on a virtual display, with real events of mouse and keyboard.
+// The window on a virtual display, with events of mouse and keyboard from outside the program.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -64,7 +64,7 @@ TEST_F(Window, BracketBox_GivesTheCurveABand_AndAnotherMaskingSwitchesItOff) {
   EXPECT_TRUE(session().curve().points()[120].has_bracket());
   EXPECT_EQ(session().edits().changes(), (std::vector<Setting>{{"emission.bracket", true}}));
   click_control("surface.masking");
-  click(app_->control_area("surface.masking").at(0.5F, 1.6F));  // "none", the first word of the list
+  click(app_->control_area("surface.masking").at(0.5F, 1.6F));  // "none" is the first word of the list
   settle();
   EXPECT_EQ(word("surface.masking"), "none");
   EXPECT_EQ(word("emission.bracket"), "false");
@@ -80,7 +80,7 @@ TEST_F(Window, Curve_WheelAndRightButton_ZoomAndShift_ADoubleClickShowsAll) {
   frames();
   EXPECT_LT(view.x().to - view.x().from, 0.9 * (x.to - x.from));
   EXPECT_LT(view.y().to - view.y().from, 0.9 * (y.to - y.from));
-  EXPECT_NEAR(view.x().value(0.4), 36.0, 0.3);  // the value under the mouse does not change
+  EXPECT_NEAR(view.x().value(0.4), 36.0, 0.3);  // zooming keeps the value at the mouse
   const Scale zoomed = view.x();
   xdotool({"mousedown", "3"});
   frames();
@@ -103,7 +103,7 @@ TEST_F(Window, Legend_PinClicked_HidesIt) {
   drag_slider("surface.sigma", kPartOfSlider);
   const Area area = app_->curve_view().area();
   const float line = ImGui::GetTextLineHeight();
-  // The pin's entry is in one of the two lines above the plot.
+  // The name of the pin is in one of the two lines above the plot. Clicking it hides the pin.
   const auto is_visible = [&] { return session().pins()[0].is_visible; };
   ASSERT_TRUE(is_visible());
   for (float x = area.min.x; x < area.max.x && is_visible(); x += 3.0F * line) {
@@ -155,7 +155,7 @@ TEST_F(Window, Resized_DrawsAtTheNewSize) {
     frames(2 * kFrames);
     app_->save_picture(at("picture.png").string());
     frames();
-    // A PNG file has width and height as the first numbers of its first chunk.
+    // In a PNG file width and height are at bytes 16 and 20.
     const std::string png = content("picture.png");
     ASSERT_GT(png.size(), 24U);
     const auto number = [&](std::size_t first) {
@@ -203,7 +203,7 @@ TEST_F(Window, EventsBetweenTwoFrames_AllCount) {
   xdotool({"key", "--delay", "12", "ctrl+p", "ctrl+p"});
   frames();
   EXPECT_EQ(session().pins().size(), 2U);
-  // A mouse that moves on at once still clicks at its old position.
+  // A click counts where it was made, even if the mouse moves away before the next frame.
   const ImVec2 box = app_->control_area("emission.bracket").at(0.5F, 0.5F);
   xdotool({"mousemove", "--window", window_, std::to_string(std::lround(box.x)), std::to_string(std::lround(box.y)),
            "click", "1", "mousemove", "--window", window_, "700", "300"});
@@ -244,7 +244,7 @@ TEST_F(Window, TypedNumber_IsTakenWhereverTypingEnds_AndStaysWhereItIsRefused) {
 TEST_F(Window, EndsOfABand_OfWhichOneWasRefused_AreTakenTogether) {
   click_control("field spectrum.band_um 0");
   xdotool({"type", "15"});
-  xdotool({"key", "Tab"});  // a key that stays down would move on to more fields
+  xdotool({"key", "Tab"});  // a separate call, because a key that stays down would move on to more fields
   EXPECT_TRUE(is_marked("field spectrum.band_um 0"));
   xdotool({"type", "20"});
   keys("Return");
@@ -252,7 +252,7 @@ TEST_F(Window, EndsOfABand_OfWhichOneWasRefused_AreTakenTogether) {
   EXPECT_FALSE(is_marked("field spectrum.band_um 0"));
 }
 
-/// The area of the curve in a window on a display of this size.
+/// The area of the curve in a window on a display with this size and resolution.
 Area plot_on(const std::string& size, const std::string& dots_per_inch) {
   const VirtualDisplay display(size);
   EXPECT_EQ(run({.arguments = {"xprop", "-root", "-f", "RESOURCE_MANAGER", "8s", "-set", "RESOURCE_MANAGER",

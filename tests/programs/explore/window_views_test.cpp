@@ -1,4 +1,4 @@
-// The views beside the map, and the window while a slider is dragged.
+// The views beside the map, and the window while the user drags a slider.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ using namespace dolp::explore;
 using namespace dolp::explore_test;
 
 double projected(const Scene& scene) {
-  // Midpoint rule in tan(alpha) = m t / (1 - t). It includes steep facets, and the integrand is smooth.
+  // Midpoint rule in t, where tan(alpha) = m t / (1 - t). It covers all slopes, and the integrand is smooth.
   constexpr int kCount = 200'000;
   const double m = std::numbers::sqrt2 * *scene.number("surface.sigma");
   double sum = 0.0;
@@ -33,7 +33,7 @@ double projected(const Scene& scene) {
 }
 
 TEST(ExplorePanels, SlopeDensity_IsNormalised_AndTheOtherOneHasTheSameD0) {
-  constexpr double kRule = 1e-6;  // error of the rule: doubling the points changes less
+  constexpr double kRule = 1e-6;  // Error of the midpoint rule. Twice as many points change the integral by less.
   for (const char* distribution : {"cauchy", "gaussian"}) {
     for (const double sigma : {0.05, 0.3, 1.0}) {
       const Scene scene = paint().scene().with({{"surface.distribution", distribution}, {"surface.sigma", sigma}});
@@ -58,7 +58,7 @@ TEST(ExplorePanels, MaterialCurve_HasTheScenesIndex_FromEndToEnd) {
   EXPECT_EQ(material_curve(paint().scene(), 5).n, std::vector<double>(5, 1.5));
 }
 
-/// The points of a sweep, as a view receives them.
+/// Takes the results of a sweep over one axis, as a view does.
 std::vector<Point> swept(Sweep& sweep) {
   sweep.take(done(sweep.wanted().value()));
   EXPECT_TRUE(sweep.is_finished());
@@ -76,8 +76,8 @@ TEST(ExplorePanels, SmoothSurface_HasFresnelsReflectances_AndAQuarterWaveFilmRef
   EXPECT_NEAR(reflectance(kS, bare[0]), 0.04, 1e-12);
   EXPECT_NEAR(reflectance(kP, bare[1]), 0.0, 1e-12);
   EXPECT_NEAR(reflectance(kS, bare[1]), std::pow((1.0 - 2.25) / (1.0 + 2.25), 2), 1e-12);
-  // At normal incidence a film of index sqrt(n) reflects nothing if its optical thickness is a quarter or three
-  // quarters of a wavelength.
+  // At normal incidence a film of index sqrt(n) reflects nothing if its optical thickness is 1/4 or 3/4 of a
+  // wavelength. At 1/2 of a wavelength it has no effect.
   const double n = std::sqrt(1.5);
   const Scene coated = glass.with({coating_of({{{"n", n}, {"thickness_um", 2.0}}})});
   PointList list = points_at(coated, {0.0, 0.0, 0.0});
@@ -103,7 +103,8 @@ TEST(ExplorePanels, Spectrum_IsTheCurveOverWavelengthAtTheCursor_AndIsComputedWh
   session.set_theta(70.0);
   driver.settle();
   ASSERT_TRUE(session.spectrum().is_finished());
-  EXPECT_EQ(session.wavelengths().scale, (Scale{4.0, 20.0}));  // from half of 8 um to the end of the known range
+  // from half of the lower end of the band, 8 um, to the last wavelength of the material
+  EXPECT_EQ(session.wavelengths().scale, (Scale{4.0, 20.0}));
   const std::size_t at = 40;
   const Scene scene = session.spectral_scene().with("spectrum.wavelength_um", session.spectrum().at()[at]);
   const Point exact = truth(scene, points_at(scene, {70.0})).front();
@@ -187,7 +188,7 @@ TEST_F(Window, Panels_ClickedOneByOne_AreDrawn_AndTheMapIsComputedWhileItIsShown
 
 TEST_F(Window, Films_AreAddedOutside_ChangedRemovedAndSaved_AndUndoBringsThemBack) {
   const auto films = [&] { return films_of(session().scene()); };
-  session().set_view(&View::panel, Panel::kSlopes);  // a map with films would take long
+  session().set_view(&View::panel, Panel::kSlopes);  // a map of coated surfaces would take long
   session().set({coating_of({{{"material", "PMMA acrylic"}, {"thickness_um", 2.0}}})});
   settle();
   click_control("add film");
@@ -195,7 +196,7 @@ TEST_F(Window, Films_AreAddedOutside_ChangedRemovedAndSaved_AndUndoBringsThemBac
   EXPECT_EQ(word("surface.coating.2.material"), "PMMA acrylic");
   EXPECT_THROW(app_->control_area("surface.coating.2.n"), std::out_of_range);
   drag_slider("surface.coating.1.thickness_um", kPartOfSlider);
-  // The slider is logarithmic from 0.001 to 100 um.
+  // The slider is logarithmic and has a range of 0.001 to 100 um.
   const double expected = std::pow(10.0, -3.0 + 5.0 * static_cast<double>(kPartOfSlider));
   EXPECT_NEAR(std::log10(*number("surface.coating.1.thickness_um") / expected), 0.0, 5.0 * kGrab / 2.0);
   const Columns truth = evaluated();

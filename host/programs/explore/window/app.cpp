@@ -14,15 +14,15 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kBlink_s = 0.3;  // period of a text cursor
-// Tuned for frames of 33 ms, half of which is drawing. At double, slow scenes have long frames. At half, curves of a
-// band lag behind the slider.
+// Longest wait of a frame for its curve during a drag. Tuned for frames of 33 ms, half of which is drawing. With double
+// the time, frames of slow scenes take too long; with half, curves of scenes with a band lag behind the slider.
 constexpr double kCatchUp_s = 0.03;
-// ImGui shows some reactions, for example an open list, only some frames after the event.
+// Number of frames after an event, because ImGui shows some reactions, for example an open list, some frames later.
 constexpr std::size_t kFramesAfterEvent = 4;
-// after new results, because tables adapt to the width of their text one frame later
+// Number of frames after new results, because tables adapt to the width of their text one frame later.
 constexpr std::size_t kFramesAfterNews = 2;
 
-/// Count, median and worst of durations of frames.
+/// Number, median and maximum of durations of frames, as text.
 std::string times_text(std::vector<double> times_s) {
   if (times_s.empty()) return "none";
   std::ranges::sort(times_s);
@@ -100,7 +100,7 @@ bool App::answer(const AfterFrame& after_frame) {
     if (after_frame) after_frame(seconds_since(start));
     if (!is_open) return false;
     const bool has_news = input_.take_news() || !actions_.picture_path.empty();
-    if (session_.is_dragged()) return true;  // one frame per move leaves the processor to the curves
+    if (session_.is_dragged()) return true;  // only one frame per move, to leave the processor to the curves
     left = has_news ? kFramesAfterEvent : left - 1;
   }
   return true;
@@ -115,7 +115,7 @@ void App::reopen() { glfwSetWindowShouldClose(screen_.window(), GLFW_FALSE); }
 
 void App::run(const AfterFrame& after_frame) {
   while (answer(after_frame)) {
-    // A note appears slightly after the delay for the resting mouse.
+    // Draws once more when the mouse has rested for kTooltipDelay_s, because then a note appears.
     constexpr double kNote_s = static_cast<double>(kTooltipDelay_s) + 0.05;
     if (ImGui::GetIO().WantTextInput) {
       glfwWaitEventsTimeout(kBlink_s);
@@ -128,7 +128,7 @@ void App::run(const AfterFrame& after_frame) {
 }
 
 std::string App::run_frames(std::size_t count, const std::string& screenshot_path) {
-  std::vector<double> all_s, computing_s;  // time between the starts of frames: all, and while the worker was busy
+  std::vector<double> all_s, computing_s;  // durations: of all frames, and of frames while the worker was busy
   constexpr auto kPause = std::chrono::milliseconds(5);
   const bool wants_picture = !screenshot_path.empty();
   Clock::time_point start = Clock::now();

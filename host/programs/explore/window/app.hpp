@@ -9,7 +9,7 @@ namespace dolp::explore {
 
 struct AppOptions {
   std::string device;                      ///< its position or a part of its name
-  std::string command_line;                ///< for the history of tables
+  std::string command_line;                ///< written into tables as their history
   std::filesystem::path preferences = {};  ///< file of the preferences; empty: preferences are not stored
 };
 
@@ -21,7 +21,7 @@ class App {
   App(SceneEdits edits, const AppOptions& options);
 
   Session& session() { return session_; }
-  /// The area of a named item in the last frame. Errors: std::out_of_range where it was not drawn.
+  /// The area of a named item in the last frame. Errors: std::out_of_range if the frame did not draw it.
   Area control_area(const std::string& name) { return input_.areas().at(name); }
   const CurveView& curve_view() const { return ui_.curves; }
   const MapView& map_view() const { return ui_.map; }
@@ -30,17 +30,18 @@ class App {
   /// Takes input and results, and draws one frame. Returns false if the user has closed the window.
   /// Errors: DeviceError if no device can compute, or if it is lost.
   bool frame();
-  /// Handles all pending events, and those that arrive meanwhile, and draws the result. Returns false if the user has
-  /// closed the window.
+  /// Draws frames until all events, also events that arrive meanwhile, have been handled and shown. Returns false if
+  /// the user has closed the window.
   bool answer(const AfterFrame& after_frame = {});
   /// Ends `run`. May be called from any thread.
   void close();
   /// Lets `run` continue after `close`.
   void reopen();
-  /// Draws until the window is closed. Draws nothing between events. `after_frame` gets the duration of each frame.
+  /// Draws frames until the window is closed, and waits while there are no events. `after_frame` gets the duration of
+  /// each frame.
   void run(const AfterFrame& after_frame = {});
-  /// Draws this many frames. Returns a summary of their durations, in total and while something was computed. If there
-  /// is a path for a picture, the last frames wait for all results.
+  /// Draws `count` frames. Returns a summary of their durations: for all frames, and for the frames during
+  /// computations. If `screenshot_path` is not empty, the last frames wait for all results.
   std::string run_frames(std::size_t count, const std::string& screenshot_path);
 
   /// True if nothing remains to be computed and the session has all results.

@@ -32,7 +32,7 @@ Actions::Actions(Session& session, const std::string& device, std::string comman
     preferences_.load(preferences);
     const std::string file = session_.scene().name();
     std::error_code unknown;
-    if (!std::filesystem::exists(file, unknown)) return;  // the scene is a built-in text
+    if (!std::filesystem::exists(file, unknown)) return;  // the scene has no file: it is built in
     prefer([&](Preferences& kept) { kept.remember(file); });
   } catch (const std::exception& error) {
     session_.tell(error.what(), true);
@@ -189,8 +189,8 @@ struct Command {
     const std::string_view keys = shortcut;
     if (keys.empty()) return false;
     const char key = keys.back();
-    if (keys.starts_with("Ctrl+Shift") != is_shift && key != '+') return false;  // on many keyboards + is above =
-    if (key == 'Z' && ImGui::GetIO().WantTextInput) return false;                // the field undoes its own text
+    if (keys.starts_with("Ctrl+Shift") != is_shift && key != '+') return false;  // on many keyboards + is Shift and =
+    if (key == 'Z' && ImGui::GetIO().WantTextInput) return false;                // the text field with the focus undoes its text
     using explore::is_pressed;
     if (key == '+') return is_pressed('=') || is_pressed(GLFW_KEY_KP_ADD);
     if (key == '-') return is_pressed(key) || is_pressed(GLFW_KEY_KP_SUBTRACT);
@@ -246,7 +246,8 @@ constexpr Command kCommands[] = {
     {"Help", "Shortcuts and hints", "Ctrl+H", [](Ui& ui) { ui.shows_help = true; }},
 };
 
-/// Names the area of the menu, or of the menu entry, that is drawn next. An open menu is a different item.
+/// Names the area of the menu, or of the menu entry, that is drawn next. After drawing, ImGui's last item may be an
+/// open menu instead.
 void name_next(const std::string& name, const char* text) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   name_area(name, {corner, {corner.x + ImGui::CalcTextSize(text).x, corner.y + ImGui::GetTextLineHeight()}});

@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kSkyProfile = "surroundings.profile";
 constexpr const char* kUniformSky = "surroundings.temperature_K";
-constexpr double kUniformSky_K = 250.0;    // for a scene that had no uniform sky when it was opened
+constexpr double kUniformSky_K = 250.0;    // used if the opened scene has no uniform sky
 constexpr Scale kSkySlider{150.0, 350.0};  // in K; the user can type other temperatures
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
@@ -25,8 +25,8 @@ void heading(const char* text) {
   ImGui::Separator();
 }
 
-/// Draws the pieces of an interval as bars at the bottom of the last item, a slider. An open end extends to the end of
-/// the slider.
+/// Draws an interval, which may have several pieces, as bars at the bottom of the slider that was drawn last. An open
+/// end extends to the end of the slider.
 void draw_interval(const Control& control, const FitInterval& interval) {
   const ImVec2 corner = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
   const auto at = [&](const std::optional<double>& value, double otherwise) {
@@ -70,7 +70,8 @@ std::pair<double, double> index_of(const Scene& scene, const std::string& table)
   return bare.refractive_index(spectrum_um(scene).first);
 }
 
-/// The typed text as a value. If it is not a number, the scene refuses it with the allowed values.
+/// The typed text as a value. If it is not a number, the scene refuses it, with a message that lists the allowed
+/// values.
 Value value_of(const std::string& text) {
   const std::optional<double> number = parse_number(text);
   return number ? Value(*number) : Value(TomlText{text});
@@ -96,7 +97,7 @@ struct Controls {
     return session.message().is_error ? session.message().text : "";
   }
 
-  /// Draws fields. Removes the message about a text when the text is gone.
+  /// Draws fields. When a refused text is gone, also removes the session's message about it.
   void draw_fields(const std::string& id, const std::function<void()>& draw) {
     const std::string before = fields.reason(id);
     draw();
@@ -185,14 +186,14 @@ struct Controls {
     }
   }
 
-  /// Draws the list of materials for the surface or for a film. Returns the new keys of its table; none if the user
-  /// chose nothing.
+  /// Draws the list of materials for the surface or for a film. Returns the settings of its table that the user chose;
+  /// empty if the user chose nothing.
   std::vector<Setting> draw_material(const std::string& table) {
     static const std::vector<BuiltInMaterial> known = materials();
     const Scene& scene = session.scene();
     const bool is_typed = control(table + ".n").value(scene).has_value();
     const std::string current = is_typed ? "n and k as below" : scene.word(table + ".material").value_or("file");
-    // Entry 0 comes before the built-in materials. A material from a file has no entry.
+    // Entry 0 is "n and k as below", and the built-in materials follow. A material from a file has no entry.
     const auto now = std::ranges::find(known, current, &BuiltInMaterial::name);
     std::optional<std::size_t> chosen;
     if (is_typed || now != known.end()) chosen = is_typed ? 0 : static_cast<std::size_t>(now - known.begin()) + 1;
@@ -254,7 +255,7 @@ struct Controls {
     if (const auto clicked = draw_list("source kind", -1.0F, kinds[now].text, "", now, kinds)) set(changes[*clicked]);
   }
 
-  /// A box that removes an effect from the scene. It restores the effect as opened, or with default values.
+  /// A box that removes an effect from the scene and brings it back: as in the opened scene, or with default values.
   void draw_effect_box(const std::string& table) {
     bool wanted = has_effect(session.scene(), table);
     if (!ImGui::Checkbox(table.c_str(), &wanted)) return;
@@ -303,7 +304,7 @@ struct Controls {
   void draw_sky_temperature(const std::string& name, SkyPair sky, double SkyPair::*temperature_K) {
     const auto change = [&](const std::string& text) {
       const std::optional<double> typed = parse_number(text);
-      // Refuses text that is not a temperature, with the message for a uniform sky.
+      // If the text is not a temperature, the scene refuses it as the temperature of a uniform sky.
       if (!typed || !described(kUniformSky).range.contains(*typed)) return Setting{kUniformSky, TomlText{text}};
       sky.*temperature_K = *typed;
       return Setting{kSkyProfile, session.skies().path(sky)};

@@ -11,12 +11,12 @@ namespace dolp::explore {
 namespace {
 
 constexpr float kCurveWidth = 2.0F;
-// Heights in lines of text.
-constexpr float kRoomForTwo = 18.0F;        // space for a legend of two lines
-constexpr float kRoomForResiduals = 17.0F;  // space for residuals below the curve
+// Heights of the view, in lines of text.
+constexpr float kRoomForTwo = 18.0F;        // a higher view has a legend of two lines
+constexpr float kRoomForResiduals = 17.0F;  // a higher view has residuals below the curve
 constexpr float kLeastResiduals = 7.0F;
 
-/// A curve and how it is drawn.
+/// A curve with the style in which it is drawn.
 struct Shown {
   const Curve* curve;
   CurveStyle style;
@@ -71,8 +71,8 @@ std::vector<double> values_to_show(const Session& session, const std::vector<Sho
   return values;
 }
 
-/// Fills the range of the DOLP with all bounces. Only the current curve has such a band, because overlapping bands are
-/// unreadable.
+/// Fills the area between the limits of the DOLP with all bounces. Only the current curve has such a band, because
+/// overlapping bands are unreadable.
 void draw_bracket(const Plot& plot, const Shown& shown) {
   const std::vector<Point> points = shown.curve->drawn();
   const ImU32 colour = band_colour(shown.style);
@@ -92,7 +92,7 @@ void draw_bracket(const Plot& plot, const Shown& shown) {
   plot.list()->Flags = flags;
 }
 
-/// Draws all parts thin and grey, and over them the good parts in the curve's style. A line to a bad point is bad.
+/// Draws lines between good points in the curve's style, and lines from or to bad points thin, grey and dashed.
 void draw_curve(const Plot& plot, const Shown& shown, Plotted quantity) {
   const std::vector<Point> points = shown.curve->drawn();
   std::vector<ImVec2> good, bad;
@@ -109,8 +109,8 @@ void draw_curve(const Plot& plot, const Shown& shown, Plotted quantity) {
   draw_line(plot.list(), good, shown.style, kCurveWidth);
 }
 
-/// Reserves space for a sample and a name, beside the previous entry or in a new line, and draws the name. Returns the
-/// area for the sample.
+/// Adds an entry to the legend, beside the previous entry or in a new line. Draws its name. Returns the area in which
+/// the caller draws a sample of the line.
 Area add_entry(const char* id, const std::string& name, ImU32 colour = kTextColour) {
   const float line = ImGui::GetTextLineHeight();
   const float width = 2.3F * line + ImGui::CalcTextSize(shown(name).c_str()).x;
@@ -122,7 +122,7 @@ Area add_entry(const char* id, const std::string& name, ImU32 colour = kTextColo
   return {at, {at.x + 2.0F * line, at.y + line}};
 }
 
-/// An entry with a line in a style. Returns true if it was clicked.
+/// Adds an entry for a line to the legend. Returns true if the entry was clicked.
 bool add_curve(const char* id, const std::string& name, const CurveStyle& style, ImU32 colour = kTextColour) {
   const Area sample = add_entry(id, name, colour);
   const bool is_clicked = ImGui::IsItemClicked();
@@ -158,8 +158,8 @@ void draw_legend(const std::vector<Shown>& curves, Session& session) {
     add_entry("measured", "o  points measured for another scene", kDimColour);
 }
 
-/// Draws the legend and returns its height, which does not depend on the entries, so that the plot does not move.
-/// Further entries can be scrolled to. During a drag names are longer for a short time.
+/// Draws the legend and returns its height, which does not depend on the entries, so that the plot does not move. If
+/// there are more entries, the legend has a scroll bar; not during a drag, which makes names longer for a short time.
 float draw_legend_above(const std::vector<Shown>& curves, Session& session, ImVec2 size) {
   const float lines = size.y > kRoomForTwo * ImGui::GetTextLineHeight() ? 2.0F : 1.0F;
   const float height = lines * ImGui::GetTextLineHeightWithSpacing();
@@ -270,7 +270,7 @@ void CurveView::choose_axes(const Session& session, Zoom& zoom, const Scale& zen
   if (has_zeniths) zoom.x = zoom.x->within(zeniths);
   x_ = has_zeniths ? *zoom.x : zeniths;
   const bool is_same = quantity_ == session.view().quantity && y_.is_log == values.is_log;
-  // Without a curve the axis of values is linear. A typed range is kept until there is a curve.
+  // Without a curve the axis of values is linear. A logarithmic range that the user chose waits until there is a curve.
   if (zoom.y && zoom.y->is_log == values.is_log) {
     values = *zoom.y;
   } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left) && is_same) {
@@ -313,7 +313,7 @@ void CurveView::draw(Session& session, AxisEditor& editor, ImVec2 size) {
                fmt::format("{:.2f}°, {:.4g}", x_.value(plot.mouse_x()), y_.value(plot.mouse_y())));
   }
   plot.unclip();
-  draw_peak(plot, session);  // not clipped, so that the mark is complete at an end of the axis
+  draw_peak(plot, session);  // not clipped, so that the mark is whole even at an end of the axis
   area_ = plot.area();
   edit_axes(view, editor, plot, values.label);
   if (view != session.view()) session.set_view(view);

@@ -1,4 +1,4 @@
-// Events of mouse and keyboard, which ImGui gets one by one, and the areas of named items.
+// Passes events of mouse and keyboard to ImGui one by one, and stores the areas of named items for tests.
 #pragma once
 
 #include <imgui.h>
@@ -39,7 +39,7 @@ class Input {
   bool has_more() const { return !events_.empty(); }
   /// GLFW's number of the key that goes down in this frame.
   int pressed_key() const { return pressed_key_; }
-  /// True if there was anything to show since the last call.
+  /// True if events since the last call may have changed the window.
   bool take_news() { return std::exchange(has_news_, false); }
   /// Time since the last event, in seconds.
   double rest_s() const { return std::chrono::duration<double>(Clock::now() - last_event_).count(); }
@@ -61,7 +61,7 @@ class Input {
   bool has_news_ = false;
   Clock::time_point last_event_;
   std::map<std::string, Area> areas_;
-  // The state after the processed events.
+  // State of keyboard and mouse after the events that ImGui has got so far.
   int pressed_key_ = 0;
   bool is_inside_ = false;
   ImVec2 mouse_;

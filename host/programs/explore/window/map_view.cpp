@@ -58,7 +58,7 @@ Scale MapView::colour_range() const {
     const double largest = std::max(std::abs(field_.min), std::abs(field_.max));
     return {-largest, largest};
   }
-  // A logarithmic scale leaves out the smallest values. The others must be positive.
+  // A logarithmic colour scale begins at the smallest value, but not below the largest value over kMostContrast.
   const double low = is_log_ && field_.max > 0.0 ? std::max(field_.min, field_.max / kMostContrast) : field_.min;
   return {low, field_.max, is_log_ && low > 0.0};
 }
@@ -76,7 +76,7 @@ void MapView::update(const Session& session) {
   is_log_ = is_log;
   typed_colours_ = session.view().range(View::kColours);
   field_ = session.map().field(quantity);
-  // While a slider is dragged the colour scale stays fixed, so that only the map changes.
+  // During a drag the colour scale stays fixed, so that equal values keep their colours.
   const bool is_held = session.is_dragged() && is_same && colour_scale_.from < colour_scale_.to;
   if (!is_held) colour_scale_ = typed_colours_.value_or(colour_range());
   std::vector<ImU32> colours;
@@ -98,7 +98,7 @@ void MapView::draw_contours(const Plot& plot) const {
   std::vector<ImVec2> labels;
   for (const Contour& contour : contours_) {
     if (contour.segments.empty()) continue;
-    // The label is at the point farthest from the edges.
+    // The label is on the segment that is farthest from the edges of the map.
     const auto room = [](const Segment& s) { return std::min({s.x0, 1.0 - s.x0, s.y0, 1.0 - s.y0}); };
     const Segment& inner = *std::ranges::max_element(contour.segments, {}, room);
     const ImVec2 at = plot.at_position(inner.x0, inner.y0);

@@ -26,7 +26,7 @@ struct Zoom {
 class Plot {
  public:
   /// Takes an area of `size`, with margins for ticks and labels, at the cursor of the current ImGui window. Draws
-  /// background, grid and axes. `right` is free space on the right.
+  /// background, grid and axes. `right` is the width of a margin on the right for a colour bar.
   Plot(const char* id, ImVec2 size, PlotAxis x, PlotAxis y, float right = 0.0F, bool has_grid = true);
 
   const Area& area() const { return area_; }
@@ -84,8 +84,8 @@ class Plot {
 inline const ImVec2 kGap{std::numeric_limits<float>::quiet_NaN(), 0.0F};
 void draw_line(ImDrawList* list, const std::vector<ImVec2>& points, const CurveStyle& style, float width);
 
-/// Draws text. `anchor` is the point of the text, as fractions of its size, that lies at `at`: with (0.5, 0) the text
-/// is centred below `at`.
+/// Draws text. `anchor` is the point of the text that lies at `at`, in fractions of the text's width and height: with
+/// (0.5, 0) the text is centred below `at`.
 void draw_text(ImDrawList* list, ImVec2 at, ImVec2 anchor, ImU32 colour, const std::string& text);
 
 /// Draws text on a background that hides curves behind it.

@@ -50,7 +50,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 42> kNames =
     {"ν", "nu"},    {"‖", "|"},     {"▲", "^"},   {"•", "*"},   {"“", "\""},     {"”", "\""},     {"Ω", "Omega"},
 }};
 
-/// The colour at a position from 0 to 1; linear between equal steps.
+/// The colour at a position from 0 to 1. `colours` are at equal steps of the position, with linear interpolation
+/// between them.
 ImU32 colour_at(std::span<const Rgb> colours, double position) {
   const double steps = std::clamp(position, 0.0, 1.0) * static_cast<double>(colours.size() - 1);
   const auto below = std::min(static_cast<std::size_t>(steps), colours.size() - 2);
@@ -90,7 +91,8 @@ ImU32 band_colour(const CurveStyle& style) { return with_alpha(style.colour, (st
 void load_font(float pixels) {
   ImGuiIO& io = ImGui::GetIO();
   if (std::filesystem::exists(kFontFile)) {
-    // Latin letters and signs, Greek, punctuation, super- and subscripts, arrows, mathematics, shapes.
+    // Pairs of first and last code point: Latin letters and signs, Greek, punctuation, super- and subscripts, arrows,
+    // mathematics, shapes.
     static constexpr std::array<ImWchar, 15> kRanges = {0x20,   0xFF,   0x370,  0x3FF,  0x2010, 0x2027, 0x2070, 0x209F,
                                                         0x2190, 0x21FF, 0x2200, 0x22FF, 0x25A0, 0x25FF, 0};
     if (io.Fonts->AddFontFromFileTTF(kFontFile, pixels, nullptr, kRanges.data())) return;
@@ -115,7 +117,7 @@ std::string shown(std::string_view text) { return has_greek() ? std::string(text
 
 std::string in_lines(std::string text, float width) {
   constexpr std::size_t kNone = std::string::npos;
-  std::size_t line = 0;  // start of the line
+  std::size_t line = 0;  // position at which the current line begins
   std::size_t space = kNone;
   for (std::size_t i = 0; i <= text.size(); ++i) {
     const bool is_end = i == text.size() || text[i] == '\n';
@@ -132,7 +134,7 @@ std::string in_lines(std::string text, float width) {
 
 void coloured_text(ImU32 colour, const std::string& text) {
   ImGui::PushStyleColor(ImGuiCol_Text, colour);
-  ImGui::PushTextWrapPos(0.0F);  // wraps a word that is longer than a line
+  ImGui::PushTextWrapPos(0.0F);  // lets ImGui wrap a word that is longer than a line
   ImGui::TextUnformatted(in_lines(shown(text), ImGui::GetContentRegionAvail().x).c_str());
   ImGui::PopTextWrapPos();
   ImGui::PopStyleColor();
@@ -146,7 +148,7 @@ void tooltip(const std::string& text) {
   const bool is_still = io.MouseDelta.x == 0.0F && io.MouseDelta.y == 0.0F && !ImGui::IsAnyMouseDown();
   if (!is_still) still_since_s = now_s;
   if (now_s - still_since_s < kTooltipDelay_s) return;
-  // Beside the panel or above the item, so that the values below stay visible.
+  // The note is beside the panel or above the item, so that it does not hide the values below the item.
   const float width = 28.0F * ImGui::GetFontSize();
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const ImVec2 first = ImGui::GetItemRectMin(), last = ImGui::GetItemRectMax();

@@ -19,7 +19,8 @@ struct Themed {
   operator ImU32() const { return is_light() ? light : dark; }
 };
 
-/// The colour map "viridis" from dark at 0 to light at 1. Positions outside get the colours of the ends.
+/// The colour map "viridis" from dark at 0 to light at 1. Positions below 0 or above 1 get the first or the last
+/// colour.
 /// Source: S. van der Walt, N. Smith, viridis of Matplotlib (CC0), at seventeen equal steps, linear in between.
 ImU32 viridis(double position);
 
@@ -54,7 +55,7 @@ inline constexpr Themed kBackground{IM_COL32(28, 31, 33, 255), IM_COL32(240, 241
 inline constexpr Themed kLabelGround{IM_COL32(20, 21, 24, 215), IM_COL32(255, 255, 255, 215)};
 /// Colour of entries with a status.
 inline constexpr Themed kBadColour{IM_COL32(110, 112, 116, 255), IM_COL32(150, 152, 156, 255)};
-/// Messages.
+/// Colour of error messages.
 inline constexpr Themed kErrorColour{IM_COL32(255, 150, 110, 255), IM_COL32(178, 40, 0, 255)};
 /// Background of a field with refused text.
 inline constexpr Themed kRefusedColour{IM_COL32(110, 48, 34, 255), IM_COL32(255, 200, 186, 255)};
@@ -65,15 +66,15 @@ inline constexpr Themed kIntervalColour{IM_COL32(90, 205, 130, 255), IM_COL32(0,
 inline constexpr Themed kHeadingColour{IM_COL32(230, 179, 0, 255), IM_COL32(148, 98, 0, 255)};
 inline constexpr Themed kCursorColour{IM_COL32(255, 255, 255, 200), IM_COL32(40, 40, 40, 200)};
 
-/// Loads DejaVu Sans at `pixels`. If it is not installed, loads ImGui's font, which has only ASCII. Needs an ImGui
-/// context.
+/// Loads the font DejaVu Sans at `pixels`. If it is not installed, loads ImGui's font, which has only ASCII. Needs an
+/// ImGui context.
 void load_font(float pixels);
 inline constexpr float kFontPixels = 15.0F;  ///< default size of the font
 
-/// A length of this many pixels at the default text size. It grows with the text.
+/// A length that is `pixels` at the default text size, and grows with the text.
 float scaled(float pixels);
 
-/// A UTF-8 text for display. Without DejaVu Sans it has names instead of Greek letters and signs.
+/// A UTF-8 text for display. Without DejaVu Sans, names replace Greek letters and signs.
 std::string shown(std::string_view text);
 
 /// A UTF-8 text in ASCII.

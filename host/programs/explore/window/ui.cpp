@@ -22,7 +22,7 @@ void label(const char* text) {
   ImGui::SameLine();
 }
 
-/// Continues beside the last item, or in a new line if the free space is narrower than `width` font sizes.
+/// Continues beside the last item, or in a new line if the free space is narrower than `width` times the font size.
 void continue_row(float width) {
   ImGui::SameLine();
   if (ImGui::GetContentRegionAvail().x < width * ImGui::GetFontSize()) ImGui::NewLine();
@@ -45,7 +45,8 @@ void draw_task(const std::string& name, BackgroundTask& task) {
   ImGui::PopID();
 }
 
-/// Draws a title, and for each thing a row with a button that removes it. `id` distinguishes the rows of two lists.
+/// Draws a title, and for each element of `things` a row with a button that removes it. `id` distinguishes the rows of
+/// two lists.
 template <class Things, class DrawRow>
 void draw_removable(const char* title, const char* id, Things& things, const DrawRow& draw_row) {
   if (things.empty()) return;
@@ -249,7 +250,7 @@ void draw_right(Ui& ui, float window_height) {
     draw_one_page(ui);
     ImGui::EndChild();
   } else {
-    // The panels below can scroll. The plots keep more than half of the height.
+    // The plots get more than half of the height. If the panels below them need more than the rest, they scroll.
     const float below = std::max(0.33F * window_height, 15.0F * ImGui::GetTextLineHeight());
     draw_plots(ui, {room.x, height - std::min(below, 0.45F * height)});
   }
@@ -279,7 +280,7 @@ void draw_all(Ui& ui, const std::function<void()>& catch_up) {
   ImGui::SetNextWindowPos(viewport->WorkPos);
   ImGui::SetNextWindowSize(viewport->WorkSize);
   ImGui::Begin("dolp", nullptr, kFixed);
-  ImGui::PushItemFlag(ImGuiItemFlags_NoTabStop, true);  // the Tab key goes to the text fields
+  ImGui::PushItemFlag(ImGuiItemFlags_NoTabStop, true);  // the Tab key goes only to text fields, which undo this flag
   const ImVec2 all = ImGui::GetContentRegionAvail();
   const float em = ImGui::GetFontSize();
   const float left = std::clamp(0.36F * all.x, 19.0F * em, 22.0F * em);

@@ -6,13 +6,13 @@
 
 namespace dolp::explore {
 
-/// Actions outside the session: files, and work in the background.
+/// What the user can do beyond changes of the session: read and write files, and start work in the background.
 class Actions {
   using Clock = std::chrono::steady_clock;
 
  public:
-  /// `preferences` is the path of their file; empty: they are not stored. Other threads call `on_change` when a task
-  /// has news. The session must outlive this object.
+  /// `preferences` is the file of the preferences; if the path is empty, they are not stored. Other threads call
+  /// `on_change` when a task has news. The session must outlive this object.
   Actions(Session& session, const std::string& device, std::string command_line,
           const std::filesystem::path& preferences, const std::function<void()>& on_change);
 
@@ -22,8 +22,8 @@ class Actions {
   void open(const std::string& path);
   /// Saves a picture of the window shortly afterwards, when the dialog for its path has disappeared. Errors: IoError.
   void save_picture(const std::string& path);
-  // These run in the background. The session's message gets the outcome of plots and fits.
-  // Draws curves between these axes, and the map, as .svg, .pdf or .png.
+  // The next four functions start work in the background. The session's message later tells the outcome of a plot or a
+  // fit. save_plot writes the curves with the axes `x` and `y`, and the map, as .svg, .pdf or .png.
   void save_plot(const std::string& path, const Scale& x, const Scale& y);
   void export_table(const std::string& path);
   void find_true_error();
@@ -36,7 +36,7 @@ class Actions {
   void finish();
   /// The path for a picture of the next frame; empty: none.
   std::string due_picture() const { return Clock::now() < picture_time_ ? "" : picture_path; }
-  /// True if the true error belongs to another curve than the one on display.
+  /// True if the true error was computed for another curve than the one on display.
   bool is_true_error_old() const;
 
   std::string picture_path;  ///< requests a picture of a frame; empty: none is requested
@@ -47,7 +47,7 @@ class Actions {
   Session& session_;
   std::string command_line_;
   Preferences preferences_;
-  // Each has a separate device, so that neither waits for the other.
+  // Table and fit have separate Vulkan devices, so that neither waits for the other.
   Evaluator table_evaluator_, fit_evaluator_;
   BackgroundTask plot_task_;
   std::string true_error_key_;  ///< key of the curve whose true error is known or being computed
@@ -65,9 +65,9 @@ struct Ui {
   ShapeView shape_view = {};
   CurveView curves = {};
   PathDialog dialog = {};
-  std::pair<std::string, std::filesystem::path> saved = {};  ///< scene file, and the folder to which it was last saved
+  std::pair<std::string, std::filesystem::path> saved = {};  ///< scene file, and the folder that the user last chose for it
   bool is_narrow = false;
-  std::string page = "curve";  ///< page in a narrow window; empty: the panel
+  std::string page = "curve";  ///< view in a narrow window; empty: the view of View::panel
   bool shows_help = false;
 };
 

@@ -10,14 +10,15 @@ namespace dolp::explore {
 
 // Each view fills the current ImGui window, or `size` in it.
 
-/// Fills the current ImGui window with the controls of a scene. Names of areas: the key of a control; "vary KEY" for
-/// the box that lets a number vary in fits; "field KEY" for a field; "field fit KEY 0" and "field fit KEY 1" for the
-/// ends of its range in fits; "sky", "sky zenith" and "sky horizon".
+/// Fills the current ImGui window with the controls of a scene. Tests find these areas by name (Input::areas): "KEY" is
+/// the slider, list or box of a scene key; "vary KEY" the box that lets a number vary in fits; "field KEY" the text
+/// field beside a slider; "field fit KEY 0" and "field fit KEY 1" the fields for the ends of its range in fits; "sky"
+/// the list of skies; "sky zenith" and "sky horizon" the sliders of their temperatures.
 void draw_controls(Session& session, NumberFields& fields);
 /// Draws the controls of tolerance and precision, which are beside the cost.
 void draw_accuracy_controls(Session& session, NumberFields& fields);
 
-/// The values of a line. All lines of a plot share their positions.
+/// A line of a plot. All lines of the plot have their values at the same positions.
 struct NamedLine {
   std::string name;
   CurveStyle style;
@@ -35,7 +36,7 @@ class CurveView {
   const Scale& y() const { return y_; }
 
  private:
-  /// Applies the zoom, or without a zoom the automatic axes: `zeniths` and `values`.
+  /// Sets x_ and y_ to the zoom. Without a zoom, sets them to the automatic ranges `zeniths` and `values`.
   void choose_axes(const Session& session, Zoom& zoom, const Scale& zeniths, Scale& values);
   void edit_axes(View& view, AxisEditor& editor, const Plot& plot, const std::string& values);
 
@@ -44,7 +45,7 @@ class CurveView {
   Plotted quantity_ = Plotted::kDolp;
 };
 
-/// Draws how the plan treats each effect, the influence of the effect, and the reason.
+/// Draws a table of effects: whether the plan keeps each one and why, and its influence.
 void draw_effects(const Session& session);
 
 /// Draws the slope distribution, and the other distribution with an equal D(0).
@@ -59,7 +60,8 @@ void draw_spectrum(Session& session, AxisEditor& editor, ImVec2 size);
 /// equals the cursor's zenith.
 void draw_smooth(Session& session, AxisEditor& editor, ImVec2 size);
 
-/// Draws one element of the Mueller pBRDF in the plane of incidence, as a polar plot at the cursor's zenith.
+/// Draws one element of the Mueller pBRDF in the plane of incidence as a polar plot. Light comes from the cursor's
+/// zenith.
 class ScatteringView {
  public:
   void draw(Session& session, ImVec2 size);
@@ -83,8 +85,8 @@ class ShapeView {
   double azimuth_deg_ = 30.0;  ///< direction of the tilt from the image's horizontal
 };
 
-/// Draws the minima of the last fit, its intervals, and the explanations of `dolp fit`. A click visits a minimum. The
-/// areas of the minima are named "minimum N", from 1.
+/// Draws the minima of the last fit, its intervals, and the sentences with which `dolp fit` explains the result. A
+/// click visits a minimum. The areas of the minima are named "minimum N", from 1.
 void draw_fit_result(Session& session);
 
 /// Draws DOLP of a bistatic scene over the direction of the source, as a polar map.
@@ -116,13 +118,13 @@ class MapView {
   void draw_contours(const Plot& plot) const;
   void draw_bar(const Plot& plot) const;
 
-  // The inputs of the members below.
+  // The inputs from which update() computed the members below.
   std::size_t version_ = 0;
   Plotted quantity_ = Plotted::kDolp;
   bool is_log_ = false;
   std::optional<Scale> typed_colours_;
 
-  Scale colour_scale_;  ///< from the first colour to the last; empty if all values are equal
+  Scale colour_scale_;  ///< values of the first and the last colour; equal if all values are
   MapField field_;
   Texture cells_;
   std::vector<Contour> contours_;

@@ -33,7 +33,7 @@ std::string parse_range(const std::string& low, const std::string& high, Scale& 
 
 void NumberFields::draw(const std::string& id, double value, const Apply& apply) {
   const auto found = typed_.find(id);
-  // Drops text that was typed for another value.
+  // Drops a refused text if the value has changed since it was typed.
   if (found != typed_.end() && !found->second.is_active && found->second.value != value) typed_.erase(found);
   const std::string unedited = fmt::format("{:.6g}", value);
   const bool is_refused = !reason(id).empty();
@@ -80,7 +80,7 @@ std::optional<std::size_t> draw_list(const std::string& id, float width, const s
                                      const std::string& note, std::optional<std::size_t> chosen,
                                      const std::vector<ListEntry>& entries) {
   ImGui::SetNextItemWidth(width);
-  const ImVec2 corner = ImGui::GetCursorScreenPos();  // taken before the list, because an open list is a different item
+  const ImVec2 corner = ImGui::GetCursorScreenPos();  // taken first, because the last item may be the open list
   name_area(id, {corner, {corner.x + ImGui::CalcItemWidth(), corner.y + ImGui::GetFrameHeight()}});
   std::optional<std::size_t> clicked;
   if (!ImGui::BeginCombo(("##" + id).c_str(), shown(current).c_str(), ImGuiComboFlags_HeightLarge)) {

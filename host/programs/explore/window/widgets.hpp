@@ -20,8 +20,8 @@ class NumberFields {
 
   /// Draws a field at ImGui's cursor with `value` or with the typed text. The name of its area is "field ID".
   void draw(const std::string& id, double value, const Apply& apply);
-  /// Draws field `end` (0 or 1) of a range; its ID ends in " 0" or " 1". Both texts are applied together, so a refused
-  /// end is tried again when the other end changes.
+  /// Draws the field for one end of a range: `end` is 0 or 1, and the field's ID is `id` with " 0" or " 1". Both texts
+  /// are applied together, so a refused text is tried again when the other end changes.
   void draw_end(const std::string& id, std::size_t end, const std::array<double, 2>& ends, const ApplyEnds& apply);
   /// The text of a field that is not applied yet; empty: none.
   std::string text(const std::string& id) const {
@@ -53,13 +53,14 @@ struct ListEntry {
   bool is_enabled = true;
 };
 
-/// Draws a list with a width, as in ImGui. While closed it shows `current`; it has a note. The name of its area is
-/// `id`. Returns the position of the entry that the user clicks, unless it is `chosen`.
+/// Draws a list that opens on a click. `width` is as in ImGui. The closed list shows `current`, and `note` as a
+/// tooltip. The name of its area is `id`. Returns the position of the entry that the user clicks, unless it is
+/// `chosen`.
 std::optional<std::size_t> draw_list(const std::string& id, float width, const std::string& current,
                                      const std::string& note, std::optional<std::size_t> chosen,
                                      const std::vector<ListEntry>& entries);
 
-/// Draws text in the column of labels. The control follows beside it.
+/// Draws a label in the left column. The next control is drawn beside it.
 void row_label(const std::string& text);
 
 /// Draws a field for a name, which a right click on the last item opens. Returns the name typed in this frame.
@@ -68,7 +69,7 @@ std::optional<std::string> typed_name(std::string name, const std::string& hint 
 /// A small window for one axis. A double click on the numbers of the axis opens it.
 class AxisEditor {
  public:
-  /// A change of the axis: typed ends, or none if the ends follow from the data.
+  /// A change of the axis: the typed range, or none if the data determine the range.
   struct Change {
     std::optional<Scale> range;
     bool is_log = false;

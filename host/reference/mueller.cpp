@@ -12,7 +12,7 @@
 #include "reference/attenuation.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/groove_beam.hpp"
-#include "reference/hemisphere.hpp"
+#include "reference/moments.hpp"
 #include "reference/slopes.hpp"
 #include "reference/vectors.hpp"
 

@@ -95,7 +95,7 @@ TEST_P(Grooves, AlbedoIsOne_AndNothingIsLost) {
         EXPECT_NEAR(m.r_i + m.deficit, c, std::min(rounding * c, m.r_i_error + m.deficit_error)) << where;
         EXPECT_TRUE(m.r_i >= 0.0 && m.r_i <= (1.0 + rounding) * c && m.deficit >= 0.0) << where;
         EXPECT_LE(std::abs(m.r_q), (1.0 + rounding) * m.r_i) << where;
-        for (const MomentField& field : kMomentFields) EXPECT_GE(m.*field.error, 0.0) << where;
+        for (const auto& [value, error] : kHemisphereMembers) EXPECT_GE(m.*error, 0.0) << where;
       }
     }
   }

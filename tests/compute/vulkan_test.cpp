@@ -326,9 +326,12 @@ class SentinelRun {
 
   template <class Node>
   void add(const std::vector<Node>& list, std::size_t sentinels, VkFormat texels = VK_FORMAT_UNDEFINED) {
-    std::vector<std::byte> bytes;
-    for (const Node& node : list) packing_.append(node, bytes);
-    for (std::size_t i = 0; i < sentinels * real_count<Node>(); ++i) packing_.append(kSentinel, bytes);
+    std::vector<std::byte> bytes, behind;
+    packing_.pack(
+        list.size(), [&](std::size_t i) { return list[i]; }, bytes);
+    packing_.pack(
+        sentinels * real_count<Node>(), [](std::size_t) { return kSentinel; }, behind);
+    bytes.insert(bytes.end(), behind.begin(), behind.end());
     buffers_.emplace_back(session_.device, bytes.size(), MemoryUse::kReadback, texels);
     buffers_.back().write(bytes);
   }

@@ -1,6 +1,6 @@
 // The reference's V-grooves with all bounces and its direct emission, against exact results of the model and against
 // simpler beams and quadratures.
-#include "reference/grooves.hpp"
+#include "reference/moments.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,6 @@
 #include "reference/attenuation.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/groove_beam.hpp"
-#include "reference/hemisphere.hpp"
 #include "reference/mueller.hpp"
 #include "reference/reference_evaluator.hpp"
 #include "reference/slopes.hpp"

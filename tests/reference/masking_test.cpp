@@ -12,7 +12,7 @@
 #include <numbers>
 
 #include "reference/attenuation.hpp"
-#include "reference/hemisphere.hpp"
+#include "reference/moments.hpp"
 #include "reference/mueller.hpp"
 #include "reference/slopes.hpp"
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -144,17 +145,8 @@ inline std::string kernel_and_model_name(const testing::TestParamInfo<KernelAndM
   return name_of(std::get<0>(test.param)) + name_of(std::get<1>(test.param));
 }
 
-/// One of the four results and its stated error.
-struct MomentField {
-  const char* name;
-  double Moments::*value;
-  double Moments::*error;
-};
-
-inline constexpr std::array<MomentField, 4> kMomentFields{{{"r_i", &Moments::r_i, &Moments::r_i_error},
-                                                           {"r_q", &Moments::r_q, &Moments::r_q_error},
-                                                           {"albedo", &Moments::albedo, &Moments::albedo_error},
-                                                           {"deficit", &Moments::deficit, &Moments::deficit_error}}};
+/// The four moments of the hemisphere, without the direct emission.
+inline constexpr std::span<const MomentMember> kHemisphereMembers(kMomentMembers.data(), 4);
 
 /// The largest distance of two results, divided by the sum of their bounds. A value above 1 is a failure.
 inline double expect_within_bounds(const Moments& a, const Moments& b, const std::string& where, double slack = 0.0) {

@@ -29,9 +29,9 @@ std::vector<char> interpolate_all(const ShapePlan& plan, std::span<const Moments
   parallel_ranges(is_left.size(), 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       if (!request.is_wanted(i * shapes)) continue;
-      const std::span<const Moments> own = nodes.subspan(i * of_nodes, of_nodes);
-      is_left[i] = std::ranges::all_of(own, is_finite) ? 0 : 1;
-      if (is_left[i] == 0) interpolate(plan, own, moments.subspan(i * shapes, shapes));
+      const std::span<const Moments> of_pair = nodes.subspan(i * of_nodes, of_nodes);
+      is_left[i] = std::ranges::all_of(of_pair, is_finite) ? 0 : 1;
+      if (is_left[i] == 0) interpolate(plan, of_pair, moments.subspan(i * shapes, shapes));
     }
   });
   return is_left;
@@ -51,14 +51,14 @@ class PlannedMoments {
     if (steps.size() == 1) return moments_of(steps.front());
     std::vector<Moments> moments(plan_.size());
     for (const MomentsStep& step : steps) {
-      std::vector<Moments> own = moments_of(step);
+      std::vector<Moments> of_step = moments_of(step);
       const std::size_t shapes = step.request.shapes();
       const std::size_t directions = plan_.directions();
-      for (std::size_t i = 0; i < own.size(); ++i) {
+      for (std::size_t i = 0; i < of_step.size(); ++i) {
         const std::size_t pair = i / shapes;
         const std::size_t index = pair / step.directions.size();
         const std::size_t direction = step.directions[pair % step.directions.size()];
-        moments[(index * directions + direction) * shapes + i % shapes] = std::move(own[i]);
+        moments[(index * directions + direction) * shapes + i % shapes] = std::move(of_step[i]);
       }
     }
     return moments;

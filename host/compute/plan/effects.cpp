@@ -11,30 +11,31 @@
 namespace dolp {
 namespace {
 
-constexpr std::array kDroppingOrder = {Part::kMoments,  Part::kSource,       Part::kProfile, Part::kSurroundings,
-                                       Part::kEmission, Part::kPathRadiance, Part::kMoments, Part::kFurtherBounces};
+constexpr std::array kDroppingOrder = {Part::kSource,       Part::kSurroundings, Part::kProfile,       Part::kEmission,
+                                       Part::kPathRadiance, Part::kMoments,      Part::kFurtherBounces};
 
 /// The bounds of each variant of a scene among its entries.
 std::vector<EffectBounds> bounds_of(const SceneValues& scene, const SceneEntries& entries) {
   const std::vector<EntriesExtent> extents = extents_of(entries);
   std::vector<EffectBounds> bounds;
   for (const SceneVariant& variant : entries.variants()) {
-    const std::size_t own = std::min(bounds.size(), extents.size() - 1);
-    bounds.emplace_back(with_variant(scene, variant), extents[own]);
+    const EntriesExtent& extent = extents[std::min(bounds.size(), extents.size() - 1)];
+    bounds.emplace_back(with_variant(scene, variant), extent);
   }
   return bounds;
 }
 
 bool add_nothing(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
-  return std::ranges::all_of(bounds, [&](const EffectBounds& of_one) { return of_one.adds_nothing(part, kept); });
+  return std::ranges::all_of(bounds,
+                             [&](const EffectBounds& of_variant) { return of_variant.adds_nothing(part, kept); });
 }
 
 /// A part that matters in the whole scene is kept, even if the parts that it multiplies have been dropped.
 double worst_bound(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
   double worst = 0.0;
-  for (const EffectBounds& of_one : bounds) {
-    worst = std::max(worst, of_one.bound(part, kept));
-    if (part != Part::kMoments) worst = std::max(worst, of_one.bound(part, {}));
+  for (const EffectBounds& of_variant : bounds) {
+    worst = std::max(worst, of_variant.bound(part, kept));
+    if (part != Part::kMoments && part != Part::kProfile) worst = std::max(worst, of_variant.bound(part, {}));
   }
   return worst;
 }
@@ -62,10 +63,6 @@ bool emits_as(const SceneValues& scene, EmissionModel model) {
 
 bool is_fresnel(const SceneValues& scene) { return emits_as(scene, EmissionModel::kFresnel); }
 
-bool needs_beams(const SceneValues& scene, const std::vector<EffectBounds>& bounds, const KeptEffects& kept) {
-  return is_bistatic(scene) && kept.source && !add_nothing(bounds, Part::kSource, kept) && scene.surface.specular > 0.0;
-}
-
 void drop_effects(EffectPlan& plan, const SceneValues& scene, const std::vector<EffectBounds>& bounds) {
   const double allowed = kDroppedShare * scene.accuracy.tolerance;
   for (const Part part : kDroppingOrder) {
@@ -82,7 +79,8 @@ void drop_effects(EffectPlan& plan, const SceneValues& scene, const std::vector<
 void set_needs(EffectPlan& plan, const SceneValues& scene, const std::vector<EffectBounds>& bounds) {
   plan.needs_direct = plan.kept.moments && scene.emission &&
                       (scene.emission->has_bracket || (emits_as(scene, EmissionModel::kDirect) && plan.kept.emission));
-  plan.needs_beams = needs_beams(scene, bounds, plan.kept);
+  plan.needs_beams = is_bistatic(scene) && plan.kept.source && scene.surface.specular > 0.0 &&
+                     !add_nothing(bounds, Part::kSource, plan.kept);
   plan.gives_rho = plan.kept.moments || scene.surface.specular == 0.0;
 }
 
@@ -179,11 +177,12 @@ Effect complex_index_row(const SceneValues& scene, const EffectPlan& plan, const
     const auto absorbs = [](const Film& film) { return film.index.k > 0.0; };
     return optics.index.k > 0.0 || optics.measured || std::ranges::any_of(optics.films, absorbs);
   };
-  const bool own =
+  const bool has_complex_entry =
       entries.is_grid()
           ? std::ranges::any_of(entries.axes()[Axis::kK], [](double k) { return k > 0.0; })
           : std::ranges::any_of(entries.all(), [&](const SceneEntry& e) { return e.index && is_complex(*e.index); });
-  if (!own && std::ranges::none_of(spectral_rule(scene).indices(), is_complex)) return absent(kName, "k is 0");
+  if (!has_complex_entry && std::ranges::none_of(spectral_rule(scene).indices(), is_complex))
+    return absent(kName, "k is 0");
   const bool is_used = plan.kept.moments || plan.needs_beams || (is_fresnel(scene) && plan.kept.emission);
   if (!is_used) return {kName, EffectState::kNotNeeded, "nothing depends on the index"};
   return {kName, EffectState::kKept, "costs nothing: the kernel treats real indices alike"};

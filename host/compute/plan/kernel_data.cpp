@@ -151,34 +151,23 @@ kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& sh
   return node;
 }
 
-// The pole of R_p in cos(beta), and the branch point of the amplitudes. Both have real and imaginary parts of at least
-// 0.
-struct FresnelSingularities {
-  std::complex<double> pole;
-  std::complex<double> branch;
-};
-
-FresnelSingularities singularities_of(const OpticalConstants& index) {
-  const std::complex<double> n(index.n, index.k);
-  const std::complex<double> n2m1((index.n - 1.0) * (index.n + 1.0) - index.k * index.k, 2.0 * index.n * index.k);
+// With the pole of R_p in cos(beta) and the branch point of the amplitudes, whose real and imaginary parts are at least
+// 0. Films add no singularities, because their amplitudes are even in the wave number.
+kernel::IndexNode index_node(const FacetOptics& optics) {
+  const auto [n, k] = optics.index;
+  const std::complex<double> n_complex(n, k);
+  const std::complex<double> n2m1((n - 1.0) * (n + 1.0) - k * k, 2.0 * n * k);
   const auto bounded_root = [](std::complex<double> square) {
     return std::sqrt(std::abs(square) > kSmallestPole ? square : std::complex<double>(kSmallestPole));
   };
-  const std::complex<double> pole = -1.0 / bounded_root(n * n + 1.0);
+  const std::complex<double> pole = -1.0 / bounded_root(n_complex * n_complex + 1.0);
   const std::complex<double> branch = bounded_root(n2m1);
-  return {{pole.real(), std::abs(pole.imag())}, {std::abs(branch.imag()), std::abs(branch.real())}};
-}
-
-kernel::IndexNode index_node(const FacetOptics& optics) {
-  const OpticalConstants& index = optics.index;
-  // Films add no singularities, because their amplitudes are even in the wave number.
-  const FresnelSingularities nearest = singularities_of(index);
-  return {(index.n - 1.0) * (index.n + 1.0) - index.k * index.k,
-          2.0 * index.n * index.k,
-          nearest.pole.real(),
-          nearest.pole.imag(),
-          nearest.branch.real(),
-          nearest.branch.imag(),
+  return {n2m1.real(),
+          n2m1.imag(),
+          pole.real(),
+          std::abs(pole.imag()),
+          std::abs(branch.imag()),
+          std::abs(branch.real()),
           critical_cosine(optics),
           0.0,
           0.0};

@@ -184,26 +184,26 @@ void check_writable(const fs::path& path) {
 struct AtomicFile::Impl {
   fs::path path;    // for messages
   fs::path target;  // with symbolic links resolved
-  NewFile own;
+  NewFile unfinished;
   bool is_kept = false;  // keeps its name even if it is never complete
   std::uint64_t size = 0;
 
   Impl(fs::path of_user, fs::path of_file, NewFile file)
-      : path(std::move(of_user)), target(std::move(of_file)), own(std::move(file)) {}
+      : path(std::move(of_user)), target(std::move(of_file)), unfinished(std::move(file)) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
-    if (!own.name.empty() && !is_kept) ::unlink(own.name.c_str());
+    if (!unfinished.name.empty() && !is_kept) ::unlink(unfinished.name.c_str());
   }
 
-  int descriptor() const { return own.file.get(); }
+  int descriptor() const { return unfinished.file.get(); }
 
   /// Gives a temporary name to a file without a name.
   void link() {
     const std::string open_file = std::string(kOpenFiles) + '/' + std::to_string(descriptor());
-    own.name = with_new_name(target, [&](const fs::path& free_name) {
-                 return ::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, free_name.c_str(), AT_SYMLINK_FOLLOW);
-               }).first;
+    unfinished.name = with_new_name(target, [&](const fs::path& free_name) {
+                        return ::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, free_name.c_str(), AT_SYMLINK_FOLLOW);
+                      }).first;
   }
 
   /// Writes all bytes to a device or pipe.
@@ -226,7 +226,7 @@ AtomicFile::AtomicFile(const fs::path& path) {
   const fs::path target = follow_links(path);
   const bool is_device = is_device_or_pipe(target);
   impl_ = std::make_unique<Impl>(path, target, create_temporary(is_device ? temporary_files() / "-" : target));
-  if (!is_device) keep_permissions(impl_->own.file, target);
+  if (!is_device) keep_permissions(impl_->unfinished.file, target);
 }
 
 AtomicFile::AtomicFile(const fs::path& path, const fs::path& under_way) {
@@ -234,7 +234,7 @@ AtomicFile::AtomicFile(const fs::path& path, const fs::path& under_way) {
   // Created before the file, which would remain if there were no memory for this object.
   impl_ = std::make_unique<Impl>(path, follow_links(path), NewFile{File(-1), under_way});
   impl_->is_kept = true;
-  File& file = impl_->own.file;
+  File& file = impl_->unfinished.file;
   file = File(::open(under_way.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, kNewFileMode));
   if (file.get() < 0 && errno == ELOOP) fail(under_way, "is a symbolic link; remove it");
   if (file.get() < 0) fail_errno(under_way, "cannot create the file");
@@ -278,15 +278,15 @@ void AtomicFile::resize(std::uint64_t size) {
 
 void AtomicFile::commit() {
   if (is_device_or_pipe(impl_->target)) return impl_->copy_to_target();
-  NewFile& own = impl_->own;
+  NewFile& unfinished = impl_->unfinished;
   const fs::path folder = folder_of(impl_->target);
   if (interrupted()) throw Cancelled();
-  if (::fsync(own.file.get()) != 0) fail_errno(impl_->path, "cannot write");
-  if (own.name.empty()) impl_->link();
+  if (::fsync(unfinished.file.get()) != 0) fail_errno(impl_->path, "cannot write");
+  if (unfinished.name.empty()) impl_->link();
   // The file is closed and unlocked only after it has its final name, so no other run takes it for unfinished.
-  if (::rename(own.name.c_str(), impl_->target.c_str()) != 0)
+  if (::rename(unfinished.name.c_str(), impl_->target.c_str()) != 0)
     fail_errno(impl_->path, "cannot rename the finished file");
-  own.name.clear();
+  unfinished.name.clear();
   sync_folder(folder, impl_->path);
 }
 

@@ -58,7 +58,7 @@ std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData&
     const auto twice = std::ranges::unique(shapes);
     shapes.erase(twice.begin(), twice.end());
     kernel.build_masking_tables(std::move(shapes));
-    const auto one = [&](std::size_t i) {
+    const auto compute_entry = [&](std::size_t i) {
       const MomentsEntry entry = data[entries[i]];
       std::vector<double> columns(column_sums(data));
       const kernel::MomentsNode node = kernel.moments(entry, columns);
@@ -67,7 +67,7 @@ std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData&
     const Progress of_all = [&](std::size_t done, std::size_t) {
       return !progress || progress(before + done, all.size());
     };
-    parallel_for(entries.size(), one, of_all);
+    parallel_for(entries.size(), compute_entry, of_all);
     before += entries.size();
   }
   return moments;
@@ -78,7 +78,7 @@ std::vector<Moments> by_slope_samples(const MomentsRequest& request, const Kerne
                                       double unit_roundoff, const Progress& progress) {
   const SlopeSampling sampling(data);
   std::vector<Moments> moments(request.size());
-  const auto one = [&](std::size_t direction) {
+  const auto compute_direction = [&](std::size_t direction) {
     for (SampledEntries& entries : sampled_entries(request, data, direction, direction + 1)) {
       sampling.compute(std::move(entries), kernel, unit_roundoff, moments);
     }
@@ -87,7 +87,7 @@ std::vector<Moments> by_slope_samples(const MomentsRequest& request, const Kerne
   const Progress of_entries = [&](std::size_t done, std::size_t all) {
     return !progress || progress(wanted * done / all, wanted);
   };
-  parallel_for(data.directions, one, of_entries);
+  parallel_for(data.directions, compute_direction, of_entries);
   return moments;
 }
 
@@ -120,11 +120,11 @@ std::vector<ScatteringMatrix> CpuEvaluator::scatter(const ScatteringRequest& req
   const bool is_double = request.precision == Precision::kDouble;
   const std::unique_ptr<CpuKernel> kernel = make_kernel(plan.data(), is_double);
   std::vector<ScatteringMatrix> matrices(request.entries.size());
-  const auto one = [&](std::size_t i) {
+  const auto compute_beam = [&](std::size_t i) {
     const Beam beam = plan(request.entries[i]);
     matrices[i] = plan.matrix(kernel->mueller(beam.node), beam, request.entries[i], unit_roundoff_of(is_double));
   };
-  parallel_for(matrices.size(), one, progress);
+  parallel_for(matrices.size(), compute_beam, progress);
   note(is_double, seconds_since(start));
   return matrices;
 }

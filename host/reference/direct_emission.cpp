@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "reference/adaptive.hpp"
-#include "reference/attenuation.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/slope_plane.hpp"
+#include "reference/slopes.hpp"
 #include "reference/vectors.hpp"
 
 namespace dolp::reference {

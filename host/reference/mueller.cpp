@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <limits>
 
-#include "reference/attenuation.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/groove_beam.hpp"
 #include "reference/moments.hpp"

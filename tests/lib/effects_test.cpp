@@ -31,7 +31,7 @@ TEST(Dropping, RandomScenes_TheAnswerWithEverythingIsWithinTheEstimates) {
     const EffectPlan plan = plan_effects(scene, entries, false);
     EXPECT_LE(plan.bound, kDroppedShare * scene.accuracy.tolerance);
     if (plan.dropped.empty() && plan.kept.moments) continue;
-    for (const DroppedPart& part : plan.dropped) ++dropped[part.part];
+    for (const auto& [part, bound] : plan.dropped) ++dropped[part];
     without_moments += plan.kept.moments ? 0 : 1;
     const std::vector<PointResult> whole = run(scene, entries, keep_everything(scene));
     const std::vector<PointResult> left = run(scene, entries, plan);

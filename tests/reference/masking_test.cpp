@@ -11,7 +11,6 @@
 #include <limits>
 #include <numbers>
 
-#include "reference/attenuation.hpp"
 #include "reference/moments.hpp"
 #include "reference/mueller.hpp"
 #include "reference/slopes.hpp"

@@ -148,6 +148,11 @@ inline std::string kernel_and_model_name(const testing::TestParamInfo<KernelAndM
 /// The four moments of the hemisphere, without the direct emission.
 inline constexpr std::span<const MomentMember> kHemisphereMembers(kMomentMembers.data(), 4);
 
+inline bool are_same(const Moments& a, const Moments& b) {
+  const auto is_same = [&](const MomentMember& m) { return a.*m.value == b.*m.value && a.*m.error == b.*m.error; };
+  return a.evaluations == b.evaluations && std::ranges::all_of(kHemisphereMembers, is_same);
+}
+
 /// The largest distance of two results, divided by the sum of their bounds. A value above 1 is a failure.
 inline double expect_within_bounds(const Moments& a, const Moments& b, const std::string& where, double slack = 0.0) {
   double worst = 0.0;

@@ -100,15 +100,6 @@ FacetReflection covered_reflection(const BeamGeometry& geometry, const FacetOpti
   return {std::norm(r.s) - m01, m01, std::conj(r.s) * r.p};
 }
 
-KernelData model_data(const ScatteringRequest& request) {
-  KernelData data;
-  data.distribution = request.distribution;
-  data.masking = request.masking;
-  data.rule_order = kLargestOrder;
-  data.rule_nodes = rule_nodes(kLargestOrder);
-  return data;
-}
-
 // (cos 2 eta, sin 2 eta) of the direction (x, y); eta = 0 where it is undefined.
 CosSin double_angle(double x, double y) {
   const double length = std::max(std::abs(x), std::abs(y));
@@ -182,7 +173,11 @@ double log_density(Distribution distribution, const SlopeShape& shape, double sl
   return front + std::log(shape.q - 1.0) - shape.q * log1p_square(u);
 }
 
-BeamPlan::BeamPlan(const ScatteringRequest& request) : request_(request), data_(model_data(request)) {
+BeamPlan::BeamPlan(const ScatteringRequest& request) : request_(request) {
+  data_.distribution = request.distribution;
+  data_.masking = request.masking;
+  data_.rule_order = kLargestOrder;
+  data_.rule_nodes = rule_nodes(kLargestOrder);
   geometries_.reserve(request.angles.size());
   for (const BeamAngles& angles : request.angles) {
     geometries_.push_back(beam_geometry(angles.theta_i_deg, angles.theta_r_deg, angles.delta_phi_deg));

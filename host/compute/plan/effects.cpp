@@ -26,16 +26,17 @@ std::vector<EffectBounds> bounds_of(const SceneValues& scene, const SceneEntries
 }
 
 bool add_nothing(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
-  return std::ranges::all_of(bounds,
-                             [&](const EffectBounds& of_variant) { return of_variant.adds_nothing(part, kept); });
+  return std::ranges::all_of(
+      bounds, [&](const EffectBounds& variant_bounds) { return variant_bounds.adds_nothing(part, kept); });
 }
 
-/// A part that matters in the whole scene is kept, even if the parts that it multiplies have been dropped.
+/// A part that matters in the whole scene is kept, even if the parts that it multiplies have been dropped. This does
+/// not hold for the moments and a profile, which are dropped only where they add exactly nothing.
 double worst_bound(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
   double worst = 0.0;
-  for (const EffectBounds& of_variant : bounds) {
-    worst = std::max(worst, of_variant.bound(part, kept));
-    if (part != Part::kMoments && part != Part::kProfile) worst = std::max(worst, of_variant.bound(part, {}));
+  for (const EffectBounds& variant_bounds : bounds) {
+    worst = std::max(worst, variant_bounds.bound(part, kept));
+    if (part != Part::kMoments && part != Part::kProfile) worst = std::max(worst, variant_bounds.bound(part, {}));
   }
   return worst;
 }
@@ -72,7 +73,7 @@ void drop_effects(EffectPlan& plan, const SceneValues& scene, const std::vector<
     if (bound > allowed - plan.bound) continue;
     plan.kept = without(plan.kept, part);
     plan.bound += bound;
-    if (scene_has_part(scene, part)) plan.dropped.push_back({part, bound});
+    if (scene_has_part(scene, part)) plan.dropped[part] = bound;
   }
 }
 
@@ -82,15 +83,6 @@ void set_needs(EffectPlan& plan, const SceneValues& scene, const std::vector<Eff
   plan.needs_beams = is_bistatic(scene) && plan.kept.source && scene.surface.specular > 0.0 &&
                      !add_nothing(bounds, Part::kSource, plan.kept);
   plan.gives_rho = plan.kept.moments || scene.surface.specular == 0.0;
-}
-
-const DroppedPart* find_dropped(const EffectPlan& plan, Part part) {
-  const auto found = std::ranges::find(plan.dropped, part, &DroppedPart::part);
-  return found == plan.dropped.end() ? nullptr : &*found;
-}
-
-std::string below_share(double bound, double tolerance) {
-  return fmt::format("changes DOLP by {:.2g} at most, {:.2g} of the tolerance", bound, bound / tolerance);
 }
 
 /// The reason why the moments are not needed although nothing is lost without them.
@@ -109,12 +101,14 @@ Effect absent(const char* name, std::string why) { return {name, EffectState::kA
 /// Describes how the plan treats a part. `row` has the reason, and for a kept part the needs.
 Effect part_row(const SceneValues& scene, const EffectPlan& plan, Part part, Effect row) {
   row.part = part;
-  const DroppedPart* dropped = find_dropped(plan, part);
-  if (dropped == nullptr) return row;
+  const auto dropped = plan.dropped.find(part);
+  if (dropped == plan.dropped.end()) return row;
   row.state = EffectState::kDropped;
   row.needs.clear();
-  row.bound = dropped->bound;
-  row.reason = dropped->bound == 0.0 ? "adds nothing" : below_share(dropped->bound, scene.accuracy.tolerance);
+  row.bound = dropped->second;
+  row.reason = row.bound == 0.0 ? "adds nothing"
+                                : fmt::format("changes DOLP by {:.2g} at most, {:.2g} of the tolerance", *row.bound,
+                                              *row.bound / scene.accuracy.tolerance);
   return row;
 }
 
@@ -133,9 +127,8 @@ Effect specular_row(const SceneValues& scene, const EffectPlan& plan) {
     row.needs = needs_of_moments(scene, plan) + (plan.needs_beams ? ", f at each theta" : "");
     return row;
   }
-  const DroppedPart* dropped = find_dropped(plan, Part::kMoments);
-  row.bound = dropped ? dropped->bound : 0.0;
-  row.reason = *row.bound == 0.0 ? why_no_moments(scene, plan.kept) : below_share(*row.bound, scene.accuracy.tolerance);
+  row.bound = 0.0;  // the moments are dropped only where they add exactly nothing
+  row.reason = why_no_moments(scene, plan.kept);
   if (plan.needs_beams) {
     row.needs = "f at each theta";
     row.reason = "reflects the source; no moments: " + row.reason;

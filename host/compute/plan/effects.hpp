@@ -3,6 +3,7 @@
 
 #include <array>
 #include <dolp/effect.hpp>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -76,17 +77,11 @@ class EffectBounds {
   double least_beam_ = 0.0;
 };
 
-/// A dropped part, with the bound for all entries.
-struct DroppedPart {
-  Part part;
-  double bound;  ///< bounds the change of (Q/I, U/I), and so of DOLP
-};
-
 /// The effects that a run computes at its entries.
 struct EffectPlan {
   bool keep_all = false;
   KeptEffects kept;
-  std::vector<DroppedPart> dropped;     ///< in the order of dropping, without parts that the scene lacks
+  std::map<Part, double> dropped;       ///< bounds of the change of (Q/I, U/I) by parts that the scene has
   double bound = 0.0;                   ///< bounds the change by all dropped parts together
   bool needs_direct = false;            ///< whether the run needs the moments of the direct emission
   bool needs_beams = false;             ///< whether the run needs f from the source's direction into the view

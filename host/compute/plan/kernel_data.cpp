@@ -33,12 +33,6 @@ struct Loops {
   double corners = 0.0;  ///< corners of a sky that split the arcs
 };
 
-Loops single_loops(const KernelData& data) {
-  double arcs = data.masking == Masking::kIntegral || data.masking == Masking::kVCavity ? 3.0 : 1.0;
-  if (data.has_direct) arcs += data.masking == Masking::kVCavity ? 2.0 : 1.0;
-  return {.arcs = arcs};
-}
-
 // Loop iterations of a ray with `bounces` bounces: one for each bounce, or for each group of bounces that next_bounces
 // in groove.glsl combines.
 double turns_of(double bounces) {
@@ -70,7 +64,13 @@ Loops groove_loops(const KernelData& data, double start, double end) {
 }
 
 Loops loops_of(const KernelData& data, double critical, double start, double end) {
-  Loops loops = data.scattering == Scattering::kMultiple ? groove_loops(data, start, end) : single_loops(data);
+  Loops loops;
+  if (data.scattering == Scattering::kMultiple) {
+    loops = groove_loops(data, start, end);
+  } else {
+    if (data.masking == Masking::kIntegral || data.masking == Masking::kVCavity) loops.arcs = 3.0;
+    if (data.has_direct) loops.arcs += data.masking == Masking::kVCavity ? 2.0 : 1.0;
+  }
   if (critical > 0.0) loops.arcs *= 2.0;
   loops.corners = data.sky.corners;
   return loops;

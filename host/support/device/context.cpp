@@ -85,7 +85,7 @@ Instance::Instance(ValidationLog* log, const std::vector<const char*>& extension
     info.ppEnabledLayerNames = &kValidationLayer;
   }
   const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
-  if (result == VK_ERROR_LAYER_NOT_PRESENT) {
+  if (log && result == VK_ERROR_LAYER_NOT_PRESENT) {
     throw DeviceError(std::string("validation is wanted, but the layer ") + kValidationLayer +
                       " is not installed (on Debian, vulkan-validationlayers)");
   }

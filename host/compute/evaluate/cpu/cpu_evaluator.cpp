@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "base/parallel_ranges.hpp"
 #include "base/processor.hpp"
 #include "base/stopwatch.hpp"
@@ -25,32 +25,20 @@ std::unique_ptr<CpuKernel> make_kernel(const KernelData& data, bool in_double) {
   return in_double ? make_cpu_kernel_double(data) : make_cpu_kernel_float(data);
 }
 
-double unit_roundoff_of(bool in_double) {
-  return in_double ? 0.5 * std::numeric_limits<double>::epsilon()
-                   : 0.5 * static_cast<double>(std::numeric_limits<float>::epsilon());
-}
-
-std::vector<std::size_t> wanted_entries(const MomentsRequest& request) {
-  std::vector<std::size_t> entries;
-  entries.reserve(request.wanted_count());
-  for (std::size_t i = 0; i < request.size(); ++i) {
-    if (request.is_wanted(i)) entries.push_back(i);
-  }
-  return entries;
-}
+double unit_roundoff_of(bool in_double) { return in_double ? kDoubleRoundoff : kFloatRoundoff; }
 
 /// Moments entry by entry, for a block of shapes at a time.
 std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData& data, CpuKernel& kernel,
                                 double unit_roundoff, const Progress& progress) {
-  const std::vector<std::size_t> all = wanted_entries(request);
+  const std::size_t wanted = request.wanted_count();
   std::vector<Moments> moments(request.size());
   std::size_t before = 0;
   for (std::size_t first = 0; first < data.shapes.size(); first += kTablesAtOnce) {
     std::vector<std::size_t> entries;
     std::vector<std::uint32_t> shapes;
-    for (const std::size_t i : all) {
+    for (std::size_t i = 0; i < request.size(); ++i) {
       const std::uint32_t shape = data[i].shape;
-      if (shape < first || shape >= first + kTablesAtOnce) continue;
+      if (!request.is_wanted(i) || shape < first || shape >= first + kTablesAtOnce) continue;
       entries.push_back(i);
       shapes.push_back(shape);
     }
@@ -64,9 +52,7 @@ std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData&
       const kernel::MomentsNode node = kernel.moments(entry, columns);
       moments[entries[i]] = moments_from_kernel(node, data, entry, unit_roundoff, columns);
     };
-    const Progress of_all = [&](std::size_t done, std::size_t) {
-      return !progress || progress(before + done, all.size());
-    };
+    const Progress of_all = [&](std::size_t done, std::size_t) { return !progress || progress(before + done, wanted); };
     parallel_for(entries.size(), compute_entry, of_all);
     before += entries.size();
   }

@@ -58,6 +58,8 @@ class Kernels {
   void bind(const Bindings& bindings);
 
   VkPipeline pipeline(const KernelVariant& variant);
+  /// True if the pipeline exists already.
+  bool has(const KernelVariant& variant) { return known(variant) != VK_NULL_HANDLE; }
   std::uint32_t local_size() const { return device_.local_size(); }
   VkPipelineLayout layout() const { return layout_.get(); }
   VkDescriptorSet descriptor_set() const { return set_; }

@@ -37,9 +37,10 @@ class RowRun final : public Run<Moments> {
   }
 
   void create_pipelines() override {
+    const KernelVariant tables = masking_table_variant(data_);
     std::future<void> table_pipeline;
-    if (data_.needs_masking_table()) {
-      table_pipeline = std::async(std::launch::async, [&] { context_.kernels.pipeline(masking_table_variant(data_)); });
+    if (data_.needs_masking_table() && !context_.kernels.has(tables)) {
+      table_pipeline = std::async(std::launch::async, [&] { context_.kernels.pipeline(tables); });
     }
     TiledRun::create_pipelines();
     if (table_pipeline.valid()) table_pipeline.get();
@@ -91,12 +92,12 @@ class RowRun final : public Run<Moments> {
     indices_.clear();
     std::vector<TaskWords> words;
     words.reserve(pieces.size());
-    for (const RowPiece& of_tile : pieces) {
-      const Row& row = rows_.rows[of_tile.row];
+    for (const RowPiece& row_piece : pieces) {
+      const Row& row = rows_.rows[row_piece.row];
       const Chunk& chunk = rows_.chunks[row.chunk];
       const std::uint32_t theta = rows_.theta_of(data_, row);
       words.push_back({thetas_(theta), chunk.first - block.first_shape, indices_(row.index),
-                       task_word(data_.pieces[theta], of_tile.piece, chunk.count)});
+                       task_word(data_.pieces[theta], row_piece.piece, chunk.count)});
     }
     inputs_[DOLP_BINDING_TASKS]->write(std::as_bytes(std::span(words)), context_.stream);
     const std::span<const std::uint32_t> thetas = thetas_.used(), indices = indices_.used();

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "model/moments.hpp"
-#include "reference/attenuation.hpp"
 #include "reference/slopes.hpp"
 
 namespace dolp::reference {

@@ -19,7 +19,6 @@
 #include <vector>
 
 #include "reference/adaptive.hpp"
-#include "reference/attenuation.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/moments.hpp"
 #include "reference/slopes.hpp"

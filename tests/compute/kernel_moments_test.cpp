@@ -63,11 +63,6 @@ TEST_P(KernelProperties, RandomPoints_KeepTheEnergy) {
 
 // ---- Layout of a request -------------------------------------------------------------------------------------------
 
-bool same(const Moments& a, const Moments& b) {
-  const auto is_same = [&](const MomentMember& m) { return a.*m.value == b.*m.value && a.*m.error == b.*m.error; };
-  return a.evaluations == b.evaluations && std::ranges::all_of(kHemisphereMembers, is_same);
-}
-
 /// A grid of random axes; a third of its entries is wanted.
 MomentsRequest random_grid(const Model& model, Random& random) {
   MomentsRequest request = request_of(model, {}, 1e-3);
@@ -144,7 +139,7 @@ TEST_P(KernelProperties, OrderOfAxes_TilesAndBlocks_ChangeNoBit) {
     ASSERT_EQ(actual.size(), expected.size());
     for (std::size_t i = 0; i < expected.size(); ++i) {
       if (!request.is_wanted(i)) continue;
-      EXPECT_TRUE(same(expected[i], actual[other.place_of[i]])) << "entry " << i << " in round " << round;
+      EXPECT_TRUE(are_same(expected[i], actual[other.place_of[i]])) << "entry " << i << " in round " << round;
     }
   }
 }

@@ -27,18 +27,27 @@ std::unique_ptr<CpuKernel> make_kernel(const KernelData& data, bool in_double) {
 
 double unit_roundoff_of(bool in_double) { return in_double ? kDoubleRoundoff : kFloatRoundoff; }
 
+std::vector<std::size_t> wanted_entries(const MomentsRequest& request) {
+  std::vector<std::size_t> entries;
+  entries.reserve(request.wanted_count());
+  for (std::size_t i = 0; i < request.size(); ++i) {
+    if (request.is_wanted(i)) entries.push_back(i);
+  }
+  return entries;
+}
+
 /// Moments entry by entry, for a block of shapes at a time.
 std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData& data, CpuKernel& kernel,
                                 double unit_roundoff, const Progress& progress) {
-  const std::size_t wanted = request.wanted_count();
+  const std::vector<std::size_t> all = wanted_entries(request);
   std::vector<Moments> moments(request.size());
   std::size_t before = 0;
   for (std::size_t first = 0; first < data.shapes.size(); first += kTablesAtOnce) {
     std::vector<std::size_t> entries;
     std::vector<std::uint32_t> shapes;
-    for (std::size_t i = 0; i < request.size(); ++i) {
+    for (const std::size_t i : all) {
       const std::uint32_t shape = data[i].shape;
-      if (!request.is_wanted(i) || shape < first || shape >= first + kTablesAtOnce) continue;
+      if (shape < first || shape >= first + kTablesAtOnce) continue;
       entries.push_back(i);
       shapes.push_back(shape);
     }
@@ -52,7 +61,9 @@ std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData&
       const kernel::MomentsNode node = kernel.moments(entry, columns);
       moments[entries[i]] = moments_from_kernel(node, data, entry, unit_roundoff, columns);
     };
-    const Progress of_all = [&](std::size_t done, std::size_t) { return !progress || progress(before + done, wanted); };
+    const Progress of_all = [&](std::size_t done, std::size_t) {
+      return !progress || progress(before + done, all.size());
+    };
     parallel_for(entries.size(), compute_entry, of_all);
     before += entries.size();
   }

@@ -13,11 +13,11 @@
 // Numbers after all MomentsNodes: DOLP_COLUMN_PARTS for each column of each member.
 layout(std430, binding = DOLP_BINDING_MOMENTS) writeonly buffer ColumnsOut { real columns_out[]; };
 
-void store_column(uint place, real value) {
+void store_column(uint position, real value) {
   uint invocation = gl_GlobalInvocationID.x;
   if (invocation >= push.count) return;
   uint members = push.count * DOLP_WIDTH;
-  columns_out[members * DOLP_MOMENTS_NUMBERS + invocation * (DOLP_WIDTH * DOLP_COLUMN_PARTS * kColumnCount) + place] = value;
+  columns_out[members * DOLP_MOMENTS_NUMBERS + invocation * (DOLP_WIDTH * DOLP_COLUMN_PARTS * kColumnCount) + position] = value;
 }
 #endif
 #include "physics/all.glsl"
@@ -29,23 +29,23 @@ layout(std430, binding = DOLP_BINDING_RULE) readonly buffer Rule { RuleNode rule
 layout(std430, binding = DOLP_BINDING_MOMENTS) writeonly buffer MomentsOut { MomentsNode moments[]; };
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  uvec4 own = tasks[push.first + min(i, push.count - 1u)];
-  Task task = task_of(own.w);
+  uvec4 words = tasks[push.first + min(i, push.count - 1u)];
+  Task task = task_of(words.w);
   ThetaNode theta;
-  theta.c = thetas[own.x].c;
-  theta.s = thetas[own.x].s;
-  task.before = thetas[own.x].end[max(task.piece - 1, 0)];
-  task.start = thetas[own.x].end[task.piece];
-  task.end = thetas[own.x].end[min(task.piece + 1, DOLP_MAX_PIECES)];
-  task.after = thetas[own.x].end[min(task.piece + 2, DOLP_MAX_PIECES)];
-  task.last = thetas[own.x].end[DOLP_MAX_PIECES];
+  theta.c = thetas[words.x].c;
+  theta.s = thetas[words.x].s;
+  task.before = thetas[words.x].end[max(task.piece - 1, 0)];
+  task.start = thetas[words.x].end[task.piece];
+  task.end = thetas[words.x].end[min(task.piece + 1, DOLP_MAX_PIECES)];
+  task.after = thetas[words.x].end[min(task.piece + 2, DOLP_MAX_PIECES)];
+  task.last = thetas[words.x].end[DOLP_MAX_PIECES];
   Row row;
   for (int g = 0; g < DOLP_WIDTH; ++g) {
-    uint shape = own.y + uint(min(g, task.members - 1));
+    uint shape = words.y + uint(min(g, task.members - 1));
     row.shape[g] = shapes[shape];
     row.table[g] = shape * kMaskingNodes;
   }
-  RowMoments result = piece_moments(rule, theta, row, indices[own.z], task);
+  RowMoments result = piece_moments(rule, theta, row, indices[words.z], task);
   if (i < push.count) {
     for (int g = 0; g < DOLP_WIDTH; ++g) moments[i * DOLP_WIDTH + g] = result.member[g];
   }

@@ -11,8 +11,8 @@
 // Numbers after all AzimuthNodes: two for each column of each slope.
 layout(std430, binding = DOLP_BINDING_AZIMUTHS) writeonly buffer ColumnsOut { real columns_out[]; };
 
-void store_column(uint place, real value) {
-  columns_out[push.count * DOLP_AZIMUTH_NUMBERS + gl_GlobalInvocationID.x * 2u * kColumnCount + place] = value;
+void store_column(uint position, real value) {
+  columns_out[push.count * DOLP_AZIMUTH_NUMBERS + gl_GlobalInvocationID.x * 2u * kColumnCount + position] = value;
 }
 #endif
 #include "physics/all.glsl"
@@ -24,11 +24,11 @@ layout(std430, binding = DOLP_BINDING_RULE) readonly buffer Rule { RuleNode rule
 layout(std430, binding = DOLP_BINDING_AZIMUTHS) writeonly buffer AzimuthsOut { AzimuthNode azimuths[]; };
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  SlopeNode own = slopes[push.first + min(i, push.count - 1u)];
+  SlopeNode slope_node = slopes[push.first + min(i, push.count - 1u)];
   ThetaNode theta;
-  theta.c = thetas[int(own.theta)].c;
-  theta.s = thetas[int(own.theta)].s;
-  SlopeResult result = azimuths_of(rule, theta, indices[int(own.index)], own);
+  theta.c = thetas[int(slope_node.theta)].c;
+  theta.s = thetas[int(slope_node.theta)].s;
+  SlopeResult result = azimuths_of(rule, theta, indices[int(slope_node.index)], slope_node);
   if (i < push.count) {
     azimuths[i] = result.node;
     store_azimuth_columns(result.columns);

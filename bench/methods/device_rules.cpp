@@ -90,7 +90,8 @@ class DeviceRule final : public Solver {
   vulkan::InputBuffer& upload(std::optional<vulkan::InputBuffer>& buffer, const List& list,
                               VkFormat texels = VK_FORMAT_UNDEFINED) {
     std::vector<std::byte> bytes;
-    for (const auto& node : list) packing_.append(node, bytes);
+    packing_.pack(
+        list.size(), [&](std::size_t i) { return list[i]; }, bytes);
     return upload_bytes(buffer, bytes, texels);
   }
   vulkan::InputBuffer& upload_bytes(std::optional<vulkan::InputBuffer>& buffer, std::span<const std::byte> bytes,

@@ -1,4 +1,4 @@
-#include "reference/attenuation.hpp"
+#include "reference/slopes.hpp"
 
 #include <algorithm>
 #include <boost/math/special_functions/beta.hpp>

@@ -1,4 +1,4 @@
-#include "reference/direct_emission.hpp"
+#include "reference/moments.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "reference/adaptive.hpp"
-#include "reference/attenuation.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/slope_plane.hpp"
+#include "reference/slopes.hpp"
 #include "reference/vectors.hpp"
 
 namespace dolp::reference {
@@ -49,20 +49,12 @@ class Facets {
         smith_(masking == Masking::kSmith ? 1.0 / (1.0 + smith_lambda(slopes, view_)) : 1.0) {}
 
   Moments emission(const Refinement& refinement) {
-    const RegimeScan scan(view_, theta_rad_, {.halvings = kHalvings},
-                          [this](const SlopePoint& p) { return regime(p); });
     const double steepest = end();
     const SlopeTask<kCount> task{.integrand = [this](const SlopePoint& point) { return of_pair(point); },
-                                 .scales =
-                                     [this](const Emitted& value) {
-                                       return Emitted{scale(value), scale(value)};
-                                     },
+                                 .scales = [this](const Emitted& value) { return scales(value); },
                                  .steepest = steepest,
-                                 .bends_end = steepest,
-                                 .thin_weight = 0.0,  // rows may become larger with t
-                                 .work = [] { return 0.0; },
-                                 .most_work = 1.0};
-    const Integral<2 * kCount> integral = integrate_slopes_of<kCount>(task, slopes_, scan, refinement, {});
+                                 .bends_end = steepest};
+    const Integral<2 * kCount> integral = integrate_slopes_of<kCount>(task, slopes_, scan(), refinement, {});
     const Emitted beyond = tail(steepest, refinement);
     const double rounding = (kRounding + 0.5 * refinement.relative_tolerance) * std::abs(beyond[kIntensity]) +
                             kRounding * (is_response_ ? view_.cos : integral.value[kIntensity]) + kNoShare * view_.cos;
@@ -81,7 +73,13 @@ class Facets {
   double facing(const SlopePoint& point, double side) const {
     return view_.cos + side * point.t * view_.sin * point.sin_chi;
   }
-  double scale(const Emitted& value) const { return is_response_ ? view_.cos : value[kIntensity]; }
+  Emitted scales(const Emitted& value) const {
+    const double scale = is_response_ ? view_.cos : value[kIntensity];
+    return {scale, scale};
+  }
+  RegimeScan scan() const {
+    return {view_, theta_rad_, {.halvings = kHalvings}, [this](const SlopePoint& point) { return regime(point); }};
+  }
   Emitted of_facet(const SlopePoint& point, double side) const {
     const double e = facing(point, side);
     if (e <= 0.0) return {};
@@ -127,14 +125,10 @@ class Facets {
     const double share = masking_ == Masking::kVCavity ? slopes_.share_above(t) : slopes_.length_above(t) / t;
     if (share < kNoShare) return {};
     Breaks breaks(0.0, 0.5 * pi);
-    const RegimeScan scan(view_, theta_rad_, {.halvings = kHalvings},
-                          [this](const SlopePoint& p) { return regime(p); });
-    for (const double chi : scan.chi_breaks(t)) breaks.add(chi);
+    for (const double chi : scan().chi_breaks(t)) breaks.add(chi);
     const Integral<kCount> row = integrate<kCount>([&](double chi) { return of_pair(slope_point(t, chi)); }, breaks,
                                                    {.relative = refinement.relative_tolerance},
-                                                   [this](const Emitted& value) {
-                                                     return Emitted{scale(value), scale(value)};
-                                                   });
+                                                   [this](const Emitted& value) { return scales(value); });
     const double factor = share * 2.0 * std::numbers::inv_pi;
     return {factor * row.value[kIntensity], factor * row.value[kPolarised]};
   }

@@ -1,4 +1,4 @@
-#include "reference/grooves.hpp"
+#include "reference/moments.hpp"
 
 #include <algorithm>
 #include <array>

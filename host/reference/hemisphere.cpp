@@ -4,7 +4,7 @@
 //   sin^2 beta  = t^2/(1 + t^2) + sin(theta) sin(theta_r) cos^2(delta/2)
 //   tan^2 alpha = t^2 + (1 + t^2) sin(theta) sin(theta_r) s2 / cos^2 mean
 // sums of non-negative terms, in which nothing cancels. The peak of D lies at t = 0, delta = 0.
-#include "reference/hemisphere.hpp"
+#include "reference/moments.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -60,18 +60,6 @@ Values<N> moment_scales(const Values<N>& value) {
   Values<N> scales{std::max(floor, value[kAlbedo]), reflected, reflected, absorbed};
   std::fill(scales.begin() + kMomentCount, scales.end(), scales[kAlbedo]);
   return scales;
-}
-
-// M00 and M01 of eq. (7) from the Jones matrix of eq. (4). They need only the squared lengths of its columns, which the
-// rotation by eta_r does not change.
-struct MuellerRow {
-  double m00;
-  double m01;
-};
-MuellerRow mueller_row(const FresnelCoefficients& r, double cos_eta, double sin_eta) {
-  const double from_s = std::norm(r.r_s * cos_eta) + std::norm(r.r_p * sin_eta);
-  const double from_p = std::norm(r.r_s * -sin_eta) + std::norm(r.r_p * cos_eta);
-  return {0.5 * (from_s + from_p), 0.5 * (from_s - from_p)};
 }
 
 // The moments of one direction. Holds the data of all nested integrands.
@@ -251,7 +239,9 @@ class Hemisphere {
     return both;
   }
 
-  // D G M / 4, the reduced form of cos(theta) f cos(theta_r), with R, with R = 1 and with 1 - R.
+  // D G M / 4, the reduced form of cos(theta) f cos(theta_r), with R, with R = 1 and with 1 - R. M00 and M01 of eq. (7)
+  // need only the squared lengths of the columns of the Jones matrix of eq. (4), which the rotation by eta_r does not
+  // change.
   AzimuthValues integrand(const Row& row, double delta) const {
     const double sin_half = std::sin(0.5 * delta);
     const double cos_half = std::cos(0.5 * delta);
@@ -266,16 +256,19 @@ class Hemisphere {
     // h = (omega_i + omega_r) / (2 cos beta). These are its parts across and along the plane of omega_i and z, over sin
     // beta. The retro direction (beta = 0) has no eta and no polarisation: r_p = -r_s.
     const double sin_2beta = 2.0 * std::sqrt(cos2_beta * sin2_beta);
-    MuellerRow m{0.5 * (std::norm(r.r_s) + std::norm(r.r_p)), 0.0};
+    double from_s = 0.5 * (std::norm(r.r_s) + std::norm(r.r_p));
+    double from_p = from_s;
     double cos_2eta = 1.0;
     if (sin_2beta > 0.0) {
       const double sin_eta = row.running.sin * std::sin(delta) / sin_2beta;
       const double cos_eta =
           (row.running.cos * fixed_.sin + row.running.sin * fixed_.cos * std::cos(delta)) / sin_2beta;
-      m = mueller_row(r, cos_eta, sin_eta);
+      from_s = std::norm(r.r_s * cos_eta) + std::norm(r.r_p * sin_eta);
+      from_p = std::norm(r.r_s * -sin_eta) + std::norm(r.r_p * cos_eta);
       cos_2eta = cos_eta * cos_eta - sin_eta * sin_eta;
     }
-    AzimuthValues values{bare, bare * m.m00, bare * m.m01, bare * 0.5 * (r.absorbed_s + r.absorbed_p)};
+    AzimuthValues values{bare, bare * (0.5 * (from_s + from_p)), bare * (0.5 * (from_s - from_p)),
+                         bare * 0.5 * (r.absorbed_s + r.absorbed_p)};
     if constexpr (K > 0) {
       const std::array<double, kCurves> curves = (*curves_)(cos_beta);
       for (std::size_t k = 0; k < K; ++k) {

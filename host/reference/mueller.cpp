@@ -9,10 +9,9 @@
 #include <cstddef>
 #include <limits>
 
-#include "reference/attenuation.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/groove_beam.hpp"
-#include "reference/hemisphere.hpp"
+#include "reference/moments.hpp"
 #include "reference/slopes.hpp"
 #include "reference/vectors.hpp"
 

@@ -13,9 +13,7 @@
 #include "base/processor.hpp"
 #include "base/stopwatch.hpp"
 #include "model/sky_basis.hpp"
-#include "reference/direct_emission.hpp"
-#include "reference/grooves.hpp"
-#include "reference/hemisphere.hpp"
+#include "reference/moments.hpp"
 #include "reference/mueller.hpp"
 
 namespace dolp {

@@ -170,14 +170,14 @@ struct SlopeResult {
 };
 
 // The sums in the form that slopes.comp returns: its maskings do not depend on the shape.
-SlopeResult azimuths_of(RuleNode rule, ThetaNode theta, IndexNode index, SlopeNode own) {
+SlopeResult azimuths_of(RuleNode rule, ThetaNode theta, IndexNode index, SlopeNode slope_node) {
   Slope slope;
-  slope.t = own.t;
-  slope.digits = own.digits;
+  slope.t = slope_node.t;
+  slope.digits = slope_node.digits;
   slope.masking_in = unmasked();
   slope.has_split_line = false;
-  slope.most_azimuths = int(own.most_azimuths);
-  slope.is_coarse = own.is_coarse > real(0.5);
+  slope.most_azimuths = int(slope_node.most_azimuths);
+  slope.is_coarse = slope_node.is_coarse > real(0.5);
   slope.sky = sky_place();
   Columns columns[DOLP_WIDTH];
   for (int g = 0; g < DOLP_WIDTH; ++g) {

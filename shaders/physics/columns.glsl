@@ -40,10 +40,10 @@ Columns no_columns() {
 
 real sky_function(SkyPlace table, int k, real cos_r) {
   int cells = table.cells;
-  real place = sqrt(max(real(1.0) - cos_r, real(0.0))) * real(cells);
-  int cell = min(int(place), cells - 1);
+  real position = sqrt(max(real(1.0) - cos_r, real(0.0))) * real(cells);
+  int cell = min(int(position), cells - 1);
   real2 node = rule_node(table.start + k * cells + cell);
-  return node.x + (place - real(cell)) * node.y;
+  return node.x + (position - real(cell)) * node.y;
 }
 
 ColumnValues sky_at(SkyPlace table, real cos_r) {

@@ -47,9 +47,9 @@ Fresnel fresnel(IndexNode index, real cos_beta) {
 // (host/compute/plan/reflectance_curve.cpp).
 Fresnel reflectance_at(IndexNode index, real cos_beta) {
   int cells = int(index.curve_cells);
-  real place = sqrt(cos_beta) * real(cells);
-  int cell = min(int(place), cells - 1);
-  real x = place - real(cell);
+  real position = sqrt(cos_beta) * real(cells);
+  int cell = min(int(position), cells - 1);
+  real x = position - real(cell);
   int first = int(index.curve_start) + DOLP_CURVE_NODES * cell;
   real value[3];
   for (int i = 0; i < 3; ++i) {

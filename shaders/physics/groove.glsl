@@ -89,25 +89,25 @@ Bounce bounce(IndexNode index, real cos_beta, real sin2_beta, int doublings) {
   real2 cw = real2(cos_beta * w.x, cos_beta * w.y);
   real scale = f.r_s / max((cw.x + sin2_beta) * (cw.x + sin2_beta) + cw.y * cw.y, kSmallestSquare);
   real half_split = real(0.5) * f.split_over_sin2 * sin2_beta;
-  Bounce one;
-  one.m00 = f.r_s - half_split;
-  one.m01 = half_split;
-  one.absorbed = f.absorbed_s + half_split;
-  one.cross = real2(scale * (cw.x * cw.x + cw.y * cw.y - sin2_beta * sin2_beta), scale * real(2.0) * sin2_beta * cw.y);
+  Bounce combined;
+  combined.m00 = f.r_s - half_split;
+  combined.m01 = half_split;
+  combined.absorbed = f.absorbed_s + half_split;
+  combined.cross = real2(scale * (cw.x * cw.x + cw.y * cw.y - sin2_beta * sin2_beta), scale * real(2.0) * sin2_beta * cw.y);
   for (bool is_doubled = doublings > 0; is_doubled; is_doubled = false) {
     for (int i = 0; i < DOLP_MOST_DOUBLINGS; ++i) {
       if (i < doublings) {
-        Bounce two;
-        two.m00 = one.m00 * one.m00 + one.m01 * one.m01;
-        two.m01 = real(2.0) * one.m00 * one.m01;
-        two.absorbed = one.absorbed * (real(1.0) + one.m00) - one.m01 * one.m01;
-        two.cross = real2((one.cross.x - one.cross.y) * (one.cross.x + one.cross.y),
-                          real(2.0) * one.cross.x * one.cross.y);
-        one = two;
+        Bounce doubled;
+        doubled.m00 = combined.m00 * combined.m00 + combined.m01 * combined.m01;
+        doubled.m01 = real(2.0) * combined.m00 * combined.m01;
+        doubled.absorbed = combined.absorbed * (real(1.0) + combined.m00) - combined.m01 * combined.m01;
+        doubled.cross = real2((combined.cross.x - combined.cross.y) * (combined.cross.x + combined.cross.y),
+                          real(2.0) * combined.cross.x * combined.cross.y);
+        combined = doubled;
       }
     }
   }
-  return one;
+  return combined;
 }
 
 // A Stokes vector after a bounce whose plane of incidence is turned by eta. `twice` is (cos, sin) of 2 eta.

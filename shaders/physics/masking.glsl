@@ -90,7 +90,7 @@ real masking_height(TableCell cell, uint table) {
 
 // Positions in the tables for 1 - G1(theta, alpha) of a direction and a facet slope t. They are equal for all tables of
 // one scale.
-struct ShadowPlace {
+struct ShadowRange {
   real kappa;
   bool is_limited;  // d > 0, with
   real far;         // tau_b
@@ -100,20 +100,20 @@ struct ShadowPlace {
 // cot(theta), the argument of l.
 real shadow_cot(real cos_theta, real sin_theta) { return cos_theta / max(sin_theta, real(1e-10)); }
 
-ShadowPlace shadow_place(ShapeNode shape, real cos_theta, real sin_theta, real t) {
+ShadowRange shadow_range(ShapeNode shape, real cos_theta, real sin_theta, real t) {
   real s = max(sin_theta, real(1e-10));
   real mu = cos_theta / s;
   real difference = s * s - cos_theta * cos_theta;
   real twice_product = real(2.0) * s * cos_theta;
   real d = difference - twice_product * t;
-  ShadowPlace place;
-  place.kappa = s * sqrt(real(1.0) + t * t) / (cos_theta + s * t);
-  place.is_limited = d > real(0.0);
-  real far = choose(place.is_limited, (difference * t + twice_product) / d, mu);
+  ShadowRange range;
+  range.kappa = s * sqrt(real(1.0) + t * t) / (cos_theta + s * t);
+  range.is_limited = d > real(0.0);
+  real far = choose(range.is_limited, (difference * t + twice_product) / d, mu);
   far = min(far, masking_node_tau(shape, kMaskingNodes - 1u));
-  place.far = far;
-  place.gap = far - mu;
-  return place;
+  range.far = far;
+  range.gap = far - mu;
+  return range;
 }
 
 // The term that the limit b < pi/2 adds to kappa l(mu): Pt(tb) - kappa [l(tb) + (tb - mu) C(tb)]. It is a sum over the
@@ -132,17 +132,17 @@ struct LimitTerms {
   real tail1;
 };
 
-LimitTerms limit_terms(ShapeNode shape, ShadowPlace place, TableCell cell) {
+LimitTerms limit_terms(ShapeNode shape, ShadowRange range, TableCell cell) {
   real tau0 = masking_node_tau(shape, cell.node);
   real tau1 = masking_node_tau(shape, cell.node + 1u);
-  real lever = place.kappa * place.gap;
+  real lever = range.kappa * range.gap;
   LimitTerms terms;
-  terms.l0 = -place.kappa * cell.f0;
-  terms.l1 = -place.kappa * cell.f1;
-  terms.c0 = place.kappa * cell.d0 - lever * cell.f0;
-  terms.c1 = place.kappa * cell.d1 - lever * cell.f1;
-  terms.p0 = -cell.g0 * (place.kappa * cell.e0 + lever * (cell.e0 * weight_decay(tau0) - cell.d0)) - cell.d0;
-  terms.p1 = -cell.g1 * (place.kappa * cell.e1 + lever * (cell.e1 * weight_decay(tau1) - cell.d1)) - cell.d1;
+  terms.l0 = -range.kappa * cell.f0;
+  terms.l1 = -range.kappa * cell.f1;
+  terms.c0 = range.kappa * cell.d0 - lever * cell.f0;
+  terms.c1 = range.kappa * cell.d1 - lever * cell.f1;
+  terms.p0 = -cell.g0 * (range.kappa * cell.e0 + lever * (cell.e0 * weight_decay(tau0) - cell.d0)) - cell.d0;
+  terms.p1 = -cell.g1 * (range.kappa * cell.e1 + lever * (cell.e1 * weight_decay(tau1) - cell.d1)) - cell.d1;
   terms.decay0 = cell.e0 * marginal_decay(shape, tau0) * (real(1.0) - lever * cell.g0);
   terms.decay1 = cell.e1 * marginal_decay(shape, tau1) * (real(1.0) - lever * cell.g1);
   terms.tail0 = cell.f0;

@@ -45,7 +45,7 @@ Piece make_piece(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task 
 }
 
 // (y, dy/dv) of a piece.
-real2 place_on_piece(Piece piece, real v) {
+real2 position_on_piece(Piece piece, real v) {
   bool has_both = piece.root_at_a && piece.root_at_b;
   real2 both = real2(v * v * (real(3.0) - real(2.0) * v), real(6.0) * v * (real(1.0) - v));
   real2 at_a = real2(v * v, real(2.0) * v);
@@ -89,11 +89,11 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
   int first_node = rule_offset(kSectionGauss, order);
   for (int i = 0; i < order; ++i) {
     real2 node = rule_node(first_node + i);
-    real2 place = place_on_piece(piece, node.x);
-    real2 hyperbolic = sinh_cosh(piece.start + piece.extent * place.x);
+    real2 on_piece = position_on_piece(piece, node.x);
+    real2 hyperbolic = sinh_cosh(piece.start + piece.extent * on_piece.x);
     real t = shape.scale * hyperbolic.x;
     real u = t / shape.m;
-    real du = shape.scale / shape.m * hyperbolic.y * piece.extent * place.y;
+    real du = shape.scale / shape.m * hyperbolic.y * piece.extent * on_piece.y;
     real exponent = common_exponent(u);
     real weight[DOLP_WIDTH];
     real largest_weight = real(0.0);

@@ -265,9 +265,9 @@ real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
   // cos(theta_r) = i m / sqrt(1 - m^2)
   real width = real(1.0) - shape.m * shape.m;
   real cos_r = shape.m / sqrt(max(abs(width), real(1e-6)));
-  real place = cos_r * scale;
+  real scaled_cos = cos_r * scale;
   bool is_imaginary = width > real(0.0);
-  Singularity density = singularity_at(offset + choose(is_imaginary, real(0.0), place), choose(is_imaginary, place, real(0.0)));
+  Singularity density = singularity_at(offset + choose(is_imaginary, real(0.0), scaled_cos), choose(is_imaginary, scaled_cos, real(0.0)));
   real cost = arc_cost(arc, density);
   if (kMasking == DOLP_MASKING_INTEGRAL) {
     cost = max(cost, arc_cost(arc, singularity_at(offset - t / sqrt(sec2) * scale, real(0.0))));

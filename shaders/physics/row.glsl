@@ -49,13 +49,13 @@ MaskingTerms masking_of_direction(Row row, real cos_theta, real sin_theta) {
 // The shadows of a direction on facets of slope t. Every invocation looks them up: an invocation that needs none would
 // wait for its neighbours anyway.
 MaskingTerms shadows(Row row, MaskingTerms heights, real cos_theta, real sin_theta, real t) {
-  ShadowPlace place = shadow_place(row.shape[0], cos_theta, sin_theta, t);
-  TableCell cell = table_cell(row.shape[0], place.far);
-  LimitTerms terms = limit_terms(row.shape[0], place, cell);
+  ShadowRange range = shadow_range(row.shape[0], cos_theta, sin_theta, t);
+  TableCell cell = table_cell(row.shape[0], range.far);
+  LimitTerms terms = limit_terms(row.shape[0], range, cell);
   MaskingTerms masked;
   for (int g = 0; g < DOLP_WIDTH; ++g) {
     real limited = limited_shadow(row.shape[g], terms, cell, row.table[g]);
-    masked.value[g] = place.kappa * heights.value[g] + (place.is_limited ? limited : real(0.0));
+    masked.value[g] = range.kappa * heights.value[g] + (range.is_limited ? limited : real(0.0));
   }
   return masked;
 }

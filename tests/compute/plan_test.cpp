@@ -1,13 +1,28 @@
-// Exact directions, and loops below the limits of drivers.
+// Exact directions, loops below the limits of drivers, and the planners one by one.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <dolp/status.hpp>
 #include <numbers>
+#include <set>
+#include <utility>
+#include <vector>
 
+#include "base/numbers.hpp"
 #include "model/angles.hpp"
+#include "model/smooth_surface.hpp"
+#include "plan/beam.hpp"
+#include "plan/breakpoints.hpp"
+#include "plan/constants.hpp"
 #include "plan/kernel_data.hpp"
+#include "plan/refinement.hpp"
+#include "plan/reflectance_curve.hpp"
+#include "plan/rows.hpp"
 #include "plan/rule.hpp"
+#include "plan/shape_plan.hpp"
+#include "plan/sky_table.hpp"
 
 namespace dolp {
 namespace {
@@ -76,6 +91,214 @@ TEST(GaussLegendre, Orders_IntegratePolynomialsOfDegree2nMinus1AndNoMore) {
       const double rounding = 1e-15 * (2.0 + 0.2 * degree);
       EXPECT_EQ(error <= rounding, degree < 2 * order) << order << " " << degree;
     }
+  }
+}
+
+// ---- Slopes and rows -----------------------------------------------------------------------------------------------
+
+double tan_deg(double angle_deg) { return std::tan(angle_deg * std::numbers::pi / 180.0); }
+
+// By the list above breakpoints(), with c / (1 + s) = tan(45 - theta/2) and (1 + s) / c = tan(45 + theta/2).
+TEST(Breakpoints, Directions_AreAtTheAnglesWhereLinesMeet) {
+  constexpr unsigned kBoth = kRootAbove | kRootBelow;
+  struct Case {
+    double theta_deg;
+    Masking masking;
+    DirectionVariant variant;
+    std::vector<std::pair<double, unsigned>> expected;  // angle of the slope in degrees, roots
+  };
+  const std::vector<Case> cases = {
+      {0.0, Masking::kNone, {}, {{0, 0}, {45, kBoth}}},
+      {60.0, Masking::kNone, {}, {{0, 0}, {15, kRootAbove}, {75, kRootBelow}}},
+      {60.0, Masking::kIntegral, {}, {{0, 0}, {15, kRootAbove}, {60, kRootBelow}, {75, kRootBelow}}},
+      {60.0, Masking::kSmith, {0.0, true}, {{0, 0}, {15, kRootAbove}, {30, kBoth}, {75, kRootBelow}}},
+      {20.0, Masking::kNone, {0.5, false}, {{0, 0}, {20, kBoth}, {35, kRootAbove}, {40, kBoth}, {55, kRootBelow}}},
+      {60.0,
+       Masking::kVCavity,
+       {},
+       {{0, 0}, {10, kRootAbove}, {15, kRootAbove}, {30, kRootAbove}, {45, 0}, {60, kRootBelow}, {75, kRootBelow}}}};
+  for (const auto& [theta_deg, masking, variant, expected] : cases) {
+    const std::vector<Breakpoint> points = breakpoints(theta_deg, {.masking = masking}, variant, {}, 1);
+    ASSERT_EQ(points.size(), expected.size()) << theta_deg;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      EXPECT_NEAR(points[i].slope, tan_deg(expected[i].first), 1e-14 * (1.0 + points[i].slope))
+          << theta_deg << " " << i;
+      EXPECT_EQ(points[i].roots, expected[i].second) << theta_deg << " " << i;
+    }
+  }
+}
+
+// A vertical ray turns by 2 (90 - alpha) at each bounce after the first: bounces = 90 / (90 - alpha).
+TEST(SlopeWithBounces, Bounces_FollowFromTheAngleOfTheGroove) {
+  EXPECT_NEAR(slope_with_bounces(2.0), 1.0, 1e-15);
+  EXPECT_NEAR(slope_with_bounces(3.0), tan_deg(60.0), 1e-14);
+  EXPECT_NEAR(slope_with_bounces(9.0), tan_deg(80.0), 1e-13);
+}
+
+TEST(Rows, WantedEntriesOfAGrid_AreEachInOneRowOfShapesAlike) {
+  MomentsRequest request{.masking = Masking::kSmith,
+                         .theta_deg = {10.0, 70.0},
+                         .optics = {{1.5, 0.0}, {0.8, 0.0}},
+                         .sigma = {0.1, 0.3},
+                         .q = {8.0, 3.0, 2.5, 2.0, 1.75, 40.0, 2.2, 2.1}};
+  for (std::size_t i = 0; i < request.size(); ++i) request.wanted.push_back(i % 3 == 0 ? 1 : 0);
+  const KernelData data = kernel_data(request);
+  const Rows rows = rows_of(request, data);
+  EXPECT_EQ(rows.width, kRowWidth);
+  std::multiset<std::size_t> found;
+  for (const Row& row : rows.rows) {
+    const Chunk& chunk = rows.chunks[row.chunk];
+    std::uint32_t used = 0;
+    for (std::uint32_t i = chunk.first; i < chunk.first + chunk.count; ++i) {
+      EXPECT_LE(rows.shapes[i].q_minus_1, kMostRowSpread * rows.shapes[chunk.first].q_minus_1);
+      const std::size_t entry = data.entry_of(row.direction, row.index, rows.shape_of[i]);
+      if (request.is_wanted(entry)) found.insert(entry), ++used;
+    }
+    EXPECT_EQ(row.used, used);
+  }
+  EXPECT_EQ(found.size(), request.wanted_count());
+  EXPECT_EQ(std::set<std::size_t>(found.begin(), found.end()).size(), found.size());
+  const std::vector<RowPiece> pieces = pieces_of(rows, data, 0, static_cast<std::uint32_t>(rows.rows.size()));
+  std::size_t expected = 0;
+  for (const Row& row : rows.rows)
+    expected += piece_count(data, rows.theta_of(data, row), rows.shapes[rows.chunks[row.chunk].first]);
+  EXPECT_EQ(pieces.size(), expected);
+  request.q.resize(2);
+  request.wanted.clear();
+  EXPECT_EQ(rows_of(request, kernel_data(request)).width, 1U);  // rows of 4 would be half empty
+}
+
+// ---- Orders and levels ---------------------------------------------------------------------------------------------
+
+TEST(Rule, DigitsAndShapes_DecideOrdersAndLines) {
+  EXPECT_DOUBLE_EQ(rule_digits({.margin_digits = 2.0}, 1e-3), 6.25);  // the coarser rule has 0.8 of the nodes
+  EXPECT_EQ(largest_order(4.0), 64);
+  EXPECT_EQ(largest_order(10.0), 80);
+  EXPECT_EQ(largest_order(99.0), DOLP_MAX_ORDER);
+  EXPECT_EQ(split_bounces(0.5), 1);
+  EXPECT_EQ(split_bounces(5.0), 2);
+  EXPECT_EQ(split_bounces(99.0), DOLP_MOST_SPLITS);
+  const auto gaussian_line = [](double sigma, double digits) {
+    return needs_line(Distribution::kGaussian, Masking::kIntegral, {sigma, 2.0}, digits, 1e-4);
+  };
+  EXPECT_TRUE(gaussian_line(0.61, 7.0) && !gaussian_line(0.59, 7.0));
+  EXPECT_TRUE(gaussian_line(0.31, 9.0) && !gaussian_line(0.29, 9.0));
+  EXPECT_FALSE(needs_line(Distribution::kCauchy, Masking::kNone, {1.0, 1.6}, 7.0, 1e-4));
+  // L of smith is smooth for integer q.
+  EXPECT_LT(cusp_digits(Distribution::kCauchy, Masking::kSmith, {0.3, 3.0}, 7.0), -100.0);
+  EXPECT_GT(cusp_digits(Distribution::kCauchy, Masking::kSmith, {0.3, 2.5}, 7.0), -10.0);
+}
+
+TEST(Refinement, Levels_TightenByHalfDecadesAndTurnToDouble) {
+  constexpr Precision kFloat = Precision::kFloat, kDouble = Precision::kDouble;
+  EXPECT_EQ(first_level({.tolerance = 1e-4}, true).precision, kFloat);
+  EXPECT_EQ(first_level({.tolerance = 1e-6}, true).precision, kDouble);
+  EXPECT_EQ(first_level({.tolerance = 1e-6}, false).precision, kFloat);
+  EXPECT_EQ(first_level({.tolerance = 1e-6, .precision = kFloat}, true).precision, kFloat);
+  EXPECT_DOUBLE_EQ(check_level({.tolerance = 1e-2}).tolerance, 1e-4);
+  EXPECT_DOUBLE_EQ(check_level({.tolerance = 1e-4}).tolerance, kLeastFloatTolerance);
+  struct Case {
+    RefinementLevel last;
+    double missed_by;  // error over the tolerance 1e-3
+    bool has_double;
+    std::optional<RefinementLevel> expected;
+  };
+  const std::vector<Case> cases = {// 1.5 times the miss, rounded up to half decades: log10(15) = 1.18
+                                   {{kFloat, 1e-3}, 10.0, true, RefinementLevel{kFloat, 1e-3 * std::pow(10.0, -1.5)}},
+                                   {{kFloat, 1e-3}, 1.1, true, RefinementLevel{kFloat, 1e-3 * std::pow(10.0, -0.5)}},
+                                   {{kFloat, 1e-3}, kInfinity, true, RefinementLevel{kDouble, 1e-8}},
+                                   {{kFloat, 1e-3}, kInfinity, false, RefinementLevel{kFloat, kLeastFloatTolerance}},
+                                   {{kFloat, kLeastFloatTolerance}, 10.0, false, std::nullopt},
+                                   {{kDouble, 1e-15}, 10.0, true, std::nullopt}};
+  for (const auto& [last, missed_by, has_double, expected] : cases) {
+    PointResult result;
+    EXPECT_FALSE(next_level(last, result, {.tolerance = 1e-3}, has_double));  // meets its tolerance
+    result.status = kToleranceNotMet;
+    result[Quantity::kErrorEstimate] = result[Quantity::kRhoErrorEstimate] = 1e-3 * missed_by;
+    const auto next = next_level(last, result, {.tolerance = 1e-3}, has_double);
+    ASSERT_EQ(next.has_value(), expected.has_value()) << missed_by;
+    if (!next) continue;
+    EXPECT_EQ(next->precision, expected->precision) << missed_by;
+    EXPECT_NEAR(next->tolerance, expected->tolerance, 1e-12 * expected->tolerance) << missed_by;
+  }
+}
+
+TEST(ShapePlan, Nodes_SpanTheAxesAndTheirWeightsSumToOne) {
+  MomentsRequest request{.masking = Masking::kIntegral, .theta_deg = {0.0, 89.95, 60.0}, .optics = {{1.5, 0.0}}};
+  EXPECT_EQ(split_grazing_directions(request), (std::vector<std::vector<std::size_t>>{{0, 2}, {1}}));
+  request.masking = Masking::kVCavity;
+  EXPECT_EQ(split_grazing_directions(request), (std::vector<std::vector<std::size_t>>{{0, 1, 2}}));
+  for (double i = 0.0; i < 64.0; ++i) request.sigma.push_back(0.05 + 0.01 * i), request.q.push_back(1.75 + 0.05 * i);
+  const auto plan = shape_plan(request);
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->sigma.nodes.front(), request.sigma.back());
+  EXPECT_EQ(plan->q.nodes.back(), request.q.front());
+  for (const ShapeAxis* axis : {&plan->sigma, &plan->q}) {
+    EXPECT_LT(axis->nodes.size(), 64U);
+    EXPECT_LT((axis->cardinal.rowwise().sum().array() - 1.0).abs().maxCoeff(), 1e-13);
+  }
+  request.wanted.assign(request.size(), 1);
+  request.wanted.back() = 0;  // not a whole direction
+  EXPECT_FALSE(shape_plan(request));
+}
+
+// ---- Tables --------------------------------------------------------------------------------------------------------
+
+TEST(ReflectanceCurve, CubicsOfAFilm_KeepTheirBound) {
+  FacetOptics optics(1.5, 0.0);
+  optics.films = {{{2.2, 0.01}, 0.8}};
+  const ReflectanceCurve curve = reflectance_curve(optics, 1e-4);
+  ASSERT_EQ(curve.nodes.size(), curve.cells * DOLP_CURVE_NODES);
+  EXPECT_LT(curve.error, 1e-4);
+  for (double v = 0.0005; v < 1.0; v += 0.0031) {
+    const double position = v * static_cast<double>(curve.cells);
+    const auto cell = static_cast<std::size_t>(position);
+    const double x = position - static_cast<double>(cell);
+    const auto read = [&](std::size_t part) {
+      const auto* node = &curve.nodes[cell * DOLP_CURVE_NODES + 2 * part];
+      return node[0][0] + x * (node[0][1] + x * (node[1][0] + x * node[1][1]));
+    };
+    const SmoothAbsorptance absorbed = smooth_absorptance(optics, v * v);
+    EXPECT_NEAR(read(0), 1.0 - absorbed.s, curve.error) << v;
+    EXPECT_NEAR(read(1), absorbed.s, curve.error) << v;
+    EXPECT_NEAR(read(2) * (1.0 - std::pow(v, 4.0)), absorbed.split * (1.0 - std::pow(v, 4.0)), curve.error) << v;
+  }
+}
+
+TEST(SkyTable, CellsOfAFunctionWithACorner_KeepTheirBoundBesideIt) {
+  const SkyNodes sky_nodes({0.0, 50.0, 90.0});
+  Eigen::VectorXd values(static_cast<Eigen::Index>(sky_nodes.zenith_deg().size()));
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+    values[i] = 0.2 + std::abs(sky_nodes.zenith_deg()[static_cast<std::size_t>(i)] - 50.0) / 90.0;
+  const SkyBasis basis(sky_nodes, {values}, 1e-9);
+  std::vector<std::array<double, 2>> nodes(7);
+  const SkyTable table = append_sky(basis, 1e-4, true, nodes);
+  EXPECT_EQ(table.start, 7U);
+  EXPECT_EQ(table.corners_deg, std::vector<double>{50.0});
+  const std::size_t cells = std::size_t{1} << table.log2_cells;
+  ASSERT_EQ(nodes.size(), 7 + cells + 1);
+  EXPECT_NEAR(nodes.back()[0], std::cos(50.0 * std::numbers::pi / 180.0), 1e-15);
+  for (double zenith_deg = 1.0; zenith_deg < 90.0; zenith_deg += 1.7) {
+    const double position = std::sqrt(1.0 - cos_sin_deg(zenith_deg).cos) * static_cast<double>(cells);
+    const auto& [start, rise] = nodes[7 + static_cast<std::size_t>(position)];
+    EXPECT_NEAR(start + (position - std::floor(position)) * rise, basis.at(zenith_deg)[0], table.error[0] + 1e-12);
+  }
+  EXPECT_EQ(table.word(), 7U << DOLP_SKY_START_SHIFT | 1U << DOLP_SKY_CORNERS_SHIFT | table.log2_cells);
+  EXPECT_EQ(SkyTable{}.word(), 0U);
+}
+
+// The facet halves the angle between the beams: omega_i + omega_r is along its normal.
+TEST(BeamGeometry, BeamsInOnePlane_HaveTheFacetBetweenThem) {
+  for (const auto& [theta_i_deg, theta_r_deg, delta_phi_deg, slope_deg, beta_deg] :
+       std::vector<std::array<double, 5>>{{40, 40, 180, 0, 40},
+                                          {40, 40, 0, 40, 0},
+                                          {0, 60, 180, 30, 30},
+                                          {20, 60, 180, 20, 40},
+                                          {20, 60, 0, 40, 20}}) {
+    const BeamGeometry geometry = beam_geometry(theta_i_deg, theta_r_deg, delta_phi_deg);
+    EXPECT_NEAR(geometry.node.slope, tan_deg(slope_deg), 1e-15) << theta_i_deg << " " << theta_r_deg;
+    EXPECT_NEAR(geometry.node.cos_beta, cos_sin_deg(beta_deg).cos, 1e-15) << theta_i_deg << " " << theta_r_deg;
+    EXPECT_NEAR(geometry.sin2_beta, std::pow(cos_sin_deg(beta_deg).sin, 2.0), 1e-15) << theta_i_deg;
   }
 }
 

@@ -19,6 +19,7 @@
 #include "evaluate/vulkan/kernels.hpp"
 #include "evaluate/vulkan/tiles.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "properties_support.hpp"
 
 namespace dolp {
 namespace {
@@ -52,12 +53,6 @@ MomentsRequest small_request(Distribution distribution, Masking masking) {
   std::ranges::shuffle(request.theta_deg, random);
   std::ranges::shuffle(request.sigma, random);
   return request;
-}
-
-bool same(const Moments& a, const Moments& b) {
-  return a.r_i == b.r_i && a.r_q == b.r_q && a.albedo == b.albedo && a.deficit == b.deficit &&
-         a.r_i_error == b.r_i_error && a.r_q_error == b.r_q_error && a.albedo_error == b.albedo_error &&
-         a.deficit_error == b.deficit_error && a.evaluations == b.evaluations;
 }
 
 /// Calls a function in a separate process. The function returns whether its checks passed.
@@ -165,8 +160,8 @@ TEST(VulkanEvaluator, PointsAndMasks_SayTheSameAsTheGrid) {
   const std::vector<Moments> of_points = evaluator.evaluate(points, {});
   ASSERT_EQ(of_mask.size(), request.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    EXPECT_TRUE(same(of_mask[positions[i]], expected[positions[i]])) << i;
-    EXPECT_TRUE(same(of_points[i], expected[positions[i]])) << i;
+    EXPECT_TRUE(are_same(of_mask[positions[i]], expected[positions[i]])) << i;
+    EXPECT_TRUE(are_same(of_points[i], expected[positions[i]])) << i;
   }
 }
 
@@ -185,12 +180,12 @@ TEST(VulkanEvaluator, RequestsInBothPrecisions_AreThoseOfEvaluatorsOfTheirOwn) {
     EXPECT_TRUE(both.has_double());
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}, std::size_t{0}}) {
       request.precision = kPrecisions[i];
-      EXPECT_TRUE(std::ranges::equal(both.evaluate(request, {}), expected[i], same)) << i;
+      EXPECT_TRUE(std::ranges::equal(both.evaluate(request, {}), expected[i], are_same)) << i;
     }
     EXPECT_EQ(both.report().precision, "float and double");
-    EXPECT_FALSE(std::ranges::equal(expected[0], expected[1], same));
+    EXPECT_FALSE(std::ranges::equal(expected[0], expected[1], are_same));
     request.precision = Precision::kAuto;
-    EXPECT_TRUE(std::ranges::equal(both.evaluate(request, {}), expected[0], same));
+    EXPECT_TRUE(std::ranges::equal(both.evaluate(request, {}), expected[0], are_same));
     EXPECT_TRUE(both.validation_messages().empty());
   }
 }
@@ -240,7 +235,7 @@ TEST(VulkanEvaluator, CancelledRequest_LeavesTheEvaluatorUsable) {
   EXPECT_THROW(evaluator.evaluate(request, stop_at_second), Cancelled);
   EXPECT_EQ(tiles, 2);
   const std::vector<Moments> actual = evaluator.evaluate(request, {});
-  EXPECT_TRUE(std::ranges::equal(expected, actual, same));
+  EXPECT_TRUE(std::ranges::equal(expected, actual, are_same));
 }
 
 }  // namespace
@@ -326,9 +321,12 @@ class SentinelRun {
 
   template <class Node>
   void add(const std::vector<Node>& list, std::size_t sentinels, VkFormat texels = VK_FORMAT_UNDEFINED) {
-    std::vector<std::byte> bytes;
-    for (const Node& node : list) packing_.append(node, bytes);
-    for (std::size_t i = 0; i < sentinels * real_count<Node>(); ++i) packing_.append(kSentinel, bytes);
+    std::vector<std::byte> bytes, behind;
+    packing_.pack(
+        list.size(), [&](std::size_t i) { return list[i]; }, bytes);
+    packing_.pack(
+        sentinels * real_count<Node>(), [](std::size_t) { return kSentinel; }, behind);
+    bytes.insert(bytes.end(), behind.begin(), behind.end());
     buffers_.emplace_back(session_.device, bytes.size(), MemoryUse::kReadback, texels);
     buffers_.back().write(bytes);
   }

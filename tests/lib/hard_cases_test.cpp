@@ -16,7 +16,7 @@
 #include "error_text.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "properties_support.hpp"
-#include "reference/hemisphere.hpp"
+#include "reference/moments.hpp"
 #include "reference/reference_evaluator.hpp"
 #include "run/scene_run.hpp"
 #include "scene/embedded_data.hpp"

@@ -323,36 +323,21 @@ TEST(Sky, ConstantProfile_HasTheBitsOfItsTemperature) {
   EXPECT_EQ(results_with("profile = \"flat.csv\""), results_with("temperature_K = 250"));
 }
 
-TEST(Sky, Profile_IsDroppedWhereItsBoundIsBelowItsShareAndChangesNoMore) {
-  SceneValues scene = scene_under(profile_of({0.0, 90.0}, {250.0, 250.0001}));
-  const SceneEntries entries = {{60.0, {0.2, 3.0}, {}}, {80.0, {0.2, 3.0}, {}}};
-  for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
-    scene.accuracy.tolerance = tolerance;
-    const EffectPlan plan = plan_effects(scene, entries, false);
-    CpuEvaluator cpu;
-    const std::vector<PointResult> dropped = evaluate_scene(scene, entries, cpu, {}, plan);
-    const std::vector<PointResult> kept = evaluate_scene(scene, entries, cpu, {}, keep_everything(scene));
-    EXPECT_EQ(plan.kept.profile, tolerance < 1e-5) << tolerance;
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-      EXPECT_LE(std::abs(dropped[i][kQOverI] - kept[i][kQOverI]), dropped[i][kErrorEstimate] + kept[i][kErrorEstimate]);
-    }
-  }
-}
-
-TEST(Sky, Bounds_OfTheProfile_HoldForTheBuiltInSkies) {
-  for (const char* name : {"clear-sky", "overcast"}) {
-    SceneValues scene = scene_under(*built_in_sky(name));
-    const SceneEntries entries = {{60.0, {0.2, 3.0}, {}}, {80.0, {0.2, 3.0}, {}}};
-    const EffectBounds bounds(scene, extents_of(entries).front());
-    CpuEvaluator cpu;
-    const std::vector<PointResult> whole = evaluate_scene(scene, entries, cpu, {}, plan_to_keep(scene, {}));
-    const std::vector<PointResult> uniform =
-        evaluate_scene(scene, entries, cpu, {}, plan_to_keep(scene, without({}, Part::kProfile)));
-    for (std::size_t i = 0; i < whole.size(); ++i) {
-      EXPECT_LE(std::abs(whole[i][kQOverI] - uniform[i][kQOverI]), bounds.bound(Part::kProfile, {})) << name;
-      EXPECT_GT(std::abs(whole[i][kQOverI] - uniform[i][kQOverI]), 0.0) << name;
-    }
-  }
+TEST(Sky, SunFarAboveSkyAndEmission_DropsBothWithTheProfile) {
+  SceneValues scene = scene_under(profile_of({0.0, kRightAngle_deg}, {230.0, 280.0}));
+  scene.spectrum.min_um = scene.spectrum.max_um = 0.55;
+  scene.geometry = {Mode::kBistatic, 60.0, 150.0};
+  scene.source = Source{};
+  scene.source->irradiance = 1800.0;
+  const SceneEntries entries = {{50.0, {0.2, 3.0}, {}}};
+  const EffectPlan plan = plan_effects(scene, entries, false);
+  EXPECT_TRUE(plan.kept.source && plan.needs_beams);
+  EXPECT_FALSE(plan.kept.emission || plan.kept.surroundings || plan.kept.profile || plan.kept.moments);
+  CpuEvaluator cpu;
+  const PointResult few = evaluate_scene(scene, entries, cpu, {}, plan).front();
+  const PointResult all = evaluate_scene(scene, entries, cpu, {}, keep_everything(scene)).front();
+  EXPECT_GT(few[kDolp], 0.0);
+  EXPECT_NEAR(few[kDolp], all[kDolp], few[kErrorEstimate] + all[kErrorEstimate]);
 }
 
 TEST(Sky, MirrorsAndLimitsAtTheHorizon_ReflectTheirOwnZenith) {

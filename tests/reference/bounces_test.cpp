@@ -10,8 +10,7 @@
 #include <cstddef>
 #include <numbers>
 
-#include "reference/grooves.hpp"
-#include "reference/hemisphere.hpp"
+#include "reference/moments.hpp"
 #include "reference/mueller.hpp"
 #include "reference/reference_evaluator.hpp"
 

@@ -11,8 +11,7 @@
 #include <limits>
 #include <numbers>
 
-#include "reference/attenuation.hpp"
-#include "reference/hemisphere.hpp"
+#include "reference/moments.hpp"
 #include "reference/mueller.hpp"
 #include "reference/slopes.hpp"
 

@@ -1,5 +1,5 @@
 // The independent reference, against exact results of the model and against simpler quadratures.
-#include "reference/hemisphere.hpp"
+#include "reference/moments.hpp"
 #include "reference/reference_evaluator.hpp"
 
 #include <gtest/gtest.h>

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "model/choices.hpp"
-#include "reference/hemisphere.hpp"
+#include "reference/moments.hpp"
 #include "reference/reference_evaluator.hpp"
 #include "reference_values/reference_cases.hpp"
 

@@ -19,19 +19,21 @@ bool is_finite(const Moments& m) {
          std::isfinite(m.r_i_error + m.r_q_error + m.albedo_error + m.deficit_error);
 }
 
-/// Fills in the moments of each direction and index whose nodes are finite. Returns 1 for each other wanted pair of
-/// direction and index, else 0.
+/// Fills in the moments of each direction and index whose nodes are finite. Flags the other wanted entries.
 std::vector<char> interpolate_all(const ShapePlan& plan, std::span<const Moments> nodes, const MomentsRequest& request,
                                   std::span<Moments> moments) {
   const std::size_t of_nodes = plan.nodes_of_a_direction();
   const std::size_t shapes = request.shapes();
-  std::vector<char> is_left(request.size() / shapes, 0);
-  parallel_ranges(is_left.size(), 1, [&](std::size_t first, std::size_t last) {
+  std::vector<char> is_left(request.size(), 0);
+  parallel_ranges(request.size() / shapes, 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       if (!request.is_wanted(i * shapes)) continue;
-      const std::span<const Moments> own = nodes.subspan(i * of_nodes, of_nodes);
-      is_left[i] = std::ranges::all_of(own, is_finite) ? 0 : 1;
-      if (is_left[i] == 0) interpolate(plan, own, moments.subspan(i * shapes, shapes));
+      const std::span<const Moments> pair_nodes = nodes.subspan(i * of_nodes, of_nodes);
+      if (std::ranges::all_of(pair_nodes, is_finite)) {
+        interpolate(plan, pair_nodes, moments.subspan(i * shapes, shapes));
+      } else {
+        std::ranges::fill(std::span(is_left).subspan(i * shapes, shapes), char{1});
+      }
     }
   });
   return is_left;
@@ -51,14 +53,14 @@ class PlannedMoments {
     if (steps.size() == 1) return moments_of(steps.front());
     std::vector<Moments> moments(plan_.size());
     for (const MomentsStep& step : steps) {
-      std::vector<Moments> own = moments_of(step);
+      std::vector<Moments> step_moments = moments_of(step);
       const std::size_t shapes = step.request.shapes();
       const std::size_t directions = plan_.directions();
-      for (std::size_t i = 0; i < own.size(); ++i) {
+      for (std::size_t i = 0; i < step_moments.size(); ++i) {
         const std::size_t pair = i / shapes;
         const std::size_t index = pair / step.directions.size();
         const std::size_t direction = step.directions[pair % step.directions.size()];
-        moments[(index * directions + direction) * shapes + i % shapes] = std::move(own[i]);
+        moments[(index * directions + direction) * shapes + i % shapes] = std::move(step_moments[i]);
       }
     }
     return moments;
@@ -93,19 +95,17 @@ class PlannedMoments {
     if (!step.shapes) return nodes;
     const Clock::time_point start = Clock::now();
     std::vector<Moments> moments(step.request.size());
-    const std::vector<char> is_left = interpolate_all(*step.shapes, nodes, step.request, moments);
+    std::vector<char> is_left = interpolate_all(*step.shapes, nodes, step.request, moments);
     work_.sums_s += seconds_since(start);
-    if (std::ranges::find(is_left, 1) != is_left.end()) compute_left(step.request, is_left, moments);
+    if (std::ranges::find(is_left, 1) != is_left.end()) compute_left(step.request, std::move(is_left), moments);
     return moments;
   }
 
   /// Computes the remaining pairs of direction and index, entry by entry.
-  void compute_left(const MomentsRequest& request, std::span<const char> is_left, std::span<Moments> moments) {
+  void compute_left(const MomentsRequest& request, std::vector<char> is_left, std::span<Moments> moments) {
     MomentsRequest direct = request;
     direct.basis = nullptr;
-    direct.wanted.assign(request.size(), 0);
-    const std::size_t shapes = request.shapes();
-    for (std::size_t i = 0; i < request.size(); ++i) direct.wanted[i] = is_left[i / shapes];
+    direct.wanted = std::move(is_left);
     work_.interpolated -= direct.wanted_count();
     const Progress is_wanted = [&](std::size_t, std::size_t) { return !progress_ || progress_(1, 1); };
     const std::vector<Moments> computed = evaluator_.evaluate(direct, is_wanted);

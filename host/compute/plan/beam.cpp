@@ -100,22 +100,8 @@ FacetReflection covered_reflection(const BeamGeometry& geometry, const FacetOpti
   return {std::norm(r.s) - m01, m01, std::conj(r.s) * r.p};
 }
 
-KernelData model_data(const ScatteringRequest& request) {
-  KernelData data;
-  data.distribution = request.distribution;
-  data.masking = request.masking;
-  data.rule_order = kLargestOrder;
-  data.rule_nodes = rule_nodes(kLargestOrder);
-  return data;
-}
-
-struct DoubleAngle {
-  double cos = 1.0;
-  double sin = 0.0;
-};
-
 // (cos 2 eta, sin 2 eta) of the direction (x, y); eta = 0 where it is undefined.
-DoubleAngle double_angle(double x, double y) {
+CosSin double_angle(double x, double y) {
   const double length = std::max(std::abs(x), std::abs(y));
   if (length == 0.0) return {};
   const double u = x / length;  // normalised first, because squares of tiny angles would vanish
@@ -169,9 +155,9 @@ BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_
   const bool along_normal = i.sin == 0.0 && r.sin == 0.0;
   const double cos_azimuth = (half.cos - half.sin) * (half.cos + half.sin);
   // Both along the normal: eta_i is the angle between the planes of azimuth 0 and delta_phi, the limit from all sides.
-  const DoubleAngle eta_i =
+  const CosSin eta_i =
       along_normal ? double_angle(-cos_azimuth, sin_azimuth) : double_angle(toward_i, r.sin * sin_azimuth);
-  const DoubleAngle eta_r = double_angle(toward_r, i.sin * sin_azimuth);
+  const CosSin eta_r = double_angle(toward_r, i.sin * sin_azimuth);
   node.cos_2eta_i = eta_i.cos;
   node.sin_2eta_i = eta_i.sin;
   node.cos_2eta_r = eta_r.cos;
@@ -187,7 +173,11 @@ double log_density(Distribution distribution, const SlopeShape& shape, double sl
   return front + std::log(shape.q - 1.0) - shape.q * log1p_square(u);
 }
 
-BeamPlan::BeamPlan(const ScatteringRequest& request) : request_(request), data_(model_data(request)) {
+BeamPlan::BeamPlan(const ScatteringRequest& request) : request_(request) {
+  data_.distribution = request.distribution;
+  data_.masking = request.masking;
+  data_.rule_order = kLargestOrder;
+  data_.rule_nodes = rule_nodes(kLargestOrder);
   geometries_.reserve(request.angles.size());
   for (const BeamAngles& angles : request.angles) {
     geometries_.push_back(beam_geometry(angles.theta_i_deg, angles.theta_r_deg, angles.delta_phi_deg));

@@ -29,25 +29,6 @@ bool KeptEffects::*flag(Part part) { return kFlags[static_cast<std::size_t>(part
 
 double or_infinite(double bound) { return std::isnan(bound) ? kInfinity : bound; }
 
-/// R_s of the most reflective index, and the means of R_s and R_p for the least and the most reflective index.
-struct Fresnel {
-  double most_s = 0.0;
-  double least = 1.0;
-  double most = 0.0;
-};
-
-Fresnel fresnel(const std::vector<FacetOptics>& indices, double cosine) {
-  Fresnel all;
-  for (const FacetOptics& index : indices) {
-    const SmoothAbsorptance absorbed = smooth_absorptance(index, std::max(cosine, kSmallestCosine));
-    const double mean = 1.0 - 0.5 * (absorbed.s + absorbed.p);
-    all.most_s = std::max(all.most_s, std::min(1.0, 1.0 - absorbed.s + kRoundingOfOne));
-    all.least = std::min(all.least, std::max(0.0, mean - kRoundingOfOne));
-    all.most = std::max(all.most, mean + kRoundingOfOne);
-  }
-  return all;
-}
-
 /// Upper bound of smith's L(theta) = E[(t_x - mu)+] / mu, mu = cot(theta): E|t_x| / (2 mu).
 double most_lambda(Distribution distribution, const SlopeShape& shape, const CosSin& a) {
   if (shape.sigma == 0.0 || a.sin == 0.0) return 0.0;
@@ -68,6 +49,18 @@ struct Range {
   double least = 0.0;
   double most = kInfinity;
 };
+
+/// Range of (R_s + R_p) / 2 over the indices.
+Range reflectance(const std::vector<FacetOptics>& indices, double cosine) {
+  Range range{1.0, 0.0};
+  for (const FacetOptics& index : indices) {
+    const SmoothAbsorptance absorbed = smooth_absorptance(index, std::max(cosine, kSmallestCosine));
+    const double mean = 1.0 - 0.5 * (absorbed.s + absorbed.p);
+    range.least = std::min(range.least, std::max(0.0, mean - kRoundingOfOne));
+    range.most = std::max(range.most, mean + kRoundingOfOne);
+  }
+  return range;
+}
 
 /// Slope density of facets at `slope` for all sigma and q of an extent.
 ///
@@ -104,7 +97,7 @@ Range beam_range(const Surface& surface, const BeamAngles& angles, const Entries
     masking.least = 1.0 / (1.0 + most_lambda(surface.distribution, extent.roughest, {g.c_i, g.s_i}) +
                            most_lambda(surface.distribution, extent.roughest, {g.c_r, g.s_r}));
   const Range density = slope_density(surface.distribution, extent, g.slope);
-  const Fresnel reflected = fresnel(indices, g.cos_beta);
+  const Range reflected = reflectance(indices, g.cos_beta);
   const double jacobian = 0.25 * sec2 * sec2;
   return {jacobian * density.least * masking.least * reflected.least,
           jacobian * density.most * masking.most * reflected.most};
@@ -115,13 +108,27 @@ EntriesExtent extent_of_grid(const SceneEntries& entries) {
   const auto [q_low, q_high] = std::ranges::minmax(entries.q());
   EntriesExtent extent{entries.theta_deg(), {sigma_high, q_low}, {sigma_low, q_high}, {}};
   if (!entries.has_own_index()) return extent;
-  PerAxis place{};
-  for (place[Axis::kN] = 0; place[Axis::kN] < entries.counts()[Axis::kN]; ++place[Axis::kN]) {
-    for (place[Axis::kK] = 0; place[Axis::kK] < entries.counts()[Axis::kK]; ++place[Axis::kK]) {
-      extent.optics.push_back(entries.index_at(place));
+  PerAxis position{};
+  for (position[Axis::kN] = 0; position[Axis::kN] < entries.counts()[Axis::kN]; ++position[Axis::kN]) {
+    for (position[Axis::kK] = 0; position[Axis::kK] < entries.counts()[Axis::kK]; ++position[Axis::kK]) {
+      extent.optics.push_back(entries.index_at(position));
     }
   }
   return extent;
+}
+
+/// The indices of the wavelengths, and those of the entries under the films of each wavelength.
+std::vector<FacetOptics> indices_of(const SpectralRule& rule, const EntriesExtent& extent) {
+  std::vector<FacetOptics> indices = rule.indices();
+  const std::vector<FacetOptics> samples = indices;
+  for (const FacetOptics& of_entry : extent.optics) {
+    for (FacetOptics sample : samples) {
+      sample.index = of_entry.index;
+      indices.push_back(std::move(sample));
+      if (of_entry.is_bare() && samples.front().is_bare()) break;
+    }
+  }
+  return indices;
 }
 
 }  // namespace
@@ -147,10 +154,9 @@ KeptEffects without(KeptEffects kept, Part part) {
   return kept;
 }
 
-/// Bounds of sums of Stokes parameters.
+/// Bounds of the Stokes parameters of some parts together.
 struct EffectBounds::Sums {
   double least_i = 0.0;
-  double most_i = 0.0;   ///< upper bound of |I|; only for the contribution of a part
   double most_qu = 0.0;  ///< upper bound of the length of (Q, U)
   double most_polarisation = kInfinity;
 };
@@ -163,35 +169,25 @@ EffectBounds::EffectBounds(const SceneModel& scene, const EntriesExtent& extent)
     total_.surroundings += std::abs(sample.surroundings);
     total_.excess += std::abs(sample.excess);
     total_.irradiance += std::abs(sample.irradiance);
-    const auto [least, most] = sample.sky.empty() ? std::ranges::minmax({0.0, 0.0}) : std::ranges::minmax(sample.sky);
-    sky_above_ += std::max(most, 0.0);
-    sky_below_ -= std::min(least, 0.0);
+    double apart = 0.0;
+    for (const double radiation : sample.sky) apart = std::max(apart, std::abs(radiation));
+    sky_apart_ += apart;
     has_negative_ |= sample.emitted < 0.0 || sample.surroundings < 0.0 || sample.irradiance < 0.0;
   }
   path_ = rule.path_exitance;
   if (extent.theta_deg.empty()) return;
-  std::vector<FacetOptics> indices = rule.indices();
-  const std::vector<FacetOptics> samples = indices;
-  for (const FacetOptics& own : extent.optics) {
-    for (FacetOptics sample : samples) {
-      sample.index = own.index;
-      indices.push_back(std::move(sample));
-      if (own.is_bare() && samples.front().is_bare()) break;
-    }
-  }
   const Surface& surface = scene_.surface;
   const double moment_zenith_deg =
       is_bistatic_ ? scene_.geometry.view_zenith_deg : *std::ranges::max_element(extent.theta_deg);
   const CosSin a = cos_sin_deg(zenith_before_limit_deg(surface.masking, moment_zenith_deg));
-  const double cosine = std::max(a.cos, kSmallestCosine);
   most_specular_ = surface.specular * most_albedo(surface, a, extent.roughest);
   const double c = surface.diffuse_exponent;
   const bool diverges = c < 0.0 && moment_zenith_deg == 90.0;
-  if (surface.diffuse > 0.0)
-    most_diffuse_ = diverges ? kInfinity : 2.0 * surface.diffuse * std::pow(cosine, c) / (c + 2.0);
-  // R_s of a bare medium grows with the zenith. R_s of films need not.
-  if (surface.is_bare()) least_smooth_ = 0.5 * (1.0 - fresnel(indices, cosine).most_s);
-  if (is_bistatic_ && total_.irradiance > 0.0) add_beams(extent, indices);
+  if (surface.diffuse > 0.0) {
+    most_diffuse_ =
+        diverges ? kInfinity : 2.0 * surface.diffuse * std::pow(std::max(a.cos, kSmallestCosine), c) / (c + 2.0);
+  }
+  if (is_bistatic_ && total_.irradiance > 0.0) add_beams(extent, indices_of(rule, extent));
 }
 
 void EffectBounds::add_beams(const EntriesExtent& extent, const std::vector<FacetOptics>& indices) {
@@ -212,112 +208,75 @@ void EffectBounds::add_beams(const EntriesExtent& extent, const std::vector<Face
     most_beam_ = most_beam_qu_ = kInfinity;  // further bounces have no closed form
 }
 
-/// Upper bound of the exitance of emission and surroundings that multiplies rho.
-double EffectBounds::weight(const KeptEffects& kept) const {
-  const bool is_kirchhoff = scene_.emission && scene_.emission->model == EmissionModel::kMoments;
-  const double emitted = kept.emission && is_kirchhoff ? total_.emitted : 0.0;
-  const bool has_sky = kept.surroundings && kept.profile;
-  const double surroundings = kept.surroundings ? total_.surroundings + (has_sky ? sky_above_ : 0.0) : 0.0;
-  const bool has_both = emitted != 0.0 && kept.surroundings && scene_.surroundings;
-  return has_both ? total_.excess + (has_sky ? std::max(sky_above_, sky_below_) : 0.0)
-                  : std::max(emitted, surroundings);
+bool EffectBounds::emits(const KeptEffects& kept, EmissionModel model) const {
+  return kept.emission && scene_.emission && scene_.emission->model == model;
 }
 
-/// The exitance of a source that illuminates the hemisphere.
-double EffectBounds::incident(const KeptEffects& kept) const {
-  return is_bistatic_ || !kept.source ? 0.0 : total_.irradiance;
+/// Upper bound of the exitance that multiplies rho.
+double EffectBounds::weight(const KeptEffects& kept) const {
+  const double emitted = emits(kept, EmissionModel::kMoments) ? total_.emitted : 0.0;
+  const double source = is_bistatic_ || !kept.source ? 0.0 : total_.irradiance;
+  if (!kept.surroundings || !scene_.surroundings) return emitted + source;
+  return (emitted != 0.0 ? total_.excess : total_.surroundings) + (kept.profile ? sky_apart_ : 0.0) + source;
 }
 
 double EffectBounds::most_rho(const KeptEffects& kept) const { return kept.moments ? most_specular_ : 0.0; }
 
 EffectBounds::Sums EffectBounds::sums(const KeptEffects& kept) const {
-  const EmissionModel model = scene_.emission ? scene_.emission->model : EmissionModel::kMoments;
-  const bool emits = kept.emission && total_.emitted > 0.0;
-  const double gap = weight(kept);
-  const double most = most_rho(kept) + most_diffuse_;
+  const double reflected = weight(kept);
+  const double all_rho = most_rho(kept) + most_diffuse_;
   const double beam = is_bistatic_ && kept.source ? total_.irradiance : 0.0;
-  const double coldest = total_.surroundings - (kept.profile ? sky_below_ : 0.0);
-  const bool can_reduce_intensity = has_negative_ || !kept.surroundings || coldest < total_.emitted;
+  const bool has_rho = emits(kept, EmissionModel::kMoments);
   Sums sum;
-  sum.most_qu = (gap + incident(kept)) * 0.5 * most_rho(kept);
+  sum.most_qu = reflected * 0.5 * most_rho(kept);
   if (beam > 0.0) sum.most_qu += beam * most_beam_qu_;
   if (beam > 0.0 && !has_negative_) sum.least_i += beam * least_beam_;
-  bool is_physical = !has_negative_;
-  if (emits && model == EmissionModel::kMoments) {
-    const bool is_unpolarised = gap == 0.0;
-    sum.least_i += total_.emitted - (can_reduce_intensity && !is_unpolarised ? gap * most : 0.0);
-    is_physical &= is_unpolarised || most <= 1.0;
-  } else if (emits) {
-    if (model == EmissionModel::kFresnel) sum.least_i += total_.emitted * least_smooth_;
-    sum.most_qu += 0.5 * total_.emitted;
-  }
+  if (has_rho) sum.least_i += total_.emitted - (reflected > 0.0 ? reflected * all_rho : 0.0);
+  if (!has_rho && kept.emission) sum.most_qu += 0.5 * total_.emitted;
   if (scene_.path) {
     sum.least_i = scene_.path->transmittance * sum.least_i + (kept.path_radiance ? path_ : 0.0);
     sum.most_qu *= scene_.path->transmittance;
   }
   if (sum.least_i > 0.0) sum.most_polarisation = or_infinite(sum.most_qu / sum.least_i);
-  if (is_physical) sum.most_polarisation = std::min(1.0, sum.most_polarisation);
+  if (!has_negative_ && (!has_rho || all_rho <= 1.0)) sum.most_polarisation = std::min(1.0, sum.most_polarisation);
   return sum;
 }
 
-EffectBounds::Sums EffectBounds::added_by(Part part, const KeptEffects& kept) const {
+/// Upper bounds of |I| and of the length of (Q, U) of a part.
+std::array<double, 2> EffectBounds::added_by(Part part, const KeptEffects& kept) const {
   const double rho = most_rho(kept);
   const double all_rho = rho + most_diffuse_;
-  const bool emits_directly = kept.emission && scene_.emission && scene_.emission->model == EmissionModel::kDirect;
-  const auto reflected = [&](double exitance) {
-    return Sums{.most_i = exitance * all_rho, .most_qu = exitance * 0.5 * rho};
-  };
-  Sums sum;
-  switch (part) {
-    case Part::kFurtherBounces:
-    case Part::kDiffuse:
-      sum.most_i = kInfinity;
-      break;
-    case Part::kMoments:
-      sum.most_i = emits_directly ? kInfinity : (weight(kept) + incident(kept)) * rho;
-      sum.most_qu = 0.5 * sum.most_i;
-      break;
-    case Part::kSource:
-      sum = reflected(total_.irradiance);
-      if (is_bistatic_) sum = {.most_i = total_.irradiance * most_beam_, .most_qu = total_.irradiance * most_beam_qu_};
-      break;
-    case Part::kSurroundings:
-      sum = reflected(total_.surroundings + (kept.profile ? sky_above_ : 0.0));
-      break;
-    case Part::kProfile:
-      sum = reflected(std::max(sky_above_, sky_below_));
-      break;
-    case Part::kEmission:
-      sum.most_i = total_.emitted * std::max(1.0, all_rho - 1.0);
-      sum.most_qu = total_.emitted * 0.5 * std::max(1.0, rho);
-      break;
-    case Part::kPathRadiance:
-      sum.most_i = path_;
-      return sum;
+  const double transmittance = scene_.path ? scene_.path->transmittance : 1.0;
+  if (part == Part::kSource && is_bistatic_)
+    return {total_.irradiance * most_beam_ * transmittance, total_.irradiance * most_beam_qu_ * transmittance};
+  if (part == Part::kSurroundings) {
+    const double exitance = total_.surroundings + (kept.profile ? sky_apart_ : 0.0);
+    return {exitance * all_rho * transmittance, exitance * 0.5 * rho * transmittance};
   }
-  if (scene_.path) sum.most_i *= scene_.path->transmittance;
-  if (scene_.path) sum.most_qu *= scene_.path->transmittance;
-  return sum;
+  if (part == Part::kEmission) {
+    return {total_.emitted * std::max(1.0, all_rho - 1.0) * transmittance,
+            total_.emitted * 0.5 * std::max(1.0, rho) * transmittance};
+  }
+  if (part == Part::kPathRadiance) return {path_, 0.0};
+  return {kInfinity, kInfinity};
 }
 
 bool EffectBounds::adds_nothing(Part part, const KeptEffects& kept) const {
   const Surface& surface = scene_.surface;
-  const bool emits_directly = kept.emission && scene_.emission && scene_.emission->model == EmissionModel::kDirect;
+  const bool needs_direct = emits(kept, EmissionModel::kDirect) && surface.specular > 0.0;
   // A bistatic beam also needs further bounces, even if the moments have zero weight.
   const bool has_beam = is_bistatic_ && kept.source && total_.irradiance > 0.0 && surface.specular > 0.0;
   switch (part) {
     case Part::kFurtherBounces:
-      return surface.scattering == Scattering::kSingle ||
-             (!has_beam && !emits_directly && adds_nothing(Part::kMoments, kept));
+      return surface.scattering == Scattering::kSingle || (!has_beam && adds_nothing(Part::kMoments, kept));
     case Part::kMoments:
-      if (emits_directly && surface.specular > 0.0) return false;
-      return surface.specular == 0.0 || (weight(kept) == 0.0 && incident(kept) == 0.0);
+      return surface.specular == 0.0 || (!needs_direct && weight(kept) == 0.0);
     case Part::kSource:
       return total_.irradiance == 0.0;
     case Part::kSurroundings:
       return total_.surroundings == 0.0;
     case Part::kProfile:
-      return !kept.surroundings || (sky_above_ == 0.0 && sky_below_ == 0.0);
+      return !kept.surroundings || sky_apart_ == 0.0;
     case Part::kEmission:
       return total_.emitted == 0.0;
     case Part::kPathRadiance:
@@ -333,11 +292,11 @@ double EffectBounds::bound(Part part, const KeptEffects& kept) const {
   // The bounds take the diffuse part to be unpolarised.
   if (scene_.surface.diffuse > 0.0 && scene_.surface.diffuse_polarisation != DiffusePolarisation::kNone)
     return kInfinity;
-  const Sums added = added_by(part, kept);
-  const Sums left = sums(without(kept, part));
-  if (!(left.least_i > 0.0)) return kInfinity;
-  const double both = added.most_qu + (added.most_i > 0.0 ? sums(kept).most_polarisation * added.most_i : 0.0);
-  return or_infinite(both / left.least_i) * (1.0 + kRounding);
+  const auto [added_i, added_qu] = added_by(part, kept);
+  const double least_i = sums(without(kept, part)).least_i;
+  if (!(least_i > 0.0)) return kInfinity;
+  const double both = added_qu + (added_i > 0.0 ? sums(kept).most_polarisation * added_i : 0.0);
+  return or_infinite(both / least_i) * (1.0 + kRounding);
 }
 
 }  // namespace dolp

@@ -11,30 +11,32 @@
 namespace dolp {
 namespace {
 
-constexpr std::array kDroppingOrder = {Part::kMoments,  Part::kSource,       Part::kProfile, Part::kSurroundings,
-                                       Part::kEmission, Part::kPathRadiance, Part::kMoments, Part::kFurtherBounces};
+constexpr std::array kDroppingOrder = {Part::kSource,       Part::kSurroundings, Part::kProfile,       Part::kEmission,
+                                       Part::kPathRadiance, Part::kMoments,      Part::kFurtherBounces};
 
 /// The bounds of each variant of a scene among its entries.
 std::vector<EffectBounds> bounds_of(const SceneValues& scene, const SceneEntries& entries) {
   const std::vector<EntriesExtent> extents = extents_of(entries);
   std::vector<EffectBounds> bounds;
   for (const SceneVariant& variant : entries.variants()) {
-    const std::size_t own = std::min(bounds.size(), extents.size() - 1);
-    bounds.emplace_back(with_variant(scene, variant), extents[own]);
+    const EntriesExtent& extent = extents[std::min(bounds.size(), extents.size() - 1)];
+    bounds.emplace_back(with_variant(scene, variant), extent);
   }
   return bounds;
 }
 
 bool add_nothing(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
-  return std::ranges::all_of(bounds, [&](const EffectBounds& of_one) { return of_one.adds_nothing(part, kept); });
+  return std::ranges::all_of(
+      bounds, [&](const EffectBounds& variant_bounds) { return variant_bounds.adds_nothing(part, kept); });
 }
 
-/// A part that matters in the whole scene is kept, even if the parts that it multiplies have been dropped.
+/// A part that matters in the whole scene is kept, even if the parts that it multiplies have been dropped. This does
+/// not hold for the moments and a profile, which are dropped only where they add exactly nothing.
 double worst_bound(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
   double worst = 0.0;
-  for (const EffectBounds& of_one : bounds) {
-    worst = std::max(worst, of_one.bound(part, kept));
-    if (part != Part::kMoments) worst = std::max(worst, of_one.bound(part, {}));
+  for (const EffectBounds& variant_bounds : bounds) {
+    worst = std::max(worst, variant_bounds.bound(part, kept));
+    if (part != Part::kMoments && part != Part::kProfile) worst = std::max(worst, variant_bounds.bound(part, {}));
   }
   return worst;
 }
@@ -62,10 +64,6 @@ bool emits_as(const SceneValues& scene, EmissionModel model) {
 
 bool is_fresnel(const SceneValues& scene) { return emits_as(scene, EmissionModel::kFresnel); }
 
-bool needs_beams(const SceneValues& scene, const std::vector<EffectBounds>& bounds, const KeptEffects& kept) {
-  return is_bistatic(scene) && kept.source && !add_nothing(bounds, Part::kSource, kept) && scene.surface.specular > 0.0;
-}
-
 void drop_effects(EffectPlan& plan, const SceneValues& scene, const std::vector<EffectBounds>& bounds) {
   const double allowed = kDroppedShare * scene.accuracy.tolerance;
   for (const Part part : kDroppingOrder) {
@@ -75,24 +73,16 @@ void drop_effects(EffectPlan& plan, const SceneValues& scene, const std::vector<
     if (bound > allowed - plan.bound) continue;
     plan.kept = without(plan.kept, part);
     plan.bound += bound;
-    if (scene_has_part(scene, part)) plan.dropped.push_back({part, bound});
+    if (scene_has_part(scene, part)) plan.dropped[part] = bound;
   }
 }
 
 void set_needs(EffectPlan& plan, const SceneValues& scene, const std::vector<EffectBounds>& bounds) {
   plan.needs_direct = plan.kept.moments && scene.emission &&
                       (scene.emission->has_bracket || (emits_as(scene, EmissionModel::kDirect) && plan.kept.emission));
-  plan.needs_beams = needs_beams(scene, bounds, plan.kept);
+  plan.needs_beams = is_bistatic(scene) && plan.kept.source && scene.surface.specular > 0.0 &&
+                     !add_nothing(bounds, Part::kSource, plan.kept);
   plan.gives_rho = plan.kept.moments || scene.surface.specular == 0.0;
-}
-
-const DroppedPart* find_dropped(const EffectPlan& plan, Part part) {
-  const auto found = std::ranges::find(plan.dropped, part, &DroppedPart::part);
-  return found == plan.dropped.end() ? nullptr : &*found;
-}
-
-std::string below_share(double bound, double tolerance) {
-  return fmt::format("changes DOLP by {:.2g} at most, {:.2g} of the tolerance", bound, bound / tolerance);
 }
 
 /// The reason why the moments are not needed although nothing is lost without them.
@@ -111,12 +101,14 @@ Effect absent(const char* name, std::string why) { return {name, EffectState::kA
 /// Describes how the plan treats a part. `row` has the reason, and for a kept part the needs.
 Effect part_row(const SceneValues& scene, const EffectPlan& plan, Part part, Effect row) {
   row.part = part;
-  const DroppedPart* dropped = find_dropped(plan, part);
-  if (dropped == nullptr) return row;
+  const auto dropped = plan.dropped.find(part);
+  if (dropped == plan.dropped.end()) return row;
   row.state = EffectState::kDropped;
   row.needs.clear();
-  row.bound = dropped->bound;
-  row.reason = dropped->bound == 0.0 ? "adds nothing" : below_share(dropped->bound, scene.accuracy.tolerance);
+  row.bound = dropped->second;
+  row.reason = row.bound == 0.0 ? "adds nothing"
+                                : fmt::format("changes DOLP by {:.2g} at most, {:.2g} of the tolerance", *row.bound,
+                                              *row.bound / scene.accuracy.tolerance);
   return row;
 }
 
@@ -135,9 +127,8 @@ Effect specular_row(const SceneValues& scene, const EffectPlan& plan) {
     row.needs = needs_of_moments(scene, plan) + (plan.needs_beams ? ", f at each theta" : "");
     return row;
   }
-  const DroppedPart* dropped = find_dropped(plan, Part::kMoments);
-  row.bound = dropped ? dropped->bound : 0.0;
-  row.reason = *row.bound == 0.0 ? why_no_moments(scene, plan.kept) : below_share(*row.bound, scene.accuracy.tolerance);
+  row.bound = 0.0;  // the moments are dropped only where they add exactly nothing
+  row.reason = why_no_moments(scene, plan.kept);
   if (plan.needs_beams) {
     row.needs = "f at each theta";
     row.reason = "reflects the source; no moments: " + row.reason;
@@ -179,11 +170,12 @@ Effect complex_index_row(const SceneValues& scene, const EffectPlan& plan, const
     const auto absorbs = [](const Film& film) { return film.index.k > 0.0; };
     return optics.index.k > 0.0 || optics.measured || std::ranges::any_of(optics.films, absorbs);
   };
-  const bool own =
+  const bool has_complex_entry =
       entries.is_grid()
           ? std::ranges::any_of(entries.axes()[Axis::kK], [](double k) { return k > 0.0; })
           : std::ranges::any_of(entries.all(), [&](const SceneEntry& e) { return e.index && is_complex(*e.index); });
-  if (!own && std::ranges::none_of(spectral_rule(scene).indices(), is_complex)) return absent(kName, "k is 0");
+  if (!has_complex_entry && std::ranges::none_of(spectral_rule(scene).indices(), is_complex))
+    return absent(kName, "k is 0");
   const bool is_used = plan.kept.moments || plan.needs_beams || (is_fresnel(scene) && plan.kept.emission);
   if (!is_used) return {kName, EffectState::kNotNeeded, "nothing depends on the index"};
   return {kName, EffectState::kKept, "costs nothing: the kernel treats real indices alike"};

@@ -1,7 +1,9 @@
 // The effects of a scene. A run drops effects whose change of the polarisation is negligible by a closed-form bound.
 #pragma once
 
+#include <array>
 #include <dolp/effect.hpp>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -34,20 +36,20 @@ std::vector<EntriesExtent> extents_of(const SceneEntries& entries);
 /// Derivation: a part adds (dI, dQ, dU) to the Stokes sums. With q = (Q, U) / I, and a prime for the sums without the
 /// part, q - q' = (dQ - q dI) / I'. |dI| and |dQ, dU| are factors of the scene times the bounds 0 <= rho_I <= A,
 /// |rho_Q| <= A / 2 and bounds of the beam. With E, S, X the exitances of emission, surroundings and source (X only in
-/// hemispherical mode), Kirchhoff's emission gives I = E + (S - E + X) rho >= E - max(0, E - S) A and Q = (S - E + X)
-/// rho_Q, because S - E has one sign at all wavelengths: the weight of the moments is |S - E| + X, which is 0 where
-/// emission and surroundings have one temperature and no source illuminates the hemisphere. A profile of the sky adds
-/// at most its largest distance from its mean to S, in any direction. The fresnel emission is at least E (1 - R_s) / 2;
-/// the direct emission has no known lower bound. A path multiplies all by its transmittance and adds to I. |q| <= 1
-/// where A <= 1, which bounds rho_s and rho_p: in this case every part has a degree of polarisation of at most 1. All
-/// Stokes parameters are in the units of the exitances, bistatic ones times pi; sums over a band are sums over the
-/// spectral rule's samples.
+/// hemispherical mode), Kirchhoff's emission gives I = E + (S - E + X) rho >= E - (|S - E| + X) A and Q = (S - E + X)
+/// rho_Q: the weight of the moments is |S - E| + X, which is 0 where emission and surroundings have one temperature and
+/// no source illuminates the hemisphere. A profile of the sky adds at most its largest distance from its mean to S, in
+/// any direction. The other emissions have no lower bound here. A path multiplies all by its transmittance and adds to
+/// I. |q| <= 1 where A <= 1, which bounds rho_s and rho_p: in this case every part has a degree of polarisation of at
+/// most 1. All Stokes parameters are in the units of the exitances, bistatic ones times pi; sums over a band are sums
+/// over the spectral rule's samples.
 class EffectBounds {
  public:
   EffectBounds(const SceneModel& scene, const EntriesExtent& extent);
 
-  /// Bound of the change of (Q/I, U/I), at any entry, if `part` is dropped from `kept`. It is infinite if no bound is
-  /// known, and always for further bounces and the diffuse part. It is exactly 0 if the part contributes nothing.
+  /// Bound of the change of (Q/I, U/I), at any entry, if `part` is dropped from `kept`. It is exactly 0 if the part
+  /// contributes nothing. Otherwise it is infinite if no bound is known, and always for moments, further bounces,
+  /// profile, diffuse part and a source of the hemisphere: no case is known in which their bounds would save work.
   double bound(Part part, const KeptEffects& kept) const;
 
   /// True if a part contributes exactly nothing at every entry.
@@ -56,38 +58,30 @@ class EffectBounds {
  private:
   struct Sums;
   void add_beams(const EntriesExtent& extent, const std::vector<FacetOptics>& indices);
+  bool emits(const KeptEffects& kept, EmissionModel model) const;
   double weight(const KeptEffects& kept) const;
-  double incident(const KeptEffects& kept) const;
   double most_rho(const KeptEffects& kept) const;
   Sums sums(const KeptEffects& kept) const;
-  Sums added_by(Part part, const KeptEffects& kept) const;
+  std::array<double, 2> added_by(Part part, const KeptEffects& kept) const;
 
   SceneModel scene_;
   bool is_bistatic_;
   SpectralSample total_;       ///< sums of the absolute values of the samples' factors; the emitted ones are signed
-  double sky_above_ = 0.0;     ///< the most that a profile adds to its mean
-  double sky_below_ = 0.0;     ///< the most that a profile takes from its mean
+  double sky_apart_ = 0.0;     ///< the largest distance of a profile from its mean
   bool has_negative_ = false;  ///< some weights are negative, as in the interpolation of a steep factor
   double path_;
   double most_specular_ = 0.0;  ///< upper bound of the specular rho_I
   double most_diffuse_ = 0.0;   ///< upper bound of the diffuse rho
-  double least_smooth_ = 0.0;   ///< lower bound of the emissivity of the smooth surface
   double most_beam_ = 0.0;      ///< upper bound of the exitance for E0 = 1 that is reflected into the view
   double most_beam_qu_ = 0.0;   ///< upper bound of the length of its (Q, U)
   double least_beam_ = 0.0;
-};
-
-/// A dropped part, with the bound for all entries.
-struct DroppedPart {
-  Part part;
-  double bound;  ///< bounds the change of (Q/I, U/I), and so of DOLP
 };
 
 /// The effects that a run computes at its entries.
 struct EffectPlan {
   bool keep_all = false;
   KeptEffects kept;
-  std::vector<DroppedPart> dropped;     ///< in the order of dropping, without parts that the scene lacks
+  std::map<Part, double> dropped;       ///< bounds of the change of (Q/I, U/I) by parts that the scene has
   double bound = 0.0;                   ///< bounds the change by all dropped parts together
   bool needs_direct = false;            ///< whether the run needs the moments of the direct emission
   bool needs_beams = false;             ///< whether the run needs f from the source's direction into the view
@@ -98,12 +92,11 @@ struct EffectPlan {
 /// The effects that the scene's output needs at these entries.
 ///
 /// A part is dropped if the bounds of all dropped parts (EffectBounds) sum to at most kDroppedShare of the tolerance.
-/// The moments are tried first, then the source, the profile, the surroundings, the emission, the path, and the moments
-/// again. Further bounces are dropped only with the moments, because a bound of their effect would cost more than it
-/// saves. Each bound is for the scene without the parts dropped before, so the sum bounds the whole change. For a part
-/// other than the moments, its bound in the whole scene counts too. A part that contributes exactly nothing is dropped
-/// at no cost, for instance the moments if emission and surroundings have one temperature. Model choices (distribution,
-/// masking, k) and the diffuse part are never dropped. `keep_all` keeps everything that the scene has.
+/// The source is tried first, then the surroundings, their profile, the emission, the path, the moments, and the
+/// further bounces. Each bound is for the scene without the parts dropped before, so the sum bounds the whole change. A
+/// part's bound in the whole scene counts too, except for the moments. A part that contributes exactly nothing is
+/// dropped at no cost, for instance the moments if emission and surroundings have one temperature. Model choices
+/// (distribution, masking, k) and the diffuse part are never dropped. `keep_all` keeps everything that the scene has.
 EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, bool keep_all);
 
 /// The plan of a run that computes `kept`.

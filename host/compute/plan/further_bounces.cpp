@@ -136,7 +136,7 @@ FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, c
   std::array<double, 2> beyond = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (int k = 2; k <= kMostBouncesOfBeam; ++k) {
     const double gamma = (pi - at.psi_i + (k % 2 == 1 ? -at.psi_r : at.psi_r)) / (2.0 * k);
-    if (gamma < least_gamma) return {beams.sum, 0.0, beams.bounces};
+    if (gamma < least_gamma) return beams;
     const std::size_t parity = k % 2 == 0 ? 0 : 1;
     const bool is_groove = gamma > 0.0 && gamma < 0.5 * pi;
     const double width = is_groove ? beam_width(at, gamma, k) : 0.0;
@@ -147,8 +147,7 @@ FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, c
     beams.sum += more;
     beams.bounces += k;
     beyond[parity] = more(0, 0) * beyond_last(request, shape, k);
-    if (std::max(beyond[0], beyond[1]) < kNegligibleBounces * accuracy * (first + beams.sum(0, 0)))
-      return {beams.sum, 0.0, beams.bounces};
+    if (std::max(beyond[0], beyond[1]) < kNegligibleBounces * accuracy * (first + beams.sum(0, 0))) return beams;
   }
   beams.unfollowed = std::max(beyond[0], beyond[1]);
   return beams;

@@ -33,12 +33,6 @@ struct Loops {
   double corners = 0.0;  ///< corners of a sky that split the arcs
 };
 
-Loops single_loops(const KernelData& data) {
-  double arcs = data.masking == Masking::kIntegral || data.masking == Masking::kVCavity ? 3.0 : 1.0;
-  if (data.has_direct) arcs += data.masking == Masking::kVCavity ? 2.0 : 1.0;
-  return {.arcs = arcs};
-}
-
 // Loop iterations of a ray with `bounces` bounces: one for each bounce, or for each group of bounces that next_bounces
 // in groove.glsl combines.
 double turns_of(double bounces) {
@@ -70,7 +64,13 @@ Loops groove_loops(const KernelData& data, double start, double end) {
 }
 
 Loops loops_of(const KernelData& data, double critical, double start, double end) {
-  Loops loops = data.scattering == Scattering::kMultiple ? groove_loops(data, start, end) : single_loops(data);
+  Loops loops;
+  if (data.scattering == Scattering::kMultiple) {
+    loops = groove_loops(data, start, end);
+  } else {
+    if (data.masking == Masking::kIntegral || data.masking == Masking::kVCavity) loops.arcs = 3.0;
+    if (data.has_direct) loops.arcs += data.masking == Masking::kVCavity ? 2.0 : 1.0;
+  }
   if (critical > 0.0) loops.arcs *= 2.0;
   loops.corners = data.sky.corners;
   return loops;
@@ -151,34 +151,23 @@ kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& sh
   return node;
 }
 
-// The pole of R_p in cos(beta), and the branch point of the amplitudes. Both have real and imaginary parts of at least
-// 0.
-struct FresnelSingularities {
-  std::complex<double> pole;
-  std::complex<double> branch;
-};
-
-FresnelSingularities singularities_of(const OpticalConstants& index) {
-  const std::complex<double> n(index.n, index.k);
-  const std::complex<double> n2m1((index.n - 1.0) * (index.n + 1.0) - index.k * index.k, 2.0 * index.n * index.k);
+// With the pole of R_p in cos(beta) and the branch point of the amplitudes, whose real and imaginary parts are at least
+// 0. Films add no singularities, because their amplitudes are even in the wave number.
+kernel::IndexNode index_node(const FacetOptics& optics) {
+  const auto [n, k] = optics.index;
+  const std::complex<double> n_complex(n, k);
+  const std::complex<double> n2m1((n - 1.0) * (n + 1.0) - k * k, 2.0 * n * k);
   const auto bounded_root = [](std::complex<double> square) {
     return std::sqrt(std::abs(square) > kSmallestPole ? square : std::complex<double>(kSmallestPole));
   };
-  const std::complex<double> pole = -1.0 / bounded_root(n * n + 1.0);
+  const std::complex<double> pole = -1.0 / bounded_root(n_complex * n_complex + 1.0);
   const std::complex<double> branch = bounded_root(n2m1);
-  return {{pole.real(), std::abs(pole.imag())}, {std::abs(branch.imag()), std::abs(branch.real())}};
-}
-
-kernel::IndexNode index_node(const FacetOptics& optics) {
-  const OpticalConstants& index = optics.index;
-  // Films add no singularities, because their amplitudes are even in the wave number.
-  const FresnelSingularities nearest = singularities_of(index);
-  return {(index.n - 1.0) * (index.n + 1.0) - index.k * index.k,
-          2.0 * index.n * index.k,
-          nearest.pole.real(),
-          nearest.pole.imag(),
-          nearest.branch.real(),
-          nearest.branch.imag(),
+  return {n2m1.real(),
+          n2m1.imag(),
+          pole.real(),
+          std::abs(pole.imag()),
+          std::abs(branch.imag()),
+          std::abs(branch.real()),
           critical_cosine(optics),
           0.0,
           0.0};

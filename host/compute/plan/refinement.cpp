@@ -19,31 +19,22 @@ bool may_use_double(const Accuracy& accuracy, bool has_double) {
 // Steps of half a decade, so that many entries share a level.
 double half_decades(double decades) { return 0.5 * std::ceil(2.0 * decades); }
 
-RefinementLevel level_at(Precision precision, double tolerance) {
-  RefinementLevel level;
-  level.precision = precision;
-  level.tolerance = tolerance;
-  return level;
-}
-
 }  // namespace
 
 RefinementLevel first_level(const Accuracy& accuracy, bool has_double) {
   const bool wants_double = accuracy.precision == Precision::kDouble || accuracy.tolerance < kLeastFloatTolerance;
-  RefinementLevel first;
-  if (wants_double && may_use_double(accuracy, has_double)) first.precision = Precision::kDouble;
-  first.tolerance = accuracy.tolerance;
-  first.may_interpolate = accuracy.may_interpolate;
-  return first;
+  const bool is_double = wants_double && may_use_double(accuracy, has_double);
+  return {.precision = is_double ? Precision::kDouble : Precision::kFloat,
+          .tolerance = accuracy.tolerance,
+          .may_interpolate = accuracy.may_interpolate};
 }
 
 RefinementLevel check_level(const RefinementLevel& first) {
   constexpr double kFinerBy = 1e-2;
   const double least = first.precision == Precision::kFloat ? kLeastFloatTolerance : kLeastDoubleTolerance;
-  RefinementLevel check =
-      level_at(first.precision, std::max(kFinerBy * first.tolerance, std::min(least, first.tolerance)));
-  check.is_check = true;
-  return check;
+  return {.precision = first.precision,
+          .tolerance = std::max(kFinerBy * first.tolerance, std::min(least, first.tolerance)),
+          .is_check = true};
 }
 
 std::optional<RefinementLevel> next_level(const RefinementLevel& last, const PointResult& result,
@@ -61,14 +52,15 @@ std::optional<RefinementLevel> next_level(const RefinementLevel& last, const Poi
   const double missed_by = std::isfinite(excess) ? half_decades(std::log10(kRefinementSafety * excess)) : kMostDecades;
   const double decades = std::min(std::max(missed_by, least), kMostDecades);
   const double wanted = last.tolerance * std::pow(10.0, -decades);
-  if (last.precision == Precision::kFloat && wanted >= kLeastFloatTolerance) return level_at(Precision::kFloat, wanted);
+  if (last.precision == Precision::kFloat && wanted >= kLeastFloatTolerance)
+    return RefinementLevel{.precision = Precision::kFloat, .tolerance = wanted};
   if (!may_use_double(accuracy, has_double)) {
-    const bool can_tighten = last.precision == Precision::kFloat && last.tolerance > kLeastFloatTolerance;
-    return can_tighten ? std::optional(level_at(Precision::kFloat, kLeastFloatTolerance)) : std::nullopt;
+    if (last.precision != Precision::kFloat || last.tolerance <= kLeastFloatTolerance) return std::nullopt;
+    return RefinementLevel{.precision = Precision::kFloat, .tolerance = kLeastFloatTolerance};
   }
   const double tolerance = std::max(wanted, kLeastDoubleTolerance);
   if (last.precision == Precision::kDouble && tolerance >= last.tolerance) return std::nullopt;
-  return level_at(Precision::kDouble, tolerance);
+  return RefinementLevel{.precision = Precision::kDouble, .tolerance = tolerance};
 }
 
 }  // namespace dolp

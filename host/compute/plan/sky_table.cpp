@@ -42,22 +42,20 @@ Eigen::RowVectorXd distances_at(const SkyBasis& basis, double u, double cells) {
   return (line - values_at(basis, u)).cwiseAbs();
 }
 
-Eigen::RowVectorXd largest_distances(const SkyBasis& basis, const std::vector<double>& us, double cells) {
+/// The largest of these distances at the corners.
+Eigen::RowVectorXd corner_distances(const SkyBasis& basis, double cells) {
   Eigen::RowVectorXd largest = Eigen::RowVectorXd::Zero(static_cast<Eigen::Index>(basis.size()));
-  for (const double u : us) largest = largest.cwiseMax(distances_at(basis, u, cells));
+  for (const double end_deg : basis.nodes().ends_deg())
+    largest = largest.cwiseMax(distances_at(basis, u_at(end_deg), cells));
   return largest;
 }
 
-Eigen::RowVectorXd corner_distances(const SkyBasis& basis, double cells) {
-  std::vector<double> corners;
-  for (const double end_deg : basis.nodes().ends_deg()) corners.push_back(u_at(end_deg));
-  return largest_distances(basis, corners, cells);
-}
-
+/// The largest of these distances in the middles of the cells.
 Eigen::RowVectorXd middle_distances(const SkyBasis& basis, double cells) {
-  std::vector<double> middles;
-  for (double cell = 0.0; cell < cells; ++cell) middles.push_back((cell + 0.5) / cells);
-  return largest_distances(basis, middles, cells);
+  Eigen::RowVectorXd largest = Eigen::RowVectorXd::Zero(static_cast<Eigen::Index>(basis.size()));
+  for (double cell = 0.0; cell < cells; ++cell)
+    largest = largest.cwiseMax(distances_at(basis, (cell + 0.5) / cells, cells));
+  return largest;
 }
 
 /// A corner, and for each function the change of its slope in u there.

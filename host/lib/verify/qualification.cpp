@@ -14,7 +14,7 @@
 #include "base/numbers.hpp"
 #include "base/text.hpp"
 #include "model/choices.hpp"
-#include "reference/hemisphere.hpp"
+#include "reference/moments.hpp"
 #include "run/scene_run.hpp"
 #include "scene/csv.hpp"
 #include "scene/embedded_data.hpp"

@@ -59,7 +59,7 @@ fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.
 bool is_device_or_pipe(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  return fs::is_character_file(status) || fs::is_fifo(status) || fs::is_block_file(status) || fs::is_socket(status);
+  return fs::is_other(status);
 }
 
 /// Writes all bytes with write(bytes, size), which returns the number of bytes written, or -1.
@@ -107,17 +107,12 @@ std::pair<fs::path, int> with_new_name(const fs::path& target, const Make& make)
   fail(target, "too many temporary files in its folder; remove .dolp-*.tmp");
 }
 
-/// A file without a name yet, or with a temporary one, that has the permissions of the target.
-struct NewFile {
-  File file;
-  fs::path name;  ///< empty: the file has no name
-};
-
-NewFile create_temporary(const fs::path& target) {
+/// A file without a name yet, or with a temporary one.
+std::pair<File, fs::path> create_temporary(const fs::path& target) {
   const bool can_be_linked = ::access(kOpenFiles, X_OK) == 0;
   const int unnamed =
       can_be_linked ? ::open(folder_of(target).c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, kNewFileMode) : -1;
-  if (unnamed >= 0) return {File(unnamed), {}};
+  if (unnamed >= 0) return {File(unnamed), fs::path()};
   auto [name, named] = with_new_name(target, [](const fs::path& path) {
     return ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kNewFileMode);
   });
@@ -184,40 +179,44 @@ void check_writable(const fs::path& path) {
 struct AtomicFile::Impl {
   fs::path path;    // for messages
   fs::path target;  // with symbolic links resolved
-  NewFile own;
+  File file;
+  fs::path name;         // until the file is complete; empty: it has no name
   bool is_kept = false;  // keeps its name even if it is never complete
   std::uint64_t size = 0;
 
-  Impl(fs::path of_user, fs::path of_file, NewFile file)
-      : path(std::move(of_user)), target(std::move(of_file)), own(std::move(file)) {}
+  Impl(fs::path of_user, fs::path of_file, std::pair<File, fs::path> unfinished)
+      : path(std::move(of_user)),
+        target(std::move(of_file)),
+        file(std::move(unfinished.first)),
+        name(std::move(unfinished.second)) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
-    if (!own.name.empty() && !is_kept) ::unlink(own.name.c_str());
+    if (!name.empty() && !is_kept) ::unlink(name.c_str());
   }
 
-  int descriptor() const { return own.file.get(); }
+  int descriptor() const { return file.get(); }
 
   /// Gives a temporary name to a file without a name.
   void link() {
     const std::string open_file = std::string(kOpenFiles) + '/' + std::to_string(descriptor());
-    own.name = with_new_name(target, [&](const fs::path& free_name) {
-                 return ::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, free_name.c_str(), AT_SYMLINK_FOLLOW);
-               }).first;
+    name = with_new_name(target, [&](const fs::path& free_name) {
+             return ::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, free_name.c_str(), AT_SYMLINK_FOLLOW);
+           }).first;
   }
 
   /// Writes all bytes to a device or pipe.
   void copy_to_target() const {
-    File file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
-    if (file.get() < 0 && interrupted()) throw Cancelled();
-    if (file.get() < 0) fail_errno(path, "cannot open for writing");
+    File device(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
+    if (device.get() < 0 && interrupted()) throw Cancelled();
+    if (device.get() < 0) fail_errno(path, "cannot open for writing");
     std::string bytes;
     for (std::uint64_t done = 0; done < size; done += bytes.size()) {
       bytes.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kBytesAtOnce, size - done)));
       read_all(descriptor(), path, done, bytes.data(), bytes.size());
-      write_all(file.get(), path, bytes);
+      write_all(device.get(), path, bytes);
     }
-    if (!file.close()) fail_errno(path, "cannot write");
+    if (!device.close()) fail_errno(path, "cannot write");
   }
 };
 
@@ -226,15 +225,15 @@ AtomicFile::AtomicFile(const fs::path& path) {
   const fs::path target = follow_links(path);
   const bool is_device = is_device_or_pipe(target);
   impl_ = std::make_unique<Impl>(path, target, create_temporary(is_device ? temporary_files() / "-" : target));
-  if (!is_device) keep_permissions(impl_->own.file, target);
+  if (!is_device) keep_permissions(impl_->file, target);
 }
 
 AtomicFile::AtomicFile(const fs::path& path, const fs::path& under_way) {
   check_writable(path);
   // Created before the file, which would remain if there were no memory for this object.
-  impl_ = std::make_unique<Impl>(path, follow_links(path), NewFile{File(-1), under_way});
+  impl_ = std::make_unique<Impl>(path, follow_links(path), std::pair(File(-1), under_way));
   impl_->is_kept = true;
-  File& file = impl_->own.file;
+  File& file = impl_->file;
   file = File(::open(under_way.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, kNewFileMode));
   if (file.get() < 0 && errno == ELOOP) fail(under_way, "is a symbolic link; remove it");
   if (file.get() < 0) fail_errno(under_way, "cannot create the file");
@@ -278,15 +277,14 @@ void AtomicFile::resize(std::uint64_t size) {
 
 void AtomicFile::commit() {
   if (is_device_or_pipe(impl_->target)) return impl_->copy_to_target();
-  NewFile& own = impl_->own;
-  const fs::path folder = folder_of(impl_->target);
+  const fs::path folder = folder_of(impl_->target);  // needs memory, so it precedes the new name
   if (interrupted()) throw Cancelled();
-  if (::fsync(own.file.get()) != 0) fail_errno(impl_->path, "cannot write");
-  if (own.name.empty()) impl_->link();
+  if (::fsync(impl_->descriptor()) != 0) fail_errno(impl_->path, "cannot write");
+  if (impl_->name.empty()) impl_->link();
   // The file is closed and unlocked only after it has its final name, so no other run takes it for unfinished.
-  if (::rename(own.name.c_str(), impl_->target.c_str()) != 0)
+  if (::rename(impl_->name.c_str(), impl_->target.c_str()) != 0)
     fail_errno(impl_->path, "cannot rename the finished file");
-  own.name.clear();
+  impl_->name.clear();
   sync_folder(folder, impl_->path);
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/locale/utf.hpp>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -22,28 +23,6 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t";
 constexpr std::size_t kMessageBytes = 80;
-
-/// A character, and its number of bytes; 0 bytes if the text does not begin with UTF-8.
-struct Character {
-  std::uint32_t code = 0;
-  std::size_t bytes = 0;
-};
-
-Character first_character(std::string_view text) {
-  const auto byte = [text](std::size_t i) { return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i])); };
-  const std::uint32_t lead = byte(0);
-  if (lead < 0x80U) return {lead, 1};
-  const std::size_t bytes = lead < 0xC2U ? 0 : lead < 0xE0U ? 2 : lead < 0xF0U ? 3 : lead < 0xF5U ? 4 : 0;
-  if (bytes == 0 || text.size() < bytes) return {};
-  std::uint32_t code = lead & (0xFFU >> (bytes + 1));
-  for (std::size_t i = 1; i < bytes; ++i) {
-    if ((byte(i) & 0xC0U) != 0x80U) return {};
-    code = code << 6U | (byte(i) & 0x3FU);
-  }
-  const bool is_overlong = (bytes == 3 && code < 0x800U) || (bytes == 4 && code < 0x10000U);
-  const bool is_surrogate = code >= 0xD800U && code <= 0xDFFFU;
-  return is_overlong || is_surrogate || code > 0x10FFFFU ? Character{} : Character{code, bytes};
-}
 
 bool is_control(std::uint32_t code) {
   const bool is_ascii = (code < 0x20U && code != '\t') || code == 0x7FU;
@@ -84,9 +63,7 @@ std::vector<std::string_view> split_lines(std::string_view text) {
 
 std::string lower_case(std::string_view text) {
   std::string lower(text);
-  for (char& c : lower) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   return lower;
 }
 
@@ -167,13 +144,14 @@ std::string one_line(std::string_view text) {
 }
 
 std::string printable_line(std::string_view text) {
+  namespace utf = boost::locale::utf;
   std::string line;
-  while (!text.empty()) {
-    const Character first = first_character(text);
-    const bool is_shown = first.bytes > 0 && !is_control(first.code);
-    const std::string_view bytes = text.substr(0, first.bytes > 0 ? first.bytes : 1);
-    line += is_shown ? bytes : "?";
-    text.remove_prefix(bytes.size());
+  for (const char* next = text.data(); next != text.data() + text.size();) {
+    const char* const start = next;
+    const utf::code_point code = utf::utf_traits<char>::decode(next, text.data() + text.size());
+    const bool is_utf8 = code != utf::illegal && code != utf::incomplete;
+    if (!is_utf8) next = start + 1;
+    line += is_utf8 && !is_control(code) ? std::string_view(start, static_cast<std::size_t>(next - start)) : "?";
   }
   return line;
 }

@@ -1,6 +1,5 @@
 #include "device/context.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <string_view>
@@ -28,15 +27,6 @@ constexpr const char* kTooFewThreads =
 [[noreturn]] void fail_without_driver() {
   if (lacks_addresses()) throw MemoryError("out of memory: too little is left to load a Vulkan driver");
   throw DeviceError(kNoDriver);
-}
-
-bool has_validation_layer() {
-  std::uint32_t count = 0;
-  check(vkEnumerateInstanceLayerProperties(&count, nullptr), "listing the layers");
-  std::vector<VkLayerProperties> layers(count);
-  check(vkEnumerateInstanceLayerProperties(&count, layers.data()), "listing the layers");
-  return std::ranges::any_of(
-      layers, [](const VkLayerProperties& layer) { return std::string_view(layer.layerName) == kValidationLayer; });
 }
 
 VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
@@ -75,10 +65,6 @@ std::vector<std::string> ValidationLog::messages() const {
 }
 
 Instance::Instance(ValidationLog* log) {
-  if (log && !has_validation_layer()) {
-    throw DeviceError(std::string("validation is wanted, but the layer ") + kValidationLayer +
-                      " is not installed (on Debian, vulkan-validationlayers)");
-  }
   if (lacks_threads() && !lacks_addresses()) throw MemoryError(kTooFewThreads);
   const VkApplicationInfo application{
       .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .pApplicationName = "dolp", .apiVersion = VK_API_VERSION_1_2};
@@ -97,6 +83,10 @@ Instance::Instance(ValidationLog* log) {
     info.ppEnabledLayerNames = &kValidationLayer;
   }
   const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
+  if (log && result == VK_ERROR_LAYER_NOT_PRESENT) {
+    throw DeviceError(std::string("validation is wanted, but the layer ") + kValidationLayer +
+                      " is not installed (on Debian, vulkan-validationlayers)");
+  }
   if (result == VK_ERROR_INCOMPATIBLE_DRIVER) fail_without_driver();
   if (result == VK_ERROR_OUT_OF_HOST_MEMORY) throw DeviceError(kDriverNotLoaded);
   check(result, "creating the instance");

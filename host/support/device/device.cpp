@@ -121,7 +121,6 @@ Device::Device(VkPhysicalDevice physical, bool float64) {
   limits_ = properties.limits;
   local_size_ = describe(physical).local_size;
   vkGetPhysicalDeviceMemoryProperties(physical, &memory_);
-  heap_bytes_ = largest_device_heap(memory_);
 
   const float priority = 1.0F;
   const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,

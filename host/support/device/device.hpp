@@ -45,8 +45,6 @@ class Device {
   VkQueue queue() const { return queue_; }
   std::uint32_t queue_family() const { return queue_family_; }
   const VkPhysicalDeviceLimits& limits() const { return limits_; }
-  /// Bytes of the largest heap of the device's own memory.
-  VkDeviceSize heap_bytes() const { return heap_bytes_; }
   /// Invocations of a workgroup.
   std::uint32_t local_size() const { return local_size_; }
   /// Valid bits of the queue's timestamps; 0: the queue has no timestamps.
@@ -63,7 +61,6 @@ class Device {
   std::uint32_t local_size_ = 0;
   VkPhysicalDeviceLimits limits_{};
   VkPhysicalDeviceMemoryProperties memory_{};
-  VkDeviceSize heap_bytes_ = 0;
 };
 
 }  // namespace dolp::vulkan

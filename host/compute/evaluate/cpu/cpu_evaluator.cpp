@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "base/parallel_ranges.hpp"
 #include "base/processor.hpp"
 #include "base/stopwatch.hpp"
@@ -25,10 +25,7 @@ std::unique_ptr<CpuKernel> make_kernel(const KernelData& data, bool in_double) {
   return in_double ? make_cpu_kernel_double(data) : make_cpu_kernel_float(data);
 }
 
-double unit_roundoff_of(bool in_double) {
-  return in_double ? 0.5 * std::numeric_limits<double>::epsilon()
-                   : 0.5 * static_cast<double>(std::numeric_limits<float>::epsilon());
-}
+double unit_roundoff_of(bool in_double) { return in_double ? kDoubleRoundoff : kFloatRoundoff; }
 
 std::vector<std::size_t> wanted_entries(const MomentsRequest& request) {
   std::vector<std::size_t> entries;
@@ -58,7 +55,7 @@ std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData&
     const auto twice = std::ranges::unique(shapes);
     shapes.erase(twice.begin(), twice.end());
     kernel.build_masking_tables(std::move(shapes));
-    const auto one = [&](std::size_t i) {
+    const auto compute_entry = [&](std::size_t i) {
       const MomentsEntry entry = data[entries[i]];
       std::vector<double> columns(column_sums(data));
       const kernel::MomentsNode node = kernel.moments(entry, columns);
@@ -67,7 +64,7 @@ std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData&
     const Progress of_all = [&](std::size_t done, std::size_t) {
       return !progress || progress(before + done, all.size());
     };
-    parallel_for(entries.size(), one, of_all);
+    parallel_for(entries.size(), compute_entry, of_all);
     before += entries.size();
   }
   return moments;
@@ -78,7 +75,7 @@ std::vector<Moments> by_slope_samples(const MomentsRequest& request, const Kerne
                                       double unit_roundoff, const Progress& progress) {
   const SlopeSampling sampling(data);
   std::vector<Moments> moments(request.size());
-  const auto one = [&](std::size_t direction) {
+  const auto compute_direction = [&](std::size_t direction) {
     for (SampledEntries& entries : sampled_entries(request, data, direction, direction + 1)) {
       sampling.compute(std::move(entries), kernel, unit_roundoff, moments);
     }
@@ -87,7 +84,7 @@ std::vector<Moments> by_slope_samples(const MomentsRequest& request, const Kerne
   const Progress of_entries = [&](std::size_t done, std::size_t all) {
     return !progress || progress(wanted * done / all, wanted);
   };
-  parallel_for(data.directions, one, of_entries);
+  parallel_for(data.directions, compute_direction, of_entries);
   return moments;
 }
 
@@ -120,11 +117,11 @@ std::vector<ScatteringMatrix> CpuEvaluator::scatter(const ScatteringRequest& req
   const bool is_double = request.precision == Precision::kDouble;
   const std::unique_ptr<CpuKernel> kernel = make_kernel(plan.data(), is_double);
   std::vector<ScatteringMatrix> matrices(request.entries.size());
-  const auto one = [&](std::size_t i) {
+  const auto compute_beam = [&](std::size_t i) {
     const Beam beam = plan(request.entries[i]);
     matrices[i] = plan.matrix(kernel->mueller(beam.node), beam, request.entries[i], unit_roundoff_of(is_double));
   };
-  parallel_for(matrices.size(), one, progress);
+  parallel_for(matrices.size(), compute_beam, progress);
   note(is_double, seconds_since(start));
   return matrices;
 }

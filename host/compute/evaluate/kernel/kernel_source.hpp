@@ -90,7 +90,7 @@ struct KernelSource {
   real2 rule_node(int i) const { return rule_nodes[static_cast<std::size_t>(i)]; }
   real4 masking_node(uint i) const { return masking_table[i]; }
   void store_masking_node(uint i, real4 node) { masking_table[i] = node; }
-  void store_column(uint place, real value) { columns_out()[place] = value; }
+  void store_column(uint position, real value) { columns_out()[position] = value; }
   /// The columns of the thread's last piece.
   std::span<real> columns_out() const {
     thread_local std::vector<real> columns;
@@ -133,8 +133,8 @@ class SourceKernel final : public CpuKernel {
         convert_reals<real, KernelSource::ThetaNode, double>(data_.thetas[static_cast<std::size_t>(slope.theta)]);
     const auto index =
         convert_reals<real, KernelSource::IndexNode, double>(data_.indices[static_cast<std::size_t>(slope.index)]);
-    const auto own = convert_reals<real, KernelSource::SlopeNode, double>(slope);
-    const auto result = source_.azimuths_of(rule_, theta, index, own);
+    const auto slope_node = convert_reals<real, KernelSource::SlopeNode, double>(slope);
+    const auto result = source_.azimuths_of(rule_, theta, index, slope_node);
     for (std::size_t k = 0; k < data_.column_count(); ++k) copy_column(k, result, columns.subspan(2 * k));
     return convert_reals<double, kernel::AzimuthNode, real>(result.node);
   }
@@ -145,7 +145,7 @@ class SourceKernel final : public CpuKernel {
   }
 
  private:
-  static uint table_at(std::size_t place) { return static_cast<uint>(place * KernelSource::kMaskingNodes); }
+  static uint table_at(std::size_t position) { return static_cast<uint>(position * KernelSource::kMaskingNodes); }
   uint table(std::uint32_t shape) const {
     return table_at(static_cast<std::size_t>(std::ranges::lower_bound(shapes_, shape) - shapes_.begin()));
   }

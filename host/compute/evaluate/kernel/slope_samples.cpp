@@ -35,7 +35,7 @@ struct SampleRequest {
 struct End {
   double slope = 0.0;
   std::uint32_t direction_piece = 0;  // the last breakpoint at or before this end
-  bool is_own = false;                // whether this end is that breakpoint
+  bool is_breakpoint = false;         // whether this end is that breakpoint
 };
 
 // Factors of the weights of the sampled slopes, shared by all shapes of one width.
@@ -110,7 +110,7 @@ struct SlopeSampling::Impl {
 
   KernelSource::Task task_of(std::uint32_t theta, std::span<const End> ends, std::size_t piece) {
     const auto has_root = [&](const End& end, unsigned bit) {
-      return end.is_own && (data.pieces[theta].roots[end.direction_piece] & bit) != 0;
+      return end.is_breakpoint && (data.pieces[theta].roots[end.direction_piece] & bit) != 0;
     };
     KernelSource::Task task{};
     const std::size_t last = ends.size() - 1;
@@ -136,9 +136,9 @@ struct SlopeSampling::Impl {
     for (std::size_t i = 0; i < corners.size(); ++i) {
       KernelSource::Row row{};
       row.shape[0] = std::bit_cast<KernelSource::ShapeNode>(corners[i]);
-      const KernelSource::Piece own = source.make_piece(rule, theta, row, index, task);
-      requests[i].digits = own.digits;
-      if (own.order > hardest.order) hardest = own;
+      const KernelSource::Piece candidate = source.make_piece(rule, theta, row, index, task);
+      requests[i].digits = candidate.digits;
+      if (candidate.order > hardest.order) hardest = candidate;
     }
     return hardest;
   }
@@ -148,12 +148,12 @@ struct SlopeSampling::Impl {
     const int first = source.rule_offset(KernelSource::kSectionGauss, order);
     for (int i = 0; i < order; ++i) {
       const auto node = source.rule_node(first + i);
-      const auto place = source.place_on_piece(piece, node.x);
-      const auto hyperbolic = source.sinh_cosh(piece.start + piece.extent * place.x);
+      const auto on_piece = source.position_on_piece(piece, node.x);
+      const auto hyperbolic = source.sinh_cosh(piece.start + piece.extent * on_piece.x);
       const double scale = corners.front().scale;
       SampledSlope slope;
       slope.t = scale * hyperbolic.x;
-      slope.dt = 2.0 * node.y * scale * hyperbolic.y * piece.extent * place.y;
+      slope.dt = 2.0 * node.y * scale * hyperbolic.y * piece.extent * on_piece.y;
       for (std::size_t j = 0; j < corners.size(); ++j) {
         if (requests[j].digits <= slope.digits) continue;  // satisfied already
         const auto shape = std::bit_cast<KernelSource::ShapeNode>(corners[j]);
@@ -182,27 +182,28 @@ struct SlopeSampling::Impl {
 
   // Sum of a rule over a piece with `share` of the facets. Normalising by the known share cancels the error of the
   // density itself and every common factor of the weights.
-  static kernel::AzimuthNode sum_of(std::uint32_t first, std::uint32_t count, const Eigen::ArrayXd& own, double share,
-                                    std::span<const kernel::AzimuthNode> azimuths) {
+  static kernel::AzimuthNode sum_of(std::uint32_t first, std::uint32_t count, const Eigen::ArrayXd& shape_weights,
+                                    double share, std::span<const kernel::AzimuthNode> azimuths) {
     using Azimuths = Eigen::Matrix<double, sizeof(kernel::AzimuthNode) / sizeof(double), Eigen::Dynamic>;
     const Eigen::Map<const Azimuths> all(&azimuths[first].r_i, Azimuths::RowsAtCompileTime, count);
-    const double mass = own.segment(first, count).sum();
+    const double mass = shape_weights.segment(first, count).sum();
     std::array<double, Azimuths::RowsAtCompileTime> sums{};
     Eigen::Map<Eigen::Matrix<double, Azimuths::RowsAtCompileTime, 1>>(sums.data()).noalias() =
-        all.lazyProduct(own.segment(first, count).matrix()) * (mass > 0.0 ? share / (KernelSource::kPi * mass) : 0.0);
+        all.lazyProduct(shape_weights.segment(first, count).matrix()) *
+        (mass > 0.0 ? share / (KernelSource::kPi * mass) : 0.0);
     return std::bit_cast<kernel::AzimuthNode>(sums);
   }
 
   // Adds the sums over the columns of a piece, by both rules, to `sums`, and the difference of the rules.
-  void add_columns(const SampledPiece& piece, const Eigen::ArrayXd& own, double share, std::span<const double> azimuths,
-                   std::span<double> sums) {
+  void add_columns(const SampledPiece& piece, const Eigen::ArrayXd& shape_weights, double share,
+                   std::span<const double> azimuths, std::span<double> sums) {
     const auto functions = static_cast<Eigen::Index>(sums.size() / DOLP_COLUMN_PARTS);
     if (functions == 0) return;
     const bool has_sky = !data.response;
-    const Eigen::Map<const Eigen::MatrixXd> all(azimuths.data(), 2 * functions, own.size());
+    const Eigen::Map<const Eigen::MatrixXd> all(azimuths.data(), 2 * functions, shape_weights.size());
     const auto sum_of_rule = [&](std::uint32_t first, std::uint32_t count) -> Eigen::VectorXd {
-      const double mass = own.segment(first, count).sum();
-      return all.middleCols(first, count) * own.segment(first, count).matrix() *
+      const double mass = shape_weights.segment(first, count).sum();
+      return all.middleCols(first, count) * shape_weights.segment(first, count).matrix() *
              (mass > 0.0 ? share / (KernelSource::kPi * mass) : 0.0);
     };
     const Eigen::VectorXd fine = sum_of_rule(piece.first, piece.fine);
@@ -220,7 +221,8 @@ struct SlopeSampling::Impl {
   // receives the columns of the data.
   kernel::MomentsNode moments_of(const SlopeSamples& samples, const KernelSource::ShapeNode& shape,
                                  const SlopeWeights& weights, std::span<const kernel::AzimuthNode> azimuths,
-                                 std::span<const double> of_columns, Eigen::ArrayXd& own, std::span<double> columns) {
+                                 std::span<const double> of_columns, Eigen::ArrayXd& shape_weights,
+                                 std::span<double> columns) {
     std::ranges::fill(columns, 0.0);
     const double factor = source.exponent_factor(shape);
     const auto has_facets = [&](const SampledPiece& piece) {
@@ -229,16 +231,16 @@ struct SlopeSampling::Impl {
     const auto end = std::ranges::partition_point(samples.pieces, has_facets);
     const SampledPiece& last = *(end - 1);
     const auto count = static_cast<Eigen::Index>(last.first + last.fine + last.coarse);
-    own.head(count) = weights.common.head(count) * (-factor * weights.exponent.head(count)).exp();
+    shape_weights.head(count) = weights.common.head(count) * (-factor * weights.exponent.head(count)).exp();
     kernel::MomentsNode moments{};
     double from = 0.0;
     for (auto piece = samples.pieces.begin(); piece != end; ++piece) {
       const double to = factor * source.common_exponent(piece->end / shape.m);
       const double share = -std::exp(-from) * std::expm1(from - to);
       from = to;
-      const auto fine = sum_of(piece->first, piece->fine, own, share, azimuths);
-      const auto coarse = sum_of(piece->first + piece->fine, piece->coarse, own, share, azimuths);
-      add_columns(*piece, own, share, of_columns, columns);
+      const auto fine = sum_of(piece->first, piece->fine, shape_weights, share, azimuths);
+      const auto coarse = sum_of(piece->first + piece->fine, piece->coarse, shape_weights, share, azimuths);
+      add_columns(*piece, shape_weights, share, of_columns, columns);
       const auto apart = [](double a, double b) { return std::abs(a - b); };
       const bool is_steep = piece->end > slope_with_bounces(DOLP_MOST_BOUNCES);
       add_piece(moments,
@@ -301,12 +303,12 @@ void SlopeSampling::integrate(const SlopeSamples& samples, const SampledAzimuths
   double evaluations = 0.0;
   for (const kernel::AzimuthNode& azimuth : azimuths) evaluations += azimuth.evaluations;
   SlopeWeights weights;
-  Eigen::ArrayXd own(static_cast<Eigen::Index>(samples.slopes.size()));
+  Eigen::ArrayXd shape_weights(static_cast<Eigen::Index>(samples.slopes.size()));
   std::vector<double> columns(column_sums(data));
   for (const std::uint32_t shape : shapes) {
     const auto node = std::bit_cast<KernelSource::ShapeNode>(data.shapes[shape]);
     if (node.m != weights.m) weights = impl_->weights_of(samples, node);
-    kernel::MomentsNode sums = impl_->moments_of(samples, node, weights, azimuths, of_columns, own, columns);
+    kernel::MomentsNode sums = impl_->moments_of(samples, node, weights, azimuths, of_columns, shape_weights, columns);
     sums.deficit += data.thetas[theta].c * impl_->source.slope_tail(node, samples.cut);
     sums.evaluations = evaluations / static_cast<double>(shapes.size());
     moments[data.entry_of(direction, index, shape)] =
@@ -334,11 +336,11 @@ std::vector<SampledEntries> sampled_entries(const MomentsRequest& request, const
       continue;
     }
     for (std::uint32_t index = 0; index < data.indices.size(); ++index) {
-      SampledEntries own{direction, data.theta_of(direction, index, 0), index, {}};
+      SampledEntries entries{direction, data.theta_of(direction, index, 0), index, {}};
       for (std::uint32_t shape = 0; shape < data.shapes.size(); ++shape) {
-        if (request.is_wanted(data.entry_of(direction, index, shape))) own.shapes.push_back(shape);
+        if (request.is_wanted(data.entry_of(direction, index, shape))) entries.shapes.push_back(shape);
       }
-      if (!own.shapes.empty()) sampled.push_back(std::move(own));
+      if (!entries.shapes.empty()) sampled.push_back(std::move(entries));
     }
   }
   return sampled;

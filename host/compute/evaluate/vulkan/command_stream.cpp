@@ -24,18 +24,12 @@ struct BarrierScopes {
   VkAccessFlags from_access, to_access;
 };
 
-BarrierScopes scopes_of(Barrier barrier) {
-  constexpr VkPipelineStageFlags kCompute = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
-  switch (barrier) {
-    case Barrier::kUploadToKernel:
-      return {VK_PIPELINE_STAGE_TRANSFER_BIT, kCompute, VK_ACCESS_TRANSFER_WRITE_BIT, VK_ACCESS_SHADER_READ_BIT};
-    case Barrier::kKernelToKernel:
-      return {kCompute, kCompute, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_SHADER_READ_BIT};
-    case Barrier::kKernelToHost:
-      break;
-  }
-  return {kCompute, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_HOST_READ_BIT};
-}
+constexpr VkPipelineStageFlags kCompute = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
+/// In the order of Barrier.
+constexpr std::array<BarrierScopes, 3> kScopes = {
+    {{VK_PIPELINE_STAGE_TRANSFER_BIT, kCompute, VK_ACCESS_TRANSFER_WRITE_BIT, VK_ACCESS_SHADER_READ_BIT},
+     {kCompute, kCompute, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_SHADER_READ_BIT},
+     {kCompute, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_HOST_READ_BIT}}};
 
 bool must_stage(const Device& device) {
   constexpr std::uint32_t kAnyType = UINT32_MAX;
@@ -83,7 +77,7 @@ void CommandStream::copy(const Buffer& from, VkBuffer to, VkDeviceSize bytes) {
 
 void CommandStream::barrier(Barrier barrier) {
   if (barrier == Barrier::kUploadToKernel && !std::exchange(has_copies_, false)) return;
-  const BarrierScopes scopes = scopes_of(barrier);
+  const BarrierScopes& scopes = kScopes[static_cast<std::size_t>(barrier)];
   const VkMemoryBarrier memory{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
                                .srcAccessMask = scopes.from_access,
                                .dstAccessMask = scopes.to_access};

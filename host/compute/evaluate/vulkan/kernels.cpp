@@ -20,36 +20,33 @@
 namespace dolp::vulkan {
 namespace {
 
-using Module = std::array<std::span<const std::uint32_t>, 2>;  // in float and in double
-
 /// The SPIR-V module of a variant.
 std::span<const std::uint32_t> module_of(const KernelVariant& variant, bool float64) {
   using namespace spirv;
-  using ByColumns = std::array<Module, 3>;  // modules without columns, with functions of a sky, with responses
-  const ByColumns slopes = {{{slopes_float, slopes_double},
-                             {slopes_sky_float, slopes_sky_double},
-                             {slopes_responses_float, slopes_responses_double}}};
-  const ByColumns moments = {{{moments_float, moments_double},
-                              {moments_sky_float, moments_sky_double},
-                              {moments_responses_float, moments_responses_double}}};
-  const ByColumns rows = {{{moments_rows_float, moments_rows_double},
-                           {moments_sky_rows_float, moments_sky_rows_double},
-                           {moments_responses_rows_float, moments_responses_rows_double}}};
+  using Module = std::array<std::span<const std::uint32_t>, 2>;  // in float and in double
+  // Without columns, with functions of a sky, with responses.
+  const std::array<std::array<Module, 3>, 3> modules = {
+      {{{{slopes_float, slopes_double},
+         {slopes_sky_float, slopes_sky_double},
+         {slopes_responses_float, slopes_responses_double}}},
+       {{{moments_float, moments_double},
+         {moments_sky_float, moments_sky_double},
+         {moments_responses_float, moments_responses_double}}},
+       {{{moments_rows_float, moments_rows_double},
+         {moments_sky_rows_float, moments_sky_rows_double},
+         {moments_responses_rows_float, moments_responses_rows_double}}}}};
+  if (variant.entry == EntryPoint::kMaskingTable) return float64 ? masking_table_double : masking_table_float;
+  if (variant.entry == EntryPoint::kMueller) return float64 ? mueller_double : mueller_float;
   const std::size_t columns = variant.columns == 0 ? 0 : variant.column_kind == DOLP_COLUMNS_SKY ? 1 : 2;
-  switch (variant.entry) {
-    case EntryPoint::kMaskingTable:
-      return float64 ? masking_table_double : masking_table_float;
-    case EntryPoint::kMueller:
-      return float64 ? mueller_double : mueller_float;
-    case EntryPoint::kSlopes:
-      return slopes[columns][float64 ? 1 : 0];
-    case EntryPoint::kMoments:
-      break;
-  }
-  return (variant.width == kRowWidth ? rows : moments)[columns][float64 ? 1 : 0];
+  const std::size_t kind = variant.entry == EntryPoint::kSlopes ? 0 : variant.width == kRowWidth ? 2 : 1;
+  return modules[kind][columns][float64 ? 1 : 0];
 }
 
 constexpr std::uint32_t kWordBytes = sizeof(std::uint32_t);
+
+VkDescriptorType descriptor_type(std::uint32_t binding) {
+  return binding < kStorageCount ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER : VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+}
 
 /// Lets the driver compile a variant of a module.
 UniquePipeline compile(VkDevice device, VkPipelineLayout layout, std::uint32_t local_size,
@@ -135,8 +132,7 @@ void Kernels::create_layouts() {
   std::array<VkDescriptorSetLayoutBinding, kStorageCount + kTexelCount> bindings{};
   for (std::uint32_t i = 0; i < bindings.size(); ++i) {
     bindings[i] = {.binding = i,
-                   .descriptorType =
-                       i < kStorageCount ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER : VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
+                   .descriptorType = descriptor_type(i),
                    .descriptorCount = 1,
                    .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT};
   }
@@ -179,20 +175,21 @@ void Kernels::bind(const Bindings& bindings) {
   std::array<VkDescriptorBufferInfo, kStorageCount> infos{};
   std::array<VkBufferView, kTexelCount> views = bindings.texels;
   std::vector<VkWriteDescriptorSet> writes;
-  VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, .dstSet = set_, .descriptorCount = 1};
-  write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-  for (std::uint32_t i = 0; i < kStorageCount; ++i) {
-    infos[i] = {is_given(bindings.buffers[i]) ? bindings.buffers[i] : *any_buffer, 0, VK_WHOLE_SIZE};
-    write.dstBinding = i;
-    write.pBufferInfo = &infos[i];
-    writes.push_back(write);
-  }
-  write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
-  for (std::uint32_t i = 0; i < kTexelCount && any_view != bindings.texels.end(); ++i) {
-    if (!is_given(views[i])) views[i] = *any_view;
-    write.dstBinding = kStorageCount + i;
-    write.pTexelBufferView = &views[i];
-    writes.push_back(write);
+  for (std::uint32_t i = 0; i < kStorageCount + (any_view != bindings.texels.end() ? kTexelCount : 0); ++i) {
+    VkWriteDescriptorSet& write =
+        writes.emplace_back(VkWriteDescriptorSet{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                                 .dstSet = set_,
+                                                 .dstBinding = i,
+                                                 .descriptorCount = 1,
+                                                 .descriptorType = descriptor_type(i)});
+    if (i < kStorageCount) {
+      infos[i] = {is_given(bindings.buffers[i]) ? bindings.buffers[i] : *any_buffer, 0, VK_WHOLE_SIZE};
+      write.pBufferInfo = &infos[i];
+    } else {
+      VkBufferView& view = views[i - kStorageCount];
+      if (!is_given(view)) view = *any_view;
+      write.pTexelBufferView = &view;
+    }
   }
   vkUpdateDescriptorSets(device_.get(), static_cast<std::uint32_t>(writes.size()), writes.data(), 0, nullptr);
 }

@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "base/parallel_ranges.hpp"
 #include "plan/kernel_data.hpp"
 
@@ -48,16 +49,10 @@ class Packing {
   VkFormat masking_texels() const { return float64_ ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT; }
   std::size_t texels_of_table() const { return masking_nodes() * (float64_ ? 2 : 1); }
   /// Half of the relative spacing of the numbers.
-  double unit_roundoff() const { return float64_ ? 0x1p-53 : 0x1p-24; }
-
-  /// Appends one structure; numbers beyond the range of float become infinite.
-  template <class Node>
-  void append(const Node& node, std::vector<std::byte>& bytes) const {
-    bytes.resize(bytes.size() + node_bytes<Node>());
-    write(node, std::span(bytes).last(node_bytes<Node>()));
-  }
+  double unit_roundoff() const { return float64_ ? kDoubleRoundoff : kFloatRoundoff; }
 
   /// Fills `bytes` with the structures node_of(0), ..., node_of(count - 1), on all cores, evaluated in any order.
+  /// Numbers beyond the range of float become infinite.
   template <class NodeOf>
   void pack(std::size_t count, const NodeOf& node_of, std::vector<std::byte>& bytes) const {
     constexpr std::size_t kNodesAtOnce = 8192;

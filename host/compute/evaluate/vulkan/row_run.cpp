@@ -23,39 +23,27 @@ class RowRun final : public Run<Moments> {
         rows_(tiles_.rows),
         thetas_(data_.thetas.size()),
         indices_(request.optics.size()) {
-    const Device& device = context_.device;
     const std::size_t invocations = tiles_.sizes.invocations;
     const std::size_t shapes = tiles_.sizes.shapes;
-    theta_buffer_.emplace(input_buffer<kernel::ThetaNode>(std::min(invocations, data_.thetas.size())));
-    shape_buffer_.emplace(input_buffer<kernel::ShapeNode>(shapes));
-    index_buffer_.emplace(input_buffer<kernel::IndexNode>(std::min(invocations, data_.indices.size())));
-    task_buffer_.emplace(device, invocations * sizeof(TaskWords), context_.staged_uploads);
-    masking_buffer_.emplace(device, shapes * packing_.masking_nodes() * packing_.node_bytes<MaskingNode>(),
+    add_inputs<kernel::ThetaNode>(DOLP_BINDING_THETAS, std::min(invocations, data_.thetas.size()));
+    add_inputs<kernel::ShapeNode>(DOLP_BINDING_SHAPES, shapes);
+    add_inputs<kernel::IndexNode>(DOLP_BINDING_INDICES, std::min(invocations, data_.indices.size()));
+    add_input(DOLP_BINDING_TASKS, invocations * sizeof(TaskWords));
+    masking_buffer_.emplace(context_.device, shapes * packing_.masking_nodes() * packing_.node_bytes<MaskingNode>(),
                             MemoryUse::kDeviceOnly, packing_.masking_texels());
-    moments_buffer_.emplace(device,
-                            invocations * rows_.width * packing_.output_bytes<kernel::MomentsNode>(column_sums(data_)),
-                            MemoryUse::kReadback);
-
-    Kernels::Bindings bindings;
-    create_rule(data_, bindings);
-    bindings.buffers[DOLP_BINDING_THETAS] = theta_buffer_->get();
-    bindings.buffers[DOLP_BINDING_SHAPES] = shape_buffer_->get();
-    bindings.buffers[DOLP_BINDING_INDICES] = index_buffer_->get();
-    bindings.buffers[DOLP_BINDING_TASKS] = task_buffer_->get();
-    bindings.buffers[DOLP_BINDING_MASKING_TABLE] = masking_buffer_->get();
-    bindings.texels[DOLP_BINDING_MASKING_NODES - kStorageCount] = masking_buffer_->texels();
-    bindings.buffers[DOLP_BINDING_MOMENTS] = moments_buffer_->get();
-    context_.kernels.bind(bindings);
+    bindings_.buffers[DOLP_BINDING_MASKING_TABLE] = masking_buffer_->get();
+    bindings_.texels[DOLP_BINDING_MASKING_NODES - kStorageCount] = masking_buffer_->texels();
+    add_results(DOLP_BINDING_MOMENTS, result_bytes(invocations), data_, moments_variant(data_, rows_.width));
   }
 
   void create_pipelines() override {
     const KernelVariant tables = masking_table_variant(data_);
-    std::future<void> made;
+    std::future<void> table_pipeline;
     if (data_.needs_masking_table() && !context_.kernels.has(tables)) {
-      made = std::async(std::launch::async, [&] { context_.kernels.pipeline(tables); });
+      table_pipeline = std::async(std::launch::async, [&] { context_.kernels.pipeline(tables); });
     }
-    context_.kernels.pipeline(moments_variant(data_, rows_.width));
-    if (made.valid()) made.get();
+    TiledRun::create_pipelines();
+    if (table_pipeline.valid()) table_pipeline.get();
   }
 
   std::optional<std::vector<Moments>> compute(const Progress& progress) override {
@@ -70,23 +58,26 @@ class RowRun final : public Run<Moments> {
         if (first > 0) context_.stream.begin();
         const auto tile = std::span<const RowPiece>(pieces).subspan(first, count);
         upload_tile(block, tile);
-        run_kernel(moments_variant(data_, rows_.width), tile.size(), data_);
+        run_kernel(tile.size(), result_bytes(tile.size()), data_);
         add_pieces(tile, results);
         const double of_block = static_cast<double>(first + count) / static_cast<double>(pieces.size());
         const double share = (block.first_row + block.row_count * of_block) / static_cast<double>(rows_.rows.size());
-        if (progress && !progress(static_cast<std::size_t>(share * static_cast<double>(wanted)), wanted))
-          return std::nullopt;
+        if (!goes_on(progress, share, wanted)) return std::nullopt;
       }
     }
     return moments_of(results);
   }
 
  private:
+  std::size_t result_bytes(std::size_t invocations) const {
+    return invocations * rows_.width * packing_.output_bytes<kernel::MomentsNode>(column_sums(data_));
+  }
+
   /// Begins a submission with the inputs that all tiles of a block share; the first tile continues it.
   void begin_block(const Block& block) {
     CommandStream& stream = context_.stream;
     stream.begin();
-    upload(*shape_buffer_, block.shape_count, [&](std::size_t i) { return rows_.shapes[block.first_shape + i]; });
+    upload(DOLP_BINDING_SHAPES, block.shape_count, [&](std::size_t i) { return rows_.shapes[block.first_shape + i]; });
     upload_rule(data_);
     if (!data_.needs_masking_table()) return;
     stream.barrier(Barrier::kUploadToKernel);
@@ -101,24 +92,22 @@ class RowRun final : public Run<Moments> {
     indices_.clear();
     std::vector<TaskWords> words;
     words.reserve(pieces.size());
-    for (const RowPiece& own : pieces) {
-      const Row& row = rows_.rows[own.row];
+    for (const RowPiece& row_piece : pieces) {
+      const Row& row = rows_.rows[row_piece.row];
       const Chunk& chunk = rows_.chunks[row.chunk];
       const std::uint32_t theta = rows_.theta_of(data_, row);
       words.push_back({thetas_(theta), chunk.first - block.first_shape, indices_(row.index),
-                       task_word(data_.pieces[theta], own.piece, chunk.count)});
+                       task_word(data_.pieces[theta], row_piece.piece, chunk.count)});
     }
-    task_buffer_->write(std::as_bytes(std::span(words)), context_.stream);
+    inputs_[DOLP_BINDING_TASKS]->write(std::as_bytes(std::span(words)), context_.stream);
     const std::span<const std::uint32_t> thetas = thetas_.used(), indices = indices_.used();
-    upload(*theta_buffer_, thetas.size(), [&](std::size_t i) { return data_.thetas[thetas[i]]; });
-    upload(*index_buffer_, indices.size(), [&](std::size_t i) { return data_.indices[indices[i]]; });
+    upload(DOLP_BINDING_THETAS, thetas.size(), [&](std::size_t i) { return data_.thetas[thetas[i]]; });
+    upload(DOLP_BINDING_INDICES, indices.size(), [&](std::size_t i) { return data_.indices[indices[i]]; });
   }
 
   void add_pieces(std::span<const RowPiece> pieces, std::span<kernel::MomentsNode> results) {
     const std::size_t members = pieces.size() * rows_.width;
     const std::size_t per_entry = column_sums(data_);
-    scratch_.resize(members * packing_.output_bytes<kernel::MomentsNode>(per_entry));
-    moments_buffer_->read(scratch_);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       cost_.evaluations += packing_.read<kernel::MomentsNode>(scratch_, i * rows_.width).evaluations;
     }
@@ -134,14 +123,14 @@ class RowRun final : public Run<Moments> {
         for (std::uint32_t g = 0; g < rows_.chunks[of_piece.chunk].count; ++g) {
           auto node = packing_.read<kernel::MomentsNode>(scratch_, i * rows_.width + g);
           node.evaluations /= of_piece.used;
-          const std::size_t place = pieces[i].row * std::size_t{rows_.width} + g;
-          add_piece(results[place], node);
+          const std::size_t member = pieces[i].row * std::size_t{rows_.width} + g;
+          add_piece(results[member], node);
           packing_.read_numbers(scratch_,
                                 members * packing_.node_bytes<kernel::MomentsNode>() +
                                     (i * rows_.width + g) * per_entry * packing_.real_bytes(),
                                 columns);
           add_columns(data_, std::span<const double>(columns),
-                      std::span(column_results_).subspan(place * per_entry, per_entry));
+                      std::span(column_results_).subspan(member * per_entry, per_entry));
         }
       }
     });
@@ -172,8 +161,7 @@ class RowRun final : public Run<Moments> {
   const Rows& rows_;
   Renumbering thetas_, indices_;
   std::vector<double> column_results_;  ///< DOLP_COLUMN_PARTS sums per column and member
-  std::optional<InputBuffer> theta_buffer_, shape_buffer_, index_buffer_, task_buffer_;
-  std::optional<Buffer> masking_buffer_, moments_buffer_;
+  std::optional<Buffer> masking_buffer_;
 };
 
 }  // namespace

@@ -11,14 +11,9 @@ class ScatteringRun final : public Run<ScatteringMatrix> {
  public:
   ScatteringRun(const KernelContext& context, const ScatteringRequest& request, const VulkanOptions& options)
       : Run(context, request.precision), request_(request), tiles_(request, context.description, options) {
-    beam_buffer_.emplace(input_buffer<kernel::BeamNode>(tiles_.beams));
-    mueller_buffer_.emplace(context_.device, tiles_.beams * packing_.node_bytes<kernel::MuellerNode>(),
-                            MemoryUse::kReadback);
-    Kernels::Bindings bindings;
-    create_rule(tiles_.plan.data(), bindings);
-    bindings.buffers[DOLP_BINDING_BEAMS] = beam_buffer_->get();
-    bindings.buffers[DOLP_BINDING_MUELLERS] = mueller_buffer_->get();
-    context_.kernels.bind(bindings);
+    add_inputs<kernel::BeamNode>(DOLP_BINDING_BEAMS, tiles_.beams);
+    add_results(DOLP_BINDING_MUELLERS, tiles_.beams * packing_.node_bytes<kernel::MuellerNode>(), tiles_.plan.data(),
+                mueller_variant(request));
   }
 
   std::optional<std::vector<ScatteringMatrix>> compute(const Progress& progress) override {
@@ -35,20 +30,12 @@ class ScatteringRun final : public Run<ScatteringMatrix> {
     return matrices;
   }
 
-  void create_pipelines() override { context_.kernels.pipeline(mueller_variant(request_)); }
-
  private:
   void run_tile(std::span<const ScatteringEntry> entries, std::span<ScatteringMatrix> matrices) {
     beams_.clear();
-    scratch_.clear();
-    for (const ScatteringEntry& entry : entries) {
-      beams_.push_back(tiles_.plan(entry));
-      packing_.append(beams_.back().node, scratch_);
-    }
-    beam_buffer_->write(scratch_, context_.stream);
-    run_kernel(mueller_variant(request_), entries.size(), tiles_.plan.data());
-    scratch_.resize(entries.size() * packing_.node_bytes<kernel::MuellerNode>());
-    mueller_buffer_->read(scratch_);
+    for (const ScatteringEntry& entry : entries) beams_.push_back(tiles_.plan(entry));
+    upload(DOLP_BINDING_BEAMS, beams_.size(), [&](std::size_t i) { return beams_[i].node; });
+    run_kernel(entries.size(), entries.size() * packing_.node_bytes<kernel::MuellerNode>(), tiles_.plan.data());
     const auto finish = [&](std::size_t i) {
       const auto node = packing_.read<kernel::MuellerNode>(scratch_, i);
       matrices[i] = tiles_.plan.matrix(node, beams_[i], entries[i], packing_.unit_roundoff());
@@ -59,8 +46,6 @@ class ScatteringRun final : public Run<ScatteringMatrix> {
   const ScatteringRequest& request_;
   BeamTiles tiles_;
   std::vector<Beam> beams_;
-  std::optional<InputBuffer> beam_buffer_;
-  std::optional<Buffer> mueller_buffer_;
 };
 
 }  // namespace

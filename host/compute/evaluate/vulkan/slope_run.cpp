@@ -19,22 +19,12 @@ class SlopeRun final : public Run<Moments> {
         thetas_(data_.thetas.size()),
         indices_(request.optics.size()) {
     const std::size_t slopes = tiles_.slopes;
-    theta_buffer_.emplace(input_buffer<kernel::ThetaNode>(std::min(slopes, data_.thetas.size())));
-    index_buffer_.emplace(input_buffer<kernel::IndexNode>(std::min(slopes, data_.indices.size())));
-    slope_buffer_.emplace(input_buffer<kernel::SlopeNode>(slopes));
-    azimuth_buffer_.emplace(context_.device,
-                            slopes * packing_.output_bytes<kernel::AzimuthNode>(column_azimuths(data_)),
-                            MemoryUse::kReadback);
-    Kernels::Bindings bindings;
-    create_rule(data_, bindings);
-    bindings.buffers[DOLP_BINDING_THETAS] = theta_buffer_->get();
-    bindings.buffers[DOLP_BINDING_INDICES] = index_buffer_->get();
-    bindings.buffers[DOLP_BINDING_SLOPES] = slope_buffer_->get();
-    bindings.buffers[DOLP_BINDING_AZIMUTHS] = azimuth_buffer_->get();
-    context_.kernels.bind(bindings);
+    add_inputs<kernel::ThetaNode>(DOLP_BINDING_THETAS, std::min(slopes, data_.thetas.size()));
+    add_inputs<kernel::IndexNode>(DOLP_BINDING_INDICES, std::min(slopes, data_.indices.size()));
+    add_inputs<kernel::SlopeNode>(DOLP_BINDING_SLOPES, slopes);
+    add_results(DOLP_BINDING_AZIMUTHS, slopes * packing_.output_bytes<kernel::AzimuthNode>(column_azimuths(data_)),
+                data_, slopes_variant(data_));
   }
-
-  void create_pipelines() override { context_.kernels.pipeline(slopes_variant(data_)); }
 
   std::optional<std::vector<Moments>> compute(const Progress& progress) override {
     std::vector<Moments> moments(request_.size());
@@ -55,8 +45,7 @@ class SlopeRun final : public Run<Moments> {
         const double of_batch = static_cast<double>(done) / static_cast<double>(slopes.size());
         const double share = (static_cast<double>(first) + of_batch * static_cast<double>(last - first)) /
                              static_cast<double>(data_.directions);
-        if (progress && !progress(static_cast<std::size_t>(share * static_cast<double>(wanted)), wanted))
-          return std::nullopt;
+        if (!goes_on(progress, share, wanted)) return std::nullopt;
       }
       for (const kernel::AzimuthNode& azimuth : azimuths.nodes) cost_.evaluations += azimuth.evaluations;
       const auto start = std::chrono::steady_clock::now();
@@ -82,13 +71,11 @@ class SlopeRun final : public Run<Moments> {
       node.index = indices_(static_cast<std::uint32_t>(node.index));
     }
     const std::span<const std::uint32_t> thetas = thetas_.used(), indices = indices_.used();
-    upload(*slope_buffer_, nodes_.size(), [&](std::size_t i) { return nodes_[i]; });
-    upload(*theta_buffer_, thetas.size(), [&](std::size_t i) { return data_.thetas[thetas[i]]; });
-    upload(*index_buffer_, indices.size(), [&](std::size_t i) { return data_.indices[indices[i]]; });
-    run_kernel(slopes_variant(data_), slopes.size(), data_);
+    upload(DOLP_BINDING_SLOPES, nodes_.size(), [&](std::size_t i) { return nodes_[i]; });
+    upload(DOLP_BINDING_THETAS, thetas.size(), [&](std::size_t i) { return data_.thetas[thetas[i]]; });
+    upload(DOLP_BINDING_INDICES, indices.size(), [&](std::size_t i) { return data_.indices[indices[i]]; });
     const std::size_t per_entry = column_azimuths(data_);
-    scratch_.resize(slopes.size() * packing_.output_bytes<kernel::AzimuthNode>(per_entry));
-    azimuth_buffer_->read(scratch_);
+    run_kernel(slopes.size(), slopes.size() * packing_.output_bytes<kernel::AzimuthNode>(per_entry), data_);
     const std::size_t behind = slopes.size() * packing_.node_bytes<kernel::AzimuthNode>();
     for (std::size_t i = 0; i < slopes.size(); ++i) {
       azimuths.nodes[slopes[i]] = packing_.read<kernel::AzimuthNode>(scratch_, i);
@@ -101,8 +88,6 @@ class SlopeRun final : public Run<Moments> {
   const KernelData& data_;
   Renumbering thetas_, indices_;
   std::vector<kernel::SlopeNode> nodes_;  ///< the slopes of a tile
-  std::optional<InputBuffer> theta_buffer_, index_buffer_, slope_buffer_;
-  std::optional<Buffer> azimuth_buffer_;
 };
 
 }  // namespace

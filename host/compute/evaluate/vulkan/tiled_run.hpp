@@ -26,49 +26,47 @@ struct KernelContext {
   double tile_timeout_s = 0.0;
 };
 
-/// Cost of a run so far.
-struct RunCost {
-  std::uint64_t dispatches = 0;
-  double evaluations = 0.0;
-  double kernel_s = 0.0;
-  double sums_s = 0.0;  ///< EvaluationReport::sums_s
-};
-
-/// The buffers of a request on the device. The inputs of a tile are recorded, then its kernel runs.
+/// The buffers of a request on the device, by their bindings. The inputs of a tile are recorded, then its kernel runs.
 class TiledRun {
  public:
   virtual ~TiledRun() = default;
   /// Creates the pipelines before the computation, so that their time is measured separately.
-  virtual void create_pipelines() = 0;
-  const RunCost& cost() const { return cost_; }
+  virtual void create_pipelines() { context_.kernels.pipeline(variant_); }
+  const Work& cost() const { return cost_; }
 
  protected:
   TiledRun(const KernelContext& context, Precision precision)
       : context_(context), packing_(precision == Precision::kDouble) {}
 
+  void add_input(std::uint32_t binding, std::size_t bytes, VkFormat texels = VK_FORMAT_UNDEFINED);
   template <class Node>
-  InputBuffer input_buffer(std::size_t count, VkFormat texels = VK_FORMAT_UNDEFINED) const {
-    return {context_.device, count * packing_.node_bytes<Node>(), context_.staged_uploads, texels};
+  void add_inputs(std::uint32_t binding, std::size_t count, VkFormat texels = VK_FORMAT_UNDEFINED) {
+    add_input(binding, count * packing_.node_bytes<Node>(), texels);
   }
+  /// Adds the buffer that the kernel writes, then the buffers of the rule, and binds all buffers.
+  void add_results(std::uint32_t binding, std::size_t bytes, const KernelData& data, const KernelVariant& variant);
+  /// Records the upload of node_of(0), ..., node_of(count - 1).
   template <class NodeOf>
-  void upload(InputBuffer& buffer, std::size_t count, const NodeOf& node_of) {
+  void upload(std::uint32_t binding, std::size_t count, const NodeOf& node_of) {
     packing_.pack(count, node_of, scratch_);
-    buffer.write(scratch_, context_.stream);
+    inputs_[binding]->write(scratch_, context_.stream);
   }
-  /// Makes the buffers of the rule, and adds them to the bindings.
-  void create_rule(const KernelData& data, Kernels::Bindings& bindings);
-  /// Records the upload of the rule.
   void upload_rule(const KernelData& data);
-  /// Runs the kernel on a tile whose inputs are recorded, and waits for it.
-  void run_kernel(const KernelVariant& variant, std::size_t invocations, const KernelData& data);
+  /// Reports the share of the wanted entries that is done. False if the caller of the run cancels it.
+  static bool goes_on(const Progress& progress, double share, std::size_t wanted) {
+    return !progress || progress(static_cast<std::size_t>(share * static_cast<double>(wanted)), wanted);
+  }
+  /// Runs the kernel on a tile whose inputs are recorded, waits for it, and reads the results to `scratch_`.
+  void run_kernel(std::size_t invocations, std::size_t result_bytes, const KernelData& data);
 
   KernelContext context_;
   Packing packing_;
+  KernelVariant variant_;
+  Kernels::Bindings bindings_;
+  std::array<std::optional<InputBuffer>, kStorageCount + kTexelCount> inputs_;
+  std::optional<Buffer> results_;
   std::vector<std::byte> scratch_;
-  RunCost cost_;
-
- private:
-  std::optional<InputBuffer> rule_buffer_, rule_node_buffer_;
+  Work cost_;
 };
 
 template <class Result>

@@ -147,10 +147,10 @@ SlopeBatch SlopeTiles::batch(std::size_t first) const {
 DispatchCount SlopeTiles::count() const {
   DispatchCount count{.tile_invocations = slopes};
   for (std::size_t first = 0; first < data.directions; first += batch_directions()) {
-    const SlopeBatch own = batch(first);
-    count.dispatches += tiles_in(own.in_lockstep.size(), slopes);
-    count.rows += own.samples.size();
-    count.slopes += own.slopes.size();
+    const SlopeBatch slope_batch = batch(first);
+    count.dispatches += tiles_in(slope_batch.in_lockstep.size(), slopes);
+    count.rows += slope_batch.samples.size();
+    count.slopes += slope_batch.slopes.size();
   }
   count.device_bytes = slopes * costs.invocation_bytes + rule_bytes(packing, data);
   return count;

@@ -122,10 +122,7 @@ class VulkanEvaluator::Impl {
     report.setup_s += pipelines_s;
     report.pipelines_s += pipelines_s;
     std::optional<std::vector<Result>> results = run.compute(progress);
-    report.dispatches += run.cost().dispatches;
-    report.evaluations += run.cost().evaluations;
-    report.kernel_s += run.cost().kernel_s;
-    report.sums_s += run.cost().sums_s;
+    report += run.cost();
     note_precision(report.precision, requested == Precision::kDouble);
     run_.reset();
     if (!results) throw Cancelled();

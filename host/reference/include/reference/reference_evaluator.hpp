@@ -19,8 +19,8 @@ struct ReferenceOptions {
 
 /// The independent reference: moments by nested adaptive Gauss-Kronrod quadrature in double, over zenith and azimuth of
 /// the other direction. The masking `integral` is integrated over the facet tilt at every point. Scattering::kMultiple
-/// gives the moments of V-grooves (reference/grooves.hpp), wants_direct adds the direct emission
-/// (reference/direct_emission.hpp); both are integrated over the slopes of the facets.
+/// gives the moments of V-grooves, wants_direct adds the direct emission (reference/moments.hpp); both are integrated
+/// over the slopes of the facets.
 /// Equation: (4), (7), (9)-(13), (15), (16).
 /// Accuracy: relative_tolerance or, if that is larger, a hundredth of the request's tolerance; never more than half of
 /// the request's tolerance. Tolerance 0 means relative_tolerance. With all bounces in steep metal grooves the

@@ -19,9 +19,8 @@
 #include <vector>
 
 #include "reference/adaptive.hpp"
-#include "reference/attenuation.hpp"
 #include "reference/fresnel.hpp"
-#include "reference/hemisphere.hpp"
+#include "reference/moments.hpp"
 #include "reference/slopes.hpp"
 #include "reference/vectors.hpp"
 
@@ -114,9 +113,10 @@ struct SlopeTask {
   std::function<Values<N>(const Values<N>&)> scales;  ///< scales of the integrals, for the goal
   double steepest;                                    ///< upper end of t
   double bends_end;                                   ///< t up to which bends are searched, at most `steepest`
-  double thin_weight;            ///< rows with less weight per v may have the errors of rows with this weight
-  std::function<double()> work;  ///< work done so far, in any unit
-  double most_work;              ///< after this much work no integral is refined
+  /// Rows with less weight per v may have the errors of rows with this weight; 0 if rows may become larger with t.
+  double thin_weight = 0.0;
+  std::function<double()> work = [] { return 0.0; };  ///< work done so far, in any unit
+  double most_work = 1.0;                             ///< after this much work no integral is refined
 };
 
 /// int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi of N functions. N more values follow: the errors of the inner

@@ -1,34 +1,37 @@
-// Interface of host and shaders: bindings, specialization constants, push constants, structures. Both read this file.
-// The structures contain only `real` (float or double). So std430 packs them tightly, and the host may treat an array
-// of them as an array of numbers. Counts stored as `real` are small integers.
+// The interface between host and shaders: bindings, specialization constants, push constants and structures. The
+// shaders and the C++ code of the host include this file. The structures contain only members of type `real` (float or
+// double), so std430 packs them tightly, and the host may treat an array of structures as an array of numbers. Counts
+// that are stored as `real` are small integers.
 
-// ---- Bindings of descriptor set 0: storage buffers, and texel buffers from DOLP_BINDING_RULE_NODES on ----------------
+// ---- Bindings of descriptor set 0: storage buffers; from DOLP_BINDING_RULE_NODES, texel buffers ---------------------
 #define DOLP_BINDING_THETAS 0         // ThetaNode[]
 #define DOLP_BINDING_SHAPES 1         // ShapeNode[]
 #define DOLP_BINDING_INDICES 2        // IndexNode[]
-#define DOLP_BINDING_TASKS 3          // uvec4[]: theta, first shape (among the bound ones), index, task word
-#define DOLP_BINDING_MASKING_TABLE 4  // real4[]: one table per bound shape, see physics/masking.glsl
-#define DOLP_BINDING_MOMENTS 5        // MomentsNode[]: one for each member of each task of the dispatch
+#define DOLP_BINDING_TASKS 3          // uvec4[]: positions of direction, first shape and index in their buffers, and
+                                      // the task word
+#define DOLP_BINDING_MASKING_TABLE 4  // real4[]: one table per ShapeNode, see physics/masking.glsl; masking_table.comp
+                                      // writes here
+#define DOLP_BINDING_MOMENTS 5        // MomentsNode[]: the output, DOLP_WIDTH nodes per task
 #define DOLP_BINDING_RULE 6           // RuleNode: one for all tasks
-#define DOLP_BINDING_RULE_NODES 7     // real2[]: see physics/quadrature.glsl
-#define DOLP_BINDING_MASKING_NODES 8  // the masking table again, for reading
-// slopes.comp reads directions, indices, rule and rule nodes. Instead of the tasks and the moments it has:
-#define DOLP_BINDING_SLOPES DOLP_BINDING_TASKS      // SlopeNode[]: one for each invocation
-#define DOLP_BINDING_AZIMUTHS DOLP_BINDING_MOMENTS  // AzimuthNode[]: one for each invocation
-// mueller.comp reads the rule nodes. Instead of the directions and the moments it has:
-#define DOLP_BINDING_BEAMS DOLP_BINDING_THETAS      // BeamNode[]: one for each entry of the dispatch
-#define DOLP_BINDING_MUELLERS DOLP_BINDING_MOMENTS  // MuellerNode[]: one for each entry of the dispatch
+#define DOLP_BINDING_RULE_NODES 7     // real2[]: nodes of the rules, see physics/quadrature.glsl
+#define DOLP_BINDING_MASKING_NODES 8  // the masking tables as texels, from which moments.comp reads
+// slopes.comp has other buffers at the bindings of the tasks and the moments:
+#define DOLP_BINDING_SLOPES DOLP_BINDING_TASKS      // SlopeNode[]: the input, one node per invocation
+#define DOLP_BINDING_AZIMUTHS DOLP_BINDING_MOMENTS  // AzimuthNode[]: the output, one node per invocation
+// mueller.comp has other buffers at the bindings of the directions and the moments:
+#define DOLP_BINDING_BEAMS DOLP_BINDING_THETAS      // BeamNode[]: the input, one node per entry
+#define DOLP_BINDING_MUELLERS DOLP_BINDING_MOMENTS  // MuellerNode[]: the output, one node per entry
 
 // ---- Specialization constants --------------------------------------------------------------------------------------
 #define DOLP_SPEC_LOCAL_SIZE 0
 #define DOLP_SPEC_DISTRIBUTION 1  // DOLP_CAUCHY | DOLP_GAUSSIAN
 #define DOLP_SPEC_MASKING 2       // DOLP_MASKING_*
-#define DOLP_SPEC_TOTAL_REFLECTION 3  // true if any index of the request has a critical_cos
-#define DOLP_SPEC_MULTIPLE 4          // true if rays are followed through all their bounces
+#define DOLP_SPEC_TOTAL_REFLECTION 3  // true if IndexNode::critical_cos of any index is above 0
+#define DOLP_SPEC_MULTIPLE 4          // true if rays are followed through all bounces in a groove
 #define DOLP_SPEC_DIRECT 5            // true if the request needs the direct emission
 #define DOLP_SPEC_COLUMN_COUNT 6      // number of columns, see physics/columns.glsl
 #define DOLP_SPEC_COLUMNS 7           // kind of the columns, DOLP_COLUMNS_*
-#define DOLP_SPEC_CURVES 8            // true if reflectances are read from tables, for films and measurements
+#define DOLP_SPEC_CURVES 8            // true if reflectances come from tables, for films and measured reflectances
 
 #define DOLP_CAUCHY 0u
 #define DOLP_GAUSSIAN 1u
@@ -36,86 +39,89 @@
 #define DOLP_MASKING_V_CAVITY 1u
 #define DOLP_MASKING_INTEGRAL 2u
 #define DOLP_MASKING_SMITH 3u
-#define DOLP_COLUMNS_SKY 0u           // functions of a sky
+#define DOLP_COLUMNS_SKY 0u           // moments with functions of a sky, see physics/columns.glsl
 #define DOLP_COLUMNS_RESPONSE 1u      // responses of the reflected light
 #define DOLP_COLUMNS_SKY_RESPONSE 2u  // responses of the reflected light, weighted with a function of a sky
 #define DOLP_COLUMNS_DIRECT 3u        // responses of the direct emission
 
 // ---- Push constants: four uints, used by all entry points -----------------------------------------------------------
-// count: tasks of this dispatch (moments.comp), slopes (slopes.comp), entries (mueller.comp) or shapes bound
-// (masking_table.comp); first: the first of them, as a position in the bound buffers. Output i of a dispatch belongs to
-// entry first + i, outputs i * DOLP_WIDTH and following to task first + i. largest_order: of the rule nodes.
-// sky: log2 of the cells of a function, from DOLP_SKY_CORNERS_SHIFT on the number of its corners, whose cosines follow
-// the cells, and from DOLP_SKY_START_SHIFT on where the cells begin among the rule nodes. Columns stand behind
-// the other outputs of a dispatch, see moments.comp and slopes.comp.
+// count: number of tasks (moments.comp), slopes (slopes.comp), entries (mueller.comp) or shapes (masking_table.comp)
+//   in this dispatch.
+// first: position of the first of them in its buffer. Output i of slopes.comp and mueller.comp belongs to input
+//   first + i. In moments.comp the outputs from i * DOLP_WIDTH to (i + 1) * DOLP_WIDTH - 1 belong to task first + i.
+// largest_order: largest order of the rules in DOLP_BINDING_RULE_NODES.
+// sky: three numbers. Bits from 0: log2 of the number of cells per function of the sky. Bits from
+//   DOLP_SKY_CORNERS_SHIFT: number of corners. Bits from DOLP_SKY_START_SHIFT: position of the first cell among the
+//   rule nodes. The cosines of the corners follow the cells of all functions.
 #define DOLP_PUSH_CONSTANTS uint first; uint count; uint largest_order; uint sky;
 #define DOLP_SKY_CORNERS_SHIFT 5
 #define DOLP_SKY_START_SHIFT 10
 
-// ---- Task word: task of an invocation of moments.comp, as bits -----------------------------------------------------
-#define DOLP_TASK_MEMBERS_BITS 5u    // from bit 0: members of the row
-#define DOLP_TASK_PIECE_SHIFT 5u     // number of the piece of the slope axis
+// ---- Task word: the bits that describe the task of an invocation of moments.comp ------------------------------------
+#define DOLP_TASK_MEMBERS_BITS 5u    // from bit 0: number of entries in the row
+#define DOLP_TASK_PIECE_SHIFT 5u     // from this bit: number of the piece of the slope axis
 #define DOLP_TASK_PIECE_BITS 6u
-#define DOLP_TASK_ROOT_AT_START 11u   // bit: square root of the slope at the start of the piece
-#define DOLP_TASK_ROOT_AT_END 12u    // bit: square root of the slope at the end of the piece
-#define DOLP_TASK_ROOT_BEFORE_START 13u // bit: a square root at the breakpoint before the piece, facing it
-#define DOLP_TASK_ROOT_AFTER_END 14u // bit: a square root at the breakpoint after the piece, facing it
-#define DOLP_TASK_SPLIT_LINE 15u     // bit: the direction is split at the line b = pi/2 of `integral` or smith's cusp
-#define DOLP_TASK_AZIMUTHS_SHIFT 16u // most azimuths of an arc, which bounds the iterations
+#define DOLP_TASK_ROOT_AT_START 11u   // bit: the integrand has a square root at the start of the piece
+#define DOLP_TASK_ROOT_AT_END 12u    // bit: square root at the end of the piece
+#define DOLP_TASK_ROOT_BEFORE_START 13u // bit: square root at the start of the preceding piece
+#define DOLP_TASK_ROOT_AFTER_END 14u // bit: square root at the end of the next piece
+#define DOLP_TASK_SPLIT_LINE 15u     // bit: pieces are split at the line b = pi/2 of `integral` or at smith's cusp
+#define DOLP_TASK_AZIMUTHS_SHIFT 16u // from this bit: largest number of azimuths on an arc, a bound of the loops
 
 // ---- Sizes ---------------------------------------------------------------------------------------------------------
 #ifndef DOLP_WIDTH
-#define DOLP_WIDTH 1             // entries of one invocation, see Row of physics/row.glsl
+#define DOLP_WIDTH 1             // number of entries that one invocation computes, see Row of physics/row.glsl
 #endif
 #define DOLP_ROW_WIDTH 4         // the larger of the two values of DOLP_WIDTH
 #ifndef DOLP_MOST_COLUMNS
-#define DOLP_MOST_COLUMNS 0      // 0 in kernels without columns
+#define DOLP_MOST_COLUMNS 0      // largest number of columns that a kernel can compute; 0 in kernels without columns
 #endif
 #define DOLP_COLUMNS 24          // largest number of columns of any kind
-#define DOLP_SKY_FUNCTIONS 8     // largest number of functions of a sky: DOLP_MOST_COLUMNS in kernels for skies
-#define DOLP_MOST_SKY_CORNERS 24 // most corners that split the azimuths
-#define DOLP_COLUMN_PARTS 4      // numbers of a column in the output of moments.comp: i and q of the coarser and the finer rule
-#define DOLP_MAX_PIECES 63       // pieces of the slope axis for one direction
-#define DOLP_MAX_ARCS 13        // arcs of the azimuth for one slope, without the arcs of total reflection
+#define DOLP_SKY_FUNCTIONS 8     // largest number of functions of a sky; DOLP_MOST_COLUMNS in kernels for skies
+#define DOLP_MOST_SKY_CORNERS 24 // largest number of corners of a sky that split the azimuths
+#define DOLP_COLUMN_PARTS 4      // numbers per column that moments.comp writes: r_i, r_q by the coarser rule, then by
+                                 // the finer one
+#define DOLP_MAX_PIECES 63       // largest number of pieces of the slope axis for one direction
+#define DOLP_MAX_ARCS 13        // largest number of azimuth arcs at one slope, not counting those of total reflection
 // V-grooves, see physics/groove.glsl
-#define DOLP_STEEPEST_SPLIT 20.0  // beyond this slope no beam that ends splits the azimuths
-#define DOLP_MOST_SPLITS 8       // bounces at which a beam that ends may split the azimuths
-#define DOLP_MOST_BOUNCES 32      // each computed separately; later bounces are combined in groups of 2, 4, 8 ...
-#define DOLP_GROUPS_PER_DISTANCE 6 // bounces taken as one at once, over those before or after them
+#define DOLP_STEEPEST_SPLIT 20.0  // for slopes below this, azimuths are split where the number of bounces changes
+#define DOLP_MOST_SPLITS 8       // largest RuleNode::split_bounces
+#define DOLP_MOST_BOUNCES 32      // if a ray has more bounces, groups of 2, 4, 8 ... bounces in the middle count as one
+#define DOLP_GROUPS_PER_DISTANCE 6 // a group is preceded and followed by at least this many times its bounces
 #define DOLP_MOST_DOUBLINGS 12
-#define DOLP_LAST_BOUNCES (DOLP_MOST_BOUNCES << DOLP_MOST_DOUBLINGS)  // after more bounces no light is left
-#define DOLP_CURVE_NODES 6       // rule nodes of a cell of a table of reflectances: a cubic for each of three quantities
+#define DOLP_LAST_BOUNCES (DOLP_MOST_BOUNCES << DOLP_MOST_DOUBLINGS)  // a ray with more bounces is absorbed
+#define DOLP_CURVE_NODES 6       // rule nodes per cell of a table of reflectances: two per cubic, for three quantities
 #define DOLP_MAX_ORDER 128       // largest Gauss order of the rule nodes
-#define DOLP_MASKING_OCTAVES 29  // octaves of v = 1 + tau/scale
-#define DOLP_MASKING_CELL_BITS_FLOAT 3   // 2^bits cells per octave
+#define DOLP_MASKING_OCTAVES 29  // octaves of v = 1 + tau/table_scale in a masking table
+#define DOLP_MASKING_CELL_BITS_FLOAT 3   // a masking table has 2^bits cells per octave
 #define DOLP_MASKING_CELL_BITS_DOUBLE 6
 #define DOLP_MASKING_NODES(CELL_BITS) ((DOLP_MASKING_OCTAVES << (CELL_BITS)) + 1)
 
 // ---- Structures ----------------------------------------------------------------------------------------------------
 
-// Parameters of the orders of the Gauss rules; physics/orders.glsl has the formulas.
+// Parameters of the rules. physics/orders.glsl has the formulas for the orders.
 struct RuleNode {
   real digits;            // decimal digits required of the sums
-  real t_nodes;           // slope axis: nodes of a piece for any number of digits,
-  real t_digits;          // digits that the size of its singularities needs,
-  real t_fall;            // and nodes per e-fold by which the density falls over the piece
-  real phi_nodes;         // azimuth: nodes of an arc for any number of digits,
-  real phi_digits;        // and digits that the size of its singularities needs
-  real cluster_stretch;   // nodes per digit that make smith's cusp worth a cluster
-  real split_bounces;     // with all bounces: number of bounces at which a beam that ends splits the azimuths,
-  real dimmest;           // and the share of a ray's light below which it is not followed
-  real cluster_below_q;   // below this q, arcs cluster their nodes where the limit b of `integral` meets pi/2
-  real response_scale;    // for responses: 1 / c0
+  real t_nodes;           // slope axis: constant part of the number of nodes of a piece
+  real t_digits;          // slope axis: digits added to the required ones because of the strength of singularities
+  real t_fall;            // slope axis: nodes per e-fold by which the density falls over a piece
+  real phi_nodes;         // azimuth: nodes per radian of an arc, in addition to the nodes for digits
+  real phi_digits;        // azimuth: digits added to the required ones because of the strength of singularities
+  real cluster_stretch;   // smith: nodes per digit above which an arc clusters its nodes at the cusp
+  real split_bounces;     // all bounces: azimuths are split where the number of bounces changes, up to this number
+  real dimmest;           // all bounces: a ray is followed until less than this share of its light is left
+  real cluster_below_q;   // `integral`: for q below this, arcs cluster their nodes where the limit b is pi/2
+  real response_scale;    // for responses: 1 / c0, see physics/columns.glsl
   real response_norm;     // for responses: 2 / asinh(1 / c0)
 };
 
 // One direction theta, with the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. Under total
-// reflection the pieces also depend on the index, so a direction has a node for each such index. With `integral` and
-// smith masking they depend on the slope distribution, which may need one more line.
+// reflection the pieces also depend on the index, so a direction has a ThetaNode for each such index. With `integral`
+// and smith masking some slope distributions need one more breakpoint, and these have another ThetaNode.
 struct ThetaNode {
   real c;                         // cos(theta)
   real s;                         // sin(theta)
-  // ascending slopes; the last one also fills all later elements, and may exceed any cut
+  // ends of the pieces as ascending slopes; elements after the last end repeat it. The last end may exceed any cut.
   real end[DOLP_MAX_PIECES + 1];
 };
 
@@ -123,35 +129,36 @@ struct ThetaNode {
 struct SlopeNode {
   real t;
   real digits;         // digits that the sum over the azimuths needs
-  real theta;          // position of the direction
-  real index;          // position of the index
-  real most_azimuths;  // largest number of azimuths of an arc
-  real is_coarse;      // 1: the slope belongs to the coarser rule
+  real theta;          // position of the direction among the ThetaNodes
+  real index;          // position of the index among the IndexNodes
+  real most_azimuths;  // largest number of azimuths on an arc
+  real is_coarse;      // 1 if the slope belongs to the coarser rule, else 0
 };
 
 // One slope distribution.
 struct ShapeNode {
   real m;              // sqrt(2) sigma
-  real q_minus_1;      // exponent q minus 1, which a float q would not resolve near 1; unused by the Gaussian
-  real two_q_minus_3;  // 2q minus 3, which a float q would not resolve near 3/2, where smith masking ends
-  real marginal_norm;  // p(0) of the in-plane marginal
-  real scale;          // w of the map t = w sinh(X)
-  real cut;            // larger slopes are left out
+  real q_minus_1;      // q - 1, stored because a float q does not resolve it near 1; unused by the Gaussian
+  real two_q_minus_3;  // 2q - 3, stored because a float q does not resolve it near 3/2, where smith masking ends
+  real marginal_norm;  // p(0), with the density p of the in-plane slopes
+  real scale;          // scale of the map t = scale sinh(X)
+  real cut;            // slopes above it are left out
   real table_scale;    // scale of the masking table: v = 1 + tau/table_scale
-  real cusp_digits;    // log10 of the size of smith's cusp at theta_r = 0; below -100 without one
+  real cusp_digits;    // smith: log10 of the relative error of L that the cusp at theta_r = 0 causes if rules do not
+                       // split there; below -100 without a cusp
 };
 
 // One complex refractive index N = n + ik.
 struct IndexNode {
   real n2m1_re;       // Re(N^2 - 1)
   real n2m1_im;       // Im(N^2 - 1)
-  real pole_re;       // R_p's pole in cos(beta), -1 / sqrt(N^2 + 1)
+  real pole_re;       // pole of R_p as a function of cos(beta), -1 / sqrt(N^2 + 1)
   real pole_im;
-  real branch_re;     // the branch point of w in cos(beta), i sqrt(N^2 - 1), with positive parts
+  real branch_re;     // branch point of w as a function of cos(beta), i sqrt(N^2 - 1), with positive parts
   real branch_im;
-  real critical_cos;  // sqrt(1 - Re N^2), where total reflection begins, sharply (k = 0) or nearly so; otherwise 0
-  real curve_start;   // position of the table of reflectances among the rule nodes,
-  real curve_cells;   // and its number of cells; 0 without a table
+  real critical_cos;  // cos(beta) at which total reflection begins, sqrt(1 - Re N^2), if k is 0 or small; else 0
+  real curve_start;   // position of the table of reflectances among the rule nodes
+  real curve_cells;   // number of cells of the table of reflectances; 0 without a table
 };
 
 // One geometry of the pBRDF: incident beam, reflected beam, and the facet between them.
@@ -168,14 +175,15 @@ struct GeometryNode {
   real sin_2eta_r;
 };
 
-// One pBRDF to evaluate. The host computes whatever would cancel or overflow in a float: the geometry, the reflection
-// of the facet and the density.
+// One pBRDF to evaluate. The host computes the parts that would cancel or overflow in a float: the geometry, the
+// reflection of the facet and the density.
 struct BeamNode {
   GeometryNode g;
-  ShapeNode shape;  // has the scale and cut of physics/in_plane.glsl
-  real density;     // D(alpha) / 4 [1/sr] without a power of two that the host keeps: in [1/2, 1), or 0
-  // Mueller matrix of the facet in its own frame: [m00 m01 0 0; m01 m00 0 0; 0 0 cross_re -cross_im; 0 0 cross_im
-  // cross_re], r_s* r_p = cross_re + i cross_im.
+  ShapeNode shape;  // with the scale and the cut that physics/in_plane.glsl needs
+  real density;     // D(alpha) / 4 [1/sr] divided by a power of two, so that it is 0 or in [1/2, 1); the host
+                    // multiplies the result by this power
+  // Mueller matrix of the facet in its frame: [m00 m01 0 0; m01 m00 0 0; 0 0 cross_re -cross_im; 0 0 cross_im
+  // cross_re], with r_s* r_p = cross_re + i cross_im.
   real m00;
   real m01;
   real cross_re;
@@ -190,7 +198,7 @@ struct MuellerNode {
 #define DOLP_AZIMUTH_NUMBERS 8  // numbers of an AzimuthNode
 #define DOLP_MOMENTS_NUMBERS 13  // numbers of a MomentsNode
 
-// The moments of the facets of one slope, per unit of P(t) t dt: sums over half of the azimuths.
+// Moments of the facets of one slope t, divided by their weight P(t) t dt: integrals over the azimuths from 0 to pi.
 struct AzimuthNode {
   real r_i;
   real r_q;
@@ -202,20 +210,21 @@ struct AzimuthNode {
   real evaluations;
 };
 
-// Moments times cos(theta) (shaders/physics/README.md, section 3), from the finer of two rules, and their distances
-// from the coarser one (physics/moments.glsl).
+// Moments times cos(theta) (shaders/physics/README.md, section 3), computed by the finer of two rules, and the
+// differences between the results of both rules (physics/moments.glsl).
 struct MomentsNode {
   real r_i;
   real r_q;
   real albedo;
   real deficit;
-  real behind;               // facets that face away from theta; the absorbed part counts them once in each direction
+  real behind;               // sum that `deficit` contains with a negative sign (slope_sums of physics/azimuths.glsl);
+                             // for the bound of its rounding
   real many;                 // part of r_i from grooves in which rays bounce more often than DOLP_MOST_BOUNCES
   real direct_i;             // direct emission
   real direct_q;
-  real reflected_difference; // the larger difference of r_i and r_q
+  real reflected_difference; // the larger of the differences of r_i and of r_q
   real albedo_difference;
   real deficit_difference;
-  real direct_difference;    // the larger difference of direct_i and direct_q
+  real direct_difference;    // the larger of the differences of direct_i and of direct_q
   real evaluations;
 };

@@ -1,16 +1,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Each invocation computes the contribution of one piece of the slope axis to the moments of a row of entries. The
-// width of a row is a compile-time constant.
+// Each invocation computes the contribution of one piece of the slope axis to the moments of a row of DOLP_WIDTH
+// entries, which differ only in the exponent q.
 
-// Grooves use slope samples instead. Without them drivers have less code to read.
+// Scenes with all bounces in grooves use slopes.comp. Without the code for grooves, drivers compile this kernel faster.
 #define DOLP_SINGLE_SCATTERING
 #include "physics/prelude.glsl"
 #include "interface.glsl"
 #include "physics/buffers.glsl"
 
 #if DOLP_MOST_COLUMNS > 0
-// Numbers after all MomentsNodes: DOLP_COLUMN_PARTS for each column of each member.
+// The columns follow all MomentsNodes: DOLP_COLUMN_PARTS numbers for each column of each entry.
 layout(std430, binding = DOLP_BINDING_MOMENTS) writeonly buffer ColumnsOut { real columns_out[]; };
 
 void store_column(uint position, real value) {

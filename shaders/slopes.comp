@@ -1,14 +1,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Each invocation sums over the azimuths at one slope. Only for maskings that do not depend on the slope distribution,
-// so the sums serve every distribution (host/compute/evaluate/kernel/slope_samples.hpp).
+// Each invocation sums over the azimuths at one slope. It serves only maskings that do not depend on the slope
+// distribution, so the sums hold for every distribution (host/compute/evaluate/kernel/slope_samples.hpp).
 
 #include "physics/prelude.glsl"
 #include "interface.glsl"
 #include "physics/buffers.glsl"
 
 #if DOLP_MOST_COLUMNS > 0
-// Numbers after all AzimuthNodes: two for each column of each slope.
+// The columns follow all AzimuthNodes: two numbers for each column of each slope.
 layout(std430, binding = DOLP_BINDING_AZIMUTHS) writeonly buffer ColumnsOut { real columns_out[]; };
 
 void store_column(uint position, real value) {

@@ -52,7 +52,7 @@ double smith_lambda(const Slopes& slopes, const Zenith& zenith) {
 
 IntegralMasking::IntegralMasking(const Slopes& slopes, const Zenith& zenith, double tolerance)
     : slopes_(slopes), zenith_(zenith), tolerance_(tolerance) {
-  // tan a = cot theta
+  // slope_a_ is tan a = cot theta, at most kVerticalSlope.
   slope_a_ = zenith.cos >= kVerticalSlope * zenith.sin ? kVerticalSlope : zenith.cos / zenith.sin;
   share_below_ = 0.5 + integrate_slopes(slopes, 0.0, slope_a_, tolerance, [](double) { return 1.0; });
 }
@@ -60,7 +60,7 @@ IntegralMasking::IntegralMasking(const Slopes& slopes, const Zenith& zenith, dou
 double IntegralMasking::operator()(double alpha_rad) const {
   const double limit_rad = 2.0 * zenith_.elevation_rad + alpha_rad;
   const double cos_theta_minus_alpha = std::sin(zenith_.elevation_rad + alpha_rad);
-  if (cos_theta_minus_alpha <= 0.0) return share_below_;  // theta = 90 degrees, alpha = 0: a = b
+  if (cos_theta_minus_alpha <= 0.0) return share_below_;  // theta = 90 degrees and alpha = 0, so a = b
   const auto weight = [&](double slope) {
     const double cos_gamma = 1.0 / std::sqrt(1.0 + slope * slope);
     const double cos_theta_plus_gamma = zenith_.cos * cos_gamma - zenith_.sin * slope * cos_gamma;
@@ -89,7 +89,8 @@ double Attenuation::operator()(double tan2_alpha, double cos2_beta) const {
     case Masking::kNone:
       return 1.0;
     case Masking::kVCavity:
-      // 2 cos(alpha) cos(theta) / cos(beta) with cos(alpha) = (cos a + cos b) / (2 cos(beta))
+      // G is 2 cos(alpha) cos(theta) / cos(beta), with theta of the lower direction and
+      // cos(alpha) = (cos a + cos b) / (2 cos(beta)).
       return std::min(1.0, v_cavity_ / cos2_beta);
     case Masking::kIntegral:
       return (*integral_)(std::atan(std::sqrt(tan2_alpha)));

@@ -20,21 +20,21 @@ using std::numbers::pi;
 namespace {
 
 constexpr double kRounding = 256.0 * std::numeric_limits<double>::epsilon();
-// Facets that are steeper by this factor than the slopes of view and widths count as vertical. The relative error is
-// its inverse.
+// Facets count as vertical if their slope exceeds max(1, width) / sin(theta) by this factor. The relative error of this
+// is the inverse of the factor.
 constexpr double kVertical = 1e10;
 constexpr double kSmallestSine = 1e-12;
-// A share of the slopes whose contribution is below rounding.
+// A smaller share of the facets contributes less than rounding does.
 constexpr double kNoShare = 1e-19;
 constexpr int kHalvings = 60;
 
 enum Component : std::size_t { kIntensity, kPolarised, kCount };
 using Emitted = Values<kCount>;
 
-/// Absorptances of facets as a function of the cosine of the local angle.
+/// Absorptances of a facet as a function of the cosine of the local angle of incidence.
 using Absorption = std::function<FresnelCoefficients(double cos_beta)>;
 
-// The facets of one surface that are visible from one direction. `is_response`: errors are relative to cos(theta).
+// The facets of one surface that are visible from one direction. If `is_response`, errors are relative to cos(theta).
 class Facets {
  public:
   Facets(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants, Absorption absorption,
@@ -68,8 +68,8 @@ class Facets {
   }
 
  private:
-  // e, the facet's area perpendicular to the view over the area of its horizontal projection. `side` is 1 for A and -1
-  // for B.
+  // e: the area of a facet seen from the view, divided by the area of its horizontal projection. `side` is 1 for facet
+  // A, at the azimuth phi, and -1 for facet B, at phi + 180 degrees.
   double facing(const SlopePoint& point, double side) const {
     return view_.cos + side * point.t * view_.sin * point.sin_chi;
   }
@@ -95,7 +95,7 @@ class Facets {
     return {visible * 0.5 * (from_s + from_p), visible * 0.5 * (from_s - from_p)};
   }
 
-  // Mean of the facets at phi and phi + 180 degrees.
+  // Mean of the two facets A and B.
   Emitted of_pair(const SlopePoint& point) {
     evaluations_ += 1.0;
     const Emitted a = of_facet(point, 1.0);
@@ -114,13 +114,15 @@ class Facets {
     return number;
   }
 
-  // The slope beyond which facets count as vertical, or beyond which there are none.
+  // The slope beyond which facets count as vertical or, if that is smaller, beyond which only kNoShare of the facets
+  // lie.
   double end() const {
     const double vertical = kVertical * std::max(1.0, slopes_.width()) / std::max(view_.sin, kSmallestSine);
     return std::min(vertical, slopes_.quantile(kNoShare));
   }
 
-  // Emission of vertical facets: e G_1 grows with t under smith masking and has a limit under v-cavity.
+  // Emission of the facets steeper than t, which count as vertical. With smith masking e G_1 is proportional to t; with
+  // v-cavity masking it no longer grows.
   Emitted tail(double t, const Refinement& refinement) {
     const double share = masking_ == Masking::kVCavity ? slopes_.share_above(t) : slopes_.length_above(t) / t;
     if (share < kNoShare) return {};
@@ -156,7 +158,7 @@ Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg,
 Moments direct_response(const Slopes& slopes, Masking masking, double theta_deg,
                         const std::function<double(double cos_beta)>& curve, double bend,
                         const Refinement& refinement) {
-  const FacetOptics bent{1.0 / bend, 0.0};  // has its Brewster angle where the curve bends
+  const FacetOptics bent{1.0 / bend, 0.0};  // the index whose Brewster angle is where the curve bends
   const auto absorption = [&](double cos_beta) -> FresnelCoefficients {
     const double sin2_beta = (1.0 - cos_beta) * (1.0 + cos_beta);
     const double f = curve(cos_beta);

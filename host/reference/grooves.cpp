@@ -22,34 +22,37 @@ namespace {
 using Vector3 = Vector<double>;
 
 constexpr double kRounding = 256.0 * std::numeric_limits<double>::epsilon();
-// Light of lower intensity counts as absorbed.
+// Light of lower intensity is not followed.
 constexpr double kDark = 1e-24;
-// Largest number of bounces that are followed. The rest of the light may or may not leave the groove.
+// Largest number of bounces that are followed. It stays unknown how much of the remaining light leaves the groove.
 constexpr int kMostFollowed = 2000;
 constexpr double kSteepest = 1e15;
 constexpr double kSteeper = 1.5;
-// Steeper grooves reflect less, except for the steps between numbers of bounces. This factor allows for the steps.
+// Beyond the steepest slope that is followed, grooves reflect less, except for jumps where the number of bounces
+// changes. This factor allows for the jumps.
 constexpr double kTailRoom = 2.0;
-constexpr double kTailShare = 0.01;  // share of the tolerance
+constexpr double kTailShare = 0.01;  // error from grooves that are not followed, as a share of the tolerance
 // The number of bounces of a beam changes over angles of about the groove's half-angle gamma.
 constexpr double kStepsPerGamma = 3.0;
-// The search for bends ends at kSteepestBends, or at the slope beyond which this share of the integral remains. Steeper
-// grooves have many small bends.
+// The search for bends ends at kSteepestBends, or earlier, at the slope beyond which this share of the integral
+// remains. Steeper grooves have many small bends.
 constexpr double kBendShare = 1e-2;
 constexpr double kSteepestBends = 10.0;
-// Limit of the bounces in an attempt; they take about two seconds. An attempt beyond the limit is abandoned for a
-// coarser one. The last attempt returns the accuracy that it has reached.
+// Limit of the bounces in one attempt; this many take about two seconds. An attempt beyond the limit is abandoned, and
+// the next one has a tolerance larger by the factor kLessAmbitious. From the tolerance kLeastAmbition an attempt is the
+// last, and returns the accuracy that it reaches.
 constexpr double kMostBounces = 2e7;
 constexpr double kLessAmbitious = 100.0;
 constexpr double kLeastAmbition = 1e-5;
-// Rows of less weight may have the absolute error of rows of this weight. Integrals below this share of the albedo are
-// zero except for rounding.
+// kThinWeight is SlopeTask::thin_weight. Integrals below the share kNegligible of the albedo are zero except for
+// rounding.
 constexpr double kThinWeight = 0.02;
 constexpr double kNegligible = 1e-12;
-// Factor for panels that still have bends: there the distance of two rules is about the error, and may be smaller by
-// chance.
+// Factor of the errors, for panels that still have bends. On such panels the difference of two rules is about as large
+// as the error, and by chance it may be smaller.
 constexpr double kBentErrors = 6.0;
-// Numbers of quantiles and azimuths for a first estimate of a surface.
+// The first estimate of a surface uses kLookShares quantiles of the slopes, none above kLookSteepest, and kLookAzimuths
+// azimuths.
 constexpr int kLookShares = 16;
 constexpr int kLookAzimuths = 16;
 constexpr double kLookSteepest = 50.0;
@@ -106,7 +109,8 @@ void follow(const Groove<double>& groove, const SlopePoint& point, const Vector3
   }
 }
 
-// Encodes the history of the beam that meets `first` first: whether none, some or all of it leaves after each bounce.
+// Encodes the history of the beam that meets `first` first: for each bounce, whether none, some or all of the beam
+// leaves after it, and the side of the special angles.
 std::uint64_t history(const SlopePoint& point, const Vector3& omega, Facet first, const SpecialAngles& special,
                       const SkyFunction* sky) {
   constexpr std::uint64_t kPrime = 1099511628211U;
@@ -140,7 +144,7 @@ GrooveValues values_of(const GrooveLight& light) {
           light.lost,   light.sky_reflected,          light.sky_polarised};
 }
 
-// Integrates over the grooves of one surface, seen from one direction.
+// Integrates over the grooves of one surface for one direction of the view.
 class Surveyor {
  public:
   Surveyor(const Slopes& slopes, double theta_deg, const FacetOptics& constants, const Refinement& refinement,
@@ -153,7 +157,7 @@ class Surveyor {
         sky_(sky),
         may_abandon_(may_abandon) {}
 
-  /// Undefined if the attempt is abandoned.
+  /// The moments; meaningless if the attempt is abandoned.
   Moments moments() {
     const GrooveValues expected = look_at_all();
     const auto [bends_end, end] = ends(expected);
@@ -173,7 +177,7 @@ class Surveyor {
     const Integral<2 * kCount> integral = integrate_slopes_of<kCount>(
         task, slopes_, scan, {refinement_.relative_tolerance / kBentErrors, refinement_.subdivisions}, expected);
 
-    // Beyond the end: the reflected share is between 0 and kTailRoom times the share at slope `end`.
+    // Grooves steeper than `end` reflect a share between 0 and kTailRoom times the share at slope `end`.
     const double share = slopes_.share_above(end);
     const double tail_weight = share * view_.cos;
     const GrooveValues at_end = look(end);
@@ -215,7 +219,7 @@ class Surveyor {
     evaluations_ += 1.0;
     return values_of(light);
   }
-  // Mean over a few azimuths.
+  // Mean of the integrand over a few azimuths.
   GrooveValues look(double t) {
     GrooveValues mean{};
     for (int i = 0; i < kLookAzimuths; ++i) {
@@ -239,7 +243,7 @@ class Surveyor {
     double bends;  ///< the slope beyond which bends are not searched
     double all;    ///< the slope beyond which no beam is followed
   };
-  // Slopes beyond which the rest is negligible, or has too many bounces.
+  // Slopes beyond which the rest is negligible, or light has too many bounces to be followed.
   Ends ends(const GrooveValues& expected) {
     const double scale = std::min(expected[kReflected], expected[kAbsorbed]);
     Ends ends{kSteepestBends, kSteepest};

@@ -1,9 +1,10 @@
-// With theta the fixed and theta_r the running zenith angle, mean = (theta + theta_r)/2, t = tan((theta_r - theta)/2),
-// delta = pi - Delta_phi (zero on the specular side) and s2 = sin^2(delta/2), equations (2) and (3) read
+// Let theta be the fixed and theta_r the running zenith angle, mean = (theta + theta_r)/2,
+// t = tan((theta_r - theta)/2), delta = pi - Delta_phi (zero on the specular side) and s2 = sin^2(delta/2). Then
+// equations (2) and (3) are sums of non-negative terms, in which nothing cancels:
 //   cos^2 beta  = cos^2 mean + sin(theta) sin(theta_r) s2
 //   sin^2 beta  = t^2/(1 + t^2) + sin(theta) sin(theta_r) cos^2(delta/2)
 //   tan^2 alpha = t^2 + (1 + t^2) sin(theta) sin(theta_r) s2 / cos^2 mean
-// sums of non-negative terms, in which nothing cancels. The peak of D lies at t = 0, delta = 0.
+// The peak of D lies at t = 0, delta = 0.
 #include "reference/moments.hpp"
 
 #include <algorithm>
@@ -26,14 +27,14 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // The absorbed part is only added to cos(theta) - albedo. If it is below this share of the albedo, it needs no relative
 // accuracy.
 constexpr double kSmallAbsorbed = 1e-2;
-// Directions are elevations above the horizon with an error of a few ulps at any size. So is everything proportional to
-// them (test ReferenceMoments_NextToGrazing_KeepTheirDigits).
+// Directions are stored as elevations above the horizon. An elevation has an error of a few ulps even if it is tiny,
+// and so has everything proportional to it (test ReferenceMoments_NextToGrazing_KeepTheirDigits).
 constexpr double kElevationRounding = 32.0 * std::numeric_limits<double>::epsilon();
-// At theta = 90 degrees the running direction is integrated up to this distance from the horizon. The rest follows a
-// power law.
+// At theta = 90 degrees the integral over u ends at this distance from the horizon, u = 0. The rest follows a power
+// law.
 constexpr double kHorizonGap = 1e-30;
-// If the fixed direction is lower than this, the masking changes over running elevations of about its elevation. Panels
-// could step over this thin layer, so break points become denser towards the horizon.
+// If the elevation of the fixed direction is below this, the masking changes in a layer of running elevations that is
+// about as thin. Panels could step over this layer, so break points become denser towards the horizon.
 constexpr double kNearHorizon_rad = 1e-3;
 constexpr double kLayerGrowth = 10.0;
 // Errors of the inner integrals, relative to the error of the integral around them.
@@ -44,8 +45,8 @@ constexpr double kInnerFloor = 4e-15;
 // Integrals below this share of the albedo are zero except for rounding, so they are not refined.
 constexpr double kNegligible = 1e-12;
 
-// Absolute error of G, which is of order 1. It is too small to look like structure in the azimuth, and larger than
-// rounding.
+// Absolute error of G, which is of order 1. The error is larger than rounding, and so small that the quadrature over
+// the azimuth does not take it for structure of the integrand.
 double masking_tolerance_for(const Refinement& refinement) {
   return std::max(1e-14, 1e-3 * kInnerShare * refinement.relative_tolerance);
 }
@@ -62,12 +63,12 @@ Values<N> moment_scales(const Values<N>& value) {
   return scales;
 }
 
-// The moments of one direction. Holds the data of all nested integrands.
+// Integrates the moments of one direction, and holds the data of all nested integrands.
 template <std::size_t K>
 class Hemisphere {
  public:
-  // The moments without and with a function of the sky, then the errors of their azimuth integrals, which the outer
-  // rule only sums.
+  // The integrals have these components: moments and responses, then the two moments with a function of the sky. As
+  // many others follow: the errors of the azimuth integrals, which the outer rule only sums.
   static constexpr std::size_t kAzimuthCount = kMomentCount + 2 * K;
   static constexpr std::size_t kSkyReflected = kAzimuthCount;
   static constexpr std::size_t kSkyPolarised = kAzimuthCount + 1;
@@ -93,8 +94,8 @@ class Hemisphere {
     if (fixed_.cos > 0.0) {
       return integrate<kCount>([this](double u) { return row_values(u); }, breaks, goal, both_scales);
     }
-    // At theta = 90 degrees u ends at 0, where the integrand is |u|^(2q - 4) for q < 2. So the variable is log |u|, and
-    // the power law gives the part beyond the gap.
+    // At theta = 90 degrees u ends at 0, where the integrand is |u|^(2q - 4) for q < 2. So the variable is log |u|. The
+    // power law gives the part with |u| < kHorizonGap.
     const auto in_log = [this](double x) {
       BothValues values = row_values(-std::exp(x));
       for (double& value : values) value *= std::exp(x);
@@ -116,7 +117,7 @@ class Hemisphere {
   double evaluations() const { return evaluations_; }
 
  private:
-  // One running zenith angle, with values that depend on both zenith angles.
+  // One running zenith angle, with the values that depend on both zenith angles but not on the azimuth.
   struct Row {
     double t;
     double cos2_mean;
@@ -124,8 +125,8 @@ class Hemisphere {
     Zenith running;
     Attenuation attenuation;
   };
-  // Break points in u of tan((theta_r - theta)/2) = width sinh(u): the specular direction, and the angles at which
-  // break points of the azimuth enter or leave, at Delta_phi = 180 or 0 degrees.
+  // Break points in u, where tan((theta_r - theta)/2) = width sinh(u): the specular direction u = 0, corners of the
+  // sky, and the zenith angles at which a break point of the azimuth appears at Delta_phi = 180 or 0 degrees.
   Breaks zenith_breaks() const {
     const double width = slopes_.width();
     Breaks breaks(std::asinh(-std::tan(0.5 * theta_rad_) / width),
@@ -157,8 +158,10 @@ class Hemisphere {
     return breaks;
   }
 
-  // Break points in s2: the special angles of beta, and the bends of the masking: v-cavity: (cos theta + cos theta_r)
-  // min(cos theta, cos theta_r) = cos^2 beta integral: alpha = 2 max(theta, theta_r) - pi/2, above which b = pi/2
+  // Break points of the azimuth. They lie at these values of s2:
+  //   the special angles of beta
+  //   v-cavity: (cos theta + cos theta_r) min(cos theta, cos theta_r) = cos^2 beta
+  //   integral: alpha = 2 max(theta, theta_r) - pi/2, above which b = pi/2
   Breaks azimuth_breaks(const Row& row, double width) const {
     Breaks breaks(0.0, std::asinh(1.0 / width));
     const auto add_s2 = [&](double s2) {
@@ -183,7 +186,8 @@ class Hemisphere {
     return breaks;
   }
 
-  // Integrates over v of tan(delta/4) = width sinh(v). D has fallen off at `width`: 4 tan^2(delta/4) is about s2.
+  // Integrates over v, where tan(delta/4) = width sinh(v). D has fallen off at tan(delta/4) = width, because 4
+  // tan^2(delta/4) is about s2.
   Integral<kAzimuthCount> integrate_azimuth(const Row& row) {
     const double t2 = row.t * row.t;
     const double scale2 =
@@ -214,7 +218,7 @@ class Hemisphere {
     return scales;
   }
 
-  // The integrand in u: the azimuth integrals of one running zenith angle with their errors.
+  // The integrand in u: the azimuth integrals at one running zenith angle, and their errors.
   BothValues row_values(double u) {
     const double t = slopes_.width() * std::sinh(u);
     const double half_rad = std::atan(t);
@@ -253,8 +257,9 @@ class Hemisphere {
 
     const double cos_beta = std::sqrt(cos2_beta);
     const FresnelCoefficients r = fresnel(constants_, cos_beta);
-    // h = (omega_i + omega_r) / (2 cos beta). These are its parts across and along the plane of omega_i and z, over sin
-    // beta. The retro direction (beta = 0) has no eta and no polarisation: r_p = -r_s.
+    // sin_eta and cos_eta are the components of the facet normal h = (omega_i + omega_r) / (2 cos beta) across and
+    // along the plane of omega_i and z, divided by sin beta. In the retro direction (beta = 0) there is no eta and no
+    // polarisation, because r_p = -r_s.
     const double sin_2beta = 2.0 * std::sqrt(cos2_beta * sin2_beta);
     double from_s = 0.5 * (std::norm(r.r_s) + std::norm(r.r_p));
     double from_p = from_s;
@@ -302,7 +307,8 @@ double amplitude_rounding(double reflected, double albedo) {
   return kRounding * (2.0 * std::sqrt(reflected * albedo) + kRounding * albedo);
 }
 
-// The error of a component whose errors are relative to `magnitude`. G_1 is at least 1/2.
+// The error of component k. Rounding and the error of G are relative to `magnitude`. The factor 2 is there because G_1
+// may be as small as 1/2.
 template <std::size_t N>
 double error_of(const Integral<N>& integral, std::size_t k, double magnitude, const Refinement& refinement) {
   const double masking_error = 2.0 * masking_tolerance_for(refinement);
@@ -353,8 +359,8 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   moments.albedo_error = error_at(kAlbedo);
   moments.r_i_error = error_at(kReflected) + amplitude_error;
   moments.r_q_error = error_at(kPolarised) + amplitude_error;
-  // cos(theta) - r_i is more accurate if little light is reflected, (cos(theta) - albedo) + absorbed if little is
-  // absorbed.
+  // If little light is reflected, cos(theta) - r_i is more accurate. If little is absorbed,
+  // (cos(theta) - albedo) + absorbed is more accurate.
   const double direct_error = moments.r_i_error + kRounding * cos_theta;
   const double split_error = moments.albedo_error + error_at(kAbsorbed) + kRounding * cos_theta;
   const bool is_split = split_error < direct_error;
@@ -372,7 +378,7 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
 
 std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking masking, double theta_deg,
                                                 const Curves& curves, double bend, const Refinement& refinement) {
-  const FacetOptics bent{1.0 / bend, 0.0};  // has its Brewster angle where the curves bend
+  const FacetOptics bent{1.0 / bend, 0.0};  // the index whose Brewster angle is where the curves bend
   const auto integral =
       Hemisphere<kCurves>(slopes, masking, theta_deg, bent, refinement, nullptr, &curves).integrate_zenith();
   std::vector<ColumnMoments> columns;

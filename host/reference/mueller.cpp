@@ -19,7 +19,8 @@ namespace dolp {
 
 namespace {
 
-// 34 digits, so that the textbook formulas may cancel: near grazing, in the retro direction, at the critical angle.
+// 34 digits are enough for the textbook formulas, which cancel near grazing, in the retro direction and at the critical
+// angle.
 using Real = boost::multiprecision::cpp_bin_float_quad;
 using Complex = boost::multiprecision::cpp_complex_quad;
 using Vector = reference::Vector<Real>;
@@ -28,13 +29,13 @@ using Jones = std::array<std::array<Number, 2>, 2>;
 
 constexpr double kMaskingTolerance = 1e-13;
 constexpr double kRetro = 1e-50;  // below this sin^2(2 beta) there is no plane of incidence
-// Below this squared horizontal part of omega_i + omega_r the beams mirror each other, so that grooves of every azimuth
-// reflect one into the other.
+// If the squared horizontal part of omega_i + omega_r is below this, each beam is the mirror image of the other, and
+// grooves of every azimuth reflect one into the other.
 constexpr double kMirrored = 1e-50;
 constexpr int kMostMuellerBounces = 2000;
-// Later bounces are only a correction, so double precision suffices.
+// Light with more bounces is only a correction, so double precision suffices for it.
 constexpr int kMostInQuad = 24;
-// The sum ends after this many bounces in a row without a contribution.
+// The sum ends if the last kIdleBounces terms together are at most the share kIdleShare of it.
 constexpr int kIdleBounces = 8;
 constexpr double kIdleShare = 1e-14;
 
@@ -60,7 +61,7 @@ Vector toward(double zenith_deg, double azimuth_deg) {
   return {sin(zenith) * cos(azimuth), sin(zenith) * sin(azimuth), cos(zenith)};
 }
 
-/// Its `s` belongs to the azimuth. At zenith 0 it is the limit of k x z.
+/// The incident beam, whose source is at azimuth 0. At zenith 0 its `s` is the limit of k x z.
 BeamFrame incident_beam(double zenith_deg) {
   const Vector k = scaled<Real>(-1, toward(zenith_deg, 0.0));
   const Vector s{0, 1, 0};
@@ -89,8 +90,9 @@ reference::Amplitudes<Number> fresnel_amplitudes(const FacetOptics& constants,
   return {(cos_beta - w) / (cos_beta + w), (n2 * cos_beta - w) / (n2 * cos_beta + w)};
 }
 
-// Columns: the reflected (s, p) amplitudes for an incident s wave and an incident p wave of unit amplitude. The facet's
-// s is normal to both beams. In the retro direction any s works, because r_p = -r_s.
+// The Jones matrix of a facet. Its columns are the reflected (s, p) amplitudes for an incident s wave and an incident p
+// wave of unit amplitude. The facet's s is normal to both beams. In the retro direction any s works, because
+// r_p = -r_s.
 Jones<Complex> jones_matrix(const BeamFrame& in, const BeamFrame& out, const reference::Amplitudes<Complex>& r) {
   const Vector normal = cross(in.k, out.k);
   const Vector facet_s = dot(normal, normal) > kRetro ? unit(normal) : in.s;
@@ -108,8 +110,8 @@ Jones<Complex> jones_matrix(const BeamFrame& in, const BeamFrame& out, const ref
   return jones;
 }
 
-// Element (a, b) is half the trace of sigma_a J sigma_b J^+. The matrices sigma turn the coherency matrix <E E^+> into
-// the Stokes parameters I, Q, U = 2 Re(E_s* E_p), V = 2 Im(E_s* E_p).
+// The Mueller matrix of a Jones matrix J. Element (a, b) is half the trace of sigma_a J sigma_b J^+. The matrices sigma
+// turn the coherency matrix <E E^+> into the Stokes parameters I, Q, U = 2 Re(E_s* E_p), V = 2 Im(E_s* E_p).
 template <class Number>
 ReferenceMueller mueller_from_jones(const Jones<Number>& jones) {
   using Matrix = Jones<Number>;
@@ -141,11 +143,11 @@ void add(ReferenceMueller& total, const ReferenceMueller& term) {
   for (std::size_t i = 0; i < 16; ++i) total[i / 4][i % 4] += term[i / 4][i % 4];
 }
 
-/// The plane across the grooves that reflect one beam into another. u points along the horizontal part of omega_i +
-/// omega_r or against it, because reflection keeps the component along the groove.
+/// The plane across the grooves that reflect one beam into another. The direction u across the grooves is along or
+/// against the horizontal part of omega_i + omega_r, because reflection keeps the component along the groove.
 struct GroovePlane {
   Vector u, v;
-  Real across;        ///< length of this horizontal part
+  Real across;        ///< length of the horizontal part of omega_i + omega_r
   Real psi_i, psi_r;  ///< angles of omega_i and omega_r from z toward u
 
   GroovePlane(const BeamFrame& in, const BeamFrame& out, int sign) {
@@ -157,8 +159,8 @@ struct GroovePlane {
     psi_r = atan2(dot(out.k, u), out.k[2]);
   }
   Vector in_groove(const Vector& a) const { return {dot(a, u), dot(a, v), a[2]}; }
-  /// Half the angle of the groove that reflects one beam into the other with `bounces` bounces, the first at A.
-  /// Unfolded, the ray passes 2 bounces times gamma from omega_i to -omega_r, or to its mirror image.
+  /// The half-angle of the groove that reflects one beam into the other with this number of bounces, the first at A.
+  /// Unfolded, the ray turns by 2 * bounces * gamma, from omega_i to -omega_r or to its mirror image.
   Real gamma(int bounces) const {
     const Real turn = bounces % 2 == 1 ? Real(psi_i + psi_r) : Real(psi_i - psi_r);
     return (boost::math::constants::pi<Real>() - turn) / (2 * bounces);
@@ -184,7 +186,7 @@ Number along(const RealVector<Number>& a, const std::array<Number, 3>& e) {
   return a[0] * e[0] + a[1] * e[1] + a[2] * e[2];
 }
 
-// f^(k) cos(theta_i) cos(theta_r) of the beams that meet A of one groove plane first. `Number` is complex.
+// f^(k) cos(theta_i) cos(theta_r) of the beams that meet A of one groove plane first. `Number` is a complex type.
 template <class Number>
 ReferenceMueller bounces_in_plane(const reference::Slopes& slopes, const FacetOptics& constants, const BeamFrame& in,
                                   const BeamFrame& out, const GroovePlane& plane, int bounces) {
@@ -213,7 +215,7 @@ ReferenceMueller bounces_in_plane(const reference::Slopes& slopes, const FacetOp
   return scaled_matrix(mueller_from_jones(jones), slopes.facet_density(cotangent * cotangent) * factor);
 }
 
-/// Two beams, and the planes of the grooves that connect them.
+/// Two beams, and the two planes across the grooves that reflect one into the other.
 struct GroovePair {
   BeamFrame in, out;
   GroovePlane toward, against;
@@ -230,8 +232,8 @@ struct GroovePair {
     add(total, in_plane(slopes, constants, in, out, against, bounces));
     return total;
   }
-  /// True if no ray can leave at psi_r after `bounces` or more bounces. Unfolded, a ray passes the apex at a distance
-  /// between cos(gamma) sin(|psi| - gamma) and sin(|psi| + gamma), where psi is both psi_i and psi_r.
+  /// True if no ray can leave at psi_r after `bounces` or more bounces. Unfolded, the ray passes the apex at a distance
+  /// between cos(gamma) sin(|psi| - gamma) and sin(|psi| + gamma). This holds both for psi = psi_i and for psi = psi_r.
   bool is_beyond(int bounces) const {
     const Real widest = std::max(toward.gamma(bounces), against.gamma(bounces));
     return abs(Real(abs(toward.psi_i) - abs(toward.psi_r))) > 4 * widest;
@@ -270,8 +272,8 @@ BouncesSum reference_all_bounces(const Surface& surface, const FacetOptics& cons
     for (const double value : latest) recent += value;
     if (k >= kIdleBounces && recent <= kIdleShare * sum.matrix[0][0]) return sum;
   }
-  // Sufficient for terms that fall at least like the power -9/8 of the number of bounces, or by a share of 1e-4 per
-  // bounce.
+  // This bounds the rest if the terms fall at least like the power -9/8 of the number of bounces, or by the share 1e-4
+  // with each bounce.
   sum.error = recent * kMostMuellerBounces;
   return sum;
 }

@@ -9,19 +9,21 @@ namespace {
 constexpr int kBisections = 60;
 constexpr int kMostSteps = 150;
 constexpr int kPlainSteps = 12;
-// More bends than this lie so close together that each is small; then plain refinement is as good.
+// If there are more bends than this, each is so small that refinement without break points is as good.
 constexpr std::size_t kMostBends = 40;
-// Equal steps of 1/gamma, because the bends of grooves have equal distances in it, and equal steps of log t.
+// The scan of t has equal steps of 1/gamma, because the bends of grooves have equal distances in 1/gamma, and equal
+// steps of log t.
 constexpr double kStepInverse = 0.04;
 constexpr double kMostInverse = 10.0;
 constexpr int kStepsPerDecade = 16;
 // Slopes below this share of the width contribute less than rounding does.
 constexpr double kSmallestShare = 1e-7;
-// A layer thinner than this needs additional break points; each is farther out by a constant factor.
+// Integrands may vary in a layer next to chi = 0 or t = 0. A layer thinner than this gets break points at distances
+// that grow by the factor kPlaneLayerGrowth.
 constexpr double kThinLayer = 0.05;
 constexpr double kPlaneLayerGrowth = 8.0;
 
-// The positions at which `regime` changes between sorted points: each change once, to the last bits.
+// The positions at which `regime` changes between the ascending `points`, found by bisection to the last bits.
 std::vector<double> changes(const std::vector<double>& points, const std::function<std::uint64_t(double)>& regime) {
   std::vector<double> found;
   std::uint64_t below = regime(points.front());

@@ -1,9 +1,10 @@
-// The azimuths at one slope: the lines that split [0, pi] into arcs on which the integrand is smooth, and the position
-// of a rule's node on an arc.
+// The azimuths at one slope: the lines that split [0, pi] into arcs on which the integrand is smooth, and the positions
+// of a rule's nodes on an arc.
 //
-// Azimuths are half angles (cos(phi/2), sin(phi/2)), which keep their digits at 0 and pi and need no arc cosine.
+// An azimuth phi is stored as its half angle (cos(phi/2), sin(phi/2)). This keeps its digits at 0 and pi and needs no
+// arc cosine.
 
-// From 1 + cos(phi) and 1 - cos(phi), clamped to [0, pi].
+// The half angle of phi from 1 + cos(phi) and 1 - cos(phi), clamped to [0, pi].
 real2 half_angle(real one_plus_x, real one_minus_x) {
   return real2(sqrt(clamp(real(0.5) * one_plus_x, real(0.0), real(1.0))),
                sqrt(clamp(real(0.5) * one_minus_x, real(0.0), real(1.0))));
@@ -18,7 +19,7 @@ real arc_tangent(real y) {
   return choose(is_small, angle, real(0.5) * kPi - angle);
 }
 
-// phi.
+// phi in radians.
 real phase(real2 half_phi) { return real(4.0) * arc_tangent(half_phi.y / (real(1.0) + half_phi.x)); }
 
 bool is_before(real2 from, real2 to) { return to.y * from.x > to.x * from.y; }
@@ -29,8 +30,9 @@ real2 clamp_half_angle(real2 phi, real2 from, real2 to) {
   return is_before(above, to) ? above : to;
 }
 
-// An arc of azimuths phi = centre + psi, psi = 4 atan(extent * abscissa), on which the integrand is smooth. If its
-// centre is its end, the extent is negative.
+// An arc of azimuths on which the integrand is smooth: phi = centre + psi with psi = 4 atan(extent * abscissa). The
+// centre may be the middle, the beginning or the end of the arc. The extent is negative for an arc with a root at its
+// end.
 struct Arc {
   real2 from;
   real2 to;
@@ -38,11 +40,12 @@ struct Arc {
   real centre_sin;
   real extent;
   real quarter;     // tan of a quarter of its length
-  real origin;      // phi of its beginning, or of the end at which its rule has a symmetry or a singularity
+  real origin;      // phi of the beginning, or of the end at which the rule has a symmetry or a singularity
   real span;        // length in phi
   int section;      // section of the rule nodes
-  bool is_critical; // true if w vanishes at or near its centre
-  real resolution;  // width of the square root at its centre that absorption smooths, see place_on_arc; 0: not smoothed
+  bool is_critical; // true if w of fresnel.glsl vanishes at or near the centre
+  real resolution;  // width of the square root at the centre if absorption smooths it, else 0; see critical_arc of
+                    // orders.glsl
 };
 
 // The arc between two azimuths.
@@ -61,7 +64,7 @@ Arc make_arc(real2 from, real2 to) {
   arc.is_critical = false;
   arc.resolution = real(0.0);
   arc.span = real(4.0) * arc_tangent(arc.quarter);
-  // Even about an end at 0 or pi. The whole half circle has both ends there.
+  // The integrand is even about 0 and pi. An arc that begins or ends there takes half of a symmetric rule.
   bool is_half = starts_at_0 || ends_at_pi;
   bool is_circle = starts_at_0 && ends_at_pi;
   arc.origin = choose(is_half, choose(starts_at_0, real(0.0), kPi), phase(from));
@@ -73,7 +76,8 @@ Arc make_arc(real2 from, real2 to) {
   return arc;
 }
 
-// The arc; if `has_root`, with a square root or another singularity at its end or its beginning.
+// If `has_root`, the arc has a square root or another singularity, at its end if `at_end`, otherwise at its beginning.
+// Then it gets a rule that clusters nodes there.
 Arc with_root(Arc arc, bool at_end, bool has_root) {
   real2 root = choose(at_end, arc.to, arc.from);
   arc.centre_cos = choose(has_root, cosine(root), arc.centre_cos);
@@ -84,16 +88,16 @@ Arc with_root(Arc arc, bool at_end, bool has_root) {
   return arc;
 }
 
-// An azimuth of an arc as (cos(phi), sin(phi)), and dphi for the weight of the rule.
+// An azimuth of an arc as (cos(phi), sin(phi)), and the weight that the rule gives it, including dphi.
 struct Azimuth {
   real x;
   real sin_phi;
   real weight;
 };
 
-// A node of an arc's rule if the square root at its centre is smoothed. The cluster's v^2 becomes (sinh(a v) /
-// sinh(a))^2, a = asinh(1 / sqrt(resolution)). Nodes are then spaced by ratios down to the resolution, and by squares
-// below.
+// The node of an arc's rule, moved if absorption smooths the square root at the centre of the arc. A cluster has the
+// abscissa v^2. It becomes (sinh(a v) / sinh(a))^2 with a = asinh(1 / sqrt(resolution)): the distances of the nodes
+// from the centre grow geometrically where they exceed the resolution, and like v^2 where they are smaller.
 real2 place_on_arc(Arc arc, real2 node) {
   if (!kTotalReflection) return node;
   real scale = real(1.0) / sqrt(arc.resolution);  // sinh(a)
@@ -117,17 +121,17 @@ Azimuth azimuth(Arc arc, real2 node) {
   return at;
 }
 
-// The azimuths, as half angles, that split [0, pi] into arcs on which the integrand is smooth, in ascending order. The
-// critical azimuth lies anywhere among them.
+// The azimuths, as half angles in ascending order, that split [0, pi] into arcs on which the integrand is smooth. The
+// critical azimuth may lie on any of these arcs.
 struct SplitLines {
   real2 end[DOLP_MAX_ARCS];  // end of each arc; the first begins at phi = 0
   int arcs;
   int leaving;     // number of arcs whose reflected ray leaves the surface
-  real2 horizon;   // theta_r = 90 degrees; beyond this line the reflected ray does not leave
-  real2 critical;  // cos(beta) = critical_cos: a square root on either side
+  real2 horizon;   // theta_r = 90 degrees; beyond this azimuth the reflected ray does not leave
+  real2 critical;  // cos(beta) = critical_cos; there the integrand has a square root on both sides
 };
 
-// cos(phi) = level / (s t), as a half angle.
+// The azimuth with cos(phi) = level / (s t), as a half angle. `st` is s t.
 real2 line_at(real level, real st) { return half_angle((st + level) / st, (st - level) / st); }
 
 SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines lines) {
@@ -141,8 +145,8 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
     lines.arcs = 2;
   }
   if (kMasking == DOLP_MASKING_INTEGRAL) {
-    // The limit b of eq. (11) reaches pi/2 at theta_r = pi/4 + alpha/2.
-    // 1 - sin(alpha) = cos^2(alpha) / (1 + sin(alpha)).
+    // The limit b of eq. (11) reaches pi/2 at theta_r = pi/4 + alpha/2, where cos^2(theta_r) = (1 - sin(alpha)) / 2.
+    // Without cancellation, 1 - sin(alpha) = cos^2(alpha) / (1 + sin(alpha)).
     real sec = sqrt(sec2);
     real cos_limit = sqrt(real(0.5) / (sec * (sec + t)));
     bool is_beyond = cos_limit < c;
@@ -154,8 +158,9 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
     lines.leaving = 3;
   }
   if (kMasking == DOLP_MASKING_V_CAVITY) {
-    // G = 1 between the lines 2 cos(alpha) cos(theta) = cos(beta) and 2 cos(alpha) cos(theta_r) = cos(beta), which meet
-    // at t = 1. The first one is the line of G1(theta), which continues below the horizon beyond t = sqrt(3).
+    // For t < 1, G = 1 between the line `shaded`, at which 2 cos(alpha) cos(theta) = cos(beta), and the line at which 2
+    // cos(alpha) cos(theta_r) = cos(beta). They meet at t = 1. The G1 of the direct emission has a corner at `shaded`
+    // for every t; beyond t = sqrt(3) this line lies below the horizon.
     real2 shaded = line_at(c, st);
     real level = c * (real(3.0) * t * t - real(1.0)) / (real(3.0) - t * t);
     lines.end[0] = t < real(1.0) ? shaded : same_zenith;
@@ -177,16 +182,22 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
   return lines;
 }
 
-// Lines of a groove, at which the number of bounces or the width of the beam changes its law. With gamma = pi/2 -
-// alpha, and psi the zenith of theta in the plane across the groove, tan(psi) = tan(theta) cos(phi), the lines are psi
-// = pi/2 - j gamma down to gamma, j <= RuleNode::split_bounces; psi = gamma; the three lines below it, unless more lie
-// above; and psi = -gamma, beyond which facets face away.
+// The lines of a groove: azimuths at which the number of bounces changes, or the formula for the width of the beam.
+// With gamma = pi/2 - alpha, let psi be the zenith of theta in the plane across the groove, tan(psi) = tan(theta)
+// cos(phi). The lines, in ascending order of phi, are
+//   psi = pi/2 - j gamma for j = 1, 2, ... as long as psi >= gamma, but only up to j = RuleNode::split_bounces;
+//   psi = gamma;
+//   psi = pi/2 - j gamma, pi - (2j + 1) gamma and pi/2 - (j + 1) gamma with the next j, unless split_bounces ended
+//     the first lines;
+//   psi = -gamma, beyond which facets face away.
+// groove_line() gives the azimuth of a line from (cos(psi), sin(psi)).
 real2 groove_line(ThetaNode theta, real cos_psi, real sin_psi) {
   return line_at(theta.c * sin_psi / max(cos_psi, real(1e-30)), max(theta.s, real(1e-30)));
 }
 
-// Slopes with such a small share that few digits suffice are split only at the line between facets that face the ray
-// and facets that face away. Steep grooves are not split at the lines of their bounces, because these are too many.
+// A slope with so small a share that this many digits suffice is split only at psi = -gamma, where facets turn away
+// from the ray. Grooves steeper than DOLP_STEEPEST_SPLIT are not split where the number of bounces changes, because it
+// changes too often.
 CONST real kDigitsOfLines = real(3.0);
 
 SplitLines groove_lines(RuleNode rule, ThetaNode theta, real t, real digits, SplitLines lines) {

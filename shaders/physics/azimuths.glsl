@@ -1,6 +1,6 @@
-// Sums over the azimuths at one slope: Gauss rules over the smooth arcs.
+// The sums over the azimuths at one slope, by Gauss rules on the smooth arcs.
 
-// One slope of a piece, with the values that its arcs share.
+// One slope of a piece, with the values that all its arcs use.
 struct Slope {
   real t;
   real digits;        // digits required of the sum over the azimuths
@@ -9,13 +9,13 @@ struct Slope {
   int most_azimuths;
   bool is_coarse;
   SkyPlace sky;
-  real weight[DOLP_WIDTH];  // weight of its columns, for each member of the row
+  real weight[DOLP_WIDTH];  // weight of this slope in the columns, for each entry of the row
 };
 
-// A sum over azimuths, for each member of a row.
+// Sums over azimuths. `member` and `columns` have an element for each entry of a row.
 struct AzimuthSums {
   real4 member[DOLP_WIDTH];
-  Columns columns[DOLP_WIDTH];  // the given columns, with sums added
+  Columns columns[DOLP_WIDTH];  // columns of preceding slopes and arcs, to which this sum is added
   real2 direct;       // direct emission of the facets as (I, Q), before smith masking
   real behind;        // MomentsNode::behind
   real evaluations;
@@ -33,8 +33,8 @@ AzimuthSums no_azimuths(Columns columns[DOLP_WIDTH]) {
   return sums;
 }
 
-// sin(theta_r). A diverging G varies in a range in which 1 - cos(theta_r) has lost its digits. There it is the
-// horizontal part of the ray.
+// sin(theta_r). If the mean slope is about to diverge, G varies so close to the zenith that 1 - cos(theta_r) has lost
+// its digits there. The sine is then computed as the length of the ray's horizontal part.
 real sine_of_ray(ThetaNode theta, Row row, Facet f, real t, Azimuth at) {
   if (!is_diverging(row.shape[0])) return sqrt((real(1.0) - f.cos_r) * (real(1.0) + f.cos_r));
   real turned = real(2.0) * f.e * t / (real(1.0) + t * t);
@@ -43,7 +43,7 @@ real sine_of_ray(ThetaNode theta, Row row, Facet f, real t, Azimuth at) {
   return sqrt(along * along + across * across);
 }
 
-// Factors of a column's function for each of the two moments.
+// Factors of a column's function in the two sums of the column: in the sum that replaces r_i, and in the sum for r_q.
 real2 column_factors(Slope slope, Facet f) {
   if (kColumns == DOLP_COLUMNS_SKY) return real2(f.m00, f.m01);
   real sky = (kColumns == DOLP_COLUMNS_SKY_RESPONSE) ? sky_function(slope.sky, 0, f.cos_r) : real(1.0);
@@ -93,8 +93,8 @@ real2 corner_line(ThetaNode theta, Slope slope, int corner) {
   return line_at(level, max(theta.s * t, real(1e-30)));
 }
 
-// Integral over the azimuths from 0 to pi. Each zone is one arc, or two with the critical line of total reflection
-// between them. Corners of a sky divide arcs further.
+// Integral over the azimuths from 0 to pi. A zone lies between two neighbouring split lines. It is one arc, or two if
+// the critical line of total reflection divides it. Corners of a sky divide the arcs further.
 AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope, SplitLines lines,
                          Columns columns[DOLP_WIDTH]) {
   AzimuthSums sums = no_azimuths(columns);
@@ -149,8 +149,8 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
   return sums;
 }
 
-// Sums over all facets of a slope. Facets whose ray does not leave lose their projection toward theta, which is
-// negative for facets that face away. From a groove every ray leaves.
+// Sums over all facets of a slope. For facets whose reflected ray does not leave, the deficit gets their projection e,
+// which is negative for facets that face away. From a groove every ray leaves.
 AzimuthSums slope_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope,
                        Columns columns[DOLP_WIDTH]) {
   SplitLines lines = split_lines(rule, theta, index, slope.t, slope.has_split_line, slope.digits);
@@ -169,7 +169,7 @@ struct SlopeResult {
   Columns columns;
 };
 
-// The sums in the form that slopes.comp returns: its maskings do not depend on the shape.
+// The sums at one slope as slopes.comp returns them. No row is needed, because its maskings do not depend on the shape.
 SlopeResult azimuths_of(RuleNode rule, ThetaNode theta, IndexNode index, SlopeNode slope_node) {
   Slope slope;
   slope.t = slope_node.t;

@@ -1,5 +1,5 @@
-// The data that the kernel source reads, for the GLSL entry points. The C++ class that includes the source has members
-// instead.
+// The data that the kernel source reads, for the entry points in GLSL. In C++ the class that includes the kernel source
+// has members instead.
 layout(local_size_x_id = DOLP_SPEC_LOCAL_SIZE) in;
 layout(constant_id = DOLP_SPEC_DISTRIBUTION) const uint kDistribution = DOLP_CAUCHY;
 layout(constant_id = DOLP_SPEC_MASKING) const uint kMasking = DOLP_MASKING_NONE;
@@ -14,7 +14,7 @@ layout(constant_id = DOLP_SPEC_CURVES) const bool kHasCurves = false;
 #if DOLP_MOST_COLUMNS > 0
 layout(constant_id = DOLP_SPEC_COLUMN_COUNT) const uint kColumnCount = 0u;
 layout(constant_id = DOLP_SPEC_COLUMNS) const uint kColumns = DOLP_COLUMNS_SKY;
-// With responses, a sky has one function.
+// With responses a sky has only one function.
 int sky_functions() { return kColumns == DOLP_COLUMNS_SKY ? int(kColumnCount) : 1; }
 #else
 const uint kColumns = DOLP_COLUMNS_SKY;

@@ -1,17 +1,18 @@
-// Columns: additional sums over the facets. kColumnCount is their number, kColumns their kind:
+// Columns: sums over the facets in addition to the moments. kColumnCount is the number of columns, kColumns their kind:
 //
-//   sky        the moments with functions g of the zenith of the reflected ray, |g| <= 1: what a sky that changes with
-//              the zenith adds to its mean (README.md beside this file, section 11);
-//   responses  the moments with the Chebyshev polynomials of the local angle of incidence instead of the reflectances:
-//              the moments of every index are sums of them (section 8). They describe the reflected light, the reflected
-//              light times the first function of a sky, or the direct emission.
+//   sky: the moments with functions g of the zenith of the reflected ray as factors, |g| <= 1. They give what a sky
+//     that changes with the zenith adds to a uniform sky (README.md beside this file, section 11).
+//   responses: the moments with Chebyshev polynomials of the local angle of incidence instead of the reflectances.
+//     The moments of every index are weighted sums of responses (section 8). Responses are of the reflected light, of
+//     the reflected light times the first function of a sky, or of the direct emission.
 //
-// A function g is a table over u = sqrt(1 - cos(theta_r)) = sqrt(2) sin(theta_r / 2), in which corners at the zenith are
-// corners too: straight lines in cells of one width, (value at the start, change over the cell), after the nodes of the
-// rules. host/compute/plan/sky_table.cpp fills it.
+// A function g is stored as straight lines over u = sqrt(1 - cos(theta_r)) = sqrt(2) sin(theta_r / 2): in cells of
+// equal width, each with the value at its start and the change over the cell. A sky that has a slope at the zenith
+// depends on the square root of 1 - cos(theta_r) there, but is smooth in u. The cells follow the nodes of the rules.
+// host/compute/plan/sky_table.cpp fills them.
 
-// Position of the tables among the rule nodes. It is read once, because devices read push constants again in each turn
-// of a loop.
+// Position of the functions among the rule nodes. A kernel reads it once, because devices would read push constants
+// again in each turn of a loop.
 struct SkyPlace {
   int cells;  // number of cells of a function
   int start;  // position of the first cell
@@ -23,7 +24,7 @@ struct ColumnValues {
   real f[DOLP_MOST_COLUMNS];
 };
 
-// Sums of the moments from (R_s + R_p) / 2 and from (R_s - R_p) / 2, with each function f.
+// Two sums for each column function f: `i` corresponds to r_i, `q` to r_q.
 struct Columns {
   real i[DOLP_MOST_COLUMNS];
   real q[DOLP_MOST_COLUMNS];
@@ -55,7 +56,7 @@ ColumnValues sky_at(SkyPlace table, real cos_r) {
   return values;
 }
 
-// T_k(2 asinh(c / c0) / asinh(1 / c0) - 1), c = cos(beta).
+// The Chebyshev polynomials T_k(2 asinh(c / c0) / asinh(1 / c0) - 1), k = 0, 1, ..., with c = cos(beta).
 ColumnValues chebyshev_at(RuleNode rule, real cos_beta) {
   real x = asinh_real(cos_beta * rule.response_scale) * rule.response_norm - real(1.0);
   ColumnValues values;
@@ -68,7 +69,7 @@ ColumnValues chebyshev_at(RuleNode rule, real cos_beta) {
   return values;
 }
 
-// The functions at a facet that reflects light.
+// The column functions at a facet with the local angle beta and the zenith theta_r of the reflected ray.
 ColumnValues column_values(RuleNode rule, SkyPlace table, real cos_beta, real cos_r) {
   if (kColumns == DOLP_COLUMNS_SKY) return sky_at(table, cos_r);
   return chebyshev_at(rule, cos_beta);
@@ -94,7 +95,7 @@ Columns scaled_columns(Columns sums, real factor) {
   return sums;
 }
 
-// Stores the columns of a slope.
+// Stores the columns of one slope.
 void store_azimuth_columns(Columns sums) {
   for (int k = 0; k < DOLP_MOST_COLUMNS; ++k) {
     if (k < int(kColumnCount)) {
@@ -104,7 +105,7 @@ void store_azimuth_columns(Columns sums) {
   }
 }
 
-// Stores the columns of a member of a row, by one of the two rules of a piece.
+// Stores the columns of one entry of a row, computed by one of the two rules of a piece.
 void store_columns(int member, bool is_coarse, Columns sums) {
   uint first = uint(member) * kColumnCount * DOLP_COLUMN_PARTS + (is_coarse ? 0u : 2u);
   for (int k = 0; k < DOLP_MOST_COLUMNS; ++k) {
@@ -117,7 +118,7 @@ void store_columns(int member, bool is_coarse, Columns sums) {
 
 SkyPlace sky_place() { return SkyPlace(sky_cells(), sky_start(), pushed_corners()); }
 
-// cos(theta_r) of a corner, which splits the azimuths. Corners are in ascending order of the zenith.
+// cos(theta_r) at corner i of the sky. Corners split the azimuths; they are in ascending order of the zenith.
 real cos_of_corner(SkyPlace table, int i) { return rule_node(table.start + sky_functions() * table.cells + i).x; }
 #else
 struct ColumnValues {

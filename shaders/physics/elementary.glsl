@@ -1,15 +1,16 @@
-// Elementary functions from +, *, / and sqrt. The builtins of GLSL are too coarse (a driver may return sinh with an
-// error of several percent near 0) and do not exist in double.
+// Elementary functions, built from arithmetic, sqrt, frexp and ldexp. GLSL's own functions are too coarse (a driver may
+// return sinh with an error of several percent near 0) and do not exist in double.
 // Accuracy: a few units in the last place in the ranges stated here (tests/compute/kernel_source_test.cpp).
 
 CONST real kPi = real(3.14159265358979323846);
-CONST real kLn2High = real(0.693145751953125);             // exact in a float; products with an exponent are exact, too
+CONST real kLn2High = real(0.693145751953125);             // few bits: it and its products with an exponent are exact
+                                                           // in a float
 CONST real kLn2Low = real(1.42860682030941723212e-6);      // ln 2 - kLn2High
 CONST real kInverseLn2 = real(1.44269504088896340736);
 CONST real kSqrtHalf = real(0.70710678118654752440);
 
-// One of two values, both of which are computed. `c ? a : b` is a branch unless a and b are names or constants. For
-// some drivers each branch in a loop doubles the time of their analysis.
+// Selects one of two computed values. `c ? a : b` is a branch unless a and b are names or constants, and each branch in
+// a loop doubles the time that some drivers need to analyse it.
 real choose(bool condition, real yes, real no) { return condition ? yes : no; }
 real2 choose(bool condition, real2 yes, real2 no) { return condition ? yes : no; }
 
@@ -101,14 +102,14 @@ real log1p_real(real u) {
 // ln(x) for 0 < x <= 1. It is coarse below 1e-30.
 real log_unit(real x) { return -log1p_real((real(1.0) - x) / max(x, real(1e-30))); }
 
-// ln(1 + u^2) for u >= 0. If u^2 overflows, it is 2 ln(u).
+// ln(1 + u^2) for u >= 0. Above 1e9, where u^2 may overflow, it is 2 ln(u).
 real log1p_square(real u) {
   bool is_large = u > real(1e9);
   real logarithm = log1p_real(choose(is_large, u - real(1.0), u * u));
   return choose(is_large, real(2.0) * logarithm, logarithm);
 }
 
-// asinh(y) for y >= 0. If y^2 might overflow, it is ln(2 y).
+// asinh(y) for y >= 0. Above 1e9, where y^2 may overflow, it is ln(2 y).
 real asinh_real(real y) {
   real y2 = y * y;
   return log1p_real(choose(y > real(1e9), real(2.0) * y - real(1.0), y + y2 / (real(1.0) + sqrt(real(1.0) + y2))));

@@ -1,15 +1,16 @@
 // Reflection and emission of one facet: the integrand of the moments in slope space (sections 1 to 3 of README.md
 // beside this file).
 //
-// A facet has slope t and azimuth phi from the plane of incidence; x = cos(phi), r2 = cos^2(alpha) = 1 / (1 + t^2),
-// e = c + s t x. Then
+// A facet has the slope t and the azimuth phi, measured from the plane of incidence. Let c = cos(theta),
+// s = sin(theta), x = cos(phi), r = cos(alpha) = 1 / sqrt(1 + t^2), r2 = r^2 and e = c + s t x. Facets from phi = 0 to
+// phi_m have reflected rays that leave the surface. Then
 //   rho c = integral P(t) t dt * 2 integral_0^phi_m e G M dphi,     cos(beta) = r e,     cos(theta_r) = 2 r2 e - c,
 //   sin^2(beta)             = r2 [(c t x - s)^2 + t^2 (1 - x^2)],
 //   sin^2(beta) cos(2 eta)  = r2 [(c t x - s)^2 - t^2 (1 - x^2)],
 //   M00 = R_s - D sin^2(beta) / 2,   M01 = D sin^2(beta) cos(2 eta) / 2,   D = (R_s - R_p) / sin^2(beta).
 //
-// Moments and their sums are vectors (r_i, r_q, albedo, deficit); the deficit is the part of the beam that is not
-// reflected: masked, absorbed, or sent below the horizon.
+// Moments and their sums are vectors (r_i, r_q, albedo, deficit). The deficit is the part of the beam that does not
+// leave: it is masked, absorbed, or reflected below the horizon.
 
 struct Facet {
   real e;         // projected area toward theta divided by the area of the facet's base
@@ -46,25 +47,26 @@ Facet facet(ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   return result;
 }
 
-// The facet's projection in two parts: e G, which masking leaves, and e (1 - G), which it hides. Each is computed
-// directly, because either may be the difference of two nearly equal numbers.
+// The projection e of a facet in two parts: e G is visible, e (1 - G) is hidden by masking. Each part is computed
+// directly, because e minus the other part would lose digits if the two are nearly equal.
 struct Projection {
   real visible;
   real hidden;
 };
 
-// Integrand per unit of azimuth.
+// Integrand of (r_i, r_q, albedo, deficit) per radian of azimuth.
 real4 reflected(Facet f, Projection part) {
   return real4(part.visible * f.m00, part.visible * f.m01, part.visible, part.hidden + part.visible * f.absorbed);
 }
 
-// A facet's projection toward the viewer, masked only for theta.
+// The part of e that the direct emission of a facet shows to the viewer, with v-cavity masking of theta if there is
+// any.
 real seen_directly(ThetaNode theta, Facet f) {
   return (kMasking == DOLP_MASKING_V_CAVITY) ? min(f.e, real(2.0) * theta.c) : f.e;
 }
 
-// Emission of a facet straight to the viewer per unit of azimuth, as (I, Q): e G1 (1 - M00) and -e G1 M01, masked only
-// for theta. The factor of smith masking, equal for all facets, is applied later.
+// Direct emission of a facet per radian of azimuth, as (I, Q): e G1 (1 - M00) and -e G1 M01, where G1 masks only toward
+// the viewer, theta. The G1 of smith masking is equal for all facets, and moments.glsl applies it later.
 real2 emitted(ThetaNode theta, Facet f) {
   real visible = seen_directly(theta, f);
   return real2(visible * f.absorbed, -visible * f.m01);

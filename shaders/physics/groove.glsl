@@ -1,30 +1,33 @@
-// All bounces of a ray in a V-groove (README.md beside this file, section 3): two facets of slope t with normals
-// (t u + z) / sec and (-t u + z) / sec, u = (cos(phi), sin(phi), 0), met at the apex. gamma = pi/2 - alpha.
+// All bounces of a ray in a V-groove (README.md beside this file, section 3). The two facets of the groove have the
+// slope t and meet at the apex. Their normals are (t u + z) cos(alpha) and (-t u + z) cos(alpha) with u = (cos(phi),
+// sin(phi), 0). Let gamma = pi/2 - alpha, c = cos(theta), s = sin(theta) and x = cos(phi).
 //
-// Unfolded about its apex the groove is a fan of facets gamma, 3 gamma, 5 gamma, ... from the vertical, and the ray is
-// straight: it meets facet k at the angle chi_k = psi + (2k - 1) gamma in the plane across the groove, where its length
-// is a = sqrt(c^2 + (s x)^2) and its zenith psi. With (X, Y) = a (sin(chi), cos(chi)) and b = s sin(phi), its part
-// along the groove:
-//   cos(beta_k) = X_k,   the plane of incidence is turned by eta, (cos(eta), sin(eta)) ~ (Y_k, b X_k).
-// Mirrored at each facet, the fields never leave one frame: a bounce is Fresnel's matrix between two turns by eta. Of
-// the beam min(e, 2c) that meets the facet first, (min(X_k, X_1) - X_0) / (X_1 - X_0) goes on to bounce k, X_0 = max(a
-// sin(psi - gamma), 0).
+// Unfolded about its apex, the groove is a fan of facets at the angles gamma, 3 gamma, 5 gamma, ... from the vertical,
+// and the ray is a straight line. In the plane across the groove, the unit vector of the ray has the length
+// a = sqrt(c^2 + (s x)^2) and the zenith psi; along the groove it has the component b = s sin(phi). The ray meets facet
+// k at the angle chi_k = psi + (2k - 1) gamma. With (X_k, Y_k) = a (sin(chi_k), cos(chi_k)):
+//   cos(beta_k) = X_k,   the plane of incidence is turned by eta_k, (cos(eta_k), sin(eta_k)) ~ (Y_k, b X_k).
+// If the fields are mirrored at each facet, they stay in one frame. A bounce is then Fresnel's matrix between two turns
+// by eta_k. The beam that meets the facet first has the width min(e, 2c). Its share (min(X_k, X_1) - X_0) / (X_1 - X_0)
+// goes on to bounce k, with X_0 = max(a sin(psi - gamma), 0).
 
-// A ray with many bounces: 2, 4, 8 ... bounces are combined into one at their middle. Fewer are combined near the ray's
-// first and last bounce, which may be grazing. The error is bounded in host/compute/plan/error_bounds.cpp.
+// A ray on its way through the fan. If it has many bounces, groups of 2, 4, 8 ... bounces count as one bounce at their
+// middle. Near the first and the last bounce, which may be grazing, the groups are smaller.
+// host/compute/plan/error_bounds.cpp bounds the error of this.
 struct Fan {
-  real2 turn;    // (cos, sin) of gamma times the combined bounces
-  real gamma;    // this and the next members are for rays with many bounces
-  real left;     // remaining bounces; (pi/2 - psi) / gamma at first
+  real2 turn;    // (cos, sin) of gamma times the number of bounces in the next group
+  real gamma;    // this and the next members are set only for steep grooves, see fan()
+  real left;     // number of bounces ahead; (pi/2 - psi) / gamma at first
   real done;
   real slant;    // psi / gamma, at most 1
-  real taken;    // number of combined bounces, 2^doublings
+  real taken;    // number of bounces in the next group, 2^doublings
   int doublings;
   bool is_steep;
-  bool is_black;  // true after so many bounces that no light is left
+  bool is_black;  // true if the ray has so many bounces that no light is left
 };
 
-// The fan of a groove of slope t, for a ray with vertical component c and component u across the groove.
+// The start of a ray in a groove of slope t. The ray has the vertical component c and the component u across the
+// groove.
 Fan fan(real t, real c, real u) {
   real r = real(1.0) / sqrt(real(1.0) + t * t);
   Fan f;
@@ -37,7 +40,8 @@ Fan fan(real t, real c, real u) {
   f.doublings = 0;
   f.is_steep = false;
   f.is_black = false;
-  // A ray has at most pi/gamma < pi t + 2 bounces. Devices skip a loop that no invocation needs.
+  // A ray has at most pi/gamma < pi t + 2 bounces. This loop of one turn stands for an `if`, because devices skip a
+  // loop that no invocation needs.
   for (bool may_be = t > real(DOLP_MOST_BOUNCES) / kPi; may_be; may_be = false) {
     real to_horizon = arc_tangent(c / max(abs(u), real(1e-30)));
     f.gamma = arc_tangent(real(1.0) / t);
@@ -50,14 +54,14 @@ Fan fan(real t, real c, real u) {
   return f;
 }
 
-// Share of a ray with many bounces that continues to one more bounce. Uses the sines of small angles instead of the
-// angles.
+// Share of the beam that goes on to one more bounce, for a ray with many bounces. The sines of small angles are
+// replaced by the angles.
 real last_share(Fan f) {
   real sum = max(real(1.0) + f.slant, real(1e-30));
   return (real(2.0) * f.left + f.slant - real(1.0)) / sum;
 }
 
-// The next bounces of a ray with many. Combines as many as their distance from the first and the last bounce allows.
+// Chooses the size of the next group of bounces: the more bounces lie behind and ahead, the larger it may be.
 Fan next_bounces(Fan f) {
   real distance = min(f.done, f.left) * (real(1.0) / real(DOLP_GROUPS_PER_DISTANCE));
   if (real(2.0) * f.taken <= distance) {
@@ -71,16 +75,17 @@ Fan next_bounces(Fan f) {
   return f;
 }
 
-// Mueller matrix of a facet in its own frame, on (I, Q, U, V):
+// Mueller matrix of a facet in the frame of the facet, for Stokes vectors (I, Q, U, V):
 // [m00 m01 0 0; m01 m00 0 0; 0 0 cross.x cross.y; 0 0 -cross.y cross.x].
 struct Bounce {
   real m00;
   real m01;
   real absorbed;  // 1 - m00
-  real2 cross;    // r_s r_p*; here r_p equals r_s at normal incidence
+  real2 cross;    // r_s r_p*, with the sign for which r_p = r_s at normal incidence
 };
 
-// r_p / r_s = (cos(beta) w - sin^2(beta)) / (cos(beta) w + sin^2(beta)).
+// The reflection by 2^doublings equal facets in succession. r_p / r_s = (cos(beta) w - sin^2(beta)) / (cos(beta)
+// w + sin^2(beta)).
 Bounce bounce(IndexNode index, real cos_beta, real sin2_beta, int doublings) {
   real2 w = sqrt_upper(index.n2m1_re + cos_beta * cos_beta, index.n2m1_im);
   real2 s_sum = real2(cos_beta + w.x, w.y);
@@ -110,7 +115,7 @@ Bounce bounce(IndexNode index, real cos_beta, real sin2_beta, int doublings) {
   return combined;
 }
 
-// A Stokes vector after a bounce whose plane of incidence is turned by eta. `twice` is (cos, sin) of 2 eta.
+// The Stokes vector after the bounce `by`, whose plane of incidence is turned by eta. `twice` is (cos, sin) of 2 eta.
 real4 bounced(Bounce by, real2 twice, real4 stokes) {
   real q = twice.x * stokes.y + twice.y * stokes.z;
   real u = twice.x * stokes.z - twice.y * stokes.y;
@@ -126,21 +131,21 @@ real2 doubled_angle(real x, real y) {
   return real2((x - y) * (x + y) * inverse, real(2.0) * x * y * inverse);
 }
 
-// a (sin, cos) of an angle, advanced by one step.
+// Turns `at`, which is a (sin, cos) of an angle, by the angle with (cos, sin) = `step`.
 real2 further_on(real2 at, real2 step) {
   return real2(at.x * step.x + at.y * step.y, at.y * step.x - at.x * step.y);
 }
 
-// Light that leaves a groove. A part of it leaves one bounce earlier than the rest.
+// Light that leaves a groove. A part of the beam may leave one bounce earlier than the rest.
 struct GrooveLight {
-  real4 moments;    // in the order of facet.glsl
+  real4 moments;    // (r_i, r_q, albedo, deficit), as in facet.glsl
   real2 before;     // r_i and r_q of the part that leaves earlier
   real cos_before;  // cos(theta_r) of that part
   real2 last;
   real cos_last;
 };
 
-// Integrand of the moments per unit of azimuth, for the rays that meet the facet (t, phi) first. After k bounces
+// Integrand of the moments per radian of azimuth, for the rays that meet the facet (t, phi) first. After k bounces
 // cos(theta_r) is -a cos(psi + 2 k gamma).
 GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   real c = theta.c;
@@ -157,7 +162,7 @@ GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index,
   real2 between = real2(u, c);  // a (sin, cos) of psi + 2 k gamma
   real share = f.is_black ? real(0.0) : real(1.0);  // share of the beam that continues
   real absorbed = real(1.0) - share;
-  // Stokes vectors of rays with intensity 1 and with Q = 1, in the frame of the surface.
+  // Stokes vectors of two rays in the frame of the surface: one has I = 1 and is unpolarised, the other has only Q = 1.
   real4 natural = real4(share, real(0.0), real(0.0), real(0.0));
   real2 seen = doubled_angle(-x, c * sin_phi);
   real4 polarised = real4(real(0.0), share * seen.x, share * seen.y, real(0.0));

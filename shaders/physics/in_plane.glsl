@@ -3,8 +3,9 @@
 //   smith, height-correlated:  L(theta) = (1 / mu) int_mu^inf p(tau) (tau - mu) dtau.
 //   `integral`:  1 - G1 = int_mu^inf p(tau) min(1, kappa (tau - mu) / sqrt(1 + tau^2)) dtau, eqs. (9)-(12)
 //   of the paper with tau = tan(gamma). masking.glsl defines kappa and the slope tb at which the minimum switches.
-// In X = asinh(tau / scale), scale = min(m / sqrt(max(1, q)), 1), the singularities are at least pi/2 away from the
-// real axis. At large X the cauchy's p is a power law, and the rest has a closed form. All terms are positive.
+// The rules run over X = asinh(tau / scale), with scale = min(m / sqrt(q), 1), for the gaussian min(m, 1). Then all
+// singularities are at least pi/2 away from the real axis. At large X the cauchy's p is a power law, and the rest of
+// the integral has a closed form. All terms are positive.
 
 #ifdef DOLP_DOUBLE
 CONST int kInPlaneOrder = 16;  // order on a panel whose length in X is at most 1
@@ -15,15 +16,15 @@ CONST real kPowerLawSlope = real(1e4);
 #endif
 
 CONST real kSmallestSine = real(1e-18);
-CONST real kLargestSwitch = real(1e20);  // largest tb; beyond it the minimum hardly switches
+CONST real kLargestSwitch = real(1e20);  // upper limit of tb; beyond it the minimum hardly switches
 
-// Weights of p in the integrals.
+// Functions that multiply p in the integrals.
 CONST uint kWeightOne = 0u;
 CONST uint kWeightVisible = 1u;  // tau - mu; for `integral` divided by sqrt(1 + tau^2)
 
 real in_plane_end(ShapeNode shape) { return min(shape.cut, kPowerLawSlope * max(shape.m, real(1.0))); }
 
-// Integral over slopes in [from, to]; 0 if there are none.
+// Integral of p times a weight over the slopes from `from` to `to`; 0 if to <= from.
 real in_plane_sum(ShapeNode shape, uint weight, real mu, real from, real to) {
   if (to <= from) return real(0.0);
   real start = asinh_real(from / shape.scale);
@@ -44,7 +45,7 @@ real in_plane_sum(ShapeNode shape, uint weight, real mu, real from, real to) {
   return sum * length * shape.scale;
 }
 
-// Integral over all slopes beyond `from`, where p ~ tau^(1 - 2q). For the Gaussian it is negligible.
+// Integral of p times a weight over all slopes above `from`, where p ~ tau^(1 - 2q). For the Gaussian it counts as 0.
 real power_law_sum(ShapeNode shape, uint weight, real mu, real from) {
   if (kDistribution == DOLP_GAUSSIAN) return real(0.0);
   real a = real(2.0) * shape.q_minus_1;

@@ -1,13 +1,14 @@
-// Geometric attenuation G (shaders/physics/README.md, section 2). v-cavity has a closed form. `integral` and smith use
+// Geometric attenuation G (README.md beside this file, section 2). v-cavity has a closed form. `integral` and smith use
 // a table of one-dimensional integrals of the in-plane slope density p, one table per shape.
 //
-// With Pt(x) = int_x^inf p, C(x) = int_x^inf g p and l(x) = int_x^inf g(tau) p(tau) (tau - x) dtau, where g = 1 for
-// smith and 1 / sqrt(1 + tau^2) for `integral`:   l' = -C,  C' = -g p,  Pt' = -p.
-//   smith, height-correlated:  G = 1 / (1 + L(theta) + L(theta_r)),  L = l(mu) / mu,  mu = cot(theta).
+// The integrals are Pt(x) = int_x^inf p, C(x) = int_x^inf g p and l(x) = int_x^inf g(tau) p(tau) (tau - x) dtau, where
+// g = 1 for smith and 1 / sqrt(1 + tau^2) for `integral`. Their derivatives are l' = -C, C' = -g p and Pt' = -p. With
+// mu = cot(theta):
+//   smith, height-correlated:  G = 1 / (1 + L(theta) + L(theta_r)),  L = l(mu) / mu.
 //   `integral`, eqs. (9)-(12), for kappa = sqrt(1 + t^2) / (mu + t) and d = (1 - mu^2) - 2 mu t:
 //     d <= 0:  1 - G1 = kappa l(mu)                                 (the limit b of the second integral is pi/2)
 //     d > 0:   1 - G1 = kappa [l(mu) - l(tb) - (tb - mu) C(tb)] + Pt(tb),   tb = (t (1 - mu^2) + 2 mu) / d.
-// A table holds (l, C, Pt, p) at v = 1 + tau / table_scale = 2^octave (1 + cell / 2^kCellBits).
+// A table holds (l, C, Pt, p) at the nodes v = 1 + tau / table_scale = 2^octave (1 + cell / 2^kCellBits).
 
 #ifdef DOLP_DOUBLE
 CONST uint kCellBits = DOLP_MASKING_CELL_BITS_DOUBLE;
@@ -28,7 +29,7 @@ real masking_weight(real tau) {
   return (kMasking == DOLP_MASKING_SMITH) ? real(1.0) : real(1.0) / sqrt(real(1.0) + tau * tau);
 }
 
-// -p'/p without a factor that depends only on the shape, and -g'/g.
+// -p'/p is marginal_decay times marginal_decay_factor, which depends only on the shape. -g'/g is weight_decay.
 real marginal_decay(ShapeNode shape, real tau) {
   real u = tau / shape.m;
   if (kDistribution == DOLP_GAUSSIAN) return real(2.0) * u / shape.m;
@@ -41,9 +42,10 @@ real weight_decay(real tau) {
   return (kMasking == DOLP_MASKING_SMITH) ? real(0.0) : tau / (real(1.0) + tau * tau);
 }
 
-// Position of tau in the tables of one scale. The weights of values (f), first (d) and second derivatives (e) at the
-// ends of the cell are for quintic Hermite interpolation. Beyond the table's end its last value is used. Only facets
-// within 1e-5 of the line d = 0 and directions within 2e-5 of the normal need values there.
+// The cell that contains tau, in all tables of one table_scale, with the weights of quintic Hermite interpolation: f
+// for the values, d for the first and e for the second derivatives at both ends of the cell. Beyond its end a table
+// continues with its last value. Only facets within 1e-5 of the line d = 0 and directions within 2e-5 of the normal
+// read there.
 struct TableCell {
   uint node;  // the last node at or before tau
   real f0;
@@ -80,7 +82,7 @@ TableCell table_cell(ShapeNode shape, real tau) {
   return cell;
 }
 
-// l in a cell: l' = -C, l'' = g p.
+// l(tau) by interpolation in a cell, with l' = -C and l'' = g p. `table` is the first node of the table.
 real masking_height(TableCell cell, uint table) {
   real4 n0 = masking_node(table + cell.node);
   real4 n1 = masking_node(table + cell.node + 1u);
@@ -88,13 +90,13 @@ real masking_height(TableCell cell, uint table) {
          (cell.e0 * cell.g0 * n0.w + cell.e1 * cell.g1 * n1.w);
 }
 
-// Positions in the tables for 1 - G1(theta, alpha) of a direction and a facet slope t. They are equal for all tables of
-// one scale.
+// The arguments at which tables are read for 1 - G1(theta, alpha), for a direction and a facet slope t. They are equal
+// for all tables of one table_scale.
 struct ShadowRange {
   real kappa;
-  bool is_limited;  // d > 0, with
-  real far;         // tau_b
-  real gap;         // tau_b - mu
+  bool is_limited;  // true if d > 0, so that tb limits the integral
+  real far;         // tb
+  real gap;         // tb - mu
 };
 
 // cot(theta), the argument of l.
@@ -116,15 +118,15 @@ ShadowRange shadow_range(ShapeNode shape, real cos_theta, real sin_theta, real t
   return range;
 }
 
-// The term that the limit b < pi/2 adds to kappa l(mu): Pt(tb) - kappa [l(tb) + (tb - mu) C(tb)]. It is a sum over the
-// values at the ends of the cell that contains tau_b, with C'' = g p (-p'/p - g'/g) and Pt'' = p (-p'/p). Only -p'/p
-// and the values depend on the shape.
+// 1 - G1 is kappa l(mu) plus, if b < pi/2, the term Pt(tb) - kappa [l(tb) + (tb - mu) C(tb)]. This term is a sum of the
+// table's values at both ends of the cell that contains tb. The structure has the factors of these values. They use
+// C'' = g p (-p'/p - g'/g) and Pt'' = p (-p'/p), in which only p and -p'/p depend on the shape.
 struct LimitTerms {
   real l0;
   real l1;
   real c0;
   real c1;
-  real p0;  // factors of p; decay0 and decay1 are factors of p times marginal_decay_factor
+  real p0;  // p0 and p1 are factors of p; decay0 and decay1 are factors of p times marginal_decay_factor
   real p1;
   real decay0;
   real decay1;

@@ -1,10 +1,10 @@
-// Builds the masking table of one shape, from its far end inwards. All terms are positive, so the smallest tails have
-// full relative accuracy, too.
+// Builds the masking table of one shape, from its far end inwards. All terms are positive, so the smallest integrals
+// have full relative accuracy, too.
 
-CONST int kTableOrder = 4;  // Gauss order on one cell, in which v grows by at most a sixteenth
+CONST int kTableOrder = 4;  // Gauss order on one cell, in which v grows by at most an eighth
 
-// Contribution of one cell [tau0, tau1] to the tails. Added to the tails at tau1 it gives (l, C, Pt, p) at tau0; p is
-// complete.
+// The contribution of the cell [tau0, tau1] to l, C and Pt. Added to their values at tau1 (`beyond`), it gives the
+// values at tau0. The last component is not a contribution, but p(tau0).
 real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
   real h = tau1 - tau0;
   real height = real(0.0);
@@ -23,8 +23,9 @@ real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
   return real4(h * beyond.y + height, first, probability, marginal_density(shape, tau0));
 }
 
-// The tails at the table's end. The cauchy's p is a power law tau^(1-2q) there. If the end lies below slope 1, almost
-// nothing is left, and the factor keeps the order of magnitude of l and C. The tails of the Gaussian are negligible.
+// (l, C, Pt, p) at the end of the table. There the cauchy's p is a power law, tau^(1-2q), and slopes are assumed to be
+// large. If the end lies below slope 1, almost no facets are left beyond it, and l and C have the right order of
+// magnitude. The integrals of the Gaussian are negligible.
 real4 masking_table_end(ShapeNode shape, real tau) {
   real p = marginal_density(shape, tau);
   if (kDistribution == DOLP_GAUSSIAN) return real4(real(0.0), real(0.0), real(0.0), p);

@@ -1,20 +1,23 @@
-// The specular Mueller pBRDF of one geometry, all 16 elements (shaders/physics/README.md, sections 1 and 2, eqs. 4, 7,
-// 15).
+// All 16 elements of the specular Mueller pBRDF of one geometry (README.md beside this file, sections 1 and 2, eqs. 4,
+// 7 and 15).
 //
-// The Jones matrix rotates s and p into the facet's plane by eta_i, reflects, and rotates back by eta_r into the plane
-// of the reflected beam. The s vector of the facet is cos(eta) s + sin(eta) p. With the frames s = k x z, p = k x s,
-// sin(eta) has the sign of sin(dphi); in eq. 4 as printed it has the opposite sign. On Stokes vectors (I, Q, U, V) with
-// U = 2 Re(E_s* E_p), V = 2 Im(E_s* E_p) that is Q' = cos(2 eta_i) Q + sin(2 eta_i) U, U' = -sin(2 eta_i) Q + cos(2
-// eta_i) U, the facet's matrix [A B 0 0; B A 0 0; 0 0 C -S; 0 0 S C], A, B = (R_s +- R_p)/2, C + i S = r_s* r_p, and
-// the reverse by eta_r. The host computes A, B, C and S (host/compute/plan/beam.cpp).
+// The Jones matrix turns s and p by eta_i into the frame of the facet, reflects, and turns back by eta_r into the frame
+// of the reflected beam. The s vector of the facet is cos(eta) s + sin(eta) p. With s = k x z and p = k x s, sin(eta)
+// has the sign of sin(dphi); in eq. 4 as printed it has the opposite sign. For Stokes vectors (I, Q, U, V), with U = 2
+// Re(E_s* E_p) and V = 2 Im(E_s* E_p), the three steps are
+//   turn by eta_i:  Q' = cos(2 eta_i) Q + sin(2 eta_i) U,  U' = -sin(2 eta_i) Q + cos(2 eta_i) U
+//   reflection:     [A B 0 0; B A 0 0; 0 0 C -S; 0 0 S C] with A, B = (R_s +- R_p)/2 and C + i S = r_s* r_p
+//   turn by -eta_r
+// The host computes A, B, C and S (host/compute/plan/beam.cpp).
 
-// G of one geometry.
+// The masking G of one geometry.
 real attenuation(GeometryNode g, ShapeNode shape) {
   if (kMasking == DOLP_MASKING_NONE) return real(1.0);
   if (kMasking == DOLP_MASKING_SMITH) {
     return real(1.0) / (real(1.0) + in_plane_lambda(shape, g.c_i, g.s_i) + in_plane_lambda(shape, g.c_r, g.s_r));
   }
-  bool incident_is_lower = g.c_i * g.s_r < g.c_r * g.s_i;  // near the normal all cosines are 1 in a float
+  bool incident_is_lower = g.c_i * g.s_r < g.c_r * g.s_i;  // compares tangents: in a float all cosines near the normal
+                                                           // are 1
   real lower_cos = incident_is_lower ? g.c_i : g.c_r;
   real lower_sin = incident_is_lower ? g.s_i : g.s_r;
   if (kMasking == DOLP_MASKING_V_CAVITY) {
@@ -23,8 +26,8 @@ real attenuation(GeometryNode g, ShapeNode shape) {
   return real(1.0) - in_plane_shadowed(shape, lower_cos, lower_sin, g.slope);
 }
 
-// f cos(theta_i) cos(theta_r) for k_s = 1 [1/sr], row by row, divided by the power of two of the density. It is finite
-// at grazing incidence.
+// f cos(theta_i) cos(theta_r) for k_s = 1 [1/sr], row by row, divided by the power of two that BeamNode::density leaves
+// out. The product with the cosines is finite at grazing incidence.
 MuellerNode mueller(BeamNode beam) {
   GeometryNode g = beam.g;
   real scale = beam.density * attenuation(g, beam.shape);

@@ -1,20 +1,20 @@
-// Number of nodes for a piece of the slope axis or an arc of the azimuth. The sums do not depend on this file.
+// The number of nodes for a piece of the slope axis or an arc of azimuths. This file decides only how accurate the sums
+// are.
 //
-// A Gauss rule of n nodes on [0, 1] has the error e^(-2 n mu) if the nearest singularity y0 of the integrand lies on
-// the ellipse with the interval's ends as foci and cosh(mu) = |y0| + |y0 - 1| (Trefethen 2013, chapter 19). So a
-// decimal digit costs ln(10) / (2 mu) nodes. The positions of the singularities in the azimuth are known exactly.
-// RuleNode scales the law with fitted numbers (host/compute/plan/rule.hpp). The less a piece contributes, the fewer
-// digits it needs.
+// Let y0 be the singularity of the integrand that is nearest to [0, 1]. A Gauss rule of n nodes then has an error of
+// about e^(-2 n mu), with cosh(mu) = |y0| + |y0 - 1| (Trefethen 2013, chapter 19). So a decimal digit costs ln(10) / (2
+// mu) nodes. The positions of the singularities in the azimuth are known exactly. The fitted numbers of RuleNode scale
+// the law (host/compute/plan/rule.hpp). The less a piece contributes, the fewer digits it needs.
 
 CONST real kHalfLn10 = real(1.15129254649702284);
 CONST real kLn10 = real(2.30258509299404568402);
 CONST real kInverseLn10 = real(0.43429448190325182765);
-// a root beside an arc with a larger resolution counts as an ordinary singularity
+// beside an arc, a square root with a larger Arc::resolution counts as an ordinary singularity
 CONST real kWideResolution = real(0.1);
 CONST real kSharpResolution = real(1e-6);
 CONST real kMoreDigits = real(0.3);  // additional digits on the slope axis for each digit beyond kPlainDigits
 CONST real kPlainDigits = real(7.0);
-CONST real kLeastWeight = real(1e-20);  // gives all slopes equal weight at 90 degrees
+CONST real kLeastWeight = real(1e-20);  // smallest weight of a slope; gives all slopes equal weight at 90 degrees
 
 // acosh(1 + gap), without cancellation.
 real acosh_above_1(real gap) { return log1p_real(gap + sqrt(gap) * sqrt(gap + real(2.0))); }
@@ -39,7 +39,7 @@ real arc_cosine(real u) {
   return choose(u < real(0.0), kPi - angle, angle);
 }
 
-// arccos(a + i b), from the distances of cos(phi) to +-1 (Hull, Fairgrieve and Tang 1997).
+// The azimuth with cos(phi) = a + i b, from the distances of a + i b to +-1 (Hull, Fairgrieve and Tang 1997).
 Singularity singularity_at(real a, real b) {
   real to_minus_1 = sqrt((a + real(1.0)) * (a + real(1.0)) + b * b);
   real to_1 = sqrt((a - real(1.0)) * (a - real(1.0)) + b * b);
@@ -51,8 +51,8 @@ real nodes_per_digit(real mu) { return kHalfLn10 / max(mu, real(1e-3)); }
 
 int order_between(real nodes, int limit) { return int(clamp(floor(nodes + real(0.5)), real(1.0), real(limit))); }
 
-// Order of the coarser rule of a pair, whose distance from the finer rule bounds the error. Below three nodes two rules
-// often agree by chance; there it is the order of the finer rule.
+// Order of the coarser rule of a pair. The difference between the results of a pair bounds the error. Two rules with
+// few nodes often agree by chance, so below three nodes the order is one more than that of the finer rule.
 int coarse_order(int order) {
   int fewer = (8 * order + 5) / 10;
   int more = order + 1;
@@ -61,14 +61,14 @@ int coarse_order(int order) {
 
 // ---- Slope axis ----------------------------------------------------------------------------------------------------
 
-// Contribution of facets of slope t to the albedo: c + s t without masking. Cavities let through at most 2 c.
+// Upper bound of the contribution of a facet of slope t to the albedo: c + s t; with v-cavity masking also at most 2 c.
 real weight_of_slope(ThetaNode theta, real t) {
   real bare = theta.c + theta.s * t;
   return kMasking == DOLP_MASKING_V_CAVITY ? min(bare, max(real(2.0) * theta.c, kLeastWeight)) : bare;
 }
 
-// Contribution of all facets. Facets up to slope t1 reflect every ray upwards, facets between t1 and t2 about half of
-// the rays.
+// Estimated contribution of all facets to the albedo. Facets up to slope t1 reflect every ray upwards, facets between
+// t1 and t2 about half of the rays.
 real weight_of_shape(ThetaNode theta, ShapeNode shape) {
   real t1 = theta.c / (real(1.0) + theta.s);
   real t2 = (real(1.0) + theta.s) / max(theta.c, real(1e-15));
@@ -81,25 +81,26 @@ real weight_of_shape(ThetaNode theta, ShapeNode shape) {
              kLeastWeight);
 }
 
-// Digits required of a part that carries a share of the albedo: fewer by the logarithm of the share.
+// Digits required of a part that contributes a share of the albedo: RuleNode::digits plus log10(share).
 real digits_of_share(RuleNode rule, real share) {
   return max(rule.digits + kInverseLn10 * log_unit(min(share, real(1.0))), real(0.0));
 }
 
-// Digits required of the slopes in [a, b].
+// Digits required of the slopes in [a, b], which have the share `mass` of the facets.
 real digits_of_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, real a, real b, real mass) {
   real typical = weight_of_slope(theta, clamp(shape.m, a, b));
   return digits_of_share(rule, mass * typical / weight_of_shape(theta, shape));
 }
 
-// Digits required of the azimuths at slope t, which is one of `order` slopes of a piece and represents `mass` of the
-// facets. It is fewer than the piece's digits if the slope contributes less than its share. `all` is weight_of_shape.
+// Digits required of the sum over the azimuths at slope t, which is one of `order` slopes of a piece and stands for the
+// share `mass` of the facets. They are fewer than the piece's `digits` if the slope contributes less than its part,
+// 1/order, of the piece. `all` is weight_of_shape.
 real digits_of_slope(RuleNode rule, ThetaNode theta, real all, real digits, int order, real t, real mass) {
   return min(digits_of_share(rule, real(order) * mass * weight_of_slope(theta, t) / all), digits);
 }
 
-// Nodes per digit on a piece, because of a singularity at X = re + i im. With a root at an end, the abscissa is the
-// root of the distance from that end.
+// Nodes per digit on a piece because of a singularity at X = re + i im. If the piece has a square root at one end, the
+// abscissa of the rule is the square root of the distance from that end.
 real piece_cost(Piece piece, real re, real im) {
   real2 z = real2((re - piece.start) / piece.extent, im / piece.extent);
   bool is_nearer_to_a = z.x < real(0.5);
@@ -110,18 +111,18 @@ real piece_cost(Piece piece, real re, real im) {
   return nodes_per_digit(acosh_above_1(gap_beside_unit(y.x, y.y)));
 }
 
-// An essential singularity exp(-1/x^2) at an end. Its nodes are proportional to the square of the digits at which it
+// Nodes because of an essential singularity exp(-1/x^2) at an end. They grow with the square of the digits at which it
 // matters.
 real essential_nodes(ShapeNode shape, real digits) {
   real wanted = max(digits - kInverseLn10 / (shape.m * shape.m), real(0.0));
   return real(0.25) * wanted * wanted;
 }
 
-// acosh(y) for y >= 1, otherwise 0: the real part of asinh(i y), whose imaginary part is then pi/2.
+// acosh(y) for y >= 1, otherwise 0: the real part of asinh(i y). For y >= 1 the imaginary part is pi/2.
 real real_part_of_asinh(real y) { return acosh_above_1(max(y - real(1.0), real(0.0))); }
 
-// Nodes per digit because of one of Fresnel's coefficients in the plane of incidence, cos(beta) = re + i im. The
-// singularity is at t = (cos(beta) - c) / s if that is small.
+// Nodes per digit on a piece because of a singularity of Fresnel's coefficients at cos(beta) = re + i im. In the plane
+// of incidence it lies at the slope t = (cos(beta) - c) / s, if this is small.
 real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, real im) {
   real unit = max(theta.s, real(1e-6)) * shape.scale;
   real x = (re - theta.c) / unit;
@@ -129,9 +130,9 @@ real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, 
   return piece_cost(piece, choose(x < real(0.0), -bent, bent), im / (unit * max(abs(x), real(1.0))));
 }
 
-// Nodes per digit because of Fresnel's branch point cos(beta) = b on a line where arcs end: the horizon, sec(alpha) = 2
-// b / c, or theta_r = theta, sec(alpha) = b / c. `ratio` is the 2 or the 1. Total reflection has breakpoints at these
-// slopes.
+// Nodes per digit on a piece because of Fresnel's branch point, cos(beta) = b, on a line at which arcs end. With
+// `ratio` 2 the line is the horizon, where sec(alpha) = 2 b / c; with `ratio` 1 it is theta_r = theta, where
+// sec(alpha) = b / c. Under total reflection these slopes are breakpoints.
 real line_piece_cost(ThetaNode theta, ShapeNode shape, IndexNode index, Piece piece, real ratio) {
   real stretch = ratio / max(theta.c, real(1e-12));
   real2 sec = real2(stretch * index.branch_re, stretch * index.branch_im);
@@ -141,9 +142,9 @@ real line_piece_cost(ThetaNode theta, ShapeNode shape, IndexNode index, Piece pi
   return piece_cost(piece, x.im, x.re - real(0.5) * kPi);
 }
 
-// If smith's mean slope is about to diverge, L is about m tan(theta) / (pi (2q - 3)). G then falls within the width
-// tan(theta) + pi (2q - 3) / m beside theta_r = 0, as if there were a pole at this distance beyond the cusp. The pole
-// contributes in proportion to the width.
+// Nodes of a piece beside smith's cusp if the mean slope is about to diverge. L is then about m tan(theta) / (pi
+// (2q - 3)). From theta_r = 0, G falls within the distance tan(theta) + pi (2q - 3) / m, as if there were a pole at
+// this distance beyond the cusp. The contribution of the pole is proportional to the distance.
 real diverging_nodes(ThetaNode theta, ShapeNode shape, Piece piece) {
   real t = theta.s / (real(1.0) + theta.c);
   real cusp = asinh_real(t / shape.scale);
@@ -154,10 +155,11 @@ real diverging_nodes(ThetaNode theta, ShapeNode shape, Piece piece) {
   return max(piece.digits + kInverseLn10 * log_unit(min(beside / piece.extent, real(1.0))), real(0.0)) * cost;
 }
 
-// Nodes because of the singularities of the integrand over the slopes: the cauchy's density at t = i m, the geometry at
+// Number of nodes of a piece. The singularities over the slopes are the cauchy's density at t = i m, the geometry at
 // t = i, Fresnel's coefficients, and the square roots at the breakpoints beyond the ends of the piece. Before a rule
-// converges, it must resolve the fall of the density over the piece; this takes nodes in proportion to the logarithm of
-// the fall. A root, together with its map, raises the degree of the integrand by two.
+// converges, it must resolve the fall of the density over the piece, which takes nodes in proportion to the logarithm
+// of the fall. A square root at an end, together with the map that removes it, raises the degree of the integrand by
+// two.
 real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, Piece piece) {
   real cost = piece_cost(piece, real_part_of_asinh(real(1.0) / shape.scale), real(0.5) * kPi);
   if (kDistribution == DOLP_CAUCHY) {
@@ -172,17 +174,18 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
   cost = max(cost, choose(piece.root_before < piece.start, before, real(0.0)));
   real after = piece_cost(piece, piece.root_after, real(0.0));
   cost = max(cost, choose(piece.root_after > piece.start + piece.extent, after, real(0.0)));
-  // The roots of v^2 (3 - 2v) = y meet at v = -1/2 and 3/2.
+  // With roots at both ends the map is y = v^2 (3 - 2v). It also takes v = 3/2 to y = 0 and v = -1/2 to y = 1, and
+  // there the roots stay.
   bool has_two_roots = piece.root_at_a && piece.root_at_b;
   cost = max(cost, choose(has_two_roots, nodes_per_digit(acosh_above_1(real(1.0))), real(0.0)));
   real roots = (piece.root_at_a ? real(1.0) : real(0.0)) + (piece.root_at_b ? real(1.0) : real(0.0));
-  // The Gaussian falls faster and faster in X, mostly in the last unit.
+  // In X the Gaussian falls faster and faster; most of the fall lies in the last unit of X.
   real steepest = (kDistribution == DOLP_GAUSSIAN) ? max(piece.extent, real(1.0)) : real(1.0);
   real resolved = min(piece.fall, piece.digits * kLn10) * steepest;
-  // The order of the poles, and weaker singularities, matter if many digits are required.
+  // If many digits are required, the order of the poles and weaker singularities matter, too.
   real digits = piece.digits + kMoreDigits * max(piece.digits - kPlainDigits, real(0.0));
   real nodes = rule.t_nodes + roots + rule.t_fall * resolved + (digits + rule.t_digits) * cost;
-  // If pieces are split at smith's cusp, the Gaussian's L has an essential singularity at an end: see line_nodes.
+  // If pieces are split at smith's cusp, the Gaussian's L has an essential singularity at an end, as in line_nodes().
   if (kMasking == DOLP_MASKING_SMITH && kDistribution == DOLP_GAUSSIAN) {
     nodes = max(nodes, choose(has_split_line, rule.t_nodes + essential_nodes(shape, piece.digits), real(0.0)));
   }
@@ -195,22 +198,22 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
 
 // ---- Azimuth -------------------------------------------------------------------------------------------------------
 
-// Nodes per digit on an arc, from the position of the singularity in the abscissa of the arc's rule. A rule that is
-// even about the arc's centre converges like a rule of half the nodes in the square of its abscissa. A cluster
-// converges like a rule in the root of its abscissa.
+// Nodes per digit on an arc because of a singularity at the azimuth `at`. A rule of section `half` is even about its
+// centre, so it converges like a Gauss rule in the square of its abscissa. A rule of section `cluster` converges like a
+// Gauss rule in the square root of its abscissa.
 real arc_cost(Arc arc, Singularity at) {
   real re = abs(at.re - arc.origin) / arc.span;
   real im = at.im / arc.span;
-  re = choose((at.re - arc.origin) * arc.extent < real(0.0), -re, re);  // beyond the arc's beginning
+  re = choose((at.re - arc.origin) * arc.extent < real(0.0), -re, re);  // on the other side of the origin than the arc
   real2 y = choose(arc.section == kSectionHalf, real2(re * re - im * im, real(2.0) * re * im), real2(re, im));
   y = choose(arc.section == kSectionCluster, sqrt_upper(re, im), y);
   real mu = acosh_above_1(gap_beside_unit(y.x, y.y));
   return nodes_per_digit(choose(arc.section == kSectionCircle, at.im, mu));
 }
 
-// The singularities of Fresnel's coefficients: R_p's pole at cos(beta) = -1 / sqrt(N^2 + 1), and the branch point of w
-// at cos^2(beta) = 1 - N^2. They hold for the bounce whose facet is turned by (cos, sin) from the vertical: cos(beta) =
-// c sin + s x cos.
+// Nodes per digit on an arc because of the singularities of Fresnel's coefficients: the pole of R_p at
+// cos(beta) = -1 / sqrt(N^2 + 1), and the branch point of w at cos^2(beta) = 1 - N^2. `facet` is (cos, sin) of the
+// angle of the facet from the vertical, so that cos(beta) = c facet.y + s x facet.x.
 real bounce_cost(ThetaNode theta, IndexNode index, real2 facet, Arc arc) {
   real slant = theta.s * facet.x;
   real size = max(abs(slant), real(1e-15));
@@ -221,8 +224,9 @@ real bounce_cost(ThetaNode theta, IndexNode index, real2 facet, Arc arc) {
   return max(arc_cost(arc, pole), arc_cost(arc, branch));
 }
 
-// Beside a critical line w is proportional to the abscissa v of the cluster. The pole w = -N^2 cos(beta) lies at v =
-// -N^2 critical_cos / w, with w at the arc's other end. Beyond the line w is imaginary.
+// Nodes per digit on an arc beside the critical line of total reflection. There w is proportional to the abscissa v of
+// the cluster. R_p has a pole at w = -N^2 cos(beta), which is v = -N^2 critical_cos / w_end with w_end at the arc's
+// other end. On the side of total reflection w is imaginary.
 real critical_cost(ThetaNode theta, IndexNode index, real t, Arc arc) {
   real sec = sqrt(real(1.0) + t * t);
   real2 end = choose(arc.extent < real(0.0), arc.from, arc.to);
@@ -239,7 +243,7 @@ real fresnel_cost(RuleNode rule, ThetaNode theta, IndexNode index, real t, Arc a
   real2 turn = real2(t * r, r);
   real cost = bounce_cost(theta, index, turn, arc);
   if (kIsMultiple) {
-    // All bounces of the rays in the middle of the arc.
+    // All bounces of the ray in the middle of the arc.
     real2 step = multiply(turn, turn);
     real2 facet = turn;
     real2 middle = arc.from + arc.to;
@@ -254,15 +258,15 @@ real fresnel_cost(RuleNode rule, ThetaNode theta, IndexNode index, real t, Arc a
   return kTotalReflection ? choose(arc.is_critical, critical_cost(theta, index, t, arc), cost) : cost;
 }
 
-// Singularities of the masking of the reflected ray: the density of in-plane slopes at cot(theta_r) = +- i m, and for
-// `integral` the pole of kappa at cot(theta_r) = -t.
+// Nodes per digit on an arc because of the masking of the reflected ray: the density of in-plane slopes is singular at
+// cot(theta_r) = +- i m, and kappa of `integral` has a pole at cot(theta_r) = -t.
 real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
   if (kMasking != DOLP_MASKING_SMITH && kMasking != DOLP_MASKING_INTEGRAL) return real(0.0);
   real sec2 = real(1.0) + t * t;
   real st = max(theta.s * t, real(1e-15));
   real scale = real(0.5) * sec2 / st;
   real offset = theta.c * scale - theta.c / st;
-  // cos(theta_r) = i m / sqrt(1 - m^2)
+  // At cot(theta_r) = i m, cos(theta_r) = i m / sqrt(1 - m^2).
   real width = real(1.0) - shape.m * shape.m;
   real cos_r = shape.m / sqrt(max(abs(width), real(1e-6)));
   real scaled_cos = cos_r * scale;
@@ -276,10 +280,12 @@ real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
   return cost;
 }
 
-// Near the facet (tan(theta/2), phi = 0), where theta_r = 0, Smith's L is proportional to |theta_r|^(2q - 2). It is
-// smooth only if q is an integer, and less smooth for smaller q. For the arc from phi = 0, theta_r = 0 lies at cosh(i
-// phi) = 1 + (1 + c) (t - tan(theta/2))^2 / (2 s t). The Gaussian's L is smooth, but grows without bound toward
-// imaginary theta_r. For the required digits it matters at 1 / (m sqrt(digits ln 10)).
+// Nodes of an arc because of smith's cusp. At the facet with t = tan(theta/2) and phi = 0, theta_r is 0. Near it
+// Smith's L is proportional to |theta_r|^(2q - 2), which is smooth only if q is an integer, and less smooth for smaller
+// q. On the arc that begins at phi = 0, the cusp lies at the imaginary azimuth phi = i y with
+//   cosh(y) = 1 + (1 + c) (t - tan(theta/2))^2 / (2 s t).
+// The Gaussian's L is smooth, but grows without bound toward imaginary theta_r. For the required digits this matters at
+// |theta_r| = 1 / (m sqrt(digits ln 10)).
 real cusp_nodes(ThetaNode theta, ShapeNode shape, real t, real digits, Arc arc) {
   if (kMasking != DOLP_MASKING_SMITH) return real(0.0);
   real away = t - theta.s / (real(1.0) + theta.c);
@@ -294,7 +300,8 @@ real cusp_nodes(ThetaNode theta, ShapeNode shape, real t, real digits, Arc arc) 
   return choose(shape.cusp_digits < real(-100.0), real(0.0), nodes);
 }
 
-// The first arc of a zone, with the singularity of the masking at its beginning.
+// The arc with a cluster of nodes at its beginning, if it is the first arc of a zone and the masking has a singularity
+// there.
 Arc masked_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_line, real t, real digits, Arc arc,
                int zone, bool is_first) {
   bool has_root = is_first && has_split_line;
@@ -304,7 +311,7 @@ Arc masked_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_l
     return with_root(arc, false, has_root && is_cusp);
   }
   if (kMasking == DOLP_MASKING_INTEGRAL && kDistribution == DOLP_CAUCHY) {
-    // Where the limit b meets pi/2, G is proportional to the distance to the power 2q - 1.
+    // Where the limit b reaches pi/2, G has a part that is proportional to the distance to the power 2q - 1.
     bool is_rough = shape.q_minus_1 + real(1.0) < rule.cluster_below_q;
     bool is_line = zone == 2 && is_rough;
     return with_root(arc, false, has_root && is_line);
@@ -312,9 +319,10 @@ Arc masked_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_l
   return arc;
 }
 
-// An arc that may end at the critical line. w^2 = cos^2(beta) - critical_cos^2 + i Im N^2 vanishes at or near its end.
-// The distance is the share of w^2 there in its range on the arc. If it is large, the arc is like any other. If it is
-// negligible, the root counts as sharp; the error is of the order of the distance to the power 3/2.
+// The arc with a cluster of nodes at one end, if this end is the critical line of total reflection. There
+// w^2 = cos^2(beta) - critical_cos^2 + i Im N^2 vanishes or is small. The resolution is |w^2| at this end divided by
+// the range of w^2 on the arc. If it is large, the arc is treated like any other. If it is negligible, the root counts
+// as sharp, which causes an error of the order of resolution^(3/2).
 Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc, bool at_end, bool is_beside) {
   real level = index.critical_cos * index.critical_cos;
   real r2 = real(1.0) / (real(1.0) + t * t);
@@ -326,7 +334,7 @@ Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc,
   bool is_narrow = resolution <= kWideResolution;
   arc.is_critical = is_beside && is_narrow;
   arc = with_root(arc, at_end, arc.is_critical);
-  // Rounding displaces the line slightly.
+  // Rounding displaces the critical line slightly, so the resolution of a sharp root is not exactly 0.
   bool is_smoothed = resolution > kSharpResolution;
   bool is_felt = digits + real(1.5) * kInverseLn10 * log_unit(resolution) > real(0.0);
   bool is_resolved = is_smoothed && is_felt;
@@ -335,15 +343,16 @@ Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc,
   return arc;
 }
 
-// There the Gaussian's G behaves like exp(-1/distance^2).
+// Nodes of the arcs that begin at the line b = pi/2 of `integral`. There the Gaussian's G behaves like
+// exp(-1/distance^2).
 real line_nodes(ShapeNode shape, bool has_split_line, real digits, int zone) {
   if (kMasking != DOLP_MASKING_INTEGRAL || kDistribution != DOLP_GAUSSIAN) return real(0.0);
   bool is_line = has_split_line && zone == 2;
   return choose(is_line, essential_nodes(shape, digits), real(0.0));
 }
 
-// A smoothed square root has singularities at v = asinh(sqrt(+-i)) / a = (0.76 +- 0.57 i) / a in the abscissa of
-// place_on_arc. They contribute a share of resolution^(3/2).
+// Nodes because of a square root that absorption smooths. In the abscissa v of place_on_arc it has singularities at
+// v = asinh(sqrt(+-i)) / a = (0.76 +- 0.57 i) / a. They contribute a share of resolution^(3/2).
 real resolution_nodes(real digits, real resolution) {
   real wanted = max(digits + real(1.5) * kInverseLn10 * log_unit(resolution), real(0.0));
   real a = asinh_real(real(1.0) / sqrt(resolution));
@@ -351,16 +360,16 @@ real resolution_nodes(real digits, real resolution) {
   return choose(resolution <= real(0.0), real(0.0), nodes);
 }
 
-// Number of nodes of an arc. With fewer than two on the whole half circle cos(2 phi) would not average out.
+// Number of nodes of an arc. With fewer than two nodes on the whole half circle, cos(2 phi) would not average out.
 real arc_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, real t, real digits,
                Arc arc, int zone) {
   real map = nodes_per_digit(asinh_real(real(1.0) / max(abs(arc.extent), real(1e-9))));  // dphi = 4 dtau / (1 + tau^2)
   map = choose(arc.section == kSectionHalf, real(0.5) * map, map);
   map = choose(arc.section == kSectionCircle, real(0.0), map);
   real cost = max(max(map, fresnel_cost(rule, theta, index, t, arc)), masking_cost(theta, shape, t, arc, zone));
-  // Before a rule converges, it must resolve cos(phi) to cos(3 phi), which takes nodes in proportion to the arc. It
-  // must also resolve how place_on_arc spreads its nodes, e^(2 a v). In a cluster dphi is proportional to the abscissa,
-  // which costs half a node.
+  // Before a rule converges, it must resolve cos(phi) to cos(3 phi), which takes nodes in proportion to the length of
+  // the arc. If place_on_arc moves the nodes, it must also resolve their spreading e^(2 a v). In a cluster dphi is
+  // proportional to the abscissa, which costs half a node.
   real base = rule.phi_nodes * arc.span + choose(arc.section == kSectionCluster, real(1.0), real(0.5));
   if (kTotalReflection) {
     real spread = real(0.5) * asinh_real(real(1.0) / sqrt(arc.resolution));

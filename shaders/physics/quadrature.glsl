@@ -1,12 +1,14 @@
-// The nodes of the rules, one buffer of (abscissa, weight) in five sections; within a section the rule of order n
-// starts at n (n - 1) / 2. host/compute/plan/rule.cpp fills it.
-//   gauss   Gauss-Legendre on [0, 1]
-//   centre  Gauss-Legendre on [-1, 1]                              an arc between two split lines
-//   half    the positive nodes of the rule of order 2n on [-1, 1]  an arc from phi = 0 or pi, even about that end
-//   circle  tan(psi/4) of the midpoints of n equal parts of [0, pi]: the whole half circle, spectral for periodic f
-//   cluster Gauss-Legendre on [0, 1] in sqrt(tau / T): an arc from a cusp or square root at its centre
-// centre, half, circle and cluster hold abscissae of tau / T, where tau = tan(psi/4) and
-// dpsi = 4 T / (1 + tau^2) d(tau/T).
+// The nodes of the Gauss rules, one buffer of pairs (abscissa, weight), which host/compute/plan/rule.cpp fills. It has
+// five sections. Within a section the rule of order n begins at position n (n - 1) / 2.
+//   gauss: Gauss-Legendre on [0, 1]
+//   centre: Gauss-Legendre on [-1, 1], for an arc of azimuths between two split lines
+//   half: positive nodes of the Gauss-Legendre rule of order 2n on [-1, 1], for an arc that begins or ends at phi = 0
+//     or pi, about which the integrand is even
+//   circle: tan(psi/4) at the midpoints of n equal parts of [0, pi], for all azimuths as one arc; converges
+//     geometrically, because the integrand is periodic
+//   cluster: Gauss-Legendre on [0, 1] in sqrt(tau / T), for an arc with a cusp or square root at its centre
+// The abscissae of the last four sections are tau / T. Here psi is the azimuth measured from the centre of the arc,
+// tau = tan(psi/4) and T = Arc::extent, so dpsi = 4 T / (1 + tau^2) d(tau/T).
 
 CONST int kSectionGauss = 0;
 CONST int kSectionCentre = 1;

@@ -1,31 +1,31 @@
-// The slope distribution (shaders/physics/README.md, section 2, eqs. 1 and 8). Slope t = tan(alpha), m = sqrt(2) sigma,
-// u = t / m.
-// P(t) = (q - 1) / (pi m^2) (1 + u^2)^-q (cauchy) or exp(-u^2) / (pi m^2) (gaussian): the integral of P t dt dphi over
-// the slope plane is 1, and P = D cos^4(alpha).
+// The slope distribution (README.md beside this file, section 2, eqs. 1 and 8), with t = tan(alpha), m = sqrt(2) sigma
+// and u = t / m. Its density in the slope plane is
+//   P(t) = (q - 1) / (pi m^2) (1 + u^2)^-q (cauchy) or exp(-u^2) / (pi m^2) (gaussian).
+// The integral of P t dt dphi over the slope plane is 1, and P = D cos^4(alpha).
 
-// -ln of the share of the facets that are steeper than t is a factor of the shape times this function of u.
+// The share of facets that are steeper than t is exp(-exponent_factor(shape) * common_exponent(t / m)).
 real common_exponent(real u) { return (kDistribution == DOLP_CAUCHY) ? log1p_square(u) : u * u; }
 real exponent_factor(ShapeNode shape) { return (kDistribution == DOLP_CAUCHY) ? shape.q_minus_1 : real(1.0); }
 real slope_tail_exponent(ShapeNode shape, real t) { return exponent_factor(shape) * common_exponent(t / shape.m); }
 
 real slope_tail(ShapeNode shape, real t) { return exp_real(-slope_tail_exponent(shape, t)); }
 
-// P(t) t m. The facets of an interval dt at slope t, per unit of azimuth, are this value times dt / m. It contains
-// neither m^2 nor t^2, so no roughness overflows. `exponent` is common_exponent(u).
+// P(t) t m. Times dt / m, it is the share of facets between the slopes t and t + dt, per radian of azimuth. The formula
+// contains neither m^2 nor t^2, so no roughness overflows. `exponent` is common_exponent(u).
 real slope_density(ShapeNode shape, real u, real exponent) {
   real shape_factor = (kDistribution == DOLP_CAUCHY) ? shape.q_minus_1 / (u + real(1.0) / u) : u;
   return shape_factor * exp_real(-exponent_factor(shape) * exponent) / kPi;
 }
 
-// p(tau), the density of the slope in one plane: the marginal of P.
+// p(tau), the density of the slopes tau in one vertical plane, a marginal of P.
 real marginal_density(ShapeNode shape, real tau) {
   real u = tau / shape.m;
   real exponent = (kDistribution == DOLP_CAUCHY) ? (shape.q_minus_1 + real(0.5)) * log1p_square(u) : u * u;
   return shape.marginal_norm * exp_real(-exponent);
 }
 
-// True near the end of smith's domain, where the mean slope is about to diverge.
-CONST real kDivergingSlope = real(0.2);  // value of 2q - 3
+// True if q is so close to 3/2, where smith masking ends, that the mean slope is about to diverge.
+CONST real kDivergingSlope = real(0.2);  // largest value of 2q - 3 for this
 bool is_diverging(ShapeNode shape) {
   return kMasking == DOLP_MASKING_SMITH && kDistribution == DOLP_CAUCHY && shape.two_q_minus_3 < kDivergingSlope;
 }

@@ -1,14 +1,14 @@
-// Task of an invocation of moments.comp, decoded from a task word of interface.glsl.
+// The task of an invocation of moments.comp, decoded from the task word of interface.glsl.
 struct Task {
   int members;
   int piece;
   bool root_at_start;
   bool root_at_end;
-  bool root_before_start;  // root at the breakpoint before the piece, on the piece's side
+  bool root_before_start;  // square root at the start of the preceding piece
   bool root_after_end;
   bool has_split_line;
   int most_azimuths;
-  real before;  // slopes of breakpoints: before the piece, at its ends, after it, and the last one of the direction
+  real before;  // slopes: start of the preceding piece, ends of the piece, end of the next, last end of all
   real start;
   real end;
   real after;
@@ -30,8 +30,8 @@ Task task_of(uint word) {
   return task;
 }
 
-// The task with its slopes. moments.comp reads them one by one, because a copy of all slopes of a direction costs a
-// driver half a second of compilation.
+// The task with its slopes filled in. moments.comp reads these slopes one by one instead, because a copy of all slopes
+// of a direction costs a driver half a second of compilation.
 Task with_slopes(Task task, ThetaNode theta) {
   task.before = theta.end[max(task.piece - 1, 0)];
   task.start = theta.end[task.piece];
@@ -41,17 +41,18 @@ Task with_slopes(Task task, ThetaNode theta) {
   return task;
 }
 
-// A piece [a, b] of the slope axis. X = asinh(t/scale) is linear in y(v). The map y removes square roots at the ends:
-// v, v^2 (at a), 1 - (1-v)^2 (at b), v^2 (3 - 2v) (both).
+// A piece [a, b] of the slope axis. X = asinh(t/scale) is linear in y, which runs from 0 to 1. The map y(v) from the
+// abscissa v of a rule removes square roots at the ends: y = v without roots, v^2 with a root at a, 1 - (1-v)^2 with a
+// root at b, v^2 (3 - 2v) with both.
 struct Piece {
   real start;   // X at a
   real extent;  // in X
   bool root_at_a;
   bool root_at_b;
-  real root_before;       // X of the root at the breakpoint before a, if it is on the piece's side; otherwise X at a
-  real root_after;        // X of the root at the breakpoint after b, if it is on the piece's side; otherwise X at b
-  real mass[DOLP_WIDTH];  // share of the facets
-  real fall;              // logarithm of the ratio of the shares of steeper facets at a and b
-  real digits;            // digits that the most demanding member requires
+  real root_before;       // X of a square root at the start of the preceding piece, unless it is near a; else X at a
+  real root_after;        // X of a square root at the end of the next piece, unless it is near b; else X at b
+  real mass[DOLP_WIDTH];  // share of the facets in the piece, for each entry of a row
+  real fall;              // logarithm of the share of facets steeper than a divided by the share steeper than b
+  real digits;            // digits that the most demanding entry of a row requires
   int order;
 };

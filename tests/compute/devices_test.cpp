@@ -1,4 +1,4 @@
-// The choice of a device from a list, and of an existing device, under the validation layer.
+// The choice of a Vulkan device from a list, and a real device under the validation layer.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -70,7 +70,7 @@ TEST(VulkanContext, WorkgroupOnAProcessor_IsAVector) {
 }
 
 TEST(LacksThreads, NoMemoryForOneOfThem_Ends) {
-  constexpr unsigned kLongest_s = 60;  // limit for a program that could wait forever for its threads
+  constexpr unsigned kLongest_s = 60;  // ends the test if lacks_threads() waits forever
   ::alarm(kLongest_s);
   EXPECT_FALSE(vulkan::lacks_threads());
   int refused = 0;

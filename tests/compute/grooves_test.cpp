@@ -1,5 +1,5 @@
-// All bounces in V-grooves and the direct emission, on every kernel: against stored values, against the reference, and
-// properties that hold for all inputs, on random draws with fixed seeds from the whole range of scenes.
+// All bounces in V-grooves and direct emission, with every kernel: compared with stored values and with the reference,
+// and properties that hold for all inputs. Random numbers have fixed seeds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -128,7 +128,7 @@ TEST_P(Grooves, WithoutAndWithTheDirectEmission_TheOtherMomentsAgree) {
     const Moments b = evaluator->evaluate(without, {}).front();
     expect_within_bounds(a, b, name_of({Distribution::kCauchy, masking}));
     EXPECT_TRUE(std::isnan(b.direct_i));
-    // Direct emission of the facets is the lower bound; the loss of single scattering is the upper bound.
+    // The emissivity lies between the direct emission and 1 - rho of single scattering.
     EXPECT_LE(a.direct_i, a.deficit);
   }
 }
@@ -197,7 +197,7 @@ TEST_P(Grooves, TowardTheMirrorDirection_NoMatrixIsDefined) {
 INSTANTIATE_TEST_SUITE_P(EveryKernel, Grooves, testing::ValuesIn(kKernels),
                          [](const auto& test) { return name_of(test.param); });
 
-/// Directions 1e-6 to 1 degree from the mirror direction of 40 degrees, on all sides.
+/// Beams from 40 degrees that leave 1e-6 to 1 degree beside the mirror direction, on several sides.
 std::vector<BeamAngles> toward_the_mirror() {
   std::vector<BeamAngles> angles;
   for (const double away_deg : {1.0, 1e-2, 1e-6}) {
@@ -219,8 +219,8 @@ int most_bounces_toward_the_mirror(Distribution distribution, const OpticalConst
   return most;
 }
 
-// One bounce takes about 50 ns. Two beams with up to 1,000 bounces take 1e6 bounces, because each number of bounces is
-// computed from the start.
+// A bounce takes about 50 ns. A metal needs two beams for each number of bounces up to 1,000. Each beam is followed
+// from its first bounce, which makes 1e6 bounces.
 TEST(GroovesMueller, TowardTheMirrorDirection_WorkIsBounded) {
   for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
     const int paint = most_bounces_toward_the_mirror(distribution, {1.5, 0.1});
@@ -232,7 +232,7 @@ TEST(GroovesMueller, TowardTheMirrorDirection_WorkIsBounded) {
 }
 
 TEST(GroovesMueller, TowardTheMirrorDirection_SumsAreThoseOfTheReference) {
-  constexpr double kPrinted = 1e-15;  // rounding of the angles in radians, divided by |h|
+  constexpr double kPrinted = 1e-15;  // rounding of the angles in radians, which f multiplies by 1/|h|
   for (const OpticalConstants& index : {OpticalConstants{1.5, 0.1}, OpticalConstants{3.0, 4.0}}) {
     std::vector<ScatteringPoint> points;
     for (const BeamAngles& angles : toward_the_mirror()) points.push_back({angles, {0.3, 2.02}, index});
@@ -289,14 +289,14 @@ TEST(GrooveScenes, RandomEntriesUpToTheHorizon_ArePhysical) {
   }
 }
 
-// These are the values in README.md. Single scattering would give 0.114 and 3.8 %.
+// README.md states these values. With single scattering they would be 0.114 and 3.8 %.
 TEST(GrooveScenes, RoughMetal_HasTheEmissivityAndDolpOfTheManual) {
   const PointResult r = result_at(multiple(Distribution::kGaussian), {60.0, {0.3, 2.0}, {10.0, 60.0}});
   EXPECT_NEAR(mean_emissivity(r), 0.01635, 1e-5);
   EXPECT_NEAR(r[Quantity::kDolp], 0.3892, 1e-4);
 }
 
-// rho at 90 degrees is the limit of the stored value 1e-9 degrees before it.
+// rho at 90 degrees is a limit. The stored case is 1e-9 degrees below 90 degrees.
 TEST(GrooveScenes, RightAngle_IsTheLimitOfTheStoredValue) {
   constexpr double kApproach = 1e-7;
   for (const StoredCase& c : stored_cases()) {
@@ -320,7 +320,7 @@ TEST(GrooveScenes, SmoothSurface_IsThatOfSingleScattering) {
   }
 }
 
-// The bracket follows from the emissivities of both ends (section 4 of the model). All bounces lie in it.
+// Direct emission and single scattering determine the bracket (physics/README.md, section 4). All bounces lie in it.
 TEST(GrooveScenes, Bracket_IsWhatItsEndsSayAndHoldsAllBounces) {
   const std::vector<std::string> grid = {"grid.theta_deg=[0, 30, 60, 80]", "surroundings.temperature_K=250"};
   const auto with = [&](std::vector<std::string> more) {
@@ -339,10 +339,10 @@ TEST(GrooveScenes, Bracket_IsWhatItsEndsSayAndHoldsAllBounces) {
     for (const PointResult& own : {all[i], single[i], direct[i]}) {
       EXPECT_TRUE(low <= own[Quantity::kDolp] + kAccuracy && own[Quantity::kDolp] <= high + kAccuracy) << i;
     }
-    if (i == 0) continue;  // nothing is polarised
+    if (i == 0) continue;  // at theta = 0 nothing is polarised
     const double direct_q = 0.5 * std::abs(direct[i][Quantity::kEmissivityS] - direct[i][Quantity::kEmissivityP]);
     const double slack = mean_emissivity(single[i]) - mean_emissivity(direct[i]);
-    // Q = N eps_Q with one N for all cases, which single scattering gives.
+    // |N| of Q = N eps_Q. It is the same in all cases; single scattering gives it as |Q / rho_Q|.
     const double net = std::abs(single[i][Quantity::kStokesQ] / single[i][Quantity::kRhoQ]);
     EXPECT_NEAR(high, net * (direct_q + slack) / single[i][Quantity::kStokesI], kAccuracy);
     EXPECT_NEAR(low, net * std::max(direct_q - slack, 0.0) / single[i][Quantity::kStokesI], kAccuracy);

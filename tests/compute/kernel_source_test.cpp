@@ -1,5 +1,5 @@
-// The shaders' elementary functions and Fresnel reflection, in float and in double, against evaluations in higher
-// precision. Each row prints its worst error, even if it passes.
+// Elementary functions and Fresnel reflection of the kernel source in float and double, compared with more precise
+// values. Each test prints its worst error even if it passes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,15 +30,14 @@
 namespace dolp {
 namespace {
 
-/// The number type of a source.
+/// The number type of a kernel source: float or double.
 template <class Source>
 using RealOf = std::remove_const_t<decltype(Source::kPi)>;
 
-/// Distance of 1 from the next number of the type.
+/// Machine epsilon of the number type.
 template <class Source>
 constexpr double kEpsilon = static_cast<double>(std::numeric_limits<RealOf<Source>>::epsilon());
 
-/// Both sources, for typed test suites.
 using Sources = ::testing::Types<tested_float::KernelSource, tested_double::KernelSource>;
 
 struct SourceNames {
@@ -48,13 +47,13 @@ struct SourceNames {
   }
 };
 
-/// An index in the source's precision.
+/// A refractive index converted to the number type of the source.
 template <class Source>
 typename Source::IndexNode index_in(const kernel::IndexNode& node) {
   return convert_reals<RealOf<Source>, typename Source::IndexNode, double>(node);
 }
 
-/// The largest value that a test finds, and its position.
+/// The largest error so far, and its argument.
 struct Worst {
   double value = 0.0;
   std::string where;
@@ -72,7 +71,7 @@ constexpr int kSamples = 20000;
 
 // ---- Elementary functions ------------------------------------------------------------------------------------------
 
-// Distance of `value` from `exact`, in units of the last place of `exact` in the precision Real.
+// Difference of `value` and `exact` in ulps: units of the last place of `exact` in the type Real.
 template <class Real>
 double ulps(Real value, long double exact) {
   using Limits = std::numeric_limits<Real>;
@@ -89,7 +88,7 @@ struct Range {
   Spacing spacing;
 };
 
-// One function: its source, its reference, the ranges of its argument, and the largest allowed error in ulps.
+// A function of the kernel source, its reference, ranges of its argument, and its largest allowed error.
 template <class Source>
 struct Row {
   using Real = RealOf<Source>;
@@ -127,10 +126,11 @@ template <class Source>
 class Elementary : public ::testing::Test {};
 TYPED_TEST_SUITE(Elementary, Sources, SourceNames);
 
-// Allowed: half an ulp for each of the last two or three roundings, and the error of reducing the argument. The source
-// promises "a few units in the last place".
+// Half an ulp for each of the last two or three roundings, and the error of the argument after its reduction. The
+// kernel source promises "a few units in the last place".
 constexpr double kFewUlps = 3.0;
-constexpr double kRootUlps = 6.0;  // up to three roots and quotients before the series, with one rounding each
+// up to three roots and quotients, each with a rounding error, come before the series
+constexpr double kRootUlps = 6.0;
 
 TYPED_TEST(Elementary, Functions_OverTheirDomain_AreAFewUlpsFromExact) {
   using enum Spacing;
@@ -219,8 +219,7 @@ TYPED_TEST(Elementary, EndsOfTheDomains_AreExact) {
 using Wide = boost::multiprecision::cpp_bin_float_50;
 using WideComplex = boost::multiprecision::cpp_complex_50;
 
-// The textbook form with 50 digits. Its cancellations cost at most 27 digits here, so more digits remain than a double
-// has.
+// Fresnel's equations in textbook form. Cancellation costs at most 27 of 50 digits, so a double is less accurate.
 struct ExactFresnel {
   Wide r_s;
   Wide r_p;
@@ -241,7 +240,7 @@ double relative_error(double value, const Wide& exact) {
   return static_cast<double>(abs(Wide(value) - exact) / abs(exact));
 }
 
-// The index in the precision of the source, which is not responsible for the rounding of its input.
+// The index as the source receives it. The rounding of this input is no error of the source.
 template <class Source>
 kernel::IndexNode rounded_index(const OpticalConstants& index) {
   MomentsRequest request;
@@ -262,7 +261,7 @@ template <class Source>
 class FresnelSource : public ::testing::Test {};
 TYPED_TEST_SUITE(FresnelSource, Sources, SourceNames);
 
-// About twenty roundings in a row. None is amplified.
+// Tolerance for about twenty roundings that are not amplified.
 constexpr double kFresnelUlps = 12.0;
 
 TYPED_TEST(FresnelSource, AllIndices_AgreeWithTheTextbookFormIn50Digits) {
@@ -278,7 +277,7 @@ TYPED_TEST(FresnelSource, AllIndices_AgreeWithTheTextbookFormIn50Digits) {
     Worst r_p;
     for (const double exact_cos : cosines_of_incidence()) {
       const Real cos_beta = static_cast<Real>(exact_cos);
-      if (cos_beta == Real(1)) continue;  // the quotient by sin^2(beta) is 0/0 in the reference
+      if (cos_beta == Real(1)) continue;  // in the reference (R_s - R_p)/sin^2(beta) is 0/0
       const auto f = source.fresnel(index_in<TypeParam>(index), cos_beta);
       const ExactFresnel exact = exact_fresnel(index, static_cast<double>(cos_beta));
       const std::string where = "cos(beta) = " + std::to_string(exact_cos);
@@ -304,8 +303,7 @@ TYPED_TEST(FresnelSource, NormalIncidence_HasTheLimitOfTheQuotient) {
   for (const OpticalConstants& optical : {OpticalConstants{1.508, 0.0}, OpticalConstants{27.0, 90.0}}) {
     const kernel::IndexNode index = rounded_index<TypeParam>(optical);
     const auto f = source.fresnel(index_in<TypeParam>(index), Real(1));
-    // At a distance of 1e-20 from normal incidence the quotient differs from its limit by about 1e-20; 50 digits leave
-    // 30.
+    // Beside normal incidence by 1e-20 the quotient differs from its limit by about 1e-20. Of 50 digits 30 remain.
     const Wide c = 1 - Wide(1e-20);
     const Wide sin2 = 1 - c * c;
     const WideComplex n2(Wide(index.n2m1_re) + 1, Wide(index.n2m1_im));
@@ -323,7 +321,7 @@ TYPED_TEST(FresnelSource, TotalReflection_AbsorbsExactlyNothing) {
   for (const double n : {0.1, 0.5, 0.9, 0.999}) {
     const kernel::IndexNode index = rounded_index<TypeParam>({n, 0.0});
     ASSERT_GT(index.critical_cos, 0.0);
-    // relative to re = n^2 - 1 + cos^2(beta), which must be negative
+    // Keeps n^2 - 1 + cos^2(beta) below 0 in spite of rounding.
     const double roundoff = 8.0 * kEpsilon<TypeParam>;
     for (int i = 0; i < 100; ++i) {
       const Real cos_beta = static_cast<Real>(index.critical_cos * (1.0 - roundoff) * (i + 0.5) / 100.0);
@@ -335,7 +333,7 @@ TYPED_TEST(FresnelSource, TotalReflection_AbsorbsExactlyNothing) {
     const Real above = static_cast<Real>(index.critical_cos + 0.5 * (1.0 - index.critical_cos));
     const auto f = source.fresnel(index_in<TypeParam>(index), above);
     const ExactFresnel exact = exact_fresnel(index, static_cast<double>(above));
-    // n^2 - 1 + cos^2(beta) cancels; half way to normal incidence it loses a factor of 2 to 3.
+    // n^2 - 1 + cos^2(beta) cancels, which multiplies its relative error by 2 to 3 at this angle.
     EXPECT_LE(relative_error(f.absorbed_s, 1 - exact.r_s), 3.0 * kFresnelUlps * kEpsilon<TypeParam>) << n;
     EXPECT_GT(f.absorbed_s, Real(0));
   }

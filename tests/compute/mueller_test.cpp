@@ -1,5 +1,5 @@
-// The Mueller pBRDF of every evaluator, on the device and on the CPU, in float and in double, against explicit vectors
-// in quadruple precision. Their matrices are reciprocal and realisable (tests/reference). The environment variable
+// The Mueller pBRDF of the device and the CPU in float and double, compared with explicit vectors in quadruple
+// precision. (tests/reference tests that these are reciprocal and realisable.) The environment variable
 // DOLP_PROPERTY_DRAWS sets the number of points per model.
 #include <gtest/gtest.h>
 
@@ -26,8 +26,8 @@ constexpr std::uint64_t kSeed = 20260110;
 
 const std::size_t kPoints = draws_wanted(400);
 
-// The reference multiplies its density by powers of up to 1e16 and 1e6. Below the normal numbers of a double nothing
-// has a relative accuracy.
+// Smaller m00 are not compared. The density in the reference may be 1e22 times smaller than m00, and below the normal
+// numbers of a double it would lose its relative accuracy.
 constexpr double kSmallest = 1e-280;
 
 class MuellerKernel : public testing::TestWithParam<KernelAndModel> {
@@ -70,7 +70,7 @@ TEST_P(MuellerKernel, AllElements_AgreeWithExplicitVectors) {
   EXPECT_LE(worst, tolerance()) << text_of(points[where]);
 }
 
-// The surface has a mirror plane: f(-dphi) = T f(dphi) T with T = diag(1, 1, -1, -1), bit for bit.
+// By mirror symmetry f(-dphi) = T f(dphi) T with T = diag(1, 1, -1, -1). The kernels give this bit for bit.
 TEST_P(MuellerKernel, OppositeAzimuth_TurnsTheSignsOfUAndV) {
   const Matrix mirror = Eigen::Vector4d(1.0, 1.0, -1.0, -1.0).asDiagonal();
   std::vector<ScatteringPoint> points = random().draw(kPoints);
@@ -116,7 +116,7 @@ TEST(MuellerLimits, Retro_IsTheSameFromEverySide) {
   EXPECT_EQ(plain_mueller({40.0, 40.0, 360.0}), at);
 }
 
-// At the critical angle w is the root of almost 0 and amplifies every rounding of the angles.
+// At the critical angle w is the square root of almost 0, which amplifies the rounding of the angles.
 TEST(MuellerLimits, CriticalAngle_AgreesWithExplicitVectors) {
   std::vector<ScatteringPoint> points;
   for (double n = 0.1; n < 0.96; n += 0.05) {
@@ -135,7 +135,7 @@ TEST(MuellerLimits, CriticalAngle_AgreesWithExplicitVectors) {
   }
 }
 
-// The corners of the allowed ranges of scenes and points. Float and double must agree.
+// The ends of the allowed ranges of sigma, q, index and angles, in all combinations. Float and double must agree.
 TEST(MuellerLimits, CornersOfTheDomain_AreFiniteAndTheSameInBothPrecisions) {
   std::vector<ScatteringPoint> points;
   for (const double sigma : {1e-20, 1e-9, 1e-3, 0.3, 10.0}) {
@@ -171,11 +171,11 @@ TEST(MuellerLimits, CornersOfTheDomain_AreFiniteAndTheSameInBothPrecisions) {
   }
 }
 
-// The moments are the integrals of the first row of f. So kernel and pBRDF must be one model.
+// The moments are integrals of the first row of f. The test shows that both use the same model.
 TEST(Mueller, HemisphericalSum_GivesTheMoments) {
   constexpr int kZeniths = 400;
   constexpr int kAzimuths = 400;
-  // error of the midpoint rule with the kink of the horizon; it halves with the step
+  // Error of the midpoint rule, proportional to its step, because the integrand has a kink at the horizon.
   constexpr double kMidpointError = 2e-4;
   const ScatteringPoint surface{{50.0, 0.0, 0.0}, {0.3, 2.0}, {1.5, 0.2}};
   std::vector<ScatteringPoint> points;
@@ -225,7 +225,7 @@ TEST(MuellerOnTheDevice, TilesAndStaging_ChangeNoBit) {
   EXPECT_EQ(tiled.report().precision, "float");
 }
 
-// Moments and pBRDFs share the descriptor set, so one must not disturb the other.
+// Moments and pBRDFs share a descriptor set. A request for one must not change the results of the other.
 TEST(MuellerOnTheDevice, MomentsBetween_ChangeNothing) {
   const std::vector<ScatteringPoint> points = RandomPoints(kSeed, Masking::kIntegral).draw(100);
   const ScatteringRequest request = request_of(Distribution::kCauchy, Masking::kIntegral, points);

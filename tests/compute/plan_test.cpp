@@ -39,7 +39,7 @@ TEST(CosSinDeg, MultiplesOf90_AreExact) {
 }
 
 TEST(CosSinDeg, OtherAngles_AgreeWithTheLibrary) {
-  // pi times the rounding of an angle over 180 degrees, plus the rounding of the result
+  // Rounding of angle_deg / 180, times pi, and rounding of the result.
   constexpr double kTolerance = 5e-16;
   for (double angle_deg = -90.0; angle_deg <= 360.0; angle_deg += 0.37) {
     const long double angle = angle_deg * std::numbers::pi_v<long double> / 180.0L;
@@ -50,7 +50,7 @@ TEST(CosSinDeg, OtherAngles_AgreeWithTheLibrary) {
 
 // ---- Loops ---------------------------------------------------------------------------------------------------------
 
-// lavapipe stops an invocation without notice after this many iterations of all its loops.
+// lavapipe stops an invocation after this many iterations of all its loops, without an error.
 constexpr double kDriverLimit = 65535.0;
 
 TEST(Loops, HardDirectionsAndIndicesAtEveryTolerance_StayBelowTheDriversLimit) {
@@ -64,7 +64,7 @@ TEST(Loops, HardDirectionsAndIndicesAtEveryTolerance_StayBelowTheDriversLimit) {
       for (const double n : {0.999, 0.8, std::numbers::sqrt2 / 2.0, 0.5, 0.1}) request.optics.push_back({n, 0.0});
     }
     for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
-      for (int masking = 0; masking <= 4; ++masking) {  // the last one: all bounces
+      for (int masking = 0; masking <= 4; ++masking) {  // 0 to 3: maskings; 4: all bounces
         request.distribution = distribution;
         request.masking = masking == 4 ? Masking::kVCavity : static_cast<Masking>(masking);
         request.scattering = masking == 4 ? Scattering::kMultiple : Scattering::kSingle;
@@ -76,12 +76,12 @@ TEST(Loops, HardDirectionsAndIndicesAtEveryTolerance_StayBelowTheDriversLimit) {
       }
     }
   }
-  // The masking table: one loop over the nodes, with a small Gauss rule in each.
+  // The kernel of the masking table has a loop over its nodes, and for each node a Gauss rule of at most this order.
   constexpr double kTableOrderAtMost = 8.0;
   EXPECT_LT(DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_DOUBLE) * (1.0 + kTableOrderAtMost), kDriverLimit);
 }
 
-// Chebyshev polynomials have a size of 1, so no degree hides another.
+// The integrands are Chebyshev polynomials: all have values up to 1, so the error of each degree is visible.
 TEST(GaussLegendre, Orders_IntegratePolynomialsOfDegree2nMinus1AndNoMore) {
   for (const int order : {1, 2, 3, 7, 20, DOLP_MAX_ORDER}) {
     for (int degree = 0; degree <= 2 * order; degree += 2) {

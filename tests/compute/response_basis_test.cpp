@@ -1,4 +1,4 @@
-// Response bases: reflectances as sums of Chebyshev polynomials, compared with the reference's Fresnel equations.
+// Response bases: reflectances as sums of Chebyshev polynomials, compared with Fresnel's equations of the reference.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ std::vector<FacetOptics> random_indices(const Box& box, std::size_t count, Rando
   return indices;
 }
 
-/// (R_s + R_p) / 2 and (R_s - R_p) / 2.
+/// (R_s + R_p) / 2 and (R_s - R_p) / 2 of a smooth surface.
 std::pair<double, double> curves_at(const OpticalConstants& index, double cosine) {
   const reference::FresnelCoefficients of = reference::fresnel(index, cosine);
   return {0.5 * (std::norm(of.r_s) + std::norm(of.r_p)), 0.5 * (std::norm(of.r_s) - std::norm(of.r_p))};
@@ -43,7 +43,7 @@ double level_of(const OpticalConstants& index) {
   return std::min(at_normal, 1.0 - at_normal);
 }
 
-/// The sum of Chebyshev polynomials with some coefficients.
+/// The sum of coefficients times Chebyshev polynomials, at one cosine of the angle of incidence.
 double sum_at(const ResponseBasis& basis, const Eigen::VectorXd& coefficients, double cosine) {
   const double x = 2.0 * std::asinh(cosine / basis.c0()) / std::asinh(1.0 / basis.c0()) - 1.0;
   double sum = 0.0;
@@ -52,7 +52,7 @@ double sum_at(const ResponseBasis& basis, const Eigen::VectorXd& coefficients, d
   return sum;
 }
 
-// At far more angles than the basis uses, for indices of the run and for others.
+// Compares at far more angles than the basis uses, for indices of the run and for other indices.
 TEST(ResponseBasis, CombinedReflectances_StayWithinTheirBounds) {
   constexpr int kAngles = 4000;
   Random random(1);
@@ -96,7 +96,7 @@ TEST(ResponseBasis, CombinedReflectances_StayWithinTheirBounds) {
 TEST(ResponseBasis, FewIndices_HaveNone) {
   EXPECT_FALSE(ResponseBasis::of({}, 1e-4, 1));
   EXPECT_FALSE(ResponseBasis::of({{1.5, 0.1}}, 1e-4, 1));
-  // One pass pays from three indices, three passes from seven.
+  // With one kernel pass a basis saves work from three indices, with three passes from seven.
   const std::vector<FacetOptics> three = {{1.5, 0.1}, {1.6, 0.1}, {1.7, 0.2}};
   EXPECT_TRUE(ResponseBasis::of(three, 1e-4, 1));
   EXPECT_FALSE(ResponseBasis::of(three, 1e-4, 3));

@@ -1,5 +1,4 @@
-// The Vulkan evaluator on a real device (lavapipe without a GPU), under the validation layer. These tests fail on a
-// machine without a device or without the layer.
+// The Vulkan evaluator on a GPU or lavapipe, under the validation layer. Without device or layer these tests fail.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -26,7 +25,7 @@ namespace {
 
 constexpr unsigned kSeed = 20240817;
 
-// Each kind of exit of a child process has a separate status, so that a crash does not count as success.
+// Exit statuses of child processes. They differ from 0 and 1, so that a crash does not count as success.
 constexpr int kChildPassed = 42;
 constexpr int kChildFailed = 43;
 
@@ -39,7 +38,7 @@ VulkanOptions validated(Precision precision = Precision::kFloat) {
   return options;
 }
 
-// All combinations of a few directions, shapes and indices, in no particular order.
+// A grid of a few directions, shapes and indices in random order.
 MomentsRequest small_request(Distribution distribution, Masking masking) {
   MomentsRequest request;
   request.distribution = distribution;
@@ -55,7 +54,7 @@ MomentsRequest small_request(Distribution distribution, Masking masking) {
   return request;
 }
 
-/// Calls a function in a separate process. The function returns whether its checks passed.
+/// Calls a function in a separate process and expects true.
 void expect_true_in_a_child(bool (*call)()) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(std::_Exit(call() ? kChildPassed : kChildFailed), testing::ExitedWithCode(kChildPassed), "");
@@ -72,7 +71,7 @@ TEST(ListDevices, ThisMachine_HasAUsableDeviceWithItsLimits) {
   const dolp::Device& device = list.devices[choose_device(list.devices, "", false)];
   std::printf("%s, %s, Vulkan %s\n", device.name.c_str(), device.driver.c_str(), device.api_version.c_str());
   EXPECT_FALSE(device.driver.empty());
-  // Minimum limits that the Vulkan specification guarantees.
+  // The Vulkan specification guarantees at least these limits.
   EXPECT_GE(device.max_storage_buffer_bytes, std::uint64_t{1} << 27U);
   EXPECT_GE(device.max_workgroups, 65'535U);
   EXPECT_GT(device.memory_bytes, 0U);
@@ -109,7 +108,7 @@ TEST(VulkanDeathTest, TileThatExceedsItsTime_IsADeviceErrorAndNoCrash) {
 
 TEST(VulkanDeathTest, ThreadsRefused_IsAMemoryErrorAndNoWait) {
   expect_true_in_a_child([] {
-    // The limit does not apply to root.
+    // The limit does not apply to root, so root becomes another user.
     const bool is_bound = ::geteuid() != 0 || ::setuid(kNobody) == 0;
     const ::rlimit none{};
     const bool is_set = ::setrlimit(RLIMIT_NPROC, &none) == 0;
@@ -165,8 +164,7 @@ TEST(VulkanEvaluator, PointsAndMasks_SayTheSameAsTheGrid) {
   }
 }
 
-// A request selects the precision; one evaluator computes both. A request in one precision must not affect a request in
-// the other.
+// One evaluator computes requests in float and in double. They must not affect each other.
 TEST(VulkanEvaluator, RequestsInBothPrecisions_AreThoseOfEvaluatorsOfTheirOwn) {
   for (const Masking masking : {Masking::kVCavity, Masking::kIntegral}) {
     MomentsRequest request = small_request(Distribution::kCauchy, masking);
@@ -243,7 +241,7 @@ TEST(VulkanEvaluator, CancelledRequest_LeavesTheEvaluatorUsable) {
 namespace vulkan {
 namespace {
 
-// An instance, a device and its objects, under validation until the test reads the log.
+// A Vulkan instance and device with the objects for dispatches. The validation layer writes its messages to `log`.
 struct Session {
   explicit Session(ValidationLog& log)
       : instance(&log), device(instance.physical_devices().at(0), false), kernels(device, false), stream(device) {}
@@ -268,10 +266,10 @@ TEST(Validation, CopyBeyondABuffer_IsReported) {
 }
 
 constexpr double kSentinel = -12'345.0;
-constexpr std::uint32_t kFirst = 3;   // number of entries that are left out at the start
-constexpr std::uint32_t kCount = 70;  // more than one workgroup, but not a multiple of its size
+constexpr std::uint32_t kFirst = 3;   // first entry that run.run computes
+constexpr std::uint32_t kCount = 70;  // number of entries: more than a workgroup, but no multiple of it
 
-// The buffers of a request, each with a workgroup of sentinels after its output.
+// Buffers of a request. After the results each output buffer has a workgroup of sentinels, which must stay.
 class SentinelRun {
  public:
   SentinelRun(Session& session, const MomentsRequest& request) : session_(session), data_(kernel_data(request)) {
@@ -296,7 +294,7 @@ class SentinelRun {
     session.kernels.bind(bindings);
   }
 
-  /// Runs the first pieces of `count` entries, starting with entry `first`.
+  /// Computes `count` entries of the request, beginning with the entry `first`.
   void run(std::uint32_t first, std::uint32_t count) {
     CommandStream& stream = session_.stream;
     stream.begin();
@@ -309,7 +307,6 @@ class SentinelRun {
     stream.submit_and_wait(kTimeout_s);
   }
 
-  /// The content of an output buffer.
   std::vector<float> numbers(std::uint32_t binding, std::size_t count) const {
     std::vector<float> values(count);
     buffers_[binding].read(std::as_writable_bytes(std::span(values)));
@@ -357,7 +354,7 @@ TEST(Kernels, LastWorkgroup_WritesNothingBeyondItsCount) {
     EXPECT_EQ(std::count_if(tables.begin(), end, kIsSentinel), 0);
     EXPECT_TRUE(std::all_of(end, tables.end(), kIsSentinel));
 
-    // Output i belongs to entry kFirst + i.
+    // In `moments`, entry kFirst is at position 0.
     SentinelRun whole(session, request);
     whole.run(0, static_cast<std::uint32_t>(request.size()));
     const std::vector<float> expected = whole.numbers(DOLP_BINDING_MOMENTS, kNode * request.size());

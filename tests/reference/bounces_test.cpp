@@ -1,4 +1,4 @@
-// The reference's pBRDF of several bounces in V-grooves.
+// pBRDF of multiple bounces in V-grooves by the reference.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -80,7 +80,7 @@ TEST(ReferenceBounces, EachNumber_IsReciprocal) {
   for (const int bounces : {1, 2, 3, 4, 5}) EXPECT_GT(largest.at(static_cast<std::size_t>(bounces)), 0.0) << bounces;
 }
 
-// The smallest eigenvalue of Cloude's coherency matrix, divided by the largest.
+// The smallest eigenvalue of Cloude's coherency matrix, divided by the largest. Negative: the matrix is not realisable.
 double smallest_eigenvalue(const ReferenceMueller& m) {
   using Complex = std::complex<double>;
   const Complex i(0.0, 1.0);
@@ -113,8 +113,7 @@ TEST(ReferenceBounces, Sum_IsPhysical) {
   }
 }
 
-// Grooves of every azimuth reflect twice into a mirror's direction. At zenith 0 only right-angled grooves reflect back
-// to the source.
+// Grooves of any azimuth reflect twice into the mirror direction; at zenith 0 only right-angled ones reflect back.
 TEST(ReferenceBounces, MirrorDirection_IsWhereTwoBouncesDiverge) {
   const Surface surface = grooves(Distribution::kCauchy, 0.4, 2.0);
   const auto twice = [&](double theta_r_deg, double delta_phi_deg) {
@@ -141,17 +140,17 @@ TEST(ReferenceBounces, ScatterOfTheEvaluator_IsTheSum) {
   for (std::size_t e = 0; e < 16; ++e) EXPECT_EQ(matrix.m[e], f[e / 4][e % 4]);
 }
 
-// Integrates over the horizontal projection of omega_r, d Omega cos(theta_r) = dx dy, in polar coordinates around the
-// mirror's direction. They remove the divergence there.
+// Integrates f_00 and f_01 over x and y, the horizontal components of omega_r: d Omega cos(theta_r) = dx dy. Polar
+// coordinates around the mirror direction remove the divergence there.
 std::complex<double> hemispherical(const Surface& surface, const OpticalConstants& index, double theta_deg) {
   constexpr int kSectors = 12, kRings = 3;
   const double centre = -std::sin(theta_deg * kRadPerDeg);
-  std::complex<double> total;  // sum over both columns
+  std::complex<double> total;  // sum over all sectors and rings
   for (int sector = 0; sector < kSectors; ++sector) {
     for (int ring = 0; ring < kRings; ++ring) {
       const auto in_sector = [&](double chi) {
         const double reach = std::sqrt(1.0 - std::pow(centre * std::sin(chi), 2)) - centre * std::cos(chi);
-        const auto at = [&](double y) {  // the distance is reach (1 - (1 - y)^2), which removes 1/cos(theta_r)
+        const auto at = [&](double y) {  // distance = reach (1 - (1 - y)^2) removes 1/cos(theta_r)
           const double distance = reach * y * (2.0 - y);
           const double x = centre + distance * std::cos(chi), across = distance * std::sin(chi);
           const double sine = std::hypot(x, across);

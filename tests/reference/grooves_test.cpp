@@ -1,5 +1,4 @@
-// The reference's V-grooves with all bounces and its direct emission, against exact results of the model and against
-// simpler beams and quadratures.
+// All bounces in V-grooves and direct emission: exact results, counted rays, and simpler quadratures.
 #include "reference/moments.hpp"
 
 #include <gtest/gtest.h>
@@ -61,7 +60,7 @@ Moments all_bounces(const Point& point, ReferenceOptions options = {}) {
 TEST(ReferenceGrooves, PublishedValues_AreReached) {
   struct Row {
     Point point;
-    double rho_i, rho_q, unit;  // the unit of the last digit
+    double rho_i, rho_q, unit;  // unit: unit of the last digit of the published values
   };
   const std::vector<Row> rows{{{kCauchy, 0.0, {0.3, 2.0}, kPaint}, 0.0321166, 0.0, 1e-7},
                               {{kCauchy, 60.0, {0.3, 2.0}, kPaint}, 0.0652161, 0.0396415, 1e-7},
@@ -95,7 +94,7 @@ TEST(ReferenceGrooves, Albedo_IsOne_AndNothingIsLost) {
   }
 }
 
-// Counts rays by their number of bounces. Follows each ray by a search for the nearest facet.
+// Shares of rays with 0, 1, 2, ... bounces in a groove. Follows each ray from facet to facet.
 std::vector<double> counted_shares(double alpha, const reference::Vector<double>& omega, int rays) {
   std::vector<double> shares(40);
   const double c = std::cos(alpha), s = std::sin(alpha);
@@ -104,7 +103,7 @@ std::vector<double> counted_shares(double alpha, const reference::Vector<double>
     std::size_t bounces = 0;
     for (bool is_inside = true; is_inside;) {
       double nearest = 1e300, side_hit = 0.0;
-      for (const double side : {-1.0, 1.0}) {  // the facet from (0, 0) to (side c, s); its normal is (-side s, c)
+      for (const double side : {-1.0, 1.0}) {  // facet from (0, 0) to (side c, s) with the normal (-side s, c)
         const double falls = -(dx * -side * s + dz * c);
         const double tau = (x * -side * s + z * c) / falls;
         const double along = (x + tau * dx) * side * c + (z + tau * dz) * s;
@@ -155,7 +154,7 @@ TEST(ReferenceGrooves, FirstBounceAlone_IsSingleScatteringAndDirectEmission) {
     const double m = std::numbers::sqrt2 * point.shape.sigma;
     const reference::Goal goal{.relative = kPlainTolerance};
     const auto own = [](const reference::Values<2>& value) { return value; };
-    const auto over_slopes = [&](double u) {  // t = m u, 2 pi P t dt = 2 u exp(-u^2) du
+    const auto over_slopes = [&](double u) {  // t = m u, so 2 pi P t dt = 2 u exp(-u^2) du
       const auto at_chi = [&](double chi) -> reference::Values<2> {
         const reference::GrooveLight light = reference::light_in_groove(m * u, std::sin(chi), std::cos(chi),
                                                                         zenith_from_deg(point.theta_deg), point.index);
@@ -178,15 +177,15 @@ TEST(ReferenceGrooves, LimitsOfTheMaterial) {
   EXPECT_EQ(vacuum.r_i, 0.0);
   EXPECT_EQ(vacuum.r_q, 0.0);
   EXPECT_NEAR(vacuum.deficit, 0.5, kRounding);
-  // 1 - R is 4e-12 at normal incidence. It is larger only for p polarisation within 1e-6 of grazing, where there are
-  // few bounces.
+  // The mirror absorbs almost nothing: 1 - R is 4e-12 at normal incidence. It is larger only for p polarisation within
+  // 1e-6 of grazing incidence, where rays have few bounces.
   const Moments mirror = all_bounces({kGaussian, 60.0, {0.3, 2.0}, {1.0, 1e6}}, {.relative_tolerance = 1e-6});
   EXPECT_NEAR(mirror.r_i, 0.5, 1e-5);
 }
 
 TEST(ReferenceGrooves, SmoothSurface_IsFresnels) {
   constexpr double kSigma = 1e-3;
-  constexpr double kTolerance = 2e-4;  // slopes of variance 2 sigma^2, times a logarithm for q = 2
+  constexpr double kTolerance = 2e-4;  // slopes have the variance 2 sigma^2, times a logarithm for q = 2
   for (const OpticalConstants index : {kPaint, kMetal}) {
     for (const double theta_deg : {0.0, 60.0}) {
       const Moments mirror = all_bounces({kCauchy, theta_deg, {0.0, 2.0}, index});
@@ -237,7 +236,7 @@ TEST(ReferenceDirect, BracketsTheEmission) {
     EXPECT_LT(0.0, multiple.direct_i);
     EXPECT_LT(multiple.direct_i, multiple.deficit);
     EXPECT_LT(multiple.deficit, single.deficit);
-    // The later bounces add no more polarisation than light.
+    // Bounces after the first cannot add more polarised light than light.
     EXPECT_LE(std::abs(-multiple.r_q - multiple.direct_q), multiple.deficit - multiple.direct_i);
   }
 }
@@ -257,8 +256,7 @@ TEST(ReferenceDirect, Vacuum_EmitsAll) {
   }
 }
 
-// Integrates over facets by their angle beta from the view and their azimuth eta around it. Fresnel's formulas need
-// only beta.
+// Integrates over facets in polar coordinates around the view: angle of incidence beta, and azimuth eta.
 TEST(ReferenceDirect, PlainQuadratureAroundTheView_Agrees) {
   constexpr double kPlainTolerance = 1e-6;
   constexpr unsigned kDepth = 9;

@@ -1,4 +1,4 @@
-// The reference's masking and Mueller matrix against the model's definitions, integrated or written in another form.
+// Masking and Mueller matrix of the reference, compared with the definitions of the model in another form.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ constexpr double kRadPerDeg = pi / 180.0;
 constexpr double kMaskingTolerance = 1e-13;
 constexpr OpticalConstants kSteel{1.508, 0.0};
 
-// The density of the in-plane slope in the form of the manual, normalised by the textbook Gamma functions.
+// Density of the slope in the plane of incidence, as in shaders/physics/README.md.
 double in_plane_density(Distribution distribution, double sigma, double q, double t) {
   if (distribution == Distribution::kGaussian) {
     return std::exp(-t * t / (2.0 * sigma * sigma)) / (std::sqrt(2.0 * pi) * sigma);
@@ -39,7 +39,7 @@ double in_plane_density(Distribution distribution, double sigma, double q, doubl
          std::pow(std::hypot(1.0, t / std::sqrt(m2)), 1.0 - 2.0 * q);
 }
 
-// G_1 integrated over gamma. With q well above 3/2 the density is finite at the ends.
+// G_1 as an integral over the tilt gamma. For q well above 3/2 the density is finite at both ends.
 double plain_g1(Distribution distribution, double sigma, double q, double theta, double alpha) {
   boost::math::quadrature::tanh_sinh<double> rule;
   const auto density = [&](double gamma) {
@@ -51,13 +51,13 @@ double plain_g1(Distribution distribution, double sigma, double q, double theta,
   const auto weighted = [&](double gamma) {
     return density(gamma) * (1.0 + std::cos(theta + gamma) / std::cos(theta - alpha));
   };
-  // Split at 0, where the density peaks.
+  // The density has its peak at 0.
   const double left = rule.integrate(density, -0.5 * pi, 0.0) + rule.integrate(density, 0.0, a);
   return left + rule.integrate(weighted, a, b);
 }
 
 TEST(ReferenceMasking, G1_MatchesIntegrationOverTheTilt) {
-  constexpr double kTolerance = 1e-11;  // error of the tanh-sinh rule with its peak at an end point
+  constexpr double kTolerance = 1e-11;  // error of the tanh-sinh rule with the peak at an end
   for (const double theta_deg : {20.0, 50.0, 75.0, 88.0}) {
     for (const double alpha_deg : {0.5, 20.0, 60.0}) {
       const double alpha = alpha_deg * kRadPerDeg;
@@ -72,7 +72,7 @@ TEST(ReferenceMasking, G1_MatchesIntegrationOverTheTilt) {
 }
 
 TEST(ReferenceMasking, G1_HeavyTails_KeepTheWholeDensity) {
-  // At theta = 0 the weight is 1 everywhere. So G_1 is the integral of p, for any share of it beyond 1e16.
+  // At theta = 0 G_1 is the integral of the density. For q near 1 much of it lies at slopes beyond 1e16.
   constexpr double kTolerance = 1e-11;
   for (const double q : {1.001, 1.01, 1.07, 1.3, 1.5, 2.0, 50.0, 1000.0}) {
     for (const double sigma : {1e-4, 0.3, 10.0}) {
@@ -83,8 +83,8 @@ TEST(ReferenceMasking, G1_HeavyTails_KeepTheWholeDensity) {
 }
 
 TEST(ReferenceMasking, G1_SingularDensity_MatchesIntegrationOverTheSlope) {
-  constexpr double kTolerance = 1e-10;                        // error of the exp-sinh rule on t^(1 - 2q)
-  constexpr double kSigma = 0.3, kTheta = 0.9, kAlpha = 0.4;  // b = pi/2
+  constexpr double kTolerance = 1e-10;                        // error of the exp-sinh rule for t^(1 - 2q)
+  constexpr double kSigma = 0.3, kTheta = 0.9, kAlpha = 0.4;  // for these values b = pi/2
   const double sin_theta = std::sin(kTheta), cos_theta = std::cos(kTheta);
   boost::math::quadrature::exp_sinh<double> to_infinity;
   boost::math::quadrature::tanh_sinh<double> finite;
@@ -125,7 +125,7 @@ TEST(ReferenceMasking, G1_IsWithinHalfAndOneAndFallsWithTheZenithAngle) {
 }
 
 TEST(ReferenceMasking, SmithLambda_MatchesItsDefinition) {
-  // Lambda = int_mu^inf (t - mu) p(t) dt / mu. It grows without bound towards grazing, so the tolerance is mixed.
+  // Lambda = int_mu^inf (t - mu) p(t) dt / mu has no upper limit. So the tolerance is relative for large values.
   constexpr double kTolerance = 1e-9;
   boost::math::quadrature::exp_sinh<double> rule;
   for (const double sigma : {0.05, 0.4, 2.0}) {
@@ -147,7 +147,7 @@ TEST(ReferenceMasking, SmithLambda_MatchesItsDefinition) {
 double g_in_the_plane(Distribution distribution, Masking masking, double theta_i_deg, double theta_r_deg) {
   const Slopes slopes(distribution, 0.3, 2.0);
   const Attenuation g(slopes, masking, zenith_from_deg(theta_i_deg), zenith_from_deg(theta_r_deg), kMaskingTolerance);
-  // At Delta_phi = 180 degrees alpha and beta are half the difference and half the sum.
+  // At Delta_phi = 180 degrees alpha is half the difference and beta half the sum of theta_r and theta_i.
   const double tan_alpha = std::tan(0.5 * (theta_r_deg - theta_i_deg) * kRadPerDeg);
   const double cos_beta = std::cos(0.5 * (theta_r_deg + theta_i_deg) * kRadPerDeg);
   return g(tan_alpha * tan_alpha, cos_beta * cos_beta);
@@ -234,7 +234,7 @@ TEST(ReferenceMueller, FirstRowAndColumn_MatchEquation7) {
 }
 
 TEST(ReferenceMueller, Specular_IsTheMatrixOfSmoothReflection) {
-  // eta = 0 there: M22 and M33 are Re(r_s* r_p), M23 and M32 its imaginary part with opposite signs.
+  // Here eta = 0, so M22 = M33 = Re(r_s* r_p) and M32 = -M23 = Im(r_s* r_p).
   constexpr double kRounding = 1e-13;
   constexpr double kTheta_deg = 50.0;
   const OpticalConstants index{1.6, 0.8};

@@ -1,4 +1,4 @@
-// The independent reference, against exact results of the model and against simpler quadratures.
+// Moments by the reference, compared with exact results and with simpler quadratures.
 #include "reference/moments.hpp"
 #include "reference/reference_evaluator.hpp"
 
@@ -46,7 +46,7 @@ struct Reflectances {
   double s;
   double p;
 };
-// Fresnel reflectances of a smooth surface by Snell's law, in textbook form.
+// Fresnel reflectances of a smooth surface in textbook form, with Snell's law.
 Reflectances fresnel_reflectances(OpticalConstants constants, double theta_deg) {
   const std::complex<double> n{constants.n, constants.k};
   const double cos_i = std::cos(theta_deg * kRadPerDeg);
@@ -56,7 +56,7 @@ Reflectances fresnel_reflectances(OpticalConstants constants, double theta_deg) 
 }
 
 TEST(Adaptive, KronrodPanel_Polynomials_AreExactUpToTheOrdersOfBothRules) {
-  // 21 Kronrod points are exact to degree 31, the 10 Gauss points to degree 19.
+  // The Kronrod rule with 21 points is exact up to degree 31, its Gauss rule with 10 points up to degree 19.
   constexpr double kRounding = 1e-15;
   for (int degree = 0; degree <= 30; degree += 2) {
     const auto panel =
@@ -103,7 +103,7 @@ TEST(ReferenceMoments, SmithAlbedoAt60Degrees_MatchesTheModelDocument) {
 }
 
 TEST(ReferenceMoments, Grazing_IsTheLimit) {
-  // r is linear in cos(theta) except for logarithms, with a slope below 100.
+  // Near 90 degrees r is linear in cos(theta), except for logarithms, with a slope below 100.
   constexpr double kOffset_deg = 1e-4;
   const double tolerance = 100.0 * kOffset_deg * kRadPerDeg;
   for (const Masking masking : kMaskings) {
@@ -122,8 +122,8 @@ TEST(ReferenceMoments, GrazingWithHeavyTails_DivergesBelowThreeHalves) {
     const Moments heavy = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5}, kSteel);
     EXPECT_EQ(heavy.r_i, std::numeric_limits<double>::infinity());
     EXPECT_EQ(heavy.r_q, -std::numeric_limits<double>::infinity());
-    // Just above 3/2 it grows like 1/(2q - 3). At twice the distance it is half as large, with a relative error of the
-    // distance times a factor below 100.
+    // For q just above 3/2, r_i grows as 1/(2q - 3). At twice the distance from 3/2 it is half as large. The relative
+    // error of this is the distance times a factor below 100.
     constexpr double kDistance = 1e-5;
     const double near = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5 + kDistance}, kSteel).r_i;
     const double far = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5 + 2.0 * kDistance}, kSteel).r_i;
@@ -133,7 +133,7 @@ TEST(ReferenceMoments, GrazingWithHeavyTails_DivergesBelowThreeHalves) {
 }
 
 TEST(ReferenceMoments, Deficit_IsTheAbsorbedPartOfASmoothMetal) {
-  // Here the deficit is 5e-3 of cos(theta). With steep slopes it equals the absorbed part of the smooth metal to 1e-5.
+  // With sigma = 1e-3 the deficit is nearly the light that the smooth metal absorbs, 0.5 % of cos(theta).
   constexpr double kRelative = 1e-3;
   const OpticalConstants metal{27.0, 90.0};
   const Moments rough = moments(Distribution::kGaussian, Masking::kSmith, 30.0, {1e-3, 2.0}, metal);
@@ -151,9 +151,9 @@ Surface surface_of(Distribution distribution, Masking masking, double sigma, dou
   return surface;
 }
 
-// The azimuth at which v-cavity masking bends: (cos(theta_i) + cos(theta_r)) times the smaller cosine is cos^2(beta).
-// It reaches 180 degrees at theta_r = 3 theta_i - 180 and at 60 + theta_i / 3 degrees. There an integral over zeniths
-// bends like a root.
+// The azimuth at which v-cavity masking has a kink: there (cos(theta_i) + cos(theta_r)) min(cos(theta_i), cos(theta_r))
+// = cos^2(beta). At theta_r = 3 theta_i - 180 and at 60 + theta_i / 3 degrees this azimuth is 180 degrees. Integrals
+// over the azimuth have a square root there, as functions of theta_r.
 double bend_deg(double theta_i_deg, double theta_r_deg) {
   const double c_i = std::cos(theta_i_deg * kRadPerDeg), c_r = std::cos(theta_r_deg * kRadPerDeg);
   const double sines = std::sin(theta_i_deg * kRadPerDeg) * std::sin(theta_r_deg * kRadPerDeg);
@@ -162,8 +162,8 @@ double bend_deg(double theta_i_deg, double theta_r_deg) {
 }
 
 TEST(ReferenceMoments, PlainQuadratureOfTheMuellerMatrix_Agrees) {
-  // Tolerances relative to the integral of absolute values, which is r_i. kInner is for the azimuths; each zenith gets
-  // a share of it. kOuter is for the zeniths and is larger than the error from the azimuths.
+  // Tolerances relative to r_i. kInner is for integrals over the azimuth, kOuter for the integral over the zenith;
+  // kOuter is larger than the error due to kInner.
   constexpr double kInner = 1e-6;
   constexpr double kOuter = 5e-6;
   constexpr unsigned kDepth = 8;
@@ -195,8 +195,8 @@ TEST(ReferenceMoments, PlainQuadratureOfTheMuellerMatrix_Agrees) {
   }
 }
 
-// Under v-cavity and smith masking rho approaches a limit like c = cos(theta) (smith) or like c log c. So rho at 4c, 2c
-// and c, for c below 1e-11, lies on a line to 1e-13. A loss of digits would show as noise.
+// With v-cavity and smith masking rho has a limit at 90 degrees, and approaches it as c = cos(theta) or c log c. For c
+// below 1e-11 the values at 4c, 2c and c lie on a line to 1e-13. Lost digits would appear as noise.
 TEST(ReferenceMoments, NextToGrazing_KeepTheirDigits) {
   constexpr double kTolerance = 1e-13;
   const ReferenceOptions options{.relative_tolerance = kTolerance, .subdivisions = 2};
@@ -213,7 +213,7 @@ TEST(ReferenceMoments, NextToGrazing_KeepTheirDigits) {
         const auto far = rho(4.0);
         const auto middle = rho(2.0);
         const auto near = rho(1.0);
-        // The change from c to 2c is half the change from 2c to 4c.
+        // The change from 2c to c is half the change from 4c to 2c.
         for (const std::size_t k : {0U, 1U}) {
           EXPECT_NEAR(near[k] - middle[k], 0.5 * (middle[k] - far[k]), 2.0 * kTolerance * near[0])
               << "gap " << gap_deg << " sigma " << shape.sigma;

@@ -132,7 +132,7 @@ class Window : public CommandLine {
     keys("Return");
     settle();
   }
-  /// Holds Ctrl and clicks a slider.
+  /// Clicks a slider while Ctrl is pressed.
   void ctrl_click(const std::string& slider) {
     xdotool({"keydown", "ctrl"});
     frames();
@@ -142,7 +142,7 @@ class Window : public CommandLine {
   }
   std::optional<double> number(const std::string& key) const { return session().scene().number(key); }
   std::optional<std::string> word(const std::string& key) const { return session().scene().word(key); }
-  /// True if a field has the background colour for refused text.
+  /// True if the background of a field is red, which marks refused text.
   bool is_marked(const std::string& field) {
     frames();
     const Area area = app_->control_area(field);

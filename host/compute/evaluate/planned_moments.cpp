@@ -39,7 +39,7 @@ std::vector<char> interpolate_all(const ShapePlan& plan, std::span<const Moments
   return is_left;
 }
 
-/// Computes a plan step by step.
+/// Carries out a plan step by step.
 class PlannedMoments {
  public:
   PlannedMoments(const MomentsPlan& plan, ModelEvaluator& evaluator, const Progress& progress, Work& work)
@@ -101,7 +101,7 @@ class PlannedMoments {
     return moments;
   }
 
-  /// Computes the remaining pairs of direction and index, entry by entry.
+  /// Computes the pairs of direction and index that could not be interpolated, entry by entry.
   void compute_left(const MomentsRequest& request, std::vector<char> is_left, std::span<Moments> moments) {
     MomentsRequest direct = request;
     direct.basis = nullptr;

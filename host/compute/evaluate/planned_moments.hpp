@@ -8,9 +8,11 @@
 
 namespace dolp {
 
-/// Computes the moments of the plan's request. A direction whose nodes have no finite bound is computed entry by entry.
-/// Adds the work of the host to `work`: entries that were interpolated or combined, moments computed for them, and
-/// time. `progress` counts entries. Errors: the evaluator's errors, and Cancelled if `progress` returns false.
+/// Computes the moments of the request of `plan`. If the moments at the nodes of a direction are not finite, they
+/// cannot be interpolated, and the entries of this direction are computed one by one. Adds to `work` what the host did:
+/// the entries that were interpolated or combined, the moments computed for them, and the time. `progress` counts
+/// entries.
+/// Errors: the evaluator's errors, and Cancelled if `progress` returns false.
 std::vector<Moments> planned_moments(const MomentsPlan& plan, ModelEvaluator& evaluator, const Progress& progress,
                                      Work& work);
 

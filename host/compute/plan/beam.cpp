@@ -21,16 +21,16 @@ namespace {
 using std::numbers::ln2;
 using std::numbers::pi;
 
-constexpr int kLargestOrder = 16;  // kInPlaneOrder of physics/in_plane.glsl
+constexpr int kLargestOrder = 16;  // must equal kInPlaneOrder of physics/in_plane.glsl
 
-// -ln of the share of the in-plane slopes that G may neglect: far below the rounding of a double.
+// G leaves out the share exp(-kCutExponent) of the in-plane slopes, which is far below the rounding of a double.
 constexpr double kCutExponent = 45.0;
 
-// Smoother surfaces use the G of this sigma: the squares of their slopes overflow a float, and their shadows are equal
-// except for q < 1.1.
+// Smoother surfaces use the G of this sigma, because squares of slopes over m would overflow a float. Their G differs
+// from it only for q < 1.1.
 constexpr double kSmallestMaskingSigma = 1e-15;
 
-// Share of N^2 and sin^2(beta) below which their difference has lost digits that its square root needs.
+// If N^2 - sin^2(beta) is below this share of its terms, the difference has lost digits that its square root needs.
 constexpr double kCritical = 1e-6;
 constexpr double kSmallestSquare = 1e-300;
 constexpr double kSmallestFacetCosine = 1e-12;
@@ -50,7 +50,7 @@ kernel::ShapeNode masking_shape(Distribution distribution, const SlopeShape& sha
   return node;
 }
 
-// Re(N^2 - sin^2 beta) from the angles as given, to all digits.
+// Re(N^2 - sin^2(beta)) to all digits of a double, from the angles in degrees.
 double exact_w_squared(const BeamAngles& angles, const OpticalConstants& index) {
   using Real = boost::multiprecision::cpp_bin_float_quad;
   const auto cosine = [](double angle_deg) { return boost::math::cos_pi(Real(angle_deg) / 180); };
@@ -69,21 +69,21 @@ struct FacetReflection {
   std::complex<double> cross;
 };
 
-// Equations: the forms of shaders/physics/fresnel.glsl, which do not cancel; r_s* r_p = a (sin^2 beta - c w) / (conj(c
-// + w) (N^2 c + w)) with a = |N^2 - 1|^2 / |c + w|^2.
+// Equations: with c = cos(beta) and w = sqrt(N^2 - sin^2(beta)), the forms of shaders/physics/fresnel.glsl, in which
+// nothing cancels, and r_s* r_p = a (sin^2(beta) - c w) / (conj(c + w) (N^2 c + w)) with a = |N^2 - 1|^2 / |c + w|^2.
 FacetReflection bare_reflection(const BeamAngles& angles, const BeamGeometry& geometry, const OpticalConstants& index) {
   using Complex = std::complex<double>;
   const double n2_re = (index.n - index.k) * (index.n + index.k);
   const Complex n2m1((index.n - 1.0) * (index.n + 1.0) - index.k * index.k, 2.0 * index.n * index.k);
   const double c = geometry.node.cos_beta;
   const double sin2 = geometry.sin2_beta;
-  // Uses the form with the smaller terms.
+  // Of the two forms of Re(w^2), the one with smaller terms loses fewer digits.
   double w2 = sin2 < 0.5 ? n2_re - sin2 : n2m1.real() + c * c;
   if (std::hypot(w2, n2m1.imag()) <= kCritical * std::max(std::abs(n2_re), sin2)) w2 = exact_w_squared(angles, index);
   const Complex w = std::sqrt(Complex(w2, n2m1.imag()));
   const Complex s_sum = c + w;
   const Complex p_sum = Complex(n2_re, n2m1.imag()) * c + w;
-  const double a = std::norm(n2m1) / std::max(std::norm(s_sum), kSmallestSquare);  // N = 1 at grazing incidence: 0/0
+  const double a = std::norm(n2m1) / std::max(std::norm(s_sum), kSmallestSquare);  // N = 1 at 90 degrees would be 0/0
   const double r_s = a / std::max(std::norm(s_sum), kSmallestSquare);
   const double p_norm = std::max(std::norm(p_sum), kSmallestSquare);
   const double m01 = 0.5 * (4.0 * c * w.real() * a / p_norm) * sin2;
@@ -100,16 +100,17 @@ FacetReflection covered_reflection(const BeamGeometry& geometry, const FacetOpti
   return {std::norm(r.s) - m01, m01, std::conj(r.s) * r.p};
 }
 
-// (cos 2 eta, sin 2 eta) of the direction (x, y); eta = 0 where it is undefined.
+// (cos(2 eta), sin(2 eta)), where eta is the angle of the vector (x, y). Without a direction eta is 0.
 CosSin double_angle(double x, double y) {
   const double length = std::max(std::abs(x), std::abs(y));
   if (length == 0.0) return {};
-  const double u = x / length;  // normalised first, because squares of tiny angles would vanish
+  const double u = x / length;  // divided first, because squares of tiny numbers would be 0
   const double v = y / length;
   return {(u - v) * (u + v) / (u * u + v * v), 2.0 * u * v / (u * u + v * v)};
 }
 
-// Cosine and sine of the mean of two zeniths; near 90 degrees their sum would lose digits of the elevations.
+// Cosine and sine of the mean of two zeniths. Near the horizon it takes the mean of the elevations, because a sum of
+// zeniths would lose their digits.
 CosSin mean_zenith(double theta_i_deg, double theta_r_deg) {
   if (theta_i_deg + theta_r_deg <= 90.0) return cos_sin_deg(0.5 * (theta_i_deg + theta_r_deg));
   const CosSin elevation = cos_sin_deg(0.5 * ((90.0 - theta_i_deg) + (90.0 - theta_r_deg)));
@@ -143,7 +144,7 @@ BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_
   node.cos_beta = 0.5 * std::sqrt(height_sum * height_sum + flat_sum);
   geometry.sin2_beta = 0.25 * (cos_difference * cos_difference + flat_difference);
 
-  // Uses the form of cos(dphi) = 1 - 2 sin^2(dphi/2) = 2 cos^2(dphi/2) - 1 with the smaller correction.
+  // Inserts cos(dphi) = 1 - 2 sin^2(dphi/2) or cos(dphi) = 2 cos^2(dphi/2) - 1, whichever has the smaller square.
   const bool forward = std::abs(half.cos) < std::abs(half.sin);
   const double sin_sum = 2.0 * mean.sin * mean.cos;
   const double sin_of_difference = 2.0 * difference.sin * difference.cos;
@@ -154,7 +155,8 @@ BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_
   const double sin_azimuth = std::copysign(2.0, azimuth_deg) * half.sin * half.cos;
   const bool along_normal = i.sin == 0.0 && r.sin == 0.0;
   const double cos_azimuth = (half.cos - half.sin) * (half.cos + half.sin);
-  // Both along the normal: eta_i is the angle between the planes of azimuth 0 and delta_phi, the limit from all sides.
+  // If both beams are along the normal, eta_i is the angle between the planes of azimuth 0 and delta_phi. This is the
+  // limit from all sides.
   const CosSin eta_i =
       along_normal ? double_angle(-cos_azimuth, sin_azimuth) : double_angle(toward_i, r.sin * sin_azimuth);
   const CosSin eta_r = double_angle(toward_r, i.sin * sin_azimuth);

@@ -14,14 +14,15 @@ struct BeamGeometry {
   double sin2_beta = 0.0;
 };
 
-/// The facet between two beams, and the rotation angles of eq. (4), in double and without cancellation.
+/// Computes the facet that reflects one beam into the other, and the rotation angles eta of eq. (4), in double and
+/// without cancellation.
 ///
-/// Equation: eqs. (2)-(6) in the form |w_i + w_r|^2 = 4 cos^2(beta), |w_i - w_r|^2 = 4 sin^2(beta). eta_i is the
-/// direction of (sin i cos r - cos i sin r cos(dphi), sin r sin(dphi)), eta_r is the direction of (sin r cos i - cos r
-/// sin i cos(dphi), sin i sin(dphi)). Conventions: delta_phi = 180 degrees is the specular side; eta turns s toward p
-/// and has the sign of sin(delta_phi). Domain: zeniths in [0, 90] degrees, but not both 90. In the retro direction eta
-/// is undefined; the result is the limit eta_i = eta_r = 0. At theta_i = 0 the plane of incidence has azimuth 0; at
-/// theta_r = 0 it has azimuth delta_phi.
+/// Equation: eqs. (2)-(6) in the form |w_i + w_r|^2 = 4 cos^2(beta), |w_i - w_r|^2 = 4 sin^2(beta). With i = theta_i
+/// and r = theta_r, eta_i is the angle of the vector (sin i cos r - cos i sin r cos(dphi), sin r sin(dphi)), and eta_r
+/// the angle of (sin r cos i - cos r sin i cos(dphi), sin i sin(dphi)). Conventions: delta_phi = 180 degrees is the
+/// specular side; eta turns s toward p and has the sign of sin(delta_phi). Domain: zeniths in [0, 90] degrees, but not
+/// both 90. In the retro direction eta is undefined; the result is the limit eta_i = eta_r = 0. At theta_i = 0 the
+/// plane of incidence has azimuth 0; at theta_r = 0 it has azimuth delta_phi.
 BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_phi_deg);
 
 /// Inputs of the kernel for one entry; the pBRDF is the kernel's result times 2^power.
@@ -30,18 +31,18 @@ struct Beam {
   int power = 0;
 };
 
-/// Makes the beams of a request, which must outlive the object. Pure.
+/// Makes the beams of a request. The request must outlive the object. operator() is a pure function.
 ///
-/// The host computes the geometry, D and the reflection of the facet: near the normal and the retro direction, far down
-/// the slope distribution and near the critical angle their rounding in a float would exceed 1e-5 of m00. The kernel
-/// gets D without its power of two, so that no float over- or underflows.
+/// The host computes the geometry, D and the reflection of the facet. In a float their rounding would exceed 1e-5 of
+/// m00 near the normal and the retro direction, far down the slope distribution, and near the critical angle. The
+/// kernel gets D over 2^Beam::power, so that no float over- or underflows.
 class BeamPlan {
  public:
   explicit BeamPlan(const ScatteringRequest& request);
   Beam operator()(const ScatteringEntry& entry) const;
 
-  /// The kernel's result with its power of two restored, its error bound, and with Scattering::kMultiple the further
-  /// bounces. `unit_roundoff` belongs to the kernel's precision.
+  /// The Mueller pBRDF with its error bound: the kernel's result times 2^Beam::power and, with Scattering::kMultiple,
+  /// the bounces after the first. `unit_roundoff` belongs to the kernel's precision.
   ScatteringMatrix matrix(const kernel::MuellerNode& node, const Beam& beam, const ScatteringEntry& entry,
                           double unit_roundoff) const;
 
@@ -54,18 +55,20 @@ class BeamPlan {
   std::vector<BeamGeometry> geometries_;
 };
 
-/// Adds the beams of two and more bounces to f cos(theta_i) cos(theta_r) of the first bounce.
+/// Adds the beams of two and more bounces to `f`, which holds f cos(theta_i) cos(theta_r) of the first bounce.
 ///
 /// Equation: Let h be the horizontal part of omega_i + omega_r. Light that leaves after k bounces comes from grooves
 /// whose horizontal direction u points along h or against it. Their gamma = pi/2 - alpha is (pi - psi_i - psi_r)/(2 k)
-/// for odd k and (pi - psi_i + psi_r)/(2 k) for even k. psi is the angle from z toward u across the groove. Then
+/// for odd k and (pi - psi_i + psi_r)/(2 k) for even k. psi_i and psi_r are the zeniths of the two beams in the plane
+/// across the groove, positive toward u. Then
 ///   f^(k) cos(theta_i) cos(theta_r) = D sin(alpha) a ds_k M / (2 k |h|),
-/// where a ds_k is the width of the beam of k bounces and M its Mueller matrix (shaders/physics/README.md, section 3).
-/// Domain: masking v-cavity. The result is NaN at h = 0, where the beams mirror each other: there grooves of all
-/// azimuths reflect.
-/// Accuracy: `accuracy` of m00. If more than 1,000 bounces count, next to |psi_i| = |psi_r| of strong reflectors,
-/// `error` includes the light that may remain.
-/// Returns the number of bounces computed, which is the cost.
+/// where a ds_k is the width of the beam of k bounces, and M is its Mueller matrix (shaders/physics/README.md, section
+/// 3).
+/// Domain: masking v-cavity. At h = 0, the mirror direction, the result is NaN, because grooves of all azimuths reflect
+/// into it.
+/// Accuracy: relative error `accuracy` of the added m00. Next to |psi_i| = |psi_r|, more than kMostBouncesOfBeam
+/// bounces of a strong reflector may count; f.error then includes a bound of the light that they may add.
+/// Returns the number of computed bounces, which is proportional to the time.
 int add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, const ScatteringEntry& entry,
                         double accuracy);
 

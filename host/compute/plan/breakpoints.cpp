@@ -20,11 +20,11 @@ constexpr double kNoEnd = 1e30;  // a finite slope beyond every cut
 
 constexpr double kCoincident = 1e-9;  // relative distance of breakpoints that differ only by rounding
 
-// Most breakpoints of a direction with a sky.
+// Largest number of breakpoints of a direction with a sky.
 constexpr std::size_t kMostSkyBreakpoints = 60;
 
-// Slopes that only divide the long way to the horizon of a grazing direction, which a heavy tail reaches, into pieces
-// of about ten units of X.
+// For grazing directions, whose slopes reach far beyond 1 before they meet the horizon. These slopes divide a heavy
+// tail into pieces of about ten units of X = asinh(t/w).
 constexpr std::array kPlainBreakpoints = {30.0, 3e5};
 constexpr std::array kSteepBreakpoints = {1e5, 3e8, 1e12};  // for grooves, which have no horizon
 
@@ -33,7 +33,7 @@ double tan_deg(double angle_deg) {
   return a.sin / a.cos;
 }
 
-// Slopes at which the critical line cos(beta) = critical_cos meets one of these: phi = 0 or pi, the horizon, theta_r =
+// Slopes at which the line of total reflection, cos(beta) = critical, meets phi = 0 or pi, the horizon, theta_r =
 // theta, or the lines of v-cavity, e = 2 c and e = 2 cos(theta_r).
 void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, Masking masking,
                               double critical) {
@@ -47,7 +47,7 @@ void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   add(a.cos / (2.0 * critical), 0.0);
   add(a.cos / critical, 0.0);
   if (masking != Masking::kVCavity || a.cos <= 0.0) return;
-  const double at_slope_1 = std::sqrt(0.5);  // the lines of v-cavity end at this slope
+  const double at_slope_1 = std::sqrt(0.5);  // cos(alpha) at slope 1, where the lines of v-cavity end
   add(0.5 * critical / a.cos, at_slope_1);
   add(critical / (std::hypot(a.cos, 2.0 * critical) - a.cos), at_slope_1);
 }
@@ -67,8 +67,8 @@ void add_line_breakpoints(std::vector<Breakpoint>& points, double theta_deg, con
   points.push_back({a.cos > 0.0 ? tan_deg(30.0 + theta_deg * 2.0 / 3.0) : kNoEnd, kRootBelow});
 }
 
-// Direct emission continues beyond the horizon, up to the line at which facets turn away. With v-cavity masking it has
-// the line e = 2 c, which crosses the horizon at sqrt(3).
+// Facets beyond the horizon line, theta_r = 90 degrees, also emit directly, up to the line e = 0 at which they turn
+// away. With v-cavity masking there is also the line e = 2 c, which meets the horizon line at slope sqrt(3).
 void add_direct_breakpoints(std::vector<Breakpoint>& points, const CosSin& a, Masking masking, double& last) {
   last = kNoEnd;
   points.push_back({last, 0});
@@ -87,8 +87,8 @@ void add_v_cavity_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   }
 }
 
-// Slopes at which a later bounce meets the critical line at phi = 0 or pi. There its cos(beta) is the sine of its angle
-// in the fan (groove.glsl). At theta = 0 this holds for all phi.
+// Slopes at which a bounce after the first meets the critical line at phi = 0 or pi. There cos(beta) of a bounce is the
+// sine of its angle in the unfolded groove (groove.glsl). At theta = 0 this holds for all phi.
 void add_critical_bounces(std::vector<Breakpoint>& points, double theta_deg, double critical) {
   const double critical_deg = std::asin(critical) * 180.0 / pi;
   for (int k = 2; k <= kCriticalBounces; ++k) {
@@ -125,7 +125,7 @@ void add_groove_breakpoints(std::vector<Breakpoint>& points, double theta_deg, i
   for (const double slope : kSteepBreakpoints) points.push_back({slope, 0});
 }
 
-// Merges breakpoints that differ only by rounding; the merged one has the roots of all.
+// Merges breakpoints that differ only by rounding. A merged breakpoint has the root flags of all of them.
 std::vector<Breakpoint> without_coincident(const std::vector<Breakpoint>& points) {
   std::vector<Breakpoint> distinct;
   for (const Breakpoint& point : points) {
@@ -137,8 +137,8 @@ std::vector<Breakpoint> without_coincident(const std::vector<Breakpoint>& points
 }
 
 // Slopes at which a corner of the sky meets phi = 0 or pi. The reflected rays of a slope have zeniths from |theta - 2
-// alpha| to theta + 2 alpha. A sky that is not level at the zenith has a cusp there. Next to these slopes the sum over
-// the azimuths follows the distance to the power 3/2.
+// alpha| to theta + 2 alpha. A sky that changes linearly with the zenith near 0 has a cusp there. Next to these slopes,
+// the sum over the azimuths has a term with the distance to the power 3/2.
 void add_sky_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const SkyTable& sky) {
   if (sky.has_cusp) points.push_back({tan_deg(0.5 * theta_deg), kRoots});
   for (const double corner_deg : sky.corners_deg) {
@@ -148,9 +148,9 @@ void add_sky_breakpoints(std::vector<Breakpoint>& points, double theta_deg, cons
   }
 }
 
-// Splits each piece once more, which moves every node of its rules.
+// Splits each piece once more, so that its rules get other nodes.
 void add_extra_splits(std::vector<Breakpoint>& points) {
-  constexpr double kShare = 0.43;  // no fraction that a rule's nodes have
+  constexpr double kShare = 0.43;  // no rule has a node at this fraction of its interval
   const std::size_t count = points.size();
   for (std::size_t i = 0; i + 1 < count && points.size() <= DOLP_MAX_PIECES; ++i) {
     const double start = std::asinh(points[i].slope);
@@ -194,7 +194,7 @@ std::vector<Breakpoint> breakpoints(double theta_deg, const MomentsRequest& requ
   }
   add_sky_breakpoints(points, theta_deg, sky);
   std::erase_if(points, [&](const Breakpoint& point) { return point.slope <= 0.0 || point.slope > last; });
-  // At the normal smith's cusp lies at slope 0.
+  // At theta = 0 smith's cusp is at slope 0.
   const bool cusp_at_0 = variant.has_line && masking == Masking::kSmith && a.sin == 0.0;
   points.push_back({0.0, cusp_at_0 ? kRootAbove : 0U});
   std::sort(points.begin(), points.end());

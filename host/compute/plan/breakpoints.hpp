@@ -8,7 +8,7 @@
 
 namespace dolp {
 
-/// The largest slope of all integrals: beyond it the squares of a float overflow.
+/// The largest slope of any integral. Squares of larger slopes overflow a float.
 inline constexpr double kLargestCut = 1e15;
 
 /// An end of a piece, with the flags kRootAbove and kRootBelow.
@@ -18,13 +18,14 @@ struct Breakpoint {
   bool operator<(const Breakpoint& other) const { return slope < other.slope; }
 };
 
-/// The lines of a direction that do not belong to its masking.
+/// The split lines of a direction that depend on the index or on the slope distribution.
 struct DirectionVariant {
   double critical_cos = 0.0;  ///< cos(beta) at which total reflection begins; 0: there is none
-  bool has_line = false;      ///< b = pi/2 of `integral`, or smith's cusp
+  bool has_line = false;      ///< there is the line b = pi/2 of `integral`, or smith's cusp
 };
 
-/// Ascending slopes, starting with 0. `splits`: bounces in a groove at which a beam that ends splits the azimuths.
+/// The ascending slopes of a direction, starting with 0. With all bounces, the ends of the beams of up to `splits`
+/// bounces split the azimuths.
 std::vector<Breakpoint> breakpoints(double theta_deg, const MomentsRequest& request, const DirectionVariant& variant,
                                     const SkyTable& sky, int splits);
 

@@ -16,11 +16,11 @@
 namespace dolp {
 namespace {
 
-constexpr double kRounding = 1e-8;  // rounding of these sums, and of the band sums that they represent
+constexpr double kRounding = 1e-8;  // relative rounding of the sums here, and of the sums over the band in a run
 constexpr double kRoundingOfOne = 1e-13;
 constexpr double kSmallestCosine = 1e-300;  // safe as a divisor
 
-/// In the order of Part.
+/// The flags of the parts, in the order of Part.
 constexpr std::array<bool KeptEffects::*, 8> kFlags = {
     &KeptEffects::further_bounces, &KeptEffects::moments,       &KeptEffects::source,  &KeptEffects::surroundings,
     &KeptEffects::emission,        &KeptEffects::path_radiance, &KeptEffects::diffuse, &KeptEffects::profile};
@@ -29,7 +29,8 @@ bool KeptEffects::*flag(Part part) { return kFlags[static_cast<std::size_t>(part
 
 double or_infinite(double bound) { return std::isnan(bound) ? kInfinity : bound; }
 
-/// Upper bound of smith's L(theta) = E[(t_x - mu)+] / mu, mu = cot(theta): E|t_x| / (2 mu).
+/// Upper bound E|t_x| / (2 mu) of Smith's Lambda(theta) = E[max(t_x - mu, 0)] / mu, mu = cot(theta). t_x is the slope
+/// in one plane, and E its mean.
 double most_lambda(Distribution distribution, const SlopeShape& shape, const CosSin& a) {
   if (shape.sigma == 0.0 || a.sin == 0.0) return 0.0;
   double mean = slope_width(shape) / kRootPi;
@@ -37,9 +38,9 @@ double most_lambda(Distribution distribution, const SlopeShape& shape, const Cos
   return a.cos > 0.0 ? 0.5 * mean * a.sin / a.cos : kInfinity;
 }
 
-/// Equation: rho c = E[e G M], e <= max(c + s t cos(phi), 0), G <= 1. `v-cavity` and `smith` reflect at most all
-/// incident light. For the other maskings the bound is 1 + tan(theta) E|t_x| / 2, because the mean of t is pi E|t_x| /
-/// 2.
+/// Upper bound of the albedo A. `v-cavity` and `smith` reflect at most all incident light. For the other maskings, G <=
+/// 1 gives c A <= E[max(c + s t_x, 0)] <= c + s E|t_x| / 2, where t_x is the slope in the plane of incidence, and E its
+/// mean.
 double most_albedo(const Surface& surface, const CosSin& a, const SlopeShape& roughest) {
   return keeps_projected_area(surface.masking) ? 1.0 : 1.0 + most_lambda(surface.distribution, roughest, a);
 }
@@ -62,10 +63,10 @@ Range reflectance(const std::vector<FacetOptics>& indices, double cosine) {
   return range;
 }
 
-/// Slope density of facets at `slope` for all sigma and q of an extent.
+/// Range of the slope density P at `slope`, over all sigma and q of an extent.
 ///
-/// Equation: As a function of m^2 it rises to a maximum at t^2 (gaussian) or (q - 1) t^2 (cauchy), and then falls. (q -
-/// 1) and (1 + t^2 / m^2)^-q are monotonic in q.
+/// Equation: As a function of m^2, P rises to a maximum at t^2 (Gaussian) or (q - 1) t^2 (Cauchy), and then falls. The
+/// factors q - 1 and (1 + t^2 / m^2)^-q of P are monotonic in q.
 Range slope_density(Distribution distribution, const EntriesExtent& extent, double slope) {
   const bool is_gaussian = distribution == Distribution::kGaussian;
   const double m2_low = std::pow(slope_width(extent.smoothest), 2);
@@ -82,8 +83,9 @@ Range slope_density(Distribution distribution, const EntriesExtent& extent, doub
           (is_gaussian ? 1.0 : q_high - 1.0) * density(std::clamp(peak, m2_low, m2_high), q_low)};
 }
 
-/// f cos(theta_i) cos(theta_r) for k_s = 1, in 1/sr: the closed form p (1 + t^2)^2 G M / 4 with bounds of G. G is exact
-/// for `none` and `v-cavity`, lies in [1/2, 1] for `integral`, and in [1 / (1 + L + L_r), 1] for `smith`.
+/// Range of f_00 cos(theta_i) cos(theta_r) = P (1 + t^2)^2 G M00 / 4 for k_s = 1, in 1/sr. G is exact for `none` and
+/// `v-cavity`, and in [1/2, 1] for `integral`. For `smith` it is in [1 / (1 + L_i + L_r), 1], where L_i and L_r bound
+/// Lambda of the two beams.
 Range beam_range(const Surface& surface, const BeamAngles& angles, const EntriesExtent& extent,
                  const std::vector<FacetOptics>& indices) {
   if (!has_facet(angles)) return {};
@@ -289,7 +291,7 @@ bool EffectBounds::adds_nothing(Part part, const KeptEffects& kept) const {
 
 double EffectBounds::bound(Part part, const KeptEffects& kept) const {
   if (!is_kept(kept, part) || adds_nothing(part, kept)) return 0.0;
-  // The bounds take the diffuse part to be unpolarised.
+  // The bounds hold only if the diffuse part is unpolarised.
   if (scene_.surface.diffuse > 0.0 && scene_.surface.diffuse_polarisation != DiffusePolarisation::kNone)
     return kInfinity;
   const auto [added_i, added_qu] = added_by(part, kept);

@@ -14,7 +14,7 @@ namespace {
 constexpr std::array kDroppingOrder = {Part::kSource,       Part::kSurroundings, Part::kProfile,       Part::kEmission,
                                        Part::kPathRadiance, Part::kMoments,      Part::kFurtherBounces};
 
-/// The bounds of each variant of a scene among its entries.
+/// The bounds for each variant of a scene that its entries have.
 std::vector<EffectBounds> bounds_of(const SceneValues& scene, const SceneEntries& entries) {
   const std::vector<EntriesExtent> extents = extents_of(entries);
   std::vector<EffectBounds> bounds;
@@ -43,7 +43,7 @@ double worst_bound(const std::vector<EffectBounds>& bounds, Part part, const Kep
 
 bool has_profile(const SceneValues& scene) { return scene.surroundings && scene.surroundings->profile; }
 
-/// True if the scene has a part, in the order of Part.
+/// Functions that tell whether a scene has a part, in the order of Part.
 constexpr std::array<bool (*)(const SceneValues&), 8> kHasPart = {
     [](const SceneValues& scene) { return scene.surface.scattering == Scattering::kMultiple; },
     [](const SceneValues& scene) { return scene.surface.specular > 0.0; },
@@ -68,7 +68,7 @@ void drop_effects(EffectPlan& plan, const SceneValues& scene, const std::vector<
   const double allowed = kDroppedShare * scene.accuracy.tolerance;
   for (const Part part : kDroppingOrder) {
     if (!is_kept(plan.kept, part)) continue;
-    if (part == Part::kMoments && scene.emission && scene.emission->has_bracket) continue;  // it needs them
+    if (part == Part::kMoments && scene.emission && scene.emission->has_bracket) continue;  // the bracket needs them
     const double bound = worst_bound(bounds, part, plan.kept);
     if (bound > allowed - plan.bound) continue;
     plan.kept = without(plan.kept, part);
@@ -85,7 +85,7 @@ void set_needs(EffectPlan& plan, const SceneValues& scene, const std::vector<Eff
   plan.gives_rho = plan.kept.moments || scene.surface.specular == 0.0;
 }
 
-/// The reason why the moments are not needed although nothing is lost without them.
+/// The reason why the moments are not needed, if the results are exact without them.
 std::string why_no_moments(const SceneValues& scene, const KeptEffects& kept) {
   const bool has_emission = scene.emission && kept.emission;
   const bool has_surroundings = scene.surroundings && kept.surroundings;
@@ -98,7 +98,8 @@ std::string why_no_moments(const SceneValues& scene, const KeptEffects& kept) {
 
 Effect absent(const char* name, std::string why) { return {name, EffectState::kAbsent, std::move(why)}; }
 
-/// Describes how the plan treats a part. `row` has the reason, and for a kept part the needs.
+/// The row of a part in the table of effects. `row` describes the part as a kept one; if the plan drops it, its state,
+/// bound and reason replace those of `row`.
 Effect part_row(const SceneValues& scene, const EffectPlan& plan, Part part, Effect row) {
   row.part = part;
   const auto dropped = plan.dropped.find(part);
@@ -112,7 +113,7 @@ Effect part_row(const SceneValues& scene, const EffectPlan& plan, Part part, Eff
   return row;
 }
 
-/// The work that kept moments take, for the table of effects.
+/// What a run computes for the specular part, as text for the table of effects.
 std::string needs_of_moments(const SceneValues& scene, const EffectPlan& plan) {
   if (!plan.kept.moments) return "closed form";
   return is_bistatic(scene) ? fmt::format("moments at {:g} deg", scene.geometry.view_zenith_deg)
@@ -138,7 +139,7 @@ Effect specular_row(const SceneValues& scene, const EffectPlan& plan) {
   return row;
 }
 
-/// Describes a choice of the model. `reason` is for a kept choice.
+/// The row of a choice of the model in the table of effects. If the choice is kept, its text is followed by `reason`.
 Effect model_row(const SceneValues& scene, const EffectPlan& plan, const char* name, const std::string& choice,
                  const SceneEntries& entries, const char* reason = ", a choice of the model: never swapped") {
   const auto is_flat = [](const SceneEntry& entry) { return entry.shape.sigma == 0.0; };

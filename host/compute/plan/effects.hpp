@@ -1,4 +1,4 @@
-// The effects of a scene. A run drops effects whose change of the polarisation is negligible by a closed-form bound.
+// The effects of a scene. A run drops an effect if a closed-form bound proves that it hardly changes the polarisation.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace dolp {
 
-/// Each part is a flag of KeptEffects.
+/// Each part has a flag in KeptEffects. These functions read the flag, and clear it.
 bool is_kept(const KeptEffects& kept, Part part);
 KeptEffects without(KeptEffects kept, Part part);
 
@@ -28,7 +28,8 @@ struct EntriesExtent {
   std::vector<FacetOptics> optics;  ///< optics of the facets of these entries
 };
 
-/// The extent of a grid, whose directions all have all wavelengths; or the extents of the points at each wavelength.
+/// One extent for a grid, because each of its directions has all variants of the scene. For points, one extent per
+/// variant.
 std::vector<EntriesExtent> extents_of(const SceneEntries& entries);
 
 /// Bounds of the change that each part of a scene causes at any of the entries.
@@ -66,14 +67,14 @@ class EffectBounds {
 
   SceneModel scene_;
   bool is_bistatic_;
-  SpectralSample total_;       ///< sums of the absolute values of the samples' factors; the emitted ones are signed
+  SpectralSample total_;       ///< sums of |factor| over the spectral samples; `emitted` sums with the sign
   double sky_apart_ = 0.0;     ///< the largest distance of a profile from its mean
   bool has_negative_ = false;  ///< some weights are negative, as in the interpolation of a steep factor
   double path_;
   double most_specular_ = 0.0;  ///< upper bound of the specular rho_I
   double most_diffuse_ = 0.0;   ///< upper bound of the diffuse rho
-  double most_beam_ = 0.0;      ///< upper bound of the exitance for E0 = 1 that is reflected into the view
-  double most_beam_qu_ = 0.0;   ///< upper bound of the length of its (Q, U)
+  double most_beam_ = 0.0;      ///< upper bound of pi times the radiance into the view, for E0 = 1
+  double most_beam_qu_ = 0.0;   ///< upper bound of the length of (Q, U) of this light
   double least_beam_ = 0.0;
 };
 
@@ -85,8 +86,8 @@ struct EffectPlan {
   double bound = 0.0;                   ///< bounds the change by all dropped parts together
   bool needs_direct = false;            ///< whether the run needs the moments of the direct emission
   bool needs_beams = false;             ///< whether the run needs f from the source's direction into the view
-  std::shared_ptr<const SkyBasis> sky;  ///< basis of the moments with a sky; null without a profile, see with_sky
-  bool gives_rho = true;                ///< rho_i, rho_q and rho_error_estimate are known; the albedo needs the moments
+  std::shared_ptr<const SkyBasis> sky;  ///< functions of the sky, which with_sky sets; null without a profile
+  bool gives_rho = true;  ///< rho_i, rho_q and rho_error_estimate are known; the albedo only with the moments
 };
 
 /// The effects that the scene's output needs at these entries.
@@ -99,7 +100,7 @@ struct EffectPlan {
 /// (distribution, masking, k) and the diffuse part are never dropped. `keep_all` keeps everything that the scene has.
 EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, bool keep_all);
 
-/// The plan of a run that computes `kept`.
+/// The plan of a run that computes the effects of `kept`.
 EffectPlan plan_to_keep(const SceneValues& scene, const KeptEffects& kept);
 
 /// The plan that drops nothing: plan_effects with `keep_all`.

@@ -16,12 +16,12 @@ using std::numbers::pi;
 
 constexpr double kCosineRounding = 2.0 * std::numeric_limits<double>::epsilon();
 
-constexpr double kGrazingCosine = 1e-9;  // below it a direction is at the horizon
+constexpr double kGrazingCosine = 1e-9;  // directions with a smaller cosine count as this one
 
-// Rounding error in units of the precision's roundoff, relative to the integral of absolute values. The masking tables
-// of `integral` with q near 1 and of smith with q near 3/2 are sums of hundreds of nearly equal terms. The critical
-// line of total reflection lies at a difference of nearly equal angles, the more so the smoother the surface and the
-// nearer the horizon.
+// Rounding error in unit roundoffs, relative to the integral of absolute values. The masking tables of `integral` with
+// q near 1, and of smith with q near 3/2, are sums of hundreds of nearly equal terms. The position of the critical line
+// of total reflection is a difference of angles, which loses more digits if the surface is smoother or the direction is
+// nearer to the horizon.
 double roundings(const KernelData& data, const kernel::ThetaNode& theta, const kernel::ShapeNode& shape,
                  const kernel::IndexNode& index) {
   if (index.critical_cos > 0.0) {
@@ -41,8 +41,9 @@ double mean_slope(Distribution distribution, const kernel::ShapeNode& shape) {
   return distribution == Distribution::kGaussian ? gaussian : 2.0 * gaussian / shape.two_q_minus_3;
 }
 
-// Upper bound of G over all facets. v-cavity does not need it: e G <= 2 c is used. smith: the facets that theta sees
-// sum to c, so G <= G1(theta) = c / integral of e over e > 0. That integral is at least (c + s mean |t_x|) / 2.
+// Upper bound of G over all facets; v-cavity, which has e G <= 2 c, does not need it. With smith masking the
+// projections e of the visible facets sum to c, so G <= G1(theta) = c / (integral of e over e > 0). This integral is at
+// least (c + s mean|t_x|) / 2, where t_x is the slope in one plane.
 double masking_bound(Distribution distribution, Masking masking, const kernel::ThetaNode& theta,
                      const kernel::ShapeNode& shape) {
   if (masking != Masking::kSmith) return 1.0;
@@ -53,8 +54,8 @@ double share_beyond(Distribution distribution, const kernel::ShapeNode& shape, d
   return steeper_share(distribution, {shape.m / std::numbers::sqrt2, shape.q_minus_1 + 1.0}, slope);
 }
 
-// Upper bound of the albedo integral (times cos theta) over the slopes beyond the cut T, which the kernel leaves out. e
-// <= c + s t, so without masking it is at most c * tail(T) + 2 s * integral of P t^2 over t > T.
+// Upper bound of the albedo times cos(theta) from the slopes beyond the cut T, which the kernel leaves out. Because e
+// <= c + s t, it is without masking at most c * (share of facets beyond T) + 2 s * (integral of P t^2 over t > T).
 double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::ShapeNode& shape) {
   const double reached = std::min(shape.cut, theta.end[DOLP_MAX_PIECES]);
   const double tail = share_beyond(data.distribution, shape, reached);
@@ -71,7 +72,8 @@ double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const k
   return masking_bound(data.distribution, data.masking, theta, shape) * (theta.c * tail + theta.s * slopes);
 }
 
-// Bound of the error of G relative to the albedo. With smith masking it grows like the mean slope near the normal.
+// Bound of the error that the masking table causes, relative to the albedo. With smith masking and Cauchy slopes it
+// grows like the mean slope, which diverges at q = 3/2.
 double masking_error(const KernelData& data, const MomentsEntry& entry, double unit_roundoff) {
   if (!data.needs_masking_table()) return 0.0;
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
@@ -82,17 +84,18 @@ double masking_error(const KernelData& data, const MomentsEntry& entry, double u
   return table * (may_diverge ? 1.0 + kDivergingSlope / shape.two_q_minus_3 : 1.0);
 }
 
-// R_s, which falls with cos(beta) and bounds M00.
+// R_s, an upper bound of M00. It falls as cos(beta) grows; with films the result is 1.
 double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
-  if (index.curve_cells > 0.0) return 1.0;  // with films it may rise
+  if (index.curve_cells > 0.0) return 1.0;  // with films R_s may grow with cos(beta)
   const std::complex<double> w =
       std::sqrt(std::complex<double>(index.n2m1_re + cos_beta * cos_beta, std::max(index.n2m1_im, 0.0)));
   return std::min(1.0, std::norm((cos_beta - w) / (cos_beta + w)));
 }
 
-// Upper bound of the light left after `bounces` bounces with cos(beta) >= a/2, where a is the length of the direction
-// across the groove. a is at least `level` except at azimuths with sin(theta) |cos(phi)| < sqrt(level^2 - c^2), which
-// have at most twice their share of the light. At most `most` is left in any case.
+// Upper bound of the share of light that is left after `bounces` bounces with cos(beta) >= a/2; a is the length of the
+// ray's direction projected across the groove. The length a is at least `level`, except at azimuths with sin(theta)
+// |cos(phi)| < sqrt(level^2 - c^2). The share of light at these azimuths is at most twice their share of all azimuths.
+// The result is at most `most`.
 double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double bounces, double most) {
   double least = most;
   for (double level = 1.0; level > 1e-6; level *= 0.5) {
@@ -100,15 +103,15 @@ double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index
     const double missed = along <= 0.0 ? 0.0 : along < theta.s ? 4.0 / pi * std::asin(along / theta.s) : 1.0;
     const double reflected = std::pow(reflectance_s(index, 0.5 * std::max(level, theta.c)), bounces);
     least = std::min(least, most * missed + reflected);
-    if (reflected >= least) break;  // lower levels reflect even more
+    if (reflected >= least) break;  // at lower levels even more light is left
   }
   return least;
 }
 
 // Upper bound of the share of their light that the facets beyond the cut reflect. A ray that leaves after one bounce
-// has cos(theta_r) > 0, so cos(beta) > c sqrt(1 + t^2) / 2; R_s falls with cos(beta) and is at least M00. In grooves
-// the bounces of a ray lie at psi + gamma, psi + 3 gamma ... up to pi - psi. At least slope min(pi/3, pi/2 - theta) - 1
-// of them have cos(beta) >= a/2.
+// has cos(theta_r) > 0, so cos(beta) > c sqrt(1 + t^2) / 2, and M00 is at most R_s at this cosine. In grooves of angle
+// gamma, with cot(gamma) = slope, the bounces of a ray are at the angles psi + gamma, psi + 3 gamma ... of the unfolded
+// groove. At least slope * min(pi/3, pi/2 - theta) - 1 of them have cos(beta) >= a/2.
 double steep_reflectance(const KernelData& data, const kernel::IndexNode& index, const kernel::ThetaNode& theta,
                          const kernel::ShapeNode& shape) {
   if (data.scattering == Scattering::kSingle) {
@@ -119,10 +122,11 @@ double steep_reflectance(const KernelData& data, const kernel::IndexNode& index,
   return left_after(theta, index, std::max(std::min(pi / 3.0, elevation) * slope - 1.0, 0.0), 1.0);
 }
 
-// `reflected` is the computed reflection of these grooves. Counting bounces as one changes the logarithm of the
-// remaining light by less than a hundredth, so a small computed value is small in truth. Under total reflection,
-// bounces without loss may be counted as one with bounces that lose light. Light below `least` is negligible. After
-// DOLP_LAST_BOUNCES no light counts as left.
+// Bound of the error in grooves with more than DOLP_MOST_BOUNCES bounces, several of which the kernel treats as one.
+// `reflected` is the light of these grooves as computed; below `least` it is negligible. Treating several bounces as
+// one changes the logarithm of the remaining light by less than a hundredth, so a small computed value is small in
+// truth. This does not hold under total reflection, where bounces without loss may be combined with bounces that lose
+// light. The kernel takes the light after DOLP_LAST_BOUNCES bounces as 0.
 double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::IndexNode& index,
                           const kernel::ShapeNode& shape, double reflected, double least) {
   const auto beyond = [&](double bounces, double most) {
@@ -137,37 +141,39 @@ double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta
   return last + std::min(many + very_many, reflected);
 }
 
-// Factor from the distance of two rules to the error of the finer one: it allows for slower convergence than expected.
-// G of maskings with tables has cusps and lines at which it is not smooth; there the rules converge algebraically.
+// Factor from the difference between the results of two rules to the error of the finer rule. It allows for slower
+// convergence than expected. The masking G, where it comes from a table, has cusps and lines at which it is not smooth;
+// there the rules converge only algebraically.
 double pair_factor(const KernelData& data, const kernel::IndexNode& index) {
   const bool is_multiple = data.scattering == Scattering::kMultiple;
   const double smooth = is_multiple ? kGroovePairFactor : data.needs_masking_table() ? kTablePairFactor : kPairFactor;
   return index.critical_cos > 0.0 ? kCriticalFactor * smooth : smooth;
 }
 
-// Errors of a function of the sky: of its table, of corners that do not split pieces, and of rounding. The rounding of
-// 1 - cos(theta_r) matters only near the zenith.
+// Error bound of a function of the sky: the errors of its table, of corners that do not split pieces, and of rounding.
+// The rounding of 1 - cos(theta_r) matters only near the zenith.
 double sky_error(const KernelData& data, std::size_t function, double unit_roundoff) {
   return data.sky.error[function] + kUnsplitBends * data.sky.bends[function] + kSkyRoundings * unit_roundoff +
          data.sky.steepness[function] * std::sqrt(kSkyCosineRoundings * unit_roundoff);
 }
 
-// Rounding error of a Chebyshev polynomial: of its abscissa, times the largest slope, and of the recurrence.
+// Rounding error of a Chebyshev polynomial: the rounding of its abscissa times its largest slope, degree^2, and the
+// rounding of the recurrence.
 double response_rounding(std::size_t degree, double unit_roundoff) {
   return kResponseRoundings * unit_roundoff * static_cast<double>(1 + degree * degree);
 }
 
 /// Contributions to the error of an entry.
 struct Shares {
-  double cut = 0.0;            ///< albedo beyond the cut
+  double cut = 0.0;            ///< bound of the albedo beyond the cut
   double reflected_cut = 0.0;  ///< light that the facets beyond the cut reflect
   double grooves = 0.0;        ///< error of bounces in grooves
   double masking = 0.0;        ///< relative error of G
   double rounding = 0.0;       ///< relative rounding error
-  double least = 0.0;          ///< smallest relative error
-  double pair = 1.0;           ///< error of the finer rule over the distance of two rules
-  // Two rules of few nodes may agree by chance. So no bound of a sum is smaller than a share of its rule's tolerance
-  // plus its rounding.
+  double least = 0.0;          ///< least relative error bound of a sum
+  double pair = 1.0;           ///< factor of pair_factor()
+  // Two rules with few nodes may agree by chance. So the bound of a sum is at least a share of the tolerance of its
+  // rules plus its rounding.
   double of_rule() const { return least + rounding; }
   double of_masked() const { return of_rule() + masking; }
 };
@@ -195,7 +201,7 @@ Shares shares_of(const kernel::MomentsNode& node, const KernelData& data, const 
 
 void set_errors(Moments& moments, const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
                 const Shares& shares) {
-  const double r_i_scale = std::abs(node.r_i);  // a rule that does not converge can make it negative
+  const double r_i_scale = std::abs(node.r_i);  // r_i can be negative if a rule does not converge
   const double deficit_scale = node.deficit + 2.0 * node.behind;
   moments.r_i_error =
       shares.pair * node.reflected_difference + shares.of_masked() * r_i_scale + shares.reflected_cut + shares.grooves;
@@ -203,7 +209,7 @@ void set_errors(Moments& moments, const kernel::MomentsNode& node, const KernelD
   const double largest_difference =
       std::max({node.reflected_difference, node.albedo_difference, node.deficit_difference});
   moments.albedo_error = shares.pair * largest_difference + shares.of_masked() * std::abs(node.albedo) + shares.cut;
-  // Beyond the critical angle the absorbed part ends while r_i continues.
+  // At the critical angle the absorbed part drops to 0, but r_i does not. So errors are relative to the albedo there.
   const bool is_critical = data.indices[entry.index].critical_cos > 0.0;
   const double deficit_terms = std::max(std::abs(deficit_scale), is_critical ? std::abs(node.albedo) : 0.0);
   const bool is_multiple = data.scattering == Scattering::kMultiple;
@@ -220,7 +226,7 @@ void add_curve_errors(Moments& moments, const kernel::MomentsNode& node, const k
   for (double* const bound : {&moments.direct_i_error, &moments.direct_q_error}) *bound += of_facet * theta.c;
 }
 
-/// Column `k` from its sums: i and q of the finer rule, and their differences from the coarser rule.
+/// Column `k` with its error bounds. `sums` has i and q of the finer rule, and their differences from the coarser rule.
 ColumnMoments column_moments(std::span<const double> sums, std::size_t k, const kernel::MomentsNode& node,
                              const KernelData& data, const kernel::ThetaNode& theta, const Shares& shares,
                              double unit_roundoff) {
@@ -281,7 +287,7 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
     const auto sums = columns.subspan(DOLP_COLUMN_PARTS * k, DOLP_COLUMN_PARTS);
     moments.columns.push_back(column_moments(sums, k, node, data, theta, shares, unit_roundoff));
   }
-  // A groove never absorbs less than nothing.
+  // If an inaccurate r_i of grooves exceeds cos(theta), the deficit is not computed from it: it would be negative.
   if (!is_multiple || moments.r_i < theta.c || moments.deficit_error <= moments.r_i_error)
     take_complement(moments, theta.c);
   return moments;

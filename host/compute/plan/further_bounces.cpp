@@ -18,11 +18,11 @@ using Complex = std::complex<double>;
 
 /// Two beams in the frame of a groove.
 struct Across {
-  double a = 0.0;      ///< length of the ray's projection across the groove
-  double psi_i = 0.0;  ///< zeniths across the groove, toward u
+  double a = 0.0;      ///< length of omega_i projected into the plane across the groove
+  double psi_i = 0.0;  ///< zenith of the beam in this plane, positive toward u
   double psi_r = 0.0;
   double along = 0.0;                              ///< component of omega_i along the groove
-  Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< azimuths of the beams, across and along the groove
+  Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< unit vectors of the beams' azimuths: across, along
   Eigen::Vector2d to = Eigen::Vector2d::Zero();
   double cos_i = 1.0;
   double cos_r = 1.0;
@@ -31,7 +31,7 @@ struct Across {
 /// A Jones matrix: (E_s, E_p) after the bounces for each of (E_s, E_p) before.
 using Jones = Eigen::Matrix2cd;
 
-/// Turns fields into a frame rotated by the angle of (x, y), from s toward p.
+/// The matrix that converts fields to a frame rotated from s toward p by the angle of the vector (x, y).
 Eigen::Matrix2d turned(double x, double y) {
   const double length = std::hypot(x, y);
   const double cosine = length > 0.0 ? x / length : 1.0;
@@ -39,9 +39,9 @@ Eigen::Matrix2d turned(double x, double y) {
   return Eigen::Matrix2d{{cosine, sine}, {-sine, cosine}};
 }
 
-/// A bounce at cos(beta) = c on a facet whose frame is rotated by the angle of (x, y). In the unfolded groove r_p
-/// equals r_s at normal incidence. Written without complex types, because thousands of bounces may count and complex
-/// roots and quotients are slow.
+/// The Jones matrix of a bounce at cos(beta) = c, if the facet's frame is rotated by the angle of the vector (x, y). In
+/// the unfolded groove r_p equals r_s at normal incidence. The code avoids complex roots and quotients, which are slow,
+/// because there may be thousands of bounces.
 class Facet {
  public:
   explicit Facet(const OpticalConstants& index)
@@ -69,12 +69,12 @@ class Facet {
     return re >= 0.0 ? Complex(larger, smaller) : Complex(smaller, larger);
   }
 
-  double re_;  ///< N^2 - 1
+  double re_;  ///< real part of N^2 - 1; im_ is the imaginary part
   double im_;
 };
 
 Eigen::Matrix4d mueller(const Jones& j) {
-  const Complex ss = j(0, 0), sp = j(0, 1), ps = j(1, 0), pp = j(1, 1);  // names: field after, field before
+  const Complex ss = j(0, 0), sp = j(0, 1), ps = j(1, 0), pp = j(1, 1);  // first letter: field after; second: before
   const double a = std::norm(ss), b = std::norm(sp), c = std::norm(ps), d = std::norm(pp);
   const Complex first = std::conj(ss) * sp, second = std::conj(ps) * pp;
   const Complex of_s = std::conj(ss) * ps, of_p = std::conj(sp) * pp;
@@ -86,8 +86,9 @@ Eigen::Matrix4d mueller(const Jones& j) {
       {(of_s + of_p).imag(), (of_s - of_p).imag(), (straight + crossed).imag(), (straight - crossed).real()}};
 }
 
-/// The Mueller matrix of `bounces` bounces in a groove of angle gamma, from frame to frame in the unfolded groove. Its
-/// mirror images reverse s after an odd number of bounces.
+/// The Mueller matrix of `bounces` bounces in a groove of angle gamma. The fields go from facet to facet of the
+/// unfolded groove. After an odd number of bounces the unfolded groove is a mirror image, which reverses one axis of
+/// the frame.
 Eigen::Matrix4d chain(const Across& at, const Facet& facet, double gamma, int bounces) {
   Jones fields = turned(-at.from.x(), at.from.y() * at.cos_i).transpose().cast<Complex>();
   const Complex turn = std::polar(1.0, 2.0 * gamma);
@@ -102,7 +103,7 @@ Eigen::Matrix4d chain(const Across& at, const Facet& facet, double gamma, int bo
   return mueller(fields);
 }
 
-/// a ds_k.
+/// The width a ds_k of the beam of k = `bounces` bounces.
 double beam_width(const Across& at, double gamma, int bounces) {
   if (at.psi_i <= -gamma) return 0.0;
   const auto edge = [&](int k) { return at.a * std::sin(at.psi_i + (2 * k + 1) * gamma); };
@@ -115,24 +116,25 @@ double beam_width(const Across& at, double gamma, int bounces) {
 /// The beams of two and more bounces that meet one side of the groove first.
 struct FurtherBeams {
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
-  double unfollowed = 0.0;  ///< bound of the m00 of bounces that are not followed
+  double unfollowed = 0.0;  ///< bound of m00 of the bounces that are left out
   int bounces = 0;          ///< bounces computed so far, summed over all beams
 };
 
-/// Light after the last bounce over the light of the last bounce. Light of k bounces falls like k^(2 - 2q) or faster.
+/// Bound of the light of all beams with more than `bounces` bounces, over the light of the beam with `bounces` bounces.
+/// The light of k bounces falls like k^(2 - 2q) or faster.
 double beyond_last(const ScatteringRequest& request, const SlopeShape& shape, int bounces) {
   const bool is_cauchy = request.distribution == Distribution::kCauchy;
   return is_cauchy ? bounces / std::clamp(2.0 * shape.q - 3.0, kSlowestFall, 1.0) : bounces;
 }
 
-/// `accuracy` is relative to m00; `first` is the part of m00 by the first bounce.
+/// Sums the beams until the rest is negligible. `accuracy` is relative to m00; `first` is m00 of the first bounce.
 FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, const ScatteringEntry& entry, double h,
                            double first, double accuracy) {
   const SlopeShape& shape = request.shapes[entry.shape];
   const Facet facet(request.optics[entry.index].index);
   const double least_gamma = 0.49 * std::abs(std::abs(at.psi_i) - std::abs(at.psi_r));
   FurtherBeams beams;
-  // Even and odd bounces follow different laws.
+  // Bounds of the light of all further even, and all further odd, numbers of bounces. These follow different laws.
   std::array<double, 2> beyond = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (int k = 2; k <= kMostBouncesOfBeam; ++k) {
     const double gamma = (pi - at.psi_i + (k % 2 == 1 ? -at.psi_r : at.psi_r)) / (2.0 * k);

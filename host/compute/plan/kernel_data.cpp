@@ -26,10 +26,10 @@ using std::numbers::pi;
 
 constexpr double kSmallestPole = 1e-6;  // lower bound for |N^2 + 1| and |N^2 - 1|
 
-/// Loop bounds of a piece, except the orders of its rules.
+/// Upper bounds of the loop iterations for a piece, except the orders of its rules.
 struct Loops {
-  double arcs = 1.0;     ///< arcs of a slope
-  double turns = 0.0;    ///< turns of an azimuth, with all bounces
+  double arcs = 1.0;     ///< arcs of the azimuth at one slope
+  double turns = 0.0;    ///< with all bounces: iterations over the bounces at one azimuth
   double corners = 0.0;  ///< corners of a sky that split the arcs
 };
 
@@ -50,15 +50,15 @@ double turns_of(double bounces) {
   return turns;
 }
 
-// Loop bounds of a piece from slope `start` to `end`, for rays with pi / (2 gamma) or more bounces. Steep grooves have
-// no lines below gamma.
+// Loop bounds in grooves, for a piece from slope `start` to `end`. A vertical ray bounces pi / (2 gamma) times, where
+// cot(gamma) is the slope. Steep grooves are not split at lines below psi = gamma.
 Loops groove_loops(const KernelData& data, double start, double end) {
   const double most = pi / (2.0 * std::atan(1.0 / end));
   const double splits = data.rule.split_bounces;
   Loops loops;
   loops.arcs = start >= slope_with_bounces(splits + 2.0) ? 2.0 : 5.0;
   if (start < DOLP_STEEPEST_SPLIT) loops.arcs += std::min(splits, std::max(std::floor(most) - 1.0, 0.0));
-  // Rays that lean away from the facet have twice as many.
+  // Rays that lean away from the facet bounce up to twice as often.
   loops.turns = turns_of(std::min(2.0 * most, double{DOLP_LAST_BOUNCES}));
   return loops;
 }
@@ -76,17 +76,18 @@ Loops loops_of(const KernelData& data, double critical, double start, double end
   return loops;
 }
 
-// Loops of one invocation: below the 65,535 iterations at which lavapipe stops without notice.
+// Most loop iterations of one invocation. The driver lavapipe stops an invocation after 65,535 iterations, without an
+// error.
 constexpr double kMostIterations = 64'000.0;
 constexpr double kMostArcs = 2.0 * DOLP_MAX_ARCS;
-constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // turns that search for the lines of a groove
+constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // iterations that search for the lines of a groove
 
-// Upper bound of the loop iterations of one invocation. A piece has two rules, slopes, arcs and azimuths; a slope
-// sample has arcs, azimuths and bounces. Invocations in lockstep wait for each other, so the bound holds for all
-// entries.
+// Upper bound of the loop iterations of one invocation. An invocation for a piece loops over two rules, slopes, arcs
+// and azimuths. An invocation for a slope sample loops over arcs, azimuths and bounces. Invocations in lockstep wait
+// for each other, so the bound covers the entry with the most work.
 double iterations(const KernelData& data, const Loops& loops, double most_nodes) {
   const double arcs = loops.arcs + loops.corners;
-  const double idle = data.sky.count == 0 ? 0.0 : 2.0 * loops.arcs * (1.0 + loops.corners);  // corners beyond an arc
+  const double idle = data.sky.count == 0 ? 0.0 : 2.0 * loops.arcs * (1.0 + loops.corners);  // corners outside an arc
   if (!data.needs_masking_table()) return kTurnsOfSlope + idle + arcs * (2.0 + most_nodes * (1.0 + loops.turns));
   const auto of_rule = [&](double share) {
     return 1.0 + share * data.rule_order * (1.0 + idle + arcs * (2.0 + share * most_nodes));
@@ -94,7 +95,8 @@ double iterations(const KernelData& data, const Loops& loops, double most_nodes)
   return of_rule(1.0) + of_rule(kCoarseShare + 1.0 / data.rule_order);
 }
 
-// Upper limit of the nodes of an arc; the error estimate includes the effect of the limit.
+// Largest number of nodes of an arc with which an invocation stays below kMostIterations. If these nodes are too few
+// for the tolerance, the error bound shows it.
 std::uint8_t most_nodes(const KernelData& data, const Loops& loops) {
   int most = data.rule_order;
   while (iterations(data, loops, most) > kMostIterations) --most;
@@ -126,7 +128,7 @@ void add_direction(KernelData& data, const MomentsRequest& request, double theta
   data.pieces.push_back(pieces);
 }
 
-// Slope beyond which the facets have less than `share` of their weight, both unweighted and weighted by slope.
+// Slope beyond which there is less than `share` of the facets, and also less than `share` of their summed slopes.
 double slope_cut(const MomentsRequest& request, const SlopeShape& shape, double share) {
   const double m = slope_width(shape);
   if (request.distribution == Distribution::kGaussian) return m * std::sqrt(1.0 - std::log(share));
@@ -173,7 +175,7 @@ kernel::IndexNode index_node(const FacetOptics& optics) {
           0.0};
 }
 
-// Adds tables of the reflectances of all indices, and the nodes that the fringes of films take.
+// Adds tables of the reflectances of all indices, and more nodes to the rules for the fringes of films.
 void add_curves(KernelData& data, const MomentsRequest& request) {
   data.has_curves = std::ranges::any_of(request.optics, [](const FacetOptics& optics) { return !optics.is_bare(); });
   if (!data.has_curves) return;
@@ -192,8 +194,8 @@ void add_curves(KernelData& data, const MomentsRequest& request) {
   data.rule.phi_nodes += kNodesOfFringe * fringes;
 }
 
-// For each index with total reflection, adds every direction of the grid with the index's line. For shapes that need a
-// line of the masking, adds the directions with that line, too.
+// Adds all directions of the grid; then, for each index with total reflection, all directions with its critical line.
+// If a shape needs a line of the masking, adds each set of directions also with this line.
 void add_grid_directions(KernelData& data, const MomentsRequest& request) {
   const bool any_line = std::ranges::find(data.needs_line, 1) != data.needs_line.end();
   const std::uint32_t lines = any_line ? 2 : 1;
@@ -220,7 +222,8 @@ void add_shape(KernelData& data, const MomentsRequest& request, const SlopeShape
 
 static_assert(kMostResponses == DOLP_COLUMNS);
 
-/// Plans the rules as if polynomials and curves had a pole at the distance `bend` on the imaginary axis.
+/// Adds responses to the data. The rules are planned as if the integrand had a pole at cos(beta) = i * bend, unless an
+/// index has a nearer pole.
 void take_responses(KernelData& data, const Response& response) {
   data.response = response;
   data.rule.response_scale = 1.0 / response.c0;

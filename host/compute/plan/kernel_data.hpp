@@ -35,8 +35,8 @@ To convert_reals(const From& from) {
   return std::bit_cast<To>(converted);
 }
 
-inline constexpr unsigned kRootAbove = 1;  ///< a square root just above a breakpoint
-inline constexpr unsigned kRootBelow = 2;  ///< a square root just below a breakpoint
+inline constexpr unsigned kRootAbove = 1;  ///< the integrand has a square root just above the breakpoint
+inline constexpr unsigned kRootBelow = 2;  ///< the integrand has a square root just below the breakpoint
 
 /// The pieces of the slope axis of one direction; ThetaNode has their ends.
 struct Pieces {
@@ -44,9 +44,9 @@ struct Pieces {
   std::array<std::uint8_t, DOLP_MAX_PIECES + 3> roots{};  ///< bits kRootAbove, kRootBelow of each end
   /// Largest number of nodes of an arc, per piece. It bounds the loop iterations.
   std::array<std::uint8_t, DOLP_MAX_PIECES + 1> most_nodes{};
-  /// Lockstep class of each piece: pieces with equal numbers may run in lockstep within these bounds.
+  /// A number per piece. Pieces with equal numbers have equal loop bounds, so they may run in lockstep.
   std::array<std::uint16_t, DOLP_MAX_PIECES> lockstep{};
-  bool has_split_line = false;  ///< b = pi/2 of `integral`, or smith's cusp
+  bool has_split_line = false;  ///< split at the line b = pi/2 of `integral`, or at smith's cusp
 };
 
 /// One entry for the kernel: positions in three lists of KernelData.
@@ -56,16 +56,16 @@ struct MomentsEntry {
   std::uint32_t index = 0;
 };
 
-/// Bounds of the errors of all quantities in the table of an index.
+/// Error bounds that hold for each quantity in the reflectance table of an index.
 struct CurveError {
   double absolute = 0.0;
   double per_roundoff = 0.0;  ///< error divided by the unit roundoff of the kernel's precision
 };
 
 /// Inputs of one run of the kernel. For a grid, `indices` and `shapes` (sigma x q, q fastest) follow its axes. `thetas`
-/// has its directions, and then all of them again for each variant: for total reflection, whose split lines depend on
-/// the index, and for shapes that need one more line. Each point has a separate direction and index; neighbouring
-/// points with the same shape share it.
+/// has all directions of the grid once per variant (DirectionVariant). Variants differ in split lines: total reflection
+/// has lines that depend on the index, and some shapes need one more line. For points, each point has a direction and
+/// an index; neighbouring points with equal shapes share one shape.
 struct KernelData {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
@@ -83,9 +83,9 @@ struct KernelData {
   std::vector<kernel::ThetaNode> thetas;
   std::vector<Pieces> pieces;  ///< one for each of `thetas`
   std::vector<kernel::ShapeNode> shapes;
-  std::vector<char> needs_line;  ///< one flag for each shape
+  std::vector<char> needs_line;  ///< for each shape: 1 if it needs the line of its masking
   std::vector<kernel::IndexNode> indices;
-  std::vector<std::uint32_t> index_variant;  ///< first variant of the directions, per index of a grid
+  std::vector<std::uint32_t> index_variant;  ///< for each index of a grid: position of its first variant
   std::vector<std::uint32_t> shape_of;       ///< shape of each point
   /// nodes of the rules, then cells of the sky and of reflectance tables
   std::vector<std::array<double, 2>> rule_nodes;
@@ -95,13 +95,13 @@ struct KernelData {
   std::size_t column_count() const { return response ? response->count : sky.count; }
   bool needs_masking_table() const { return masking == Masking::kIntegral || masking == Masking::kSmith; }
   std::size_t size() const { return is_grid ? directions * indices.size() * shapes.size() : directions; }
-  /// The node of a direction for an index and a shape.
+  /// The position in `thetas` of a direction, for an index and a shape.
   std::uint32_t theta_of(std::uint32_t direction, std::uint32_t index, std::uint32_t shape) const {
     if (!is_grid) return direction;
     const std::uint32_t variant = index_variant[index] + (needs_line[shape] != 0 ? 1U : 0U);
     return variant * static_cast<std::uint32_t>(directions) + direction;
   }
-  /// The entry of a direction, an index and a shape.
+  /// The position of the entry with this direction, index and shape.
   std::size_t entry_of(std::uint32_t direction, std::uint32_t index, std::uint32_t shape) const {
     return is_grid ? (index * directions + direction) * shapes.size() + shape : direction;
   }
@@ -110,16 +110,17 @@ struct KernelData {
 
 struct RuleModel;
 
-/// Splits, orders, nodes and constants for a request at its tolerance, by the rules of its masking or by `model`. Pure
-/// function.
+/// Chooses splits, orders, nodes and constants for a request at its tolerance. Without `model`, uses the fitted numbers
+/// of its masking. Pure function.
 KernelData kernel_data(const MomentsRequest& request);
 KernelData kernel_data(const MomentsRequest& request, const RuleModel& model);
 
-/// Numbers that follow a MomentsNode, and an AzimuthNode, for the columns of the data.
+/// Count of numbers for the columns, which follow each MomentsNode and each AzimuthNode.
 inline std::size_t column_sums(const KernelData& data) { return DOLP_COLUMN_PARTS * data.column_count(); }
 inline std::size_t column_azimuths(const KernelData& data) { return 2 * data.column_count(); }
 /// Adds the kernel's columns of a piece to `sums`, DOLP_COLUMN_PARTS numbers per column: i and q of the finer rule, and
-/// their differences from the coarser rule. A sky has only the magnitude of the larger difference.
+/// their differences from the coarser rule. For functions of a sky there is only the larger magnitude of the two
+/// differences.
 template <class Real>
 void add_columns(const KernelData& data, std::span<const Real> piece, std::span<double> sums) {
   for (std::size_t first = 0; first < piece.size(); first += DOLP_COLUMN_PARTS) {
@@ -133,7 +134,7 @@ void add_columns(const KernelData& data, std::span<const Real> piece, std::span<
     sums[first + 3] += data.response ? q_apart : 0.0;
   }
 }
-/// DOLP_COLUMNS_*.
+/// The kind of the columns, one of DOLP_COLUMNS_*.
 inline std::uint32_t column_kind(const KernelData& data) {
   return data.response ? DOLP_COLUMNS_RESPONSE + static_cast<std::uint32_t>(data.response->of) : DOLP_COLUMNS_SKY;
 }
@@ -158,8 +159,8 @@ void take_complement(Moments& moments, double cosine);
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
                             double unit_roundoff, std::span<const double> columns = {});
 
-/// True if the masking table of a shape resolves the structure of G at a direction. A table coarser than the slope
-/// distribution does not resolve directions whose cot(theta) lies within its first scale.
+/// True if the masking table of a shape resolves the structure of G at a direction. A table that is coarser than the
+/// slope distribution does not resolve G if cot(theta) is below table_scale.
 bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin_theta);
 
 /// Upper bound of the loop iterations of one invocation, over all nested loops and all entries of `data`. Drivers may

@@ -16,10 +16,10 @@ namespace dolp {
 struct MomentsStep {
   std::vector<std::size_t> directions;  ///< positions in the request's directions; empty for points
   MomentsRequest request;               ///< the request's entries at these directions
-  /// Nodes for the interpolation over slope distributions; empty if each one is computed.
+  /// Nodes for the interpolation over slope distributions; empty if each distribution is computed.
   std::optional<ShapePlan> shapes;
-  /// Responses whose sums are the moments of the indices, at the nodes if there are any; empty if each index is
-  /// computed.
+  /// Responses from which the moments of the indices are summed (at the nodes of `shapes`, if there are any); empty if
+  /// each index is computed.
   std::optional<ResponsePlan> responses;
 
   const MomentsRequest& nodes() const { return shapes ? shapes->nodes : request; }
@@ -48,7 +48,7 @@ class MomentsPlan {
   std::vector<char> saving_directions() const;
 
  private:
-  /// Adds a step. Splits it if its responses would take too much memory.
+  /// Adds a step, or several steps if its responses would take too much memory.
   void add(MomentsStep step);
 
   std::size_t size_ = 0;

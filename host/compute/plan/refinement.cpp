@@ -10,13 +10,13 @@
 namespace dolp {
 namespace {
 
-constexpr double kLeastDoubleTolerance = 1e-15;  // the counterpart of kLeastFloatTolerance
+constexpr double kLeastDoubleTolerance = 1e-15;  // the smallest tolerance of rules in double
 
 bool may_use_double(const Accuracy& accuracy, bool has_double) {
   return has_double && accuracy.precision != Precision::kFloat;
 }
 
-// Steps of half a decade, so that many entries share a level.
+// Rounds up to half decades, so that many entries share a level.
 double half_decades(double decades) { return 0.5 * std::ceil(2.0 * decades); }
 
 }  // namespace
@@ -46,7 +46,7 @@ std::optional<RefinementLevel> next_level(const RefinementLevel& last, const Poi
   const double rho_error = is_outside ? 0.0 : result[Quantity::kRhoErrorEstimate];
   const double excess =
       std::isnan(rho_error) ? rho_error : std::max(result[Quantity::kErrorEstimate], rho_error) / accuracy.tolerance;
-  // The step grows with the tightness of the last level; otherwise entries that do not converge iterate without bound.
+  // The least step grows with the digits of the last level, so that entries that do not converge take few levels.
   const double so_far = std::log10(accuracy.tolerance / last.tolerance);
   const double least = std::max(kLeastDecades, half_decades(0.5 * so_far));
   const double missed_by = std::isfinite(excess) ? half_decades(std::log10(kRefinementSafety * excess)) : kMostDecades;

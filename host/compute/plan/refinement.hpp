@@ -16,7 +16,7 @@ struct RefinementLevel {
   Precision precision = Precision::kFloat;          ///< kFloat or kDouble
   double tolerance = 1e-4;                          ///< MomentsRequest::tolerance
   bool may_interpolate = false;                     ///< interpolation over slope distributions is allowed
-  bool is_check = false;                            ///< the level checks another one by a different kind of rule
+  bool is_check = false;                            ///< a level of check_level, which splits the slopes differently
   std::shared_ptr<const ResponseBasis> basis = {};  ///< MomentsRequest::basis
   /// Orders by cost: float before double, wide tolerances before tight tolerances.
   friend bool operator<(const RefinementLevel& a, const RefinementLevel& b) {
@@ -29,11 +29,12 @@ struct RefinementLevel {
 /// sets the precision.
 RefinementLevel first_level(const Accuracy& accuracy, bool has_double);
 
-/// The level that checks entries computed at `first`: a different kind of rule, at a hundredth of the tolerance.
+/// The level that checks entries computed at `first`: with other splits, at a hundredth of the tolerance.
 RefinementLevel check_level(const RefinementLevel& first);
 
-/// The next level of an entry: tighter by as many half decades as the result misses the tolerance, and in double if
-/// float cannot be that tight. Empty if the result meets the tolerance or no tighter level exists. Pure function.
+/// The next level of an entry: tighter by the factor by which the result misses the tolerance, in steps of half a
+/// decade, and in double if float cannot be so accurate. Empty if the result meets the tolerance or no tighter level
+/// exists. Pure function.
 std::optional<RefinementLevel> next_level(const RefinementLevel& last, const PointResult& result,
                                           const Accuracy& accuracy, bool has_double);
 

@@ -9,19 +9,19 @@
 
 namespace dolp {
 
-/// Cubics over sqrt(cos(beta)) in cells of one width. Each cell takes DOLP_CURVE_NODES rule nodes
-/// (physics/fresnel.glsl).
+/// A reflectance curve as cubics over sqrt(cos(beta)), in cells of equal width. Each cell takes DOLP_CURVE_NODES rule
+/// nodes (physics/fresnel.glsl).
 struct ReflectanceCurve {
   std::vector<std::array<double, 2>> nodes;
   std::size_t cells = 0;
   double error = 0.0;      ///< bound of the distance of R_s, 1 - R_s and (R_s - R_p) / 2 from the cubics
-  double steepness = 0.0;  ///< largest derivative of these with respect to ln sqrt(cos(beta)); it multiplies rounding
+  double steepness = 0.0;  ///< largest derivative of these with respect to ln sqrt(cos(beta))
   /// The pole in cos(beta) that gives R_s or R_p its largest steepness.
   std::complex<double> pole;
 };
 
-/// Takes as many cells as needed for a share of the tolerance, up to a limit. The tolerance is relative to the smaller
-/// of reflectance and absorptance at normal incidence. Domain: optics that are not bare.
+/// Computes a curve with as many cells as a share of the tolerance needs, up to a limit. The tolerance is relative to
+/// the smaller of reflectance and absorptance at normal incidence. Domain: optics that are not bare.
 ReflectanceCurve reflectance_curve(const FacetOptics& optics, double tolerance);
 
 }  // namespace dolp

@@ -34,7 +34,7 @@ std::vector<char> wanted_of(const MomentsRequest& request, const std::vector<std
 
 /// The responses of one pass at one direction: responses x shapes.
 struct Responses {
-  /// Unwanted entries become zero.
+  /// Unwanted entries have no columns; their responses are 0.
   Responses(std::span<const Moments> moments, std::size_t responses) : all(kParts) {
     const auto shapes = static_cast<Eigen::Index>(moments.size());
     for (RowMajor& part : all) part = RowMajor::Zero(static_cast<Eigen::Index>(responses), shapes);
@@ -56,8 +56,8 @@ struct Responses {
   std::vector<double> relative_error;  ///< one value for each shape
 };
 
-/// The product, always summed in one order. Eigen's order depends on the sizes, so the last bits of an entry would
-/// depend on the part of the grid.
+/// The matrix product, always summed in the same order. Eigen's order depends on the sizes, so with Eigen the last bits
+/// of an entry would depend on how the grid is divided.
 RowMajor product(const RowMajor& weights, const RowMajor& part) {
   RowMajor sums = RowMajor::Zero(weights.rows(), part.cols());
   for (Eigen::Index i = 0; i < weights.rows(); ++i) {
@@ -69,8 +69,8 @@ RowMajor product(const RowMajor& weights, const RowMajor& part) {
   return sums;
 }
 
-/// Sums over responses with one set of weights per reached index: indices x shapes. Their error bounds do not cover the
-/// part of a curve that the weights leave out.
+/// Sums of weights times responses. Shape: indices that have weights x shapes. The error bounds do not cover the part
+/// of a reflectance curve that the weights leave out.
 struct Sums {
   Sums(const Responses& responses, Responses::Part of, Responses::Part apart, const RowMajor& weights)
       : value(product(weights, responses.all[of])),
@@ -79,8 +79,8 @@ struct Sums {
     for (Eigen::Index shape = 0; shape < error.cols(); ++shape)
       error.col(shape) += responses.relative_error[static_cast<std::size_t>(shape)] * value.col(shape).cwiseAbs();
   }
-  /// Sums with weights that are a difference of curves. The difference changes its sign, so relative errors refer to
-  /// its largest value.
+  /// Sums with the weights of the difference of two curves. The difference may change its sign, so relative errors
+  /// refer to its largest magnitude.
   static Sums of_difference(const Responses& responses, Responses::Part of, Responses::Part apart,
                             const RowMajor& weights) {
     Sums sums(responses, of, apart, weights);
@@ -140,7 +140,8 @@ class Combination {
     const Responses all(reference, request_.basis->count());
     const Sums i(all, Responses::kI, Responses::kIApart, reflected_);
     const Sums q(all, Responses::kQ, Responses::kQApart, split_);
-    // Sums of differences from the reference are more accurate if the curves are similar or little light is absorbed.
+    // The moments of the reference index plus a sum for the difference of the curves are more accurate than a sum for
+    // the whole curve, if the curves are similar or little light is absorbed.
     const Sums more_absorbed = Sums::of_difference(all, Responses::kI, Responses::kIApart, absorbed_apart_);
     const Sums more_split = Sums::of_difference(all, Responses::kQ, Responses::kQApart, split_apart_);
     const ResponseWeights& of_reference = request_.basis->of_reference();
@@ -163,7 +164,8 @@ class Combination {
         sum.r_q_error = from.r_q_error + more_split.error(index, shape) + more_absorbed.error(index, shape) +
                         (own.split_error + of_reference.split_error) * albedo;
       }
-      // In a sum the distances of the two rules may cancel. The bound of the reference adds their magnitudes.
+      // In a sum the differences of the two rules may cancel by chance. The bound of the reference index adds their
+      // magnitudes, so it is the least relative bound.
       const double whole_error = from.r_i_error * std::max(sum.r_i / from.r_i, 0.0);
       sum.r_i_error = std::max(sum.r_i_error, whole_error);
       sum.r_q_error = std::max(sum.r_q_error, whole_error);
@@ -196,7 +198,7 @@ class Combination {
     const Sums q(all, Responses::kQ, Responses::kQApart, split_);
     for_all(pass.size(), moments, [&](Moments& sum, const ResponseWeights& own, auto index, auto shape) {
       const Moments& from = pass[static_cast<std::size_t>(shape)];
-      // The function of the sky changes its sign, so relative errors refer to the light without it.
+      // The function of the sky changes its sign, so relative errors refer to r_i, which does not contain it.
       const double relative = all.relative_error[static_cast<std::size_t>(shape)] * std::abs(sum.r_i);
       sum.columns.resize(function + 1);
       sum.columns[function] = {i.value(index, shape), q.value(index, shape),
@@ -227,7 +229,7 @@ std::size_t response_passes(bool wants_direct, std::size_t sky_functions) {
 
 namespace {
 
-/// The sources of some indices. They depend only on the basis and the indices.
+/// The sources of some indices. A source depends only on the basis and the index.
 std::vector<ResponsePlan::Source> sources_of(const ResponseBasis& basis, std::span<const FacetOptics> indices) {
   std::vector<ResponsePlan::Source> sources(indices.size());
   parallel_ranges(sources.size(), 1, [&](std::size_t first, std::size_t last) {
@@ -236,7 +238,7 @@ std::vector<ResponsePlan::Source> sources_of(const ResponseBasis& basis, std::sp
   return sources;
 }
 
-/// Adds the passes with the entries of `reference`, at the reference index.
+/// Adds the passes. `reference` has their entries, at the reference index.
 void add_passes(ResponsePlan& plan, const MomentsRequest& request, MomentsRequest reference) {
   const ResponseBasis& basis = *request.basis;
   reference.basis = nullptr;

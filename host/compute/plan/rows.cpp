@@ -8,7 +8,7 @@
 namespace dolp {
 namespace {
 
-// Below it the masking tables of heavy and light tails need different scales.
+// If m is smaller, shapes do not share a chunk: the masking tables of heavy and light tails need different scales.
 constexpr double kSmallestSharedM = 1e-3;
 
 // True if shape `next` may join the chunk that begins with shape `first`.
@@ -18,7 +18,7 @@ bool belongs(const KernelData& data, std::uint32_t first, std::uint32_t next) {
          data.shapes[next].q_minus_1 <= kMostRowSpread * a.q_minus_1 && data.needs_line[first] == data.needs_line[next];
 }
 
-// Copies the values that the kernel reads from the first shape of a chunk to all its shapes.
+// Gives the shapes of a chunk common values of the members that the kernel reads only from the first shape.
 void unite(std::span<kernel::ShapeNode> chunk) {
   kernel::ShapeNode common = chunk.front();
   for (const kernel::ShapeNode& shape : chunk) {
@@ -67,7 +67,7 @@ void add_grid_chunks(Rows& rows, const MomentsRequest& request, const KernelData
   }
 }
 
-// Members of a row that are wanted.
+// The number of wanted members of a row.
 std::uint32_t used_members(const Rows& rows, const MomentsRequest& request, const KernelData& data, const Row& row) {
   const Chunk& chunk = rows.chunks[row.chunk];
   if (request.wanted.empty()) return chunk.count;
@@ -78,7 +78,7 @@ std::uint32_t used_members(const Rows& rows, const MomentsRequest& request, cons
   return used;
 }
 
-// The chunks without rows.
+// The chunks of a grid; the rows are still missing.
 Rows grid_chunks(const MomentsRequest& request, const KernelData& data) {
   Rows rows;
   rows.width = kRowWidth;

@@ -13,13 +13,14 @@ namespace dolp {
 /// Largest number of members of a row. The kernel is compiled for rows of one member and of this many.
 inline constexpr std::uint32_t kRowWidth = DOLP_ROW_WIDTH;
 
-/// Consecutive shapes of one sigma, in ascending order of q, that share their nodes; or the shape of points.
+/// Consecutive shapes with the same sigma, in ascending order of q, which share their nodes. For points, a single
+/// shape.
 struct Chunk {
   std::uint32_t first = 0;  ///< position in Rows::shapes
   std::uint32_t count = 1;  ///< at most the width of a row
 };
 
-/// A direction, an index and a chunk.
+/// A kernel row: the entries of one direction, one index and one chunk.
 struct Row {
   std::uint32_t direction = 0;  ///< position in the request's directions
   std::uint32_t index = 0;
@@ -37,7 +38,7 @@ struct RowPiece {
 struct Rows {
   std::uint32_t width = 1;                ///< 1 or kRowWidth
   std::vector<kernel::ShapeNode> shapes;  ///< ordered by chunk; the shapes of a chunk share scale, cut and cusp
-  std::vector<std::uint32_t> shape_of;    ///< position in the data for each of `shapes`
+  std::vector<std::uint32_t> shape_of;    ///< position of each of `shapes` in KernelData::shapes
   std::vector<Chunk> chunks;
   std::vector<Row> rows;  ///< ordered by chunk, index and direction
 
@@ -47,11 +48,12 @@ struct Rows {
   }
 };
 
-/// Rows of kRowWidth members if most members are used; otherwise rows of one. The neighbours of an entry depend only on
-/// the shapes, not on directions, indices and wanted entries.
+/// Rows of kRowWidth members if most members are used; otherwise rows of one member. Which entries share a row depends
+/// only on the shapes, not on directions, indices and wanted entries.
 Rows rows_of(const MomentsRequest& request, const KernelData& data);
 
-/// The invocations of all rows from `first`. Neighbours differ only in the direction, so their work is equal.
+/// The invocations of `count` rows, from row `first`. Neighbouring invocations mostly differ only in the direction, so
+/// they take the same time.
 std::vector<RowPiece> pieces_of(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count);
 
 }  // namespace dolp

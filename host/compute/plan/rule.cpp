@@ -17,7 +17,7 @@
 namespace dolp {
 namespace {
 
-// From `dolp-calibrate fit MASKING`, all bounces from `dolp-calibrate fit multiple --entries 60 --rounds 3`.
+// Found by `dolp-calibrate fit MASKING`; for all bounces, by `dolp-calibrate fit multiple --entries 60 --rounds 3`.
 constexpr std::array<RuleModel, 5> kModels = {{
     // none
     {.margin_digits = 2.4, .t_nodes = 1.4, .t_digits = 0.5, .t_fall = 0.18, .phi_nodes = 0.362, .phi_digits = 0.25},
@@ -44,14 +44,15 @@ constexpr std::array<RuleModel, 5> kModels = {{
 
 constexpr double kNone = -1000.0;
 
-// log10 of the nodes on the scale of 1/m beside a line or cusp, where the share of steep facets varies.
+// log10 of the number of nodes within a distance of 1/m from a line or cusp, where the share of steep facets varies.
 double decades_per_node(const SlopeShape& shape, double digits) {
   const double width = std::max(1.0, slope_width(shape));
   return std::log10(std::max(kNodesPerDigit * digits / width, 1.5));
 }
 
-// log10 of the remaining part of smith's cusp at theta_r = 0, where rules do not split: L = C (m tan(theta_r))^(2q-2)
-// and higher terms. The cusp is a point of the slope plane; n nodes in each dimension resolve it to n^-2q.
+// log10 of the error of smith's cusp at theta_r = 0 in rules that do not split there. Near the cusp Smith's Lambda is L
+// = C (m tan(theta_r))^(2q-2). The cusp is a point of the slope plane, so n nodes in each dimension leave an error of
+// n^-2q.
 double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double digits) {
   const double per_node = decades_per_node(shape, digits);
   if (distribution == Distribution::kGaussian) {
@@ -66,8 +67,8 @@ double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double d
   return size - 2.0 * shape.q * per_node;
 }
 
-// log10 of the remaining part of the line b = pi/2 of `integral`. The share of facets steeper than 45 degrees follows
-// |x|^(2q-1).
+// log10 of the error of the line b = pi/2 of `integral` in rules that do not split there. At a distance x from the
+// line, facets steeper than 45 degrees contribute |x|^(2q-1).
 double unsplit_line(Distribution distribution, const SlopeShape& shape, double digits) {
   if (distribution == Distribution::kGaussian) {
     return shape.sigma > (digits > kTightDigits ? kTightLineSigma : kLineSigma) ? 0.0 : kNone;
@@ -105,7 +106,7 @@ RuleNodes make_rule_nodes(const Rules& gauss, int largest_order) {
     centre.insert(centre.end(), rule.begin(), rule.end());
     const RuleNodes& twice = gauss.at(2 * order);
     half.insert(half.end(), twice.begin() + order, twice.end());
-    // Midpoints psi of [0, pi] as tau = tan(psi/4). The weights make 4 / (1 + tau^2) * weight = pi / order.
+    // Midpoints psi of equal parts of [0, pi], as tau = tan(psi/4). 4 / (1 + tau^2) times the weight is pi / order.
     const double part = std::numbers::pi / order;
     for (int i = 0; i < order; ++i) {
       const double tau = std::tan(0.25 * part * (i + 0.5));

@@ -13,7 +13,7 @@ namespace {
 
 using Values = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// The values of value_of at each node: sigma x q.
+/// value_of(node) at each node. Shape: nodes of sigma x nodes of q.
 template <class ValueOf>
 Values at_nodes(const ShapePlan& plan, std::span<const Moments> nodes, const ValueOf& value_of) {
   Values values(static_cast<Eigen::Index>(plan.sigma.nodes.size()), static_cast<Eigen::Index>(plan.q.nodes.size()));
@@ -57,7 +57,7 @@ class Interpolation {
   Values q_;
 };
 
-/// Interpolates column `k` of the moments. Bounds become positive.
+/// Interpolates column `k` of the moments. The result has all its error in ColumnMoments::error.
 void interpolate_column(const ShapePlan& plan, const Interpolation& interpolated, std::span<const Moments> nodes,
                         std::size_t k, std::span<Moments> moments) {
   for (Moments& of_entry : moments) of_entry.columns.resize(k + 1);
@@ -89,10 +89,11 @@ bool wants_whole_directions(const MomentsRequest& request) {
 /// The moments are analytic in ln(x - origin) within `strip` of the real axis, where x is sigma or q.
 ///
 /// For sigma: with the slope in units of m, sigma enters only P(u) = (1 + u^2)^-q, which is analytic for |Im ln m| <
-/// pi/2. Near that limit a power of q grows, so a narrower strip is used. For q: P is analytic for Re q > 1. The mean
-/// slope, which smith masking needs, is analytic for Re q > 3/2; so is the projection of the facets at grazing
-/// incidence if no shadows bound it (shaders/physics/README.md, section 2). A polynomial of n nodes in the logarithm
-/// then has an error of rho^-n, rho = exp(asinh(strip / half length)).
+/// pi/2. Near this limit P grows like the distance to the power -q, so a narrower strip is used. For q: P is analytic
+/// for Re q > 1. The mean slope, which smith masking needs, is analytic for Re q > 3/2; so is the projected area of the
+/// facets at grazing incidence, if the masking does not limit it (shaders/physics/README.md, section 2). A polynomial
+/// through n nodes in the logarithm has an error of rho^-n, rho = exp(asinh(strip / half length)), where the length is
+/// the range of the logarithm.
 struct ShapeParameter {
   double origin = 0.0;
   double strip = 1.0;
@@ -116,7 +117,7 @@ ShapeParameter sigma_parameter(Distribution distribution) {
   return {0.0, distribution == Distribution::kGaussian ? 0.78 : 1.15};
 }
 
-/// Domain: either all or none of the request's directions are grazing.
+/// Domain: requests in which all directions are grazing, or none.
 ShapeParameter q_parameter(const MomentsRequest& request) {
   const bool needs_mean_slope =
       request.masking == Masking::kSmith ||

@@ -1,4 +1,4 @@
-// Selects the moments of a grid to compute. The others are interpolated.
+// Selects which moments of a grid are computed. The others are interpolated.
 //
 // The moments of one direction and one index are analytic in ln(sigma) and ln(q - 1). So the moments of many slope
 // distributions follow from a few Chebyshev nodes, which have a tighter tolerance.
@@ -15,14 +15,15 @@
 
 namespace dolp {
 
-/// Groups of directions of a grid that can share their parameters: grazing directions form a separate group.
+/// Groups of directions of a grid that can share one interpolation over slope distributions. Grazing directions form a
+/// separate group.
 std::vector<std::vector<std::size_t>> split_grazing_directions(const MomentsRequest& request);
 
 /// Values of a parameter, and the nodes from which they are interpolated.
 struct ShapeAxis {
   std::vector<double> nodes;     ///< equal to the values if interpolation gains nothing
   Eigen::MatrixXd cardinal;      ///< values x nodes: weights of the moments at the nodes
-  Eigen::MatrixXd coefficients;  ///< nodes x nodes: from values to Chebyshev coefficients; empty without interpolation
+  Eigen::MatrixXd coefficients;  ///< nodes x nodes: values at the nodes to Chebyshev coefficients; else empty
   bool is_interpolated() const { return coefficients.size() > 0; }
 };
 

@@ -25,14 +25,14 @@ double u_at(double zenith_deg) { return std::numbers::sqrt2 * std::sin(0.5 * zen
 
 Eigen::RowVectorXd values_at(const SkyBasis& basis, double u) { return basis.at(zenith_deg_at(u)); }
 
-/// Values of the functions at the ends of the cells. Shape: cells + 1 x functions.
+/// Values of the functions at the ends of the cells. Shape: (cells + 1) x functions.
 Eigen::MatrixXd at_ends(const SkyBasis& basis, std::uint32_t cells) {
   Eigen::MatrixXd ends(cells + 1, static_cast<Eigen::Index>(basis.size()));
   for (std::uint32_t i = 0; i <= cells; ++i) ends.row(i) = values_at(basis, static_cast<double>(i) / cells);
   return ends;
 }
 
-/// Distances of the functions from straight lines through the ends of the cell at u.
+/// Distances at u between the functions and the straight lines through their values at the ends of the cell.
 Eigen::RowVectorXd distances_at(const SkyBasis& basis, double u, double cells) {
   const double position = std::clamp(u * cells, 0.0, cells);
   const double cell = std::min(std::floor(position), cells - 1.0);
@@ -88,7 +88,7 @@ Eigen::RowVectorXd bends_of(std::span<const Corner> corners, Eigen::Index functi
   return squares.cwiseSqrt();
 }
 
-/// Number of the sharpest corners that must split, so that the others have little effect.
+/// Number of the sharpest corners that must split the integral, so that the others have little effect.
 std::size_t split_corners(std::span<const Corner> corners, Eigen::Index functions, double tolerance) {
   const std::size_t most = std::min<std::size_t>(corners.size(), DOLP_MOST_SKY_CORNERS);
   std::size_t split = 0;

@@ -47,7 +47,7 @@ class File {
     if (descriptor_ >= 0) ::close(descriptor_);
   }
   int get() const { return descriptor_; }
-  // Some file systems report a failed write only here.
+  // Some file systems report a failed write only when the file is closed.
   bool close() { return ::close(std::exchange(descriptor_, -1)) == 0; }
 
  private:
@@ -62,7 +62,7 @@ bool is_device_or_pipe(const fs::path& path) {
   return fs::is_other(status);
 }
 
-/// Writes all bytes with write(bytes, size), which returns the number of bytes written, or -1.
+/// Writes all bytes by calls of write(bytes, size), which returns the number of bytes that it wrote, or -1.
 template <class Write>
 void write_all(const fs::path& path, std::string_view content, const Write& write) {
   while (!content.empty()) {
@@ -94,7 +94,8 @@ fs::path temporary_name(const fs::path& target, int number) {
   return folder_of(target) / (".dolp-" + std::to_string(::getpid()) + "-" + std::to_string(number) + ".tmp");
 }
 
-/// Calls make(name) with names beside `target` until it does not fail with EEXIST.
+/// Calls make(name) with new names beside `target`, until a call does not fail with EEXIST. Returns this name and
+/// result.
 template <class Make>
 std::pair<fs::path, int> with_new_name(const fs::path& target, const Make& make) {
   for (int i = 0; i < kMostNames; ++i) {
@@ -122,7 +123,7 @@ std::pair<File, fs::path> create_temporary(const fs::path& target) {
 void keep_permissions(const File& file, const fs::path& target) {
   struct stat existing {};
   const bool exists = ::stat(target.c_str(), &existing) == 0;
-  // A result is more important than its permissions.
+  // A failure is ignored, because the result is more important than its permissions.
   if (exists) static_cast<void>(!::fchmod(file.get(), existing.st_mode & kPermissionBits));
 }
 
@@ -133,13 +134,13 @@ bool has_name(const struct stat& file, const fs::path& name) {
 
 void sync_folder(const fs::path& folder, const fs::path& path) {
   const File file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  // Some file systems cannot sync a folder at all.
+  // Some file systems cannot sync a folder at all (EINVAL).
   if (file.get() < 0 || (::fsync(file.get()) != 0 && errno != EINVAL)) fail_errno(path, "cannot sync its folder");
 }
 
 }  // namespace
 
-// std::filesystem::canonical needs an existing target; an output need not exist.
+// Replaces std::filesystem::canonical, which needs an existing target; an output need not exist.
 fs::path follow_links(fs::path path) {
   std::error_code error;
   for (int links = 0; fs::is_symlink(path, error); ++links) {
@@ -169,7 +170,7 @@ void check_writable(const fs::path& path) {
   struct stat existing {};
   const bool exists = ::stat(target.c_str(), &existing) == 0;
   if (!exists && errno != ENOENT) fail_errno(path, "cannot create the file");
-  // Root may write to read-only files, but the user did not ask for that.
+  // Root could write to a read-only file, but the user did not ask for that.
   if (exists && (existing.st_mode & kWriteBits) == 0) {
     fail(path, "is read-only; remove it first, or write to another file");
   }
@@ -177,11 +178,11 @@ void check_writable(const fs::path& path) {
 }
 
 struct AtomicFile::Impl {
-  fs::path path;    // for messages
-  fs::path target;  // with symbolic links resolved
+  fs::path path;    // path that the user gave, for messages
+  fs::path target;  // path after symbolic links are resolved
   File file;
   fs::path name;         // until the file is complete; empty: it has no name
-  bool is_kept = false;  // keeps its name even if it is never complete
+  bool is_kept = false;  // true if the file keeps its name even if it is never complete
   std::uint64_t size = 0;
 
   Impl(fs::path of_user, fs::path of_file, std::pair<File, fs::path> unfinished)
@@ -205,7 +206,7 @@ struct AtomicFile::Impl {
            }).first;
   }
 
-  /// Writes all bytes to a device or pipe.
+  /// Copies all bytes to the target, a device or pipe.
   void copy_to_target() const {
     File device(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
     if (device.get() < 0 && interrupted()) throw Cancelled();
@@ -230,7 +231,7 @@ AtomicFile::AtomicFile(const fs::path& path) {
 
 AtomicFile::AtomicFile(const fs::path& path, const fs::path& under_way) {
   check_writable(path);
-  // Created before the file, which would remain if there were no memory for this object.
+  // This object is created before the file. If there is no memory for it, no file remains.
   impl_ = std::make_unique<Impl>(path, follow_links(path), std::pair(File(-1), under_way));
   impl_->is_kept = true;
   File& file = impl_->file;
@@ -240,7 +241,7 @@ AtomicFile::AtomicFile(const fs::path& path, const fs::path& under_way) {
   const bool is_locked = ::flock(file.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
   struct stat found {};
   if (::fstat(file.get(), &found) != 0 || !S_ISREG(found.st_mode)) fail(under_way, "is not a regular file");
-  // If the file has lost this name, its writer has just finished it.
+  // If `under_way` is no longer a name of this file, another run has just finished the file.
   if (!is_locked || !has_name(found, under_way)) throw InputError(under_way.string() + ": another run writes it");
   if (found.st_nlink > 1) fail(under_way, "is a file that has other names too; remove it");
   keep_permissions(file, impl_->target);
@@ -281,7 +282,7 @@ void AtomicFile::commit() {
   if (interrupted()) throw Cancelled();
   if (::fsync(impl_->descriptor()) != 0) fail_errno(impl_->path, "cannot write");
   if (impl_->name.empty()) impl_->link();
-  // The file is closed and unlocked only after it has its final name, so no other run takes it for unfinished.
+  // The file stays open and locked until it has its final name, so no other run takes it for unfinished.
   if (::rename(impl_->name.c_str(), impl_->target.c_str()) != 0)
     fail_errno(impl_->path, "cannot rename the finished file");
   impl_->name.clear();

@@ -1,4 +1,4 @@
-// FNV-1a, 64 bits: only tells whether two inputs are equal.
+// FNV-1a hash with 64 bits. It only serves to tell whether two inputs are equal.
 #pragma once
 
 #include <bit>

@@ -33,10 +33,10 @@ void parallel_ranges(std::size_t count, std::size_t grain,
   try {
     for (std::size_t i = 1; i < std::min(cores, useful); ++i) threads.emplace_back(work);
   } catch (const std::system_error&) {
-    // If memory is short, the existing threads do the work.
+    // The system started no further thread. The existing threads do the work.
   }
   work();
-  threads.clear();  // waits for them
+  threads.clear();  // waits until the threads have ended
   if (error) std::rethrow_exception(error);
 }
 

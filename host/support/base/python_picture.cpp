@@ -17,7 +17,7 @@
 namespace dolp {
 namespace {
 
-/// A file in memory, so that a picture needs no folder for temporary files.
+/// A file in memory, so that no folder for temporary files is needed.
 class MemoryFile {
  public:
   MemoryFile() : file_(::fdopen(::memfd_create("picture", MFD_CLOEXEC), "w+b"), std::fclose) {}

@@ -9,7 +9,7 @@
 
 namespace dolp {
 
-/// The system's folder for temporary files: TMPDIR or /tmp. Errors: IoError if it does not exist.
+/// The folder for temporary files: TMPDIR, else TMP, TEMP, TEMPDIR, else /tmp. Errors: IoError if it does not exist.
 inline std::filesystem::path temporary_files() {
   std::filesystem::path folder = "/tmp";
   for (const char* const name : {"TEMPDIR", "TEMP", "TMP", "TMPDIR"}) {
@@ -21,7 +21,7 @@ inline std::filesystem::path temporary_files() {
   throw IoError(folder.string() + ": there is no such folder for temporary files; set TMPDIR to another");
 }
 
-/// A new folder in temporary_files(). The destructor removes it with its content.
+/// A new folder in temporary_files(). The destructor removes the folder with its content.
 class TemporaryFolder {
  public:
   /// `name` is the beginning of the folder's name. Errors: IoError.

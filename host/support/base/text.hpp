@@ -14,16 +14,17 @@ namespace dolp {
 /// `text` without blanks (space, tab) at both ends.
 std::string_view trim(std::string_view text);
 
-/// The pieces between separators; at least one.
+/// The pieces of a text between separators. There is at least one piece.
 std::vector<std::string_view> split(std::string_view text, char separator);
 
-/// The lines without their ends (LF or CRLF). Removes a leading UTF-8 byte order mark and blank lines at the end.
+/// The lines of a text without their ends (LF or CRLF). Leaves out a UTF-8 byte order mark at the start and blank lines
+/// at the end.
 std::vector<std::string_view> split_lines(std::string_view text);
 
-/// ASCII lower case.
+/// `text` with ASCII letters in lower case.
 std::string lower_case(std::string_view text);
 
-/// A finite decimal number that fills `text` except for surrounding blanks. Independent of the locale.
+/// The finite decimal number in a text, which may have blanks around it but nothing else. Independent of the locale.
 /// Errors: nullopt for all other texts, for example nan, inf, 1e999 and 1e-999.
 std::optional<double> parse_number(std::string_view text);
 
@@ -39,14 +40,14 @@ std::string format_number(double value);
 /// ignores case.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// The candidate with the smallest edit distance, the first of several. `candidates` must not be empty.
+/// The candidate with the smallest edit distance from `name`, or the first of these. `candidates` must not be empty.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
 
-/// The candidate that a mistyped or shortened name most likely means; nullopt if none is close. `candidates` must not
-/// be empty.
+/// The candidate that a mistyped or shortened name probably means; nullopt if no candidate is similar. `candidates`
+/// must not be empty.
 std::optional<std::string> near_name(std::string_view name, const std::vector<std::string>& candidates);
 
-/// `text` in one line that is short enough for a message.
+/// `text` as one line, cut to a length that suits a message.
 std::string one_line(std::string_view text);
 
 /// Text from files and command lines, made safe to display: control characters, bytes that are not UTF-8, and
@@ -56,15 +57,15 @@ std::string printable_line(std::string_view text);
 /// "a, b, c".
 std::string join(const std::vector<std::string>& words);
 
-/// Largest size of a scene, and of most other inputs.
+/// Largest size in bytes of a scene, and of most other inputs.
 inline constexpr std::size_t kMostTextBytes = 16U << 20U;
 
 /// The bytes of a file, or of stdin for "-".
-/// Errors: InputError "`prefix`cannot be read: reason", also for more than `most_bytes` or a zero byte.
+/// Errors: InputError that begins with `prefix`, if the input cannot be read, is longer than `most_bytes` or contains a
+/// zero byte.
 std::string read_text(const std::string& path, const std::string& prefix, std::size_t most_bytes = kMostTextBytes);
 
-/// Refuses a pipe, a device or stdin as a file that an input names or that the window opens, so that no call waits for
-/// it.
+/// Refuses "-", a pipe or a device where an input or the window names a file. A call that opened it could wait forever.
 /// Errors: InputError that begins with `prefix`.
 void check_named_file(const std::string& path, const std::string& prefix);
 
@@ -78,7 +79,7 @@ void check_regular_file(const std::string& path, const std::string& prefix);
 /// The name of an input for messages: "stdin" for "-".
 std::string input_name(const std::string& path);
 
-/// `text` in single quotes, valid in any shell.
+/// `text` in single quotes, as an argument for any shell.
 std::string shell_quoted(const std::string& text);
 
 }  // namespace dolp

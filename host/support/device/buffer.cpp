@@ -9,7 +9,8 @@
 namespace dolp::vulkan {
 namespace {
 
-// Vulkan has no empty buffers. No structure of the kernels is larger than this.
+// Size in bytes of the smallest buffer, because Vulkan has no empty buffers. No struct of the kernels is larger than
+// this.
 constexpr VkDeviceSize kSmallestBuffer = 256;
 
 }  // namespace

@@ -9,19 +9,19 @@
 
 namespace dolp::vulkan {
 
-/// A storage buffer with separate memory, never empty.
+/// A storage buffer with its memory. It is never empty.
 class Buffer {
  public:
-  /// With a format, kernels may also read the buffer as texels.
+  /// If `texels` is a format, kernels may also read the buffer as texels.
   Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, VkFormat texels = VK_FORMAT_UNDEFINED);
 
   VkBuffer get() const { return buffer_.get(); }
   VkBufferView texels() const { return texels_.get(); }
   VkDeviceSize size() const { return size_; }
 
-  /// Writes to the start of a mapped buffer. The next submission reads the new bytes.
+  /// Writes bytes to the start of a mapped buffer. The next submission reads them.
   void write(std::span<const std::byte> bytes);
-  /// Reads from the start of a mapped buffer. The submission that wrote it (and its barrier) must have finished.
+  /// Reads bytes from the start of a mapped buffer. The submission that wrote them must have finished, with a barrier.
   void read(std::span<std::byte> bytes) const;
 
  private:
@@ -31,7 +31,7 @@ class Buffer {
   VkDevice device_ = VK_NULL_HANDLE;
   VkDeviceSize size_ = 0;
   VkMemoryPropertyFlags memory_flags_ = 0;
-  // The memory outlives the buffer bound to it.
+  // The memory is declared before the buffer that is bound to it, so it is destroyed after the buffer.
   UniqueMemory memory_;
   UniqueBuffer buffer_;
   UniqueBufferView texels_;

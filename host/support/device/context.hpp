@@ -1,4 +1,4 @@
-// A device with its instance and validation log.
+// A Vulkan instance, a device of it, and the log of the validation layer.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -14,7 +14,7 @@
 
 namespace dolp::vulkan {
 
-/// Collects warnings and errors of the validation layer, which may call from any thread.
+/// Collects warnings and errors of the validation layer. The layer may call from any thread.
 class ValidationLog {
  public:
   void add(std::string message);
@@ -38,7 +38,7 @@ class Instance {
 
   VkInstance get() const { return instance_; }
 
-  /// All devices, in the order of the loader. Errors: DeviceError when there is none.
+  /// All devices, in the order of the Vulkan loader. Errors: DeviceError if there is none.
   std::vector<VkPhysicalDevice> physical_devices() const;
 
  private:

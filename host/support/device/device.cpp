@@ -44,7 +44,8 @@ VkDeviceSize largest_device_heap(const VkPhysicalDeviceMemoryProperties& memory)
 
 dolp::Device::Type type_of(VkPhysicalDeviceType type) {
   using enum dolp::Device::Type;
-  constexpr std::array kTypes = {kOther, kIntegrated, kDiscrete, kVirtual, kCpu};  // by the numbers of Vulkan
+  // In the order of VkPhysicalDeviceType.
+  constexpr std::array kTypes = {kOther, kIntegrated, kDiscrete, kVirtual, kCpu};
   const auto number = static_cast<std::size_t>(type);
   return number < kTypes.size() ? kTypes[number] : kOther;
 }
@@ -64,7 +65,7 @@ std::string why_not_usable(const VkPhysicalDeviceProperties& properties, bool ha
   return {};
 }
 
-// Adds properties of Vulkan 1.2 beyond VkPhysicalDeviceProperties.
+// Adds driver and subgroup size, which Vulkan gives apart from VkPhysicalDeviceProperties.
 void add_properties_1_2(VkPhysicalDevice physical, dolp::Device& description) {
   VkPhysicalDeviceDriverProperties driver{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
   VkPhysicalDeviceSubgroupProperties subgroup{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES,
@@ -76,7 +77,7 @@ void add_properties_1_2(VkPhysicalDevice physical, dolp::Device& description) {
   description.subgroup_size = subgroup.subgroupSize;
 }
 
-// On a CPU device a workgroup fills one vector. A larger one would waste invocations in small dispatches.
+// On a CPU device a workgroup has the size of one vector. A larger one would waste invocations in small dispatches.
 std::uint32_t local_size_of(const dolp::Device& device) {
   if (device.type != dolp::Device::Type::kCpu || device.subgroup_size == 0) return kLocalSize;
   return std::min(device.subgroup_size, kLocalSize);
@@ -142,7 +143,8 @@ MemoryType Device::memory_type(std::uint32_t allowed, MemoryUse use) const {
   VkMemoryPropertyFlags required = 0;
   VkMemoryPropertyFlags preferred = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
   if (use != MemoryUse::kDeviceOnly) required = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT;
-  // The host reads uncached memory a hundred times slower. This costs more than slower writes by the device.
+  // For readback, cached memory is preferred to fast memory of the device, because the host reads uncached memory a
+  // hundred times slower.
   if (use == MemoryUse::kReadback) preferred = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
 
   std::optional<MemoryType> best;

@@ -1,4 +1,4 @@
-// The logical device: one queue, its limits and its memory.
+// The logical device with one queue, its limits and its memory.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -10,23 +10,23 @@
 
 namespace dolp::vulkan {
 
-/// Number of storage buffers that a kernel binds. Texel buffers follow them.
+/// Numbers of storage buffers and texel buffers that a kernel binds. Texel buffers follow the storage buffers.
 constexpr std::uint32_t kStorageCount = 7;
 constexpr std::uint32_t kTexelCount = 2;
 /// Largest number of invocations in a workgroup. Every device allows 128.
 constexpr std::uint32_t kLocalSize = 64;
 
-/// Description of a device, including the reason if dolp cannot run on it.
+/// Description of a device. If dolp cannot run on it, the description has the reason.
 dolp::Device describe(VkPhysicalDevice physical);
 
-/// Use of a buffer by host and device.
+/// How host and device use a buffer.
 enum class MemoryUse {
   kDeviceOnly,  ///< not mapped
   kUpload,      ///< mapped; written by the host
   kReadback,    ///< mapped; read by the host
 };
 
-/// A kind of memory to allocate from.
+/// A memory type of the device, from which buffers are allocated.
 struct MemoryType {
   std::uint32_t index = 0;
   VkMemoryPropertyFlags flags = 0;
@@ -45,12 +45,12 @@ class Device {
   VkQueue queue() const { return queue_; }
   std::uint32_t queue_family() const { return queue_family_; }
   const VkPhysicalDeviceLimits& limits() const { return limits_; }
-  /// Invocations of a workgroup.
+  /// Number of invocations in a workgroup.
   std::uint32_t local_size() const { return local_size_; }
-  /// Valid bits of the queue's timestamps; 0: the queue has no timestamps.
+  /// Number of valid bits of the queue's timestamps; 0 if the queue has no timestamps.
   std::uint32_t timestamp_bits() const { return timestamp_bits_; }
 
-  /// The best memory type for a use among the types in `allowed` (a bit mask). Errors: DeviceError if none fits.
+  /// The best memory type for a use. Bit i of `allowed` allows type i. Errors: DeviceError if no allowed type fits.
   MemoryType memory_type(std::uint32_t allowed, MemoryUse use) const;
 
  private:

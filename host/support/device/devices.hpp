@@ -7,21 +7,21 @@
 
 namespace dolp {
 
-/// Use of the Khronos validation layer, for tests.
+/// Whether the Khronos validation layer is used, for tests.
 enum class ValidationMode {
-  kFromEnvironment,  ///< on when the environment variable DOLP_VALIDATION is 1
+  kFromEnvironment,  ///< used if the environment variable DOLP_VALIDATION is 1
   kOff,
   kOn,
 };
 
 /// Selects a device and its validation mode.
 struct DeviceSelector {
-  std::string device = {};    ///< name or position, see choose_device
-  bool needs_double = false;  ///< double precision in shaders
+  std::string device = {};    ///< part of a name, or position; see choose_device
+  bool needs_double = false;  ///< true if shaders need double precision
   ValidationMode validation = ValidationMode::kFromEnvironment;
 };
 
-/// All devices in the order of the Vulkan loader; without devices, the reason.
+/// All devices, in the order of the Vulkan loader. If there is none, `why_empty` is the reason.
 struct DeviceList {
   std::vector<Device> devices;
   std::string why_empty;
@@ -30,10 +30,10 @@ struct DeviceList {
 /// Searches for Vulkan devices. Does not throw if there are none.
 DeviceList list_devices();
 
-/// The position of the device that `choice` means. Empty is the default; digits are a position; anything else (and
-/// digits beyond the list) is a part of the name, in any case.
-/// Among several devices, the choice is the first usable device (with double precision if `float64`) in the order
-/// discrete GPU, integrated GPU, virtual GPU, CPU, other.
+/// The position in `devices` of the device that `choice` means. A number in the list is a position. Any other text is a
+/// part of a name, where case does not matter. An empty text matches all devices.
+/// If several devices match, chooses the first usable one (with double precision if `float64`) in the order discrete
+/// GPU, integrated GPU, virtual GPU, CPU, other.
 /// Errors: DeviceError that lists the devices if nothing matches, or names the features that the matching devices lack.
 std::size_t choose_device(const std::vector<Device>& devices, const std::string& choice, bool float64);
 

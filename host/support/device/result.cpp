@@ -43,7 +43,7 @@ std::string result_name(VkResult result) {
 }
 
 bool lacks_addresses() {
-  constexpr std::size_t kDriverBytes = 256U << 20U;  // memory for a driver with its compiler
+  constexpr std::size_t kDriverBytes = 256U << 20U;  // address space for a driver with its compiler
   void* const room = ::mmap(nullptr, kDriverBytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (room == MAP_FAILED) return true;
   ::munmap(room, kDriverBytes);
@@ -51,8 +51,8 @@ bool lacks_addresses() {
 }
 
 bool lacks_threads() {
-  // lavapipe starts two threads per core, for at most 32 cores, one for its queue and two for its cache of kernels. It
-  // waits forever for threads that it could not start.
+  // The driver lavapipe starts two threads per core (for at most 32 cores), one thread for its queue, and two for its
+  // cache of kernels. If it cannot start one of them, it waits forever.
   const std::size_t needed = 2 * std::clamp(std::thread::hardware_concurrency(), 1U, 32U) + 3;
   std::promise<void> end;
   const std::shared_future<void> ended = end.get_future().share();
@@ -73,7 +73,7 @@ bool lacks_threads() {
 void check(VkResult result, const std::string& action) {
   if (result == VK_SUCCESS) return;
   if (result == VK_ERROR_DEVICE_LOST) throw DeviceLost("the Vulkan device was lost while " + action);
-  // Drivers that run out of address space may return any error.
+  // A driver that runs out of address space may return any error.
   if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY || lacks_addresses()) {
     throw MemoryError("out of memory: Vulkan: " + action + " failed: " + result_name(result));
   }

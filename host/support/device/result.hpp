@@ -9,16 +9,16 @@
 
 namespace dolp::vulkan {
 
-/// The driver did not finish a submission or a compilation in time, or before the user interrupted it. It still uses
-/// its inputs, so no object of the device may be destroyed.
+/// The driver did not finish a submission or a compilation within a time limit, or before the user interrupted it. The
+/// driver still uses its inputs, so no object of the device may be destroyed.
 struct DeviceTimeout : DeviceError {
   explicit DeviceTimeout(const std::string& message);
 };
 
-/// True after a DeviceTimeout. The program must then end without cleaning up, because the driver's threads still run.
+/// True after a DeviceTimeout. Then the program must end without cleaning up, because the driver's threads still run.
 bool driver_is_busy();
 
-/// The device is unusable. A new one may work, even on the same hardware.
+/// The device became unusable. A new logical device may work, even on the same hardware.
 struct DeviceLost : DeviceError {
   using DeviceError::DeviceError;
 };
@@ -29,7 +29,7 @@ std::string result_name(VkResult result);
 /// True if the process has too little address space left for a driver.
 bool lacks_addresses();
 
-/// True if the process may not start the threads that a driver waits for.
+/// True if the process may not start as many threads as a driver waits for.
 bool lacks_threads();
 
 /// Throws unless `result` is VK_SUCCESS. `action` is a phrase such as "creating a buffer".
@@ -59,7 +59,8 @@ class Handle {
   T object_ = VK_NULL_HANDLE;
 };
 
-/// Creates an object with a create function of Vulkan. `action` as in check(). Errors: the errors of check().
+/// Creates an object by a create function of Vulkan. `action`: a phrase for messages, as in check(). Errors: the errors
+/// of check().
 template <class Owner, class Info, class T>
 Owner created(VkDevice device, VkResult (*create)(VkDevice, const Info*, const VkAllocationCallbacks*, T*),
               const Info& info, const std::string& action) {

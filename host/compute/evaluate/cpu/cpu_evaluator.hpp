@@ -7,7 +7,8 @@
 
 namespace dolp {
 
-/// Evaluator "cpu": kernel and rules of the Vulkan evaluator, compiled by the C++ compiler.
+/// The evaluator "cpu". It has the kernel source and the rules of the Vulkan evaluator; the C++ compiler compiles the
+/// source.
 class CpuEvaluator final : public ModelEvaluator {
  public:
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;

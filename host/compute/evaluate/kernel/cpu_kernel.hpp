@@ -1,4 +1,4 @@
-// The shaders' own source compiled as C++, in float and in double: a translation unit for each precision.
+// The source of the shaders compiled as C++, in one translation unit for float and one for double.
 #pragma once
 
 #include <cstdint>
@@ -10,22 +10,22 @@
 
 namespace dolp {
 
-/// The kernels of shaders/*.comp over one set of kernel data, which must outlive the object.
+/// The kernels of shaders/*.comp for one set of kernel data, which must outlive the object.
 class CpuKernel {
  public:
   virtual ~CpuKernel() = default;
 
-  /// Makes the masking tables of some shapes, in ascending order, and drops earlier ones. If the data needs tables,
-  /// `moments` takes only entries of these shapes.
+  /// Builds the masking tables of `shapes`, which must be in ascending order, and drops earlier tables. If the masking
+  /// needs tables, `moments` accepts only entries with these shapes.
   virtual void build_masking_tables(std::vector<std::uint32_t> shapes) = 0;
-  /// Adds DOLP_COLUMN_PARTS sums for each column of the data to `columns`.
+  /// The moments of an entry. Adds DOLP_COLUMN_PARTS sums for each column of the data to `columns`.
   virtual kernel::MomentsNode moments(const MomentsEntry& entry, std::span<double> columns) = 0;
 
-  /// The sums over the azimuths at a slope; `columns` gets the two sums of each column of the data.
+  /// The sums over the azimuths at a slope. Writes the two sums of each column of the data to `columns`.
   virtual kernel::AzimuthNode azimuths(const kernel::SlopeNode& slope, std::span<double> columns) = 0;
 
-  /// f cos(theta_i) cos(theta_r) for k_s = 1 over the beam's power of two, in 1/sr. From the data it reads only the
-  /// model and the rule nodes.
+  /// The pBRDF f cos(theta_i) cos(theta_r) for k_s = 1, in 1/sr, divided by the power of two that BeamNode::density
+  /// leaves out. It uses only the model and the rule nodes of the data.
   virtual kernel::MuellerNode mueller(const kernel::BeamNode& beam) = 0;
 };
 

@@ -1,4 +1,4 @@
-// The kernel source compiled as C++, in double if DOLP_DOUBLE is defined. The including file defines
+// Compiles the kernel source as C++, in double if DOLP_DOUBLE is defined. The including file defines
 // DOLP_KERNEL_NAMESPACE, and DOLP_MOST_COLUMNS if it computes columns.
 
 #include <algorithm>
@@ -37,13 +37,14 @@ using glm::sqrt;
 using glm::uint;
 using glm::uintBitsToFloat;
 
-// x 2^k where 2^k is a normal number, as the kernel source requires; the C library's ldexp takes ten times as long.
+// x 2^k, if 2^k is a normal number; the kernel source uses no other k. The C library's ldexp takes ten times as long.
 inline float ldexp(float x, int k) { return x * std::bit_cast<float>((k + 127) << 23); }
 inline double ldexp(double x, int k) { return x * std::bit_cast<double>(static_cast<std::int64_t>(k + 1023) << 52); }
 
 #include "physics/prelude.glsl"
 
-/// The kernel source as the body of a class; buffers and specialization constants are its members.
+/// The kernel source as the body of a class. Members of the class stand for the buffers and the specialization
+/// constants.
 struct KernelSource {
 #include "interface.glsl"
 #include "physics/all.glsl"
@@ -63,7 +64,7 @@ struct KernelSource {
   std::vector<real2> rule_nodes;
   std::vector<real4> masking_table;
 
-  /// The source with the model and the rules of `data`, without masking tables.
+  /// The kernel source with the model and the rules of `data`, without masking tables.
   static KernelSource of(const KernelData& data) {
     KernelSource source;
     source.kDistribution = static_cast<uint>(data.distribution);
@@ -91,7 +92,7 @@ struct KernelSource {
   real4 masking_node(uint i) const { return masking_table[i]; }
   void store_masking_node(uint i, real4 node) { masking_table[i] = node; }
   void store_column(uint position, real value) { columns_out()[position] = value; }
-  /// The columns of the thread's last piece.
+  /// The columns of the piece that this thread computed last.
   std::span<real> columns_out() const {
     thread_local std::vector<real> columns;
     columns.resize(DOLP_COLUMN_PARTS * std::size_t{kColumnCount});
@@ -155,7 +156,7 @@ class SourceKernel final : public CpuKernel {
     sums[0] = static_cast<double>(result.columns.i[k]);
     sums[1] = static_cast<double>(result.columns.q[k]);
   }
-#else  // plans compute no moments
+#else  // files that only plan leave out the columns
   static void copy_column(std::size_t, const KernelSource::SlopeResult&, std::span<double>) {}
 #endif
 

@@ -16,37 +16,40 @@ using sampling_kernel::KernelSource;
 
 namespace {
 
-// Spacing of the ends of pieces, in e-folds of slope, for distributions of many widths. Tuned. Thousand evaluations for
-// the grid of plan/constants.hpp at half, this and double: none 27.4, 24.0, 22.1; v-cavity 54.2, 50.9, 49.2.
+// If distributions differ in width, the slopes between the narrowest and the widest are split at ends with this
+// spacing, in e-folds of slope. Tuned. Evaluations in thousands for the grid of plan/constants.hpp, at half this value,
+// this and double: masking none 27.4, 24.0, 22.1; v-cavity 54.2, 50.9, 49.2.
 constexpr double kWidthStep = 1.3;
-// Spacing of the widths, in e-folds, at which the number of nodes is determined.
+// The number of nodes is determined for widths at this spacing, in e-folds.
 constexpr double kNodeWidthStep = 0.4;
 
-// -ln of a share of the facets that counts as zero.
+// A share of the facets below exp(-kNoFacets) counts as zero.
 constexpr double kNoFacets = 80.0;
 
-// Requirements of one corner for the rule of a piece.
+// What one shape of corners_of() requires of the rule of a piece.
 struct SampleRequest {
-  double all = 0.0;     // weight_of_shape of orders.glsl
-  double digits = 0.0;  // digits that the piece requires
+  double all = 0.0;     // weight_of_shape() of orders.glsl for this shape
+  double digits = 0.0;  // digits that it requires of the piece
 };
 
 // An end of a piece on the slope axis.
 struct End {
   double slope = 0.0;
-  std::uint32_t direction_piece = 0;  // the last breakpoint at or before this end
-  bool is_breakpoint = false;         // whether this end is that breakpoint
+  std::uint32_t direction_piece = 0;  // number of the last breakpoint at or before this end
+  bool is_breakpoint = false;         // true if this end is that breakpoint itself
 };
 
-// Factors of the weights of the sampled slopes, shared by all shapes of one width.
+// Factors of the weights of the sampled slopes, shared by all shapes of one width m. A weight is
+// common * exp(-exponent_factor(shape) * exponent), without constant factors, which the normalisation of the weights
+// cancels.
 struct SlopeWeights {
   double m = 0.0;
-  Eigen::ArrayXd exponent;  // common_exponent of slope.glsl
-  Eigen::ArrayXd common;    // the part that does not depend on the tail exponent, up to a factor
+  Eigen::ArrayXd exponent;  // common_exponent() of slope.glsl
+  Eigen::ArrayXd common;
 };
 
-// Shapes that enclose all wanted ones: widths from the narrowest to the widest, each with the heaviest and the lightest
-// tail. All have the scale and cut of the hardest one.
+// Shapes that enclose all wanted shapes: widths from the narrowest to the widest, each with the heaviest and with the
+// lightest tail. All have the smallest scale and the largest cut of the wanted shapes.
 std::vector<kernel::ShapeNode> corners_of(const KernelData& data, std::span<const std::uint32_t> shapes) {
   kernel::ShapeNode corner = data.shapes[shapes.front()];
   double widest = corner.m, lightest = corner.q_minus_1;
@@ -86,8 +89,8 @@ struct SlopeSampling::Impl {
   explicit Impl(const KernelData& of)
       : data(of), source(KernelSource::of(of)), rule(std::bit_cast<KernelSource::RuleNode>(of.rule)) {}
 
-  // The ends of pieces: the breakpoints of the direction below the cut, the cut, and more ends among the widths of the
-  // shapes.
+  // The ends of the pieces: the breakpoints of the direction up to the first one at or beyond the cut, and more ends
+  // between the narrowest and the widest of the shapes `corners`.
   std::vector<End> ends_of(std::uint32_t theta, std::span<const kernel::ShapeNode> corners) {
     const kernel::ThetaNode& node = data.thetas[theta];
     const double cut = corners.front().cut;
@@ -128,7 +131,8 @@ struct SlopeSampling::Impl {
     return task;
   }
 
-  // The piece with the largest requirement of all corners, and the digits that each corner requires.
+  // The piece with the largest number of nodes that a shape of `corners` requires. Writes the digits that each of these
+  // shapes requires to `requests`.
   KernelSource::Piece hardest_piece(const KernelSource::ThetaNode& theta, const KernelSource::IndexNode& index,
                                     std::span<const kernel::ShapeNode> corners, const KernelSource::Task& task,
                                     std::vector<SampleRequest>& requests) {
@@ -155,7 +159,7 @@ struct SlopeSampling::Impl {
       slope.t = scale * hyperbolic.x;
       slope.dt = 2.0 * node.y * scale * hyperbolic.y * piece.extent * on_piece.y;
       for (std::size_t j = 0; j < corners.size(); ++j) {
-        if (requests[j].digits <= slope.digits) continue;  // satisfied already
+        if (requests[j].digits <= slope.digits) continue;  // an earlier shape requires as many
         const auto shape = std::bit_cast<KernelSource::ShapeNode>(corners[j]);
         const double u = slope.t / shape.m;
         const double mass =
@@ -168,7 +172,7 @@ struct SlopeSampling::Impl {
   }
 
   SlopeWeights weights_of(const SlopeSamples& samples, KernelSource::ShapeNode shape) {
-    shape.q_minus_1 = 1.0;  // makes the weights independent of the shape
+    shape.q_minus_1 = 1.0;  // so that the weights depend only on m
     const auto count = static_cast<Eigen::Index>(samples.slopes.size());
     SlopeWeights weights{shape.m, Eigen::ArrayXd(count), Eigen::ArrayXd(count)};
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -180,8 +184,8 @@ struct SlopeSampling::Impl {
     return weights;
   }
 
-  // Sum of a rule over a piece with `share` of the facets. Normalising by the known share cancels the error of the
-  // density itself and every common factor of the weights.
+  // Sum of a rule over a piece with `share` of the facets. The weights are normalised to this known share. This cancels
+  // the error of the density and every factor that all weights have in common.
   static kernel::AzimuthNode sum_of(std::uint32_t first, std::uint32_t count, const Eigen::ArrayXd& shape_weights,
                                     double share, std::span<const kernel::AzimuthNode> azimuths) {
     using Azimuths = Eigen::Matrix<double, sizeof(kernel::AzimuthNode) / sizeof(double), Eigen::Dynamic>;
@@ -194,7 +198,8 @@ struct SlopeSampling::Impl {
     return std::bit_cast<kernel::AzimuthNode>(sums);
   }
 
-  // Adds the sums over the columns of a piece, by both rules, to `sums`, and the difference of the rules.
+  // Adds to `sums`, for each column, the sums of the finer rule over a piece and their differences from the coarser
+  // rule.
   void add_columns(const SampledPiece& piece, const Eigen::ArrayXd& shape_weights, double share,
                    std::span<const double> azimuths, std::span<double> sums) {
     const auto functions = static_cast<Eigen::Index>(sums.size() / DOLP_COLUMN_PARTS);
@@ -217,8 +222,8 @@ struct SlopeSampling::Impl {
     }
   }
 
-  // The moments of one shape, without the slopes beyond the cut. `own` is scratch space for the weights; `columns`
-  // receives the columns of the data.
+  // The moments of one shape, without the slopes beyond the cut. `own` is memory for the weights. `columns` receives
+  // the sums of the columns.
   kernel::MomentsNode moments_of(const SlopeSamples& samples, const KernelSource::ShapeNode& shape,
                                  const SlopeWeights& weights, std::span<const kernel::AzimuthNode> azimuths,
                                  std::span<const double> of_columns, Eigen::ArrayXd& shape_weights,

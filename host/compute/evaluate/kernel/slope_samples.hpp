@@ -1,6 +1,6 @@
 // Slope samples. Without masking and with v-cavity masking, the sums over the azimuths at a slope do not depend on the
-// slope distribution. The slope samples of a direction and an index are these sums along the slope axis. Integrals over
-// them, with the weights of a distribution, are its moments.
+// slope distribution. The slope samples of a direction and an index are these sums at slopes along the slope axis. The
+// moments of a slope distribution are integrals over the samples, with the weights of the distribution.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ namespace dolp {
 /// True if the moments of a request are integrals over slope samples.
 bool has_slope_samples(const MomentsRequest& request);
 
-/// Positions in KernelData: a direction of a request, an index, and the shapes whose moments are wanted.
+/// The wanted entries of one direction and one index, as positions in KernelData: `shapes` lists their shapes.
 struct SampledEntries {
   std::uint32_t direction = 0;
   std::uint32_t theta = 0;
@@ -33,25 +33,27 @@ struct SampledSlope {
   double digits = 0.0;  ///< digits that the sum over the azimuths needs
 };
 
-/// The two rules of a piece of the slope axis: `fine` slopes from `first`, then `coarse` slopes.
+/// A piece of the slope axis. Its two rules have consecutive slopes in SlopeSamples::slopes: from position `first`,
+/// `fine` slopes of the finer rule, then `coarse` slopes of the coarser rule.
 struct SampledPiece {
   double start = 0.0;
   double end = 0.0;
   std::uint32_t first = 0;
   std::uint32_t fine = 0;
   std::uint32_t coarse = 0;
-  std::uint32_t direction_piece = 0;  ///< the piece of KernelData::pieces that contains it
+  std::uint32_t direction_piece = 0;  ///< number of the direction's piece (KernelData::pieces) that contains it
 };
 
-/// Slopes at which a direction and an index are sampled for all their shapes. They follow only from the entries.
+/// The slopes at which a direction and an index are sampled for all wanted shapes. They do not depend on the other
+/// entries of a request.
 struct SlopeSamples {
   SampledEntries entries;
-  double cut = 0.0;  ///< the largest slope
+  double cut = 0.0;  ///< slopes above it are left out
   std::vector<SampledPiece> pieces;
   std::vector<SampledSlope> slopes;
 };
 
-/// The kernel's results for slopes.
+/// Results of the kernel for a number of slopes.
 struct SampledAzimuths {
   SampledAzimuths(std::size_t slopes, const KernelData& data)
       : nodes(slopes), per_slope(column_azimuths(data)), columns(slopes * per_slope) {}
@@ -59,20 +61,21 @@ struct SampledAzimuths {
 
   std::vector<kernel::AzimuthNode> nodes;
   std::size_t per_slope;
-  std::vector<double> columns;  ///< the two sums of each column, slope by slope
+  std::vector<double> columns;  ///< two sums for each column of each slope, slope by slope
 };
 
-/// Plans slope samples of a request and integrates them. `data` must outlive it; any thread may call it.
+/// Plans the slope samples of a request and integrates over them. `data` must outlive it; several threads may call it.
 class SlopeSampling {
  public:
   explicit SlopeSampling(const KernelData& data);
   ~SlopeSampling();
 
   SlopeSamples plan(SampledEntries entries) const;
-  /// Appends the kernel's input, slope by slope.
+  /// Appends the kernel's input for each slope to `nodes`.
   void append(const SlopeSamples& samples, std::vector<kernel::SlopeNode>& nodes) const;
-  /// Writes the moments of the shapes to the positions of their entries in the request. `azimuths` has the kernel's
-  /// results, for these samples from `first`; `unit_roundoff` belongs to the kernel's precision.
+  /// Writes the moments of all shapes of `samples` to `moments`, at the positions of their entries in the request. The
+  /// kernel's results for the slopes of `samples` begin at position `first` of `azimuths`. `unit_roundoff` is that of
+  /// the kernel's precision.
   void integrate(const SlopeSamples& samples, const SampledAzimuths& azimuths, std::size_t first, double unit_roundoff,
                  std::span<Moments> moments) const;
   /// Plans, computes and integrates samples with the kernel source compiled for the CPU.
@@ -83,7 +86,8 @@ class SlopeSampling {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The wanted entries of the directions `first` to `last` - 1 of a request.
+/// The wanted entries of the directions from `first` to `last` - 1 of a request, one element per pair of direction and
+/// index.
 std::vector<SampledEntries> sampled_entries(const MomentsRequest& request, const KernelData& data, std::size_t first,
                                             std::size_t last);
 

@@ -23,7 +23,7 @@ namespace {
 /// The SPIR-V module of a variant.
 std::span<const std::uint32_t> module_of(const KernelVariant& variant, bool float64) {
   using namespace spirv;
-  using Module = std::array<std::span<const std::uint32_t>, 2>;  // in float and in double
+  using Module = std::array<std::span<const std::uint32_t>, 2>;  // SPIR-V in float and in double
   // Without columns, with functions of a sky, with responses.
   const std::array<std::array<Module, 3>, 3> modules = {
       {{{{slopes_float, slopes_double},
@@ -56,7 +56,7 @@ UniquePipeline compile(VkDevice device, VkPipelineLayout layout, std::uint32_t l
   const auto shader =
       created<UniqueShaderModule>(device, vkCreateShaderModule, module_info, "creating a shader module");
 
-  // In the order of DOLP_SPEC_*. The enumerators are the values of interface.glsl.
+  // The values are in the order of DOLP_SPEC_*. The enumerators have the numbers of interface.glsl.
   const std::array<std::uint32_t, 9> values{local_size,
                                             static_cast<std::uint32_t>(variant.distribution),
                                             static_cast<std::uint32_t>(variant.masking),
@@ -85,11 +85,12 @@ UniquePipeline compile(VkDevice device, VkPipelineLayout layout, std::uint32_t l
 }
 
 constexpr auto kInterruptInterval = std::chrono::milliseconds(20);
-// SwiftShader needs 7 s of an idle processor for the largest kernel.
+// SwiftShader compiles the largest kernel in 7 s on an idle processor.
 constexpr double kDefaultCompilationLimitS = 120.0;
 constexpr const char* kCompilationLimit = "DOLP_COMPILATION_LIMIT_S";
 
-/// Seconds that a driver may take for a kernel. Errors: InputError if the variable is not a number above 0.
+/// Seconds that a driver may take to compile a kernel. Errors: InputError if the environment variable is not a number
+/// above 0.
 double compilation_limit_s() {
   const char* const wish = std::getenv(kCompilationLimit);
   if (wish == nullptr) return kDefaultCompilationLimitS;
@@ -209,7 +210,8 @@ VkPipeline Kernels::pipeline(const KernelVariant& variant) {
 
 UniquePipeline Kernels::create(std::span<const std::uint32_t> spirv, const KernelVariant& variant) const {
   const double limit_s = compilation_limit_s();
-  // A driver may never finish a compilation, and nothing can stop it. So it runs on a thread that can be abandoned.
+  // A driver may never finish a compilation, and nothing can stop it. So the compilation has a thread that can be
+  // abandoned.
   std::packaged_task<UniquePipeline()> compilation(
       [device = device_.get(), layout = layout_.get(), local_size = local_size(), spirv, variant] {
         return compile(device, layout, local_size, spirv, variant);

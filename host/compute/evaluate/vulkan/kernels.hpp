@@ -1,4 +1,4 @@
-// The compute pipelines of shaders/*.comp and the descriptor set they share.
+// The compute pipelines of shaders/*.comp, and the descriptor set that they share.
 #pragma once
 
 #include <array>
@@ -34,27 +34,27 @@ struct KernelVariant {
   std::uint32_t columns = 0;
   std::uint32_t column_kind = DOLP_COLUMNS_SKY;
   bool has_curves = false;
-  std::uint32_t width = 1;  ///< members of a row: 1, or kRowWidth of plan/rows.hpp
+  std::uint32_t width = 1;  ///< largest number of entries in a row: 1, or kRowWidth of plan/rows.hpp
   auto operator<=>(const KernelVariant&) const = default;
 };
 
-/// The variants that a request's data requires.
+/// The variants that the data of a request require.
 KernelVariant moments_variant(const KernelData& data, std::uint32_t width);
 KernelVariant slopes_variant(const KernelData& data);
 KernelVariant masking_table_variant(const KernelData& data);
 
-/// Creates pipelines on demand, one for each variant, from any thread.
+/// Creates pipelines on demand, one for each variant. Any thread may ask for a pipeline.
 class Kernels {
  public:
   Kernels(const Device& device, bool float64);
 
-  /// The buffers that the bindings of interface.glsl refer to, whole.
+  /// The buffers for the bindings of interface.glsl. A binding covers its whole buffer.
   struct Bindings {
     std::array<VkBuffer, kStorageCount> buffers{};
     std::array<VkBufferView, kTexelCount> texels{};  ///< the first is DOLP_BINDING_RULE_NODES
   };
-  /// A binding without a buffer or view gets the buffer of another binding. No pipeline reads it, but it must not refer
-  /// to a destroyed buffer.
+  /// Writes the bindings to the descriptor set. A binding without a buffer or view gets that of another binding: no
+  /// pipeline reads it, but it must not refer to a destroyed buffer.
   void bind(const Bindings& bindings);
 
   VkPipeline pipeline(const KernelVariant& variant);
@@ -64,7 +64,7 @@ class Kernels {
   VkPipelineLayout layout() const { return layout_.get(); }
   VkDescriptorSet descriptor_set() const { return set_; }
 
-  /// Creates a pipeline of any module with the interface of interface.glsl.
+  /// Creates a pipeline from any SPIR-V module that has the interface of interface.glsl.
   UniquePipeline create(std::span<const std::uint32_t> spirv, const KernelVariant& variant) const;
 
  private:

@@ -23,7 +23,7 @@ constexpr std::size_t real_count() {
   return sizeof(Node) / sizeof(double);
 }
 
-/// The precision in which the kernels store `real`.
+/// Converts between the host's double and the precision in which the kernels store `real`.
 class Packing {
  public:
   explicit Packing(bool float64) : float64_(float64) {}
@@ -34,24 +34,25 @@ class Packing {
   std::size_t node_bytes() const {
     return real_count<Node>() * real_bytes();
   }
-  /// Output bytes per structure if `numbers` numbers belong to each structure. The numbers follow after all structures.
+  /// Bytes of output per structure if `numbers` numbers belong to each structure. These numbers follow all structures.
   template <class Node>
   std::size_t output_bytes(std::size_t numbers) const {
     return node_bytes<Node>() + numbers * real_bytes();
   }
-  /// Nodes of the masking table of one shape.
+  /// Number of nodes in the masking table of one shape.
   std::size_t masking_nodes() const {
     return float64_ ? DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_DOUBLE)
                     : DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_FLOAT);
   }
-  /// Formats of a node of a rule and of a masking table (two texels in double), and the texels of a masking table.
+  /// Texel formats of rule nodes and of masking tables, and the number of texels of a masking table. In double a node
+  /// of a masking table takes two texels.
   VkFormat rule_texels() const { return float64_ ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32_SFLOAT; }
   VkFormat masking_texels() const { return float64_ ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT; }
   std::size_t texels_of_table() const { return masking_nodes() * (float64_ ? 2 : 1); }
-  /// Half of the relative spacing of the numbers.
+  /// Largest relative error of rounding to the kernels' precision.
   double unit_roundoff() const { return float64_ ? kDoubleRoundoff : kFloatRoundoff; }
 
-  /// Fills `bytes` with the structures node_of(0), ..., node_of(count - 1), on all cores, evaluated in any order.
+  /// Fills `bytes` with the structures node_of(0), ..., node_of(count - 1). All cores call node_of, in any order.
   /// Numbers beyond the range of float become infinite.
   template <class NodeOf>
   void pack(std::size_t count, const NodeOf& node_of, std::vector<std::byte>& bytes) const {
@@ -63,14 +64,14 @@ class Packing {
     });
   }
 
-  /// Reads the structure at `position` of an array of them.
+  /// Reads the structure at `position` in an array of such structures.
   template <class Node>
   Node read(std::span<const std::byte> bytes, std::size_t position) const {
     const std::span<const std::byte> source = bytes.subspan(position * node_bytes<Node>(), node_bytes<Node>());
     return float64_ ? read_as<double, Node>(source) : read_as<float, Node>(source);
   }
 
-  /// Reads numbers, which begin at `offset` bytes.
+  /// Reads `numbers` from `bytes`, beginning at byte `offset`.
   void read_numbers(std::span<const std::byte> bytes, std::size_t offset, std::span<double> numbers) const {
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       const std::span<const std::byte> source = bytes.subspan(offset + i * real_bytes(), real_bytes());

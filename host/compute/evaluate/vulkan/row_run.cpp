@@ -73,7 +73,7 @@ class RowRun final : public Run<Moments> {
     return invocations * rows_.width * packing_.output_bytes<kernel::MomentsNode>(column_sums(data_));
   }
 
-  /// Begins a submission with the inputs that all tiles of a block share; the first tile continues it.
+  /// Begins the submission of the block's first tile, with the inputs that all tiles of the block share.
   void begin_block(const Block& block) {
     CommandStream& stream = context_.stream;
     stream.begin();
@@ -111,7 +111,7 @@ class RowRun final : public Run<Moments> {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       cost_.evaluations += packing_.read<kernel::MomentsNode>(scratch_, i * rows_.width).evaluations;
     }
-    // Each range owns its rows, so any thread sums the pieces of a row in the same order.
+    // Each range has all pieces of its rows, so the pieces of a row are always summed in the same order.
     const auto [least, most] = std::ranges::minmax(pieces, {}, &RowPiece::row);
     const std::uint32_t first_row = least.row;
     parallel_ranges(most.row - least.row + std::size_t{1}, kRowsAtOnce, [&](std::size_t first, std::size_t last) {
@@ -160,7 +160,7 @@ class RowRun final : public Run<Moments> {
   const KernelData& data_;
   const Rows& rows_;
   Renumbering thetas_, indices_;
-  std::vector<double> column_results_;  ///< DOLP_COLUMN_PARTS sums per column and member
+  std::vector<double> column_results_;  ///< DOLP_COLUMN_PARTS sums for each column of each entry
   std::optional<Buffer> masking_buffer_;
 };
 

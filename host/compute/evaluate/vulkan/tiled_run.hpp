@@ -1,4 +1,4 @@
-// Runs a request on a device, tile by tile.
+// Runs a request on a device, tile by tile. A tile is what one dispatch of a kernel computes.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ struct KernelContext {
 class TiledRun {
  public:
   virtual ~TiledRun() = default;
-  /// Creates the pipelines before the computation, so that their time is measured separately.
+  /// Creates the pipelines before the computation, so that the time for this is measured separately.
   virtual void create_pipelines() { context_.kernels.pipeline(variant_); }
   const Work& cost() const { return cost_; }
 
@@ -80,13 +80,14 @@ class Run : public TiledRun {
   using TiledRun::TiledRun;
 };
 
-/// A run for moments in kernel rows.
+/// A run that computes moments by kernel rows.
 std::unique_ptr<Run<Moments>> row_run(const KernelContext& context, const MomentsRequest& request,
                                       const VulkanOptions& options);
-/// A run for moments by slope samples, which serve all slope distributions: some directions at a time.
+/// A run that computes moments from slope samples, for some directions at a time. The samples serve all slope
+/// distributions.
 std::unique_ptr<Run<Moments>> slope_run(const KernelContext& context, const MomentsRequest& request,
                                         const VulkanOptions& options);
-/// A run for pBRDFs. Entries bring their own shapes and need no tables, so the size of a tile bounds the memory.
+/// A run for pBRDFs. A BeamNode contains its shape and needs no masking table, so the size of a tile limits the memory.
 std::unique_ptr<Run<ScatteringMatrix>> scattering_run(const KernelContext& context, const ScatteringRequest& request,
                                                       const VulkanOptions& options);
 

@@ -1,4 +1,4 @@
-// Divides a request into the dispatches of a device, for a run and for a forecast of it. Pure: no Vulkan.
+// Divides a request into dispatches for a device. Runs and forecasts of runs use it; it does not call Vulkan.
 #pragma once
 
 #include <array>
@@ -21,22 +21,22 @@ using MaskingNode = std::array<double, 4>;
 
 /// Buffer bytes per invocation (a piece of a row, a slope or a beam) and per shape.
 struct TileCosts {
-  std::uint64_t invocation_bytes = 0;  ///< in all buffers that grow with the invocations of a tile
-  std::uint64_t shape_bytes = 1;       ///< bytes of the masking table and node of a shape; 1 without them
+  std::uint64_t invocation_bytes = 0;  ///< bytes in all buffers that grow with the invocations of a tile
+  std::uint64_t shape_bytes = 1;       ///< bytes of a shape's node and masking table; 1 if tiles bind no shapes
   std::uint64_t shape_texels = 0;      ///< texels of the masking table
 };
 
-/// Invocations per dispatch, and shapes bound at a time; at least one each.
+/// Number of invocations per dispatch, and number of shapes that are bound at a time; at least one each.
 struct TileSizes {
   std::uint32_t invocations = 1;
   std::uint32_t shapes = 1;
 };
 
-/// Invocations that may run in lockstep on a device that bounds their loops: each waits for the longest. This is the
-/// number of lanes of lavapipe's widest vector.
+/// Number of invocations that may run in lockstep on a device that limits the iterations of loops. In lockstep all
+/// iterate as often as the longest one. lavapipe's widest vector has this many lanes.
 inline constexpr std::uint32_t kLockstep = 16;
 
-/// Chunks of shapes whose masking tables are bound together, and the rows that need them.
+/// Consecutive chunks of shapes (plan/rows.hpp) whose masking tables are bound together, and the rows that need them.
 struct Block {
   std::uint32_t first_shape = 0;
   std::uint32_t shape_count = 0;
@@ -47,26 +47,27 @@ struct Block {
 /// Slope samples that are planned, sampled and integrated together, with the kernel's input for them.
 struct SlopeBatch {
   std::vector<SlopeSamples> samples;
-  std::vector<std::size_t> first;          ///< position of the first slope of each sample
+  std::vector<std::size_t> first;          ///< for each of `samples`, the position of its first slope in `slopes`
   std::vector<kernel::SlopeNode> slopes;   ///< the slopes of all samples
-  std::vector<std::uint32_t> in_lockstep;  ///< the order for the device, with gaps filled: positions of slopes
+  std::vector<std::uint32_t> in_lockstep;  ///< positions in `slopes`, in the order for the device; some are repeated to
+                                           ///< fill groups
 };
 
 /// Size of the dispatches of a request, and their number.
 struct DispatchCount {
   std::uint32_t tile_invocations = 0;
   std::uint32_t block_shapes = 0;
-  std::uint32_t row_width = 1;  ///< most entries that share an invocation, see plan/rows.hpp
+  std::uint32_t row_width = 1;  ///< largest number of entries that share an invocation, see plan/rows.hpp
   std::uint64_t rows = 0;       ///< kernel rows; with slope samples, pairs of a direction and an index
   std::uint64_t slopes = 0;     ///< slopes of all slope samples
   std::uint64_t dispatches = 0;
   std::uint64_t device_bytes = 0;  ///< upper bound of the memory of all buffers
 };
 
-/// The dispatches of a request for moments, row by row. The request must outlive it.
+/// The dispatches of a request for moments by kernel rows.
 struct RowTiles {
   RowTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options);
-  /// The rows, cut between chunks into blocks of at most sizes.shapes shapes.
+  /// Groups the rows into blocks of at most sizes.shapes shapes. A chunk is never divided.
   std::vector<Block> blocks() const;
   DispatchCount count() const;
 
@@ -77,10 +78,11 @@ struct RowTiles {
   TileSizes sizes;
 };
 
-/// The dispatches of a request for moments by slope samples, some directions at a time.
+/// The dispatches of a request for moments from slope samples, for some directions at a time. The request must outlive
+/// it.
 struct SlopeTiles {
   SlopeTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options);
-  /// Number of directions in a batch that keeps the memory of its azimuths small.
+  /// Number of directions in a batch. It is small enough to limit the memory of the batch.
   std::size_t batch_directions() const;
   /// The batch that begins at direction `first`.
   SlopeBatch batch(std::size_t first) const;
@@ -91,10 +93,10 @@ struct SlopeTiles {
   KernelData data;
   SlopeSampling sampling;
   TileCosts costs;
-  std::uint32_t slopes = 0;  ///< slopes of a dispatch: a multiple of kLockstep, so that no group is cut
+  std::uint32_t slopes = 0;  ///< slopes per dispatch: a multiple of kLockstep, so that no group in lockstep is divided
 };
 
-/// The dispatches of a request for pBRDFs, whose entries bring their own shapes.
+/// The dispatches of a request for pBRDFs. It needs no blocks, because a BeamNode contains its shape.
 struct BeamTiles {
   BeamTiles(const ScatteringRequest& request, const dolp::Device& device, const VulkanOptions& options);
   DispatchCount count() const;
@@ -129,7 +131,8 @@ namespace dolp {
 vulkan::DispatchCount count_dispatches(const MomentsRequest& request, const dolp::Device& device);
 vulkan::DispatchCount count_dispatches(const ScatteringRequest& request, const dolp::Device& device);
 
-/// The limits that every Vulkan device guarantees, for plans without a device. The heap size is a guess.
+/// A device with the limits that every Vulkan device guarantees, for plans without a device. Its memory size is a
+/// guess.
 dolp::Device least_device();
 
 }  // namespace dolp

@@ -69,8 +69,8 @@ class VulkanEvaluator::Impl {
   std::vector<std::string> validation_messages() const { return context_.validation_messages(); }
   const VulkanOptions& options() const { return options_; }
 
-  /// Releases the buffers of the last request, and uses smaller tiles from now on. Returns false if the tiles cannot
-  /// sensibly be smaller.
+  /// Releases the buffers of the last request, and uses smaller tiles for all later ones. Returns false if the tiles
+  /// are as small as is sensible.
   bool shrink_tiles() {
     run_.reset();
     if (options_.max_tile_invocations <= kSmallestTile) return false;
@@ -143,9 +143,10 @@ class VulkanEvaluator::Impl {
   VulkanOptions options_;
   vulkan::Context context_;
   std::optional<vulkan::Kernels> float_kernels_, double_kernels_;
-  std::future<void> prepared_;  ///< its destructor waits for the thread
+  std::future<void> prepared_;  ///< pipelines in preparation; the destructor waits for the thread
   vulkan::CommandStream stream_;
-  std::unique_ptr<vulkan::TiledRun> run_;  ///< a member, so that its buffers outlive a submission that never ends
+  std::unique_ptr<vulkan::TiledRun> run_;  ///< the current run, a member so that its buffers outlive a submission that
+                                           ///< never ends
 };
 
 VulkanEvaluator::VulkanEvaluator(const VulkanOptions& options) {
@@ -194,7 +195,7 @@ std::vector<Result> VulkanEvaluator::compute(const Request& request, const Progr
 
 std::vector<Moments> VulkanEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
   std::vector<Moments> moments = compute<Moments>(request, progress);
-  moments.resize(request.size());  // evaluate() returns nothing if no entry is wanted
+  moments.resize(request.size());  // compute() returns nothing if no entry is wanted
   return moments;
 }
 

@@ -14,37 +14,41 @@
 namespace dolp {
 
 struct VulkanOptions {
-  std::string device;         ///< name or position, see choose_device
-  bool needs_double = false;  ///< requires double precision of the device
-  /// Any message of the layer makes `evaluate` throw DeviceError.
+  std::string device;         ///< name or position of the device, see choose_device
+  bool needs_double = false;  ///< true if the device must support double precision
+  /// Use of the validation layer. Any message of the layer makes `evaluate` throw DeviceError.
   ValidationMode validation = ValidationMode::kFromEnvironment;
-  // These options do not change results.
-  std::uint32_t max_tile_invocations = 65'536;  ///< limit for a dispatch; progress and cancelling wait for its end
-  std::uint32_t max_block_shapes = 4'096;       ///< number of shapes whose masking tables are on the device at a time
-  /// copies inputs through staging buffers even if the device can map its memory
+  // The following options do not change results.
+  std::uint32_t max_tile_invocations = 65'536;  ///< largest number per dispatch; progress and cancelling wait for its
+                                                ///< end
+  std::uint32_t max_block_shapes = 4'096;       ///< largest number of shapes whose masking tables are on the device at
+                                                ///< a time
+  /// copies inputs through staging buffers even if the host can map the memory of the device
   bool staged_uploads = false;
   double tile_timeout_s = 600.0;
 };
 
-/// The options for a precision on a type of device. Dispatches on a processor are short: it is slow at the most
-/// expensive entries, and a call must end within a second of a cancel.
+/// Adapts the options to a device and a precision. On a processor dispatches get fewer invocations, because a processor
+/// is slow at the most expensive entries, and a call must end within a second of a cancel.
 VulkanOptions for_device(VulkanOptions options, const dolp::Device& device, Precision precision);
 
 /// Computes moments and pBRDFs with the kernels of shaders/. Device and pipelines live as long as the object.
 class VulkanEvaluator : public ModelEvaluator {
  public:
-  /// Errors: DeviceError if no usable device matches, the device lacks a required double precision, or the validation
-  /// layer is requested and missing.
+  /// Errors: DeviceError if no usable device matches, if the device lacks double precision although it is required, or
+  /// if the validation layer is requested and missing.
   explicit VulkanEvaluator(const VulkanOptions& options);
   ~VulkanEvaluator() override;
 
-  /// Errors: InputError for lists that do not fit the request's layout; DeviceError if the device has no double
-  /// precision and the request needs it, if the device fails, is lost twice or exceeds the time for a tile (the object
-  /// is useless then), or if the validation layer complains; MemoryError if even small tiles do not fit; Cancelled if
-  /// `progress`, called after each tile, returns false.
+  /// Errors:
+  /// - InputError if the lists of the request do not fit its layout.
+  /// - DeviceError if the request needs double precision and the device has none, if the device fails, if it is lost
+  ///   twice, if a tile exceeds the time limit (the object is useless then), or if the validation layer has a message.
+  /// - MemoryError if even small tiles do not fit.
+  /// - Cancelled if `progress`, called after each tile, returns false.
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
 
-  /// Creates the pipeline in the background; an error there occurs again in `scatter`.
+  /// Creates the pipeline in the background. If this fails, `scatter` throws the error again.
   void prepare(const ScatteringRequest& request) override;
 
   /// Errors: the errors of evaluate().

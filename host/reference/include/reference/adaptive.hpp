@@ -25,12 +25,12 @@ struct Integral {
 
 /// Stop criterion of a quadrature.
 struct Goal {
-  double relative = 1e-9;        ///< error of each integral divided by its scale
+  double relative = 1e-9;        ///< required error of each integral, divided by the integral's scale
   std::size_t max_panels = 400;  ///< the quadrature stops at this number and returns the error reached
   int subdivisions = 1;          ///< equal parts of each first panel; more parts give a different, finer rule
 };
 
-/// First panels of a quadrature: the end points and every break point between them.
+/// The ends of the first panels of a quadrature: both ends of the interval, and all break points between them.
 class Breaks {
  public:
   Breaks(double low, double high) : points_{low, high} {}
@@ -47,8 +47,9 @@ class Breaks {
   std::vector<double> points_;
 };
 
-/// One panel by the 21-point Kronrod rule. The error is the distance to the 10-point Gauss rule inside it. For smooth
-/// integrands this is very pessimistic, but the usual sharper estimate fails for other integrands.
+/// Integrates one panel with the 21-point Kronrod rule. The error is the difference from the 10-point Gauss rule that
+/// it contains, plus rounding. For smooth integrands this is very pessimistic, but the usual sharper estimate fails for
+/// other integrands.
 /// Source: nodes and weights of Boost.Math.
 template <std::size_t N, class Integrand>
 Integral<N> kronrod_panel(const Integrand& integrand, double low, double high) {
@@ -93,7 +94,7 @@ struct Stretch {
   double derivative(double s) const { return 6.0 * (high - low) * s * (1.0 - s); }
 };
 
-/// A part of an interval, in s.
+/// A part of a Stretch, from s = `low` to s = `high`, and its integral.
 template <std::size_t N>
 struct Panel {
   Stretch stretch;
@@ -124,7 +125,7 @@ Integral<N> sum_of(const std::vector<Panel<N>>& panels) {
   return total;
 }
 
-/// Largest of the N errors, each divided by its scale. A component with infinite scale is never refined.
+/// Largest of the N errors, each divided by its scale. A component with infinite scale does not count.
 template <std::size_t N>
 double scaled_error(const Values<N>& error, const Values<N>& scale) {
   double worst = 0.0;
@@ -135,7 +136,7 @@ double scaled_error(const Values<N>& error, const Values<N>& scale) {
 }
 
 /// Integrates N functions over the panels between `breaks`. Halves the worst panel until every error is within
-/// `goal.relative` times `scale(values)`.
+/// `goal.relative` times `scale(values)`, or until there are `goal.max_panels` panels.
 template <std::size_t N, class Integrand, class Scale>
 Integral<N> integrate(const Integrand& integrand, const Breaks& breaks, const Goal& goal, const Scale& scale) {
   const std::vector<double> points = breaks.sorted();

@@ -1,4 +1,4 @@
-// Fresnel reflection of the reference, in complex amplitudes.
+// Fresnel reflection in complex amplitudes, as the reference computes it.
 #pragma once
 
 #include <boost/math/constants/constants.hpp>
@@ -9,7 +9,7 @@
 
 namespace dolp::reference {
 
-/// Amplitude coefficients, and absorptances without cancellation.
+/// Amplitude coefficients of reflection, and absorptances that are computed without cancellation.
 struct FresnelCoefficients {
   std::complex<double> r_s;
   std::complex<double> r_p;
@@ -21,12 +21,13 @@ struct FresnelCoefficients {
 /// Conventions: r_p = -r_s at normal incidence.
 FresnelCoefficients fresnel(const FacetOptics& optics, double cos_beta);
 
-/// Amplitudes of a medium under films from their characteristic matrices, in the number type of the caller.
+/// Amplitudes of reflection at a medium under films, from the characteristic matrices of the films. The caller chooses
+/// the number type.
 ///
 /// Equation: the tangential fields (E, H) above a film are [cos d, -i sin d / y; -i y sin d, cos d] times the fields
-/// below it, with d = 2 pi q thickness, with y = q for s and q / N^2 for p; r = (y_0 E - H) / (y_0 E + H), starting
-/// with (1, y) of the medium. Each matrix is scaled with e^(i d), which cancels in r and keeps thick absorbing films
-/// finite.
+/// below it. Here q = sqrt(N^2 - sin^2 beta), d = 2 pi q thickness, and y is q for s and q / N^2 for p. The fields of
+/// the medium are (1, y). Above all films r = (y_0 E - H) / (y_0 E + H). Each matrix is scaled with e^(i d), which
+/// cancels in r and keeps thick absorbing films finite.
 /// Source: Born and Wolf, Principles of Optics, section 1.6.2.
 template <class Number, class Real>
 Amplitudes<Number> stack_amplitudes(const FacetOptics& optics, const Real& cos_beta, const Real& sin2_beta) {

@@ -1,7 +1,8 @@
 // A beam in a symmetric V-groove, followed from facet to facet and cut at the rims.
 //
-// Axes: u across the groove, v along it, z upward; the origin is the middle of the aperture. Facet A descends from the
-// rim at u = -cos(alpha) to the apex at (0, -sin(alpha)), facet B from the rim at u = +cos(alpha); both have length 1.
+// Axes: u across the groove, v along it, z upward. The origin is the middle of the aperture. Facet A descends from the
+// rim at u = -cos(alpha) to the apex at u = 0, z = -sin(alpha), facet B from the rim at u = +cos(alpha). Both have
+// length 1.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 
 namespace dolp::reference {
 
-/// The slope angle alpha of the facets.
+/// A groove, described by the slope angle alpha of its facets.
 template <class Real>
 struct Groove {
   Real cos_alpha;
@@ -21,16 +22,17 @@ enum class Facet { kA, kB };
 
 /// The part of a parallel beam that enters through the whole aperture and meets one facet first.
 ///
-/// Its flux is the flux through its width, per length of groove: the beams that meet A and B first have 2 cos(alpha)
-/// cos(theta) together. On a facet the beam covers an interval. Its edge nearer to the apex is followed as a ray. The
-/// other edge is flux / cos(beta) away, because reflection keeps the flux. The part above the rim misses the facet.
+/// Its flux is per unit of length along the groove. The beams that meet A first and B first have the flux 2 cos(alpha)
+/// cos(theta) together. On a facet the beam covers an interval. The edge nearer to the apex is followed as a ray. The
+/// other edge is flux / cos(beta) away from it, because reflection keeps the flux. The part of the beam above the rim
+/// misses the facet.
 template <class Real>
 class GrooveBeam {
  public:
-  /// `omega`: unit vector toward the source, omega[2] > 0.
+  /// `omega`: unit vector toward the source, omega[2] > 0. `first`: the facet that the beam meets first.
   GrooveBeam(const Groove<Real>& groove, const Vector<Real>& omega, Facet first)
       : groove_(groove), side_(first == Facet::kA ? Real(-1) : Real(1)), k_(scaled(Real(-1), omega)) {
-    // The point where the ray to the apex crosses the aperture. Rays on A's side of it meet A first.
+    // `to_apex` is where the ray to the apex crosses the aperture. Rays on A's side of it meet A first.
     const Real to_apex = groove.sin_alpha * omega[0] / omega[2];
     const Real inside = std::clamp<Real>(to_apex, -groove.cos_alpha, groove.cos_alpha);
     meets_apex_ = inside == to_apex;
@@ -57,7 +59,8 @@ class GrooveBeam {
   }
 
  private:
-  // Moves the edge nearer to the apex on to the facet on `side_`. Returns the flux that fits between edge and rim.
+  // Moves the edge that is nearer to the apex along the beam to the facet on `side_`. Returns the flux between this
+  // edge and the rim.
   Real land() {
     const Vector<Real> n = normal();
     const Real cos_beta = -dot(k_, n);

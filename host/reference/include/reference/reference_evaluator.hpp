@@ -11,7 +11,8 @@
 namespace dolp {
 
 struct ReferenceOptions {
-  /// Relative to r_i (for r_i and r_q), to the albedo and to the absorbed part.
+  /// Tolerance of the integrals. Errors of r_i and r_q are relative to r_i. Errors of the albedo and of the absorbed
+  /// part are relative to their values.
   double relative_tolerance = 1e-9;
   /// Equal parts of each first panel of the quadratures. A value of 2 repeats the computation with other nodes.
   int subdivisions = 1;
@@ -22,14 +23,15 @@ struct ReferenceOptions {
 /// gives the moments of V-grooves, wants_direct adds the direct emission (reference/moments.hpp); both are integrated
 /// over the slopes of the facets.
 /// Equation: (4), (7), (9)-(13), (15), (16).
-/// Accuracy: relative_tolerance or, if that is larger, a hundredth of the request's tolerance; never more than half of
-/// the request's tolerance. Tolerance 0 means relative_tolerance. With all bounces in steep metal grooves the
-/// quadratures may end earlier, with larger errors. The returned errors are the errors of the quadratures plus rounding
-/// (test ReferenceMoments_CoarseQuadrature_StaysWithinItsErrors).
-/// Domain: theta in [0, 90] degrees; sigma >= 0; cauchy q > 1, with smith masking q > 3/2; n > 0, k >= 0. At 90 degrees
-/// all four moments are limits: 0 for v-cavity and smith. For the other maskings they are finite, except for cauchy
-/// with q <= 3/2: there they are infinite with infinite errors, and r_q and the absorbed part are negative. Multiple
-/// scattering is for v-cavity masking, direct emission for v-cavity and smith.
+/// Accuracy: the integrals have the tolerance ReferenceOptions::relative_tolerance, or a hundredth of the request's
+/// tolerance if that is larger, but at most half of the request's tolerance. If the request's tolerance is 0, they have
+/// ReferenceOptions::relative_tolerance. With all bounces in steep metal grooves the quadratures may end earlier, with
+/// larger errors. The returned errors are the errors of the quadratures plus rounding (test
+/// ReferenceMoments_CoarseQuadrature_StaysWithinItsErrors).
+/// Domain: theta in [0, 90] degrees; sigma >= 0; cauchy q > 1, with smith masking q > 3/2; n > 0, k >= 0. Multiple
+/// scattering needs v-cavity masking, direct emission v-cavity or smith. At 90 degrees all four moments are limits: 0
+/// for v-cavity and smith. For the other maskings they are finite, except for cauchy with q <= 3/2: there they are
+/// infinite with infinite errors, and r_q and the absorbed part are negative.
 /// Errors: InputError outside the domain; Cancelled when `progress` returns false.
 class ReferenceEvaluator final : public ModelEvaluator {
  public:

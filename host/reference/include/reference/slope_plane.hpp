@@ -1,9 +1,10 @@
 // Integrals over the slopes of the facets, for integrands that bend along unknown curves.
 //
-// A slope has the length t and the angle chi from the normal of the plane of incidence, sin(chi) = cos(phi). A facet
-// that faces A at phi faces B at phi + 180 degrees, and both sides of the plane of incidence are equal. So chi covers a
-// quarter of a turn. The bends of the integrand are not computed but detected: a number `regime`, which encodes the
-// history of the beams, changes there, and bisection finds the position.
+// A slope is given by its length t and by the angle chi with sin(chi) = cos(phi), measured from the normal of the plane
+// of incidence. An integrand covers two facets at once: A at the azimuth phi, and B at phi + 180 degrees. The plane of
+// incidence is a plane of symmetry. So chi runs only from 0 to pi/2. The bends of the integrand are not computed but
+// detected: a number `regime` encodes on which side of each bend a slope lies, and bisection finds where this number
+// changes.
 #pragma once
 
 #include <algorithm>
@@ -38,12 +39,14 @@ inline SlopePoint slope_point(double t, double chi_rad) { return {t, std::sin(ch
 
 using Electric = std::array<std::complex<double>, 3>;
 
-/// Toward the view, in the axes of a groove: u at phi from the plane of incidence, v along the groove, z up.
+/// The unit vector toward the view in the axes of a groove: u across it, at the azimuth phi from the plane of
+/// incidence, v along it, z up.
 inline Vector<double> toward_view(const SlopePoint& point, const Zenith& view) {
   return {view.sin * point.sin_chi, -view.sin * point.cos_chi, view.cos};
 }
 
-/// Waves of unit amplitude for the two polarisations of the view: s = k x z (at theta = 0 its limit) and p = k x s.
+/// Electric vectors of two waves of unit amplitude toward k. Their polarisations are s = k x z (at theta = 0 its limit)
+/// and p = k x s.
 struct UnitLight {
   Electric from_s;
   Electric from_p;
@@ -55,7 +58,7 @@ inline UnitLight unit_light(const SlopePoint& point, const Vector<double>& k) {
   return {{s[0], s[1], s[2]}, {p[0], p[1], p[2]}};
 }
 
-/// Reflects a wave of a beam. Returns its absorbed part.
+/// Reflects the electric vector `e` at a facet, in place. Returns the intensity that the facet absorbs.
 inline double reflect(const Bounce<double>& b, const FresnelCoefficients& r, Electric& e) {
   const Amplitudes<std::complex<double>> incident = components(b, e);
   e = reflected(b, incident, {r.r_s, r.r_p});
@@ -79,24 +82,24 @@ class SpecialAngles {
   double critical_;
 };
 
-/// Returns different numbers for points on different sides of a bend.
+/// A number for each slope. It differs between slopes on different sides of a bend.
 using Regime = std::function<std::uint64_t(const SlopePoint&)>;
 
-/// Steps of the scan of chi, in addition to a dozen equal steps.
+/// Steps of the scan of chi that are added to a dozen equal steps.
 struct ScanSteps {
-  /// equal steps of the view's angle in the plane across the groove, per half-angle gamma of the groove
+  /// number of equal steps of the view's zenith in the plane across the groove, per half-angle gamma of the groove
   double per_gamma = 0.0;
   int halvings = 0;  ///< steps toward chi = 0, each half as long as the previous one
 };
 
-/// Finds the bends of the integrands of a view: scans a regime, then bisects.
+/// Finds the bends of the integrand for one view: computes the regime at many slopes, then bisects where it changes.
 class RegimeScan {
  public:
   RegimeScan(const Zenith& view, double theta_rad, const ScanSteps& steps, Regime regime)
       : view_(view), theta_rad_(theta_rad), steps_(steps), regime_(std::move(regime)) {}
-  /// Break points of chi in (0, pi/2) at one t. Empty if there are too many to be useful.
+  /// Break points of chi in (0, pi/2) at one t. Only those of a thin layer if there would be too many.
   std::vector<double> chi_breaks(double t) const;
-  /// Break points of t up to `end`, at which bends enter at chi = 0 or pi/2.
+  /// Break points of t up to `end`: the values of t at which a bend begins or ends at chi = 0 or pi/2.
   std::vector<double> t_breaks(double width, double end) const;
 
  private:
@@ -110,7 +113,7 @@ class RegimeScan {
 template <std::size_t N>
 struct SlopeTask {
   std::function<Values<N>(const SlopePoint&)> integrand;
-  std::function<Values<N>(const Values<N>&)> scales;  ///< scales of the integrals, for the goal
+  std::function<Values<N>(const Values<N>&)> scales;  ///< scales to which Goal::relative refers
   double steepest;                                    ///< upper end of t
   double bends_end;                                   ///< t up to which bends are searched, at most `steepest`
   /// Rows with less weight per v may have the errors of rows with this weight; 0 if rows may become larger with t.
@@ -119,8 +122,9 @@ struct SlopeTask {
   double most_work = 1.0;                             ///< after this much work no integral is refined
 };
 
-/// int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi of N functions. N more values follow: the errors of the inner
-/// integrals.
+/// Integrals of N functions over all slopes up to `steepest`: int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi.
+/// After these N values follow N others, the integrated errors of the inner integrals. `expected` has roughly the
+/// expected values.
 template <std::size_t N>
 Integral<2 * N> integrate_slopes_of(const SlopeTask<N>& task, const Slopes& slopes, const RegimeScan& scan,
                                     const Refinement& refinement, const Values<N>& expected) {

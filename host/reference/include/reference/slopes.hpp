@@ -8,7 +8,7 @@
 
 namespace dolp::reference {
 
-/// Density of facet slopes, in the forms that the moments and the masking need.
+/// A slope distribution, in the forms that the moments and the masking need.
 class Slopes {
  public:
   /// Domain: sigma > 0; cauchy q > 1.
@@ -18,23 +18,23 @@ class Slopes {
   /// Equation: (8) for the cauchy, (1) for the gaussian. Units: sr^-1.
   double facet_density(double tan2_alpha) const;
 
-  /// p(t), t = tan(gamma): the density of the slope in one vertical plane.
+  /// The density p(t) of the slope t = tan(gamma) in one vertical plane.
   double in_plane_density(double slope) const;
 
-  /// Share of in-plane slopes above `slope`, if `slope` is so large that p equals its leading power.
+  /// Share of the in-plane slopes above `slope`, which must be so large that p equals its leading power.
   /// Domain: slope >= 1e8 m.
   double in_plane_tail(double slope) const;
 
-  /// Share of all slopes that exceed t, at any azimuth.
+  /// Share of all facets with slopes above t, at any azimuth.
   double share_above(double t) const;
 
-  /// The slope that a share of all slopes exceeds.
+  /// The slope t that this share of all facets exceeds.
   double quantile(double share) const;
 
-  /// int 2 pi P t^2 dt above t. Domain: cauchy q > 3/2; t >= 1e8 m, where P equals its leading power.
+  /// int 2 pi P t^2 dt over all slopes above t. Domain: cauchy q > 3/2; t >= 1e8 m, where P equals its leading power.
   double length_above(double t) const;
 
-  /// The integration variable v of t = width sinh(v), and the density 2 pi P t dt/dv, whose integral over v is 1.
+  /// The integration variable v with t = width sinh(v), and the density 2 pi P t dt/dv, whose integral over v is 1.
   double at(double v) const { return width_ * std::sinh(v); }
   double coordinate_of(double t) const { return std::asinh(t / width_); }
   double density_at(double v) const;

@@ -36,7 +36,8 @@ Vector<Real> unit(const Vector<Real>& a) {
   return scaled(Real(1) / sqrt(dot(a, a)), a);
 }
 
-/// A reflection at a facet. s is normal to both beams; p_in = k x s and p_out = k' x s.
+/// A reflection at a facet. s is normal to the incident direction k and to the reflected one k_out; p_in = k x s,
+/// p_out = k_out x s.
 template <class Real>
 struct Bounce {
   Real cos_beta;
@@ -71,7 +72,7 @@ Amplitudes<Complex> components(const Bounce<Real>& b, const std::array<Complex, 
   return {b.s[0] * e[0] + b.s[1] * e[1] + b.s[2] * e[2], b.p_in[0] * e[0] + b.p_in[1] * e[1] + b.p_in[2] * e[2]};
 }
 
-/// The electric vector after reflection, from its components before it.
+/// The electric vector after reflection, from its components before it and the amplitude coefficients `r`.
 template <class Real, class Complex>
 std::array<Complex, 3> reflected(const Bounce<Real>& b, const Amplitudes<Complex>& incident,
                                  const Amplitudes<Complex>& r) {

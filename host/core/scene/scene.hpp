@@ -100,6 +100,7 @@ struct Surroundings {
   double temperature_K = 0.0;                           ///< used if there is no profile
   SkyAir air = {};                                      ///< air of a built-in profile
   std::shared_ptr<const SkyProfile> profile = nullptr;  ///< null for a uniform sky
+  void set_sky(SkyProfile sky);
 };
 
 /// Path to the sensor. It changes I to tau I + L (hemispherical mode: tau I + pi L) and multiplies Q, U and V by tau.

@@ -12,6 +12,7 @@
 #include "base/text.hpp"
 #include "model/choices.hpp"
 #include "model/slopes.hpp"
+#include "scene/sky_profile.hpp"
 
 namespace dolp {
 namespace {
@@ -134,6 +135,19 @@ SceneKey source_number(const char* key, const char* unit, const char* meaning, S
       number(
           key, unit, kNonNegativeRange, "", meaning, [=](auto& s) { return &((*s.source).*number_of); }, is_kind),
       set);
+}
+
+/// Makes a key of the air of a built-in sky. In a scene that is complete, setting it also changes the sky.
+SceneKey air_number(const char* key, const char* unit, const NumberRange& range, const char* meaning,
+                    std::optional<double> SkyAir::*number_of) {
+  const auto set = [=](SceneValues& s, const KeyValue& v) {
+    s.surroundings->air.*number_of = v.number;
+    if (s.document)
+      s.surroundings->set_sky(built_in_sky(s.names.profile, s.surroundings->air, key + std::string(": ")).value());
+  };
+  return with_set(number(key, unit, range, "", meaning,
+                         [=](auto& s) { return s.surroundings ? &(s.surroundings->air.*number_of) : nullptr; }),
+                  set);
 }
 
 SceneKey wind_axis() {
@@ -281,13 +295,13 @@ std::vector<SceneKey> radiation_keys() {
            "sky that changes with the zenith: clear-sky, overcast, or your own CSV file (columns zenith_deg, "
            "temperature_K or radiance, and wavelength_um if they depend on it); instead of temperature_K",
            [](auto& s) { return &s.names.profile; }),
-      number("surroundings.vapour_cm", "cm", kVapourRange, "",
-             "precipitable water of the air of clear-sky or overcast; if absent, 1.27 cm, or all that the air holds "
-             "if this is less",
-             [](auto& s) { return s.surroundings ? &s.surroundings->air.vapour_cm : nullptr; }),
-      number("surroundings.air_temperature_K", "K", kAirTemperatureRange, "",
-             "temperature of the air at the ground under clear-sky or overcast; if absent, 288.15 K",
-             [](auto& s) { return s.surroundings ? &s.surroundings->air.temperature_K : nullptr; }),
+      air_number("surroundings.vapour_cm", "cm", kVapourRange,
+                 "precipitable water of the air of clear-sky or overcast; if absent, 1.27 cm, or all that the air "
+                 "holds if this is less",
+                 &SkyAir::vapour_cm),
+      air_number("surroundings.air_temperature_K", "K", kAirTemperatureRange,
+                 "temperature of the air at the ground under clear-sky or overcast; if absent, 288.15 K",
+                 &SkyAir::temperature_K),
       number("path.transmittance", "1", kFractionRange, "1", "transmittance tau of the path to the sensor",
              [](auto& s) { return s.path ? &s.path->transmittance : nullptr; }),
       number("path.temperature_K", "K", kBackgroundTemperatureRange, "",

@@ -361,11 +361,7 @@ void load_profile(SceneValues& scene, const SceneDocument& document, const Known
                            [&](const std::string& path) { return read_sky_profile(path, prefix); });
   }
   if (!profile->wavelength_um.empty()) check_covers({profile->wavelength_um, {}}, all_wavelengths(scene), prefix);
-  if (const std::optional<double> everywhere = profile->only_temperature()) {
-    scene.surroundings->temperature_K = *everywhere;
-    return;
-  }
-  scene.surroundings->profile = std::make_shared<const SkyProfile>(std::move(*profile));
+  scene.surroundings->set_sky(std::move(*profile));
 }
 
 /// Fills in quantities that the scene gives only as an axis. Each gets the first value of its axis.

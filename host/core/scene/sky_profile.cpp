@@ -14,6 +14,7 @@
 #include "base/hash.hpp"
 #include "base/text.hpp"
 #include "model/angles.hpp"
+#include "scene/scene.hpp"
 #include "scene/spectral_data.hpp"
 
 namespace dolp {
@@ -153,6 +154,12 @@ std::optional<double> SkyProfile::only_temperature() const {
   if (kind != Kind::kTemperature) return std::nullopt;
   const bool is_one = std::ranges::all_of(values, [&](double value) { return value == values.front(); });
   return is_one ? std::optional(values.front()) : std::nullopt;
+}
+
+void Surroundings::set_sky(SkyProfile sky) {
+  const std::optional<double> everywhere = sky.only_temperature();
+  if (everywhere) temperature_K = *everywhere;
+  profile = everywhere ? nullptr : std::make_shared<const SkyProfile>(std::move(sky));
 }
 
 std::string SkyProfile::text() const {

@@ -1,5 +1,8 @@
 // Fits find known truths, and name what the data do not determine.
+#include <map>
+
 #include "fit_support.hpp"
+#include "scene/scene_keys.hpp"
 
 namespace dolp::fit {
 namespace {
@@ -43,6 +46,60 @@ TEST_F(FitTest, NoUncertainties_TheResidualsGiveTheScale) {
     EXPECT_NEAR(without.parameters[j].value, with.parameters[j].value, 0.01 * *with.parameters[j].standard_error);
     EXPECT_NEAR(*without.parameters[j].standard_error, ratio * *with.parameters[j].standard_error,
                 0.02 * *with.parameters[j].standard_error);
+  }
+}
+
+TEST_F(FitTest, EachNumberOfAScene_VariesAsASettingOfItWould) {
+  using Settings = std::vector<std::string>;
+  const Settings sky = {"surroundings.temperature_K=none", "surroundings.profile=clear-sky"};
+  const Settings film = {"surface.coating=[{n=1.5,k=0.2,thickness_um=2}]"};
+  const Settings bistatic = {"geometry.mode=bistatic", "source.irradiance=9"};
+  const Settings paint = {"surface.diffuse=0.3"};
+  struct Row {
+    double value;
+    Settings needed = {};
+  };
+  const std::map<std::string, Row> rows = {{"surface.n", {1.7}},
+                                           {"surface.k", {0.4}},
+                                           {"surface.sigma", {0.3}},
+                                           {"surface.wind_m_s", {6, {"surface.distribution=gaussian"}}},
+                                           {"surface.q", {2.5}},
+                                           {"surface.specular", {0.9}},
+                                           {"surface.diffuse", {0.2, paint}},
+                                           {"surface.diffuse_exponent", {-0.2, paint}},
+                                           {"surface.coating.1.n", {1.6, film}},
+                                           {"surface.coating.1.k", {0.1, film}},
+                                           {"surface.coating.1.thickness_um", {1.5, film}},
+                                           {"emission.temperature_K", {310}},
+                                           {"source.irradiance", {5, bistatic}},
+                                           {"source.relative_irradiance", {5, bistatic}},
+                                           {"source.scale", {2, bistatic}},
+                                           {"geometry.view_zenith_deg", {50, bistatic}},
+                                           {"geometry.relative_azimuth_deg", {170, bistatic}},
+                                           {"surroundings.temperature_K", {210}},
+                                           {"surroundings.vapour_cm", {0.5, sky}},
+                                           {"surroundings.air_temperature_K", {280, sky}},
+                                           {"path.transmittance", {0.8, {"path.temperature_K=280"}}},
+                                           {"path.temperature_K", {270, {"path.transmittance=0.9"}}},
+                                           {"path.radiance", {3, {"path.transmittance=0.9"}}},
+                                           {"spectrum.wavelength_um", {9}}};
+  for (const Key& key : keys()) {
+    if (key.type != Key::Type::kNumber || key.layer > 1 || key.key == "accuracy.tolerance") continue;
+    ASSERT_TRUE(rows.contains(key.key)) << key.key << " is new; add it to the rows";
+    const Row& row = rows.at(key.key);
+    const SceneValues scene = parse_scene(kScene, "scene", settings_from_text(row.needed));
+    const SceneValues set = with_settings(scene, {{key.key, row.value}});
+    MeasuredData data = measured(0.0);
+    if (scene.geometry.mode == Mode::kBistatic) data.zenith_column = "theta_i_deg";
+    const double reach = 0.1 * std::abs(row.value);
+    const Model varied(scene, {data}, {number(key.key, row.value - reach, row.value + reach)});
+    const Model fixed(set, {data}, {number("surface.specular", 0.5, 1.0)});
+    const auto at = [&](const Model& model, double value) {
+      return model.predict({Eigen::VectorXd::Constant(1, value)}, 1e-6, evaluator_, {}).front().components;
+    };
+    const Eigen::MatrixX2d found = at(varied, row.value);
+    EXPECT_LT((found - at(fixed, set.surface.specular)).cwiseAbs().maxCoeff(), 1e-14) << key.key;
+    EXPECT_GT((found - at(varied, 1.05 * row.value)).cwiseAbs().maxCoeff(), 1e-9) << key.key;
   }
 }
 

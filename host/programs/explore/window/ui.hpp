@@ -65,7 +65,8 @@ struct Ui {
   ShapeView shape_view = {};
   CurveView curves = {};
   PathDialog dialog = {};
-  std::pair<std::string, std::filesystem::path> saved = {};  ///< scene file, and the folder that the user last chose for it
+  std::pair<std::string, std::filesystem::path> saved =
+      {};  ///< scene file, and the folder that the user last chose for it
   bool is_narrow = false;
   std::string page = "curve";  ///< view in a narrow window; empty: the view of View::panel
   bool shows_help = false;

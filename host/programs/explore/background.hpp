@@ -62,7 +62,7 @@ class BackgroundTask {
     const std::scoped_lock lock(mutex_);
     phase_ = phase;
   }
-  const std::string& message() const { return message_; }  ///< one line; after a failure its reason
+  const std::string& message() const { return message_; }  ///< one line; after a failure, the reason
 
  private:
   std::function<void()> on_change_;

@@ -39,7 +39,7 @@ class Curve {
   void set_peak(const Point& peak) { peak_ = peak; }
   const JobPart& finished() const { return finished_; }  ///< the last finished curve; at first without points
 
-  double worst_error() const {  // of DOLP, among good points
+  double worst_error() const {  // largest error bound of DOLP among good points
     double worst = 0.0;
     for (const Point& point : points()) {
       if (point.is_good()) worst = std::max(worst, point[Quantity::kErrorEstimate]);

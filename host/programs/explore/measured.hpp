@@ -64,6 +64,6 @@ Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress,
 std::size_t nearest_minimum(const Fit& fit, const FitJob& job);
 
 std::string fit_text(const Fit& fit, std::size_t chosen);  ///< one line about the chosen minimum
-std::string interval_text(const FitInterval& interval);    ///< "1.2 to 1.5", or "open" for a cut-off end
+std::string interval_text(const FitInterval& interval);    ///< "1.2 to 1.5"; an end that the range cuts off is "open"
 
 }  // namespace dolp::explore

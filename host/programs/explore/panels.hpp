@@ -67,7 +67,7 @@ class SourceSky {
   static constexpr std::size_t kZeniths = 31;   ///< 0 to 90 degrees
   static constexpr std::size_t kAzimuths = 37;  ///< from 0 to 180 degrees; the other half is the mirror image
 
-  void follow(const std::string& key, const Scene& scene);  ///< `key`: the scene without its azimuth
+  void follow(const std::string& key, const Scene& scene);  ///< `key` identifies the scene without its azimuth
   std::vector<Job> wanted() const {  // at the coarse tolerance, for azimuths that are not known yet
     std::vector<Job> jobs;
     for (const Sweep& ring : rings_) {

@@ -4,8 +4,7 @@
 
 namespace dolp::explore {
 
-// ---- Names of curves. Each ends with the remark on the curve.
-/// ", the scene before" for a curve of an earlier scene, ", coarse" for a coarse curve; otherwise empty.
+/// The end of a curve's name: ", the scene before" for an earlier scene, ", coarse" for a coarse curve, or nothing.
 const char* remark(const Session& session, const Curve& curve);
 std::string curve_name(const Session& session);  ///< describes the surface of the curve on display
 std::string overlay_name(const Session& session);

@@ -131,7 +131,7 @@ bool replaces(const Setting& change, const std::string& other) {
   return std::ranges::count(described(key).rivals, other) > 0;
 }
 
-/// For each choice that excludes other choices the word that excludes nothing. A wind excludes other slopes than
+/// For each choice that excludes other choices, the word that excludes nothing. A wind excludes other slopes than
 /// Gaussian ones, and the state of the air excludes other skies than the built-in ones.
 std::vector<Setting> compatible_words(const Scene& scene) {
   std::vector<Setting> words = {{"surface.masking", "v-cavity"},    {"surface.scattering", "single"},

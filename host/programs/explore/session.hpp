@@ -140,7 +140,7 @@ class Session {
   const Scene& spectral_scene() const { return spectral_scene_; }
   const MapAxis& wavelengths() const { return wavelengths_; }
   const Sweep& spectrum() const { return spectrum_; }                ///< over wavelength, at the cursor's zenith
-  const Sweep& smooth_spectrum() const { return smooth_spectrum_; }  ///< smooth surface over wavelength, at that zenith
+  const Sweep& smooth_spectrum() const { return smooth_spectrum_; }  ///< smooth surface over wavelength, at the cursor
   const Sweep& smooth() const { return smooth_; }                    ///< the smooth surface over zenith
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
@@ -159,7 +159,7 @@ class Session {
   /// The result of the last fit for the parameter `key`; null if the user has changed the scene since the fit.
   const FitParameter* fitted(const std::string& key) const;
   const Message& message() const { return message_; }
-  bool is_dragged() const { return is_held_ && is_in_gesture_; }  ///< the held mouse button has changed the scene
+  bool is_dragged() const { return is_held_ && is_in_gesture_; }  ///< the mouse is down and has changed the scene
   /// True if the points of a curve belong to an earlier scene; false during a drag, in which every curve lags behind.
   bool is_outdated(const Curve& curve) const { return curve.is_stale() && !is_dragged(); }
   /// The effects of the last finished curve. The influence of a kept effect is its influence at the cursor's zenith.

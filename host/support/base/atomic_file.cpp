@@ -179,7 +179,7 @@ struct AtomicFile::Impl {
   fs::path path;    // path that the user gave, for messages
   fs::path target;  // path after symbolic links are resolved
   File file;
-  fs::path name;         // until the file is complete; empty: it has no name
+  fs::path name;         // name until the file is complete; empty: none
   bool is_kept = false;  // true if the file keeps its name even if it is never complete
   std::uint64_t size = 0;
 

@@ -12,7 +12,7 @@ namespace dolp {
 std::string_view trim(std::string_view text);  ///< without blanks (space, tab) at both ends
 std::vector<std::string_view> split(std::string_view text, char separator);  ///< at least one piece
 
-/// The lines of a text without their ends (LF or CRLF), a UTF-8 byte order mark, and blank lines at the end.
+/// The lines of a text without line ends (LF or CRLF), a UTF-8 byte order mark at its start, or blank lines at its end.
 std::vector<std::string_view> split_lines(std::string_view text);
 
 std::string lower_case(std::string_view text);  ///< ASCII letters only

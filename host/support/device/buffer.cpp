@@ -9,7 +9,7 @@
 namespace dolp::vulkan {
 namespace {
 
-// In bytes. Vulkan has no empty buffers, and no struct of the kernels is larger.
+// In bytes. Vulkan has no empty buffers, and no struct of the kernels is larger than this.
 constexpr VkDeviceSize kSmallestBuffer = 256;
 
 }  // namespace

@@ -25,7 +25,7 @@ struct DeviceLost : DeviceError {
 
 std::string result_name(VkResult result);  ///< for example "VK_ERROR_DEVICE_LOST"
 bool lacks_addresses();                    ///< too little address space is left for a driver
-bool lacks_threads();                      ///< the process may not start as many threads as a driver waits for
+bool lacks_threads();                      ///< the system allows fewer threads than a driver needs
 
 /// Throws unless `result` is VK_SUCCESS. `action` is a phrase such as "creating a buffer". Errors: DeviceLost;
 /// MemoryError if the device or its driver is out of memory; otherwise DeviceError "Vulkan: ACTION failed: RESULT".

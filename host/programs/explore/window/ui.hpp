@@ -30,8 +30,8 @@ class Actions {
   const Preferences& preferences() const { return preferences_; }
 
   void finish();  ///< takes the results of finished work in the background
-  std::string due_picture() const { return Clock::now() < picture_time_ ? "" : picture_path; }  ///< path; empty: none
-  bool is_true_error_old() const;  ///< it was computed for another curve than the one on display
+  std::string due_picture() const { return Clock::now() < picture_time_ ? "" : picture_path; }  ///< empty: none is due
+  bool is_true_error_old() const;  ///< the true error belongs to another curve than the one on display
 
   std::string picture_path;  ///< requests a picture of a frame; empty: none is requested
   bool is_quitting = false;

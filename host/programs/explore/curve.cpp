@@ -47,7 +47,7 @@ const std::vector<Removal>& removals() {
   return all;
 }
 
-/// For each effect of `scene`: the scene of `edits` without this effect.
+/// The scene of `edits` without one effect, for each effect of `scene` that can be removed.
 std::vector<WithoutEffect> without_each(const Scene& scene, const SceneEdits& edits) {
   std::vector<WithoutEffect> without;
   for (const Removal& removal : removals()) {

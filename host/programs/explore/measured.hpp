@@ -7,7 +7,7 @@
 
 namespace dolp::explore {
 
-Plotted plotted(Observable observable);  ///< the quantity of the plot that shows it
+Plotted plotted(Observable observable);  ///< the quantity that a plot draws for this observable
 
 /// Reads measured points from a regular file, so that the window never waits for a pipe. Errors: InputError.
 MeasuredData read_measured(const std::string& path);

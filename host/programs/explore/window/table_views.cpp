@@ -28,7 +28,7 @@ bool is_stale(const Session& session) { return !session.effects().empty() && !se
 void draw_row(const Session& session, const Effect& row) {
   const bool is_absent = row.state == EffectState::kAbsent;
   const ImU32 colour = is_absent || is_stale(session) ? kDimColour : kTextColour;
-  const bool is_slopes = row.name == "distribution";  // without slopes the surface is smooth
+  const bool is_slopes = row.name == "distribution";  // without its distribution the surface is smooth
   const std::string removed = is_slopes ? "roughness" : row.name;
   const std::string without = is_absent ? "" : without_text(session, removed);
   cell(row.name, colour);

@@ -180,7 +180,6 @@ CLI::Option* add_option(CLI::App& command, const OptionRow& row, Options& option
       row.value);
 }
 
-/// Declares which options of `verify` and `materials` need or exclude other options.
 void add_conditions(CLI::App& verify, CLI::App& materials) {
   for (const char* of_table : {"--samples", "--seed", "--named-files"})
     verify.get_option(of_table)->needs(verify.get_option("TABLE"));

@@ -1,4 +1,3 @@
-// Commands that compute: tables, points, checks and fits; and the window.
 #include "cli/commands.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// The command line, its values, and the commands. command_line.cpp describes each command and option.
+// command_line.cpp describes each command and option.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -34,14 +34,12 @@ struct Options {
   std::vector<std::string> words;
 };
 
-/// Refuses to read two inputs from stdin. Errors: InputError.
-void check_one_stdin(const Options& options);
+void check_one_stdin(const Options& options);  ///< Errors: InputError if two inputs are stdin
 
 /// All settings of the command line: those of --set first, then --tolerance and --precision. Errors: InputError.
 std::vector<Setting> all_settings(const Options& options);
 
-/// The allowed values of a scene key: "a number in [0, 10]".
-std::string allowed(const std::string& key);
+std::string allowed(const std::string& key);  ///< for example "a number in [0, 10]"
 
 /// Reads the scene, and applies all_settings() and then `more`. Prints each remark as a warning on stderr.
 Scene load_scene(const Options& options, const std::vector<Setting>& more = {});
@@ -55,8 +53,7 @@ void print(const Report& report, const Options& options);
 /// Prints a report and its remarks. Returns the exit status, which depends on --strict.
 int finish(const Report& report, const Options& options);
 
-/// The commands and their options, for parsing, help, completions and the manual page. Parsing fills `options`, which
-/// must outlive the result.
+/// The parser of the command line. Parsing fills `options`, which must outlive the result.
 std::unique_ptr<CLI::App> command_line(Options& options);
 
 // Each command returns the exit status of a run without an error (terminal/exit_status.hpp).
@@ -70,8 +67,7 @@ int run_plan(const Options& options);
 /// does not tell so.
 int run_verify(const Options& options);
 int run_lookup(const Options& options);
-/// Returns kExitAccuracy if no minimum is found.
-int run_fit(const Options& options);
+int run_fit(const Options& options);  ///< kExitAccuracy if no minimum is found
 int run_explore(const Options& options);
 int run_materials(const Options& options);
 int run_keys(const Options& options);

@@ -46,8 +46,7 @@ complete -c dolp -a '(dolp completion words -- (commandline -opc)[2..] :(command
 
 bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
-/// The names of an option: "--output", "-o".
-Words names_of(const CLI::Option& option) {
+Words names_of(const CLI::Option& option) {  // "--output", "-o"
   Words names;
   for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
   for (const std::string& name : option.get_snames()) names.push_back("-" + name);

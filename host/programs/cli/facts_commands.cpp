@@ -65,7 +65,6 @@ std::vector<double> wavelengths_of(const std::string& text) {
   return wavelengths;
 }
 
-/// Prints n and k of one material, as a scene with this material has them.
 int show_material(const Options& options) {
   const std::vector<double> wavelengths = wavelengths_of(options.wavelength_um);
   const auto [name, from_um, to_um, source] = material(options.material);
@@ -93,7 +92,6 @@ int show_material(const Options& options) {
   return finish(report, options);
 }
 
-/// Prints n and k of all materials that are known at a wavelength.
 int show_all_materials(const Options& options) {
   const std::vector<double> wavelengths = wavelengths_of(options.wavelength_um);
   if (wavelengths.size() != 1)

@@ -1,5 +1,3 @@
-// The program dolp.
-
 #include <fmt/format.h>
 #include <malloc.h>
 #include <unistd.h>
@@ -25,8 +23,7 @@
 namespace dolp::cli {
 namespace {
 
-/// A hint for an unknown option: a known option that differs by at most two letters, or --set for a key of a scene.
-/// Empty if there is no hint.
+/// A hint for an unknown option: a similar option, or --set for a key of a scene. Empty if there is no hint.
 std::string option_hint(const CLI::App& command, const std::string& option) {
   constexpr std::size_t kMostMistakes = 2;
   const std::string given = option.substr(0, option.find('='));

@@ -1,4 +1,3 @@
-// Threads that compute for the window.
 #pragma once
 
 #include <algorithm>
@@ -27,9 +26,8 @@ std::jthread run_in_background(Work work, std::future<Result>& result, const std
   });
 }
 
-/// True if the work of run_in_background has ended, or was never started.
 template <class Result>
-bool is_ended(const std::future<Result>& result) {
+bool is_ended(const std::future<Result>& result) {  // true also if no work was started
   return !result.valid() || result.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
@@ -45,20 +43,16 @@ class BackgroundTask {
 
   /// The thread calls `on_change` at each progress and at the end.
   explicit BackgroundTask(std::function<void()> on_change) : on_change_(std::move(on_change)) {}
-  /// Cancels the work and waits for its end.
-  ~BackgroundTask() { cancel(); }
+  ~BackgroundTask() { cancel(); }  ///< waits for the end of the work
 
-  /// Does nothing while work is running.
-  void start(const Work& work);
+  void start(const Work& work);  ///< does nothing while work is running
   void cancel() { is_cancelled_ = true; }
-  /// If the work has ended, calls its Ending.
-  void finish();
+  void finish();  ///< calls the Ending if the work has ended
 
   State state() const { return state_; }
   bool is_running() const { return state_ == State::kRunning; }
-  /// Progress of the current phase, from 0 to 1.
-  double progress() const { return progress_; }
-  /// The current phase; empty if the work has only one. The work sets it; progress then restarts from 0.
+  double progress() const { return progress_; }  ///< of the current phase, from 0 to 1
+  /// Empty if the work has only one phase. The work sets it; progress then restarts from 0.
   std::string phase() const {
     const std::scoped_lock lock(mutex_);
     return phase_;
@@ -68,8 +62,7 @@ class BackgroundTask {
     const std::scoped_lock lock(mutex_);
     phase_ = phase;
   }
-  /// The message, or the reason for a failure, in one line.
-  const std::string& message() const { return message_; }
+  const std::string& message() const { return message_; }  ///< one line; after a failure, the reason
 
  private:
   std::function<void()> on_change_;
@@ -94,7 +87,6 @@ struct Job {
   bool is_brief = false;  ///< once begun, it runs to its end even if it is no longer wanted
 };
 
-/// The results of one part of a job.
 struct JobPart {
   std::string key = {};
   std::size_t part = 0;  ///< position among the job's parts
@@ -115,11 +107,9 @@ class Sweep {
   void follow(Job job, const std::string& column = "theta_deg");
   std::optional<Job> wanted() const { return is_finished() ? std::nullopt : job_; }
   bool take(const JobPart& news);
-  /// True if the points on display belong to the job of the last follow().
-  bool is_finished() const { return job_ && shown_key_ == job_->key; }
-  // The points on display, and the values of their column.
+  bool is_finished() const { return job_ && shown_key_ == job_->key; }  ///< shows the points of the last follow()
   const std::vector<Point>& points() const { return points_; }
-  const std::vector<double>& at() const { return at_; }
+  const std::vector<double>& at() const { return at_; }  ///< values of `column`, one per point
 
  private:
   std::optional<Job> job_;
@@ -149,7 +139,6 @@ class Worker {
     return std::exchange(news_, {});
   }
 
-  /// Waits for results, at most this long.
   void await_news(std::chrono::duration<double> at_most) {
     std::unique_lock lock(mutex_);
     arrived_.wait_for(lock, at_most, [this] { return !news_.empty() || is_ended(end_); });
@@ -162,21 +151,18 @@ class Worker {
   }
 
  private:
-  /// A wanted job, and the totals of its finished parts.
   struct Task {
     Job job;
     std::size_t next_part = 0;
-    double wall_s = 0.0;
-    double evaluations = 0.0;
+    double wall_s = 0.0;       ///< total of the finished parts
+    double evaluations = 0.0;  ///< total of the finished parts
 
     bool is_done() const { return next_part == job.parts.size(); }
   };
 
   void run();
-  /// Computes the next part.
   JobPart advance(Task& task);
-  /// The wanted task with this key; null if there is none.
-  Task* find(const std::string& key) {
+  Task* find(const std::string& key) {  // null if no wanted task has this key
     const auto found = std::ranges::find(tasks_, key, [](const Task& task) { return task.job.key; });
     return found == tasks_.end() ? nullptr : &*found;
   }

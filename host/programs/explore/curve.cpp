@@ -15,10 +15,8 @@ constexpr std::size_t kStride = 10;  // the reference recomputes every tenth poi
 
 double dolp_of(const Point& point) { return point[Quantity::kDolp]; }
 
-/// The largest DOLP that a point may have, given its error bound.
 double most_of(const Point& point) { return dolp_of(point) + point[Quantity::kErrorEstimate]; }
 
-/// A part of a scene that can be removed.
 struct Removal {
   const char* effect;
   bool radiates;
@@ -49,7 +47,7 @@ const std::vector<Removal>& removals() {
   return all;
 }
 
-/// For each effect of `scene`: the scene of `edits` without this effect.
+/// The scene of `edits` without one effect, for each effect of `scene` that can be removed.
 std::vector<WithoutEffect> without_each(const Scene& scene, const SceneEdits& edits) {
   std::vector<WithoutEffect> without;
   for (const Removal& removal : removals()) {
@@ -64,8 +62,7 @@ std::vector<WithoutEffect> without_each(const Scene& scene, const SceneEdits& ed
   return without;
 }
 
-/// The good point with the largest DOLP; end() without a good point.
-std::vector<Point>::const_iterator largest_of(const std::vector<Point>& points) {
+std::vector<Point>::const_iterator largest_of(const std::vector<Point>& points) {  // end() without a good point
   const auto rank = [](const Point& point) {
     return std::pair(point.is_good(), point.is_good() ? dolp_of(point) : 0.0);
   };

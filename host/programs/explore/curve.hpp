@@ -1,4 +1,3 @@
-// One curve over theta, from its first coarse results to its final ones, and its maximum.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +7,7 @@
 
 namespace dolp::explore {
 
-/// Results of a scene over all zeniths.
+/// Results of a scene over all zeniths, coarse at first.
 class Curve {
  public:
   enum class Stage { kCoarse, kFine };
@@ -25,30 +24,22 @@ class Curve {
   /// until newer points arrive.
   void follow(const std::string& key, const Scene& scene, bool keep_all);
 
-  /// The job of a stage; empty if the stage is done.
-  std::optional<Job> wanted(Stage stage) const;
-
-  /// Takes results of this curve. Returns false for other results.
-  bool take(const JobPart& news);
+  std::optional<Job> wanted(Stage stage) const;  ///< empty if the stage is done
+  bool take(const JobPart& news);                ///< false if these are not results of this curve
   /// Takes a coarse curve of an earlier scene, unless the curve on display is current. Returns false for other results.
   bool take_earlier(const JobPart& news);
 
   const Scene& scene() const { return scene_; }
   const std::string& key() const { return key_; }
   bool is_finished() const { return shown_.key == key_of(Stage::kFine); }
-  /// True if the points on display belong to an earlier scene.
-  bool is_stale() const { return !points().empty() && !is_current(); }
-  // The points on display, and the scene that they were computed with.
-  const Scene& shown_scene() const { return points().empty() ? scene_ : shown_.scene; }
+  bool is_stale() const { return !points().empty() && !is_current(); }  ///< shows points of an earlier scene
+  const Scene& shown_scene() const { return points().empty() ? scene_ : shown_.scene; }  ///< the scene of points()
   const std::vector<Point>& points() const { return shown_.points; }
-  /// The points on display and the maximum, which may lie between them.
-  std::vector<Point> drawn() const;
+  std::vector<Point> drawn() const;  ///< points() and the maximum, which may lie between them
   void set_peak(const Point& peak) { peak_ = peak; }
-  /// The last finished curve; without points until the first one is finished.
-  const JobPart& finished() const { return finished_; }
+  const JobPart& finished() const { return finished_; }  ///< the last finished curve; at first without points
 
-  /// The largest error bound of DOLP among points whose status promises a bound.
-  double worst_error() const {
+  double worst_error() const {  // largest error bound of DOLP among good points
     double worst = 0.0;
     for (const Point& point : points()) {
       if (point.is_good()) worst = std::max(worst, point[Quantity::kErrorEstimate]);
@@ -70,9 +61,8 @@ class Curve {
   std::optional<Point> peak_;  ///< the maximum of the finished curve
 };
 
-/// Compares every tenth point of a finished curve with the independent reference, with all effects kept. Returns a
-/// sentence with the largest error of DOLP and its bound.
-/// Errors: Cancelled if `progress` returns false.
+/// Compares every tenth point of a finished curve with the reference, with all effects kept. Returns a sentence with
+/// the largest error of DOLP and its bound. Errors: Cancelled if `progress` returns false.
 std::string true_error(const Curve& curve, const Progress& progress);
 
 /// The largest DOLP of a curve among entries without a bad status.
@@ -107,11 +97,8 @@ class Peak {
   std::vector<Job> wanted() const;
   bool take(const JobPart& news);
 
-  /// Empty until it is known. It stays empty if no entry is good.
-  const std::optional<PeakAnswer>& answer() const { return answer_; }
-  /// One element per effect of the scene.
-  const std::vector<WithoutEffect>& without() const { return without_; }
-  /// True if the answer and the peak without each effect are known.
+  const std::optional<PeakAnswer>& answer() const { return answer_; }     ///< empty until known, or if no entry is good
+  const std::vector<WithoutEffect>& without() const { return without_; }  ///< one per effect of the scene
   bool is_complete() const {
     return answer_ &&
            std::ranges::all_of(without_, [](const WithoutEffect& removed) { return removed.result.has_value(); });

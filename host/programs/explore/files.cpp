@@ -40,15 +40,13 @@ toml::table read_toml(const std::string& path) {
   }
 }
 
-/// Errors: IoError.
 void write_toml(const fs::path& path, const toml::table& table) {
   std::ostringstream text;
   text << table << '\n';
   write_text_atomically(path, text.str());
 }
 
-/// The texts of an array; empty if there is no array.
-std::vector<std::string> texts_in(Node node) {
+std::vector<std::string> texts_in(Node node) {  // empty if there is no array
   std::vector<std::string> texts;
   const toml::array* const array = node.as_array();
   for (std::size_t i = 0; array && i < array->size(); ++i) {
@@ -64,8 +62,7 @@ toml::array array_of(const Values& values, const TextOf& text_of) {
   return array;
 }
 
-/// "KEY", or "KEY=LOW:HIGH" with a typed range.
-std::string mark_text(const FitMarks::value_type& mark) {
+std::string mark_text(const FitMarks::value_type& mark) {  // "KEY", or "KEY=LOW:HIGH" with a typed range
   const auto& [key, range] = mark;
   return range ? fmt::format("{}={}:{}", key, format_number(range->low), format_number(range->high)) : key;
 }
@@ -98,7 +95,6 @@ toml::array lasting_texts(std::vector<Setting> settings, const SkyFiles& skies, 
   return array_of(settings, [](const Setting& setting) { return setting.text(); });
 }
 
-/// A table of a session file: a scene as opened, its changes, and a name.
 toml::table state_table(const SceneEdits& edits, const std::string& name, const SkyFiles& skies,
                         const fs::path& session) {
   const Scene& opened = edits.opened();
@@ -166,16 +162,14 @@ Scale read_range(Node node, const std::string& location) {
   return range;
 }
 
-/// Reads the ranges of axes. Ranges that are missing in the file stay automatic.
-void read_ranges(View& view, Node node, const std::string& location) {
+void read_ranges(View& view, Node node, const std::string& location) {  // missing ranges stay automatic
   const toml::table* const table = node.as_table();
   if (!table) return;
   for (const auto& [axis, range] : *table)
     view.ranges[std::string(axis.str())] = read_range(Node(range), fmt::format("{}.{}", location, axis.str()));
 }
 
-/// A whole number from 0 to `count` - 1; 0 if the node is missing.
-std::size_t index_in(Node node, std::size_t count, const std::string& location) {
+std::size_t index_in(Node node, std::size_t count, const std::string& location) {  // 0 if the node is missing
   if (!node) return 0;
   const int index = need<int>(node, location);
   if (index < 0 || static_cast<std::size_t>(index) >= count)
@@ -227,7 +221,6 @@ SessionState session_in(const std::string& path, const toml::table& table) {
   return saved;
 }
 
-/// The measured points that a session file names.
 std::optional<MeasuredData> measured_in(const std::string& path, const toml::table& table) {
   const Node file(static_cast<const toml::node&>(table));
   if (!file["measured"]) return std::nullopt;

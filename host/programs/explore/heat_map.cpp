@@ -11,7 +11,6 @@
 namespace dolp::explore {
 namespace {
 
-/// A number of a scene that can be an axis.
 struct AxisOfNumber {
   std::string name, key;
   std::optional<Scale> range = {};  ///< range of the axis; empty: the range of the slider
@@ -45,11 +44,10 @@ Scale grid_range(const Scene& scene, const MapAxis& axis) {
   return has_range ? Scale{low, high, axis.scale.is_log} : axis.scale;
 }
 
-/// The corners of a square, in the order around it.
 struct Corner {
   std::size_t x, y;
 };
-constexpr std::array<Corner, 4> kCorners = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+constexpr std::array<Corner, 4> kCorners = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};  // in the order around a square
 
 /// Adds the contour lines in the square whose lower left corner is (column, row).
 void add_lines(const MapField& field, double level, std::size_t column, std::size_t row, std::vector<Segment>& lines) {
@@ -140,8 +138,7 @@ std::vector<Segment> contour(const MapField& field, double level) {
 void HeatMap::follow(const std::string& key, const Scene& scene, bool keep_all, const MapAxis& x, const MapAxis& y,
                      double theta_deg) {
   if (x != x_ || y != y_) {
-    // Old results would be wrong on the new axes.
-    points_ = {};
+    points_ = {};  // they belong to the old axes
     shown_key_.clear();
     ++version_;
   }

@@ -1,4 +1,3 @@
-// A map over two numbers of a scene, from 16 x 16 to 128 x 128 entries, and its contour lines.
 #pragma once
 
 #include "explore/background.hpp"
@@ -6,7 +5,6 @@
 
 namespace dolp::explore {
 
-/// One axis of a map: the zenith, or a number of the scene.
 struct MapAxis {
   std::string name = "theta";  ///< name in session files
   std::string label = "θ [°]";
@@ -22,8 +20,7 @@ struct MapAxis {
   /// Rank of the axis; the axis with the smaller rank is the slower one. 0: temperature; 1: a number of a film; from 2:
   /// the axes that tables can have, in their order.
   std::size_t rank() const;
-  /// True if tables can have the axis.
-  bool is_of_tables() const { return rank() >= 2; }
+  bool is_of_tables() const { return rank() >= 2; }  ///< tables can have the axis
   friend bool operator==(const MapAxis&, const MapAxis&) = default;
 };
 
@@ -35,11 +32,9 @@ std::vector<MapAxis> map_axes(const Scene& scene, double theta_max_deg);
 /// for a material from a file. Both ends are equal if only one wavelength is known.
 Scale known_part(const Scene& scene, const MapAxis& axis);
 
-/// The reason why a map of a scene cannot have a range along an axis; empty if it can.
-std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range);
+std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range);  ///< empty if the map is possible
 
-/// The values of one quantity on a map.
-/// Shape: `count` rows of `count` values. x grows along a row, y from row to row.
+/// Values of one quantity on a map: `count` rows of `count` values. x grows along a row, y from row to row.
 struct MapField {
   std::size_t count = 0;
   std::vector<double> values;  ///< NaN where there is no value, and for entries with a bad status
@@ -52,11 +47,10 @@ struct Segment {
   double x0, y0, x1, y1;
 };
 
-/// The contour lines of a field at `level`, by marching squares with linear interpolation. Squares with a bad corner
-/// have no lines.
+/// The contour lines of a field, by marching squares with linear interpolation. None lie in squares with a NaN.
 std::vector<Segment> contour(const MapField& field, double level);
 
-/// The results that a map shows.
+/// A map over two numbers of a scene, or over the zenith and a number, computed from coarse to fine (kLevels).
 class HeatMap {
  public:
   struct Level {
@@ -78,25 +72,20 @@ class HeatMap {
   /// Takes results of this map. Returns false for other results. The first level is shown when it is complete.
   bool take(const JobPart& news);
   bool is_finished() const { return is_current() && is_complete(kLevels.size() - 1); }
-  /// True if the map on display belongs to the current scene, so that it has at least the first level.
   bool is_coarse_done() const { return is_current() && !points_[0].empty(); }
-  /// True if the first level has begun but is not complete.
-  bool is_arriving() const { return arriving_key_ == key_ && !arriving_.empty(); }
-  /// True if the map on display belongs to an earlier scene.
-  bool is_stale() const { return !shown_key_.empty() && !is_current(); }
+  bool is_arriving() const { return arriving_key_ == key_ && !arriving_.empty(); }  ///< the first level is incomplete
+  bool is_stale() const { return !shown_key_.empty() && !is_current(); }            ///< shows an earlier scene
 
   const MapAxis& x() const { return x_; }
   const MapAxis& y() const { return y_; }
-  /// Number of rows of the finest complete level.
-  std::size_t finished_count() const {
+  std::size_t finished_count() const {  // rows of the finest complete level
     std::size_t finest = 0;
     for (std::size_t level = 0; level < kLevels.size(); ++level) {
       if (is_complete(level)) finest = kLevels[level].count;
     }
     return finest;
   }
-  /// The finished share of all levels, from 0 to 1.
-  double progress() const {
+  double progress() const {  // finished share of all levels, from 0 to 1
     std::size_t done = 0, all = 0;
     for (std::size_t level = 0; level < kLevels.size(); ++level) {
       all += entries(level);
@@ -104,11 +93,9 @@ class HeatMap {
     }
     return static_cast<double>(done) / static_cast<double>(all);
   }
-  /// Changes whenever the field changes.
-  std::size_t version() const { return version_; }
+  std::size_t version() const { return version_; }  ///< changes whenever the field changes
 
-  /// The values of the finest level that has begun. Missing points take the value of the nearest point of a coarser
-  /// level.
+  /// The finest level that has begun. A missing point has the value of the nearest point of a coarser level.
   MapField field(Plotted quantity) const;
 
  private:
@@ -116,14 +103,11 @@ class HeatMap {
   bool is_current() const { return shown_key_ == key_; }
   bool is_complete(std::size_t level) const { return points_[level].size() == entries(level); }
   std::string key_of(std::size_t level) const { return "map " + std::to_string(kLevels[level].count) + ' ' + key_; }
-  /// True if x is the slower axis, so the points are stored by columns.
-  bool is_turned() const { return x_.rank() < y_.rank(); }
+  bool is_turned() const { return x_.rank() < y_.rank(); }  ///< x is slower; points are stored by columns
   const MapAxis& slower() const { return is_turned() ? x_ : y_; }
   const MapAxis& faster() const { return is_turned() ? y_ : x_; }
-  /// Number of values along the slower axis in one part of a job.
   std::size_t batch(std::size_t level) const { return slower().column().empty() ? 1 : kLevels[level].batch; }
-  /// The entries of the part that begins at this position of the slower axis.
-  PointList part(std::size_t level, std::size_t first) const;
+  PointList part(std::size_t level, std::size_t first) const;  ///< begins at `first` on the slower axis
   /// The point at (row, column) of level `finest`. If it is missing, the nearest point of a coarser level.
   const Point& point_at(std::size_t finest, std::size_t row, std::size_t column) const;
 

@@ -1,4 +1,3 @@
-// Measured points, and fits of the model to them.
 #pragma once
 
 #include <map>
@@ -8,8 +7,7 @@
 
 namespace dolp::explore {
 
-/// The quantity of the plot in which an observable is shown.
-Plotted plotted(Observable observable);
+Plotted plotted(Observable observable);  ///< the quantity that a plot draws for this observable
 
 /// Reads measured points from a regular file, so that the window never waits for a pipe. Errors: InputError.
 MeasuredData read_measured(const std::string& path);
@@ -28,13 +26,10 @@ class Residuals {
   void take(const JobPart& news) { model_.take(news); }
 
   const std::optional<MeasuredData>& data() const { return data_; }
-  /// The scene for which the data were loaded.
   const Scene& loaded_for() const { return loaded_for_; }
   bool is_known() const { return data_ && model_.is_finished(); }
-  /// The measured points for a quantity.
   std::vector<Measurement> measured(Plotted quantity) const;
-  /// The measured points for a quantity, each with measured minus model as its value. Leaves out points where the model
-  /// has no value. Empty until the model has been computed.
+  /// Measured minus model, without points where the model has no value. Empty until the model has been computed.
   std::vector<Measurement> residuals(Plotted quantity) const;
 
  private:
@@ -44,15 +39,13 @@ class Residuals {
   Sweep model_;
 };
 
-/// Root mean square of the values; empty without values.
-std::optional<double> rms_of(const std::vector<Measurement>& residuals);
+std::optional<double> rms_of(const std::vector<Measurement>& residuals);  ///< root mean square; empty without values
 
 /// Keys that vary in fits, with the ranges that the user typed.
 using FitMarks = std::map<std::string, std::optional<FitRange>>;
 
-/// The range of a parameter in fits: the range that the user typed, or the part of the slider's range that the scene's
-/// masking allows, extended to `value`. The range of k then begins at 0.001. The fit starts at `value`, if the range
-/// contains it.
+/// The range of a parameter in fits: the range that the user typed, or range_in() extended to `value`; for k this range
+/// begins at 0.001. The fit starts at the value of the range that is nearest to `value`.
 FitRange fit_range(const FitMarks& marks, const Scene& scene, const Control& control, double value);
 
 /// All inputs of a fit, so that it can run on a separate thread.
@@ -70,10 +63,7 @@ Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress,
 /// The position of the minimum that is nearest to the start of `job`. FitRange::coordinate measures the distance.
 std::size_t nearest_minimum(const Fit& fit, const FitJob& job);
 
-/// One line about a fit and the chosen minimum.
-std::string fit_text(const Fit& fit, std::size_t chosen);
-
-/// An interval as text: "1.2 to 1.5". An end that the range cuts off is "open".
-std::string interval_text(const FitInterval& interval);
+std::string fit_text(const Fit& fit, std::size_t chosen);  ///< one line about the chosen minimum
+std::string interval_text(const FitInterval& interval);    ///< "1.2 to 1.5"; an end that the range cuts off is "open"
 
 }  // namespace dolp::explore

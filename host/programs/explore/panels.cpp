@@ -14,8 +14,7 @@ namespace {
 
 constexpr double kSpecularAzimuth_deg = 180.0;  // azimuth from the source to its mirror reflection
 
-/// The first and the last wavelength of the plot of n and k.
-std::pair<double, double> known_um(const Scene& scene) {
+std::pair<double, double> known_um(const Scene& scene) {  // range of the plot of n and k
   const auto spectrum = spectrum_um(scene);
   for (const BuiltInMaterial& known : materials()) {
     if (known.name == scene.word("surface.material")) return {known.from_um, known.to_um};

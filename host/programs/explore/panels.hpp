@@ -1,5 +1,3 @@
-// Values for the views that can replace the map: slope distributions, a material over wavelength, curves over
-// wavelength, the smooth surface, the pBRDF in the plane of incidence, a sphere, and DOLP over source directions.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +16,7 @@ enum class Panel : std::uint8_t { kMap, kSlopes, kMaterial, kSmooth, kSpectrum, 
 inline constexpr std::array kPanelNames = {"map",   "slopes", "material", "smooth", "spectrum",
                                            "pBRDF", "sphere", "sky",      "fit"};
 
-/// The panel with this name. Errors: InputError that lists the names.
-Panel panel_of(const std::string& name);
+Panel panel_of(const std::string& name);  ///< Errors: InputError that lists the names
 
 /// The scene with the other distribution and an equal density of flat facets: sigma_G = sigma / sqrt(q - 1). Empty if
 /// this sigma or q is outside the model.
@@ -29,7 +26,6 @@ std::optional<Scene> with_other_distribution(const Scene& scene);
 /// Equation: (8) cauchy, (1) gaussian. Units: 1/sr. Accuracy: ExplorePanels.SlopeDensity_IsNormalised.
 double slope_density(const Scene& scene, double alpha_deg);
 
-/// n and k over wavelengths.
 struct MaterialCurve {
   std::vector<double> wavelength_um, n, k;
 };
@@ -38,11 +34,8 @@ struct MaterialCurve {
 /// material is the scene's band, or from 20 % below to 25 % above a single wavelength.
 MaterialCurve material_curve(const Scene& scene, std::size_t count);
 
-/// The ends of the scene's spectrum, equal for a single wavelength.
-std::pair<double, double> spectrum_um(const Scene& scene);
-
-/// The scene at its wavelength, or at the middle of its band.
-Scene at_one_wavelength(const Scene& scene);
+std::pair<double, double> spectrum_um(const Scene& scene);  ///< both ends are equal for a single wavelength
+Scene at_one_wavelength(const Scene& scene);                ///< a band becomes its middle
 
 /// The scene with a smooth surface, so that its rho_s and rho_p are the reflectances R_s and R_p of a facet.
 Scene smooth_scene(const Scene& scene);
@@ -54,11 +47,9 @@ struct ScatteringCut {
   double wavelength_um = 0.0;  ///< wavelength of the scene, or the middle of its band
 };
 
-/// The pBRDF for `count` directions of reflection. Errors: InputError if the scene has no pBRDF; other errors of
-/// Evaluator::mueller.
+/// Errors: the errors of Evaluator::mueller; InputError if the scene has no pBRDF.
 ScatteringCut scattering_cut(Evaluator& evaluator, const Scene& scene, double theta_i_deg, std::size_t count);
 
-/// The polarisation of a facet in a camera's image.
 struct ImagePolarisation {
   double dolp = 0.0;
   double angle_deg = 0.0;  ///< direction of the electric field from the image's horizontal, counterclockwise, 0 to 180
@@ -76,10 +67,8 @@ class SourceSky {
   static constexpr std::size_t kZeniths = 31;   ///< 0 to 90 degrees
   static constexpr std::size_t kAzimuths = 37;  ///< from 0 to 180 degrees; the other half is the mirror image
 
-  /// Switches to the sky of a bistatic scene; `key` identifies the scene without its azimuth.
-  void follow(const std::string& key, const Scene& scene);
-  /// Jobs at the coarse tolerance for the azimuths that are not known yet.
-  std::vector<Job> wanted() const {
+  void follow(const std::string& key, const Scene& scene);  ///< `key` identifies the scene without its azimuth
+  std::vector<Job> wanted() const {  // at the coarse tolerance, for azimuths that are not known yet
     std::vector<Job> jobs;
     for (const Sweep& ring : rings_) {
       if (const std::optional<Job> job = ring.wanted()) jobs.push_back(*job);
@@ -92,7 +81,6 @@ class SourceSky {
   /// The points at an azimuth, ordered by zenith; empty while they are unknown.
   const std::vector<Point>& at(std::size_t azimuth) const { return rings_[azimuth].points(); }
   static double azimuth_deg(std::size_t azimuth) { return 180.0 * static_cast<double>(azimuth) / (kAzimuths - 1); }
-  /// True if all azimuths belong to the current scene.
   bool is_finished() const { return std::ranges::all_of(rings_, &Sweep::is_finished); }
 
  private:

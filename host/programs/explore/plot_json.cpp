@@ -1,4 +1,3 @@
-// The plots of the window as JSON, for pictures with lines and text.
 #include <nlohmann/json.hpp>
 
 #include "explore/readout.hpp"

@@ -1,4 +1,3 @@
-// Points of curves and maps, and the quantities that a plot can show.
 #pragma once
 
 #include <array>
@@ -19,8 +18,7 @@ struct PointList {
   bool is_grid = false;
   std::vector<Setting> changes = {};  ///< changes of the scene for numbers that have no column
 
-  /// The values of a column. Adds the column if it is missing.
-  std::vector<double>& operator[](const std::string& name);
+  std::vector<double>& operator[](const std::string& name);  ///< adds the column if it is missing
   std::vector<Column> columns() const {
     std::vector<Column> columns;
     for (const auto& [name, column] : values) columns.push_back({name, column});
@@ -28,16 +26,14 @@ struct PointList {
   }
 };
 
-/// True if the scene's sigma comes from a wind speed.
-bool has_wind(const Scene& scene);
+bool has_wind(const Scene& scene);  ///< sigma comes from a wind speed
 
 /// Points with the scene's slope distribution at some zeniths. The zenith is the first column.
 PointList points_at(const Scene& scene, std::vector<double> theta_deg);
 
-/// `count` zeniths at equal steps from `from_deg` to `to_deg`, both included.
-std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count);
+std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count);  ///< equal steps, both ends included
 
-/// Computes the points of a list. Errors: the errors of Evaluator::evaluate and Evaluator::table.
+/// Errors: the errors of Evaluator::evaluate and Evaluator::table.
 Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list, const RunOptions& options);
 
 /// The results at a point, in the units of a table.
@@ -46,18 +42,14 @@ struct Point : PointResult {
 
   /// True if the status has no bit that makes DOLP meaningless or voids its error bound.
   bool is_good() const { return promises_dolp(status) && std::isfinite(values[Quantity::kDolp]); }
-  /// True if the point has limits between which DOLP lies with all bounces.
-  bool has_bracket() const {
+  bool has_bracket() const {  // limits between which DOLP lies with all bounces
     return std::isfinite(values[Quantity::kDolpLow]) && std::isfinite(values[Quantity::kDolpHigh]);
   }
 };
 
 std::vector<Point> points_of(const PointList& list, const Results& results);
+std::string status_text(std::uint32_t status);  ///< "good", or a short text of the status bits
 
-/// "good", or a short text of the status bits.
-std::string status_text(std::uint32_t status);
-
-/// A quantity that a curve or a map can show.
 enum class Plotted : std::uint8_t { kDolp, kSignedDolp, kRhoS, kRhoP, kEmissivityS, kEmissivityP, kAlbedo };
 
 struct PlottedDescription {
@@ -69,10 +61,8 @@ struct PlottedDescription {
   double (*value)(const Point&);  ///< NaN where the model gives no value
   bool is_signed = false;
 
-  /// The value of a point in the unit of the label.
-  double shown(const Point& point) const { return scale() * value(point); }
+  double shown(const Point& point) const { return scale() * value(point); }  ///< in the unit of the label
   double scale() const { return in_percent ? 100.0 : 1.0; }
-  /// Name and unit, for example "DOLP [%]".
   std::string label() const { return std::string(name) + (in_percent ? " [%]" : ""); }
 };
 extern const std::array<PlottedDescription, 7> kAllPlotted;

@@ -18,10 +18,9 @@ constexpr double kPercent = 100.0;
 /// A bound of DOLP in percentage points.
 std::string points_text(double bound) { return std::isfinite(bound) ? fmt::format("{:.2g}", kPercent * bound) : "∞"; }
 
-/// A radiating effect and its contribution to Q/I at the peak.
 struct Part {
   std::string name;
-  double q_over_i;
+  double q_over_i;  ///< contribution at the peak
 };
 
 /// The contributions of all radiating effects, which add up to Q/I. If the scene is impossible without emission, the
@@ -44,8 +43,7 @@ std::vector<Part> radiating_parts(const Session& session) {
   return parts;
 }
 
-/// The point at the peak without an effect; null if it is not known.
-const Point* point_without(const Session& session, const std::string& effect) {
+const Point* point_without(const Session& session, const std::string& effect) {  // at the peak; null if unknown
   if (!session.peak().answer()) return nullptr;
   const std::vector<WithoutEffect>& all = session.peak().without();
   const auto away = std::ranges::find(all, effect, &WithoutEffect::effect);

@@ -1,4 +1,3 @@
-// Values along a line, for axes of plots and maps, sliders and colours.
 #pragma once
 
 #include <algorithm>
@@ -17,18 +16,15 @@ struct Scale {
   double to = 1.0;
   bool is_log = false;
 
-  /// The reason why a typed or read range cannot be drawn; empty if it can.
-  std::string refusal() const;
+  std::string refusal() const;  ///< the reason why the range cannot be drawn; empty if it can
   /// The value at a position, and the position of a value. Both may lie outside the range.
   double value(double position) const;
   double position(double value) const {
     return is_log ? std::log(value / from) / std::log(to / from) : (value - from) / (to - from);
   }
   double clamp(double value) const { return std::clamp(value, from, to); }
-  /// The value at a position, rounded to four digits and clamped to the range.
-  double rounded(double position) const;
-  /// `count` values at equal steps of the position, with both ends.
-  std::vector<double> values(std::size_t count) const;
+  double rounded(double position) const;                ///< value rounded to four digits, clamped to the range
+  std::vector<double> values(std::size_t count) const;  ///< at equal steps of the position, with both ends
   /// The range between two positions, which may lie outside this range.
   Scale between(double first, double last) const { return {value(first), value(last), is_log}; }
   /// This range shifted into `all`; or `all` itself if this range is larger.
@@ -42,8 +38,7 @@ struct Scale {
   Scale including(double value) const {
     return is_log && !(value > 0.0) ? *this : Scale{std::min(from, value), std::max(to, value), is_log};
   }
-  /// This range with a linear or a logarithmic scale. A logarithmic range cannot begin at 0; it then begins at 1/180 of
-  /// its end, for example at 0.5 of 90.
+  /// This range, linear or logarithmic. A logarithmic range cannot begin at 0; it then begins at 1/180 of its end.
   Scale with_log(bool wants_log) const;
 
   /// Round values in the range, at most `most` of them (at least 2). Linear: multiples of 1, 2 or 5 times a power of
@@ -58,7 +53,6 @@ struct Scale {
 /// values that are not positive. Values that are not finite are ignored.
 Scale range_of(std::vector<double> values, bool is_log);
 
-/// The number beside a tick, with at most four digits.
-std::string tick_text(double value);
+std::string tick_text(double value);  ///< at most four digits
 
 }  // namespace dolp::explore

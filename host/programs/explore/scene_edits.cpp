@@ -39,7 +39,6 @@ std::string material_of(const Scene& scene, const std::string& table) {
   return with_number(scene, "n", table + ".n") + ' ' + with_number(scene, "k", table + ".k");
 }
 
-/// The words that describe the shape of a surface, grouped.
 std::vector<std::vector<std::string>> shape_words(const Scene& scene) {
   std::vector<std::vector<std::string>> groups = {
       {scene.word("surface.distribution").value(), has_wind(scene) ? with_number(scene, "U", "surface.wind_m_s", " m/s")
@@ -50,7 +49,6 @@ std::vector<std::vector<std::string>> shape_words(const Scene& scene) {
   return groups;
 }
 
-/// The material of a surface and its films.
 std::string material_name(const Scene& scene) {
   std::string name = material_of(scene, "surface");
   for (std::size_t layer = 1; layer <= films_of(scene).size(); ++layer) {
@@ -114,7 +112,6 @@ std::vector<Control> controls_without_films() {
   };
 }
 
-/// The control of n, k or the thickness of a film.
 Control film_control(const Key& key) {
   const std::string name = key.key.substr(key.key.rfind('.') + 1);
   if (name == "n") return {&key, fmt::format("n_{}", key.layer), "N = n + ik of the film", {0.1, 10.0, true}};
@@ -134,7 +131,7 @@ bool replaces(const Setting& change, const std::string& other) {
   return std::ranges::count(described(key).rivals, other) > 0;
 }
 
-/// For each choice that excludes other choices the word that excludes nothing. A wind excludes other slopes than
+/// For each choice that excludes other choices, the word that excludes nothing. A wind excludes other slopes than
 /// Gaussian ones, and the state of the air excludes other skies than the built-in ones.
 std::vector<Setting> compatible_words(const Scene& scene) {
   std::vector<Setting> words = {{"surface.masking", "v-cavity"},    {"surface.scattering", "single"},

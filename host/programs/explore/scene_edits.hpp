@@ -1,5 +1,3 @@
-// The scene that the window shows: its controls and their names, a scene file with changes, choices that exclude each
-// other, and skies that the window edits.
 #pragma once
 
 #include <dolp/dolp.hpp>
@@ -20,8 +18,7 @@ struct Control {
   std::string label;     ///< the symbol of a number, in UTF-8
   const char* equation;  ///< in UTF-8, with its number in the paper if it has one
   Scale slider = {};     ///< a part of the key's range; the user can type other values
-  /// True if the scene uses the key; otherwise the window hides the control. Null: every scene that has the key uses
-  /// it.
+  /// Returns false if the scene does not use the key; the window then hides the control. Null: it is never hidden.
   bool (*is_used)(const Scene& scene) = nullptr;
   std::optional<double> standard = {};  ///< value of a number without which a scene is valid
 
@@ -29,30 +26,20 @@ struct Control {
   std::optional<double> value(const Scene& scene) const;
   /// The position of the scene's word in Key::words; empty for numbers, and if the window hides the control.
   std::optional<std::size_t> word(const Scene& scene) const;
-  /// "λ [µm]" for a number.
-  std::string label_with_unit() const;
+  std::string label_with_unit() const;  ///< "λ [µm]" for a number
   bool is_shown(const Scene& scene) const { return !is_used || is_used(scene); }
   bool is_number() const { return key->type == Key::Type::kNumber; }
 };
 
-/// The scene key with this name. The key must exist.
-const Key& described(const std::string& key);
+const Key& described(const std::string& key);  ///< the key must exist
 
 /// All sliders, in the order of the scene keys, with the numbers of films last; and all lists and boxes.
 const std::vector<Control>& controls();
 
-/// The control of a key, which must have one.
-const Control& control(const std::string& key);
-
-/// The range of a slider, without the values that the scene's masking excludes.
-Scale range_in(const Scene& scene, const Control& control);
-
-/// The table of a dotted key: "surface" of "surface.sigma", "surface.coating.1" of "surface.coating.1.n".
-std::string table_of(const std::string& key);
-
-/// The unit for display: empty for 1, "°" for degree.
-std::string unit_text(const Key& key);
-
+const Control& control(const std::string& key);              ///< the key must have a control
+Scale range_in(const Scene& scene, const Control& control);  ///< of a slider, without values that the masking excludes
+std::string table_of(const std::string& key);                ///< "surface.coating.1" of "surface.coating.1.n"
+std::string unit_text(const Key& key);                       ///< for display: "°" for degree, empty for 1
 bool is_bistatic(const Scene& scene);
 
 /// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1". With `other`, only the words about the
@@ -64,12 +51,11 @@ std::string surface_name(const Scene& scene, const Scene* other = nullptr);
 class SceneEdits {
  public:
   explicit SceneEdits(const Scene& opened) : opened_(opened), scene_(opened), saved_(opened.settings()) {}
-  /// A scene as it was opened, with changes. Errors: the errors of set().
+  /// Errors: the errors of set().
   SceneEdits(const Scene& opened, const std::vector<Setting>& changes) : SceneEdits(opened) { become(changes); }
 
-  /// Changes several keys at once. A table name with an empty value, for example "source", removes this effect; a later
-  /// change of a key in the table restores it. A change of a key removes its alternatives, for example `material`
-  /// removes n and k.
+  /// A table name with an empty value, for example "source", removes this effect; a later change of one of its keys
+  /// restores it. A change of a key removes its alternatives, for example `material` removes n and k.
   /// Errors: InputError; the scene then stays unchanged.
   void set(const std::vector<Setting>& changes);
 
@@ -80,15 +66,12 @@ class SceneEdits {
   const Scene& scene() const { return scene_; }
   const Scene& opened() const { return opened_; }
   bool is_changed() const { return changes() != saved_; }
-  /// Declares the current scene unchanged.
-  void note_saved() { saved_ = changes(); }
+  void note_saved() { saved_ = changes(); }  ///< declares the current scene unchanged
   /// Goes to another state of this file, or to another file. In another state of this file, is_changed() still compares
   /// with the state that was saved last.
   void go_to(const SceneEdits& other);
-  /// True if both have equal changes of the same file.
   bool is_same_scene(const SceneEdits& other) const { return is_same_file(other) && changes() == other.changes(); }
-  /// All settings of the scene, those of the opened scene included.
-  const std::vector<Setting>& changes() const { return scene_.settings(); }
+  const std::vector<Setting>& changes() const { return scene_.settings(); }  ///< includes the opened scene's settings
   std::vector<Setting> changes_without(const std::vector<std::string>& keys) const;
 
  private:
@@ -104,17 +87,12 @@ class SceneEdits {
 
 /// The settings of a film: n and k, or material, or material_file; and thickness_um, which is last.
 using Film = std::vector<Setting>;
-/// The films of a scene from the outside in.
-std::vector<Film> films_of(const Scene& scene);
-/// The setting that gives a scene these films.
-Setting coating_of(const std::vector<Film>& films);
+std::vector<Film> films_of(const Scene& scene);      ///< from the outside in
+Setting coating_of(const std::vector<Film>& films);  ///< gives a scene these films
+std::string word_of(const Value& value);             ///< without quotes
 
-/// The word of a value, without quotes.
-std::string word_of(const Value& value);
-
-/// Applies a change. If the scene refuses it, replaces the choices that exclude it by compatible words, as few as
-/// possible, and returns them. Errors: InputError if no choice makes the change possible; the edits then stay
-/// unchanged.
+/// Applies a change. If the scene refuses it, replaces as few choices as possible by compatible words, and returns
+/// these. Errors: InputError if this does not help; the edits then stay unchanged.
 std::vector<Setting> change_with_needed(SceneEdits& edits, const std::function<void(SceneEdits&)>& change);
 
 /// A sky whose brightness temperature is linear in the zenith.
@@ -122,22 +100,19 @@ struct SkyPair {
   double zenith_K = 220.0;
   double horizon_K = 285.0;
 
-  /// The text of the sky's file for surroundings.profile: the rows of the zenith and of the horizon.
-  std::string csv() const;
+  std::string csv() const;  ///< text of a file for surroundings.profile: a row for the zenith and one for the horizon
   friend bool operator==(const SkyPair&, const SkyPair&) = default;
 };
 
 /// Reads a file with the text of SkyPair::csv. Empty if the file has another text or cannot be read.
 std::optional<SkyPair> read_sky_pair(const std::filesystem::path& file);
 
-/// The sky file that a scene names; empty for a built-in sky and without a sky.
-std::filesystem::path sky_file(const Scene& scene);
+std::filesystem::path sky_file(const Scene& scene);  ///< empty for a built-in sky and without a sky
 
 /// Files of the skies that the window edits; a scene names a sky by its file. The destructor removes their folder.
 class SkyFiles {
  public:
-  /// Writes the file of a sky and returns its path. If the file cannot be written, it does not exist, and the scene
-  /// refuses the path.
+  /// Writes the file of a sky and returns its path. If that fails, there is no file, and the scene refuses the path.
   std::string path(const SkyPair& sky);
   bool hold(const std::filesystem::path& file) const { return folder_ && file.parent_path() == folder_->path(); }
 

@@ -22,7 +22,6 @@ bool moves_number(const Scene& scene, const Setting& change) {
       controls(), [&](const Control& control) { return control.key->key == change.key && control.value(scene); });
 }
 
-/// A list of jobs in order of their rank.
 struct JobList {
   std::vector<Job> jobs;
 
@@ -32,8 +31,7 @@ struct JobList {
   void add(std::vector<Job> more) { std::ranges::move(more, std::back_inserter(jobs)); }
 };
 
-/// Gives an axis its typed range, or the range in which the scene is known. Returns false if this range has only one
-/// value.
+/// Gives an axis its typed range, or the range in which the scene is known. Returns false if it is a single value.
 bool find_range(const Scene& scene, const View& view, MapAxis& axis) {
   const std::optional<Scale> typed = view.range(axis.label);
   // The scene may have changed since the user typed the range, and refuse it now.
@@ -261,8 +259,6 @@ const Point* Session::at_cursor() const {
   const auto distance = [&](const Point& point) { return std::abs(point.theta_deg - state_.theta_deg); };
   return &*std::ranges::min_element(points, {}, distance);
 }
-
-// ---- Jobs that the session wants, and where their results go.
 
 std::string content_key(const Scene& scene, const std::vector<Setting>& changes, bool keep_all) {
   std::string key = (keep_all ? "all " : "plan ") + scene.name() + '\n' + scene.text();

@@ -1,4 +1,3 @@
-// The state behind the window: the edited scene, its curves, its map, pins and cursor.
 #pragma once
 
 #include <deque>
@@ -19,7 +18,6 @@ struct Pin {
   Curve curve;
 };
 
-/// The quantity on display, and how it is drawn.
 struct View {
   Plotted quantity = Plotted::kDolp;
   bool is_log = false;
@@ -44,15 +42,13 @@ struct View {
   friend bool operator==(const View&, const View&) = default;
 };
 
-/// A state of the scene to which the user can go back.
 struct Snapshot {
   std::string name;
   SceneEdits edits;
 };
 
-/// One line for the user.
 struct Message {
-  std::string text;
+  std::string text;  ///< one line
   bool is_error = false;
 };
 
@@ -82,7 +78,6 @@ class Session {
   void reset_all() {
     attempt([&] { state_.edits.reset_all(); });
   }
-  /// Replaces the scene by another state or by another scene. `undo` goes back.
   void go_to(const SceneEdits& edits) {
     attempt([&] { state_.edits.go_to(edits); });
   }
@@ -105,13 +100,11 @@ class Session {
     set_view(view);
   }
   void set_theta(double theta_deg);
-  /// Moves the cursor of the map, and gives the scene the values of both axes there. `x` and `y` are positions from 0
-  /// to 1.
+  /// Moves the cursor of the map to a position from 0 to 1 on each axis, and gives the scene the values there.
   void set_map_cursor(double x, double y);
   void load_measured(const std::string& path);
   void clear_measured() { residuals_.clear(); }
-  /// Selects whether a number varies in fits.
-  void mark(const std::string& key, bool varies) {
+  void mark(const std::string& key, bool varies) {  // whether a number varies in fits
     if (varies) {
       state_.marked.try_emplace(key);
     } else {
@@ -120,21 +113,16 @@ class Session {
   }
   /// Lets a number vary in fits over a typed range. Returns the reason if the range is refused, otherwise nothing.
   std::string set_fit_range(const std::string& key, const std::string& low, const std::string& high);
-  /// Shows a fit, and moves the parameters to the minimum that is nearest to the start of `job`. Returns the position
-  /// of this minimum in Fit::minima.
+  /// Shows a fit and goes to the minimum that is nearest to the start of `job`. Returns its position in Fit::minima.
   std::size_t take_fit(Fit fit, const FitJob& job);
   /// Restores the scene of the last fit, with the parameters of one of its minima.
   void visit_minimum(std::size_t position);
   void tell(std::string text, bool is_error = false) { message_ = {std::move(text), is_error}; }
 
-  // ---- Computing.
-  /// The jobs that the window needs, the most urgent first.
-  std::vector<Job> wanted() const;
-  /// True if wanted() may have changed since the last call.
-  bool take_changed() { return std::exchange(is_changed_, false); }
+  std::vector<Job> wanted() const;                                   ///< the most urgent first
+  bool take_changed() { return std::exchange(is_changed_, false); }  ///< wanted() may have changed
   void take(const std::vector<JobPart>& news);
 
-  // ---- State.
   const SceneEdits& edits() const { return state_.edits; }
   const Scene& scene() const { return state_.edits.scene(); }
   const View& view() const { return state_.view; }
@@ -151,38 +139,28 @@ class Session {
   /// wavelength, both ends of the axis are equal.
   const Scene& spectral_scene() const { return spectral_scene_; }
   const MapAxis& wavelengths() const { return wavelengths_; }
-  // spectrum() and smooth_spectrum(): the scene and its smooth surface over wavelength, at the cursor's zenith.
-  // smooth(): the smooth surface over zenith.
-  const Sweep& spectrum() const { return spectrum_; }
-  const Sweep& smooth_spectrum() const { return smooth_spectrum_; }
-  const Sweep& smooth() const { return smooth_; }
+  const Sweep& spectrum() const { return spectrum_; }                ///< over wavelength, at the cursor's zenith
+  const Sweep& smooth_spectrum() const { return smooth_spectrum_; }  ///< smooth surface over wavelength, at the cursor
+  const Sweep& smooth() const { return smooth_; }                    ///< the smooth surface over zenith
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
-  /// True if `other` comes from another file than the current scene.
   bool is_foreign(const Scene& other) const { return other.name() != scene().name() || other.text() != scene().text(); }
   const FitMarks& marked() const { return state_.marked; }
   bool varies(const std::string& key) const { return state_.marked.contains(key); }
-  /// The files of skies that the window edits.
   SkyFiles& skies() { return skies_; }
   const SkyFiles& skies() const { return skies_; }
-  /// True if the sky of the scene is a file of skies().
   bool has_unsaved_sky() const { return skies_.hold(sky_file(scene())); }
-  /// The fit of the marked parameters to the measured points. Empty without points, or if the scene has no marked
-  /// parameter.
-  std::optional<FitJob> fit_job() const;
+  std::optional<FitJob> fit_job() const;  ///< empty without measured points or without a marked parameter
   const std::optional<Fit>& last_fit() const { return fit_; }
-  /// The position of the last fit's minimum that the scene shows; empty if the user has changed the scene since the
-  /// fit.
+  /// Position of the last fit's minimum that the scene shows; empty if the user has changed the scene since the fit.
   std::optional<std::size_t> minimum() const {
     return fit_ && visited_->is_same_scene(state_.edits) ? std::optional(minimum_) : std::nullopt;
   }
   /// The result of the last fit for the parameter `key`; null if the user has changed the scene since the fit.
   const FitParameter* fitted(const std::string& key) const;
   const Message& message() const { return message_; }
-  /// True while the mouse button is down and has changed the scene.
-  bool is_dragged() const { return is_held_ && is_in_gesture_; }
-  /// True if the points of a curve belong to an earlier scene. False during a drag, because then every curve lags
-  /// behind.
+  bool is_dragged() const { return is_held_ && is_in_gesture_; }  ///< the mouse is down and has changed the scene
+  /// True if the points of a curve belong to an earlier scene; false during a drag, in which every curve lags behind.
   bool is_outdated(const Curve& curve) const { return curve.is_stale() && !is_dragged(); }
   /// The effects of the last finished curve. The influence of a kept effect is its influence at the cursor's zenith.
   const std::vector<Effect>& effects() const { return effects_; }
@@ -191,8 +169,7 @@ class Session {
     const double value = axis.key.empty() ? state_.theta_deg : scene().number(axis.key).value_or(axis.scale.from);
     return axis.scale.position(axis.scale.clamp(value));
   }
-  /// The point of the drawn curve whose zenith is nearest to the cursor; null if the curve has no points.
-  const Point* at_cursor() const;
+  const Point* at_cursor() const;  ///< nearest point of the drawn curve; null if the curve has no points
 
  private:
   /// Runs a command and records its changes for `undo`. If it throws InputError, the reason becomes the message.
@@ -202,7 +179,6 @@ class Session {
   void tell_remarks(const std::vector<std::string>& remarks);
   void tell_new_remarks_on_scene();
   void tell_needed(const std::string& chosen, const std::vector<Setting>& needed);
-  // Pass the current scene to curves, map and other views.
   void follow();
   void follow_overlay(const std::string& content);
   void follow_map();

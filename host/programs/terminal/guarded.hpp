@@ -10,7 +10,6 @@ namespace dolp {
 /// Prints one line on stderr, with the program's name first. Returns `status`.
 int fail(const std::string& program, int status, const std::string& message);
 
-/// Prints a warning line on stderr for each remark. The program then continues.
 void warn(const std::string& program, const std::vector<std::string>& remarks);
 
 /// Prints the line for lack of memory, without using memory. Returns kExitMemory.

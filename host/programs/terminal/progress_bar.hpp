@@ -1,4 +1,3 @@
-// Shows progress on stderr, and lets Ctrl-C end a run.
 #pragma once
 
 #include <chrono>
@@ -8,10 +7,9 @@
 
 namespace dolp {
 
-/// A bar with rate and remaining time on stderr, if stderr is a terminal and `quiet` is false.
-///
-/// After the first call of its callback, SIGINT, SIGTERM and SIGHUP only request the end of the run
-/// (base/interrupt.hpp). Before that, while inputs are read, they end the program as usual.
+/// A bar with rate and remaining time on stderr, if stderr is a terminal and `quiet` is false. After the first call of
+/// its callback, SIGINT, SIGTERM and SIGHUP only request the end of the run (base/interrupt.hpp). Before that, while
+/// inputs are read, they end the program as usual.
 class ProgressBar {
  public:
   explicit ProgressBar(bool quiet);
@@ -19,9 +17,8 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Returns a function that draws the bar, and that returns false after an interrupt. The function refers to this
-  /// object. The destructor erases the bar. So write run(..., ProgressBar(quiet).callback()): the object lives until
-  /// the run ends.
+  /// A function that draws the bar and returns false after an interrupt. It refers to this object, whose destructor
+  /// erases the bar. In run(..., ProgressBar(quiet).callback()) the object lives until the run ends.
   Progress callback();
 
   /// Restarts the bar. It then counts `what`, a plural, instead of entries.

@@ -34,7 +34,6 @@ constexpr mode_t kWriteBits = 0222;
   fail(path, what + ": " + std::generic_category().message(error));
 }
 
-/// An open file descriptor.
 class File {
  public:
   explicit File(int descriptor) : descriptor_(descriptor) {}
@@ -94,8 +93,7 @@ fs::path temporary_name(const fs::path& target, int number) {
   return folder_of(target) / (".dolp-" + std::to_string(::getpid()) + "-" + std::to_string(number) + ".tmp");
 }
 
-/// Calls make(name) with new names beside `target`, until a call does not fail with EEXIST. Returns this name and
-/// result.
+/// Calls make(name) with new names beside `target` until it does not fail with EEXIST. Returns that name and result.
 template <class Make>
 std::pair<fs::path, int> with_new_name(const fs::path& target, const Make& make) {
   for (int i = 0; i < kMostNames; ++i) {
@@ -108,7 +106,7 @@ std::pair<fs::path, int> with_new_name(const fs::path& target, const Make& make)
   fail(target, "too many temporary files in its folder; remove .dolp-*.tmp");
 }
 
-/// A file without a name yet, or with a temporary one.
+/// A new file, with a temporary name or without a name.
 std::pair<File, fs::path> create_temporary(const fs::path& target) {
   const bool can_be_linked = ::access(kOpenFiles, X_OK) == 0;
   const int unnamed =
@@ -181,7 +179,7 @@ struct AtomicFile::Impl {
   fs::path path;    // path that the user gave, for messages
   fs::path target;  // path after symbolic links are resolved
   File file;
-  fs::path name;         // until the file is complete; empty: it has no name
+  fs::path name;         // name until the file is complete; empty: none
   bool is_kept = false;  // true if the file keeps its name even if it is never complete
   std::uint64_t size = 0;
 
@@ -198,16 +196,14 @@ struct AtomicFile::Impl {
 
   int descriptor() const { return file.get(); }
 
-  /// Gives a temporary name to a file without a name.
-  void link() {
+  void link() {  // gives a temporary name to a file without a name
     const std::string open_file = std::string(kOpenFiles) + '/' + std::to_string(descriptor());
     name = with_new_name(target, [&](const fs::path& free_name) {
              return ::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, free_name.c_str(), AT_SYMLINK_FOLLOW);
            }).first;
   }
 
-  /// Copies all bytes to the target, a device or pipe.
-  void copy_to_target() const {
+  void copy_to_target() const {  // to a device or pipe
     File device(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
     if (device.get() < 0 && interrupted()) throw Cancelled();
     if (device.get() < 0) fail_errno(path, "cannot open for writing");

@@ -1,4 +1,3 @@
-// Files that appear complete or not at all.
 #pragma once
 
 #include <cstddef>
@@ -13,9 +12,8 @@ namespace dolp {
 /// The path after symbolic links are resolved. It need not exist. Errors: IoError for too many links.
 std::filesystem::path follow_links(std::filesystem::path path);
 
-/// Checks early that an output path can be written. "-" is standard output.
-///
-/// Errors: IoError if the path is a folder, a read-only file or too long, or if its folder is missing or not writable.
+/// Checks early that an output path can be written; "-" is standard output. Errors: IoError if the path is a folder, a
+/// read-only file or too long, or if its folder is missing or not writable.
 void check_writable(const std::filesystem::path& path);
 
 /// A file that becomes `path` when it is complete. Its bytes may be written in any order; then it is synced and
@@ -42,8 +40,7 @@ class AtomicFile {
   std::uint64_t size() const;
   /// Reads bytes at an offset. Errors: IoError, also if the file ends before the last of them.
   void read_at(std::uint64_t offset, void* bytes, std::size_t size) const;
-  /// Sets the length of the file; additional bytes are zero. Errors: IoError.
-  void resize(std::uint64_t size);
+  void resize(std::uint64_t size);  ///< additional bytes are zero. Errors: IoError
   /// Gives the complete file the name `path`. Errors: IoError, Cancelled; they leave `path` unchanged.
   void commit();
   /// Gives up the file: the destructor removes it, even if it is named `under_way`.

@@ -10,7 +10,6 @@ namespace dolp {
 
 inline constexpr std::uint64_t kHashStart = 0xcbf29ce484222325U;
 
-/// Continues a hash with a word, with bytes or with numbers.
 constexpr std::uint64_t hashed(std::uint64_t hash, std::uint64_t word) { return (hash ^ word) * 0x100000001b3U; }
 constexpr std::uint64_t hashed(std::uint64_t hash, std::string_view bytes) {
   for (const char byte : bytes) hash = hashed(hash, std::uint64_t{static_cast<unsigned char>(byte)});

@@ -1,4 +1,3 @@
-// The first Ctrl-C or similar signal sets a flag instead of ending the process; a second one ends it.
 #pragma once
 
 namespace dolp {

@@ -13,9 +13,8 @@ namespace dolp {
 void parallel_ranges(std::size_t count, std::size_t grain,
                      const std::function<void(std::size_t first, std::size_t last)>& body);
 
-/// Calls body(i) once for each i < count, in ranges of `grain` items. Calls `progress` after each range, from one
-/// thread at a time.
-/// Errors: the first exception of `body`; Cancelled if `progress` returns false. Both stop the loop.
+/// Calls body(i) once for each i < count, in ranges of `grain` items, and `progress` after each range, from one thread
+/// at a time. Errors, which stop the loop: the first exception of `body`; Cancelled if `progress` returns false.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, const Progress& progress,
                   std::size_t grain = 64);
 

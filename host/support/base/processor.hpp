@@ -5,10 +5,7 @@
 
 namespace dolp {
 
-/// Name of the processor as the kernel reports it, or "unknown processor".
-const std::string& processor_name();
-
-/// The largest memory use of this process until now, in bytes.
-std::size_t peak_resident_bytes();
+const std::string& processor_name();  ///< as the kernel reports it, or "unknown processor"
+std::size_t peak_resident_bytes();    ///< largest memory use of this process until now
 
 }  // namespace dolp

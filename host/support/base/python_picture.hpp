@@ -1,4 +1,3 @@
-// Runs Python scripts that draw pictures.
 #pragma once
 
 #include <string>

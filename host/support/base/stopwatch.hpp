@@ -4,7 +4,6 @@
 
 namespace dolp {
 
-/// Seconds since `start`, by the monotonic clock.
 inline double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }

@@ -1,4 +1,3 @@
-// Folders for temporary files.
 #pragma once
 
 #include <cstdlib>

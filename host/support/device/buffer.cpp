@@ -9,8 +9,7 @@
 namespace dolp::vulkan {
 namespace {
 
-// Size in bytes of the smallest buffer, because Vulkan has no empty buffers. No struct of the kernels is larger than
-// this.
+// In bytes. Vulkan has no empty buffers, and no struct of the kernels is larger than this.
 constexpr VkDeviceSize kSmallestBuffer = 256;
 
 }  // namespace

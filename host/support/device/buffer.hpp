@@ -1,4 +1,3 @@
-// Buffers that the host writes and reads.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,3 @@
-// A Vulkan instance, a device of it, and the log of the validation layer.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -28,8 +27,8 @@ class ValidationLog {
 /// A Vulkan 1.2 instance.
 class Instance {
  public:
-  /// Without `log` there is no validation. With `log` the Khronos layer reports to it, with checks of synchronization,
-  /// until the instance is destroyed.
+  /// With `log` the Khronos validation layer checks all calls, including synchronization, and reports to `log` until
+  /// the instance is destroyed. Without `log` there is no validation.
   /// Errors: DeviceError without a Vulkan driver, or if the validation layer is requested but not installed.
   explicit Instance(ValidationLog* log);
   Instance(const Instance&) = delete;
@@ -48,7 +47,7 @@ class Instance {
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
 };
 
-/// A device of an instance, chosen by `wish`.
+/// A device that is chosen by `wish`, with its instance.
 class Context {
  public:
   /// Errors: DeviceError if no usable device matches, if double precision is needed and missing, or if the validation

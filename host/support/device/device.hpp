@@ -1,4 +1,3 @@
-// The logical device with one queue, its limits and its memory.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -19,14 +18,12 @@ constexpr std::uint32_t kLocalSize = 64;
 /// Description of a device. If dolp cannot run on it, the description has the reason.
 dolp::Device describe(VkPhysicalDevice physical);
 
-/// How host and device use a buffer.
 enum class MemoryUse {
   kDeviceOnly,  ///< not mapped
   kUpload,      ///< mapped; written by the host
   kReadback,    ///< mapped; read by the host
 };
 
-/// A memory type of the device, from which buffers are allocated.
 struct MemoryType {
   std::uint32_t index = 0;
   VkMemoryPropertyFlags flags = 0;
@@ -35,7 +32,7 @@ struct MemoryType {
 /// A logical device with a queue that computes.
 class Device {
  public:
-  /// `float64` enables double precision in shaders, which the device must support.
+  /// `float64` enables double precision in shaders; the device must support it.
   Device(VkPhysicalDevice physical, bool float64);
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -45,10 +42,8 @@ class Device {
   VkQueue queue() const { return queue_; }
   std::uint32_t queue_family() const { return queue_family_; }
   const VkPhysicalDeviceLimits& limits() const { return limits_; }
-  /// Number of invocations in a workgroup.
-  std::uint32_t local_size() const { return local_size_; }
-  /// Number of valid bits of the queue's timestamps; 0 if the queue has no timestamps.
-  std::uint32_t timestamp_bits() const { return timestamp_bits_; }
+  std::uint32_t local_size() const { return local_size_; }          ///< number of invocations in a workgroup
+  std::uint32_t timestamp_bits() const { return timestamp_bits_; }  ///< valid bits; 0 without timestamps
 
   /// The best memory type for a use. Bit i of `allowed` allows type i. Errors: DeviceError if no allowed type fits.
   MemoryType memory_type(std::uint32_t allowed, MemoryUse use) const;

@@ -1,4 +1,3 @@
-// The Vulkan devices of this machine, and the choice of one.
 #pragma once
 
 #include <dolp/device.hpp>
@@ -14,21 +13,18 @@ enum class ValidationMode {
   kOn,
 };
 
-/// Selects a device and its validation mode.
 struct DeviceSelector {
   std::string device = {};    ///< part of a name, or position; see choose_device
   bool needs_double = false;  ///< true if shaders need double precision
   ValidationMode validation = ValidationMode::kFromEnvironment;
 };
 
-/// All devices, in the order of the Vulkan loader. If there is none, `why_empty` is the reason.
 struct DeviceList {
-  std::vector<Device> devices;
-  std::string why_empty;
+  std::vector<Device> devices;  ///< in the order of the Vulkan loader
+  std::string why_empty;        ///< the reason if there are no devices
 };
 
-/// Searches for Vulkan devices. Does not throw if there are none.
-DeviceList list_devices();
+DeviceList list_devices();  ///< does not throw if there are no devices
 
 /// The position in `devices` of the device that `choice` means. A number in the list is a position. Any other text is a
 /// part of a name, where case does not matter. An empty text matches all devices.

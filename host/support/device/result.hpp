@@ -23,18 +23,12 @@ struct DeviceLost : DeviceError {
   using DeviceError::DeviceError;
 };
 
-/// The name of a result, for example "VK_ERROR_DEVICE_LOST".
-std::string result_name(VkResult result);
+std::string result_name(VkResult result);  ///< for example "VK_ERROR_DEVICE_LOST"
+bool lacks_addresses();                    ///< too little address space is left for a driver
+bool lacks_threads();                      ///< the system allows fewer threads than a driver needs
 
-/// True if the process has too little address space left for a driver.
-bool lacks_addresses();
-
-/// True if the process may not start as many threads as a driver waits for.
-bool lacks_threads();
-
-/// Throws unless `result` is VK_SUCCESS. `action` is a phrase such as "creating a buffer".
-/// Errors: DeviceLost; MemoryError if the device or its driver is out of memory; otherwise DeviceError "Vulkan: ACTION
-/// failed: RESULT".
+/// Throws unless `result` is VK_SUCCESS. `action` is a phrase such as "creating a buffer". Errors: DeviceLost;
+/// MemoryError if the device or its driver is out of memory; otherwise DeviceError "Vulkan: ACTION failed: RESULT".
 void check(VkResult result, const std::string& action);
 
 /// Owns `object` and destroys it with `kDestroy(device, object, nullptr)`.
@@ -59,8 +53,7 @@ class Handle {
   T object_ = VK_NULL_HANDLE;
 };
 
-/// Creates an object by a create function of Vulkan. `action`: a phrase for messages, as in check(). Errors: the errors
-/// of check().
+/// Calls a create function of Vulkan. `action`: a phrase as in check(). Errors: the errors of check().
 template <class Owner, class Info, class T>
 Owner created(VkDevice device, VkResult (*create)(VkDevice, const Info*, const VkAllocationCallbacks*, T*),
               const Info& info, const std::string& action) {

@@ -17,12 +17,9 @@ constexpr double kBlink_s = 0.3;  // period of a text cursor
 // Longest wait of a frame for its curve during a drag. Tuned for frames of 33 ms, half of which is drawing. With double
 // the time, frames of slow scenes take too long; with half, curves of scenes with a band lag behind the slider.
 constexpr double kCatchUp_s = 0.03;
-// Number of frames after an event, because ImGui shows some reactions, for example an open list, some frames later.
-constexpr std::size_t kFramesAfterEvent = 4;
-// Number of frames after new results, because tables adapt to the width of their text one frame later.
-constexpr std::size_t kFramesAfterNews = 2;
+constexpr std::size_t kFramesAfterEvent = 4;  // ImGui shows some reactions, such as an open list, some frames later
+constexpr std::size_t kFramesAfterNews = 2;   // tables adapt to the width of their text one frame later
 
-/// Number, median and maximum of durations of frames, as text.
 std::string times_text(std::vector<double> times_s) {
   if (times_s.empty()) return "none";
   std::ranges::sort(times_s);

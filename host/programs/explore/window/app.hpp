@@ -1,4 +1,3 @@
-// The window as a program: display, threads and the loop of frames.
 #pragma once
 
 #include "explore/readout.hpp"
@@ -17,8 +16,7 @@ class App {
  public:
   using AfterFrame = std::function<void(double frame_s)>;
 
-  /// Opens the window. Errors: the errors of Screen.
-  App(SceneEdits edits, const AppOptions& options);
+  App(SceneEdits edits, const AppOptions& options);  ///< Errors: the errors of Screen
 
   Session& session() { return session_; }
   /// The area of a named item in the last frame. Errors: std::out_of_range if the frame did not draw it.
@@ -30,15 +28,11 @@ class App {
   /// Takes input and results, and draws one frame. Returns false if the user has closed the window.
   /// Errors: DeviceError if no device can compute, or if it is lost.
   bool frame();
-  /// Draws frames until all events, also events that arrive meanwhile, have been handled and shown. Returns false if
-  /// the user has closed the window.
+  /// Draws frames until all events, also new ones, have been shown. Returns false if the user has closed the window.
   bool answer(const AfterFrame& after_frame = {});
-  /// Ends `run`. May be called from any thread.
-  void close();
-  /// Lets `run` continue after `close`.
-  void reopen();
-  /// Draws frames until the window is closed, and waits while there are no events. `after_frame` gets the duration of
-  /// each frame.
+  void close();   ///< ends run(); any thread may call it
+  void reopen();  ///< lets run() continue after close()
+  /// Draws frames until the window is closed, and waits for events. `after_frame` gets the duration of each frame.
   void run(const AfterFrame& after_frame = {});
   /// Draws `count` frames. Returns a summary of their durations: for all frames, and for the frames during
   /// computations. If `screenshot_path` is not empty, the last frames wait for all results.
@@ -46,14 +40,12 @@ class App {
 
   /// True if nothing remains to be computed and the session has all results.
   bool is_idle() { return worker_.is_idle() && is_all_taken_ && !actions_.fit_task.is_running(); }
-  /// Draws until is_idle() returns true.
-  void settle();
+  void settle();  ///< draws until is_idle()
   /// Writes a picture of the window with its next frame. Errors: IoError.
   void save_picture(const std::string& path) { actions_.picture_path = path; }
 
  private:
-  /// Passes results to the session and wanted jobs to the worker.
-  void exchange();
+  void exchange();  ///< passes results to the session and wanted jobs to the worker
   /// During a drag, waits briefly for the coarse curve, so that slider and curve move in the same frame.
   void catch_up();
   void draw();
@@ -69,7 +61,7 @@ class App {
   bool is_all_taken_ = false;
 };
 
-/// Without `preferences`.
+/// run_program() chooses `preferences`.
 struct ProgramOptions : AppOptions {
   std::string measured_path;           ///< CSV of measured points; empty: none
   std::size_t frames = 0;              ///< number of frames to draw; 0: until the window is closed
@@ -79,11 +71,9 @@ struct ProgramOptions : AppOptions {
   std::vector<Setting> settings = {};  ///< changes of the session
 };
 
-/// The text of the scene for a first look: host/scenes/night_paint.toml.
-extern const char* const kFirstScene;
+extern const char* const kFirstScene;  ///< text of host/scenes/night_paint.toml, the scene for a first look
 
-/// Shows the window. If the number of frames is given, prints their durations.
-/// Errors: the errors of the public header; DeviceError, IoError.
+/// Shows the window. If `frames` is given, prints their durations. Errors: the errors of the public header.
 void run_program(const Scene& scene, const ProgramOptions& options);
 
 }  // namespace dolp::explore

@@ -1,4 +1,3 @@
-// The window's commands: menus, shortcuts, hints and recent files; and the actions behind them.
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
@@ -130,7 +129,6 @@ std::string suggested_path(const Ui& ui, const std::string& ending) {
   return (folder / ((file == "-" ? "dolp" : file.stem().string()) + ending)).string();
 }
 
-/// Asks for a path and suggests one with an ending.
 void ask_for_path(Ui& ui, const char* title, const char* ending, const std::vector<std::string>& suffixes,
                   const std::function<void(Path)>& accept) {
   ui.dialog.open(
@@ -176,7 +174,6 @@ void prefer(Ui& ui) {
   ui.actions.prefer(change);
 }
 
-/// A menu entry.
 struct Command {
   const char* menu;
   const char* text;
@@ -190,7 +187,7 @@ struct Command {
     if (keys.empty()) return false;
     const char key = keys.back();
     if (keys.starts_with("Ctrl+Shift") != is_shift && key != '+') return false;  // on many keyboards + is Shift and =
-    if (key == 'Z' && ImGui::GetIO().WantTextInput) return false;                // the text field with the focus undoes its text
+    if (key == 'Z' && ImGui::GetIO().WantTextInput) return false;  // the text field with the focus undoes its text
     using explore::is_pressed;
     if (key == '+') return is_pressed('=') || is_pressed(GLFW_KEY_KP_ADD);
     if (key == '-') return is_pressed(key) || is_pressed(GLFW_KEY_KP_SUBTRACT);

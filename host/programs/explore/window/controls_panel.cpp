@@ -25,8 +25,7 @@ void heading(const char* text) {
   ImGui::Separator();
 }
 
-/// Draws an interval, which may have several pieces, as bars at the bottom of the slider that was drawn last. An open
-/// end extends to the end of the slider.
+/// Draws the pieces of an interval as bars at the bottom of the last slider. An open end reaches the slider's end.
 void draw_interval(const Control& control, const FitInterval& interval) {
   const ImVec2 corner = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
   const auto at = [&](const std::optional<double>& value, double otherwise) {
@@ -40,7 +39,6 @@ void draw_interval(const Control& control, const FitInterval& interval) {
   }
 }
 
-/// Meaning, equation and range of a number, its value as opened, and the intervals from the last fit.
 std::string note_on(const Control& control, const Session& session) {
   const Key& key = *control.key;
   std::string note =
@@ -70,20 +68,17 @@ std::pair<double, double> index_of(const Scene& scene, const std::string& table)
   return bare.refractive_index(spectrum_um(scene).first);
 }
 
-/// The typed text as a value. If it is not a number, the scene refuses it, with a message that lists the allowed
-/// values.
+/// The typed text as a value. If it is not a number, the scene refuses it and lists the allowed values.
 Value value_of(const std::string& text) {
   const std::optional<double> number = parse_number(text);
   return number ? Value(*number) : Value(TomlText{text});
 }
 
-/// The controls of a session.
 struct Controls {
   Session& session;
   NumberFields& fields;
 
-  /// A slider with a field beside it.
-  struct Slider {
+  struct Slider {  // with a field beside it
     std::string id, label;
     std::string note;
     std::string reset_key;  ///< key that a Ctrl-click resets
@@ -91,8 +86,7 @@ struct Controls {
     std::function<Setting(const std::string& text)> change;
   };
 
-  /// Changes the scene. Returns the reason if the change is refused, otherwise nothing.
-  std::string set(const Setting& change) {
+  std::string set(const Setting& change) {  // returns the reason if the change is refused
     session.set({change});
     return session.message().is_error ? session.message().text : "";
   }
@@ -156,7 +150,6 @@ struct Controls {
               [&](const std::string& low, const std::string& high) { return session.set_fit_range(key, low, high); });
   }
 
-  /// Draws a list of words, or a box for a flag.
   void draw_choice(const Control& control, std::size_t position) {
     const std::string& key = control.key->key;
     const std::vector<std::string>& words = control.key->words;
@@ -186,8 +179,7 @@ struct Controls {
     }
   }
 
-  /// Draws the list of materials for the surface or for a film. Returns the settings of its table that the user chose;
-  /// empty if the user chose nothing.
+  /// Draws the list of materials for the surface or a film. Returns the chosen settings of its table; empty: no choice.
   std::vector<Setting> draw_material(const std::string& table) {
     static const std::vector<BuiltInMaterial> known = materials();
     const Scene& scene = session.scene();

@@ -16,19 +16,16 @@ constexpr float kRoomForTwo = 18.0F;        // a higher view has a legend of two
 constexpr float kRoomForResiduals = 17.0F;  // a higher view has residuals below the curve
 constexpr float kLeastResiduals = 7.0F;
 
-/// A curve with the style in which it is drawn.
 struct Shown {
   const Curve* curve;
   CurveStyle style;
 };
 
-/// True for curves of an earlier or another scene, which are dim.
-bool is_dim(const Session& session, const Curve& curve) {
+bool is_dim(const Session& session, const Curve& curve) {  // curves of an earlier or another scene
   return session.is_outdated(curve) || session.is_foreign(curve.scene());
 }
 
-/// The style for parts in which the model fails.
-CurveStyle bad_style() { return {kBadColour, 4.0F, 4.0F}; }
+CurveStyle bad_style() { return {kBadColour, 4.0F, 4.0F}; }  // for parts in which the model fails
 
 std::vector<Shown> shown_curves(const Session& session) {
   std::vector<Shown> curves;
@@ -39,20 +36,17 @@ std::vector<Shown> shown_curves(const Session& session) {
   for (const Pin& pin : session.pins()) {
     if (pin.is_visible) add(pin.curve, pin_style(pin.colour));
   }
-  // Added last, so it is drawn on top.
-  add(session.curve(), current_style());
+  add(session.curve(), current_style());  // last, so that it is on top
   return curves;
 }
 
-/// The maximum of polarisation if the plot marks it; otherwise null.
-const PeakAnswer* shown_peak(const Session& session) {
+const PeakAnswer* shown_peak(const Session& session) {  // null if the plot marks no maximum
   const Plotted quantity = session.view().quantity;
   const bool is_marked = quantity == Plotted::kDolp || quantity == Plotted::kSignedDolp;
   const std::optional<PeakAnswer>& peak = session.peak().answer();
   return is_marked && peak && session.curve().is_finished() ? &*peak : nullptr;
 }
 
-/// The values that the axis must include.
 std::vector<double> values_to_show(const Session& session, const std::vector<Shown>& curves) {
   const Plotted quantity = session.view().quantity;
   std::vector<double> values;
@@ -109,8 +103,7 @@ void draw_curve(const Plot& plot, const Shown& shown, Plotted quantity) {
   draw_line(plot.list(), good, shown.style, kCurveWidth);
 }
 
-/// Adds an entry to the legend, beside the previous entry or in a new line. Draws its name. Returns the area in which
-/// the caller draws a sample of the line.
+/// Adds an entry to the legend, in a new line if needed, and draws its name. Returns the area for a sample of the line.
 Area add_entry(const char* id, const std::string& name, ImU32 colour = kTextColour) {
   const float line = ImGui::GetTextLineHeight();
   const float width = 2.3F * line + ImGui::CalcTextSize(shown(name).c_str()).x;
@@ -225,8 +218,7 @@ void draw_points(const Plot& plot, const std::vector<Measurement>& points, doubl
   }
 }
 
-/// Grey for points that were loaded for another scene.
-ImU32 colour_of_points(const Session& session) {
+ImU32 colour_of_points(const Session& session) {  // grey for points loaded for another scene
   return session.is_foreign(session.residuals().loaded_for()) ? kDimColour : kTextColour;
 }
 

@@ -14,7 +14,6 @@ constexpr std::size_t kCutCount = 181;
 constexpr float kLobeWidth = 2.0F;
 constexpr int kCells = 56;  // cells across a sphere, each a few pixels large
 
-/// A disc that shows directions.
 struct Disc {
   ImVec2 middle;
   float radius;
@@ -27,7 +26,6 @@ struct Disc {
   }
 };
 
-/// The largest magnitude of one element in a cut.
 double largest_magnitude(const ScatteringCut& cut, std::size_t element) {
   double largest = 0.0;
   for (const MuellerMatrix& matrix : cut.matrices) {
@@ -64,17 +62,15 @@ void draw_lobe(ImDrawList* list, const Disc& disc, const ScatteringCut& cut, std
   }
 }
 
-/// A colour for the angle of polarisation, equal at 0 and 180 degrees.
-ImU32 angle_colour(double angle_deg) {
+ImU32 angle_colour(double angle_deg) {  // equal at 0 and 180 degrees
   float r = 0.0F, g = 0.0F, b = 0.0F;
   ImGui::ColorConvertHSVtoRGB(static_cast<float>(angle_deg / 180.0), 0.65F, 0.95F, r, g, b);
   return ImGui::ColorConvertFloat4ToU32({r, g, b, 1.0F});
 }
 
-/// The colours of an image, which shows DOLP or the angle of polarisation.
 struct Colours {
-  Scale dolp;  ///< range from the darkest colour to the lightest
-  bool is_angle = false;
+  Scale dolp;             ///< range from the darkest colour to the lightest
+  bool is_angle = false;  ///< the image shows the angle of polarisation instead of DOLP
 
   ImU32 colour(const std::optional<ImagePolarisation>& polarisation) const {
     if (!polarisation) return kBadColour;
@@ -136,7 +132,6 @@ void draw_plate(const Session& session, ImVec2 middle, float radius, double azim
                 scaled(2.0F));
 }
 
-/// A colour bar with a word at each end.
 void draw_bar(ImVec2 corner, float width, const Colours& colours) {
   const float line = ImGui::GetTextLineHeight();
   ImDrawList* const list = ImGui::GetWindowDrawList();
@@ -241,7 +236,6 @@ void ScatteringView::draw(Session& session, ImVec2 size) {
   if (!(largest > 0.0)) return coloured_text(kDimColour, "0 in all of these directions");
   draw_polar_grid(list, disc, {0.0, largest});
   draw_lobe(list, disc, cut_, element, largest);
-  // The mark of the source.
   const ImVec2 source = disc.at(1.0, 90.0 + session.theta_deg());
   list->AddLine(source, disc.middle, kCursorColour, scaled(1.0F));
   list->AddCircleFilled(source, scaled(4.0F), kCursorColour);

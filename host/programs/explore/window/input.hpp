@@ -1,4 +1,3 @@
-// Passes events of mouse and keyboard to ImGui one by one, and stores the areas of named items for tests.
 #pragma once
 
 #include <imgui.h>
@@ -34,17 +33,13 @@ class Input {
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
 
-  /// Begins a frame of ImGui with the next event, if any.
-  void begin_frame();
+  void begin_frame();  ///< begins a frame of ImGui with the next event, if any
   bool has_more() const { return !events_.empty(); }
-  /// GLFW's number of the key that goes down in this frame.
-  int pressed_key() const { return pressed_key_; }
+  int pressed_key() const { return pressed_key_; }  ///< GLFW's number of the key that goes down in this frame
   /// True if events since the last call may have changed the window.
   bool take_news() { return std::exchange(has_news_, false); }
-  /// Time since the last event, in seconds.
   double rest_s() const { return std::chrono::duration<double>(Clock::now() - last_event_).count(); }
-  /// The named items of this frame, for tests that move the mouse.
-  std::map<std::string, Area>& areas() { return areas_; }
+  std::map<std::string, Area>& areas() { return areas_; }  ///< named items of this frame, for tests
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -72,8 +67,7 @@ class Input {
 /// equal GLFW's, and ImGui::IsKeyPressed(ImGuiKey_Escape) would check a different key.
 bool is_pressed(int key);
 
-/// Names the area of the item that was drawn last, or another area.
-void name_item(const std::string& name);
+void name_item(const std::string& name);  ///< names the item that was drawn last
 void name_area(const std::string& name, const Area& area);
 
 }  // namespace dolp::explore

@@ -14,7 +14,6 @@ constexpr std::size_t kSlopeCount = 181;
 constexpr std::size_t kMaterialCount = 240;
 constexpr float kLineWidth = 2.0F;
 
-/// The range of values of all lines.
 Scale values_range(const std::vector<NamedLine>& lines, bool is_log) {
   std::vector<double> all;
   for (const NamedLine& line : lines) all.insert(all.end(), line.values.begin(), line.values.end());
@@ -49,7 +48,6 @@ std::string distribution_name(const Scene& scene) {
   return fmt::format("{} σ {:.4g}{}", name, scene.number("surface.sigma").value(), q);
 }
 
-/// Marks the scene's wavelength or band on an axis of wavelengths.
 void mark_spectrum(const Plot& plot, const Scene& scene) {
   const auto [from_um, to_um] = spectrum_um(scene);
   const float from = plot.at_position(plot.x().position(from_um), 0.0).x;
@@ -69,7 +67,6 @@ NamedLine line_of(const Sweep& sweep, Plotted quantity, const CurveStyle& style,
   return line;
 }
 
-/// Draws lines over the wavelengths of a sweep.
 void draw_wavelengths(const char* id, Session& session, AxisEditor& editor, ImVec2 size,
                       const std::vector<NamedLine>& lines, const Sweep& sweep, const PlotAxis& values) {
   const MapAxis axis = session.wavelengths();

@@ -6,12 +6,10 @@
 namespace dolp::explore {
 namespace {
 
-/// Ticks with at least `spacing` pixels between them.
 std::vector<double> ticks_of(const Scale& scale, float pixels, float spacing) {
   return scale.ticks(static_cast<std::size_t>(std::max(3.0F, pixels / spacing)));
 }
 
-/// Draws a line without gaps.
 void draw_piece(ImDrawList* list, const std::vector<ImVec2>& points, const CurveStyle& style, float width) {
   if (style.dash == 0.0F && points.size() > 1)
     return list->AddPolyline(points.data(), static_cast<int>(points.size()), style.colour, ImDrawFlags_None, width);

@@ -1,4 +1,3 @@
-// Axes, curves and maps, drawn with ImGui's draw lists.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +10,6 @@
 
 namespace dolp::explore {
 
-/// One axis of a plot.
 struct PlotAxis {
   std::string label;
   Scale scale;
@@ -22,7 +20,6 @@ struct Zoom {
   std::optional<Scale> x, y;
 };
 
-/// A rectangle on the screen with two axes.
 class Plot {
  public:
   /// Takes an area of `size`, with margins for ticks and labels, at the cursor of the current ImGui window. Draws
@@ -51,8 +48,7 @@ class Plot {
 
   ImVec2 at(double x_value, double y_value) const { return at_position(x().position(x_value), y().position(y_value)); }
   ImVec2 at_position(double x, double y) const { return area_.at(static_cast<float>(x), 1.0F - static_cast<float>(y)); }
-  /// True while the left button, pressed inside the plot, is down.
-  bool is_dragged() const { return is_dragged_; }
+  bool is_dragged() const { return is_dragged_; }  ///< the left button, pressed inside the plot, is down
   bool is_hovered() const { return is_hovered_; }
   /// Applies the mouse of this frame: the wheel zooms around the mouse (with Shift only along x, with Alt only along
   /// y), the right button moves the plot, a double click resets it. `all_x` limits the x axis.

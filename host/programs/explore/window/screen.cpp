@@ -22,8 +22,7 @@ namespace {
 
 constexpr int kWidth = 1440;
 constexpr int kHeight = 900;
-// A smaller window would cut off texts of the controls.
-constexpr int kLeastWidth = 800;
+constexpr int kLeastWidth = 800;  // a smaller window would cut off texts of the controls
 constexpr int kLeastHeight = 560;
 
 std::string glfw_error() {
@@ -37,7 +36,6 @@ bool is_set(const char* variable) {
   return value != nullptr && *value != '\0';
 }
 
-/// A length of the window in whole pixels at a scale.
 int scaled_length(int length, float scale) { return static_cast<int>(std::lround(scale * static_cast<float>(length))); }
 
 /// Opens a window as large as its content at the display's scale, or as the display.
@@ -67,8 +65,7 @@ Function* opengl(const char* name) {
   return reinterpret_cast<Function*>(glfwGetProcAddress(name));
 }
 
-/// The frame that has been drawn, as a PNG file. Errors: IoError.
-std::string picture(int width, int height) {
+std::string picture(int width, int height) {  // the last drawn frame as a PNG file; errors: IoError
   constexpr int kChannels = 4;
   std::vector<std::uint8_t> rgba(static_cast<std::size_t>(kChannels * width * height));
   opengl<decltype(glReadPixels)>("glReadPixels")(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());

@@ -20,7 +20,7 @@ class Texture {
   Texture& operator=(const Texture&) = delete;
   ~Texture();
 
-  /// Replaces the image by a square of colours: rows upwards, from the left.
+  /// Replaces the image by `count` rows of `count` colours. The first row is the lowest; a row begins on the left.
   void set(const std::vector<ImU32>& colours, std::size_t count);
   /// Draws the image between two corners. Each colour fills a cell around its position; outer cells are cut in half.
   void draw(ImDrawList* list, ImVec2 min, ImVec2 max) const;
@@ -30,7 +30,6 @@ class Texture {
   std::size_t count_ = 0;
 };
 
-/// The open window, and ImGui with its theme and font.
 class Screen {
  public:
   /// Errors: DeviceError without a display, or if the display cannot show a window.
@@ -40,15 +39,12 @@ class Screen {
   ~Screen();
 
   GLFWwindow* window() const { return window_; }
-  /// Applies theme and size of the text. Call it between two frames.
-  void follow(const Preferences& wanted);
-  /// Shows ImGui's frame. Does nothing while the window has no area. Returns the frame as a PNG file if that is wanted
-  /// and the frame was shown; otherwise nothing.
+  void follow(const Preferences& wanted);  ///< applies theme and size of the text; call it between two frames
+  /// Shows ImGui's frame, unless the window has no area. Returns the shown frame as a PNG file if that is wanted.
   std::string show(bool wants_picture) const;
 
  private:
-  /// Starts GLFW once and ends it, which also closes the window.
-  struct Library {
+  struct Library {  // starts GLFW once and ends it, which also closes the window
     Library();
     ~Library();
   };

@@ -50,8 +50,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 42> kNames =
     {"ν", "nu"},    {"‖", "|"},     {"▲", "^"},   {"•", "*"},   {"“", "\""},     {"”", "\""},     {"Ω", "Omega"},
 }};
 
-/// The colour at a position from 0 to 1. `colours` are at equal steps of the position, with linear interpolation
-/// between them.
+/// The colour at a position from 0 to 1, by linear interpolation between equally spaced `colours`.
 ImU32 colour_at(std::span<const Rgb> colours, double position) {
   const double steps = std::clamp(position, 0.0, 1.0) * static_cast<double>(colours.size() - 1);
   const auto below = std::min(static_cast<std::size_t>(steps), colours.size() - 2);

@@ -12,15 +12,13 @@ namespace dolp::explore {
 bool is_light();
 void set_theme(bool light);
 
-/// A colour for the dark theme and one for the light theme.
 struct Themed {
   ImU32 dark, light;
   // NOLINTNEXTLINE(google-explicit-constructor): for ImGui it is a colour
   operator ImU32() const { return is_light() ? light : dark; }
 };
 
-/// The colour map "viridis" from dark at 0 to light at 1. Positions below 0 or above 1 get the first or the last
-/// colour.
+/// The colour map "viridis" from dark at 0 to light at 1. Positions outside this range are clamped.
 /// Source: S. van der Walt, N. Smith, viridis of Matplotlib (CC0), at seventeen equal steps, linear in between.
 ImU32 viridis(double position);
 
@@ -40,12 +38,8 @@ struct CurveStyle {
 CurveStyle current_style();
 CurveStyle overlay_style();
 CurveStyle pin_style(std::size_t pin);
-
-/// The style of a curve that belongs to an earlier scene.
-CurveStyle stale(const CurveStyle& style);
-
-/// The fill colour of the band around a curve.
-ImU32 band_colour(const CurveStyle& style);
+CurveStyle stale(const CurveStyle& style);   ///< for a curve of an earlier scene
+ImU32 band_colour(const CurveStyle& style);  ///< fill of the band around a curve
 
 inline constexpr Themed kTextColour{IM_COL32(225, 228, 232, 255), IM_COL32(24, 26, 30, 255)};
 inline constexpr Themed kDimColour{IM_COL32(150, 156, 163, 255), IM_COL32(96, 101, 108, 255)};
@@ -55,41 +49,28 @@ inline constexpr Themed kBackground{IM_COL32(28, 31, 33, 255), IM_COL32(240, 241
 inline constexpr Themed kLabelGround{IM_COL32(20, 21, 24, 215), IM_COL32(255, 255, 255, 215)};
 /// Colour of entries with a status.
 inline constexpr Themed kBadColour{IM_COL32(110, 112, 116, 255), IM_COL32(150, 152, 156, 255)};
-/// Colour of error messages.
 inline constexpr Themed kErrorColour{IM_COL32(255, 150, 110, 255), IM_COL32(178, 40, 0, 255)};
-/// Background of a field with refused text.
-inline constexpr Themed kRefusedColour{IM_COL32(110, 48, 34, 255), IM_COL32(255, 200, 186, 255)};
-/// Colour over an outdated map.
+inline constexpr Themed kRefusedColour{IM_COL32(110, 48, 34, 255), IM_COL32(255, 200, 186, 255)};  // background
 inline constexpr Themed kStaleVeil{IM_COL32(20, 21, 24, 150), IM_COL32(255, 255, 255, 150)};
-/// Colour of a fit's intervals.
 inline constexpr Themed kIntervalColour{IM_COL32(90, 205, 130, 255), IM_COL32(0, 130, 60, 255)};
 inline constexpr Themed kHeadingColour{IM_COL32(230, 179, 0, 255), IM_COL32(148, 98, 0, 255)};
 inline constexpr Themed kCursorColour{IM_COL32(255, 255, 255, 200), IM_COL32(40, 40, 40, 200)};
 
-/// Loads the font DejaVu Sans at `pixels`. If it is not installed, loads ImGui's font, which has only ASCII. Needs an
-/// ImGui context.
+/// Loads the font DejaVu Sans, or ImGui's ASCII font if it is not installed. Needs an ImGui context.
 void load_font(float pixels);
 inline constexpr float kFontPixels = 15.0F;  ///< default size of the font
 
-/// A length that is `pixels` at the default text size, and grows with the text.
-float scaled(float pixels);
-
-/// A UTF-8 text for display. Without DejaVu Sans, names replace Greek letters and signs.
-std::string shown(std::string_view text);
-
-/// A UTF-8 text in ASCII.
-std::string ascii(std::string_view text);
+float scaled(float pixels);                ///< `pixels` at the default text size; grows with the text
+std::string shown(std::string_view text);  ///< for display: without DejaVu Sans, names replace Greek letters and signs
+std::string ascii(std::string_view text);  ///< names replace Greek letters and signs
 
 /// Breaks the lines of a text only at spaces, so that numbers and paths stay whole if they fit in a line.
 std::string in_lines(std::string text, float width);
 
-/// Text in a colour at ImGui's cursor, wrapped at the edge of the window.
-void coloured_text(ImU32 colour, const std::string& text);
+void coloured_text(ImU32 colour, const std::string& text);  ///< at ImGui's cursor, wrapped at the edge of the window
 
-/// Delay before a note appears at a resting mouse, in seconds.
-inline constexpr float kTooltipDelay_s = 0.5F;
+inline constexpr float kTooltipDelay_s = 0.5F;  ///< delay before a note appears at a resting mouse
 
-/// Shows a note beside the last drawn item while the mouse rests on it.
-void tooltip(const std::string& text);
+void tooltip(const std::string& text);  ///< shows a note beside the last item while the mouse rests on it
 
 }  // namespace dolp::explore

@@ -23,14 +23,12 @@ std::string influence_text(const Effect& row) {
                      points >= 10.0 ? fmt::format("{:.0f}", points) : fmt::format("{:.2g}", points));
 }
 
-/// True if the effects belong to an earlier scene.
 bool is_stale(const Session& session) { return !session.effects().empty() && !session.curve().is_finished(); }
 
 void draw_row(const Session& session, const Effect& row) {
   const bool is_absent = row.state == EffectState::kAbsent;
   const ImU32 colour = is_absent || is_stale(session) ? kDimColour : kTextColour;
-  // Without the slopes the surface is smooth.
-  const bool is_slopes = row.name == "distribution";
+  const bool is_slopes = row.name == "distribution";  // without its distribution the surface is smooth
   const std::string removed = is_slopes ? "roughness" : row.name;
   const std::string without = is_absent ? "" : without_text(session, removed);
   cell(row.name, colour);

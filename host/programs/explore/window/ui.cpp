@@ -28,7 +28,6 @@ void continue_row(float width) {
   if (ImGui::GetContentRegionAvail().x < width * ImGui::GetFontSize()) ImGui::NewLine();
 }
 
-/// Draws the result of a task. While it runs, draws its progress and a button to cancel it.
 void draw_task(const std::string& name, BackgroundTask& task) {
   ImGui::PushID(name.c_str());
   if (task.is_running()) {
@@ -45,8 +44,7 @@ void draw_task(const std::string& name, BackgroundTask& task) {
   ImGui::PopID();
 }
 
-/// Draws a title, and for each element of `things` a row with a button that removes it. `id` distinguishes the rows of
-/// two lists.
+/// Draws a title, and for each of `things` a row with a button to remove it. `id` distinguishes the rows of two lists.
 template <class Things, class DrawRow>
 void draw_removable(const char* title, const char* id, Things& things, const DrawRow& draw_row) {
   if (things.empty()) return;
@@ -226,7 +224,6 @@ void draw_plots(Ui& ui, ImVec2 size) {
   ImGui::EndChild();
 }
 
-/// Draws one view at a time, where there is no room for two.
 void draw_one_page(Ui& ui) {
   for (const char* name : {"curve", "effects", "accuracy"}) {
     if (draw_tab(name, ui.page == name)) ui.page = name;
@@ -238,8 +235,7 @@ void draw_one_page(Ui& ui) {
   draw_panel(ui, ImGui::GetContentRegionAvail());
 }
 
-/// Everything right of the controls.
-void draw_right(Ui& ui, float window_height) {
+void draw_right(Ui& ui, float window_height) {  // everything right of the controls
   draw_view_controls(ui.session, ui.fields);
   const float em = ImGui::GetFontSize();
   const ImVec2 room = ImGui::GetContentRegionAvail();

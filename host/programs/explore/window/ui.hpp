@@ -1,4 +1,3 @@
-// The window's content: actions, menus, panels, dialogs and shortcuts.
 #pragma once
 
 #include "explore/files.hpp"
@@ -18,8 +17,7 @@ class Actions {
 
   /// Runs `body`. Then sets the session's message to `done` or to the reason of the failure.
   void attempt(const std::string& done, const std::function<void()>& body);
-  /// Opens a scene, a session or measured points.
-  void open(const std::string& path);
+  void open(const std::string& path);  ///< a scene, a session or measured points
   /// Saves a picture of the window shortly afterwards, when the dialog for its path has disappeared. Errors: IoError.
   void save_picture(const std::string& path);
   // The next four functions start work in the background. The session's message later tells the outcome of a plot or a
@@ -28,16 +26,12 @@ class Actions {
   void export_table(const std::string& path);
   void find_true_error();
   void fit();
-  /// Changes the stored preferences.
-  void prefer(const std::function<void(Preferences&)>& change);
+  void prefer(const std::function<void(Preferences&)>& change);  ///< changes and stores the preferences
   const Preferences& preferences() const { return preferences_; }
 
-  /// Takes the results of finished work in the background.
-  void finish();
-  /// The path for a picture of the next frame; empty: none.
-  std::string due_picture() const { return Clock::now() < picture_time_ ? "" : picture_path; }
-  /// True if the true error was computed for another curve than the one on display.
-  bool is_true_error_old() const;
+  void finish();  ///< takes the results of finished work in the background
+  std::string due_picture() const { return Clock::now() < picture_time_ ? "" : picture_path; }  ///< empty: none is due
+  bool is_true_error_old() const;  ///< the true error belongs to another curve than the one on display
 
   std::string picture_path;  ///< requests a picture of a frame; empty: none is requested
   bool is_quitting = false;
@@ -54,7 +48,6 @@ class Actions {
   Clock::time_point picture_time_;
 };
 
-/// The state of the user interface between frames.
 struct Ui {
   Session& session;
   Actions& actions;
@@ -65,8 +58,7 @@ struct Ui {
   ShapeView shape_view = {};
   CurveView curves = {};
   PathDialog dialog = {};
-  std::pair<std::string, std::filesystem::path> saved =
-      {};  ///< scene file, and the folder that the user last chose for it
+  std::pair<std::string, std::filesystem::path> saved = {};  ///< scene file, and the folder last chosen for it
   bool is_narrow = false;
   std::string page = "curve";  ///< view in a narrow window; empty: the view of View::panel
   bool shows_help = false;

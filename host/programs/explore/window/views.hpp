@@ -1,4 +1,3 @@
-// The window's views of a session: controls, curves, map, effects, and the views that can replace the map.
 #pragma once
 
 #include "explore/session.hpp"
@@ -15,8 +14,7 @@ namespace dolp::explore {
 /// field beside a slider; "field fit KEY 0" and "field fit KEY 1" the fields for the ends of its range in fits; "sky"
 /// the list of skies; "sky zenith" and "sky horizon" the sliders of their temperatures.
 void draw_controls(Session& session, NumberFields& fields);
-/// Draws the controls of tolerance and precision, which are beside the cost.
-void draw_accuracy_controls(Session& session, NumberFields& fields);
+void draw_accuracy_controls(Session& session, NumberFields& fields);  ///< tolerance and precision, beside the cost
 
 /// A line of a plot. All lines of the plot have their values at the same positions.
 struct NamedLine {
@@ -30,8 +28,7 @@ struct NamedLine {
 class CurveView {
  public:
   void draw(Session& session, AxisEditor& editor, ImVec2 size);
-  /// The last drawn area of the curves, and their axes.
-  const Area& area() const { return area_; }
+  const Area& area() const { return area_; }  ///< last drawn area of the curves
   const Scale& x() const { return x_; }
   const Scale& y() const { return y_; }
 
@@ -45,23 +42,16 @@ class CurveView {
   Plotted quantity_ = Plotted::kDolp;
 };
 
-/// Draws a table of effects: whether the plan keeps each one and why, and its influence.
 void draw_effects(const Session& session);
-
-/// Draws the slope distribution, and the other distribution with an equal D(0).
-void draw_slopes(const Session& session, ImVec2 size);
-
-/// Draws n and k of the material over wavelength, with the scene's spectrum marked.
-void draw_material(const Session& session, ImVec2 size);
+void draw_slopes(const Session& session, ImVec2 size);    ///< both distributions, with an equal D(0)
+void draw_material(const Session& session, ImVec2 size);  ///< n and k over wavelength
 
 /// Draws the curve over wavelength at the cursor's zenith. A drag along wavelengths changes the scene's wavelength.
 void draw_spectrum(Session& session, AxisEditor& editor, ImVec2 size);
-/// Draws R_s and R_p of the smooth surface over the local angle of incidence, and over wavelength at the angle that
-/// equals the cursor's zenith.
+/// R_s and R_p of the smooth surface over the local angle of incidence, and over wavelength at the cursor's zenith.
 void draw_smooth(Session& session, AxisEditor& editor, ImVec2 size);
 
-/// Draws one element of the Mueller pBRDF in the plane of incidence as a polar plot. Light comes from the cursor's
-/// zenith.
+/// One element of the Mueller pBRDF in the plane of incidence, as a polar plot. Light comes from the cursor's zenith.
 class ScatteringView {
  public:
   void draw(Session& session, ImVec2 size);
@@ -78,19 +68,16 @@ class ScatteringView {
 /// A sphere and a tilted plate as a camera would see them under the scene's radiation: DOLP and angle of polarisation.
 class ShapeView {
  public:
-  /// A drag tilts the plate and moves the cursor to its zenith.
-  void draw(Session& session, ImVec2 size);
+  void draw(Session& session, ImVec2 size);  ///< a drag tilts the plate and moves the cursor to its zenith
 
  private:
   double azimuth_deg_ = 30.0;  ///< direction of the tilt from the image's horizontal
 };
 
-/// Draws the minima of the last fit, its intervals, and the sentences with which `dolp fit` explains the result. A
-/// click visits a minimum. The areas of the minima are named "minimum N", from 1.
+/// The last fit: minima, intervals and explanations. A click visits a minimum, whose area is "minimum N", from 1.
 void draw_fit_result(Session& session);
 
-/// Draws DOLP of a bistatic scene over the direction of the source, as a polar map.
-void draw_sky(const Session& session, ImVec2 size);
+void draw_sky(const Session& session, ImVec2 size);  ///< DOLP over the source's direction, as a polar map
 
 /// Changes the typed range of a wavelength axis or of a map axis.
 void set_range(Session& session, const MapAxis& axis, const AxisEditor::Change& change);
@@ -103,15 +90,13 @@ class MapView {
   const Area& area() const { return area_; }
 
  private:
-  /// The contour lines of one value.
   struct Contour {
     double level;
     std::vector<Segment> segments;
   };
   const PlottedDescription& quantity() const { return described(quantity_); }
   void update(const Session& session);
-  /// The values of the first and of the last colour.
-  Scale colour_range() const;
+  Scale colour_range() const;  ///< values of the first and of the last colour
   ImU32 colour(double position) const;
   void edit_axes(Session& session, AxisEditor& editor, const Plot& plot);
   double colour_position(double value) const;

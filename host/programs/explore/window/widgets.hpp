@@ -1,5 +1,3 @@
-// Widgets that ImGui lacks: number fields that keep refused text, lists, names, an editor for axes, and a dialog for
-// paths.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +13,6 @@ class NumberFields {
  public:
   /// Applies a text. Returns the reason if it is refused, in one line, otherwise nothing.
   using Apply = std::function<std::string(const std::string& text)>;
-  /// Applies the texts of the two ends of a range.
   using ApplyEnds = std::function<std::string(const std::string& low, const std::string& high)>;
 
   /// Draws a field at ImGui's cursor with `value` or with the typed text. The name of its area is "field ID".
@@ -23,18 +20,15 @@ class NumberFields {
   /// Draws the field for one end of a range: `end` is 0 or 1, and the field's ID is `id` with " 0" or " 1". Both texts
   /// are applied together, so a refused text is tried again when the other end changes.
   void draw_end(const std::string& id, std::size_t end, const std::array<double, 2>& ends, const ApplyEnds& apply);
-  /// The text of a field that is not applied yet; empty: none.
-  std::string text(const std::string& id) const {
+  std::string text(const std::string& id) const {  // typed but not applied yet; empty: none
     const auto typed = typed_.find(id);
     return typed == typed_.end() ? "" : typed->second.text;
   }
-  /// The reason why the text of a field was refused; empty if it was not.
-  std::string reason(const std::string& id) const {
+  std::string reason(const std::string& id) const {  // why the text was refused; empty if it was not
     const auto typed = typed_.find(id);
     return typed == typed_.end() ? "" : typed->second.reason;
   }
-  /// Draws the reason below the fields.
-  void draw_reason(const std::string& id) const;
+  void draw_reason(const std::string& id) const;  ///< below the fields
 
  private:
   struct Typed {
@@ -46,22 +40,19 @@ class NumberFields {
   std::map<std::string, Typed> typed_;
 };
 
-/// An entry of a list.
 struct ListEntry {
   std::string text;
   std::string note = {};
   bool is_enabled = true;
 };
 
-/// Draws a list that opens on a click. `width` is as in ImGui. The closed list shows `current`, and `note` as a
-/// tooltip. The name of its area is `id`. Returns the position of the entry that the user clicks, unless it is
-/// `chosen`.
+/// Draws a list that opens on a click; closed, it shows `current`, and `note` as a tooltip. `width` is as in ImGui, and
+/// `id` names its area. Returns the position of the entry that the user clicks, unless it is `chosen`.
 std::optional<std::size_t> draw_list(const std::string& id, float width, const std::string& current,
                                      const std::string& note, std::optional<std::size_t> chosen,
                                      const std::vector<ListEntry>& entries);
 
-/// Draws a label in the left column. The next control is drawn beside it.
-void row_label(const std::string& text);
+void row_label(const std::string& text);  ///< in the left column; the next control is beside it
 
 /// Draws a field for a name, which a right click on the last item opens. Returns the name typed in this frame.
 std::optional<std::string> typed_name(std::string name, const std::string& hint = {});
@@ -69,13 +60,11 @@ std::optional<std::string> typed_name(std::string name, const std::string& hint 
 /// A small window for one axis. A double click on the numbers of the axis opens it.
 class AxisEditor {
  public:
-  /// A change of the axis: the typed range, or none if the data determine the range.
   struct Change {
-    std::optional<Scale> range;
+    std::optional<Scale> range;  ///< typed; empty: the data determine it
     bool is_log = false;
   };
-  /// Returns the reason why a range is refused, or nothing.
-  using Check = std::function<std::string(const Scale& range)>;
+  using Check = std::function<std::string(const Scale& range)>;  ///< returns the reason of a refusal, or nothing
 
   /// Draws the window if it belongs to the axis with this label. `numbers` is the area of the axis's numbers.
   std::optional<Change> draw(const std::string& label, const Area& numbers, const Scale& now, const Check& check);
@@ -90,7 +79,6 @@ class AxisEditor {
   bool is_opening_ = false;
 };
 
-/// A dialog that asks for the path of a file.
 class PathDialog {
  public:
   struct Request {
@@ -102,15 +90,12 @@ class PathDialog {
   };
 
   void open(Request request);
-  /// Draws the dialog if it is open: a field for the name, and a list of the folder. The areas are named after the
-  /// entries; folders end with a slash.
+  /// Draws the dialog if it is open. Areas have the names of the listed files and folders; folders end with a slash.
   void draw();
 
  private:
   void enter(const std::filesystem::path& folder);
-  /// Returns true if the user clicks the chosen file again.
-  bool draw_list();
-  /// The typed path. A relative path begins in the folder.
+  bool draw_list();  ///< returns true if the user clicks the chosen file again
   std::filesystem::path path() const { return folder_ / name_; }
 
   Request request_;

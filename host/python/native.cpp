@@ -49,8 +49,7 @@ auto interruptible(const Body& body) {
   return result.get();
 }
 
-// Python's way to decode bytes that are not UTF-8. Paths may contain such bytes.
-constexpr const char* kOtherBytes = "surrogateescape";
+constexpr const char* kOtherBytes = "surrogateescape";  // decodes bytes of paths that are not UTF-8
 
 py::str text_of(const std::string& text) {
   PyObject* const decoded = PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), kOtherBytes);
@@ -70,7 +69,6 @@ std::string bytes_of(const py::handle& text) {
   return py::reinterpret_steal<py::bytes>(encoded);
 }
 
-/// Raises an exception of the library in Python.
 void raise(const char* type, const std::exception& error) {
   const py::object raised = py::module_::import("dolp._native").attr(type);
   PyErr_SetObject(raised.ptr(), text_of(error.what()).ptr());
@@ -96,7 +94,6 @@ void add_error(py::module_& module, const std::string& name, PyObject* base, con
   module.attr(name.c_str()) = py::reinterpret_steal<py::object>(type);
 }
 
-/// The position of a word among the allowed words of an argument. Errors: InputError if the word is not allowed.
 std::size_t position_of(const std::string& argument, const std::string& word, const std::vector<std::string>& words) {
   const auto found = std::ranges::find(words, word);
   if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
@@ -161,8 +158,7 @@ py::object object_of(const dolp::Value& value) {
   return std::visit(object, value.content());
 }
 
-/// Gives a Python warning for each remark, at the line that called the package. Errors: the warning, if Python's
-/// filters turn it into an exception.
+/// Warns about each remark at the line that called the package. Throws the warning if a filter of Python demands it.
 void warn(const std::vector<std::string>& remarks) {
   constexpr int kCaller = 2;  // skips the frame of the package
   const py::object category = py::module_::import("dolp._native").attr("InputWarning");
@@ -175,7 +171,6 @@ dolp::Scene with_warnings(dolp::Scene scene) {
   return scene;
 }
 
-/// The value of a key; None if the scene has no value. Errors: InputError.
 py::object value_of_key(const dolp::Scene& scene, const std::string& key) {
   const auto object = [](const auto& value) -> py::object { return value ? py::cast(*value) : py::none(); };
   const auto known = std::ranges::find(dolp::keys(), key, &dolp::Key::key);
@@ -210,7 +205,6 @@ std::vector<dolp::Column> views(const Columns& columns) {
   return all;
 }
 
-/// Ranges from (low, high) or (low, high, start) of each key. Errors: InputError for another number of values.
 std::vector<dolp::FitRange> ranges_of(const std::vector<std::pair<std::string, std::vector<double>>>& vary) {
   std::vector<dolp::FitRange> ranges;
   for (const auto& [key, ends] : vary) {
@@ -221,7 +215,6 @@ std::vector<dolp::FitRange> ranges_of(const std::vector<std::pair<std::string, s
   return ranges;
 }
 
-/// The list of the results of `of` for all elements.
 template <class Range, class Of>
 py::list list_of(Range&& range, const Of& of) {
   py::list all;
@@ -229,7 +222,6 @@ py::list list_of(Range&& range, const Of& of) {
   return all;
 }
 
-/// An array that owns `values`.
 template <class Value>
 py::array_t<Value> array_of(std::vector<Value> values) {
   auto* const kept = new std::vector<Value>(std::move(values));
@@ -237,7 +229,7 @@ py::array_t<Value> array_of(std::vector<Value> values) {
   return py::array_t<Value>(kept->size(), kept->data(), owner);
 }
 
-/// The tuple (quantities, status, attributes) with quantities [(name, long_name, units, ancillary, values)].
+/// The tuple Parts of _native.pyi.
 py::tuple parts_of(dolp::ResultColumns results, const dolp::Quantities& given, const std::string& stokes_units,
                    const std::vector<dolp::Attribute>& attributes) {
   py::list quantities;
@@ -259,8 +251,7 @@ py::tuple parts_of(dolp::Results results) {
                   results.attributes);
 }
 
-/// The tuple (axes, winds, curves, parts) with axes [(name, values)], curves [(name, long_name, units, used)] and the
-/// tuple of parts_of.
+/// The tuple Contents of _native.pyi.
 py::tuple contents_of(const dolp::Table& table) {
   const dolp::TableValues& values = table.values();
   py::list axes, curves;
@@ -281,8 +272,7 @@ py::tuple contents_of(const dolp::Table& table) {
                         parts_of(values, values.quantities(), values.stokes_units, table.file_attributes()));
 }
 
-/// The tuple (beta, long_name of beta, units of beta, variables) of a response table, with variables
-/// [(name, long_name, ancillary, has_beta, values)].
+/// The second element of the tuple that Evaluator.response() returns, as in _native.pyi.
 py::tuple responses_of(const dolp::TableValues& table) {
   py::list variables;
   for (const dolp::ResponseVariable variable : dolp::kAllResponseVariables) {

@@ -22,15 +22,12 @@ using AxisArray = EnumArray<Axis, Value, kAxisCount>;
 inline constexpr std::array<Axis, kAxisCount> kAllAxes = enumerators<Axis, kAxisCount>();
 
 struct AxisDescription {
-  const char* name;  ///< name of the coordinate in table files and Datasets
-  /// Name of the column in points and in .csv and .npy tables, and of the key in [grid]. In Python, name of the
-  /// keyword.
-  const char* column;
+  const char* name;    ///< name of the coordinate in table files and Datasets
+  const char* column;  ///< name of the column in points, .csv and .npy, of the [grid] key, and of the Python keyword
   const char* units;
   const char* long_name;
   NumberRange range;
-  /// True if every table has the axis. The other axes are optional: a table without one has the scene's value.
-  bool is_required;
+  bool is_required;         ///< every table has this axis; a table without an optional axis has the scene's value
   bool has_labels = false;  ///< the values of the axis are positions, from 0, in its list of labels
 };
 

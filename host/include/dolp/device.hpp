@@ -1,4 +1,3 @@
-// Vulkan devices of this machine.
 #pragma once
 
 #include <cstdint>

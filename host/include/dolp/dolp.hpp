@@ -60,10 +60,9 @@ DOLP_EXPORT std::string citation();
 
 /// A report about the work and the results of a call.
 struct Report {
-  std::string text;  ///< lines for people
-  std::string json;  ///< all values, as --json prints them
-  /// False if an entry misses its tolerance or a check finds something wrong.
-  bool is_good = true;
+  std::string text;              ///< lines for people
+  std::string json;              ///< all values, as --json prints them
+  bool is_good = true;           ///< false if an entry misses its tolerance or a check finds something wrong
   std::filesystem::path output;  ///< the file that the call wrote; empty if it wrote none
   /// The lines of `text` that have a label: pairs of the label and the rest of the line.
   std::vector<std::pair<std::string, std::string>> rows = {};
@@ -76,18 +75,15 @@ class DOLP_EXPORT Scene {
   /// Reads a scene file (TOML); "-" is stdin. Applies the settings in their order.
   /// Errors: InputError with file, line, key, value and allowed range.
   static Scene from_file(const std::filesystem::path& path, const std::vector<Setting>& settings = {});
-  /// Reads a scene from text. Files that the text names are searched in the folder of `name`; error messages begin with
-  /// `name`.
+  /// Reads a scene from text. Its files are in the folder of `name`; error messages begin with `name`.
   static Scene from_text(const std::string& text, const std::vector<Setting>& settings = {},
                          const std::string& name = "scene");
-  /// A copy of the scene with another value of a key, for example with("surface.sigma", 0.2). Errors: InputError with
-  /// key and value.
+  /// A copy with another value of a key, for example with("surface.sigma", 0.2). Errors: InputError with key and value.
   Scene with(const std::string& key, const Value& value) const { return with({{key, value}}); }
   Scene with(const std::vector<Setting>& settings) const;
-  /// A copy of the scene with other axes, for example with_grid({{"theta_deg", AxisRange{0, 60, 7}}, {"sigma", {0.1,
-  /// 0.2}}}).
+  /// A copy with other axes, for example with_grid({{"theta_deg", AxisRange{0, 60, 7}}, {"sigma", {0.1, 0.2}}}).
   Scene with_grid(const std::vector<Setting>& axes) const;
-  /// A copy of the scene without a key, or without a whole table such as "surroundings".
+  /// A copy without a key, or without a whole table such as "surroundings".
   Scene without(const std::string& key) const { return with(key, Value()); }
 
   const std::string& title() const;
@@ -97,25 +93,20 @@ class DOLP_EXPORT Scene {
   /// The scene with its settings applied, as TOML. Names of files are relative to `folder`.
   std::string toml(const std::filesystem::path& folder = ".") const;
 
-  /// The value of a key, given or default, in the unit of the key. Empty if the key describes nothing in this scene:
-  /// the temperature of the emission if there is no emission, or n if the surface has a material. Errors: InputError
-  /// for a key that is unknown or is no number.
+  /// The value of a key, given or default, in the unit of the key. Empty if the key describes nothing in this scene,
+  /// such as n if the surface has a material. Errors: InputError for a key that is unknown or is no number.
   std::optional<double> number(std::string_view key) const;
-  /// The value of a key that is a word, a text or a flag ("true", "false"). Empty if the text is empty or if the key
-  /// describes nothing in this scene.
+  /// Like number(), for a word, a text or a flag ("true", "false"). Empty also if the text is empty.
   std::optional<std::string> word(std::string_view key) const;
   /// The values of a key that is an axis or a pair; empty if the scene has none.
   std::vector<double> numbers(std::string_view key) const;
-  /// The names of the materials and of the bands on the axes of the grid. Columns of points contain positions in these
-  /// lists.
+  /// The names of materials and bands on the axes of the grid. Columns of points contain positions in these lists.
   const AxisLabels& labels() const;
-  /// Remarks, one line each: values that were probably meant differently (Celsius, nanometres), and assumptions about
-  /// data that files lack (k, or rows in a part of the spectrum). Empty for most scenes.
+  /// One line for each value that was probably meant differently, and for each assumption about data that files lack.
   std::vector<std::string> remarks() const;
   /// n and k at a wavelength. Errors: InputError if the material has none there.
   std::pair<double, double> refractive_index(double wavelength_um) const;
 
-  // There is no move, so an object that was moved from keeps its contents.
   Scene(const Scene&) = default;
   Scene& operator=(const Scene&) = default;
   ~Scene() = default;
@@ -135,7 +126,6 @@ DOLP_EXPORT std::vector<Setting> surface_settings();
 /// The text of a scene to start from: bare stainless steel at 10.6 um.
 DOLP_EXPORT std::string example_scene();
 
-/// A built-in material.
 struct BuiltInMaterial {
   std::string name;      ///< name for surface.material
   double from_um = 0.0;  ///< n and k are known from from_um to to_um
@@ -143,8 +133,7 @@ struct BuiltInMaterial {
   std::string source;
 };
 DOLP_EXPORT std::vector<BuiltInMaterial> materials();
-/// The material with this name, or the only one whose name begins with this word. Case does not matter.
-/// Errors: InputError with the nearest name.
+/// The material with this name, or the only one whose name begins with this word, ignoring case. Errors: InputError.
 DOLP_EXPORT BuiltInMaterial material(const std::string& name);
 
 /// Results at points, in the order of the points. They were computed, or interpolated in a table.
@@ -156,8 +145,7 @@ struct Results : ResultColumns {
   double integrand_evaluations = 0.0;  ///< evaluations of the integrand for these results
 };
 
-/// Points and their results as CSV, in the format of write_points.
-/// Errors: InputError if a column has neither one value nor one value per result.
+/// Points and their results as CSV, in the format of write_points. Errors: InputError for a column of wrong length.
 DOLP_EXPORT std::string to_csv(const std::vector<Column>& points, const Results& results);
 
 /// A lookup table in memory. Copies share their data.
@@ -170,19 +158,16 @@ class DOLP_EXPORT Table {
   static Table of(TableValues values, const std::string& name = "table");
 
   const TableValues& values() const;
-  /// The global attributes that a file of this table has. They are values().attributes and, in addition, the names of
-  /// the conventions and a hash of the values.
+  /// The global attributes of its file: values().attributes, the names of the conventions, and a hash of the values.
   std::vector<Attribute> file_attributes() const;
 
-  // There is no move, so an object that was moved from keeps its contents.
   Table(const Table&) = default;
   Table& operator=(const Table&) = default;
   ~Table() = default;
 
-  /// Interpolates in the table. An axis with one value needs no column; other missing columns take the scene's values.
-  /// The error estimates include the error of the interpolation.
-  /// Errors: InputError for a point outside the axes, with position, value and allowed range. InputError also if the
-  /// table lacks the attribute `scene`, a quantity that results need, or an axis that its scene has.
+  /// Interpolates in the table. Missing columns take the only value of their axis, or else the scene's value. The error
+  /// estimates include the error of the interpolation. Errors: InputError for a point outside the axes, or if the table
+  /// lacks the attribute `scene`, a quantity that results need, or an axis that its scene has.
   Results lookup(const std::vector<Column>& points, const Progress& progress = {}) const;
 
   /// Writes .nc, .csv or .npy, depending on the suffix. The file is complete or absent. Errors: InputError, IoError.
@@ -199,14 +184,12 @@ class DOLP_EXPORT Table {
 struct Fit : FitNumbers {
   Report report;             ///< parameters, intervals, correlation, minima, residuals
   bool has_minimum = false;  ///< true if any descent converged
-  /// The scene with the best choices and the fitted values; without a minimum the unchanged scene.
-  Scene scene;
+  Scene scene;               ///< scene with the best choices and the fitted values; unchanged without a minimum
 };
 
 /// Computes results. Device and kernels are created when they are first needed, and kept until the object is destroyed.
-/// Errors of all calls: InputError; DeviceError if there is no usable device. An Evaluator never switches to the CPU by
-/// itself. After fork(), a call in the child process that needs Vulkan throws DeviceError, because a device does not
-/// survive a fork.
+/// An Evaluator never switches to the CPU by itself. Errors of all calls: InputError; DeviceError if there is no usable
+/// device, or if a child process needs Vulkan after fork(), because a device does not survive a fork.
 class DOLP_EXPORT Evaluator {
  public:
   explicit Evaluator(EvaluatorOptions options = {});
@@ -216,37 +199,34 @@ class DOLP_EXPORT Evaluator {
 
   /// Computes the table over the scene's [grid], in memory.
   Table table(const Scene& scene, const RunOptions& options = {});
-  /// Computes the table over the scene's [grid] part by part, so that memory does not grow with the table. `take` gets
-  /// each part with its axes, which are pieces of the table's axes. An exception from `take` ends the call.
+  /// Computes the table part by part, so that memory does not grow with the table. `take` gets each part with its axes,
+  /// which are pieces of the table's axes. An exception from `take` ends the call.
   void table_parts(const Scene& scene, const std::function<void(const Table&)>& take, const RunOptions& options = {});
-  /// Writes the table over the scene's [grid] to a file part by part, so that memory does not grow with the table. The
-  /// suffix selects .nc, .csv or .npy. The file of a shard gets "N-of-M" before its suffix. If the file of the shard
-  /// exists, is complete, and has the same scene, n, k, E0, evaluator and options, the call keeps it. A cancelled or
-  /// killed call leaves its finished parts beside the file; with `resume` the next call uses them and computes the
-  /// rest. The file itself is complete or absent. Errors: InputError, also for a shard number above its count; IoError.
+  /// Writes the table to a file (.nc, .csv or .npy) part by part, so that memory does not grow with the table. A
+  /// shard's file gets "N-of-M" before its suffix. If it exists, is complete, and has the same scene, n, k, E0,
+  /// evaluator and options, the call keeps it. A cancelled or killed call leaves its finished parts beside the file;
+  /// with `resume` the next call uses them. Errors: InputError, also for a shard number above its count; IoError.
   Report write_table(const Scene& scene, const std::filesystem::path& path, const RunOptions& options = {},
                      const Shard& shard = {});
-  /// Computes the response table over the scene's theta, sigma and q: TableValues::responses and the albedo. The table
-  /// depends on no material, wavelength or radiation; its attributes have the scene with surface_settings(). Tolerance:
+  /// Computes the response table over the scene's theta, sigma and q: TableValues::responses and the albedo. It depends
+  /// on no material, wavelength or radiation; its attributes have the scene with surface_settings(). Each
   /// response_error is at most the tolerance times the albedo. Errors: InputError for scattering "multiple".
   Table response(const Scene& scene, const RunOptions& options = {});
-  /// Writes the response table to a .nc file part by part. The file is complete or absent. Errors: InputError, IoError.
+  /// Writes the response table to a .nc file part by part. Errors: InputError, IoError.
   Report write_response(const Scene& scene, const std::filesystem::path& path, const RunOptions& options = {});
   /// Computes the quantities of a table at scattered points. Missing columns take the scene's values.
   Results evaluate(const Scene& scene, const std::vector<Column>& points, const RunOptions& options = {});
-  /// Computes results for a CSV of points. Writes a CSV with the columns of the points first; "-" is stdin and stdout.
+  /// Computes results for a CSV of points. Writes a CSV with the points' columns first. "-" is stdin or stdout.
   Report write_points(const Scene& scene, const std::filesystem::path& points, const std::filesystem::path& path,
                       const RunOptions& options = {});
   /// Computes Mueller matrices at points. The error of each element is at most 1e-5 m00 in float and 1e-11 m00 in
   /// double. All 16 elements are NaN where the model has no finite value.
   std::vector<MuellerMatrix> mueller(const Scene& scene, const std::vector<Column>& points,
                                      const RunOptions& options = {});
-  /// Computes Mueller matrices for a CSV of geometries. Writes a CSV with the columns of the geometries first; "-" is
-  /// stdin and stdout.
+  /// Computes Mueller matrices for a CSV of geometries. Writes a CSV like write_points.
   Report write_mueller(const Scene& scene, const std::filesystem::path& points, const std::filesystem::path& path,
                        const RunOptions& options = {});
-  /// Fits numbers of the scene to measured data, with profile-likelihood intervals.
-  /// Errors: also InputError if data, ranges and scene do not fit together, and IoError.
+  /// Fits numbers of the scene to measured data, with profile-likelihood intervals. Errors: also IoError.
   Fit fit(const Scene& scene, const std::vector<MeasuredData>& data, const FitOptions& options);
 
  private:
@@ -255,22 +235,19 @@ class DOLP_EXPORT Evaluator {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Interpolates in a table file at a CSV of points. Writes a CSV with the columns of the points first, and with the
-/// error of the interpolation; "-" is stdin and stdout. Errors: InputError, IoError.
+/// Interpolates in a table file at a CSV of points. Writes a CSV like write_points. Errors: InputError, IoError.
 DOLP_EXPORT Report write_lookup(const std::filesystem::path& table, const std::filesystem::path& points,
                                 const std::filesystem::path& path, const Progress& progress = {});
 
-/// Joins all shards of a table into one file. Opens one shard at a time. `history`: as in RunOptions.
-/// Errors: InputError that names a missing or duplicate shard, or a shard of another table; IoError.
+/// Joins all shards of a table into one file. `history`: as in RunOptions. Errors: InputError that names a missing or
+/// duplicate shard, or a shard of another table; IoError.
 DOLP_EXPORT Report merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& path,
                          const std::string& history = {});
 
-/// All effects of the scene at these points, in the order of a scene file. The CPU computes their influences, with the
-/// tolerance 1e-3.
+/// All effects at these points, in the order of a scene file. The CPU computes influences with the tolerance 1e-3.
 DOLP_EXPORT std::vector<Effect> effects(const Scene& scene, const std::vector<Column>& points, bool keep_all = false);
 
-/// The plan of a table over the scene's grid: computed and dropped effects, the reasons, and the cost. Estimates the
-/// cost on the CPU, without computing the table.
+/// The computed and dropped effects of a table over the scene's grid, the reasons, and the cost, estimated on the CPU.
 DOLP_EXPORT Report plan(const Scene& scene, const std::string& device = {}, bool keep_all = false);
 
 /// Checks a table file. Computes some of its entries again by adaptive quadrature, which shares no formula with the
@@ -280,8 +257,7 @@ DOLP_EXPORT Report verify(const std::filesystem::path& table, const TableCheckOp
 /// Computes the model's hard cases and compares them with stored references. Errors: InputError, DeviceError.
 DOLP_EXPORT Report verify_device(const DeviceCheckOptions& options = {});
 
-/// Reports the limits of all devices, and the accuracy of each one in a few ordinary cases. Report::is_good is true if
-/// at least one device is usable.
+/// Limits of all devices, and their accuracy in a few ordinary cases. `is_good` means that at least one is usable.
 DOLP_EXPORT Report device_report();
 
 }  // namespace dolp

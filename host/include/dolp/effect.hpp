@@ -1,4 +1,3 @@
-// The effects of a scene, and whether a run computes or drops them.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +13,6 @@ enum class EffectState : std::uint8_t {
   kNotNeeded,  ///< a choice of the model that changes nothing in the kept effects
 };
 
-/// "absent", "kept", "dropped", "not_needed".
 constexpr const char* name_of(EffectState state) {
   constexpr const char* kNames[] = {"absent", "kept", "dropped", "not_needed"};
   return kNames[static_cast<std::uint8_t>(state)];

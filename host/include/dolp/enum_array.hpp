@@ -1,4 +1,3 @@
-// Arrays with one value per enumerator of an enumeration.
 #pragma once
 
 #include <array>
@@ -14,7 +13,6 @@ struct EnumArray : std::array<Value, kCount> {
   constexpr const Value& operator[](Key key) const { return (*this)[static_cast<std::size_t>(key)]; }
 };
 
-/// All enumerators, in ascending order.
 template <class Key, std::size_t kCount>
 constexpr std::array<Key, kCount> enumerators() {
   std::array<Key, kCount> all{};

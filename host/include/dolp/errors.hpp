@@ -1,5 +1,3 @@
-// Errors that the library throws, and the progress function, which can cancel a call. Each error belongs to an exit
-// status of the command line.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +9,8 @@
 
 namespace dolp {
 
-/// A scene, points, a table or an argument is wrong (exit 2). The message is one line with the place, the value and the
-/// allowed range.
+/// A scene, points, a table or an argument is wrong (exit status 2 of the command line). The message is one line with
+/// the place, the value and the allowed range.
 class DOLP_EXPORT InputError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;

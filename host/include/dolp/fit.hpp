@@ -1,4 +1,3 @@
-// Measured data, options of a fit, and its results.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +20,6 @@ enum class Observable { kDolp, kQOverI, kEmissivityS, kEmissivityP };
 /// "dolp", "q_over_i" (signed), "emissivity_s", "emissivity_p".
 DOLP_EXPORT const char* name_of(Observable observable);
 
-/// A measured number.
 struct Measurement {
   Observable observable = Observable::kDolp;
   double theta_deg = 0.0;  ///< in bistatic mode: zenith of the source
@@ -39,21 +37,18 @@ struct DOLP_EXPORT MeasuredData {
   std::vector<Measurement> measurements = {};
   std::vector<std::string> remarks = {};  ///< one line for each unit that was probably meant differently
 
-  /// Reads a CSV with these columns: theta_deg or theta_i_deg; then dolp, or q_over_i (signed), or one or both of
-  /// emissivity_s and emissivity_p; and, if wanted, uncertainty and wavelength_um. dolp must not be negative. Values
-  /// are fractions, not percent. Lines that begin with # are comments. Errors: InputError in one line with file, line,
-  /// column, value and what is allowed.
+  /// Reads a CSV with the columns theta_deg or theta_i_deg; dolp (not negative), q_over_i (signed), or one or both of
+  /// emissivity_s and emissivity_p; and, if wanted, uncertainty and wavelength_um. Values are fractions, not percent.
+  /// Lines that begin with # are comments. Errors: InputError with file, line, column, value and what is allowed.
   static MeasuredData from_csv(const std::string& csv, const std::string& name = "data",
                                std::vector<Setting> settings = {});
-  /// Reads the CSV that "FILE" or "FILE:KEY=VALUE,KEY=VALUE" names, and the settings after the colon. FILE "-" is
-  /// stdin. Errors: InputError.
+  /// Reads the CSV and the settings of "FILE" or "FILE:KEY=VALUE,KEY=VALUE". FILE "-" is stdin. Errors: InputError.
   static MeasuredData read(const std::string& argument);
 };
 
-/// A number of the scene, and the range in which a fit searches for it.
-///
-/// The fit searches along a coordinate, from 0 at `low` to 1 at `high`. It is logarithmic in the number if the range is
-/// positive and spans a decade or more, otherwise linear.
+/// A number of the scene, and the range in which a fit searches for it. The fit searches along a coordinate, from 0 at
+/// `low` to 1 at `high`. It is logarithmic in the number if the range is positive and spans a decade or more, otherwise
+/// linear.
 struct DOLP_EXPORT FitRange {
   std::string key;
   double low = 0.0;
@@ -63,8 +58,7 @@ struct DOLP_EXPORT FitRange {
   bool is_logarithmic() const { return low > 0.0 && high >= 10.0 * low; }
   double at(double coordinate) const;
   double coordinate(double value) const;
-  /// Derivative of the value with respect to the coordinate.
-  double slope(double value) const;
+  double slope(double value) const;  ///< derivative of the value with respect to the coordinate
 
   /// Reads "KEY=LOW:HIGH" or "KEY=LOW:HIGH:START". Errors: InputError.
   static FitRange from_text(const std::string& argument);
@@ -89,8 +83,8 @@ DOLP_EXPORT const std::vector<std::string>& loss_names();
 enum class ModelError {
   kNone,
   /// The truth may lie anywhere in the model's bracket (emission.bracket), independently at each point. A residual is
-  /// the distance to the nearer end of the bracket, and 0 inside. An interval contains the values at which chi^2 itself
-  /// is below its quantile, with as many degrees of freedom as there are points.
+  /// the distance to the bracket. An interval contains the values at which chi^2 itself is below its quantile, with as
+  /// many degrees of freedom as there are points.
   kBracket,
 };
 
@@ -99,7 +93,6 @@ DOLP_EXPORT const std::vector<std::string>& model_error_names();
 
 inline constexpr std::size_t kMostStarts = 10'000;
 
-/// Options of a fit.
 struct FitOptions {
   std::vector<FitRange> vary;
   std::size_t starts = 24;                             ///< number of descents that search for minima: 1 to kMostStarts
@@ -123,12 +116,10 @@ struct FitInterval {
   bool is_empty = false;  ///< the data exclude all values, even with the model's bracket
 };
 
-/// A fitted number.
 struct FitParameter {
   std::string key;
   double value = 0.0;
-  /// Standard error from the covariance, in which the parameters at a bound are fixed.
-  std::optional<double> standard_error;
+  std::optional<double> standard_error;  ///< from the covariance, in which the parameters at a bound are fixed
   /// Intervals at 68.27 % and 95 %. Both ends are empty if the data give no scale for the residuals.
   FitInterval interval_68, interval_95;
   /// Only if the fit is doubtful or bad: the intervals with all uncertainties multiplied by sqrt(reduced chi^2).
@@ -137,22 +128,18 @@ struct FitParameter {
   std::string why_no_error = {};  ///< in words; empty if there is a standard error
 };
 
-/// A local minimum of a fit.
 struct FitMinimum {
   std::vector<double> values;  ///< in the order of FitOptions::vary
   double chi_square = 0.0;
 };
 
-/// The numbers of a fit.
 struct FitNumbers {
   std::vector<FitParameter> parameters = {};  ///< in the order of FitOptions::vary
-  double chi_square = 0.0;  ///< sum of the squared residuals; with another loss the sum of their losses
-  /// Number of points minus number of parameters. With a model error, number of points.
-  std::size_t degrees_of_freedom = 0;
-  std::optional<double> p_value = {};  ///< only with uncertainties and the loss "squares"
-  /// "good", "doubtful" (p < 0.05) or "bad" (p < 0.001); empty without a p-value.
-  std::string fit_quality = {};
-  std::vector<FitMinimum> minima = {};         ///< all minima found, the best first
+  double chi_square = 0.0;                    ///< sum of squared residuals; with another loss the sum of their losses
+  std::size_t degrees_of_freedom = 0;         ///< points minus parameters; with a model error, number of points
+  std::optional<double> p_value = {};         ///< only with uncertainties and the loss "squares"
+  std::string fit_quality = {};         ///< "good", "doubtful" (p < 0.05), "bad" (p < 0.001); empty without p_value
+  std::vector<FitMinimum> minima = {};  ///< all minima found, the best first
   std::vector<std::string> degeneracies = {};  ///< combinations of parameters that the data do not determine, in words
 };
 

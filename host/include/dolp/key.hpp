@@ -1,4 +1,3 @@
-// The keys of a scene file.
 #pragma once
 
 #include <cstddef>
@@ -23,16 +22,14 @@ struct DOLP_EXPORT NumberRange {
   std::string text() const;
 };
 
-/// A key of a scene.
 struct DOLP_EXPORT Key {
   enum class Type { kNumber, kWord, kFlag, kText, kPair, kAxis, kNames, kPairs };
   std::string key;  ///< dotted: "surface.sigma"
   Type type = Type::kNumber;
-  std::string unit;                ///< "1" for numbers without a unit, empty for words and texts
-  NumberRange range;               ///< allowed range of a number, and of each value of pairs and axes
-  std::vector<std::string> words;  ///< allowed words
-  /// Default, as written in a scene file. "required" if the key has no default; empty if the key may be absent.
-  std::string fallback;
+  std::string unit;                      ///< "1" for numbers without a unit, empty for words and texts
+  NumberRange range;                     ///< allowed range of a number, and of each value of pairs and axes
+  std::vector<std::string> words;        ///< allowed words
+  std::string fallback;                  ///< default as in a scene file; "required" if there is none; empty if optional
   std::string meaning;                   ///< what the key means, in one line, with its symbol
   std::vector<std::string> rivals = {};  ///< alternative keys; a scene has at most one of them
   /// Number of the film that the key describes; 0 for other keys. All films have the keys of the first one.

@@ -1,4 +1,3 @@
-// Allowed ranges of numbers, for scene keys and for columns of points.
 #pragma once
 
 #include <dolp/key.hpp>
@@ -26,13 +25,11 @@ inline constexpr NumberRange kPositiveRange{0.0, std::numeric_limits<double>::in
 inline constexpr NumberRange kWavelengthUmRange{0.1, 1e4};
 /// If all wavelengths in um are above this number, they are probably in nm.
 inline constexpr double kLikelyNanometres = 1000.0;
-/// A temperature in K below this number is probably in degrees Celsius: few surfaces are colder than 60 K, which is
-/// -213 degrees Celsius.
+/// A temperature in K below this is probably in degrees Celsius: few surfaces are colder than -213 degrees Celsius.
 inline constexpr double kLikelyCelsius_K = 60.0;
 inline constexpr NumberRange kToleranceRange{1e-10, 1e-2};
 inline constexpr NumberRange kAxisCountRange{1.0, 1e6};
-/// Positions on an axis with labels.
-inline constexpr NumberRange kLabelRange{0.0, 1e6};
+inline constexpr NumberRange kLabelRange{0.0, 1e6};  ///< positions on an axis with labels
 
 /// With the Cauchy distribution, smith masking needs a finite mean slope (shaders/physics/README.md, section 2).
 inline constexpr NumberRange kSmithCauchyQRange{1.5, 1e4, NumberRange::Ends::kOpenBelow};

@@ -1,4 +1,3 @@
-// Options of evaluators, runs and checks, and columns of points.
 #pragma once
 
 #include <array>
@@ -21,18 +20,14 @@ struct Column {
 /// The 4 x 4 Mueller pBRDF of a pair of directions, row by row. Units: 1/sr.
 using MuellerMatrix = std::array<double, 16>;
 
-/// Options of an evaluator: its kind, its device, and the length of its dispatches.
 struct EvaluatorOptions {
-  /// "vulkan"; "cpu" (the kernel source compiled as C++); "reference" (adaptive quadrature).
-  std::string evaluator = "vulkan";
+  std::string evaluator = "vulkan";  ///< vulkan, cpu (kernel source compiled as C++) or reference (adaptive quadrature)
   /// For the evaluator "vulkan": position in devices(), or a part of the name of a device. Empty means the best device.
   std::string device = {};
-  /// True for short dispatches. A call then ends soon after Progress returns false, and a window on the device
-  /// continues to draw.
+  /// Makes dispatches short: calls end soon after Progress returns false, and a window on the device goes on drawing.
   bool is_interactive = false;
 };
 
-/// Options for one table or list of points.
 struct RunOptions {
   bool keep_all = false;     ///< compute all effects, even negligible ones
   Progress progress = {};    ///< may be empty
@@ -40,32 +35,27 @@ struct RunOptions {
   bool resume = false;       ///< for write_table: continue a cancelled or killed call for the same scene
 };
 
-/// One of `count` parts of a table, of about equal size, which several processes can compute. The default is the whole
-/// table.
+/// One of `count` parts of a table, of about equal size, which several processes can compute. Default: the whole table.
 struct Shard {
   std::size_t number = 0;  ///< from 1 to count
   std::size_t count = 0;
   bool is_none() const { return number == 0 && count == 0; }
 };
 
-/// Options for the check of a table.
 struct TableCheckOptions {
   std::size_t samples = 64;  ///< number of entries to compute again; all entries if the table has fewer
   std::uint64_t seed = 1;    ///< seed for the choice of entries
-  /// Reads n, k and E0 from the files that the scene names. If false, takes them from the table.
-  bool named_files = false;
-  Progress progress = {};  ///< may be empty
+  bool named_files = false;  ///< read n, k and E0 from the files that the scene names, not from the table
+  Progress progress = {};    ///< may be empty
 };
 
-/// Options for the check of a device.
 struct DeviceCheckOptions {
   std::string evaluator = "vulkan";  ///< vulkan; cpu: the kernel source compiled as C++
   std::string device = {};           ///< same meaning as in EvaluatorOptions
   std::string precision = "auto";    ///< float, double, or auto, which checks both
   double tolerance = 1e-4;           ///< requested tolerance
-  /// Report every case. If false, report only the cases that fail.
-  bool all = false;
-  Progress progress = {};  ///< may be empty
+  bool all = false;                  ///< report every case, not only the cases that fail
+  Progress progress = {};            ///< may be empty
 };
 
 }  // namespace dolp

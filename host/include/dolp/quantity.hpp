@@ -14,7 +14,6 @@ namespace dolp {
 
 /// A quantity of results: one number per entry or point. The order is the order in table files, in which the status
 /// follows the last quantity.
-///
 /// Units: Stokes parameters are exitances, in W m-2 um-1 at one wavelength and W m-2 over a band; in bistatic mode they
 /// are radiances, in W m-2 sr-1 um-1 and W m-2 sr-1. The other quantities have unit 1.
 /// Conventions: Q = I_s - I_p keeps its sign; U = V = 0 in hemispherical mode. Over a band, rho is a weighted mean. The
@@ -98,7 +97,6 @@ constexpr const QuantityDescription& description_of(Quantity quantity) {
   return kQuantities[static_cast<std::size_t>(quantity)];
 }
 
-/// The unit of a quantity. `stokes_units`: unit of the Stokes parameters.
 inline std::string units_of(Quantity quantity, const std::string& stokes_units) {
   return description_of(quantity).has_stokes_units ? stokes_units : "1";
 }

@@ -1,4 +1,3 @@
-// Results of one entry, and of many.
 #pragma once
 
 #include <cstddef>
@@ -32,7 +31,6 @@ struct ResultColumns {
   const std::vector<double>& operator[](Quantity quantity) const { return columns[quantity]; }
   bool has(Quantity quantity) const { return !columns[quantity].empty(); }
 
-  /// The quantities that have a column.
   Quantities quantities() const {
     Quantities own;
     for (const Quantity quantity : kAllQuantities) {

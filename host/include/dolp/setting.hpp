@@ -1,4 +1,3 @@
-// Settings: keys of a scene, each with a new value.
 #pragma once
 
 #include <concepts>
@@ -63,10 +62,9 @@ class DOLP_EXPORT Value {
   Content content_;
 };
 
-/// A dotted key of a scene ("surface.sigma", "grid.theta_deg") and its value. If the scene lacks the table of the key,
-/// applying the setting creates it. The setting also removes alternatives to its key. The groups of alternatives are:
-/// surface.n, .material, .material_file; source.irradiance, .relative_irradiance, .preset, .file; path.temperature_K,
-/// .radiance; spectrum.wavelength_um, .band_um.
+/// A dotted key of a scene ("surface.sigma") and its value. A setting creates the table of its key if the scene lacks
+/// it, and removes alternatives to its key: surface.n, .material, .material_file; source.irradiance,
+/// .relative_irradiance, .preset, .file; path.temperature_K, .radiance; spectrum.wavelength_um, .band_um.
 struct DOLP_EXPORT Setting {
   std::string key;
   Value value;
@@ -76,13 +74,11 @@ struct DOLP_EXPORT Setting {
   /// which the argument belongs. Errors: InputError for anything else.
   static Setting from_text(const std::string& argument, const std::string& option = {});
 
-  /// "KEY=VALUE".
-  std::string text() const;
+  std::string text() const;  ///< "KEY=VALUE"
 
   friend bool operator==(const Setting& a, const Setting& b) { return a.key == b.key && a.value == b.value; }
 };
 
-/// Applies Setting::from_text to each argument.
 DOLP_EXPORT std::vector<Setting> settings_from_text(const std::vector<std::string>& arguments,
                                                     const std::string& option = {});
 

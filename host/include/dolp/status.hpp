@@ -7,25 +7,19 @@
 namespace dolp {
 
 enum Status : std::uint32_t {
-  /// rho_s or rho_p is outside [0, 1] by more than its error bound. Kirchhoff's law does not hold there.
-  kReflectanceOutsideZeroToOne = 1,
-  /// DOLP misses the scene's tolerance.
-  kToleranceNotMet = 2,
-  /// The entry is outside the model's domain; undefined quantities are NaN.
-  kOutsideModelDomain = 4,
-  /// I <= 0: such radiation does not exist.
-  kIntensityNotPositive = 8,
-  /// rho misses the scene's tolerance. DOLP may be right.
-  kRhoToleranceNotMet = 16,
-  /// According to an estimate, light that single scattering loses, or that a masking creates, changes I by more than 5
-  /// %. If this is the only bit, the numbers are right for the model, but the model is wrong for the surface.
+  kReflectanceOutsideZeroToOne = 1,  ///< rho_s or rho_p is outside [0, 1] by more than its error bound
+  kToleranceNotMet = 2,              ///< DOLP misses the scene's tolerance
+  kOutsideModelDomain = 4,           ///< outside the model's domain; undefined quantities are NaN
+  kIntensityNotPositive = 8,         ///< I <= 0: such radiation does not exist
+  kRhoToleranceNotMet = 16,          ///< rho misses the scene's tolerance; DOLP may be right
+  /// By an estimate, light that single scattering loses or that a masking creates changes I by more than 5 %. If this
+  /// is the only bit, the numbers are right for the model, but the model is wrong for the surface.
   kModelInaccurate = 32,
 };
 
 /// Largest change of I, as a fraction of I, that does not set kModelInaccurate.
 inline constexpr double kLargestModelChange = 0.05;
 
-/// A bit of Status with its name in files.
 struct StatusBit {
   std::uint32_t mask;
   const char* meaning;
@@ -41,7 +35,6 @@ inline constexpr std::array<StatusBit, 6> kStatusBits = {{
     {kModelInaccurate, "model_inaccurate"},
 }};
 
-/// Bits for a missed tolerance, of DOLP or of rho.
 inline constexpr std::uint32_t kAnyToleranceNotMet = kToleranceNotMet | kRhoToleranceNotMet;
 
 /// With any of these bits the DOLP has no guaranteed accuracy.

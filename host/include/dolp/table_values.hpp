@@ -1,4 +1,3 @@
-// The contents of a lookup table: plain data.
 #pragma once
 
 #include <array>
@@ -13,23 +12,20 @@
 
 namespace dolp {
 
-/// A global attribute of a table: text or a number.
 struct Attribute {
   std::string name;
   std::variant<std::string, double> value;
   friend bool operator==(const Attribute&, const Attribute&) = default;
 };
 
-/// Largest size of a text attribute in a file. Longer texts are stored as variables of characters, because the netCDF
-/// library limits attributes to less than 64 KiB.
+/// Longer text attributes become variables in files, because netCDF limits attributes to less than 64 KiB.
 inline constexpr std::size_t kMostAttributeBytes = 64'000;
 
 /// A quantity of the scene as a function of the wavelength. A constant has one row.
 struct Curve {
   std::vector<double> wavelength_um;
   std::vector<double> values;
-  /// Values at the wavelength axis of the table, or one value if there is no such axis. Empty if the quantity varies
-  /// over a band.
+  /// Values at the table's wavelengths, or one without a wavelength axis. Empty if the quantity varies over a band.
   std::vector<double> used;
   friend bool operator==(const Curve&, const Curve&) = default;
 };
@@ -58,9 +54,7 @@ struct TableHead {
     for (const std::size_t count : counts()) size *= count;
     return size;
   }
-  /// The label of a value of an axis that has labels.
   const std::string& label(Axis axis, double value) const { return labels[axis].at(static_cast<std::size_t>(value)); }
-  /// Number of values per entry of a response variable.
   std::size_t width_of(ResponseVariable variable) const {
     return description_of(variable).has_beta ? beta_deg.size() : 1;
   }
@@ -70,9 +64,8 @@ struct TableHead {
   }
 };
 
-/// A lookup table in memory, or a part of one.
-///
-/// Shape: each column is an array over all axes, flattened in C order (the last axis varies fastest).
+/// A lookup table in memory, or a part of one. Shape: each column is an array over all axes, flattened in C order (the
+/// last axis varies fastest).
 struct TableValues : TableHead, ResultColumns {
   /// Empty except in response tables. For each entry, width_of() consecutive values of a variable.
   ResponseArray<std::vector<double>> responses;

@@ -20,7 +20,6 @@
 namespace dolp {
 namespace {
 
-/// All attributes of a table: those of its layout, and those of the run that computed it.
 std::vector<Attribute> all_attributes(const SceneValues& scene, const TableLayout& layout, const RunOutcome& run,
                                       const std::string& history) {
   std::vector<Attribute> attributes = layout.head.attributes;
@@ -89,8 +88,7 @@ Evaluator::Evaluator(Evaluator&&) noexcept = default;
 Evaluator& Evaluator::operator=(Evaluator&&) noexcept = default;
 
 Evaluator::~Evaluator() {
-  // In a forked process the driver's threads do not exist, and the destructor would wait for them without end. So the
-  // evaluator is not destroyed.
+  // In a forked process the driver's threads do not exist, and the destructor would wait for them without end.
   if (impl_ && impl_->owner != getpid()) static_cast<void>(impl_.release());
 }
 

@@ -1,4 +1,3 @@
-// Calls that plan a run, list what is built in, and check tables and devices.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// Calls that read and write files.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,8 +27,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The points of a file. Leaves out columns that are results, such as those that write_points and write_lookup write.
-/// Refuses an `output` that is this file or another input.
+/// The points of a file, without columns of results. Refuses an `output` that is this file or another input.
 Points load_points(const std::filesystem::path& path, PointsKind kind, std::vector<std::string> inputs,
                    const std::filesystem::path& output) {
   inputs.push_back(path.string());
@@ -39,7 +37,6 @@ Points load_points(const std::filesystem::path& path, PointsKind kind, std::vect
   return read_points(path.string(), kind, results);
 }
 
-/// Adds a remark if wavelengths are probably in nm or temperatures in degrees Celsius.
 void add_remarks(Report& report, const Points& points) {
   const Points::Column& um = points[Axis::kWavelength];
   if (um && !um->empty() && std::ranges::min(*um) > kLikelyNanometres)

@@ -1,4 +1,3 @@
-// The call that fits numbers of a scene to measured data.
 #include "fit/fit.hpp"
 
 #include <fmt/format.h>
@@ -89,7 +88,6 @@ struct Best {
     return Eigen::Map<const Eigen::VectorXd>(result.value().minima.front().values.data(),
                                              static_cast<Eigen::Index>(result->parameters.size()));
   }
-  /// The compared settings, and settings with the fitted values.
   Settings settings() const {
     Settings all = compared;
     std::ranges::copy(model->settings(values()), std::back_inserter(all));
@@ -97,7 +95,6 @@ struct Best {
   }
 };
 
-/// Refuses a file of a picture whose suffix is not .png, .pdf or .svg.
 void check_plot(const std::filesystem::path& path) {
   const std::string suffix = lower_case(path.extension().string());
   if (path.empty() || suffix == ".png" || suffix == ".pdf" || suffix == ".svg") return;
@@ -130,9 +127,8 @@ std::vector<double> fine_zeniths(const MeasuredData& data) {
   return zeniths;
 }
 
-/// The values of the fitted model at the measurements of a data set. With the bracket as `error`, the value between
-/// both ends that is nearest to each measurement. Empty if the scene has no bracket, or if the scene of this data set
-/// refuses an end of a range.
+/// The fitted model at the measurements; with the bracket as `error`, the values in it that are nearest to them. Empty
+/// if the scene has no bracket, or if the scene of this data set refuses an end of a range.
 std::vector<double> model_values(const Best& best, MeasuredData data, const FitOptions& options, ModelError error,
                                  ModelEvaluator& evaluator) {
   const std::size_t count = data.measurements.size();
@@ -176,7 +172,6 @@ std::vector<Bracketed> bracketed(const Best& best, MeasuredData data, const std:
   return all;
 }
 
-/// The bracket of each data set over zenith; null if there is none.
 Json brackets(const Best& best, const FitOptions& options, ModelEvaluator& evaluator) {
   Json all = Json::array();
   for (const MeasuredData& data : best.model->data()) {
@@ -237,9 +232,8 @@ void add_model_gap(ReportBuilder& report, const Best& best, const FitOptions& op
   report.value("model_gap_in_uncertainties", share);
 }
 
-/// Fits all combinations of the compared settings that the scene accepts, and returns the best one. `models` gets all
-/// combinations, the best first. `begin` is called once: it gets the first scene and returns the evaluator. Errors:
-/// InputError if the scene accepts no combination.
+/// Fits all combinations of the compared settings that the scene accepts. `models` gets all combinations, the best
+/// first. `begin` gets the first scene and returns the evaluator. Errors: InputError if the scene accepts none.
 Best best_of(std::vector<ComparedModel>& models, const SceneValues& scene, const std::vector<MeasuredData>& data,
              const FitOptions& options, const std::function<ModelEvaluator*(const SceneValues&)>& begin) {
   ModelEvaluator* evaluator = nullptr;
@@ -272,7 +266,6 @@ Best best_of(std::vector<ComparedModel>& models, const SceneValues& scene, const
   return best;
 }
 
-/// Adds contours, brackets and curves to the report, and draws the picture.
 void draw(ReportBuilder& report, const Best& best, const Scene& fitted, const FitOptions& options,
           ModelEvaluator& evaluator) {
   add_contours(report, *best.model, *best.result, fit::contours_of(*best.model, evaluator, *best.result, options));

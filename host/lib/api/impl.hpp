@@ -1,4 +1,3 @@
-// Implementations of the public classes, and functions that several calls of the public header use.
 #pragma once
 
 #include <unistd.h>
@@ -42,38 +41,32 @@ struct Table::Impl {
   mutable std::optional<TableLookup> between;
 };
 
-/// The report that a public call returns. `output`: the file that was written.
 Report public_report(const ReportBuilder& report, bool is_good = true, const std::filesystem::path& output = {});
 
-/// The files from which a scene was read.
 std::vector<std::string> files_of(const SceneValues& scene);
 
 /// Refuses an output that would overwrite an input. "-" is stdin and stdout. Errors: InputError.
 void check_output_is_no_input(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
-/// The results that a public call returns. `head`: the head of the table that a run over the points would write, or of
-/// the table in which the points were looked up.
+/// `head`: head of the table of a run over the points, or of the table in which the points were looked up.
 Results results_of(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head);
 
-/// Makes points from columns. A column with one value holds for all points. If all columns have one value, there is one
-/// point.
-/// Errors: InputError for a column that is unknown, has another length, or has a value out of range.
+/// Makes points from columns. A column with one value holds for all points. Errors: InputError for a column that is
+/// unknown, has another length, or has a value out of range.
 Points points_of_columns(const std::vector<Column>& columns, PointsKind kind);
 
 /// Refuses Vulkan in a process that was forked from one that has used it. A fork does not copy the driver's threads and
 /// locks, so calls would wait without end.
 void check_no_fork();
 
-/// Makes an evaluator. `needs_double`: its device must support double precision.
-/// Errors: InputError for an unknown name, and for a device with cpu or reference; DeviceError for vulkan if no device
-/// is usable.
+/// `needs_double`: the device must support double precision. Errors: InputError for an unknown name, and for a device
+/// with cpu or reference; DeviceError for vulkan if no device is usable.
 std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, bool needs_double);
 
 struct Evaluator::Impl {
   explicit Impl(EvaluatorOptions given) : options(std::move(given)) {}
 
-  /// The evaluator for a run of a scene, with an empty report. For a scene in double precision its device supports
-  /// double precision. Errors: errors of make_evaluator.
+  /// The evaluator for a run, with an empty report. It supports double precision if the scene needs it.
   ModelEvaluator* begin(const SceneValues& scene) {
     const bool needs_double = scene.accuracy.precision == Precision::kDouble;
     if (evaluator && (evaluator->has_double() || !needs_double)) {

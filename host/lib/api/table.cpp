@@ -1,4 +1,3 @@
-// Tables in memory, and columns of points and results.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -41,8 +40,7 @@ bool is_variable(std::string_view name) {
          std::ranges::any_of(kAllAxes, is_described) || std::ranges::any_of(kAllQuantities, is_described);
 }
 
-/// Refuses attributes that a file cannot have. A file stores a long text as a variable, so it must not have the name of
-/// another variable.
+/// Refuses attributes that a file cannot have. A long text becomes a variable and must not have the name of another.
 void check_attributes(const std::vector<Attribute>& attributes, const std::string& name) {
   std::set<std::string_view> names;
   for (const Attribute& attribute : attributes) {
@@ -57,7 +55,6 @@ void check_attributes(const std::vector<Attribute>& attributes, const std::strin
   }
 }
 
-/// Refuses contents that do not fit together.
 void check_values(const TableValues& table, const std::string& name) {
   check_axes(table, name);
   const auto check_size = [&](const char* variable, std::size_t size, std::size_t expected) {

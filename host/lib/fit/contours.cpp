@@ -16,7 +16,6 @@ namespace {
 
 using GridNode = std::pair<int, int>;  // steps along both axes from the best minimum
 
-/// The positions of the two parameters with the largest correlation. Empty if no correlation is known.
 std::optional<std::array<Eigen::Index, 2>> most_correlated(const Eigen::MatrixXd& correlation) {
   const auto strength_of = [](double r) { return std::isnan(r) ? 0.0 : 1.0 + std::abs(r); };
   const Eigen::MatrixXd strength = correlation.unaryExpr(strength_of);
@@ -42,7 +41,6 @@ class GrowthMap {
   }
 
   Contours contours() {
-    // If a grid needs too many evaluations, the next one has twice the step.
     for (std::size_t grid = 1; !spread((grid + 1) * result_.evaluations / 2) && grid < kMostGrids; ++grid) {
       nodes_.clear();
       steps_ *= 2.0;
@@ -51,8 +49,7 @@ class GrowthMap {
   }
 
  private:
-  /// The steps of the grid, one per column. They go along the principal axes of the covariance of both parameters, and
-  /// are kStepOfDeviation standard deviations long.
+  /// Steps along the principal axes of the covariance of both parameters. They are kStepOfDeviation deviations long.
   Eigen::Matrix2d first_steps() const {
     const Eigen::MatrixXd& jacobian = result_.valley_points.front().where.jacobian;
     Eigen::MatrixXd information = jacobian.transpose() * jacobian / result_.scale;
@@ -73,7 +70,6 @@ class GrowthMap {
   }
   double growth(double objective) const { return (objective - result_.chi_square) / result_.scale; }
 
-  /// A node as a neighbour of a known point, from which a descent reaches it.
   Neighbour beside(const Minimum& near, const GridNode& node) const {
     Neighbour neighbour{&near, {pair_.begin(), pair_.end()}, near.where.at};
     neighbour.to(pair_) = position(node).cwiseMax(0.0).cwiseMin(1.0);
@@ -83,7 +79,6 @@ class GrowthMap {
   /// Nodes to compute, each with the known point from which a descent reaches it.
   using Wanted = std::map<GridNode, const Minimum*>;
 
-  /// The nodes nearest to the minimum and to the points of the profiles.
   Wanted first_nodes() const {
     Wanted wanted;
     for (const Minimum& point : result_.valley_points) {
@@ -94,8 +89,7 @@ class GrowthMap {
     return wanted;
   }
 
-  /// The nodes that are not computed yet, around computed nodes whose growth is low. Each has its lowest computed
-  /// neighbour.
+  /// Nodes not computed yet, around computed ones with low growth. Each has its lowest computed neighbour.
   Wanted next_nodes() const {
     Wanted wanted;
     for (const auto& [node, point] : nodes_) {
@@ -123,8 +117,7 @@ class GrowthMap {
     return true;
   }
 
-  /// The growth on a finer grid, which divides the cells. Between nodes the residuals are interpolated; this shows
-  /// valleys that are narrower than a cell.
+  /// The growth on a finer grid. Interpolating the residuals between nodes shows valleys that are narrower than a cell.
   Contours drawn() const {
     GridNode low, high;
     for (const auto& [node, point] : nodes_) {

@@ -8,8 +8,7 @@
 namespace dolp::fit {
 namespace {
 
-/// A loss and its derivative with respect to the squared residual. The widths give 95 % efficiency if errors are
-/// normally distributed.
+/// A loss and its derivative with respect to the squared residual. The widths give 95 % efficiency for normal errors.
 std::pair<double, double> loss_of(double square, Loss loss) {
   switch (loss) {
     case Loss::kSquares:
@@ -43,8 +42,7 @@ bool is_on_bound(double coordinate) {
   return coordinate <= kRounding || coordinate >= 1.0 - kRounding;
 }
 
-/// Completes `step`, which already moves the held coordinates. The other coordinates get the steps that minimise the
-/// damped sum of squares within the bounds.
+/// Completes `step`, which moves the held coordinates. The others minimise the damped sum of squares within the bounds.
 Eigen::VectorXd bounded_step(const Linearisation& where, Eigen::VectorXd step, const std::vector<Eigen::Index>& held,
                              double damping, const Eigen::VectorXd& weights) {
   std::vector<Eigen::Index> free;
@@ -81,7 +79,6 @@ Linearisation moved(const Linearisation& near, Linearisation to) {
   return to;
 }
 
-/// A descent that is still going on.
 struct Walk {
   Minimum* minimum;
   bool is_stale;        ///< its derivatives belong to an earlier point
@@ -120,9 +117,8 @@ struct Walk {
     is_done = !(promised >= options.least_gain * options.scale) || step.norm() <= kLeastStepLength;
   }
 
-  /// Moves to the tried point if it is lower; otherwise the next step is shorter. The rules of the radius are those of
-  /// Nielsen (1999). Levenberg's damping is the scale over the radius. Marquardt's damping, by the derivatives, would
-  /// allow leaps along directions that the data hardly constrain.
+  /// Moves to the tried point if it is lower; otherwise the next step is shorter. The radius follows Nielsen (1999).
+  /// The damping is Levenberg's; Marquardt's would allow leaps along directions that the data hardly constrain.
   void judge(Linearisation tried, const DescentOptions& options) {
     constexpr double kLeastRadius = 1e-8, kMostRadius = 1e8;
     constexpr double kLeastDecrease = 1e-8;  // relative

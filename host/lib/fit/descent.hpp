@@ -1,4 +1,3 @@
-// Descents from many points in the space of the parameters to minima. All descents advance together.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,14 +10,12 @@
 
 namespace dolp::fit {
 
-/// Eigenvalues and orthonormal eigenvectors of a symmetric matrix without negative eigenvalues, the largest eigenvalue
-/// first.
+/// Eigenvalues and orthonormal eigenvectors of a positive semidefinite matrix, the largest eigenvalue first.
 struct PrincipalAxes {
   Eigen::VectorXd values;
   Eigen::MatrixXd directions;  ///< one eigenvector per column
 
-  /// The inverse of the matrix on the axes whose eigenvalue is above this share of the largest one, and 0 on the
-  /// others.
+  /// The inverse on the axes whose eigenvalue is above this share of the largest one, and 0 on the others.
   Eigen::MatrixXd inverse(double least_share = 0.0) const;
 };
 
@@ -36,9 +33,8 @@ struct DescentOptions {
   int most_steps = 40;
   /// A descent ends when derivatives promise a decrease of the objective below this times the scale.
   double least_gain = 1e-5;
-  /// If set, derivatives are updated from the steps (Broyden) as long as the derivatives predict the steps. A descent
-  /// that ends below this objective may end with updated derivatives; one that ends above it gets fresh ones. If empty,
-  /// all derivatives are fresh.
+  /// If set, Broyden's updates replace fresh derivatives as long as they predict the steps. A descent that ends below
+  /// this objective may end with updated derivatives; one that ends above it gets fresh ones.
   std::optional<double> secant_below = {};
 };
 
@@ -48,12 +44,11 @@ struct Minimum {
   std::vector<Eigen::Index> held = {};  ///< positions of parameters that do not move
   double objective = 0.0;               ///< infinite if the model has no value here
   bool has_converged = false;
-  /// Radius of the trust region. With radius 1, a move across a whole range costs one standard deviation.
-  double radius = 0.1;
+  double radius = 0.1;  ///< radius of the trust region; at 1, a move across a range costs one standard deviation
 };
 
-/// Descends from all points by Levenberg-Marquardt within the bounds. Each step computes one batch of the tried points,
-/// and one batch of all finite differences. Errors: errors of the evaluator; Cancelled.
+/// Descends from all points together by Levenberg-Marquardt within the bounds. Each step computes one batch of the
+/// tried points, and one batch of all finite differences. Errors: errors of the evaluator; Cancelled.
 void descend(Residuals& residuals, std::vector<Minimum>& all, const DescentOptions& options);
 
 /// A point to be found beside a known one. Some of its coordinates are given and held; the others follow by a descent.

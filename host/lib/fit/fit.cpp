@@ -32,40 +32,33 @@ double least_uncertainty(const Model& model) {
   return least;
 }
 
-/// The tolerance of the model's final values; at most the tolerance of the scene.
 double fine_tolerance(const Model& model) {
   return std::min(model.scene().accuracy.tolerance,
                   std::max(kFineShare * least_uncertainty(model), kToleranceRange.min));
 }
 
-/// The tolerance of the search.
 double coarse_tolerance(const Model& model) {
   return std::max(fine_tolerance(model), std::min(kCoarseShare * least_uncertainty(model), kMostTolerance));
 }
 
 bool is_at_bound(double coordinate) { return coordinate < kAtBound || coordinate > 1.0 - kAtBound; }
 
-/// A direction in the space of the coordinates along which the data do not constrain the parameters. The absolute value
-/// of its largest component is 1.
+/// A direction of the coordinates that the data do not constrain. The absolute value of its largest component is 1.
 struct Direction {
   Eigen::VectorXd along;
-  /// True if no residual changes along the direction. Otherwise the whole range changes the residuals by less than one
-  /// standard deviation.
+  /// True if no residual changes along it; otherwise its whole range changes them by less than one standard deviation.
   bool is_null = false;
 };
 
-/// Covariance of the parameters, from the Jacobian at a minimum.
 struct Covariance {
-  /// Covariance of the coordinates. A parameter in a null direction has an infinite variance, a parameter at its bound
-  /// NaN.
+  /// A parameter in a null direction has an infinite variance, a parameter at its bound NaN.
   Eigen::MatrixXd of_coordinates;
   std::vector<Direction> unconstrained;
   std::size_t rank = 0;
 };
 
 Covariance covariance_of(const Minimum& minimum, Loss loss, double scale) {
-  // A direction is null if its singular value is below this share of the largest one.
-  constexpr double kNullShare = 1e-4;
+  constexpr double kNullShare = 1e-4;  // a direction is null if its singular value is below this share of the largest
   // A parameter is ignored if its whole range changes the residuals by less than so many standard deviations.
   constexpr double kLeastDeviations = 1e-3;
   Eigen::MatrixXd jacobian =
@@ -115,7 +108,6 @@ Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance) {
   return correlation;
 }
 
-/// Describes a direction in words.
 std::string words_of(const Direction& direction, const std::vector<FitRange>& parameters) {
   std::vector<std::string> rising, falling;
   const Eigen::VectorXd& along = direction.along;
@@ -134,7 +126,6 @@ std::string words_of(const Direction& direction, const std::vector<FitRange>& pa
                      falling.size() == 1 ? "falls" : "fall");
 }
 
-/// Sets the standard error of a parameter, or the reason why it has none.
 void set_error(FitParameter& fitted, const FitRange& range, double deviation, bool has_scale) {
   const double error = deviation * range.slope(fitted.value);
   if (fitted.is_at_bound) {
@@ -165,7 +156,6 @@ FitInterval interval_of(const FitRange& parameter, const std::vector<Stretch>& s
   return interval;
 }
 
-/// One fit, with its minima and results so far.
 class Fit {
  public:
   Fit(const Model& model, ModelEvaluator& evaluator, const FitOptions& options)
@@ -201,8 +191,7 @@ class Fit {
     total_ = total;
   }
 
-  /// The number of degrees of freedom. With a model error it is the number of points: the parameters only choose the
-  /// bracket, and each point is a condition by itself.
+  /// Degrees of freedom. With a model error each point is a condition; the parameters only choose the bracket.
   std::size_t freedom() const {
     return model_.observation_count() - (model_.has_model_error() ? 0 : model_.parameters().size());
   }
@@ -210,8 +199,7 @@ class Fit {
   /// True if the change of the objective by one standard deviation is known or follows from the residuals.
   bool has_scale() const { return model_.has_uncertainties() || freedom() > 0; }
 
-  /// A guess of the scale before the search: 1 with uncertainties, else the square of a hundredth of the largest
-  /// measured value.
+  /// The scale before the search: 1 with uncertainties, else the square of a hundredth of the largest measured value.
   double guess_scale() const {
     if (model_.has_uncertainties()) return 1.0;
     double largest = 0.0;
@@ -221,8 +209,7 @@ class Fit {
     return std::pow(std::max(0.01 * largest, fine_.tolerance()), 2);
   }
 
-  /// The scale at a minimum: 1 with uncertainties, else the mean square of the residuals, but at least the square of
-  /// the model's tolerance.
+  /// 1 with uncertainties, else the mean square of the residuals, but at least the square of the model's tolerance.
   double find_scale(const Minimum& minimum) const {
     if (model_.has_uncertainties()) return 1.0;
     const double mean = freedom() > 0 ? minimum.objective / static_cast<double>(freedom()) : 0.0;
@@ -239,8 +226,7 @@ class Fit {
     return std::pow(boost::math::quantile(t, 0.5 * (1.0 + level)), 2);
   }
 
-  /// The covariance at the best minimum. With a model error all its elements are NaN, because inside a bracket no
-  /// derivative distinguishes the parameters.
+  /// With a model error all elements are NaN, because inside a bracket no derivative distinguishes the parameters.
   Covariance find_covariance() const {
     if (!model_.has_model_error()) return covariance_of(minima_.front(), options_.loss, result_.scale);
     const Eigen::Index count = minima_.front().where.at.size();
@@ -266,8 +252,7 @@ class Fit {
     result_.valley_points = {best};
   }
 
-  /// Finds the intervals of all parameters, or their scaled intervals. False if a profile led to a lower minimum, which
-  /// then is the best one.
+  /// False if a profile led to a lower minimum, which then is the best one.
   bool find_intervals(double scale, bool may_restart, bool is_scaled) {
     const std::optional<Profiles> profiles = find_profiles(scale, may_restart);
     if (!profiles) return false;
@@ -282,8 +267,7 @@ class Fit {
     return true;
   }
 
-  /// The profiles around all minima that the data do not exclude. Empty if a profile led to a lower minimum, which then
-  /// is the best one.
+  /// Empty if a profile led to a lower minimum, which then is the best one.
   std::optional<Profiles> find_profiles(double scale, bool may_restart) {
     ProfileOptions options{{rise_at(kLevel68), rise_at(kLevel95)}, 0.0, scale, options_.loss, {}};
     if (!model_.has_model_error()) options.from = minima_.front().objective;
@@ -339,8 +323,7 @@ class Fit {
     add_criteria();
   }
 
-  /// A weakly constrained direction counts only if a profile confirms it: the interval of one of its parameters is open
-  /// at both ends.
+  /// A weakly constrained direction counts only if the interval of one of its parameters is open at both ends.
   void name_degeneracies() {
     result_.determined = covariance_.rank;
     for (const Direction& direction : covariance_.unconstrained) {

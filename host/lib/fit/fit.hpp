@@ -1,4 +1,3 @@
-// Parameters of a scene from measured data, with intervals and contours.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,8 +18,7 @@ namespace dolp::fit {
 
 /// The result of a fit. Vectors with one value per measurement are in the order of the data.
 struct FitResult : FitNumbers {
-  /// NaN for parameters at a bound and for parameters that the data do not determine.
-  Eigen::MatrixXd correlation;
+  Eigen::MatrixXd correlation;               ///< NaN for parameters at a bound or not determined by the data
   std::optional<double> reduced_chi_square;  ///< empty without degrees of freedom
   /// Change of chi_square by one standard deviation: 1 or, without uncertainties, the mean square of the residuals.
   double scale = 1.0;
@@ -39,10 +37,9 @@ struct FitResult : FitNumbers {
 /// "good", "doubtful" or "bad"; empty without a p-value.
 std::string fit_quality(const std::optional<double>& p_value);
 
-/// Fits the model to its data. Descents from many starts find the minima; then the intervals around the best one are
-/// computed. The tolerance of the model's values is a hundredth of the smallest uncertainty, and wider during the
-/// search. A doubtful or bad fit gets scaled intervals only if its AIC is at most `most_aic`: a model that is worse
-/// than others needs none. Empty if no descent converged. Errors: errors of the evaluator; Cancelled.
+/// Fits the model to its data: finds the minima, then the intervals around the best one. A doubtful or bad fit gets
+/// scaled intervals only if its AIC is at most `most_aic`: a model that is worse than others needs none. Empty if no
+/// descent converged. Errors: errors of the evaluator; Cancelled.
 std::optional<FitResult> fit(const Model& model, ModelEvaluator& evaluator, const FitOptions& options,
                              double most_aic = std::numeric_limits<double>::infinity());
 
@@ -56,13 +53,11 @@ struct Contours {
 /// The growth whose contours contain 68.27 % and 95 % of all pairs: chi^2 with two degrees of freedom.
 inline constexpr std::array kContourLevels = {2.2957, 5.9915};
 
-/// The growth over the two parameters of the largest correlation, within their ranges. None where no correlation is
-/// known.
-///
-/// The objective is computed at the nodes of a regular grid along the principal axes of the covariance. The nodes begin
-/// at the minimum and the points of the profiles, and spread to beyond the higher level. Each descends
-/// from the bottom of the valley beside its lowest neighbour. A valley that takes more parameter sets than the fit gets
-/// a coarser grid, or ends. Errors: errors of the evaluator; Cancelled.
+/// The growth over the two parameters of the largest correlation, within their ranges. Empty if no correlation is
+/// known. The objective is computed at the nodes of a regular grid along the principal axes of the covariance. The
+/// nodes spread from the minimum and the points of the profiles to beyond the higher level. Each descends from the
+/// bottom of the valley beside its lowest neighbour. If this needs more parameter sets than the fit, the grid becomes
+/// coarser, or it stays incomplete. Errors: errors of the evaluator; Cancelled.
 std::optional<Contours> contours_of(const Model& model, ModelEvaluator& evaluator, const FitResult& result,
                                     const FitOptions& options);
 

@@ -1,4 +1,3 @@
-// The input of a fit: measured data, ranges of parameters, comparisons.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,10 +20,8 @@ constexpr std::array kObservables = {Observable::kDolp, Observable::kQOverI, Obs
                                      Observable::kEmissivityP};
 constexpr NumberRange kFractionOfOneRange{-1.0, 1.0};
 constexpr NumberRange kUncertaintyRange{0.0, std::numeric_limits<double>::infinity(), NumberRange::Ends::kOpenBelow};
-// If all zeniths are below kLikelyRadians, they are probably in radians. If DOLP reaches kLikelyPercent, it is probably
-// in percent, because no surface has so much over a range of zeniths.
-constexpr double kLikelyRadians = 1.6;
-constexpr double kLikelyPercent = 0.9;
+constexpr double kLikelyRadians = 1.6;  // zeniths that are all below this are probably in radians
+constexpr double kLikelyPercent = 0.9;  // DOLP of at least this is probably in percent; no surface has so much
 
 const std::vector<CsvColumn>& known_columns() {
   static const std::vector<CsvColumn> columns = {{"theta_deg", kZenithDegRange},
@@ -38,7 +35,6 @@ const std::vector<CsvColumn>& known_columns() {
   return columns;
 }
 
-/// Refuses data without exactly one column of zeniths or without exactly one measured quantity.
 void check_columns(const CsvReader& header, const CsvColumns& columns) {
   if (columns.has("theta_deg") == columns.has("theta_i_deg")) {
     header.fail(columns.has("theta_deg")
@@ -72,7 +68,6 @@ void add_row(MeasuredData& data, const CsvReader& row, const CsvColumns& columns
   }
 }
 
-/// Remarks on values that probably have another unit than their column.
 std::vector<std::string> remarks_on(const MeasuredData& data) {
   double highest_deg = 0.0, highest_dolp = 0.0, least_um = std::numeric_limits<double>::infinity();
   for (const Measurement& measurement : data.measurements) {
@@ -96,8 +91,7 @@ std::vector<std::string> remarks_on(const MeasuredData& data) {
   return remarks;
 }
 
-/// The position of the colon that separates the file from the settings in "FILE:KEY=VALUE,...". It is the first colon
-/// with an equals sign after it and, between them, no slash, space or colon.
+/// Position of the colon in "FILE:KEY=VALUE". An equals sign follows it, with no slash, space or colon between them.
 std::size_t keys_begin(const std::string& argument) {
   for (std::size_t colon = argument.find(':'); colon != std::string::npos; colon = argument.find(':', colon + 1)) {
     const std::string_view rest = std::string_view(argument).substr(colon + 1);

@@ -25,7 +25,6 @@ constexpr std::array<std::string_view, 5> kPointKeys = {"surface.n", "surface.k"
 
 bool is_point_key(const std::string& key) { return std::ranges::find(kPointKeys, key) != kPointKeys.end(); }
 
-/// A vector with one value_of(parameter) per parameter.
 template <class ValueOf>
 Eigen::VectorXd each(const std::vector<FitRange>& parameters, ValueOf value_of) {
   Eigen::VectorXd values(static_cast<Eigen::Index>(parameters.size()));
@@ -54,7 +53,6 @@ Eigen::RowVector2d components_of(Observable observable, const PointResult& point
   return {};
 }
 
-/// The emission model at the other end of a scene's bracket. Errors: InputError if the scene has no bracket.
 EmissionModel other_end_of(const SceneValues& scene) {
   const std::string origin = "model error of the bracket: ";
   if (!scene.emission) throw InputError(origin + "needs the table [emission]");
@@ -66,8 +64,7 @@ EmissionModel other_end_of(const SceneValues& scene) {
   return scene.emission->model == EmissionModel::kDirect ? EmissionModel::kMoments : EmissionModel::kDirect;
 }
 
-/// The value between both ends of a bracket that is nearest to the measured one. Equation: DOLP is |Q/I|. If Q/I has
-/// different signs at both ends, the smallest DOLP between them is 0.
+/// The value in the bracket that is nearest to the measured one. DOLP = |Q/I| can be 0 between ends of different signs.
 double nearest_between(const Eigen::RowVector2d& end, const Eigen::RowVector2d& other, const Measurement& measured) {
   if (std::isnan(end[0] + other[0])) return end[0] + other[0];
   const auto [low, high] = std::minmax(end[0], other[0]);
@@ -157,8 +154,7 @@ Model::Group Model::group_of(const SceneValues& scene, const MeasuredData& data,
   if (!wavelengths.empty() && (std::ranges::any_of(data.settings, sets_spectrum) || varies("spectrum.wavelength_um"))) {
     throw InputError(data.name + ": column \"wavelength_um\" and a spectrum key contradict each other");
   }
-  // Checks that the scene accepts the longest and the shortest wavelength. The group keeps the scene at the shortest
-  // one.
+  // The scene must accept the longest and the shortest wavelength. The group keeps the scene at the shortest one.
   for (const double at_um : group.wavelength_um | std::views::reverse) {
     if (at_um != group.wavelength_um.back() && at_um != group.wavelength_um.front()) continue;
     const Setting wavelength{"spectrum.wavelength_um", at_um,
@@ -206,7 +202,6 @@ std::vector<Prediction> Model::predict(const std::vector<Eigen::VectorXd>& value
 void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>& values, double tolerance,
                           ModelEvaluator& evaluator, const Progress& progress,
                           std::vector<Prediction>& predictions) const {
-  // Parameter sets that differ only in the keys of points share a call.
   std::map<std::vector<double>, std::vector<std::size_t>> calls;
   for (std::size_t set = 0; set < values.size(); ++set) {
     std::vector<double> common;

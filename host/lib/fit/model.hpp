@@ -1,4 +1,3 @@
-// The values of the model at measured points, for many parameter sets at once.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,8 +13,8 @@
 
 namespace dolp::fit {
 
-/// Refuses a range that its key cannot have. Errors: InputError that begins with `origin` if the key is unknown or no
-/// number, if low >= high, if the start lies outside of the range, or if the key does not allow one of these values.
+/// Errors: InputError that begins with `origin` if the key is unknown or no number, if low >= high, if the start lies
+/// outside of the range, or if the key does not allow one of these values.
 void check_range(const FitRange& range, const std::string& origin);
 
 /// The model's predictions of all measurements, in the order of the data.
@@ -31,10 +30,8 @@ struct Prediction {
 /// The model at the measurements of several data sets, as a function of the varied keys.
 class Model {
  public:
-  /// Errors: InputError in one line if scene, data and parameters do not fit together. Examples are more parameters
-  /// than measurements, a key that varies twice, a data set that fixes a varied key, only some data sets with
-  /// uncertainties, a model error without a bracket or without uncertainties, and an end of a range that the scene
-  /// refuses.
+  /// Errors: InputError in one line if scene, data and parameters do not fit together, for example if a key varies
+  /// twice, if only some data sets have uncertainties, or if the scene refuses an end of a range.
   Model(const SceneValues& scene, std::vector<MeasuredData> data, std::vector<FitRange> parameters,
         ModelError error = ModelError::kNone);
 
@@ -54,11 +51,9 @@ class Model {
   std::vector<Prediction> predict(const std::vector<Eigen::VectorXd>& values, double tolerance,
                                   ModelEvaluator& evaluator, const Progress& progress) const;
 
-  /// The settings that give the parameters these values.
   std::vector<Setting> settings(const Eigen::VectorXd& values) const;
 
  private:
-  /// The scene of one data set.
   struct Group {
     const MeasuredData* data = nullptr;
     Eigen::Index first_row = 0;  ///< row of its first measurement in the predictions
@@ -72,10 +67,8 @@ class Model {
   bool varies(const std::string& key) const;
   Group group_of(const SceneValues& scene, const MeasuredData& data, Eigen::Index first_row) const;
   void check_group(const Group& group) const;
-  /// Adds one entry for each measurement of a group.
   void add_points(std::vector<SceneEntry>& points, const Group& group, const SceneValues& scene) const;
-  /// The scene of a data set, with the settings of the data, `own` and the parameters. Errors: InputError that tells
-  /// which of these settings is refused.
+  /// The scene with settings of the data, `extra` and the parameters. Errors: InputError that names a refused setting.
   SceneValues scene_of(const SceneValues& scene, const MeasuredData& data, const std::vector<Setting>& extra,
                        const Eigen::VectorXd& values) const;
   SceneValues with(const SceneValues& scene, const Eigen::VectorXd& values) const;

@@ -13,11 +13,9 @@
 namespace dolp::fit {
 namespace {
 
-/// A point of a profile.
 struct ProfilePoint {
   double distance = 0.0;  ///< distance from the start, in the coordinate of the parameter
-  /// Square root of the growth of the objective above ProfileOptions::from, divided by the scale.
-  double root = 0.0;
+  double root = 0.0;      ///< square root of (objective - ProfileOptions::from) / scale
   Minimum found;
 };
 
@@ -37,7 +35,6 @@ class Side {
   const std::optional<Minimum>& lower() const { return lower_; }
   /// The coordinate at which a rise is met, or the last one if it is not met. Empty if the start lies above the rise.
   const std::optional<double>& end(std::size_t rise) const { return ends_[rise]; }
-  /// The last point below a rise; null if there is none.
   const Minimum* last_below(std::size_t rise) const {
     const double most = (1.0 + kRootTolerance) * std::sqrt(options_->rises[rise]);
     const auto last =
@@ -94,8 +91,7 @@ class Side {
     for (; !is_done(); ++rise_, tries_ = 0) {
       const PointPosition above = first_above();
       if (above == points_.cbegin()) continue;
-      // A start just below a rise does not count as meeting it; nor do points of about its height. Only higher points
-      // do.
+      // A start just below a rise does not meet it. So only points that are clearly higher than the start can meet it.
       const double least = std::min(wanted(), points_.front().root + kRootTolerance * wanted());
       const auto met = std::find_if(points_.cbegin() + 1, points_.cend(), [&](const ProfilePoint& p) {
         return p.root >= least && std::abs(p.root - wanted()) <= kRootTolerance * wanted();
@@ -119,8 +115,7 @@ class Side {
     for (; !is_done(); ++rise_) ends_[rise_] = coordinate(distance);
   }
 
-  /// The distance at which a straight line through two points meets the wanted root. The points are the two beside it
-  /// or, if all points are lower, the last two.
+  /// Where a line through two points meets the wanted root: the points beside it or, if all are lower, the last two.
   double next_distance() const {
     if (points_.size() == 1) return first_distance();
     const PointPosition above = first_above();
@@ -289,9 +284,8 @@ class Profiler {
     return first < sides_.size();
   }
 
-  /// The paths on which to search beyond an end. They lead from the ends of other sides to just beyond this end, unless
-  /// a straight path joins both ends. They also start at points of other sides beyond this end that lie clearly below
-  /// the rise.
+  /// The paths of the search beyond an end: from the ends of other sides, unless a straight path joins both ends, and
+  /// from points of other sides beyond this end that lie clearly below the rise.
   std::vector<Neighbour> ways_beyond(const ProfileEnd& end) const {
     if (result_.stretches.size() == 1) return {};  // the profile of a single parameter has no other branch
     const std::vector<Stretch>& all = result_.stretches[static_cast<std::size_t>(end.parameter)][end.rise];

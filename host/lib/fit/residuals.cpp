@@ -16,8 +16,7 @@ std::array<double, 2> offsets_at(double at, double step) {
   return {inward, has_both_sides ? -step : 2.0 * inward};
 }
 
-/// The derivative at a point: of the line through it and one neighbour, or of the parabola through it and two
-/// neighbours.
+/// The slope at a point of the line through it and one neighbour, or of the parabola through it and two.
 Eigen::MatrixX2d derivative(const Eigen::MatrixX2d& centre, const Prediction* beside, std::size_t count,
                             const std::array<double, 2>& offsets) {
   const auto [a, b] = offsets;
@@ -105,8 +104,7 @@ void Residuals::differentiate(Linearisation& point, Eigen::Index j, const Predic
   const Eigen::MatrixX2d& centre = point.components;
   const Eigen::MatrixX2d slopes = derivative(centre, beside, count, offsets_at(point.at[j], point.steps[j]));
   for (Eigen::Index i = 0; i < slopes.rows(); ++i) {
-    // DOLP, the length of (Q, U)/I, has a kink where the components change their sign. So it is differentiated through
-    // the components, which have no kink.
+    // DOLP, the length of (Q, U)/I, has a kink where the components change their sign; the components have none.
     const double length = is_length_[static_cast<std::size_t>(i)] ? centre.row(i).norm() : 0.0;
     const double slope = length > 0.0 ? centre.row(i).dot(slopes.row(i)) / length : slopes(i, 0);
     point.jacobian(i, j) = weights_[i] * slope;

@@ -1,4 +1,3 @@
-// The weighted residuals of a model, and their derivatives.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,8 +11,7 @@ namespace dolp::fit {
 /// The residuals at a point in the space of the coordinates, and their derivatives.
 struct Linearisation {
   Eigen::VectorXd at;  ///< coordinates in [0, 1]
-  /// (model - measured) / uncertainty; without uncertainties model - measured. Empty if not known yet; NaN where the
-  /// model has no value.
+  /// (model - measured) / uncertainty, or model - measured. Empty if not known yet; NaN where the model has no value.
   Eigen::VectorXd residuals = {};
   Eigen::MatrixXd jacobian = {};     ///< measurements x parameters; empty if not known yet
   Eigen::MatrixX2d components = {};  ///< Prediction::components at the point
@@ -28,17 +26,15 @@ enum class Differences {
 /// The residuals as a function of the parameters' coordinates.
 class Residuals {
  public:
-  /// `tolerance`: tolerance of the model's values. The model and the evaluator must outlive the object.
+  /// The model and the evaluator must outlive the object. `tolerance`: tolerance of the model's values.
   Residuals(const Model& model, double tolerance, Differences differences, ModelEvaluator& evaluator,
             Progress progress);
 
   const Model& model() const { return model_; }
   double tolerance() const { return tolerance_; }
-  /// The number of parameter sets computed so far.
-  std::size_t evaluations() const { return evaluations_; }
+  std::size_t evaluations() const { return evaluations_; }  ///< parameter sets computed so far
 
-  /// at() computes the residuals at several points in one batch. linearise() computes their derivatives by differences
-  /// in another batch.
+  /// at() computes residuals in one batch, linearise() their derivatives by differences in another batch.
   std::vector<Linearisation> at(const std::vector<Eigen::VectorXd>& points);
   void linearise(const std::vector<Linearisation*>& points);
 
@@ -46,8 +42,7 @@ class Residuals {
   std::vector<Prediction> predict(const std::vector<Eigen::VectorXd>& points);
   /// The values of the observables from Prediction::components.
   Eigen::VectorXd observed(const Eigen::MatrixX2d& components) const;
-  /// The factors of model - measured in the residuals: 1 / uncertainty, or 1 without uncertainties.
-  const Eigen::VectorXd& weights() const { return weights_; }
+  const Eigen::VectorXd& weights() const { return weights_; }  ///< 1 / uncertainty, or 1 without uncertainties
 
  private:
   void differentiate(Linearisation& point, Eigen::Index j, const Prediction* beside, std::size_t count) const;

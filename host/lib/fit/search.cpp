@@ -12,8 +12,7 @@
 namespace dolp::fit {
 namespace {
 
-/// Points of the Sobol sequence in the unit cube. Unless the seed is 1, all are shifted by the same random vector,
-/// modulo 1.
+/// Points of the Sobol sequence, all shifted by one random vector modulo 1 unless the seed is 1.
 std::vector<Eigen::VectorXd> sobol_points(std::size_t count, Eigen::Index dimensions, std::uint64_t seed) {
   boost::random::sobol sequence(static_cast<std::size_t>(dimensions));
   std::mt19937_64 engine(seed);
@@ -65,8 +64,6 @@ std::vector<Minimum> choose_starts(Residuals& residuals, const SearchOptions& op
   return starts;
 }
 
-/// The change of the objective by one standard deviation: options.scale with uncertainties, else the mean square
-/// residual.
 double scale_of(const SearchOptions& options, const Minimum& minimum) {
   if (options.has_uncertainties) return options.scale;
   const auto freedom = static_cast<double>(minimum.where.residuals.size() - minimum.where.at.size());
@@ -78,8 +75,7 @@ Eigen::VectorXd on_floor(const Eigen::VectorXd& point, const Eigen::VectorXd& re
                          const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& line) {
   const Eigen::VectorXd along = line.normalized();
   const Eigen::MatrixXd across = jacobian - jacobian * along * along.transpose();
-  // Along axes with a smaller share the residuals count as constant. The share is far above the rounding of a normal
-  // matrix.
+  // Along axes below this share, residuals count as constant. It is far above the rounding of a normal matrix.
   constexpr double kFlatShare = 1e-12;
   const PrincipalAxes axes = principal_axes(across.transpose() * across);
   const Eigen::VectorXd moved = point - axes.inverse(kFlatShare) * across.transpose() * residuals;
@@ -97,8 +93,7 @@ bool falls(double from, std::span<const Linearisation> points, Loss loss, double
   });
 }
 
-/// True if the objective falls on the way from a point to a minimum, except for rises of less than one standard
-/// deviation. The way is the straight line or the floor of the valley beside it.
+/// True if the objective falls along the straight line to a minimum, or along the floor of the valley beside it.
 bool leads_down(Residuals& residuals, const Minimum& from, const Minimum& to, const SearchOptions& options) {
   const double scale = scale_of(options, to);
   const Eigen::VectorXd line = to.where.at - from.where.at;

@@ -27,7 +27,6 @@ Json json_of(const std::optional<double>& value) { return value ? Json(*value) :
 
 Json json_of(const Eigen::VectorXd& values) { return std::vector<double>(values.begin(), values.end()); }
 
-/// The rows of a matrix as an array.
 Json json_of(const Eigen::MatrixXd& matrix) {
   Json rows = Json::array();
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) rows.push_back(json_of(Eigen::VectorXd(matrix.row(i).transpose())));
@@ -47,7 +46,6 @@ std::string text_of(const FitInterval& interval) {
                            : fmt::format("{} .. {}", text_of(interval.low, "open"), text_of(interval.high, "open"));
 }
 
-/// An interval of a parameter, with its names in JSON and in text.
 struct NamedInterval {
   std::string key, name;
   const FitInterval& interval;
@@ -86,7 +84,6 @@ void add_remarks(ReportBuilder& report, const FitParameter& parameter, const Fit
              text_of(*parameter.scaled_95));
 }
 
-/// Adds the table of the parameters, with one row per parameter, and remarks.
 void add_parameters(ReportBuilder& report, const FitResult& result) {
   Json list = Json::array();
   std::size_t width = 9;
@@ -124,7 +121,6 @@ void add_correlations(ReportBuilder& report, const FitResult& result) {
   }
 }
 
-/// Adds how well the model fits: chi^2, p-value, and words for them.
 void add_misfit(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   const std::string& quality = result.fit_quality;
   report.row("minimum", "chi_square {:.6g}, {} degrees of freedom{}{}", key("chi_square", result.chi_square),
@@ -213,7 +209,6 @@ std::vector<std::string> settings_of(const ComparedModel& model) {
 
 std::string model_text(const ComparedModel& model) { return fmt::format("{}", fmt::join(settings_of(model), " ")); }
 
-/// Why a picture has no contours, in words. Empty if it has some, or if only one number was fitted.
 std::string why_no_contours(const FitResult& result, const std::optional<fit::Contours>& drawn) {
   if (result.parameters.size() < 2) return "";
   if (drawn && !(drawn->growth.array() > fit::kContourLevels.front()).any()) {
@@ -244,8 +239,7 @@ FitInterval hull(const std::vector<const FitResult*>& results, std::size_t j, Fi
   return hull.value_or(FitInterval{.is_empty = true});
 }
 
-/// Adds the models that the data cannot distinguish. Also adds, for each parameter, an interval over all models that
-/// may be true.
+/// Adds the models that the data cannot distinguish, and intervals of the parameters over all models that may be true.
 void add_alike(ReportBuilder& report, const std::vector<ComparedModel>& models, double least_aic) {
   std::vector<const FitResult*> possible;
   Json alike = Json::array(), ranges = Json::array();

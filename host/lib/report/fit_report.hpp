@@ -1,4 +1,3 @@
-// The report on a fit.
 #pragma once
 
 #include <string>
@@ -9,15 +8,13 @@
 
 namespace dolp {
 
-/// One of the models that are compared.
 struct ComparedModel {
   std::vector<Setting> settings;         ///< settings that distinguish the model from the others
   std::optional<fit::FitResult> result;  ///< empty if no minimum was found
   std::string refusal;                   ///< why the scene refuses these settings; empty if it accepts them
 };
 
-/// Adds the minimum, the parameters with their intervals, correlations, degeneracies, other minima, and the list of the
-/// measurements.
+/// Adds the minimum, the parameters, correlations, degeneracies, other minima, and the list of the measurements.
 void add_fit(ReportBuilder& report, const fit::Model& model, const fit::FitResult& result);
 
 /// Adds the growth of the objective around the minimum, or the reason why it is not drawn.

@@ -18,7 +18,6 @@
 namespace dolp {
 namespace {
 
-/// All information about a planned run that has not started.
 struct PlannedRun {
   SceneValues scene;
   EffectPlan plan;
@@ -27,8 +26,7 @@ struct PlannedRun {
   double model_change = 0.0;  ///< estimated_model_change
   RunPrediction run;
   double rule_digits = 0.0;
-  /// Largest number of nodes on a piece of the slope axis or an arc of azimuth; 0 without moments.
-  int most_nodes = 0;
+  int most_nodes = 0;                  ///< largest number on a piece of the slope axis or an arc; 0 without moments
   std::vector<std::string> pipelines;  ///< pipelines of the first attempt; empty if the evaluator has no work
   vulkan::DispatchCount dispatches;    ///< dispatches of the first attempt
   std::vector<AxisForecast> lookup;    ///< forecasts for the axes with more than one value
@@ -102,8 +100,7 @@ PlannedRun planned_run(const SceneValues& scene, const std::string& device, Effe
                             {[&](const MomentsRequest& request) { add_request(planned, request, limits); },
                              [&](const ScatteringRequest& request) { add_request(planned, request, limits); }});
   if (planned.dispatches.row_width > 1) {
-    // The counting was entry by entry. A device evaluates the entries of a row together, with the nodes that the
-    // hardest of them needs.
+    // The count is by entry. A device evaluates a row of entries together, with the nodes that the hardest one needs.
     planned.run.first_evaluations *=
         static_cast<double>(planned.dispatches.rows) / static_cast<double>(planned.run.moments);
     planned.run.is_exact = false;
@@ -179,7 +176,6 @@ std::string how_counted(const RunPrediction& run) {
                                : fmt::format("estimated from {} entries", kCountedEntries);
 }
 
-/// Adds the work of the first attempt and of repeated attempts. `is_idle`: there is no work.
 void add_attempts(ReportBuilder& report, const PlannedRun& plan, bool is_idle) {
   const RunPrediction& run = plan.run;
   report.row_if(
@@ -236,7 +232,6 @@ std::string needed_text(const AxisForecast& axis) {
   return fmt::format("{} values are about enough for {:.1g}", axis.needed_values, axis.wanted);
 }
 
-/// Adds how many values of each axis lookups need.
 void add_lookup(ReportBuilder& report, const PlannedRun& plan) {
   std::vector<ReportBuilder> axes;
   for (const AxisForecast& axis : plan.lookup) {

@@ -1,4 +1,3 @@
-// The report of a command: text for people and JSON for programs, built from the same values.
 #pragma once
 
 #include <fmt/format.h>
@@ -38,7 +37,6 @@ class ReportBuilder {
   /// Labels fill a column of `label_width` characters; the text of a row follows it.
   explicit ReportBuilder(int label_width = 10) : label_width_(label_width) {}
 
-  /// Adds a line without a label.
   template <class... Args>
   void line(fmt::format_string<const Args&...> text, const Args&... args) {
     text_ += printable_line(fmt::format(text, args...)) + '\n';
@@ -61,8 +59,7 @@ class ReportBuilder {
     (record(args), ...);
   }
 
-  /// Adds a value only to the JSON: the text leaves it out or words it differently. NaN, infinity and missing values
-  /// become null.
+  /// Adds a value only to the JSON. NaN, infinity and missing values become null.
   template <class T>
   void value(const char* path, const T& value) {
     json_[Json::json_pointer(std::string("/") + path)] = value;
@@ -72,7 +69,6 @@ class ReportBuilder {
     optional ? value(path, *optional) : value(path, nullptr);
   }
 
-  /// Adds several values only to the JSON.
   void values(const Json& object) { json_.update(object); }
 
   /// Adds the lines of another report, without its values.
@@ -98,11 +94,9 @@ class ReportBuilder {
   }
 
   const Json& json() const { return json_; }
-  /// The JSON in ASCII, so that a terminal shows it safely. Bytes that are not UTF-8, as in names of files, are
-  /// replaced.
+  /// The JSON in ASCII, so that a terminal shows it safely. Bytes of file names that are not UTF-8 are replaced.
   std::string json_text() const { return json_.dump(2, ' ', true, Json::error_handler_t::replace); }
   const std::string& text() const { return text_; }
-  /// The shown rows: label and text.
   const std::vector<std::pair<std::string, std::string>>& rows() const { return rows_; }
 
  private:
@@ -121,7 +115,6 @@ class ReportBuilder {
 
 }  // namespace dolp
 
-/// Formats a Keyed value like the value itself.
 template <class T>
 struct fmt::formatter<dolp::Keyed<T>> : fmt::formatter<T> {
   template <class Context>

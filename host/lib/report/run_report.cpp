@@ -34,7 +34,6 @@ void add_energy(ReportBuilder& report, const RunSummary& summary, bool is_comput
   report.add("albedo/gains_energy", range_report("gains it (above", kAlbedoMax, summary.gains));
 }
 
-/// Adds a line with the kept effects, and one line per dropped effect.
 void add_effects(ReportBuilder& report, const RunOutcome& run) {
   std::string kept;
   for (const Effect& row : run.effects) {

@@ -1,4 +1,3 @@
-// Reports on runs and on planned runs, and parts that several reports share.
 #pragma once
 
 #include <optional>
@@ -22,7 +21,6 @@ inline constexpr const char* kModelInaccurateText =
 ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, const std::optional<ScatteringGap>& gap,
                          const std::string& shape, const std::string& path);
 
-/// Adds the evaluator and device of a run, and the time that it took.
 void add_evaluation(ReportBuilder& report, const EvaluationReport& evaluation, double wall_s);
 
 /// The report of a planned run over the scene's grid. `device`: position or part of a name. If it is empty, the default

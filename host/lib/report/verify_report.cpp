@@ -96,7 +96,6 @@ ReportBuilder case_report(const CaseOutcome& outcome) {
   return report;
 }
 
-/// Adds a line about all cases of one distribution and masking.
 void add_group(ReportBuilder& report, const char* precision, const std::vector<const CaseOutcome*>& group) {
   const CaseOutcome& worst = **std::ranges::max_element(group, {}, &CaseOutcome::worst_ratio);
   const bool is_rho = worst.rho.ratio() >= worst.dolp.ratio() || std::isinf(worst.dolp.estimate);

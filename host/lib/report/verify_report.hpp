@@ -1,4 +1,3 @@
-// Reports of `dolp verify` and `dolp devices`.
 #pragma once
 
 #include <string>
@@ -11,7 +10,6 @@
 
 namespace dolp {
 
-/// The check of the table at `path`, whose scene has this title.
 ReportBuilder table_report(const TableCheck& check, const std::string& path, const std::string& title,
                            std::uint64_t seed, double wall_s);
 
@@ -30,11 +28,9 @@ struct HardCaseReport {
   std::string left_out;  ///< why a precision is missing; empty if all are there
   std::size_t failures() const;
 };
-/// The report of the hard cases. It has one line for each precision, distribution and masking, and one for each case
-/// that fails or, with `all`, for every case.
+/// One line for each precision, distribution and masking, and for each case that fails or, with `all`, for every case.
 ReportBuilder hard_case_report(const HardCaseReport& cases, bool all);
 
-/// The limits of the devices, and the accuracy of each on a few ordinary cases in float and double.
 ReportBuilder device_report(const DeviceList& list);
 
 }  // namespace dolp

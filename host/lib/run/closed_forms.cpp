@@ -11,8 +11,7 @@
 namespace dolp {
 namespace {
 
-// A surface that counts as a mirror may still have facets with slopes above this value. The error estimate includes
-// their share of all facets.
+// A surface that counts as a mirror may have facets with slopes above this. The error estimate includes their share.
 constexpr double kMirrorSlope = 1e-6;
 
 double steep_share(const Surface& surface, const SlopeShape& shape) {
@@ -27,12 +26,10 @@ constexpr double kAgreement = 1e-13;
 // Bound of the rounding error of 1 - absorptance: a few operations with numbers up to 1.
 constexpr double kReflectanceRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
-// At cosines below this value the integrand is taken as 0, because their squares may underflow. The integrand falls at
-// least as fast as the cosine.
+// Below this cosine, whose square may underflow, the integrand is taken as 0: it falls at least as fast as the cosine.
 constexpr double kSmallestCosine = 1e-100;
 
-/// The angle from grazing incidence, in rad, at which total reflection begins, suddenly (k = 0) or nearly so (small k).
-/// 0 if there is no total reflection.
+/// Angle in rad from grazing incidence at which total reflection begins, suddenly (k = 0) or nearly so. Otherwise 0.
 double critical_angle(const FacetOptics& optics) {
   if (optics.measured) return 0.0;
   const OpticalConstants& index = optics.index;
@@ -76,11 +73,9 @@ Moments closed_form(const Surface& surface, const Direction& direction, const Sl
 Moments grazing_limit_moments(const FacetOptics& index, double q) {
   boost::math::quadrature::tanh_sinh<double> integrator;
   const double critical = critical_angle(index);
-  // The variable is psi = pi/2 - phi: x = sin(psi) then keeps its digits near x = 0, where the power of x is not
-  // smooth.
+  // The variable is psi = pi/2 - phi, because x = sin(psi) keeps its digits near x = 0, where its power is not smooth.
   const auto integral = [&](auto&& of_cosine) {
-    // Boost also passes the distance to the nearer end. The integrand does not use it; but with this parameter Boost
-    // allows nodes that round to the ends.
+    // With the second parameter, the distance to the nearer end, Boost allows nodes that round to the ends.
     const auto integrand = [&](double psi, double) {
       const double x = std::sin(psi);
       return x > kSmallestCosine ? std::pow(x, 4.0 - 2.0 * q) * of_cosine(x) : 0.0;

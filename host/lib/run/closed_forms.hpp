@@ -7,20 +7,16 @@
 
 namespace dolp {
 
-/// Moments that need no evaluator: moments of a mirror, or, where moments diverge at 90 degrees, their limits. If `sky`
-/// is not null, the result also has the moments with the functions of the sky. Domain: a direction whose treatment is
-/// not kIntegrated.
+/// Moments of a mirror, or the limits of moments that diverge at 90 degrees. If `sky` is not null, also the moments
+/// with the functions of the sky. Domain: a direction whose treatment is not kIntegrated.
 Moments closed_form(const Surface& surface, const Direction& direction, const SlopeShape& shape,
                     const FacetOptics& index, const SkyBasis* sky);
 
 /// Moments at exactly 90 degrees where they diverge: with masking none or `integral`, and the cauchy distribution with
-/// q <= 3/2. All moments diverge by a common factor, which is left out. So their quotients are the limits theta -> 90
-/// degrees.
-///
+/// q <= 3/2. Their common divergent factor is left out, so quotients of moments are the limits theta -> 90 degrees.
 /// Equation: let c = cos(theta), t = v / c and x = cos(phi). At grazing incidence a reflected ray leaves the surface if
 /// v < 2 x, and G tends to a constant. So rho c grows as c^(2q-3) times the integral of x^(4-2q) M over the azimuths
 /// phi of vertical facets, with cos(beta) = x and cos(2 eta) = -1.
-///
 /// Accuracy: the errors of r_i and r_q are at most 1e-12 r_i + 2e-15 albedo (tests GrazingLimit_*).
 Moments grazing_limit_moments(const FacetOptics& index, double q);
 

@@ -1,4 +1,3 @@
-// The entries of a table or of a list of points.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,8 +13,6 @@
 namespace dolp {
 namespace {
 
-/// Refuses points without a column theta_deg if the scene has several, points with only one of the columns n and k
-/// beside a material that depends on the wavelength, and points with n or k beside a column of materials.
 void check_columns(const SceneValues& scene, const Points& points) {
   if (!points[Axis::kTheta] && scene.grid[Axis::kTheta].size() != 1) {
     throw InputError(
@@ -54,7 +51,6 @@ std::vector<std::pair<Axis, std::vector<double>>> variant_columns(const SceneVal
   return columns;
 }
 
-/// Refuses a column of wavelengths if the scene has a band, and wavelengths at which n, k or E0 are not known.
 void check_wavelengths(const SceneValues& scene, const Points& points) {
   if (scene.spectrum.is_band()) {
     throw InputError(

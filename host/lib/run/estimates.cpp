@@ -16,8 +16,7 @@
 namespace dolp {
 namespace {
 
-// The multiples of this number modulo 1 fill the interval from 0 to 1 evenly, and do not resonate with the axes of a
-// grid.
+// Multiples of this number modulo 1 fill [0, 1] evenly, without resonance with the axes of a grid.
 constexpr double kGoldenRatio = 0.6180339887498949;
 
 using enum Quantity;
@@ -26,8 +25,7 @@ constexpr double kTolerance = 1e-3;
 constexpr std::size_t kBandWavelengths = 8;
 constexpr std::size_t kDrawnPoints = 24;  // number of points of a list that an estimate computes
 
-/// Largest number of values of an axis that an estimate computes. For sigma and q these are the two ends: what changes
-/// DOLP is largest at one of them.
+/// Largest number of values of an axis in an estimate. For sigma and q, effects are largest at one of the two ends.
 std::size_t most_values(Axis axis) {
   if (axis == Axis::kMaterial) return 64;
   if (axis == Axis::kTheta || axis == Axis::kBand) return 8;
@@ -70,7 +68,7 @@ struct Sample {
 
 Sample sample_of(const SceneValues& scene, const SceneEntries& entries) {
   Sample sample{scene, spread_entries(entries), {1.0}};
-  // Float is enough for an estimate. In double, entries that no rule reaches cost more than the table.
+  // Float is enough for an estimate. In double, entries for which no rule meets the tolerance cost more than the table.
   sample.scene.accuracy = {.tolerance = kTolerance, .precision = Precision::kFloat};
   if (sample.scene.emission) sample.scene.emission->has_bracket = false;
   if (spectral_samples(scene, entries) <= kBandWavelengths) return sample;
@@ -102,7 +100,6 @@ Sample sample_of(const SceneValues& scene, const SceneEntries& entries) {
   return sample;
 }
 
-/// The result over a band: sums of the results at its wavelengths, with weights.
 PointResult sum_of(std::span<const PointResult> results, std::span<const double> weights) {
   if (results.size() == 1) return results.front();
   PointResult sum;
@@ -134,8 +131,7 @@ double polarisation_change(const PointResult& a, const PointResult& b) {
                     a[kStokesU] / a[kStokesI] - b[kStokesU] / b[kStokesI]);
 }
 
-/// The largest change(a, b) of all entries whose status promises a DOLP in both results. Empty if there is no such
-/// entry.
+/// The largest change(a, b) of the entries that promise a DOLP in both results. Empty if there is none.
 template <class Change>
 std::optional<double> largest_change(const std::vector<PointResult>& a, const std::vector<PointResult>& b,
                                      const Change& change) {

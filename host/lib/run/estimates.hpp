@@ -1,8 +1,6 @@
-// Estimates of how much the effects of a scene change, and of how wrong its model may be. They come from a few entries,
-// which the CPU computes.
-//
-// The entries are spread over the axes and include the ends of each axis. In a band with many spectral samples, only a
-// few wavelengths are computed.
+// Estimates of how much the effects of a scene change, and of how wrong its model may be. The CPU computes a few
+// entries, which are spread over the axes and include their ends. In a band with many spectral samples, it computes
+// only a few wavelengths.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +14,7 @@
 
 namespace dolp {
 
-/// Up to `count` of the positions below `size`, in ascending order. A fixed sequence spreads them evenly; it does not
-/// resonate with the axes of a grid.
+/// Up to `count` positions below `size`, which a fixed sequence spreads evenly, in ascending order.
 std::vector<std::size_t> drawn_positions(std::size_t size, std::size_t count);
 
 /// All entries if there are at most `count`, otherwise the entries at drawn_positions().
@@ -30,11 +27,9 @@ struct Looked {
   std::string text() const;     ///< "32 entries and 8 wavelengths of the band"
 };
 
-/// Sets Effect::influence of the kept effects in `rows`: the largest difference of (Q/I, U/I) between the scene with
-/// everything and the scene without this effect. The influence stays empty if no entry promises its DOLP with and
-/// without the effect.
-///
-/// Accuracy: within a factor of 2 of the largest difference at all entries (tests Estimates_*).
+/// Sets Effect::influence of the kept effects: the largest difference of (Q/I, U/I) between the scene with everything
+/// and without the effect. It stays empty if no entry promises its DOLP with and without the effect. Accuracy: within a
+/// factor of 2 of the largest difference at all entries (tests Estimates_*).
 Looked add_influences(std::vector<Effect>& rows, const SceneValues& scene, const SceneEntries& entries);
 
 /// How wrong the DOLP of single scattering may be.
@@ -44,11 +39,9 @@ struct ScatteringGap {
 };
 
 /// The largest difference of DOLP between the emission 1 - rho, which counts all light that meets a second facet as
-/// emitted, and the direct emission, which counts no such light. Empty in each of these cases: the scene follows all
-/// bounces, has no emission or that of a smooth surface, has a masking without direct emission, or is in bistatic mode;
-/// nothing depends on the moments; no entry promises its DOLP.
-///
-/// Accuracy: within a factor of 2 of the largest difference at all entries (tests Estimates_*).
+/// emitted, and the direct emission, which counts no such light. Empty if the scene follows all bounces, is in bistatic
+/// mode, has no emission or that of a smooth surface, or has a masking without direct emission; if nothing depends on
+/// the moments; or if no entry promises its DOLP. Accuracy: as for add_influences().
 std::optional<ScatteringGap> scattering_gap(const SceneValues& scene, const SceneEntries& entries,
                                             const EffectPlan& plan);
 

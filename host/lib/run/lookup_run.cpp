@@ -20,7 +20,6 @@
 namespace dolp {
 namespace {
 
-/// The value that the scene has on an axis. Points without a column of the axis take it.
 std::optional<double> value_of(const SceneValues& scene, Axis axis) {
   const Surface& surface = scene.surface;
   AxisArray<std::optional<double>> values;
@@ -54,8 +53,7 @@ AxisWords words_of(Axis axis, const SceneValues& scene, const Points& points) {
   return {false, description_of(axis).column};
 }
 
-/// The coordinate of each point on one axis: the value in its column. Without a column it is the only value of the axis
-/// in the table, or else the value of the scene.
+/// The coordinate of each point on one axis: from its column, else the axis's only value, else the scene's value.
 std::vector<double> values_of(Axis number, const TableLookup& lookup, const SceneValues& scene, const Points& points) {
   const LookupAxis& axis = *lookup.axis(number);
   const AxisWords words = words_of(number, scene, points);
@@ -77,7 +75,6 @@ std::vector<double> values_of(Axis number, const TableLookup& lookup, const Scen
   return std::vector<double>(points.size(), *value);
 }
 
-/// All coordinates of all points.
 std::vector<TableLookup::Point> coordinates(const TableLookup& lookup, const SceneValues& scene, const Points& points) {
   std::vector<TableLookup::Point> result(points.size());
   for (const Axis axis : kAllAxes) {
@@ -116,16 +113,13 @@ void check_index(const TableLookup& lookup, const SceneValues& scene, const Poin
   }
 }
 
-constexpr std::size_t kLines = 3;  // lines along an axis, each at different values of the other axes
-// An axis is divided into so many parts. A cell is examined at each end of a part.
-constexpr std::size_t kParts = 4;
-// Number of values around a cell. The error of a lookup in the middle of the cell depends on no other values.
-constexpr std::size_t kStretch = 8;
+constexpr std::size_t kLines = 3;        // lines along an axis, each at different values of the other axes
+constexpr std::size_t kParts = 4;        // number of parts of an axis; a cell is examined at each end of a part
+constexpr std::size_t kStretch = 8;      // number of values around a cell; a lookup in its middle depends on no others
 constexpr std::size_t kLeastValues = 4;  // smallest number of values with which a lookup states an error
-// A lookup reads six values along theta, sigma and q, and four along the other axes. In dense grids the stated error is
-// a fraction of the change that the last of these values makes. It falls with the power kOrder of the spacing. In the
-// middle of a cell, the absolute values of the weights add up to kWeights; by this factor a lookup amplifies the errors
-// along the other axes.
+// A lookup reads six values along theta, sigma and q, and four along the other axes. In dense grids the stated error
+// falls with the power kOrder of the spacing. In the middle of a cell, the absolute values of the weights add up to
+// kWeights. A lookup amplifies the errors along the other axes by this factor.
 constexpr double kOrderOfSix = 5.0;
 constexpr double kOrderOfFour = 3.0;
 constexpr double kWeightsOfSix = 356.0 / 256.0;
@@ -177,8 +171,7 @@ class Forecast {
     return 0;
   }
 
-  /// The largest error that a lookup states in the middle of the examined cells, if the axis has `values` values.
-  /// Infinite if no lookup states an error.
+  /// The largest error that lookups state in the middle of the examined cells; infinite if they state none.
   double error_with(Axis axis, std::size_t values, std::size_t lines) {
     if (values < kLeastValues) return kInfinity;
     const auto value = [&](std::size_t position) {
@@ -221,8 +214,7 @@ class Forecast {
     return axes;
   }
 
-  /// The table of the grid of scene_. The errors of its entries are set to 0, so that lookups state only the error of
-  /// the interpolation.
+  /// The table over scene_.grid with errors 0, so that lookups state only the error of the interpolation.
   TableValues computed_table() {
     const SceneEntries entries = grid_entries(scene_);
     TableValues table = table_part(table_layout(scene_, plan_, scene_.grid), entries,

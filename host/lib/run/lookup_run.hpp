@@ -1,4 +1,3 @@
-// Interpolation in a table at scattered points, and a forecast of the number of values that each axis needs for it.
 #pragma once
 
 #include <dolp/errors.hpp>
@@ -14,10 +13,9 @@
 
 namespace dolp {
 
-/// Looks up points in a table. Where points lack a column, the value of the table's `scene` is used; an axis with one
-/// value needs no column. Where the table lacks an axis of n, k or wavelength, the points must have the value of the
-/// table. Errors: InputError that names the point, column, value and what the table has; Cancelled if `progress`
-/// returns false.
+/// Looks up points in a table. Missing columns take the only value of their axis, or else the value of the table's
+/// `scene`. If the table lacks an axis of n, k or wavelength, the points must have the value of the table. Errors:
+/// InputError that names the point, column, value and what the table has; Cancelled.
 std::vector<PointResult> lookup_points(const TableLookup& lookup, const SceneValues& scene, const Points& points,
                                        const Progress& progress);
 
@@ -35,10 +33,9 @@ struct AxisForecast {
 inline constexpr std::size_t kMostForecastValues = 10'000;
 
 /// Forecasts for the axes of the scene's grid that have more than one value. For each axis, the CPU computes the values
-/// around a few cells, and a lookup in the middle of each cell states its error. This is repeated with the number of
-/// values in the grid and with 8, 16, 32, ... values, until the error is small enough; the spacing stays linear or
-/// logarithmic as in the grid. The number of values that is needed then follows from the order of the interpolation.
-///
+/// around a few cells, and a lookup in the middle of each cell states its error. This is repeated with 8, 16, 32, ...
+/// values, spaced as in the grid, until the error is small enough. The number of values that is needed then follows
+/// from the order of the interpolation.
 /// Accuracy: half of needed_values is too few for most points (test LookupForecast_TablesOfTheAdvisedDensity_*).
 /// Features that are narrower than the distance of the examined cells stay undetected.
 std::vector<AxisForecast> lookup_forecast(const SceneValues& scene, const EffectPlan& plan);

@@ -21,7 +21,6 @@ constexpr std::size_t kGeometriesAtOnce = 1U << 20U;  // bounds the memory of th
 
 bool is_grazing(const BeamAngles& angles) { return angles.theta_i_deg == 90.0 || angles.theta_r_deg == 90.0; }
 
-/// True if the pBRDF f has no finite value.
 bool is_undefined(const Surface& surface, const MuellerPoint& point) {
   const bool has_specular = surface.specular > 0.0;
   const bool has_limit = keeps_projected_area(surface.masking);

@@ -19,7 +19,6 @@ BeamAngles angles_of(const SceneValues& scene, double theta_deg) {
           geometry.relative_azimuth_deg};
 }
 
-/// The shape with only the parameters that the distribution has: the gaussian has no q.
 SlopeShape normalised(const SceneValues& scene, const SlopeShape& shape) {
   return scene.surface.distribution == Distribution::kGaussian ? SlopeShape{.sigma = shape.sigma} : shape;
 }
@@ -40,11 +39,10 @@ std::vector<std::uint32_t> compact_used_values(const std::vector<double>& values
   return positions;
 }
 
-// Smallest number of entries per index with which responses are used. Chosen: the computation of the weights of an
-// index takes as long as some entries.
+// Chosen. Responses need so many entries per index, because the weights of an index take as long as some entries.
 constexpr std::size_t kLeastEntries = 24;
-// Responses give the moments of each pair (direction and slope distribution, index). For points they are used if the
-// number of these pairs is at most so many times the number of moments that the points need.
+// Responses give the moments of every index at every direction and slope distribution. For points they are used if
+// these are at most so many times as many as the moments that the points need.
 constexpr std::size_t kMostOfPoints = 2;
 
 std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const SceneEntries& entries) {
@@ -268,8 +266,7 @@ void PartRequests::request_points(const Selection& selection) {
     const double zenith_deg =
         zenith_before_limit_deg(scene_.surface.masking, moment_zenith_deg(scene_, entry.theta_deg));
     const SlopeShape shape = normalised(scene_, entry.shape);
-    // The key of an entry without an index is its variant, whose indices it has. k = -1 marks it, because no k is
-    // negative.
+    // The key of an entry without an index is its variant, marked by k = -1, because no k is negative.
     const OpticalConstants key = entry.index.value_or(OpticalConstants{static_cast<double>(entry.variant), -1.0});
     const double films_at = has_films() ? entry.variant : -1.0;
     const auto [known_span, is_new] =

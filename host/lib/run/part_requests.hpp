@@ -1,4 +1,3 @@
-// The requests of a run to the evaluator for a part of its entries, and the position of each entry in the answers.
 #pragma once
 
 #include <cstddef>
@@ -34,13 +33,11 @@ double moment_zenith_deg(const SceneValues& scene, double theta_deg);
 
 bool wants_moments(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
-/// True if the evaluator must compute the beam of an entry. A mirror needs no evaluator, nor does an entry with source
-/// and view both at 90 degrees.
+/// True if the evaluator must compute the beam: not for a mirror, nor with source and view both at 90 degrees.
 bool wants_beam(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
-/// The beam of an entry that needs no evaluator. A mirror reflects only toward its specular direction; in others its
-/// beam is 0. In the specular direction the radiance is undefined (NaN), as it is with source and view both at 90
-/// degrees.
+/// The beam of an entry that needs no evaluator. It is undefined (NaN) in the specular direction of a mirror, and with
+/// source and view both at 90 degrees; otherwise it is 0.
 Scattered beam_without_evaluator(const SceneValues& scene, double theta_deg);
 
 /// For each variant of the entries, the indices at its spectral samples.
@@ -52,12 +49,10 @@ SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& e
 std::vector<FacetOptics> with_index(const std::vector<FacetOptics>& samples,
                                     const std::optional<OpticalConstants>& index);
 
-/// The requests of one level of refinement for a selection.
-///
-/// For a grid, the request for moments is a grid too. It has the directions (in bistatic mode the view) and the indices
-/// of the selection, and all slope distributions of the part. So the result of an entry does not depend on which
-/// entries are selected in other directions. Points share moments if they differ only in values on which moments do not
-/// depend.
+/// The requests of one level of refinement for a selection. For a grid, the request for moments is a grid too. It has
+/// the directions (in bistatic mode the view) and the indices of the selection, and all slope distributions of the
+/// part. So the result of an entry does not depend on which entries are selected in other directions. Points share
+/// moments if they differ only in values on which moments do not depend.
 class PartRequests {
  public:
   PartRequests(const SceneValues& scene, const SpectralIndices& samples, const EffectPlan& plan,
@@ -72,7 +67,7 @@ class PartRequests {
     std::size_t stride = 0;
   };
   MomentsSpan moments_of(std::size_t member) const;
-  /// For a grid: the position in the request of the direction whose moments a member uses.
+  /// The position, in a request for a grid, of the direction whose moments a member uses.
   std::size_t direction_of(std::size_t member) const;
   /// The position of the first beam of a member, which has one beam per spectral sample.
   std::size_t beams_of(std::size_t member) const { return first_beam_[member]; }
@@ -93,18 +88,15 @@ class PartRequests {
   const Selection selection_;
   MomentsRequest moments_;
   ScatteringRequest beams_;
-  // For a grid: positions in the request. The first three have one position per value of an axis of the part.
-  // index_set_offset_ has, for each set of indices, the position of its first index. A set is the indices of a variant,
-  // or one index from the axes n and k.
+  // For a grid, positions in the request: of each theta, sigma and q of the part, and of the first index of each set. A
+  // set is the indices of a variant, or one index from the axes n and k.
   std::vector<std::uint32_t> theta_at_, sigma_at_, q_at_, index_set_offset_;
   std::vector<MomentsSpan> spans_of_points_;  ///< positions of the moments of each point of a list
   std::vector<std::size_t> first_beam_;
 };
 
 /// The responses from which a run combines the moments of its many indices. Their error meets the tolerance of the
-/// scene; tighter levels refine only the quadrature. The choice of responses follows from the whole grid, even if the
-/// entries are a part of it.
-///
+/// scene; tighter levels refine only the quadrature. Their choice follows from the whole grid, even for a part of it.
 /// Null if responses save nothing: for a grid with few entries per index, for points that mostly differ in direction or
 /// slope distribution, for few indices, with several bounces, and for a scene without interpolation.
 std::shared_ptr<const ResponseBasis> run_basis(const SceneValues& scene, const SceneEntries& entries,

@@ -14,8 +14,8 @@
 namespace dolp {
 namespace {
 
-/// All entries of a few directions of a grid, which are the middles of equal parts. They have all wavelengths and
-/// indices if responses serve these together, otherwise one wavelength and one index.
+/// The entries of a few directions of a grid, the middles of equal parts. They have all wavelengths and indices if
+/// responses serve these together, otherwise one of each.
 SceneEntries entries_of_drawn_directions(const SceneEntries& grid, bool has_responses) {
   Axes axes = grid.axes();
   std::vector<double>& theta_deg = axes[Axis::kTheta];
@@ -32,8 +32,7 @@ SceneEntries entries_of_drawn_directions(const SceneEntries& grid, bool has_resp
   return SceneEntries::of_grid(axes, grid.index());
 }
 
-/// Sums over the requests of one kind (moments or beams). The requests of the first level, which come first, are added
-/// up separately from the requests of all later levels.
+/// Work of the requests for moments or for beams: of the first level, which come first, and of all later levels.
 struct Count {
   std::size_t first_requests = 0;  ///< requests of the first level that are still to come
   std::size_t first = 0;           ///< number of moments or beams in the first level
@@ -83,7 +82,6 @@ class CountingEvaluator final : public ModelEvaluator {
   Count beams_;
 };
 
-/// Ratio of all entries to counted entries.
 double scale_of(std::size_t all, const Count& counted) {
   return counted.first == 0 ? 0.0 : static_cast<double>(all) / static_cast<double>(counted.first);
 }
@@ -126,7 +124,6 @@ void count_work(RunPrediction& run, const SceneValues& scene, const SceneEntries
   run.cpu_s = moments_scale * moments.spent_s + beams_scale * beams.spent_s;
 }
 
-/// Memory of the responses that a step computes, in bytes.
 std::size_t response_bytes(const MomentsStep& step) {
   std::size_t columns = 0;
   for (const MomentsRequest* request : step.kernel_requests())
@@ -160,8 +157,7 @@ RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries,
     }
     run.beams += beams;
     if (beams > 0) visit.beams(first.requests.beams());
-    // Memory of this part: its results and their columns, and the columns of the previous part, which are being
-    // written.
+    // Memory of this part: results, their columns, and the columns of the previous part, which are being written.
     const std::size_t columns = part.size() * (kQuantityCount * sizeof(double) + sizeof(std::uint32_t));
     largest = std::max(largest, part.size() * sizeof(PointResult) + columns + columns_before +
                                     first.moments.size() * sizeof(Moments) + largest_step +

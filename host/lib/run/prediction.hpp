@@ -1,4 +1,3 @@
-// Prediction of a run's cost before it starts.
 #pragma once
 
 #include <functional>
@@ -14,11 +13,9 @@ namespace dolp {
 /// Number of entries whose work the prediction counts. In a larger run they represent all entries.
 inline constexpr std::size_t kCountedEntries = 256;
 
-/// Number of directions whose entries are counted instead, if the entries of a direction share work (slope samples,
-/// interpolation between slope distributions).
+/// Number of directions whose entries are counted instead, if the entries of a direction share work.
 inline constexpr std::size_t kCountedDirections = 6;
 
-/// Predicted work of a run.
 struct RunPrediction {
   std::size_t entries = 0;
   std::size_t spectral_samples = 0;
@@ -27,8 +24,7 @@ struct RunPrediction {
   std::size_t beams = 0;           ///< beams of the first level, each for one geometry and one index
   RefinementLevel first;           ///< precision and tolerance of the first level
   double first_evaluations = 0.0;  ///< integrand evaluations of the first level
-  /// Number of moments and beams that later levels compute, over the number that the first level gives.
-  double again_share = 0.0;
+  double again_share = 0.0;        ///< moments and beams of later levels, divided by those of the first level
   double again_evaluations = 0.0;
   double again_beams = 0.0;
   bool counts_directions = false;
@@ -43,13 +39,12 @@ struct RequestVisitor {
   std::function<void(const ScatteringRequest&)> beams;
 };
 
-/// Counts the work of some entries, which the code of the run itself computes on the CPU. These are up to
-/// kCountedEntries entries, spread evenly by a fixed sequence, or all entries of up to kCountedDirections directions.
-/// `has_double`: true if the device of the run supports double precision.
-///
-/// Accuracy: exact for scenes with up to kCountedEntries entries, except for orders that a device chooses differently
-/// because its float rounds differently. Larger runs: a few percent; a fifth if directions are counted (tests
-/// Plan.FewEntries_*, Plan.ManyEntries_*, Plan.Device_*).
+/// Counts the work of some entries, which the code of the run itself computes on the CPU: up to kCountedEntries
+/// entries, spread evenly by a fixed sequence, or all entries of up to kCountedDirections directions. `has_double`:
+/// true if the device of the run supports double precision.
+/// Accuracy: exact for scenes with up to kCountedEntries entries, except for rule orders that a device chooses
+/// differently because its float rounds differently. Larger runs: a few percent; a fifth if directions are counted
+/// (tests Plan.FewEntries_*, Plan.ManyEntries_*, Plan.Device_*).
 RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
                           bool has_double, const RequestVisitor& visit);
 

@@ -30,7 +30,7 @@ constexpr OpticalConstants kUnusedIndex{1.5, 0.0};  // a request needs an index;
 // Ratio of the first tolerance of the rules to the tolerance of the table. Tuned for 64 x 16 x 16 entries at 1e-4.
 // Million evaluations at half, this and double: with smith 21.0, 22.5, 24.1; with integral 3.24, 3.00, 2.90.
 constexpr double kFirstShare = 0.1;
-// Ratio of the tolerance of each level to that of the level before. Chosen: half and double make no difference.
+// Ratio of the tolerance of a level to the tolerance of the level before. Chosen: half and double make no difference.
 constexpr double kFinerBy = 0.03;
 constexpr int kMostLevels = 6;
 constexpr std::size_t kColumnsAtOnce = std::size_t{1} << 20U;  // limits the memory for the columns of a part
@@ -68,16 +68,15 @@ const Nodes& nodes() {
   return known;
 }
 
-/// The weights of an entry, times cos(theta). The error bounds their sums for curves whose Chebyshev coefficients are
-/// at most 2^-m.
+/// Weights times cos(theta). `error` bounds their sums for curves with Chebyshev coefficients of at most 2^-m.
 struct Weights {
   Eigen::ArrayXd i, q;
   double error = 0.0;
 };
 
-/// Computes the weights from the moments with polynomials. `whole_error`: error bound of the moment with 1 instead of a
-/// polynomial. This bound adds up absolute differences between both quadrature rules. In the columns such differences
-/// may cancel by chance. The bound also holds for each polynomial, because polynomials are at most 1.
+/// `whole_error`: error bound of the moment with 1 instead of a polynomial. It adds up absolute differences between
+/// both quadrature rules; in the columns these may cancel by chance. It also holds for each polynomial, because
+/// polynomials are at most 1.
 Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error) {
   Weights own{Eigen::ArrayXd::Zero(kBetaAngles), Eigen::ArrayXd::Zero(kBetaAngles)};
   for (std::size_t m = 0; m < columns.size(); ++m) {
@@ -142,8 +141,7 @@ EntryResponses nothing_of(const MomentsRequest& request) {
   return none;
 }
 
-/// Sets the entries that need no evaluator: mirrors, and directions where rho has no value. Returns a flag per entry: 1
-/// if the entry needs the evaluator.
+/// Sets mirrors, and directions where rho has no value. Returns 1 for each entry that needs the evaluator, else 0.
 std::vector<char> set_closed_forms(const MomentsRequest& request, EntryResponses& to) {
   std::vector<char> wanted(request.size(), 1);
   for (std::size_t i = 0; i < wanted.size(); ++i) {

@@ -1,5 +1,3 @@
-// Response tables: for each local angle of incidence, the weight of its facets in the moments of a surface of any
-// material (include/dolp/response.hpp).
 #pragma once
 
 #include <dolp/options.hpp>
@@ -13,8 +11,7 @@
 
 namespace dolp {
 
-/// The layout of the response table over the scene's grid, before anything is computed. Errors: InputError if the scene
-/// has no response table.
+/// The layout of the response table over the scene's grid. Errors: InputError if the scene has no response table.
 TableLayout response_layout(const SceneValues& scene);
 
 /// The responses of the entries of a request. Shape: each vector has the order of a table with these entries.
@@ -26,10 +23,9 @@ struct EntryResponses {
 /// The weights of the entries of a request, and their error bounds; NaN where rho has no value. Uses only the surface,
 /// layout, directions and shapes of the request. Entries whose response_error exceeds the tolerance times the albedo
 /// are computed again with finer rules.
-///
 /// Equation: w_j = (2 / K) (C_0 / 2 + sum over 0 < m < K of C_m T_m(x_j)) / cos(theta). C_m is the moment with the
-///   Chebyshev polynomial T_m(x) instead of reflectances, x = 2 asinh(cos(beta) / c0) / asinh(1 / c0) - 1. The x_j are
-///   the zeros of T_K, K = 24, c0 = 0.01.
+/// Chebyshev polynomial T_m(x) instead of reflectances, x = 2 asinh(cos(beta) / c0) / asinh(1 / c0) - 1. The x_j are
+/// the zeros of T_K, K = 24, c0 = 0.01.
 /// Accuracy: tests Responses_*.
 EntryResponses responses_of(MomentsRequest request, const Accuracy& accuracy, ModelEvaluator& evaluator,
                             const Progress& progress);
@@ -37,11 +33,10 @@ EntryResponses responses_of(MomentsRequest request, const Accuracy& accuracy, Mo
 /// A request for the responses of a surface, without directions and shapes.
 MomentsRequest response_request(const Surface& surface);
 
-/// Distance between two sets of weights of an entry, response_i or (is_of_q) response_q, in the norm that
-/// response_error bounds. It is the sum over m of 2^-m |C_m - C'_m|, where C_m = sum over j of T_m(x_j) w_j.
+/// Sum over m of 2^-m |sum over j of T_m(x_j) (a_j - b_j)|, for weights of an entry: response_i, or (is_of_q)
+/// response_q times sin^2(beta_j). response_error bounds this distance to the exact weights.
 double response_distance(std::span<const double> a, std::span<const double> b, bool is_of_q);
 
-/// Work, errors and attributes of a run that computed a response table.
 struct ResponseOutcome {
   EvaluationReport evaluation;
   std::size_t entries = 0;
@@ -51,8 +46,7 @@ struct ResponseOutcome {
   std::vector<Attribute> attributes = {};  ///< attributes of the table that are known after the run
 };
 
-/// Computes a response table part by part, a few directions at a time. `take` receives each part and its position along
-/// each axis.
+/// Computes a response table, a few directions at a time. `take` receives each part and its position along each axis.
 using TakePart = std::function<void(TableValues part, const PerAxis& first)>;
 ResponseOutcome run_responses(const SceneValues& scene, const TableLayout& layout, const RunOptions& options,
                               ModelEvaluator& evaluator, const TakePart& take);

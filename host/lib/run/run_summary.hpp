@@ -1,4 +1,3 @@
-// Summary of the results of a run for reports, added up part by part. It includes a check of the error bounds.
 #pragma once
 
 #include <array>
@@ -24,13 +23,11 @@ struct SelfCheck {
   /// Largest ratio of the difference of both results to the sum of their bounds. Above 1, a bound was wrong.
   double worst_ratio = 0.0;
 
-  /// Adds the entry whose results are `result` and `again`.
   void add(const PointResult& result, const PointResult& again);
   void add(const SelfCheck& other);
 };
 
-/// How many moments of a table are computed again. They cost at most a fiftieth of the run. There are at most 64, and
-/// 64 more for each four million moments.
+/// Number of moments of a table that are computed again. They cost at most a fiftieth of the run.
 std::size_t checked_count(std::size_t moments);
 
 /// `count` random positions below `size`, in ascending order. They depend only on the seed.
@@ -59,12 +56,10 @@ struct RunSummary {
   double radiometry_s = 0.0;
   Work work;
 
-  /// Adds the results of some entries.
   void add(const SceneValues& scene, const SceneEntries& part, std::span<const PointResult> results);
   void add(const RunSummary& other);
 
   std::size_t count(std::uint32_t bit) const;
-  /// True if DOLP and rho of all entries meet the tolerance.
   bool meets_tolerance() const { return count(kToleranceNotMet) + count(kRhoToleranceNotMet) == 0; }
 
   /// text() writes the summary in one line, from_text() reads it. For other lines from_text() returns nothing.

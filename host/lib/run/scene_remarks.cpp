@@ -17,9 +17,8 @@ namespace {
 
 constexpr double kLikelyNanometresOfFilm = 100.0;
 constexpr double kHotSky = 2.0;  // a sky above this multiple of the surface's temperature gets a remark
-// Two neighbouring rows of a file leave a gap if the ratio of their wavelengths is large. The limit of this ratio
-// corresponds to ten times the file's median spacing on a logarithmic scale, but lies between kNoGapRatio and
-// kGapRatio.
+// Rows leave a gap if the ratio of their wavelengths exceeds a limit: ten times the file's median spacing on a
+// logarithmic scale, but at least kNoGapRatio and at most kGapRatio.
 constexpr double kGapRatio = 2.0;
 constexpr double kNoGapRatio = 1.5;
 constexpr double kUsualSpacings = 10.0;
@@ -64,8 +63,7 @@ std::optional<Interval> bridged_gap(const SpectralTable& table, const std::vecto
   return widest;
 }
 
-/// The relative change of the reflectance or the absorptance at normal incidence, whichever is smaller, that straight
-/// lines between the rows of a material may cause.
+/// Error of the reflectance R at normal incidence that lines between rows may cause, over the smaller of R and 1 - R.
 struct CoarseRows {
   double at_um = 0.0;
   double change = 0.0;

@@ -1,4 +1,3 @@
-// Remarks on a scene: values that were probably meant differently, and assumptions about data that its files lack.
 #pragma once
 
 #include <string>
@@ -8,8 +7,8 @@
 
 namespace dolp {
 
-/// One line per remark. A remark begins like an error message, with the place of the key. Domain: a scene that was read
-/// from text.
+/// One line for each value that was probably meant differently, and for each assumption about data that files lack. It
+/// begins like an error message, with the place of the key. Domain: a scene that was read from text.
 std::vector<std::string> remarks_on(const SceneValues& scene);
 
 }  // namespace dolp

@@ -21,8 +21,7 @@
 namespace dolp {
 namespace {
 
-// Moments that a part of a run has at most, which limits its memory. Points take more memory per moment than grids,
-// because they share nothing.
+// Largest number of moments of a part, to limit its memory. Points take more per moment, because they share nothing.
 constexpr std::size_t kMomentsAtOnce = 1U << 20U;
 constexpr std::size_t kPointsAtOnce = 1U << 17U;
 // A direction is refined as a whole if more than one of so many entries misses the tolerance. Tuned. Evaluations per
@@ -30,7 +29,6 @@ constexpr std::size_t kPointsAtOnce = 1U << 17U;
 constexpr std::size_t kWholeDirectionMissRatio = 8;
 constexpr std::size_t kEntriesAtOnce = 4096;  // entries of a thread, enough to outweigh the start of the thread
 
-/// The radiometry and the spectral indices of each variant in a part.
 struct Spectra {
   Spectra(const SceneValues& scene, const EffectPlan& plan, const std::vector<SceneVariant>& variants) {
     for (const SceneVariant& variant : variants)
@@ -41,7 +39,6 @@ struct Spectra {
   SpectralIndices indices;
 };
 
-/// Data that the steps of a part share.
 struct RunContext {
   const SceneValues& scene;
   const EffectPlan& plan;
@@ -51,7 +48,6 @@ struct RunContext {
   RunSummary& summary;  ///< summary of the run so far; the steps add the work of the host to it
 };
 
-/// The evaluator's results for the requests of a part.
 struct EvaluatorResults {
   std::vector<Moments> moments;
   std::vector<ScatteringMatrix> beams;
@@ -91,8 +87,7 @@ class MemberResults {
   }
 
  private:
-  /// The direction of an entry. It is kept for the next call, because neighbours in a grid mostly share their
-  /// direction.
+  /// Keeps the direction for the next call, because neighbours in a grid mostly share their direction.
   const Direction& view_direction(const SceneEntry& entry) {
     const Surface& surface = context_.scene.surface;
     const double theta_deg = moment_zenith_deg(context_.scene, entry.theta_deg);
@@ -191,8 +186,7 @@ bool is_better(const PointResult& a, const PointResult& b) {
                                       std::max(b[Quantity::kErrorEstimate], b[Quantity::kRhoErrorEstimate]);
 }
 
-/// True if `level` can improve an entry that was computed at `last`. It always can if the entry has moments. The rule
-/// of a beam does not depend on the tolerance, so a beam improves only with the precision.
+/// True if `level` can improve an entry. The rule of a beam depends on the precision, not on the tolerance.
 bool would_improve(const RunContext& context, const RefinementLevel& level, const RefinementLevel& last,
                    const SceneEntry& entry) {
   return wants_moments(context.scene, entry, context.plan) ||
@@ -202,9 +196,8 @@ bool would_improve(const RunContext& context, const RefinementLevel& level, cons
 /// Members that wait for the next level, which is the key. Those with the same level are computed together.
 using EntriesByLevel = std::map<RefinementLevel, std::vector<std::size_t>>;
 
-/// The next level of a whole direction. With responses this level differs in two ways. Its precision is double, because
-/// responses have more float noise than the moments of one index. Its tolerance is rounded to whole decades, because
-/// one pass of responses serves all indices, and so more of these share a level.
+/// The next level of a whole direction. With responses it is in double, because responses have more float noise than
+/// the moments of one index. Its tolerance is a whole decade, so that more indices share a pass of responses.
 RefinementLevel level_of_direction(RefinementLevel next, const RunContext& context) {
   next.may_interpolate = true;
   if (!context.basis) return next;
@@ -215,9 +208,8 @@ RefinementLevel level_of_direction(RefinementLevel next, const RunContext& conte
   return next;
 }
 
-/// Queues the next level for one direction, whose `members` were computed at `last`. If many members miss the
-/// tolerance, all are queued and interpolated again. Otherwise only the members that miss it are queued, and each is
-/// computed without interpolation. The choice depends only on this direction.
+/// Queues the next level for one direction, whose `members` were computed at `last`. If many miss the tolerance, all
+/// are interpolated again. Otherwise the ones that miss it are computed without interpolation.
 void queue_refinement(const RunContext& context, const SceneEntries& part, const RefinementLevel& last,
                       std::span<const std::size_t> members, std::span<const PointResult> results,
                       EntriesByLevel& by_level) {
@@ -236,7 +228,6 @@ void queue_refinement(const RunContext& context, const SceneEntries& part, const
   }
 }
 
-/// The results of the first level of a part.
 struct FirstResults {
   RefinementLevel level;
   std::vector<PointResult> results;
@@ -257,8 +248,7 @@ FirstResults first_results(const RunContext& context, const SceneEntries& part, 
   return first;
 }
 
-/// Computes the entries of a part that miss the tolerance again. For `progress` the part is already done, but it can
-/// still cancel.
+/// Computes entries that miss the tolerance again. For `progress` the part is already done, but it can still cancel.
 void refine(const RunContext& context, const SceneEntries& part, FirstResults& first, const Progress& progress) {
   const Progress is_wanted = [&](std::size_t, std::size_t) { return progress(1, 1); };
   const std::size_t entries_per_direction = part.is_grid() ? part.entries_per_direction() : 1;
@@ -300,8 +290,7 @@ std::vector<PointResult> recompute_for_check(const RunContext& context, const Sc
   return computed_at(context, {part, positions}, check_level(first), none);
 }
 
-/// The positions in this part of those entries to check that lie in it and have moments. `checked` has positions in the
-/// whole table.
+/// Positions in this part of the entries to check that have moments. `checked` has positions in the whole table.
 std::vector<std::size_t> positions_in(const RunContext& context, const SceneEntries& part,
                                       std::span<const std::size_t> checked) {
   std::vector<std::size_t> positions;
@@ -312,15 +301,13 @@ std::vector<std::size_t> positions_in(const RunContext& context, const SceneEntr
   return positions;
 }
 
-/// True if an evaluator is needed: the plan needs moments or beams, and some entries have no closed form.
 bool wants_evaluator(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan) {
   return std::ranges::any_of(entries.all(), [&](const SceneEntry& entry) {
     return wants_moments(scene, entry, plan) || wants_beam(scene, entry, plan);
   });
 }
 
-/// Computes the results of a part, with all levels of refinement. `checked`: positions in the whole grid of the entries
-/// to check; empty for points.
+/// `checked`: positions in the whole grid of the entries to check; empty for points.
 std::vector<PointResult> part_results(const RunContext& context, const SceneEntries& part,
                                       std::span<const std::size_t> checked, SelfCheck& check,
                                       const Progress& progress) {

@@ -1,5 +1,4 @@
-// A run: the pipeline that every front end uses, from the entries of a scene to moments and beams, radiometry and a
-// sink.
+// The pipeline of every front end: from the entries of a scene to moments and beams, radiometry and a sink.
 #pragma once
 
 #include <chrono>
@@ -22,30 +21,26 @@ namespace dolp {
 /// The entries of the scene's grid. Errors: InputError for more than kMostTableEntries.
 SceneEntries grid_entries(const SceneValues& scene);
 
-/// The entries of scattered points. Values that the points lack come from the scene. Points that give only theta form a
-/// grid.
+/// The entries of scattered points. Missing values come from the scene. Points that give only theta form a grid.
 /// Errors: InputError that names the points' file and line, column, value and what is allowed. It refuses points
-/// without theta_deg if the grid has several; points with only one of n and k if the material depends on the
-/// wavelength; and q <= 3/2 with smith masking and the cauchy distribution.
+/// without theta_deg if the grid has several, points with only one of n and k if the material depends on the
+/// wavelength, and points that check_surface() refuses.
 SceneEntries point_entries(const SceneValues& scene, const Points& points);
 
 /// Refuses points that do not fit the scene's surface: q <= 3/2 with smith masking and the cauchy distribution, wind
 /// speeds without the gaussian distribution, values of films that the scene lacks, and n or k of a film whose material
-/// the scene names.
-/// Errors: InputError that names the points' file and line, column, value and what is allowed.
+/// the scene names. Errors: InputError as for point_entries().
 void check_surface(const SceneValues& scene, const Points& points);
 
-/// Refuses a scene whose grid has several materials or bands if the points have no column that chooses among them.
-/// Called without points for a Mueller matrix or a fit, which need one material and one band. Errors: InputError that
-/// tells what to do.
+/// Refuses a grid with several materials or bands if the points have no column that chooses among them. Without points,
+/// checks that a Mueller matrix or a fit has one material and one band. Errors: InputError that tells what to do.
 void check_labels_chosen(const SceneValues& scene, const Points& points = {});
 
 /// A destination of results, which it receives part by part.
 class Sink {
  public:
   virtual ~Sink() = default;
-  /// The number of parts that an earlier run has finished, and their summary. They are the first parts; the run does
-  /// not compute them again.
+  /// The number and the summary of the first parts, which an earlier run has finished and this run does not compute.
   virtual std::size_t parts_done() const { return 0; }
   virtual RunSummary summary_of_done() const { return {}; }
   /// Receives the results of `part`. The parts of a list of points come in the order of the points; a part of a grid
@@ -66,7 +61,6 @@ class CollectedResults final : public Sink {
   std::vector<PointResult> results_;
 };
 
-/// A sink that calls a function with the results of each part.
 class CallbackSink final : public Sink {
  public:
   using Take = std::function<void(const SceneEntries& part, const std::vector<PointResult>& results)>;
@@ -82,7 +76,6 @@ class CallbackSink final : public Sink {
 /// A function that makes the evaluator. A run calls it only if it needs one.
 using EvaluatorMaker = std::function<ModelEvaluator*()>;
 
-/// Plan, effects, summary and cost of a finished run.
 struct RunOutcome {
   EffectPlan plan;
   std::vector<Effect> effects;
@@ -104,19 +97,17 @@ class Run {
   const EffectPlan& plan() const { return outcome_.plan; }
   /// The report of the evaluator. Its texts are "none" if the run needs no evaluator.
   const EvaluationReport& evaluation() const { return outcome_.evaluation; }
-  /// The parts that the run processes one by one, which limits its memory. A part of a grid has whole directions if
-  /// they fit.
+  /// The parts that the run processes one by one, to limit its memory: whole directions of a grid if they fit.
   std::vector<SceneEntries> parts() const;
 
-  /// Runs the whole pipeline, part by part. It computes what the plan keeps, and computes results that miss the
-  /// tolerance again; quantities outside the plan are NaN. Progress counts entries. Some entries of a grid are checked;
-  /// if a bound turns out wrong, all entries of the direction get the status of a missed tolerance. The result of an
-  /// entry depends on its direction and index and on the slope distributions of the grid, but not on the parts. Errors:
-  /// errors of the evaluator, Radiometry and the sink; Cancelled.
+  /// Runs the whole pipeline, part by part. It computes what the plan keeps (other quantities are NaN), and computes
+  /// results that miss the tolerance again. Progress counts entries. Some entries of a grid are checked; if a bound is
+  /// wrong, all entries of the direction get the status of a missed tolerance. The result of an entry depends on its
+  /// direction and index and on the slope distributions of the grid, but not on the parts. Errors: errors of the
+  /// evaluator, Radiometry and the sink; Cancelled.
   RunOutcome compute(Sink& sink);
 
-  /// Time since the object was made, in s.
-  double wall_s() const;
+  double wall_s() const;  ///< time in s since the object was made
 
  private:
   const SceneValues& scene_;
@@ -127,7 +118,6 @@ class Run {
   RunOutcome outcome_;
 };
 
-/// The parts that a run processes one by one. `spectral_samples`: samples per entry.
 std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spectral_samples);
 
 /// The number of spectral samples of an entry. If entries differ in band, material or films, the largest number.

@@ -23,7 +23,6 @@ const Material& recorded_material(const Axes& axes, const SceneValues& scene) {
   return material.tabulated && !axes[Axis::kWavelength].empty() ? *material.tabulated : material;
 }
 
-/// Sets the curves of n, k and E0 from the scene.
 void fill_curves(TableHead& head, const SceneValues& scene) {
   const std::vector<double> one_um = {scene.spectrum.min_um};
   const auto curve_of = [&](const SpectralTable& tabulated, double constant) -> Curve {
@@ -52,7 +51,6 @@ std::string profile_text(const SceneValues& scene) {
   return SkyProfile{.zenith_deg = {0.0, 90.0}, .values = {everywhere_K, everywhere_K}}.text();
 }
 
-/// The unit of the Stokes parameters: an exitance or, in bistatic mode, a radiance; per um at a single wavelength.
 std::string stokes_units(const SceneValues& scene) {
   std::string units = "W m-2";
   if (scene.geometry.mode == Mode::kBistatic) units += " sr-1";

@@ -1,4 +1,3 @@
-// Layout, values and attributes of a scene's table.
 #pragma once
 
 #include <string>
@@ -14,15 +13,12 @@
 
 namespace dolp {
 
-/// The name of the attribute with the largest PointResult::model_change of a table.
-inline constexpr const char* kModelChange = "model_change";
+inline constexpr const char* kModelChange = "model_change";  ///< attribute with the largest PointResult::model_change
 
-/// The quantities that results of a scene have. With a plan, the quantities that a run by this plan computes; in
-/// results at points the other ones are NaN.
+/// The quantities that results of a scene have or, with a plan, that a run computes; at points the others are NaN.
 Quantities quantities_of(const SceneValues& scene, const EffectPlan* plan = nullptr);
 
-/// The layout of the table over a grid of the scene, with the attributes that are known before the computation. `axes`
-/// may be a part of the scene's grid.
+/// The layout of the table over `axes`, a grid or a part of it, with the attributes that are known before the run.
 TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const Axes& axes);
 
 /// Sets Curve::used of the curves: their values at the wavelengths of the table.
@@ -33,7 +29,6 @@ void fill_used(TableHead& head, const SceneValues& scene);
 inline constexpr const char* kIdentity = "identity";
 std::string identity_of(const SceneValues& scene, const std::string& evaluator, bool keep_all);
 
-/// The results of a part of the grid as a part of the table.
 TableValues table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results);
 
 /// Data about a run that the attributes of its table record.
@@ -50,7 +45,7 @@ std::vector<Attribute> attributes_of(const SceneValues& scene, const RunOutcome&
 /// The value of the attribute "history": time and command line.
 std::string history_text(const std::string& command_line);
 
-/// The rule in words, for reports and table attributes.
+/// The quadrature and the interpolation in words, for reports and table attributes.
 std::string rule_text(double tolerance, const EvaluationReport& evaluation);
 
 }  // namespace dolp

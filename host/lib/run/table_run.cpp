@@ -29,8 +29,7 @@ constexpr std::array kCutAxes = {Axis::kTheta,       Axis::kMaterial, Axis::kBan
                                  Axis::kTemperature, Axis::kN,        Axis::kK};
 using Cuts = std::array<std::size_t, kCutAxes.size()>;
 
-/// Finds into how many parts each axis is cut, so that there are `count` parts in all. The first axes get as many parts
-/// as possible. False if there is no such choice.
+/// Cuts the axes into `count` parts in all, the first axes into as many as possible. False if this is impossible.
 bool find_cuts(const PerAxis& counts, std::size_t count, std::size_t number, Cuts& cuts) {
   if (number == kCutAxes.size()) return count == 1;
   for (std::size_t parts = std::min(count, counts[kCutAxes[number]]); parts > 0; --parts) {
@@ -41,8 +40,7 @@ bool find_cuts(const PerAxis& counts, std::size_t count, std::size_t number, Cut
   return false;
 }
 
-/// The axes of a table, which may be a part of another one. Positions of labels are converted to positions in the
-/// scene's labels.
+/// The axes of a table or of a part of one, with positions in the scene's labels.
 Axes scene_axes(TableHead table, const SceneValues& scene, const std::string& name) {
   use_scene_labels(table, scene, name);
   return table.axes;
@@ -54,8 +52,7 @@ std::string identity_of(const SceneValues& scene, const TableJob& job) {
   return identity_of(scene, job.evaluator, job.options.keep_all);
 }
 
-/// The identity of a file, which all its parts share. It includes the device: shards may come from different devices,
-/// but the parts of one file come from one.
+/// The identity of a file, with its device: other shards may come from other devices, parts of the file may not.
 std::string identity_of_file(const std::string& identity, const Shard& shard, const EvaluationReport& evaluation) {
   return fmt::format("{}; shard {}; device {}, {}", identity, shard_text(shard), one_line(evaluation.device),
                      one_line(evaluation.driver));
@@ -128,7 +125,6 @@ void with_rest(const TableOutput& output, const Body& body) {
   }
 }
 
-/// A text attribute; empty if there is none.
 std::string text_of(const TableHead& head, const char* name) {
   const auto* text = find_attribute<std::string>(head, name);
   return text ? *text : "";
@@ -156,7 +152,6 @@ Axes axes_of_shard(const SceneValues& scene, const Shard& shard, const std::stri
   }
 }
 
-/// Adds the run of a shard to the record of the whole table.
 void add_run(RunRecord& whole, const TableHead& shard) {
   const double most = static_cast<double>(kMostTableEntries);
   whole.check.entries += static_cast<std::size_t>(std::min(number_of(shard, "self_check_entries"), most));
@@ -177,7 +172,6 @@ std::vector<Attribute> without_run(std::vector<Attribute> attributes) {
   return attributes;
 }
 
-/// Copies the values of a shard to their position in the whole table.
 void merge_shard(TableOutput& output, const TableReader& reader, const SceneEntries& shard) {
   ValueSums sums;
   for (const TableBox& box : boxes_in_order(shard.counts(), kMergedAtOnce)) {

@@ -1,4 +1,3 @@
-// The table of a scene, which is computed part by part and written to a file; its shards, and their merge.
 #pragma once
 
 #include <filesystem>
@@ -18,12 +17,11 @@ namespace dolp {
 /// The path of the file of a shard, such as "table.2-of-8.nc" for "table.nc". Without a shard the path itself.
 std::filesystem::path shard_path(const std::filesystem::path& path, const Shard& shard);
 
-/// The entries of a shard, which has a part of the values of theta. If theta has too few values, the axes material,
-/// band, wavelength, temperature, n and k are cut too. Sigma and q are never cut, so entries that share work stay
-/// together. Errors: InputError if the number is out of range or if the axes cannot be cut into so many parts.
+/// The entries of a shard: a part of the values of theta and, if these are too few, of the axes before theta. Sigma and
+/// q are never cut, so entries that share work stay together. Errors: InputError if the number is out of range or if
+/// the axes cannot be cut into so many parts.
 SceneEntries shard_entries(const SceneValues& scene, const Shard& shard);
 
-/// A table of a scene, or one of its shards, to be written to a file.
 struct TableJob {
   std::filesystem::path path;  ///< file to write; shard_path() is already applied
   Shard shard;
@@ -41,8 +39,7 @@ bool is_there(const SceneValues& scene, const TableJob& job);
 /// The complete set of the shards of a table. Only one shard is open at a time.
 class ShardSet {
  public:
-  /// Errors: InputError that names a missing shard, a duplicate shard, or a shard of another table and how this
-  /// differs; errors of TableReader.
+  /// Errors: InputError that names a missing shard, a duplicate, or a shard of another table; errors of TableReader.
   explicit ShardSet(const std::vector<std::string>& paths);
 
   /// Joins the shards into one table. Returns the number of its entries.

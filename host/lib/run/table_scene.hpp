@@ -15,8 +15,7 @@ namespace dolp {
 std::string settings_text(const std::vector<Setting>& settings);
 std::vector<Setting> settings_of(const std::string& text);
 
-/// The attribute "scene_hash": the 64-bit FNV-1a hash of the scene's text and settings. It only tells whether two
-/// tables have the same scene.
+/// The attribute "scene_hash" for comparisons of tables: the 64-bit FNV-1a hash of the scene's text and settings.
 std::string scene_hash(const SceneValues& scene);
 std::uint64_t scene_seed(const SceneValues& scene);  ///< the hash as a number
 
@@ -29,15 +28,11 @@ TableValues load_table(const std::string& path);
 /// Where table_scene() gets the data that a scene names, such as n, k and E0.
 enum class NamedData {
   kOfTable,  ///< from the table; no file is opened
-  /// From the files that the scene names. Relative names begin at the folder of "scene_path", the attribute of the
-  /// table with the path of the scene file.
-  kOfFiles,
+  kOfFiles,  ///< from the files that the scene names, relative to the folder of the attribute "scene_path"
 };
 
-/// The scene of a table, with its settings applied.
-///
-/// Errors: InputError that begins with `name` if the table has no scene, if the scene was changed after the table was
-/// made, or if the reader refuses the scene.
+/// The scene of a table, with its settings applied. Errors: InputError that begins with `name` if the table has no
+/// scene, if the scene was changed after the table was made, or if the reader refuses the scene.
 SceneValues table_scene(const TableHead& table, const std::string& name, NamedData named_data = NamedData::kOfTable);
 
 /// Converts a value of the table on an axis with labels to the position of its label in the scene.
@@ -45,9 +40,8 @@ SceneValues table_scene(const TableHead& table, const std::string& name, NamedDa
 double scene_position(const TableHead& table, Axis axis, double value, const SceneValues& scene,
                       const std::string& name);
 
-/// Converts the values of the table on axes with labels to positions in the scene's labels. A part of a table may
-/// number its labels differently.
-/// Errors: InputError that begins with `name` if the scene lacks a label.
+/// Converts the values of the table on axes with labels, which parts may number differently, to positions in the
+/// scene's labels. Errors: InputError that begins with `name` if the scene lacks a label.
 void use_scene_labels(TableHead& table, const SceneValues& scene, const std::string& name);
 
 /// The n and k of materials as CSV. Columns: number (from 1), quantity (name, n, k or formula), wavelength_um, value.

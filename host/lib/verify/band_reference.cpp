@@ -20,13 +20,11 @@ constexpr std::size_t kFirstIntervals = 4;
 constexpr std::size_t kMostIntervals = 32;  // largest number of intervals of a point: 480 wavelengths
 constexpr double kQuadratureShare = 0.01;   // a quadrature ends at this share of the tolerance
 
-// Results that are integrated over wavelength: kIntegrated without a weight, kMeans with the weight of the mean
-// reflectance.
+// Results that are integrated over wavelength, kMeans with the weight of the mean reflectance.
 constexpr std::array kIntegrated = {kStokesI, kStokesQ, kStokesU, kStokesV};
 constexpr std::array kMeans = {kRhoI, kRhoQ, kEmissivityS, kEmissivityP};
 
-/// Positions in the array of integrals. It has the integrals of the radiation, of the weight, of the means times the
-/// weight, and of the errors of DOLP and rho.
+/// Positions in the array of integrals: of radiation, weight, means times weight, and the errors of DOLP and rho.
 constexpr std::size_t kWeight = kIntegrated.size();
 constexpr std::size_t kDolpError = kWeight + 1 + kMeans.size();
 constexpr std::size_t kRhoError = kDolpError + 1;
@@ -76,8 +74,7 @@ Integrals integrand(const PointResult& at, double weight) {
   for (const Quantity quantity : kIntegrated) value[i++] = at[quantity];
   value[i++] = weight;
   for (const Quantity quantity : kMeans) value[i++] = std::isnan(at[quantity]) ? 0.0 : weight * at[quantity];
-  // Near a wavelength at which nothing is emitted, the error estimate is infinite. The error is then at most the
-  // radiation.
+  // Where nothing is emitted, the error estimate is infinite. The error is then at most the radiation.
   const double error = std::abs(at[kStokesI]) * at[kErrorEstimate];
   value[i++] = std::isfinite(error) ? error : std::abs(at[kStokesI]);
   value[i] = std::abs(weight * at[kRhoI]) * at[kRhoErrorEstimate];

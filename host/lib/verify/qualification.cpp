@@ -70,7 +70,6 @@ struct Expected {
   bool has_rho = true;
 };
 
-/// The quotient error / value; 0 if the error is 0.
 double relative(double error, double value) {
   if (error == 0.0) return 0.0;
   return value > 0.0 ? error / value : kInfinity;
@@ -103,7 +102,6 @@ Expected expected_of(const StoredCase& stored) {
   return expected;
 }
 
-/// What is wrong with a checked error, in words; empty if nothing is wrong.
 std::string complaint_about(const char* quantity, const ErrorCheck& check, bool is_promised, double tolerance) {
   if (std::isnan(check.error)) return fmt::format("{} is not a number", quantity);
   if (std::isnan(check.estimate)) return fmt::format("{} has no estimate", quantity);

@@ -1,5 +1,4 @@
-// Stored reference moments, and the comparison of an evaluator with them. The comparison includes the radiometry, as
-// `dolp eval` computes it.
+// Comparison of stored reference moments with an evaluator and the radiometry, as `dolp eval` computes it.
 #pragma once
 
 #include <cstdint>
@@ -21,23 +20,19 @@ struct StoredCase {
   double theta_deg = 0.0;
   SlopeShape shape;
   OpticalConstants index;
-  Moments moments;  ///< moments times cos(theta), with bounds of their errors
-  /// Name of the case. Each distribution with each masking has a case of this name.
-  std::string name;
+  Moments moments;     ///< moments times cos(theta), with bounds of their errors
+  std::string name;    ///< each distribution with each masking has a case of this name
   std::string origin;  ///< where the values come from
 };
 
-/// The hard cases of the model: ends of every range, coinciding split lines, indices that reflect nothing or
-/// everything. They have all maskings and both distributions.
-/// Accuracy: the errors of r_i and r_q are at most 1.5e-13 r_i. For N = 1.0001, whose reflectance is 3e-9, they are at
-/// most 3e-11 r_i (test HardCases_References_AreAsGoodAsStated).
+/// The hard cases of the model, for all maskings and both distributions: ends of every range, coinciding split lines,
+/// indices that reflect nothing or everything. Accuracy: the errors of r_i and r_q are at most 1.5e-13 r_i. For N =
+/// 1.0001, whose reflectance is 3e-9, they are at most 3e-11 r_i (test HardCases_References_AreAsGoodAsStated).
 std::vector<StoredCase> hard_cases();
 
-/// Reads cases from the text of a file that dolp-reference-values wrote. Lines that begin with # are comments.
-/// Errors: InputError that names file, line and column.
+/// Reads the text of a file that dolp-reference-values wrote. Lines that begin with # are comments. Errors: InputError.
 std::vector<StoredCase> parse_stored_cases(std::string_view text, const std::string& name);
 
-/// Reads cases from such a file. Errors: InputError.
 std::vector<StoredCase> read_stored_cases(const std::string& path);
 
 /// The true error of one result, and the bound that the result states.
@@ -52,7 +47,6 @@ struct ErrorCheck {
   bool is_above(double tolerance) const { return error > tolerance + reference; }
 };
 
-/// The result of an evaluator for one case.
 struct CaseOutcome {
   StoredCase stored;
   ErrorCheck rho;              ///< largest error of rho_I and rho_Q, relative to rho_I
@@ -65,15 +59,12 @@ struct CaseOutcome {
   bool misses_tolerance() const { return (status & kAnyToleranceNotMet) != 0; }  ///< according to its status
 };
 
-/// The scene for the cases of one distribution and masking: a surface that only emits, at 300 K and 10.6 um, so that
-/// DOLP = |rho_Q| / (1 - rho_I).
+/// The scene for these cases: a surface that only emits, at 300 K and 10.6 um, so that DOLP = |rho_Q| / (1 - rho_I).
 SceneValues emission_scene(Distribution distribution, Masking masking, double tolerance);
 
-/// Evaluates all cases, and compares each with its reference. The result has the order of `cases`.
-///
-/// At 90 degrees, rho has no finite value with masking none and integral; there DOLP is compared with |r_Q / r_I|.
-/// Domain: cases at 90 degrees have one of these maskings and finite moments.
-/// Errors: errors of evaluate_scene.
+/// Evaluates all cases, and compares each with its reference. The result has the order of `cases`. At 90 degrees, rho
+/// has no finite value with masking none and integral; there DOLP is compared with |r_Q / r_I|. Domain: cases at 90
+/// degrees have one of these maskings and finite moments. Errors: errors of evaluate_scene.
 std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, ModelEvaluator& evaluator,
                                  const Accuracy& accuracy, const Progress& progress);
 

@@ -24,8 +24,7 @@ namespace {
 // The relative tolerance of the reference is a hundredth of the tolerance of the table, but not below this.
 constexpr double kReferenceTolerance = 1e-11;
 
-/// How the error bound of a quantity follows from the two estimates that a table stores: error_estimate, which is for
-/// DOLP, and rho_error_estimate.
+/// How a quantity's error bound follows from a table's error_estimate (which is for DOLP) and rho_error_estimate.
 enum class Bound { kDolp, kReflectance, kPolarisedRadiation, kRadiation, kEmissivity, kAlbedo };
 
 struct Compared {
@@ -48,8 +47,7 @@ constexpr std::array<Compared, 13> kCompared{{
     {Quantity::kEmissivityP, Bound::kEmissivity},
 }};
 
-/// Tables state no error for some quantities. Such an error may be this times the largest stated one, relative to the
-/// terms that add up to the quantity.
+/// An error that tables do not state may be this times the largest stated one, relative to the terms of the quantity.
 constexpr double kUnstatedOverStated = 10.0;
 
 /// Properties of a variant on which bounds depend.
@@ -67,15 +65,13 @@ BoundTerms bound_terms(const SceneModel& scene) {
   return terms;
 }
 
-/// The properties of each variant on which bounds depend.
 std::vector<BoundTerms> bound_terms(const SceneValues& scene, const std::vector<SceneVariant>& variants) {
   std::vector<BoundTerms> terms;
   for (const SceneVariant& variant : variants) terms.push_back(bound_terms(with_variant(scene, variant)));
   return terms;
 }
 
-/// The error bound of a quantity in its own unit, from the two estimates of the table or of the reference, and from the
-/// values of the reference.
+/// The error bound of a quantity in its own unit. The estimates are those of the table or of the reference.
 double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const PointResult& reference,
                 const BoundTerms& terms) {
   const double radiation = dolp_estimate * std::abs(reference[Quantity::kStokesI]);
@@ -99,8 +95,7 @@ double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const Po
   return kInfinity;
 }
 
-/// What is wrong with a value, in words; empty if nothing is wrong. `allowed`: the error that the tolerance allows;
-/// infinite if no tolerance is promised.
+/// What is wrong with a value. `allowed`: error that the tolerance allows; infinite if no tolerance is promised.
 std::string complaint_about(const CheckedValue& value, double allowed) {
   if (std::isnan(value.stored) && std::isnan(value.reference)) return {};
   if (std::isnan(value.stored)) return "is NaN in the table";
@@ -111,7 +106,6 @@ std::string complaint_about(const CheckedValue& value, double allowed) {
   return {};
 }
 
-/// The estimate of an entry; infinite if the table has no estimates.
 double estimate_at(const std::vector<double>& estimates, std::size_t i) {
   return estimates.empty() ? kInfinity : estimates[i];
 }
@@ -168,7 +162,6 @@ bool has_rho(const TableValues& table) {
   return table.has(Quantity::kRhoErrorEstimate) && (table.has(Quantity::kRhoI) || table.has(Quantity::kRhoQ));
 }
 
-/// A request for the moments of the entries of the sample.
 MomentsRequest request_of(const TableSample& sample, const Surface& surface) {
   MomentsRequest request = response_request(surface);
   const OpticalConstants index = request.optics.front().index;

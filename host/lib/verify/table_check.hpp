@@ -1,4 +1,3 @@
-// Computes entries of tables again with the independent reference, and compares the stored values and errors with it.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +20,6 @@ struct AxisValue {
   std::string label;
 };
 
-/// A stored value and the value of the reference.
 struct CheckedValue {
   std::string quantity;
   std::vector<AxisValue> position;  ///< value of each axis of the table
@@ -35,7 +33,6 @@ struct CheckedValue {
   double ratio() const;
 };
 
-/// All compared values of one quantity.
 struct QuantityCheck {
   std::string name;
   std::size_t compared = 0;
@@ -53,7 +50,6 @@ struct TableCheck {
   bool passed() const { return failures.empty(); }
 };
 
-/// The value of each axis at an entry of a table.
 std::vector<AxisValue> position_of(std::size_t entry, const TableHead& table);
 
 /// Positions of `samples` different entries out of `entries`, in ascending order. They depend only on the seed.
@@ -67,15 +63,13 @@ struct TableSample {
 
 /// Compares the quantities of a sample that its table has with results of ReferenceEvaluator and of the radiometry of
 /// the table's scene; over a band with results of integrate_band.
-///
 /// A value is wrong in three cases: its error exceeds the stated bound plus the bound of the reference; only one of
 /// both values is a number; rho or DOLP misses the tolerance without the status for it. The bound is rho_error_estimate
 /// rho_I for rho, error_estimate for DOLP, error_estimate |I| for Q, U and V, and error_estimate |I| / DOLP for I. For
 /// emissivities, for the albedo and for I near DOLP = 0, it is ten times the largest estimate, relative to the terms
-/// that add up to the value.
-/// Closed forms of mirrors and limits are not independent: every evaluator takes them from the same code.
-/// Errors: InputError that begins with `name` if the table has nothing to compare or has axes out of range; Cancelled
-/// if `progress` returns false.
+/// that add up to the value. Closed forms of mirrors and limits are not independent: every evaluator takes them from
+/// the same code.
+/// Errors: InputError that begins with `name` if the table has nothing to compare or has axes out of range; Cancelled.
 TableCheck check_table(const TableSample& sample, const SceneValues& scene, const std::string& name,
                        const Progress& progress);
 
@@ -85,12 +79,10 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
 TableCheck check_responses(const TableSample& sample, const SceneValues& scene, const std::string& name,
                            const Progress& progress);
 
-/// Results at some points of a scene with a band, computed without the spectral rule.
-///
-/// Method: each point gets an adaptive Gauss-Kronrod quadrature over results at single wavelengths. Its first intervals
-/// begin and end at rows of the material, the source and the sky. A point has at most kMostIntervals intervals; the
-/// error that remains is part of the estimates. Only results that are no integral over the wavelength (the bracket, a
-/// limit at 90 degrees) come from the spectral rule.
+/// Results at some points of a scene with a band, by adaptive Gauss-Kronrod quadrature over results at single
+/// wavelengths instead of the spectral rule. The first intervals begin and end at rows of the material, the source and
+/// the sky. A point has at most kMostIntervals intervals; the error that remains is part of the estimates. Only results
+/// that are no integral over the wavelength (the bracket, a limit at 90 degrees) come from the spectral rule.
 std::vector<PointResult> integrate_band(const SceneValues& scene, const SceneEntries& points, ModelEvaluator& evaluator,
                                         const Progress& progress);
 

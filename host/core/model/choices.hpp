@@ -1,4 +1,3 @@
-// Enumerations of the choices in a scene, such as the masking, and their words in scene files, reports and case files.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +24,7 @@ enum class DiffusePolarisation { kNone, kTransmission };
 enum class Mode { kHemispherical, kBistatic };
 enum class Precision { kAuto, kFloat, kDouble };
 
-/// The words of an enumeration, in the order of its values.
+/// The words in scene files, reports and case files, in the order of the enumerators.
 constexpr auto words_of(Distribution) { return std::array{"cauchy", "gaussian"}; }
 constexpr auto words_of(Masking) { return std::array{"none", "v-cavity", "integral", "smith"}; }
 constexpr auto words_of(Scattering) { return std::array{"single", "multiple"}; }

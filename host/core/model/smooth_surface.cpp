@@ -78,8 +78,7 @@ SmoothAbsorptance covered_absorptance(const FacetOptics& optics, double cosine) 
   return {1.0 - mean - half, 1.0 - mean + half};
 }
 
-/// (R_s - R_p) / sin^2(beta). At normal incidence this is 0 / 0; near it the quotient is extrapolated linearly in
-/// sin^2(beta).
+/// (R_s - R_p) / sin^2(beta). Near normal incidence, where it is 0 / 0, it is extrapolated linearly in sin^2(beta).
 double split_of(const FacetOptics& optics, double cosine, const SmoothAbsorptance& absorbed_here) {
   constexpr double kStep = 1e-5;
   const double sin2 = (1.0 - cosine) * (1.0 + cosine);

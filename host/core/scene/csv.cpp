@@ -15,7 +15,7 @@ namespace {
 constexpr double kWholeInPercent = 100.0;
 constexpr const char* kDecimalPoint = "numbers must have a decimal point";
 
-/// The text between the double quotes around a cell. A cell with more quotes inside stays unchanged.
+/// A cell with more quotes inside stays unchanged.
 std::string_view unquoted(std::string_view cell) {
   const bool is_quoted = cell.size() >= 2 && cell.front() == '"' && cell.back() == '"';
   const std::string_view inner = is_quoted ? cell.substr(1, cell.size() - 2) : cell;
@@ -38,7 +38,7 @@ std::vector<std::string_view> split_cells(std::string_view line, char separator)
   return cells;
 }
 
-/// The names and units of columns for messages, for example "wavelength_um, irradiance (W m-2 um-1)".
+/// For example "wavelength_um, irradiance (W m-2 um-1)".
 std::string names_of(const std::vector<CsvColumn>& columns) {
   std::vector<std::string> names;
   for (const CsvColumn& column : columns)
@@ -55,7 +55,6 @@ std::optional<std::size_t> position_of(const std::vector<CsvColumn>& columns, st
   return static_cast<std::size_t>(found - columns.begin());
 }
 
-/// Refuses a line whose cells are separated by semicolons, tabs or blanks instead of commas.
 void check_separators(const CsvReader& row, const std::vector<CsvColumn>& columns) {
   for (const auto& [character, name] : {std::pair(';', "semicolons"), {'\t', "tabs"}, {' ', "blanks"}}) {
     for (const std::string_view cell : row.cells()) {

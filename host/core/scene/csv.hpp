@@ -1,4 +1,3 @@
-// Reads comma-separated text (CSV) written by people or programs.
 #pragma once
 
 #include <cstddef>
@@ -17,11 +16,9 @@ struct CsvForm {
   std::size_t first_line = 1;
 };
 
-/// Goes through a text line by line: `for (CsvReader row(text, name); row.next();)`.
-///
-/// Accepts the line ends and byte order mark that split_lines accepts. A cell in double quotes may contain separators;
-/// its value is the text between the quotes. Leaves out lines at the end of the text that have no value. All views
-/// point into `text`.
+/// Goes through a text line by line: `for (CsvReader row(text, name); row.next();)`. Accepts the line ends and byte
+/// order mark that split_lines accepts. A cell in double quotes may contain separators; its value is the text between
+/// the quotes. Leaves out lines at the end of the text that have no value. All views point into `text`.
 class CsvReader {
  public:
   CsvReader(std::string_view text, std::string name, CsvForm form = {});
@@ -29,20 +26,18 @@ class CsvReader {
   /// Goes to the next line that has cells; false after the last line.
   bool next();
 
-  /// The line and its cells, without blanks at both ends.
+  /// Without blanks at both ends.
   std::string_view line() const { return line_; }
   const std::vector<std::string_view>& cells() const { return cells_; }
-  /// True if at least one cell is a number.
   bool has_numbers() const;
 
   std::size_t line_number() const;
 
-  /// "file:line: ", with which every message about the line begins. Before the first next() it names the first line.
+  /// "file:line: ", for messages. Before the first next() it names the first line.
   std::string where() const;
   [[noreturn]] void fail(const std::string& what) const;
 
-  /// The number in a cell. `column` is the name of its column, for messages.
-  /// Errors: InputError that names file, line, column and value and, if `range` is given, what is allowed.
+  /// Errors: InputError that names file, line, `column`, value and, if `range` is given, what is allowed.
   double number(std::size_t cell, std::string_view column, const NumberRange* range = nullptr) const;
 
  private:
@@ -54,7 +49,6 @@ class CsvReader {
   std::vector<std::string_view> cells_;
 };
 
-/// A column that a file may have.
 struct CsvColumn {
   std::string name;
   NumberRange range = {};
@@ -63,15 +57,15 @@ struct CsvColumn {
   std::string unit = {};        ///< unit for messages, if `name` does not contain it
 };
 
-/// The columns of a file, found by the names in its header. The names may be in any order and in upper or lower case.
+/// The columns of a file. The names in its header may be in any order and in upper or lower case.
 class CsvColumns {
  public:
-  /// Reads a header; leaves out columns whose names are in `ignored`.
-  /// Errors: InputError for an unknown name (the message suggests a known one that is near), for a name that appears
-  /// twice, for a missing required column, for a separator other than the comma, and for numbers instead of names.
+  /// Leaves out columns whose names are in `ignored`.
+  /// Errors: InputError for an unknown name (the message suggests a similar one), for a name that appears twice, for a
+  /// missing required column, for a separator other than the comma, and for numbers instead of names.
   CsvColumns(const CsvReader& header, std::vector<CsvColumn> known, const std::vector<std::string>& ignored = {});
 
-  /// For rows without a header: all known columns, in their order.
+  /// For rows without a header, which have all known columns in their order.
   explicit CsvColumns(std::vector<CsvColumn> known);
   /// Reads the first line as a header. Errors: also InputError for a text without lines.
   static CsvColumns first_of(CsvReader& reader, std::vector<CsvColumn> known,
@@ -79,11 +73,11 @@ class CsvColumns {
 
   bool has(std::string_view name) const { return cell_of(name).has_value(); }
 
-  /// For each cell of a row, the position of its column among the known columns; nullopt for a column that is left out.
+  /// For each cell of a row: position among the known columns; nullopt for a column that is left out.
   const std::vector<std::optional<std::size_t>>& cells() const { return cells_; }
 
-  /// The number that a row has in the column `name`; nullopt if the file lacks the column.
-  /// Errors: InputError that names column, value and range; InputError for a row with more cells than the header.
+  /// Nullopt if the file lacks the column.
+  /// Errors: InputError that names column, value and range, or for a row with more cells than the header.
   std::optional<double> number(const CsvReader& row, std::string_view name) const;
   double number_at(const CsvReader& row, std::size_t cell) const;
 
@@ -98,7 +92,7 @@ class CsvColumns {
   std::vector<std::string> names_;  // names in the header of the file
 };
 
-/// Message about an unknown column. It lists the allowed columns, and suggests one with a similar name.
+/// The message lists the allowed columns, and suggests one with a similar name.
 std::string unknown_column(std::string_view name, const std::vector<CsvColumn>& known);
 
 }  // namespace dolp

@@ -1,4 +1,3 @@
-// The user's files of refractive indices: refractiveindex.info database records, and CSV.
 #include <fmt/format.h>
 #include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/yaml.h>
@@ -21,8 +20,7 @@ namespace {
 
 // The longest record of the database has 2.6 MB. A text of 4 MiB takes up to 2 s and 0.7 GB.
 constexpr std::size_t kMostRecordBytes = 4U << 20U;
-// Number of steps in which the range of a formula is searched for wavelengths at which n is allowed.
-constexpr int kRangeSteps = 1000;
+constexpr int kRangeSteps = 1000;  // steps of a search for wavelengths at which n is allowed
 // A measured k near 0 may be negative by this noise. A lower k follows another sign convention, or is a mistake.
 constexpr double kKNoise = 1e-5;
 constexpr NumberRange kNoisyKRange{-kKNoise, kKRange.max};
@@ -53,7 +51,6 @@ class IndexRows {
   std::vector<SpectralRow> n_, k_;
 };
 
-/// The columns of a table of n, k or both.
 std::vector<CsvColumn> index_columns(bool has_n = true, bool has_k = true) {
   std::vector<CsvColumn> columns = {{"wavelength_um", kPositiveRange, true, "wl"}};
   if (has_n) columns.push_back({"n", kNRange});
@@ -61,7 +58,6 @@ std::vector<CsvColumn> index_columns(bool has_n = true, bool has_k = true) {
   return columns;
 }
 
-/// True for a text that has the list DATA of a record of refractiveindex.info.
 bool is_record_text(std::string_view text) { return text.starts_with("DATA:") || text.find("\nDATA:") != text.npos; }
 
 void parse_csv(Material& material, IndexRows& rows, std::string_view text) {
@@ -87,7 +83,7 @@ std::string where(const Material& material, const YAML::Mark& mark) {
   throw InputError(where(material, node.Mark()) + what);
 }
 
-/// The text of a key of a DATA item. Errors: InputError if the item lacks the key.
+/// Errors: InputError if the item lacks the key.
 YAML::Node text_of(const Material& material, const YAML::Node& item, const char* key) {
   const YAML::Node text = item[key];
   if (!text || !text.IsScalar()) fail(material, item, fmt::format("{}: missing; a DATA item must have it", key));
@@ -142,7 +138,7 @@ void read_formula(Material& material, const YAML::Node& item, int number) {
   material.n.formula = formula;
 }
 
-/// The number of the formula, 1 to kDispersionFormulas, or 0 if the type is not a formula.
+/// 0 if the type is not a formula.
 int formula_of(std::string_view type) {
   int number = kDispersionFormulas;
   while (number > 0 && type != fmt::format("formula {}", number)) --number;

@@ -22,8 +22,7 @@ constexpr std::size_t kMostPointsBytes = 1U << 30U;
 
 using FilmColumn = std::pair<std::size_t, FilmValue::Part>;
 
-/// A column that a file may have: the coordinate on an axis, or a number of a film, or an angle of a pair of
-/// directions, which is required.
+/// The coordinate on an axis, a number of a film, or an angle of a pair of directions, which is required.
 struct ColumnRule {
   std::string name;
   NumberRange range;
@@ -54,8 +53,7 @@ void append_film_rules(std::vector<ColumnRule>& rules, const std::vector<std::st
   }
 }
 
-/// The columns that points may have. `names`: the columns that are given, because only given columns of films get a
-/// rule.
+/// Only given columns of films, which are among `names`, get a rule.
 std::vector<ColumnRule> column_rules(PointsKind kind, const std::vector<std::string>& names) {
   std::vector<ColumnRule> rules;
   const bool has_pairs = kind == PointsKind::kGeometries;
@@ -80,7 +78,7 @@ std::vector<CsvColumn> csv_columns(const std::vector<ColumnRule>& rules) {
   return columns;
 }
 
-/// Position of the end of the first line that is neither blank nor a comment.
+/// The end of the first line that is neither blank nor a comment.
 std::size_t end_of_header(std::string_view text) {
   std::size_t begin = 0;
   for (;;) {
@@ -91,7 +89,7 @@ std::size_t end_of_header(std::string_view text) {
   }
 }
 
-/// The rule for a column. Errors: InputError that begins with Points::where().
+/// Errors: InputError that begins with Points::where().
 const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_view name, const Points& points) {
   const auto found = std::ranges::find(rules, name, &ColumnRule::name);
   if (found == rules.end())
@@ -99,7 +97,7 @@ const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_vi
   return *found;
 }
 
-/// Adds an empty column. Errors: InputError if the points have it already.
+/// Errors: InputError if the points have the column already.
 std::vector<double>& add_column(Points& points, const ColumnRule& rule) {
   if (rule.of(points)) {
     const bool is_other = rule.is_wind != points.has_winds && std::holds_alternative<Axis>(rule.column) &&
@@ -121,7 +119,6 @@ void check_required(Points& points, const std::vector<ColumnRule>& rules) {
   if (!missing.empty()) throw InputError(fmt::format("{}: {}", points.where(), fmt::join(missing, "; ")));
 }
 
-/// Adds the columns of a file to `points`, except columns that are left out.
 void add_columns(const CsvReader& header, const CsvColumns& columns, const std::vector<ColumnRule>& rules,
                  Points& points) {
   std::vector<std::string_view> kept;

@@ -18,7 +18,6 @@ namespace {
 
 using Type = Key::Type;
 
-// Convert a value of a scene to the value of a key, and back.
 KeyValue value_of(double number) { return {.number = number}; }
 KeyValue value_of(bool flag) { return {.word = flag ? 1U : 0U, .text = flag ? "true" : "false"}; }
 KeyValue value_of(const std::string& text) { return {.text = text}; }
@@ -39,7 +38,7 @@ void assign(Choice& choice, const KeyValue& v) requires std::is_enum_v<Choice> {
   choice = static_cast<Choice>(v.word);
 }
 
-/// The value at an address in a scene. nullopt for a null pointer, and for a number, text or list that is empty.
+/// Nullopt for a null pointer, and for a number, text or list that is empty.
 template <class Content>
 std::optional<KeyValue> value_at(const Content* at) {
   if (!at) return std::nullopt;
@@ -54,8 +53,7 @@ std::optional<KeyValue> value_at(const Content* at) {
 
 bool always(const SceneValues&) { return true; }
 
-/// A key whose value is at the address that `address` gives in a scene, or a null pointer; the scene has the value if
-/// `is_there`.
+/// A key whose value is at `address(scene)`, which may be null. The scene has the value if `is_there`.
 template <class Address, class IsThere>
 SceneKey key_at(Key description, Address address, IsThere is_there) {
   return {std::move(description), [address](SceneValues& s, const KeyValue& v) { assign(*address(s), v); },
@@ -122,7 +120,7 @@ void set_wind(SceneValues& s, const KeyValue& v) {
   s.surface.wind_m_s = v.number;
 }
 
-/// Makes a key that gives E0. Setting it also sets the kind of the source.
+/// Setting a key for E0 also sets the kind of the source.
 SceneKey source_number(const char* key, const char* unit, const char* meaning, Source::Kind kind,
                        double Source::*number_of) {
   const auto is_kind = [kind](const SceneValues& s) { return s.source && s.source->kind == kind; };
@@ -149,7 +147,7 @@ SceneKey wind_axis() {
                   set);
 }
 
-/// A layer of the coating; keys count layers from 1. Adds missing layers if the scene may be changed.
+/// Keys count layers from 1. Adds missing layers if the scene may be changed.
 template <class Scene>
 auto& layer_of(Scene& s, std::size_t layer) {
   if constexpr (!std::is_const_v<Scene>) {

@@ -19,8 +19,8 @@
 namespace dolp {
 namespace {
 
-/// The known key or table that is most similar to `key`. A known name in another table, a known name without its table,
-/// and the beginning of a known name count as similar.
+/// The most similar known key or table. A known name in another table, a known name without its table, and the
+/// beginning of a known name count as similar.
 std::string key_hint(const std::string& key) {
   std::vector<std::string> known = scene_tables();
   for (const Key& description : dolp::keys()) known.push_back(description.key);
@@ -33,7 +33,6 @@ std::string key_hint(const std::string& key) {
                            [&](const std::string& a, const std::string& b) { return distance(a) < distance(b); });
 }
 
-/// Appends the keys of a coating, which is a list of tables.
 void append_layer_keys(const SceneDocument& document, const std::string& coating, const toml::node& node,
                        std::vector<std::string>& keys) {
   const std::string allowed = fmt::format(
@@ -49,7 +48,7 @@ void append_layer_keys(const SceneDocument& document, const std::string& coating
   }
 }
 
-/// Every key of the document, known or not, in the order of the lines. Keys in tables and layers are dotted.
+/// Known and unknown keys, in the order of the lines. Keys in tables and layers are dotted.
 std::vector<std::string> document_keys(const SceneDocument& document) {
   std::vector<std::string> keys;
   const std::vector<std::string> tables = scene_tables();
@@ -76,7 +75,7 @@ std::vector<std::string> document_keys(const SceneDocument& document) {
   return keys;
 }
 
-/// The alternative that the document chooses; nullptr for none. Two are an error, and so is a companion without a head.
+/// Null for none. Two alternatives are an error, and so is a companion without a head.
 const std::string* chosen_key(const SceneDocument& document, const KeyChoice& choice) {
   const auto first_of = [&](const std::vector<std::string>& keys) -> const std::string* {
     const auto found = std::ranges::find_if(keys, [&](const std::string& key) { return document.find(key); });
@@ -103,11 +102,11 @@ void check_choice(const SceneDocument& document, const KeyChoice& choice) {
                                            find_scene_key(heads.front())->description.allowed(), join(heads)));
 }
 
-/// Refuses a key whose needs are not met. The message names all of these needs.
 struct Needs {
   bool are_met;
   const char* text;
 };
+/// The message names all needs that are not met.
 void check_needs(const SceneDocument& document, std::string_view key, const std::vector<Needs>& needs) {
   std::vector<std::string> missing;
   for (const Needs& need : needs) {
@@ -183,15 +182,15 @@ SceneValues read_keys(const SceneDocument& document) {
   return scene;
 }
 
-/// The path, relative to the process, of a file that a scene names.
+/// The path relative to the working folder of the process.
 std::string resolve_path(const std::string& file, const std::string& scene_path) {
   const std::size_t slash = scene_path.find_last_of('/');
   const bool is_as_given = file.starts_with('/') || slash == std::string::npos;
   return is_as_given ? file : scene_path.substr(0, slash + 1) + file;
 }
 
-/// Calls `read` for a file that the scene names. Errors: those of `read`; with `known`, an InputError that begins with
-/// `prefix` if the file may not be opened or cannot be read.
+/// Errors: those of `read`; with `known`, an InputError that begins with `prefix` if the file may not be opened or
+/// read.
 template <class Read>
 auto read_file_of(SceneValues& scene, const std::string& file, const std::string& prefix, const KnownData* known,
                   const Read& read) {
@@ -207,7 +206,7 @@ auto read_file_of(SceneValues& scene, const std::string& file, const std::string
   }
 }
 
-/// The range from the shortest to the longest wavelength of a scene, including its axes.
+/// Includes the axes of the grid.
 Spectrum all_wavelengths(const SceneValues& scene) {
   Spectrum all = scene.spectrum;
   for (const double wavelength_um : scene.grid[Axis::kWavelength]) {
@@ -221,8 +220,7 @@ Spectrum all_wavelengths(const SceneValues& scene) {
   return all;
 }
 
-/// Loads the material of a table: "surface", or a layer of the coating. `own`: the material that a table file contains;
-/// null if there is none.
+/// `table`: "surface", or a layer of the coating. `stored`: material from a table file; null if there is none.
 void load_material(SceneValues& scene, const SceneDocument& document, const std::string& table, Material& material,
                    std::string& name, const std::string& file, const KnownData* known, const Material* stored) {
   const bool is_file = document.find(table + ".material_file") != nullptr;
@@ -252,7 +250,7 @@ void load_material(SceneValues& scene, const SceneDocument& document, const std:
   check_axis(material);
 }
 
-/// The full names of the built-in materials on the grid's axis. "all" means all materials that cover the spectrum.
+/// Full names. "all" means all built-in materials that cover the spectrum.
 std::vector<std::string> axis_names(const SceneValues& scene, const std::string& prefix) {
   std::vector<std::string> names;
   const std::vector<std::string>& given = scene.labels[Axis::kMaterial];
@@ -271,8 +269,7 @@ std::vector<std::string> axis_names(const SceneValues& scene, const std::string&
   return names;
 }
 
-/// Loads the materials of the grid's axis; the first becomes the scene's material. `known` has the materials of a table
-/// file.
+/// The first material of the axis becomes the material of the scene.
 void load_axis_materials(SceneValues& scene, const SceneDocument& document, const KnownData* known) {
   if (!document.find("grid.material")) return;
   const std::string prefix = document.prefix("grid.material");
@@ -405,7 +402,6 @@ void fill_grid(SceneValues& scene, const SceneDocument& document) {
   if (grid[Axis::kQ].empty()) grid[Axis::kQ] = {scene.surface.q};
 }
 
-/// Refuses smith masking with a cauchy distribution whose mean slope is infinite.
 void check_smith(const SceneValues& scene, const SceneDocument& document) {
   if (!scene.surface.needs_mean_slope()) return;
   const std::string what = "masking = \"smith\" with distribution = \"cauchy\" needs q in " + kSmithCauchyQRange.text();
@@ -415,8 +411,7 @@ void check_smith(const SceneValues& scene, const SceneDocument& document) {
   }
 }
 
-/// Refuses multiple scattering, bracket, direct emission and polarised diffuse light in scenes for which they are not
-/// defined.
+/// Refuses multiple scattering, bracket, direct emission and polarised diffuse light where they are not defined.
 void check_scattering(const SceneValues& scene, const SceneDocument& document) {
   const Surface& surface = scene.surface;
   const Emission emission = scene.emission.value_or(Emission());
@@ -469,7 +464,7 @@ void apply(SceneDocument& document, const Setting& setting) {
   document.apply(setting);
 }
 
-/// The scene of a document. Paths of files are relative to the folder of `path_name`.
+/// Paths of files are relative to the folder of `path_name`.
 SceneValues scene_of(const SceneDocument& document, const std::string& path_name, const KnownData* known) {
   SceneValues scene = read_keys(document);
   fill_from_grid(scene, document);

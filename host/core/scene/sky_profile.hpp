@@ -1,4 +1,3 @@
-// The radiance of the surroundings as a function of zenith, and of wavelength.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +9,8 @@
 
 namespace dolp {
 
-/// A sky. Either it has brightness temperatures or radiances at some zeniths, with straight lines between them, or it
-/// is a layer of air in front of a black background.
-///
+/// Brightness temperatures or radiances at some zeniths, with straight lines between them; or a layer of air in front
+/// of a black background.
 /// Equation: the layer has L = t^(1 / cos(zenith)) B(beyond_K) + (1 - t^(1 / cos(zenith))) B(air_K), t = 1 -
 /// emissivity.
 /// Source: Granqvist and Hjortsberg, J. Appl. Phys. 52, 4205 (1981), for a plane-parallel atmosphere of one
@@ -40,20 +38,19 @@ struct SkyProfile {
   };
   Emission at(double wavelength_um, double zenith_deg) const;
 
-  /// Zeniths that divide an interval between two rows in which the temperature changes by more than a factor of two.
+  /// They divide an interval between two rows in which the temperature changes by more than a factor of two.
   std::vector<double> temperature_divisions_deg(std::size_t interval) const;
-  /// Zeniths from 0 to 90 between which the profile is a smooth function of zenith.
+  /// Between these zeniths, from 0 to 90, the profile is smooth.
   std::vector<double> ends_deg() const;
-  /// Wavelengths between which the profile is a smooth function of wavelength.
+  /// Between these wavelengths the profile is smooth.
   std::vector<double> breaks_um() const;
-  /// The temperature, if it is the same at every zenith and wavelength; else nullopt.
+  /// Nullopt unless the sky has the same temperature at every zenith and wavelength.
   std::optional<double> only_temperature() const;
-  /// The text of a file that parse_sky_profile reads; empty for kLayers.
+  /// For parse_sky_profile; empty for kLayers.
   std::string text() const;
   std::uint64_t hash() const;
 };
 
-/// A built-in profile: the word for it in scenes, and its source.
 struct BuiltInSky {
   const char* name;
   const char* source;
@@ -67,13 +64,12 @@ struct SkyAir {
   bool is_standard() const { return !vapour_cm && !temperature_K; }
 };
 
-/// The built-in profile called `name`; nullopt for another name. Errors: InputError that begins with `prefix` if air of
-/// this temperature cannot hold the vapour.
+/// Nullopt for an unknown name. Errors: InputError that begins with `prefix` if air of this temperature cannot hold the
+/// vapour.
 std::optional<SkyProfile> built_in_sky(std::string_view name, const SkyAir& air = {}, const std::string& prefix = {});
 
-/// Reads a CSV file with the columns zenith_deg, temperature_K or radiance, and wavelength_um if they depend on it.
-/// Each wavelength has the same zeniths, from 0 to 90. Errors: InputError with file, line, column, value and what is
-/// allowed.
+/// Reads a CSV with the columns zenith_deg, temperature_K or radiance, and wavelength_um if they depend on it. Each
+/// wavelength has the same zeniths, from 0 to 90. Errors: InputError that names file, line, column and value.
 SkyProfile parse_sky_profile(std::string_view text, const std::string& name);
 SkyProfile read_sky_profile(const std::string& path, const std::string& prefix);
 

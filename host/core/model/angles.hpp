@@ -7,7 +7,7 @@ struct CosSin {
   double sin = 0.0;
 };
 
-/// Exact at multiples of 90 degrees.
+/// Cosine and sine of an angle in degrees, exact at multiples of 90 degrees.
 CosSin cos_sin_deg(double angle_deg);
 
 }  // namespace dolp

@@ -106,7 +106,7 @@ class SceneEntries {
   /// Position in variants() of the entry at these positions on the axes.
   std::size_t variant_at(const PerAxis& on_axes) const;
   bool has_own_index() const { return !axes_[Axis::kN].empty() || !axes_[Axis::kK].empty(); }
-  /// Domain: a grid with an axis of n or k.
+  /// The refractive index at these positions on the axes. Domain: a grid with an axis of n or k.
   OpticalConstants index_at(const PerAxis& on_axes) const;
 
   /// A list of the entries at some positions, with only the variants that these entries use.

@@ -15,7 +15,7 @@ namespace {
 constexpr double kWholeInPercent = 100.0;
 constexpr const char* kDecimalPoint = "numbers must have a decimal point";
 
-/// A cell with more quotes inside stays unchanged.
+/// The text between the double quotes around a cell. A cell with more quotes inside stays unchanged.
 std::string_view unquoted(std::string_view cell) {
   const bool is_quoted = cell.size() >= 2 && cell.front() == '"' && cell.back() == '"';
   const std::string_view inner = is_quoted ? cell.substr(1, cell.size() - 2) : cell;
@@ -38,7 +38,7 @@ std::vector<std::string_view> split_cells(std::string_view line, char separator)
   return cells;
 }
 
-/// For example "wavelength_um, irradiance (W m-2 um-1)".
+/// The names and units of columns for messages, for example "wavelength_um, irradiance (W m-2 um-1)".
 std::string names_of(const std::vector<CsvColumn>& columns) {
   std::vector<std::string> names;
   for (const CsvColumn& column : columns)

@@ -26,14 +26,14 @@ class CsvReader {
   /// Goes to the next line that has cells; false after the last line.
   bool next();
 
-  /// Without blanks at both ends.
+  /// The line and its cells, without blanks at both ends.
   std::string_view line() const { return line_; }
   const std::vector<std::string_view>& cells() const { return cells_; }
   bool has_numbers() const;
 
   std::size_t line_number() const;
 
-  /// "file:line: ", for messages. Before the first next() it names the first line.
+  /// "file:line: ", with which every message about the line begins. Before the first next() it names the first line.
   std::string where() const;
   [[noreturn]] void fail(const std::string& what) const;
 
@@ -73,7 +73,7 @@ class CsvColumns {
 
   bool has(std::string_view name) const { return cell_of(name).has_value(); }
 
-  /// For each cell of a row: position among the known columns; nullopt for a column that is left out.
+  /// For each cell of a row, the position of its column among the known columns; nullopt for a column that is left out.
   const std::vector<std::optional<std::size_t>>& cells() const { return cells_; }
 
   /// Nullopt if the file lacks the column.
@@ -92,7 +92,7 @@ class CsvColumns {
   std::vector<std::string> names_;  // names in the header of the file
 };
 
-/// The message lists the allowed columns, and suggests one with a similar name.
+/// Message about an unknown column. It lists the allowed columns, and suggests one with a similar name.
 std::string unknown_column(std::string_view name, const std::vector<CsvColumn>& known);
 
 }  // namespace dolp

@@ -83,7 +83,7 @@ const Material* match_name(std::string_view name) {
   return beginning.size() == 1 ? beginning.front() : nullptr;
 }
 
-/// Materials whose names contain or begin with `name`, else those with the most similar name or word.
+/// Suggests materials: those whose names contain or begin with `name`, else those with the most similar name or word.
 std::string name_hint(std::string_view name) {
   std::vector<std::string> alike;
   for (const Material* material : materials_with(trim(name))) alike.push_back(material->name);

@@ -9,7 +9,7 @@
 
 namespace dolp {
 
-/// The materials of host/data/materials.csv, in the order of host/data/materials_sources.csv.
+/// The materials of host/data/materials.csv with their sources, in the order of host/data/materials_sources.csv.
 const std::vector<Material>& built_in_materials();
 
 /// The built-in material called `name`. Case does not matter. Whole words of a name are enough if only one material has
@@ -17,7 +17,7 @@ const std::vector<Material>& built_in_materials();
 /// Errors: InputError that begins with `prefix`, for an unknown name; it names the nearest known ones.
 const Material& named_material(std::string_view name, const std::string& prefix);
 
-/// named_material, fitted by fit_to_spectrum.
+/// The built-in material called `name`, fitted to `spectrum`. Errors: errors of named_material and fit_to_spectrum.
 Material find_material(std::string_view name, const Spectrum& spectrum, const std::string& prefix);
 
 /// Reads a user's file with n and k over wavelength in um, and fits it to `spectrum`. Between rows n and k are linear.
@@ -30,14 +30,14 @@ Material find_material(std::string_view name, const Spectrum& spectrum, const st
 /// append_rows and fit_to_spectrum.
 Material read_material_file(const std::string& path, const Spectrum& spectrum, const std::string& prefix);
 
-/// Checks n, k or both at one wavelength and appends them to the tables. Messages begin with `where`.
+/// Checks n, k or both at one wavelength and appends them to the material's tables. Messages begin with `where`.
 void append_index(Material& material, double wavelength_um, std::optional<double> n, std::optional<double> k,
                   const std::string& where);
 
 /// The range of wavelengths in which a tabulated material has both n and k.
 Spectrum known_range(const Material& material);
 
-/// Refuses a tabulated material that lacks n or k in a part of the spectrum. Messages begin with `prefix`.
+/// Refuses a tabulated material that lacks n or k in a part of the spectrum. The message begins with `prefix`.
 void check_covers(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
 /// Refuses a material whose formula gives an n that is not allowed (a pole). Checks 1001 wavelengths of a band.
@@ -53,7 +53,7 @@ Material fit_to_spectrum(const Material& material, const Spectrum& spectrum, con
 /// Errors: InputError with file and line; if the file cannot be opened, the message begins with `prefix`.
 ReflectanceTable read_reflectance_file(const std::string& path, const std::string& prefix);
 
-/// Errors: InputError that begins with `name` and the line.
+/// Reads the text of such a file. Errors: InputError that begins with `name` and the line.
 ReflectanceTable parse_reflectances(const std::string& text, const std::string& name);
 
 }  // namespace dolp

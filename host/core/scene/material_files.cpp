@@ -83,7 +83,7 @@ std::string where(const Material& material, const YAML::Mark& mark) {
   throw InputError(where(material, node.Mark()) + what);
 }
 
-/// Errors: InputError if the item lacks the key.
+/// The text of a key of a DATA item. Errors: InputError if the item lacks the key.
 YAML::Node text_of(const Material& material, const YAML::Node& item, const char* key) {
   const YAML::Node text = item[key];
   if (!text || !text.IsScalar()) fail(material, item, fmt::format("{}: missing; a DATA item must have it", key));
@@ -138,7 +138,7 @@ void read_formula(Material& material, const YAML::Node& item, int number) {
   material.n.formula = formula;
 }
 
-/// 0 if the type is not a formula.
+/// The number of the formula, 1 to kDispersionFormulas, or 0 if the type is not a formula.
 int formula_of(std::string_view type) {
   int number = kDispersionFormulas;
   while (number > 0 && type != fmt::format("formula {}", number)) --number;

@@ -78,7 +78,7 @@ std::vector<CsvColumn> csv_columns(const std::vector<ColumnRule>& rules) {
   return columns;
 }
 
-/// The end of the first line that is neither blank nor a comment.
+/// Position of the end of the first line that is neither blank nor a comment.
 std::size_t end_of_header(std::string_view text) {
   std::size_t begin = 0;
   for (;;) {
@@ -89,7 +89,7 @@ std::size_t end_of_header(std::string_view text) {
   }
 }
 
-/// Errors: InputError that begins with Points::where().
+/// The rule for a column. Errors: InputError that begins with Points::where().
 const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_view name, const Points& points) {
   const auto found = std::ranges::find(rules, name, &ColumnRule::name);
   if (found == rules.end())
@@ -97,7 +97,7 @@ const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_vi
   return *found;
 }
 
-/// Errors: InputError if the points have the column already.
+/// Adds an empty column. Errors: InputError if the points have it already.
 std::vector<double>& add_column(Points& points, const ColumnRule& rule) {
   if (rule.of(points)) {
     const bool is_other = rule.is_wind != points.has_winds && std::holds_alternative<Axis>(rule.column) &&

@@ -21,7 +21,7 @@ enum class PointsKind {
   kGeometries,
 };
 
-/// Scattered points. A column that they lack is nullopt.
+/// Scattered points, in their order. A column that they lack is nullopt.
 struct Points {
   std::string name;  ///< name for messages: the path of the file, "stdin", or "points" for arrays
   std::size_t count = 0;
@@ -30,7 +30,7 @@ struct Points {
   std::vector<std::string> left_out;  ///< columns of the file that are results, and not used
   using Column = std::optional<std::vector<double>>;
   AxisArray<Column> coordinates;
-  /// Labels in the columns of a file. The values of such a column are positions in this list.
+  /// Labels in the columns of a file, for axes with labels. The values of such a column are positions in this list.
   AxisLabels labels;
   /// By layer (from 0) and part. The columns are named like scene keys, such as "surface.coating.1.thickness_um".
   std::map<std::pair<std::size_t, FilmValue::Part>, Column> films;
@@ -41,7 +41,7 @@ struct Points {
   std::size_t size() const { return count; }
   Column& operator[](Axis axis) { return coordinates[axis]; }
   const Column& operator[](Axis axis) const { return coordinates[axis]; }
-  /// The value in a row, as messages show it.
+  /// The value in a row of an axis's column, as messages show it.
   std::string text_at(Axis axis, std::size_t row) const;
   std::vector<FilmValue> films_at(std::size_t row) const;
   /// The beginning of messages: "file:line" or "points[row]". Without a row, the line of the header.
@@ -68,7 +68,7 @@ Points points_of(std::span<const Column> columns, std::size_t count, PointsKind 
 /// Errors: InputError that names file, line, column, value and allowed range, or a file that cannot be opened.
 Points read_points(const std::string& path, PointsKind kind, const std::vector<std::string>& results = {});
 
-/// `path_name` is the name of the text in messages.
+/// Reads points from a text in memory. `path_name` is the name of the text in messages.
 Points parse_points(const std::string& text, const std::string& path_name, PointsKind kind,
                     const std::vector<std::string>& results = {});
 

@@ -64,7 +64,7 @@ struct Surface {
   double diffuse = 0.0;            ///< k_d in [0, 1]
   double diffuse_exponent = -0.5;  ///< c in (-1, 0]
   DiffusePolarisation diffuse_polarisation = DiffusePolarisation::kNone;
-  /// The cauchy distribution has a finite mean slope only for q in kSmithCauchyQRange.
+  /// True if the masking needs a finite mean slope. The cauchy distribution has one only for q in kSmithCauchyQRange.
   bool needs_mean_slope() const { return masking == Masking::kSmith && distribution == Distribution::kCauchy; }
   bool is_bare() const { return coating.empty() && !reflectance; }
   bool has_constant_optics() const;

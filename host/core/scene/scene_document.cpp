@@ -70,7 +70,7 @@ std::size_t list_position(std::string_view part) {
 
 std::string last_part(std::string_view key) { return std::string(key.substr(key.find_last_of('.') + 1)); }
 
-/// Empty for a key at the top.
+/// The part of a dotted key that names the table; empty for a key at the top.
 std::string_view table_part(std::string_view key) {
   const std::size_t dot = key.find_last_of('.');
   return dot == std::string_view::npos ? std::string_view{} : key.substr(0, dot);

@@ -1,4 +1,4 @@
-// The TOML of a scene after its settings were applied, with the origin of each value for messages.
+// The TOML of a scene after its settings were applied. It knows the origin of each value, for messages.
 #pragma once
 
 #include <toml++/toml.h>
@@ -15,7 +15,7 @@ namespace dolp {
 /// True for an empty value, `{}`, or `none` where it removes (is_removed_by_none).
 bool is_removal(const Setting& setting);
 
-/// Text on one line. Without `is_escaped`, which is for messages, texts are quoted without escapes.
+/// A value as one line of TOML. Without `is_escaped`, which is for messages, texts are quoted without escapes.
 std::string toml_text(const toml::node& node, bool is_escaped = true);
 
 class SceneDocument {
@@ -30,7 +30,7 @@ class SceneDocument {
   const toml::node* find(std::string_view key) const;
   bool is_set(std::string_view key) const { return origin_of(key) != nullptr; }
 
-  /// For a message about contradicting keys: the first that a setting gave, else the first.
+  /// For a message about keys that contradict each other: the first of them that a setting gave, else the first.
   std::string first_set(std::initializer_list<std::string> keys) const;
 
   /// Throws InputError that names the line or setting of the key, the key, its value and the problem. For an absent key

@@ -38,7 +38,7 @@ void assign(Choice& choice, const KeyValue& v) requires std::is_enum_v<Choice> {
   choice = static_cast<Choice>(v.word);
 }
 
-/// Nullopt for a null pointer, and for a number, text or list that is empty.
+/// The value at an address in a scene. nullopt for a null pointer, and for a number, text or list that is empty.
 template <class Content>
 std::optional<KeyValue> value_at(const Content* at) {
   if (!at) return std::nullopt;
@@ -120,7 +120,7 @@ void set_wind(SceneValues& s, const KeyValue& v) {
   s.surface.wind_m_s = v.number;
 }
 
-/// Setting a key for E0 also sets the kind of the source.
+/// Makes a key that gives E0. Setting it also sets the kind of the source.
 SceneKey source_number(const char* key, const char* unit, const char* meaning, Source::Kind kind,
                        double Source::*number_of) {
   const auto is_kind = [kind](const SceneValues& s) { return s.source && s.source->kind == kind; };
@@ -147,7 +147,7 @@ SceneKey wind_axis() {
                   set);
 }
 
-/// Keys count layers from 1. Adds missing layers if the scene may be changed.
+/// A layer of the coating; keys count layers from 1. Adds missing layers if the scene may be changed.
 template <class Scene>
 auto& layer_of(Scene& s, std::size_t layer) {
   if constexpr (!std::is_const_v<Scene>) {

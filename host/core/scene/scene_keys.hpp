@@ -11,7 +11,7 @@
 
 namespace dolp {
 
-/// Key::type determines which members are set.
+/// A value of a key. Which members are set depends on Key::type.
 struct KeyValue {
   double number = 0.0;
   std::size_t word = 0;              ///< position in Key::words
@@ -52,16 +52,16 @@ const SceneKey* find_scene_key(std::string_view key);
 /// The keys of the alternatives that exclude `key`.
 std::vector<std::string> keys_replaced_by(std::string_view key);
 
-/// In the order of the keys.
+/// The tables of a scene, in the order of the keys.
 std::vector<std::string> scene_tables();
 
 /// True for a table whose absence removes an effect: emission, source, surroundings, path.
 bool is_effect_table(std::string_view table);
 
-/// "surface.coating", or a layer such as "surface.coating.2".
+/// True for the coating or one of its layers: "surface.coating", "surface.coating.2".
 bool is_coating(std::string_view key);
 
-/// Where `none` may be a value, only `{}` removes the key.
+/// True if the value `none` removes a key or a table. Where `none` may be a value, only `{}` removes the key.
 bool is_removed_by_none(std::string_view key);
 
 /// Adds the effect that a table describes to the scene.
@@ -69,7 +69,7 @@ void add_effect(SceneValues& scene, std::string_view table);
 
 class SceneDocument;
 
-/// Domain: the document has the key. Errors: InputError by SceneDocument::fail.
+/// Reads the value of a key that the document has. Errors: InputError by SceneDocument::fail.
 KeyValue read_value(const SceneDocument& document, const Key& description);
 
 }  // namespace dolp

@@ -48,7 +48,7 @@ void append_layer_keys(const SceneDocument& document, const std::string& coating
   }
 }
 
-/// Known and unknown keys, in the order of the lines. Keys in tables and layers are dotted.
+/// Every key of the document, known or not, in the order of the lines. Keys in tables and layers are dotted.
 std::vector<std::string> document_keys(const SceneDocument& document) {
   std::vector<std::string> keys;
   const std::vector<std::string> tables = scene_tables();
@@ -75,7 +75,7 @@ std::vector<std::string> document_keys(const SceneDocument& document) {
   return keys;
 }
 
-/// Null for none. Two alternatives are an error, and so is a companion without a head.
+/// The alternative that the document chooses; nullptr for none. Two are an error, and so is a companion without a head.
 const std::string* chosen_key(const SceneDocument& document, const KeyChoice& choice) {
   const auto first_of = [&](const std::vector<std::string>& keys) -> const std::string* {
     const auto found = std::ranges::find_if(keys, [&](const std::string& key) { return document.find(key); });
@@ -182,7 +182,7 @@ SceneValues read_keys(const SceneDocument& document) {
   return scene;
 }
 
-/// The path relative to the working folder of the process.
+/// The path, relative to the process, of a file that a scene names.
 std::string resolve_path(const std::string& file, const std::string& scene_path) {
   const std::size_t slash = scene_path.find_last_of('/');
   const bool is_as_given = file.starts_with('/') || slash == std::string::npos;
@@ -206,7 +206,7 @@ auto read_file_of(SceneValues& scene, const std::string& file, const std::string
   }
 }
 
-/// Includes the axes of the grid.
+/// The range from the shortest to the longest wavelength of a scene, including its axes.
 Spectrum all_wavelengths(const SceneValues& scene) {
   Spectrum all = scene.spectrum;
   for (const double wavelength_um : scene.grid[Axis::kWavelength]) {
@@ -250,7 +250,7 @@ void load_material(SceneValues& scene, const SceneDocument& document, const std:
   check_axis(material);
 }
 
-/// Full names. "all" means all built-in materials that cover the spectrum.
+/// The full names of the built-in materials on the grid's axis. "all" means all materials that cover the spectrum.
 std::vector<std::string> axis_names(const SceneValues& scene, const std::string& prefix) {
   std::vector<std::string> names;
   const std::vector<std::string>& given = scene.labels[Axis::kMaterial];
@@ -464,7 +464,7 @@ void apply(SceneDocument& document, const Setting& setting) {
   document.apply(setting);
 }
 
-/// Paths of files are relative to the folder of `path_name`.
+/// The scene of a document. Paths of files are relative to the folder of `path_name`.
 SceneValues scene_of(const SceneDocument& document, const std::string& path_name, const KnownData* known) {
   SceneValues scene = read_keys(document);
   fill_from_grid(scene, document);

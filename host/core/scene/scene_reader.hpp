@@ -16,7 +16,7 @@ namespace dolp {
 /// its origin begins the line. A file that cannot be opened is an InputError too.
 SceneValues read_scene(const std::string& path, const std::vector<Setting>& settings = {});
 
-/// Domain: a scene that was read. Errors: InputError, in the form of read_scene.
+/// The scene after more settings. Domain: a scene that was read. Errors: InputError, in the form of read_scene.
 SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& settings);
 
 /// Data of a table file, as they were when the table was computed. They replace files and built-in data.

@@ -38,15 +38,15 @@ struct SkyProfile {
   };
   Emission at(double wavelength_um, double zenith_deg) const;
 
-  /// They divide an interval between two rows in which the temperature changes by more than a factor of two.
+  /// Zeniths that divide an interval between two rows in which the temperature changes by more than a factor of two.
   std::vector<double> temperature_divisions_deg(std::size_t interval) const;
-  /// Between these zeniths, from 0 to 90, the profile is smooth.
+  /// Zeniths from 0 to 90 between which the profile is a smooth function of zenith.
   std::vector<double> ends_deg() const;
-  /// Between these wavelengths the profile is smooth.
+  /// Wavelengths between which the profile is a smooth function of wavelength.
   std::vector<double> breaks_um() const;
-  /// Nullopt unless the sky has the same temperature at every zenith and wavelength.
+  /// The temperature, if it is the same at every zenith and wavelength; else nullopt.
   std::optional<double> only_temperature() const;
-  /// For parse_sky_profile; empty for kLayers.
+  /// The text of a file that parse_sky_profile reads; empty for kLayers.
   std::string text() const;
   std::uint64_t hash() const;
 };

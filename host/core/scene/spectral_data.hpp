@@ -10,7 +10,7 @@
 
 namespace dolp {
 
-/// Irradiance at the top of the atmosphere, at normal incidence, interpolated log-log in wavelength.
+/// Irradiance of the sun at the top of the atmosphere, at normal incidence, interpolated log-log in wavelength.
 /// Source: host/data/sun.csv (Gueymard 2003). Units: W m-2 um-1.
 SpectralTable sun_irradiance();
 
@@ -40,7 +40,7 @@ struct SpectralRow {
 /// of append_row.
 void append_rows(SpectralTable& table, std::vector<SpectralRow> rows, const NamedValue& named, const std::string& file);
 
-/// A row of values over an angle from 0 to 90 degrees, and maybe over wavelength.
+/// A row of a CSV of values over an angle from 0 to 90 degrees, and maybe over wavelength.
 struct AngleRow {
   double wavelength_um = 0.0;  ///< 0 in a file without this column
   double angle_deg = 0.0;
@@ -61,7 +61,7 @@ struct Between {
 /// The first or the last interval for a value beyond an end. A list of one value has one interval, without a length.
 Between between(const std::vector<double>& list, double value);
 
-/// Refuses a table that lacks values in a part of the spectrum. Messages begin with `prefix`.
+/// Refuses a table that lacks values in a part of the spectrum. The message begins with `prefix`.
 void check_covers(const SpectralTable& table, const Spectrum& spectrum, const std::string& prefix);
 
 /// "10.6 um" or "8 to 14 um".

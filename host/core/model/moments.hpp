@@ -83,9 +83,8 @@ struct ColumnMoments {
   double i = 0.0;
   double q = 0.0;
   double error = 0.0;  ///< bound of the absolute errors of i and q; for a response the next three add to it
-  // Only for a response. i_apart and q_apart are differences between two rules, with their signs. If responses are
-  // summed with weights, so are these differences, and the magnitude of their sum is a bound of the error.
-  // relative_error is relative to the sum of the responses.
+  // Only for a response. i_apart and q_apart are signed differences between two rules. The magnitude of their weighted
+  // sum bounds the error of a weighted sum of responses. relative_error is relative to that sum.
   double i_apart = 0.0;
   double q_apart = 0.0;
   double relative_error = 0.0;

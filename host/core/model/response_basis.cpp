@@ -18,8 +18,8 @@ constexpr std::array<double, 5> kScales = {1.0, 0.3, 0.1, 0.03, 0.01};
 constexpr Eigen::Index kCoefficients = 65;  // coefficients that are computed for a curve
 constexpr Eigen::Index kLastOfCurve = 4;
 constexpr double kReach = 0.25;           // largest error of a combined curve, as a share of the tolerance
-constexpr double kTimeOfResponse = 0.08;  // time that a response adds to a pass, in passes without responses
-constexpr double kLeastGain = 1.25;       // separate indices must take this many times longer
+constexpr double kTimeOfResponse = 0.08;  // time that a response adds to a pass, relative to a pass without responses
+constexpr double kLeastGain = 1.25;       // responses must be this many times faster than separate indices
 // Allowed numbers of responses. They are few because a driver compiles separate kernels for each of them.
 constexpr std::array<std::size_t, 3> kCounts = {8, 16, kMostResponses};
 constexpr std::size_t kMostCandidates = 256;  // most indices of a run among which the reference index is chosen

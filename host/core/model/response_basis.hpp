@@ -1,9 +1,8 @@
 // Combines the moments of many indices from the moments of one index and from responses.
 // The moments of single scattering are linear in the Fresnel reflectances as functions of c, the cosine of the local
-// angle of incidence. A response is a moment in which a Chebyshev polynomial of 2 u - 1, u = asinh(c / c0) / asinh(1 /
-// c0), replaces the reflectances. The Chebyshev coefficients of an index's curves are the weights with which the
-// responses sum to its moments, at every direction, slope distribution and masking. The omitted coefficients bound the
-// error.
+// angle of incidence. A response is a moment with a Chebyshev polynomial of 2 u - 1, u = asinh(c / c0) / asinh(1 / c0),
+// instead of the reflectances. The Chebyshev coefficients of an index's curves are the weights with which responses sum
+// to its moments, at every direction, slope distribution and masking. The omitted coefficients bound the error.
 #pragma once
 
 #include <Eigen/Core>

@@ -48,7 +48,7 @@ struct FilmValue {
   friend auto operator<=>(const FilmValue&, const FilmValue&) = default;
 };
 
-/// Changes of the scene besides direction, slope shape and index. Each variant needs a separate Radiometry.
+/// Changes of an entry to the scene, except direction, slope shape and index. Each variant needs its own Radiometry.
 struct SceneVariant {
   std::optional<double> wavelength_um = {};               ///< nullopt: the scene's spectrum
   std::optional<std::uint32_t> material = {}, band = {};  ///< positions in SceneModel::materials and bands

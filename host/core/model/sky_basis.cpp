@@ -13,7 +13,7 @@
 namespace dolp {
 namespace {
 
-constexpr Eigen::Index kPoints = 17;  // per part of the zeniths; Planck's function of a linear temperature needs fewer
+constexpr Eigen::Index kPoints = 17;  // chosen; Planck's function of a temperature linear in zenith needs fewer
 
 // Between the nodes, a sum of functions may miss a sky by up to this factor more than at the nodes.
 constexpr double kBetweenNodes = 1.5;

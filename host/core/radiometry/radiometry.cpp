@@ -140,8 +140,7 @@ PointResult grazing_limit(const SceneModel& scene, const SpectralRule& rule, std
   result[kRhoErrorEstimate] = 0.0;
   if (keeps_projected_area(surface.masking)) {
     if (direction.cos_theta > 0.0) result[kAlbedo] = moments.front().albedo / direction.cos_theta;
-    // A diverging diffuse part is unpolarised, so DOLP is 0. A fresnel emission at the temperature of the surroundings
-    // is an exception, for which no limit is given.
+    // A diverging diffuse part is unpolarised, so DOLP is 0. No limit is given if emission and surroundings cancel.
     const bool cancels = emission_model(scene) == EmissionModel::kFresnel && is_isothermal(rule);
     if (diffuse_diverges(surface) && !cancels) result[kDolp] = result[kQOverI] = result[kErrorEstimate] = 0.0;
     return result;

@@ -24,9 +24,8 @@ namespace dolp {
 class Radiometry {
  public:
   /// `kept`: effects that contribute. If the moments are not kept, the specular part of rho counts as 0, `point`
-  /// ignores the numbers in its Moments, and quantities that need them are NaN. `dropped`: bound by which the other
-  /// effects change DOLP; it is added to the error estimates. `sky`: basis of the moments; null means the basis of this
-  /// scene.
+  /// ignores the numbers in its Moments, and quantities that need them are NaN. `dropped`: bound of the change of DOLP
+  /// by other effects; it is added to the error estimates. `sky`: basis of the moments; null: basis of the scene.
   explicit Radiometry(const SceneModel& scene, const KeptEffects& kept = {}, double dropped = 0.0,
                       const std::shared_ptr<const SkyBasis>& sky = nullptr);
 

@@ -34,7 +34,6 @@ struct MeanReflectance {
   double error = 0.0;  ///< error of rho_i or of rho_q, whichever is larger
 };
 
-/// Reflectance that follows from the moments. `diffuse`: the diffuse part of rho.
 Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta, const DiffuseLight& diffuse);
 
 /// True if rho_s or rho_p is outside [0, 1] by more than its error.

@@ -60,8 +60,7 @@ void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std:
 /// Adds only the specular part of add_sky: `specular` times the weighted sum of the moments with the functions.
 void add_specular_sky(Stokes& sum, double specular, double rounding, const SkyWeights& weights, const Moments& moments);
 
-/// Adds pi E0 cos(theta_i) f, the reflected beam of the source. The factor pi converts this radiance to exitances.
-/// `diffuse`: pi cos(theta_i) f of the diffuse part.
+/// Adds the beam of the source as an exitance, pi E0 cos(theta_i) f. `diffuse`: pi cos(theta_i) f of the diffuse part.
 void add_beam(Stokes& sum, double k_s, const SpectralRule& rule, std::span<const Scattered> scattered,
               std::span<const DiffuseLight> diffuse, double cos_theta_r);
 

@@ -60,9 +60,8 @@ struct CsvColumn {
 /// The columns of a file. The names in its header may be in any order and in upper or lower case.
 class CsvColumns {
  public:
-  /// Leaves out columns whose names are in `ignored`.
-  /// Errors: InputError for an unknown name (the message suggests a similar one), for a name that appears twice, for a
-  /// missing required column, for a separator other than the comma, and for numbers instead of names.
+  /// Leaves out columns in `ignored`. Errors: InputError for a name that is unknown (with a suggestion), repeated, or
+  /// required and missing; for a separator other than the comma; and for numbers instead of names.
   CsvColumns(const CsvReader& header, std::vector<CsvColumn> known, const std::vector<std::string>& ignored = {});
 
   /// For rows without a header, which have all known columns in their order.
@@ -76,8 +75,7 @@ class CsvColumns {
   /// For each cell of a row, the position of its column among the known columns; nullopt for a column that is left out.
   const std::vector<std::optional<std::size_t>>& cells() const { return cells_; }
 
-  /// Nullopt if the file lacks the column.
-  /// Errors: InputError that names column, value and range, or for a row with more cells than the header.
+  /// Nullopt if the file lacks the column. Errors: InputError for a wrong value, or for more cells than the header has.
   std::optional<double> number(const CsvReader& row, std::string_view name) const;
   double number_at(const CsvReader& row, std::size_t cell) const;
 

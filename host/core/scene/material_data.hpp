@@ -12,9 +12,8 @@ namespace dolp {
 /// The materials of host/data/materials.csv with their sources, in the order of host/data/materials_sources.csv.
 const std::vector<Material>& built_in_materials();
 
-/// The built-in material called `name`. Case does not matter. Whole words of a name are enough if only one material has
-/// them: "water" finds "water 25C".
-/// Errors: InputError that begins with `prefix`, for an unknown name; it names the nearest known ones.
+/// Case does not matter. Whole words of a name are enough if only one material has them: "water" finds "water 25C".
+/// Errors: InputError that begins with `prefix`, for an unknown name; it suggests the nearest known ones.
 const Material& named_material(std::string_view name, const std::string& prefix);
 
 /// The built-in material called `name`, fitted to `spectrum`. Errors: errors of named_material and fit_to_spectrum.

@@ -40,7 +40,6 @@ class IndexRows {
     }
   }
 
-  /// Ends a table: appends the collected rows to the material.
   void end_table() {
     append_rows(material_.n, std::exchange(n_, {}), {"n", 0.0, kNRange}, material_.source);
     append_rows(material_.k, std::exchange(k_, {}), {"k", 0.0, kKRange}, material_.source);

@@ -22,7 +22,7 @@ constexpr std::size_t kMostPointsBytes = 1U << 30U;
 
 using FilmColumn = std::pair<std::size_t, FilmValue::Part>;
 
-/// The coordinate on an axis, a number of a film, or an angle of a pair of directions, which is required.
+/// A column: the coordinate on an axis, a number of a film, or an angle of a pair of directions, which is required.
 struct ColumnRule {
   std::string name;
   NumberRange range;
@@ -53,7 +53,7 @@ void append_film_rules(std::vector<ColumnRule>& rules, const std::vector<std::st
   }
 }
 
-/// Only given columns of films, which are among `names`, get a rule.
+/// The columns that points may have. Columns of films have a rule only if they are among `names`.
 std::vector<ColumnRule> column_rules(PointsKind kind, const std::vector<std::string>& names) {
   std::vector<ColumnRule> rules;
   const bool has_pairs = kind == PointsKind::kGeometries;

@@ -32,7 +32,7 @@ struct Points {
   AxisArray<Column> coordinates;
   /// Labels in the columns of a file, for axes with labels. The values of such a column are positions in this list.
   AxisLabels labels;
-  /// By layer (from 0) and part. The columns are named like scene keys, such as "surface.coating.1.thickness_um".
+  /// Numbers of films, by layer (from 0) and part. Columns have names like "surface.coating.1.thickness_um".
   std::map<std::pair<std::size_t, FilmValue::Part>, Column> films;
   bool has_winds = false;                          ///< true if winds were given instead of sigma
   Column theta_i_deg, theta_r_deg, delta_phi_deg;  ///< only for kGeometries, which have no theta_deg and wavelength_um
@@ -57,8 +57,7 @@ inline double value_or(const Points::Column& column, std::size_t row, double fal
 /// label contains it. Errors: InputError that lists the known labels.
 std::vector<double> label_positions(const Points& points, Axis axis, const AxisLabels& known);
 
-/// Errors: the InputErrors of read_points for names and values, and InputError for a column whose length is neither 1
-/// nor `count`.
+/// Errors: InputErrors of read_points, and InputError for a column whose length is neither 1 nor `count`.
 Points points_of(std::span<const Column> columns, std::size_t count, PointsKind kind);
 
 /// Reads the points in the CSV file at `path` ("-" is stdin). A header without rows is a valid list of no points.

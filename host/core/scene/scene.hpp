@@ -43,7 +43,7 @@ struct Layer {
   double thickness_um = 0.0;
 };
 
-/// At ascending wavelengths. A single element of `measured` holds at every wavelength.
+/// Reflectances at ascending wavelengths. A single element of `measured` holds at every wavelength.
 struct ReflectanceTable {
   std::vector<double> wavelength_um;
   std::vector<std::shared_ptr<const MeasuredReflectance>> measured;
@@ -120,7 +120,7 @@ struct Accuracy {
   bool may_interpolate = true;  ///< allows interpolation between slope distributions, and responses
 };
 
-/// Empty if the scene does not give them. `material` is the full name of the material.
+/// Names that a scene gives, else empty. `material` is the full name of the material.
 struct SceneNames {
   struct OfLayer {
     std::string material, material_file;

@@ -33,7 +33,7 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// Line with keys or values nested deeper than kMostDepth, or 0. The TOML parser recurses at each level.
+/// Line where nesting exceeds kMostDepth, or 0. Such a text is refused, because the TOML parser recurses at each level.
 std::size_t line_of_deep_nesting(std::string_view text) {
   std::vector<std::size_t> around = {0};  // depths at the beginning of the text and of each open bracket
   std::size_t depth = 0;

@@ -33,8 +33,7 @@ class SceneDocument {
   /// For a message about keys that contradict each other: the first of them that a setting gave, else the first.
   std::string first_set(std::initializer_list<std::string> keys) const;
 
-  /// Throws InputError that names the line or setting of the key, the key, its value and the problem. For an absent key
-  /// it names the line of the table.
+  /// InputError with line or setting of the key, its value and the problem. An absent key has the line of the table.
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
 
   /// The beginning of the message of fail(), before the problem.

@@ -52,7 +52,6 @@ const SceneKey* find_scene_key(std::string_view key);
 /// The keys of the alternatives that exclude `key`.
 std::vector<std::string> keys_replaced_by(std::string_view key);
 
-/// The tables of a scene, in the order of the keys.
 std::vector<std::string> scene_tables();
 
 /// True for a table whose absence removes an effect: emission, source, surroundings, path.
@@ -64,7 +63,6 @@ bool is_coating(std::string_view key);
 /// True if the value `none` removes a key or a table. Where `none` may be a value, only `{}` removes the key.
 bool is_removed_by_none(std::string_view key);
 
-/// Adds the effect that a table describes to the scene.
 void add_effect(SceneValues& scene, std::string_view table);
 
 class SceneDocument;

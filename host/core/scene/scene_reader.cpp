@@ -189,8 +189,7 @@ std::string resolve_path(const std::string& file, const std::string& scene_path)
   return is_as_given ? file : scene_path.substr(0, slash + 1) + file;
 }
 
-/// Errors: those of `read`; with `known`, an InputError that begins with `prefix` if the file may not be opened or
-/// read.
+/// With `known`, an InputError begins with `prefix` if the file may not be opened or cannot be read.
 template <class Read>
 auto read_file_of(SceneValues& scene, const std::string& file, const std::string& prefix, const KnownData* known,
                   const Read& read) {

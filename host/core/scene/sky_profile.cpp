@@ -21,8 +21,8 @@ namespace {
 
 constexpr std::size_t kMostZeniths = 1000;
 
-// Zeniths at which smooth parts of a sky are divided. Near the horizon a sky is as flat as exp(-1/cos), and polynomials
-// through Chebyshev points need short parts.
+// Zeniths at which smooth parts of a sky are divided. Polynomials through Chebyshev points need short parts near a
+// horizon where the sky is as flat as exp(-1/cos).
 constexpr std::array<double, 2> kDivisions_deg = {60.0, 85.0};
 constexpr std::array<double, 11> kLayerDivisions_deg = {0.0,  30.0, 60.0,  75.0,  82.0, 86.0,
                                                         88.0, 89.0, 89.75, 89.94, 90.0};

@@ -9,10 +9,8 @@
 
 namespace dolp {
 
-/// Brightness temperatures or radiances at some zeniths, with straight lines between them; or a layer of air in front
-/// of a black background.
-/// Equation: the layer has L = t^(1 / cos(zenith)) B(beyond_K) + (1 - t^(1 / cos(zenith))) B(air_K), t = 1 -
-/// emissivity.
+/// Brightness temperatures or radiances at zeniths, linear between them; or a layer of air before a black background.
+/// Equation: air has L = t^(1 / cos(zenith)) B(beyond_K) + (1 - t^(1 / cos(zenith))) B(air_K), t = 1 - emissivity.
 /// Source: Granqvist and Hjortsberg, J. Appl. Phys. 52, 4205 (1981), for a plane-parallel atmosphere of one
 /// temperature. Idso, Water Resources Research 17, 295 (1981), for the vertical emissivities of clear air at 8-14 um
 /// and in the window at 10.5-12.5 um. The rest of 8-14 um has the emissivity that gives this mean over 8-14 um; other
@@ -64,8 +62,7 @@ struct SkyAir {
   bool is_standard() const { return !vapour_cm && !temperature_K; }
 };
 
-/// Nullopt for an unknown name. Errors: InputError that begins with `prefix` if air of this temperature cannot hold the
-/// vapour.
+/// Nullopt for an unknown name. Errors: InputError that begins with `prefix` if the air cannot hold the vapour.
 std::optional<SkyProfile> built_in_sky(std::string_view name, const SkyAir& air = {}, const std::string& prefix = {});
 
 /// Reads a CSV with the columns zenith_deg, temperature_K or radiance, and wavelength_um if they depend on it. Each

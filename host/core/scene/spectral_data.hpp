@@ -35,9 +35,8 @@ struct SpectralRow {
   std::size_t line;
 };
 
-/// Sorts rows by wavelength and appends them. Leaves out rows outside of kWavelengthUmRange, and repeated rows. `named`
-/// gives name and range of the values. Errors: InputError with file and line for two values at one wavelength; errors
-/// of append_row.
+/// Sorts and appends rows. Leaves out rows outside of kWavelengthUmRange and repeated rows. `named`: name and range of
+/// the values. Errors: InputError with file and line for two values at one wavelength; errors of append_row.
 void append_rows(SpectralTable& table, std::vector<SpectralRow> rows, const NamedValue& named, const std::string& file);
 
 /// A row of a CSV of values over an angle from 0 to 90 degrees, and maybe over wavelength.

@@ -153,7 +153,6 @@ void append_fine_nodes(const SceneModel& scene, const std::optional<SkySampler>&
   }
 }
 
-/// The ends of the band and the tabulated wavelengths inside it, ascending.
 std::vector<double> segment_ends(double from_um, double to_um,
                                  std::initializer_list<const std::vector<double>*> wavelengths_um) {
   std::vector<double> ends = {from_um, to_um};
@@ -273,8 +272,8 @@ std::vector<ProbeSums> exact_sums(const Surface& surface, const std::vector<Fine
   return sums;
 }
 
-/// The largest error of an absorptance. It is relative to reflectance or absorptance, whichever is smaller, but to no
-/// less than `least` of the whole integral.
+/// Largest error of the samples' integrals of an absorptance, relative to the integral of reflectance or absorptance,
+/// whichever is smaller, but to no less than `least` of the whole integral.
 double nodes_error(const std::vector<SpectralSample>& samples, const std::vector<ProbeSums>& exact,
                    const std::vector<double>& cosines, double least) {
   double worst = 0.0;
@@ -326,7 +325,7 @@ SegmentRule smooth_segment(const SceneModel& scene, double from_um, double to_um
   return rule;
 }
 
-/// Each panel has kPanelNodes nodes. To check them, each half of a panel has twice as many nodes.
+/// Cuts a segment into equal panels. To check them, each half of a panel gets twice as many nodes.
 SegmentRule segment_of_panels(const SceneModel& scene, double from_um, double to_um, int panels,
                               const std::vector<double>& cosines) {
   SegmentRule rule;

@@ -21,8 +21,7 @@ struct KeptEffects {
   friend bool operator==(const KeptEffects&, const KeptEffects&) = default;
 };
 
-/// Integrals over wavelength of the radiation times a weight function. Units: exitances and irradiances are in W m-2
-/// um-1 at a single wavelength, in W m-2 over a band.
+/// Integrals of the radiation times a weight function. Units: W m-2 over a band, W m-2 um-1 at a single wavelength.
 struct SpectralFactors {
   double emitted = 0.0;          ///< pi B(T); 0 without [emission]
   double surroundings = 0.0;     ///< pi B(T_surr), or the mean of a profile; 0 without [surroundings]

@@ -46,9 +46,8 @@ class LookupAxis {
   };
   Location locate(double value) const;
 
-  /// Lagrange interpolation from the `count` values around a location, or from all values if there are fewer. A
-  /// location at a value of the axis uses only this value. `shift` moves the window by some values, as long as it
-  /// contains the location. Domain: count from 2 to kMostStencil.
+  /// Lagrange interpolation from `count` values (or all, if fewer) around a location, or from the value at it. `shift`
+  /// moves the window by some values, as long as it contains the location. Domain: count from 2 to kMostStencil.
   Stencil stencil(const Location& location, std::size_t count, int shift = 0) const;
 
   /// Factors 1 / product of (x_i - x_j), j != i, of `count` values x_i from rank `first` in their divided difference.

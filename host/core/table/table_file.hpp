@@ -52,8 +52,7 @@ enum class TableFormat { kNetcdf, kCsv, kNpy };
 TableFormat format_of(const std::filesystem::path& path);
 
 /// Refuses an output path that a table cannot have, before the table is computed.
-/// Domain: a name with the suffix .nc, .csv or .npy in a folder that can be written to, or "-" (CSV on standard
-/// output).
+/// Domain: suffix .nc, .csv or .npy in a folder that can be written to, or "-" (CSV on standard output).
 /// Errors: InputError for another suffix, IoError for a folder or file that cannot be written.
 void check_output_path(const std::filesystem::path& path);
 

@@ -365,8 +365,7 @@ struct TableLookup::Lines {
     }
     if (largest[0] < 0.0) return kInfinity;
     if (largest[0] == 0.0) return 0.0;
-    // On a coarse axis the changes of all lines may pass through 0 together, so changes at the next levels limit the
-    // fall.
+    // On a coarse axis the changes of all lines may pass through 0 together, so the next levels limit the fall.
     largest[0] = std::max(largest[0], kFastestFall * largest[1]);
     if (is_short) largest[0] = std::max(largest[0], kFastestFallOfTwo * largest[2]);
     return factor * (largest[0] + std::max(largest[kLevels], 0.0));

@@ -43,9 +43,8 @@ class TableLookup {
 
   /// A value on each axis; values on axes that the table lacks are ignored.
   using Point = AxisArray<double>;
-  /// The result at a point inside the axes. Quantities that the table lacks are NaN.
-  /// Domain: next to entries outside the model's domain the window moves away from them. Between such entries the
-  /// result is NaN with status 4.
+  /// The result at a point inside the axes. Quantities that the table lacks are NaN. Next to entries outside the
+  /// model's domain the window moves away from them. Between such entries the result is NaN with status 4.
   PointResult at(const Point& point) const;
   PointResult at(double theta_deg, double sigma, double q) const {
     Point point{};

@@ -26,7 +26,7 @@ constexpr std::size_t kMostAngles = 1024;                      // most angles of
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostShrinking = 1032;              // most by which deflate shrinks, in files of other tools
+constexpr std::size_t kMostShrinking = 1032;              // other tools may use deflate, which leaves at least a 1032nd
 constexpr std::size_t kMostStoredTextBytes = 64U << 20U;  // the longest text is the scene, with at most 16 MiB
 
 constexpr const char* kPartHint =
@@ -127,8 +127,7 @@ std::vector<double> read_list(const Reader& reader, const std::string& name, std
   return values;
 }
 
-/// The texts have one length, with zero bytes at the end, or any length, as other writers store texts that are not
-/// ASCII. `read` fills the memory of `count` texts.
+/// Texts of one length, padded with zero bytes, or of any length. `read` fills the memory of `count` texts.
 template <class Read>
 std::vector<std::string> read_texts(const Reader& reader, const std::string& name, const Hdf5Handle& type,
                                     const Hdf5Handle& space, std::size_t count, const Read& read) {

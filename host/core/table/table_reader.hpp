@@ -22,8 +22,7 @@ class TableReader {
   const TableHead& head() const { return layout().head; }
 
   TableValues read(const TableBox& box) const;
-  /// Reads the entries at ascending positions, one value per variable and position, and checks the hash of the whole
-  /// table. Errors: also Cancelled.
+  /// Reads the entries at ascending positions, and checks the hash of the whole table. Errors: also Cancelled.
   TableValues read_entries(std::span<const std::size_t> positions, const Progress& progress) const;
 
   /// The sums of a part that was read, for check_hash.

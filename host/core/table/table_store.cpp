@@ -27,7 +27,7 @@
 namespace dolp {
 namespace {
 
-constexpr std::uint64_t kMostOverhead = 1U << 20U;  ///< bytes for shapes, names and units
+constexpr std::uint64_t kMostOverhead = 1U << 20U;  ///< bytes that HDF5 adds for shapes, names and units
 
 /// A file in memory, without a name. Only written bytes take memory; the other bytes read as zero.
 class MemoryFile {
@@ -173,8 +173,7 @@ void put_long_text(const Writer& writer, const std::string& name, const std::str
   const std::vector<hsize_t> shape = {text.size()};
   const Hdf5Handle length =  // never written, so that it takes no space in the file
       writer.define((name + "_length").c_str(), H5T_IEEE_F32BE, shape, nullptr, H5D_ALLOC_TIME_LATE);
-  // The netCDF library marks a dimension without coordinates by this text, which ends with the length as ten
-  // characters.
+  // The netCDF library marks a dimension without coordinates by this text and the length in ten characters.
   std::string digits = std::to_string(text.size());
   digits.insert(0, 10 - std::min<std::size_t>(digits.size(), 10), ' ');
   writer.check(H5DSset_scale(length.id(), ("This is a netCDF dimension but not a netCDF variable." + digits).c_str()));
@@ -201,8 +200,7 @@ void put_attributes(const Writer& writer, const TableHead& head) {
   if (const std::string data = spectral_data_of(head); !data.empty()) put_more(writer, {{kSpectralData, data}});
 }
 
-/// Without `along` the coordinate is a dimension. With `along` it is a variable over this dimension, or a single value
-/// if the handle is empty.
+/// `along`: dimension of the coordinate, or an empty handle for a single value; null if the coordinate is a dimension.
 template <class Described>
 Hdf5Handle put_coordinate(const Writer& writer, const Described& described, const std::vector<double>& values,
                           const Hdf5Handle* along = nullptr) {

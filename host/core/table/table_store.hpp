@@ -21,8 +21,7 @@ class TableStore {
   TableStore& operator=(const TableStore&) = delete;
   ~TableStore();
 
-  /// Writes a part with the quantities of the layout. Returns its sums, for the caller to add up. Errors: IoError,
-  /// Cancelled.
+  /// Writes a part. Returns its sums, for the caller to add up. Errors: IoError, Cancelled.
   ValueSums write(const TableValues& part, const PerAxis& first);
   /// Reads a written part. Errors: IoError.
   TableValues read(const TableBox& box) const;

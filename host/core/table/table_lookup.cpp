@@ -208,7 +208,7 @@ struct TableLookup::Rows {
   static double used(double weight) {
     return kOfSizes ? std::abs(weight) : weight;
   }
-  /// The same sum with loops whose length the compiler knows. Two partial sums run side by side.
+  /// Computes sum() with loops whose length the compiler knows. Two partial sums run side by side.
   template <std::size_t kCount, bool kOfSizes, class Value>
   double sum_dense(const Value& value) const {
     std::array<double, kCount> weights;

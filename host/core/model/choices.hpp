@@ -1,4 +1,3 @@
-// Enumerations of the choices in a scene, such as the masking, and their words in scene files, reports and case files.
 #pragma once
 
 #include <algorithm>
@@ -12,9 +11,8 @@ namespace dolp {
 
 enum class Distribution : std::uint32_t { kCauchy = 0, kGaussian = 1 };
 enum class Masking : std::uint32_t { kNone = 0, kVCavity = 1, kIntegral = 2, kSmith = 3 };
-/// True if the facets that are visible from a direction have the same projected area as the macroscopic surface. Then
-/// no more light is reflected than arrives, and rho and f have limits at 90 degrees. With the other maskings rho and f
-/// diverge there. Direct emission needs such a masking.
+/// True if the facets visible from a direction have the projected area of the surface. Then no more light is reflected
+/// than arrives, and rho and f have limits at 90 degrees; else they diverge there. Needed for direct emission.
 constexpr bool keeps_projected_area(Masking masking) {
   return masking == Masking::kVCavity || masking == Masking::kSmith;
 }
@@ -25,7 +23,7 @@ enum class DiffusePolarisation { kNone, kTransmission };
 enum class Mode { kHemispherical, kBistatic };
 enum class Precision { kAuto, kFloat, kDouble };
 
-/// The words of an enumeration, in the order of its values.
+/// The words in scene files, reports and case files, in the order of the enumerators.
 constexpr auto words_of(Distribution) { return std::array{"cauchy", "gaussian"}; }
 constexpr auto words_of(Masking) { return std::array{"none", "v-cavity", "integral", "smith"}; }
 constexpr auto words_of(Scattering) { return std::array{"single", "multiple"}; }

@@ -1,4 +1,3 @@
-// Decides how to compute the moments of one direction and one slope distribution.
 #pragma once
 
 #include "model/choices.hpp"
@@ -6,7 +5,7 @@
 
 namespace dolp {
 
-/// How the moments are obtained.
+/// How the moments of a direction and a slope distribution are obtained.
 enum class Treatment {
   kIntegrated,  ///< an evaluator computes them
   /// Reflectances of the smooth surface at theta, because sigma is so small that the slope density overflows a float.
@@ -15,12 +14,10 @@ enum class Treatment {
   kDivergentLimit,
 };
 
-/// A direction, and how its moments are obtained.
 struct Direction {
   double theta_deg = 0.0;
   double cos_theta = 1.0;  ///< cosine of `used_deg`; for a mirror at 90 degrees a tiny positive number
-  /// Zenith for the evaluator: `theta_deg`, or just below 90 degrees to approach a limit at 90 degrees.
-  double used_deg = 0.0;
+  double used_deg = 0.0;   ///< zenith for the evaluator: `theta_deg`, or just below 90 degrees for a limit there
   Treatment treatment = Treatment::kIntegrated;
 };
 

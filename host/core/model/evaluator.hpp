@@ -1,4 +1,3 @@
-// Interface of the evaluators.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +10,10 @@
 
 namespace dolp {
 
-/// The cost of computing moments.
 struct Work {
   double evaluations = 0.0;  ///< number of evaluations of the integrand
   double kernel_s = 0.0;     ///< time of the kernels: timestamps of the device, or duration of the loop on the CPU
-  /// Time of the host for sums over slopes, for interpolation, and for combining indices from responses.
-  double sums_s = 0.0;
+  double sums_s = 0.0;       ///< host time for sums over slopes, interpolation and combinations of responses
   std::uint64_t dispatches = 0;
   std::uint64_t interpolated = 0;  ///< entries whose moments are interpolated or combined, not computed by a kernel
   std::uint64_t interpolation_nodes = 0;  ///< moments that a kernel computes for these entries
@@ -32,7 +29,6 @@ struct Work {
   }
 };
 
-/// Evaluator, device and cost of a run, for the report.
 struct EvaluationReport : Work {
   std::string evaluator;           ///< vulkan, cpu or reference
   std::string device;              ///< name of the device, or of the processor
@@ -56,16 +52,13 @@ class ModelEvaluator {
   virtual ~ModelEvaluator() = default;
   virtual std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) = 0;
   virtual std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) = 0;
-  /// Announces that `scatter` will be called with this request. The evaluator may prepare for it in parallel with other
-  /// calls.
+  /// Announces a later call of `scatter`. The evaluator may prepare for it in parallel with other calls.
   virtual void prepare(const ScatteringRequest& /*request*/) {}
-  /// True if the evaluator can compute in double.
   virtual bool has_double() const { return true; }
   /// True if the evaluator must compute each entry separately. Then a run uses neither interpolation nor responses.
   virtual bool computes_each_entry() const { return false; }
   /// Totals over all calls since clear_report.
   virtual EvaluationReport report() const = 0;
-  /// Begins a new run: clears the report, so that it no longer contains earlier runs.
   virtual void clear_report() {}
 };
 

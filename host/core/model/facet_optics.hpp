@@ -1,4 +1,3 @@
-// Optics of a facet at one wavelength.
 #pragma once
 
 #include <compare>
@@ -14,7 +13,6 @@ struct OpticalConstants {
   friend auto operator<=>(const OpticalConstants&, const OpticalConstants&) = default;
 };
 
-/// A film of a coating, at one wavelength.
 struct Film {
   OpticalConstants index;
   double thickness = 0.0;  ///< in vacuum wavelengths

@@ -1,4 +1,3 @@
-// The hemispherical moments of the specular part of the pBRDF (k_s = 1).
 #pragma once
 
 #include <array>
@@ -22,7 +21,6 @@ class SkyBasis;
 /// The tightest tolerance of a rule in float. Below it rounding errors dominate.
 inline constexpr double kLeastFloatTolerance = 2e-6;
 
-/// A point at which moments are computed.
 struct MomentsPoint {
   double theta_deg = 0.0;
   SlopeShape shape;
@@ -30,8 +28,7 @@ struct MomentsPoint {
   friend bool operator==(const MomentsPoint&, const MomentsPoint&) = default;
 };
 
-/// Makes a request compute responses to the local angle of incidence (response_basis.hpp), instead of moments with the
-/// functions of a sky.
+/// Asks for responses to the local angle of incidence (response_basis.hpp) instead of moments with functions of a sky.
 struct Response {
   enum class Of : std::uint8_t {
     kReflected,  ///< responses of the reflected light
@@ -44,9 +41,8 @@ struct Response {
   Of of = Of::kReflected;
 };
 
-/// A request for the moments of a grid or of a list. A grid has all combinations of optics, theta, sigma and q, and q
-/// varies fastest, as in a table. A list has one value per entry in each of these four vectors. An entry is identified
-/// by its position in this order.
+/// A grid has all combinations of optics, theta, sigma and q; q varies fastest. A list has one value per entry in each
+/// of these four vectors. An entry is identified by its position in this order.
 struct MomentsRequest {
   enum class Layout { kGrid, kList };
 
@@ -59,30 +55,25 @@ struct MomentsRequest {
   bool may_interpolate = true;                  ///< allows interpolation between slope distributions, to `tolerance`
   bool has_extra_splits = false;                ///< adds split lines, so that the result can check a rule without them
   std::shared_ptr<const ResponseBasis> basis;   ///< basis from which all optics are combined; null: each is integrated
-  /// Moments::columns has one column for each function of this sky; null: no columns.
-  std::shared_ptr<const SkyBasis> sky;
-  std::optional<Response> response;  ///< asks for responses, which Moments::columns then has instead
+  std::shared_ptr<const SkyBasis> sky;  ///< Moments::columns has a column per function of this sky; null: no columns
+  std::optional<Response> response;     ///< asks for responses, which Moments::columns then has instead
   Layout layout = Layout::kGrid;
   std::vector<double> theta_deg;
   std::vector<FacetOptics> optics;  ///< bare facets, or facets with films
   std::vector<double> sigma;
   std::vector<double> q;
-  /// One flag per entry of a grid; empty: all are wanted. Moments of unwanted entries are undefined.
-  std::vector<char> wanted;
+  std::vector<char> wanted;  ///< one flag per entry of a grid; empty: all. Moments of unwanted entries are undefined
 
   std::size_t size() const;
   bool is_wanted(std::size_t entry) const { return wanted.empty() || wanted[entry] != 0; }
   std::size_t wanted_count() const;
-  /// `share` times the tolerance. In float the result is at least kLeastFloatTolerance, or at least the tolerance if
-  /// that is tighter.
+  /// `share` times the tolerance, but in float at least the smaller of kLeastFloatTolerance and the tolerance.
   double finer_tolerance(double share) const;
-  /// Number of slope distributions in a grid, sigma x q.
   std::size_t shapes() const { return sigma.size() * q.size(); }
   MomentsPoint operator[](std::size_t entry) const;
   /// The same request for only some directions of a grid, given by their positions in `theta_deg`.
   MomentsRequest of_directions(std::span<const std::size_t> directions) const;
-  /// Adds an entry to a list. The first call makes the request a list.
-  void append(const MomentsPoint& point);
+  void append(const MomentsPoint& point);  ///< also makes the request a list
 };
 
 /// Moments of one entry whose integrands contain a function g of the facet, |g| <= 1. For a sky, g depends on the
@@ -92,26 +83,23 @@ struct ColumnMoments {
   double i = 0.0;
   double q = 0.0;
   double error = 0.0;  ///< bound of the absolute errors of i and q; for a response the next three add to it
-  // Only for a response. i_apart and q_apart are differences between two rules, with their signs. If responses are
-  // summed with weights, so are these differences, and the magnitude of their sum is a bound of the error.
-  // relative_error is relative to the sum of the responses.
+  // Only for a response. i_apart and q_apart are signed differences between two rules. The magnitude of their weighted
+  // sum bounds the error of a weighted sum of responses. relative_error is relative to that sum.
   double i_apart = 0.0;
   double q_apart = 0.0;
   double relative_error = 0.0;
 };
 
-/// The moments of one entry. All have the factor cos(theta), which keeps them finite at theta = 90 degrees: r = rho
-/// cos(theta). For s and p polarisation, rho_s = rho_I + rho_Q and rho_p = rho_I - rho_Q.
+/// The moments of one entry for k_s = 1. All have the factor cos(theta), which keeps them finite at theta = 90 degrees:
+/// r = rho cos(theta). For s and p polarisation, rho_s = rho_I + rho_Q and rho_p = rho_I - rho_Q.
 struct Moments {
-  double r_i = 0.0;     ///< rho_I cos(theta)
-  double r_q = 0.0;     ///< rho_Q cos(theta), with its sign
-  double albedo = 0.0;  ///< A cos(theta): the integral of r_i for R = 1
-  /// The value of cos(theta) - r_i, summed without a subtraction, so that it keeps its digits where rho_I is near 1.
-  double deficit = 0.0;
+  double r_i = 0.0;      ///< rho_I cos(theta)
+  double r_q = 0.0;      ///< rho_Q cos(theta), with its sign
+  double albedo = 0.0;   ///< A cos(theta): the integral of r_i for R = 1
+  double deficit = 0.0;  ///< cos(theta) - r_i, computed without cancellation where rho_I is near 1
   /// Emission of the facets straight to the viewer: eps_I cos(theta). NaN if the request does not want direct emission.
   double direct_i = std::numeric_limits<double>::quiet_NaN();
-  /// The value of eps_Q cos(theta). For s and p polarisation, eps_s = eps_I + eps_Q and eps_p = eps_I - eps_Q.
-  double direct_q = std::numeric_limits<double>::quiet_NaN();
+  double direct_q = std::numeric_limits<double>::quiet_NaN();  ///< eps_Q cos(theta); eps_s = eps_I + eps_Q
   // Bounds of the absolute errors of these six numbers. They include quadrature, masking tables and rounding.
   double r_i_error = 0.0;
   double r_q_error = 0.0;
@@ -123,18 +111,16 @@ struct Moments {
   std::vector<ColumnMoments> columns = {};  ///< one column for each function of the request's sky, or for each response
 };
 
-/// A moment and the bound of its error.
 struct MomentMember {
   double Moments::*value;
   double Moments::*error;
 };
-/// All moments. The last two (kDirectMembers) are those of the direct emission.
 inline constexpr std::array<MomentMember, 6> kMomentMembers = {{{&Moments::r_i, &Moments::r_i_error},
                                                                 {&Moments::r_q, &Moments::r_q_error},
                                                                 {&Moments::albedo, &Moments::albedo_error},
                                                                 {&Moments::deficit, &Moments::deficit_error},
                                                                 {&Moments::direct_i, &Moments::direct_i_error},
                                                                 {&Moments::direct_q, &Moments::direct_q_error}}};
-inline constexpr std::size_t kDirectMembers = 2;
+inline constexpr std::size_t kDirectMembers = 2;  ///< the last members are direct_i and direct_q
 
 }  // namespace dolp

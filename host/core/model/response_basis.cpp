@@ -17,18 +17,15 @@ namespace {
 constexpr std::array<double, 5> kScales = {1.0, 0.3, 0.1, 0.03, 0.01};
 constexpr Eigen::Index kCoefficients = 65;  // coefficients that are computed for a curve
 constexpr Eigen::Index kLastOfCurve = 4;
-constexpr double kReach = 0.25;  // largest error of a combined curve, as a share of the tolerance
-// Time that each response adds to a kernel pass, as a share of the time of a pass without responses.
-constexpr double kTimeOfResponse = 0.08;
-// Passes with responses must be faster than separate indices by at least this factor.
-constexpr double kLeastGain = 1.25;
+constexpr double kReach = 0.25;           // largest error of a combined curve, as a share of the tolerance
+constexpr double kTimeOfResponse = 0.08;  // time that a response adds to a pass, relative to a pass without responses
+constexpr double kLeastGain = 1.25;       // responses must be this many times faster than separate indices
 // Allowed numbers of responses. They are few because a driver compiles separate kernels for each of them.
 constexpr std::array<std::size_t, 3> kCounts = {8, 16, kMostResponses};
 constexpr std::size_t kMostCandidates = 256;  // most indices of a run among which the reference index is chosen
 constexpr std::size_t kMostTried = 32;  // most indices of a run from which c0 and the number of responses are chosen
 
-/// All kCoefficients coefficients of the curves of an index. Columns: ResponseWeights::absorbed and split.
-using CurveCoefficients = Eigen::Matrix<double, kCoefficients, 2>;
+using CurveCoefficients = Eigen::Matrix<double, kCoefficients, 2>;  ///< columns: ResponseWeights::absorbed and split
 
 CurveCoefficients coefficients_of(const FacetOptics& index, double c0) {
   static const std::vector<double> points = lobatto_points(kCoefficients);

@@ -1,11 +1,8 @@
-// Combines the moments of many indices from the moments of one index and from responses to the local angle of
-// incidence.
-//
+// Combines the moments of many indices from the moments of one index and from responses.
 // The moments of single scattering are linear in the Fresnel reflectances as functions of c, the cosine of the local
-// angle of incidence. A response is a moment in which a Chebyshev polynomial of 2 u - 1, u = asinh(c / c0) / asinh(1 /
-// c0), replaces the reflectances. The Chebyshev coefficients of an index's curves are the weights with which the
-// responses sum to its moments. This holds at every direction, slope distribution and masking. The omitted coefficients
-// bound the error.
+// angle of incidence. A response is a moment with a Chebyshev polynomial of 2 u - 1, u = asinh(c / c0) / asinh(1 / c0),
+// instead of the reflectances. The Chebyshev coefficients of an index's curves are the weights with which responses sum
+// to its moments, at every direction, slope distribution and masking. The omitted coefficients bound the error.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,7 +14,6 @@
 
 namespace dolp {
 
-/// Chebyshev coefficients of the two curves of an index over the local angle of incidence.
 struct ResponseWeights {
   Eigen::VectorXd absorbed;     ///< coefficients of 1 - (R_s + R_p) / 2
   Eigen::VectorXd split;        ///< coefficients of (R_s - R_p) / (2 sin^2)
@@ -25,12 +21,10 @@ struct ResponseWeights {
   double split_error = 0.0;
 };
 
-/// The choice of responses from which the indices of a run are combined.
 class ResponseBasis {
  public:
-  /// Chooses a basis for some indices. Errors of the combined curves stay below the tolerance, relative to the
-  /// reflectance_level of the index. `passes`: number of kernel passes that compute responses. Null if the passes cost
-  /// more than integrating each index.
+  /// The errors of combined curves stay below the tolerance, relative to the reflectance_level of the index. `passes`:
+  /// number of kernel passes that compute responses. Null if they cost more than integrating each index.
   static std::shared_ptr<const ResponseBasis> of(const std::vector<FacetOptics>& indices, double tolerance,
                                                  std::size_t passes);
 
@@ -39,12 +33,10 @@ class ResponseBasis {
   const FacetOptics& reference() const { return reference_; }
   std::size_t count() const { return count_; }
   double c0() const { return c0_; }
-  /// Distance in the complex plane from the cosines [0, 1] to the nearest singularity of the polynomials or of the
-  /// curves.
+  /// Distance in the complex plane from the cosines [0, 1] to the nearest singularity of polynomials or curves.
   double bend() const { return bend_; }
   const ResponseWeights& of_reference() const { return of_reference_; }
-  /// The coefficients of an index; nullopt if its curves need more responses, for example because of total reflection.
-  /// The result depends only on the basis and the index.
+  /// Nullopt if the curves of the index need more responses, for example because of total reflection.
   std::optional<ResponseWeights> weights_of(const FacetOptics& index) const;
 
  private:
@@ -58,7 +50,6 @@ class ResponseBasis {
   double tolerance_ = 0.0;
 };
 
-/// Most responses of a basis. Kernels have no more columns.
-inline constexpr std::size_t kMostResponses = 24;
+inline constexpr std::size_t kMostResponses = 24;  ///< limit of the kernels
 
 }  // namespace dolp

@@ -1,4 +1,3 @@
-// The Mueller matrices of the pBRDF for pairs of beams.
 #pragma once
 
 #include <array>
@@ -35,7 +34,6 @@ struct ScatteringEntry {
   std::uint32_t index = 0;
 };
 
-/// A request for Mueller matrices: lists of pairs of beams, slope shapes and facet optics, and the wanted combinations.
 /// Domain: zeniths in [0, 90] degrees, but not both 90; sigma > 0; cauchy needs q > 1, and q > 3/2 with smith masking.
 struct ScatteringRequest {
   Distribution distribution = Distribution::kCauchy;

@@ -1,4 +1,3 @@
-// Axes of grids and tables, and the entries of a scene: a grid or scattered points.
 #pragma once
 
 #include <array>
@@ -33,12 +32,11 @@ PerAxis positions_on_axes(std::size_t position, const PerAxis& counts);
 PerAxis counts_of(const Axes& axes);
 std::size_t size_of(const PerAxis& counts);
 
-/// One entry of a table or of a list of points. Without an `index` it has the scene's material.
 struct SceneEntry {
   double theta_deg = 0.0;
   SlopeShape shape;
-  std::optional<OpticalConstants> index;
-  std::uint32_t variant = 0;  ///< position in SceneEntries::variants
+  std::optional<OpticalConstants> index;  ///< nullopt: the material of the scene
+  std::uint32_t variant = 0;              ///< position in SceneEntries::variants
 };
 
 /// A value of one film of the coating, which replaces the value in the scene.
@@ -50,8 +48,7 @@ struct FilmValue {
   friend auto operator<=>(const FilmValue&, const FilmValue&) = default;
 };
 
-/// Changes that an entry makes to the scene besides direction, slope shape and index. Neighbouring entries mostly share
-/// a variant. Each variant needs a separate Radiometry.
+/// Changes of an entry to the scene, except direction, slope shape and index. Each variant needs its own Radiometry.
 struct SceneVariant {
   std::optional<double> wavelength_um = {};               ///< nullopt: the scene's spectrum
   std::optional<std::uint32_t> material = {}, band = {};  ///< positions in SceneModel::materials and bands
@@ -63,10 +60,9 @@ struct SceneVariant {
 /// The axes whose values make variants, in the order of tables. In a table all entries of a variant are consecutive.
 inline constexpr std::array kVariantAxes = {Axis::kMaterial, Axis::kBand, Axis::kWavelength, Axis::kTemperature};
 
-/// Sets the member of a variant that belongs to an axis. Axes outside of kVariantAxes change nothing.
+/// Axes outside of kVariantAxes change nothing.
 void set_value(SceneVariant& variant, Axis axis, double value);
 
-/// The variants of a grid, in the order of its entries.
 std::vector<SceneVariant> variants_of(const Axes& axes);
 
 /// Consecutive entries of a part of a grid that are consecutive in the whole grid as well.
@@ -76,8 +72,7 @@ struct GridRun {
   std::size_t count = 0;
 };
 
-/// The entries of a scene: a grid, which is the product of its axes, or a list of points. An entry is identified by its
-/// position. A grid stores only its axes.
+/// A grid, which is the product of its axes, or a list of points. An entry is identified by its position.
 class SceneEntries {
  public:
   SceneEntries() = default;
@@ -106,7 +101,6 @@ class SceneEntries {
   const std::vector<double>& sigma() const { return axes_[Axis::kSigma]; }
   const std::vector<double>& q() const { return axes_[Axis::kQ]; }
   PerAxis axis_positions(std::size_t entry) const { return positions_on_axes(entry, counts_); }
-  /// Number of entries that differ only in sigma and q.
   std::size_t entries_per_direction() const { return sigma().size() * q().size(); }
   const OpticalConstants& index() const { return index_; }
   /// Position in variants() of the entry at these positions on the axes.
@@ -122,8 +116,7 @@ class SceneEntries {
   std::vector<SceneEntries> parts(std::size_t most) const;
   /// The part of a grid with only the values first[i], ..., first[i] + count[i] - 1 of each axis.
   SceneEntries part(const PerAxis& first, const PerAxis& count) const;
-  /// For a part of a grid: the position on each axis at which the part begins, and the counts and axes of the whole
-  /// grid.
+  /// For a part of a grid: its first position on each axis, and the counts and axes of the whole grid.
   const PerAxis& first() const { return first_; }
   PerAxis first_in(const SceneEntries& whole) const;
   const PerAxis& whole() const { return whole_; }
@@ -143,8 +136,7 @@ class SceneEntries {
   std::vector<SceneEntry> points_;
 };
 
-/// Calls use(run) for each run of entries of a part. The part begins at the positions `first` and has `count` values on
-/// each axis; the whole grid has `whole` values on each axis.
+/// The part begins at the positions `first`. The part and the whole grid have `count` and `whole` values on each axis.
 void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& whole,
                   const std::function<void(const GridRun&)>& use);
 

@@ -13,18 +13,14 @@
 namespace dolp {
 namespace {
 
-// Chebyshev points in each part of the zeniths. Chosen: Planck's function of a temperature that is linear in zenith
-// needs fewer.
-constexpr Eigen::Index kPoints = 17;
+constexpr Eigen::Index kPoints = 17;  // chosen; Planck's function of a temperature linear in zenith needs fewer
 
-// Between the nodes, a sum of functions may miss a sky by up to this factor more than at the nodes. The functions are
-// smooth within a part.
+// Between the nodes, a sum of functions may miss a sky by up to this factor more than at the nodes.
 constexpr double kBetweenNodes = 1.5;
 constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
 // If a part has enough points, its Chebyshev coefficients fall at least geometrically. Then the sum of the omitted ones
-// is less than kBeyondLast times the sum of the last kLastCoefficients. If they do not fall, the error is as large as
-// these.
+// is less than kBeyondLast times the sum of the last kLastCoefficients.
 constexpr Eigen::Index kLastCoefficients = 4;
 constexpr double kBeyondLast = 2.0;
 

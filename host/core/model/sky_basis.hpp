@@ -1,4 +1,3 @@
-// Functions of the zenith that describe a sky, and a basis: a few functions whose sums give the sky at all wavelengths.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,8 +7,7 @@
 
 namespace dolp {
 
-/// Finds the weighted sum of some columns that is nearest to given values. Method: orthonormal columns by Gram and
-/// Schmidt. A second pass keeps them orthogonal to rounding.
+/// Finds the weighted sum of columns that is nearest to given values, by Gram-Schmidt orthogonalization.
 class LeastSquares {
  public:
   LeastSquares() = default;
@@ -20,17 +18,15 @@ class LeastSquares {
   Eigen::VectorXd solve(const Eigen::VectorXd& values) const;
 
  private:
-  // The columns are orthonormal_ * triangle_.
   Eigen::MatrixXd orthonormal_;
-  Eigen::MatrixXd triangle_;
+  Eigen::MatrixXd triangle_;  ///< the columns are orthonormal_ * triangle_
 };
 
-/// Zeniths at which functions of a sky are tabulated. The zeniths from 0 to 90 are split into parts at `ends_deg`,
-/// where the functions may have corners. Within a part a function is the polynomial through its values at
-/// Chebyshev-Lobatto points.
+/// Zeniths at which functions of a sky are tabulated. Within a part, between two of `ends_deg`, a function is the
+/// polynomial through its values at Chebyshev-Lobatto points. At the ends it may have corners.
 class SkyNodes {
  public:
-  /// `ends_deg`: the ends of the parts, ascending from 0 to 90, at least three.
+  /// `ends_deg`: at least three values, ascending from 0 to 90.
   explicit SkyNodes(std::vector<double> ends_deg);
 
   const std::vector<double>& ends_deg() const { return ends_deg_; }
@@ -42,10 +38,9 @@ class SkyNodes {
   /// Estimate of the largest distance between a function and the polynomials through its values at the nodes.
   double error(const Eigen::VectorXd& values) const;
 
-  /// Weights with which a function's values at the nodes add up to its mean over the sky. In this mean a zenith counts
-  /// with cos^(power + 1) sin, times `factor` of the cosine if there is one. A surface receives this mean if its
-  /// reflectance is proportional to cos^power times the factor.
-  /// Domain: power > -1.
+  /// Weights that add a function's values at the nodes up to a mean over the sky, in which a zenith counts with
+  /// cos^(power + 1) sin, times `factor` of the cosine. A surface receives this mean if its reflectance is proportional
+  /// to cos^power times the factor. Domain: power > -1.
   Eigen::VectorXd mean_weights(double power, const std::function<double(double)>& factor = {}) const;
 
  private:
@@ -60,21 +55,17 @@ struct SkyWeights {
   double error = 0.0;  ///< bound of the distance between function and sum, at any zenith
 };
 
-/// A few functions of the zenith with absolute values up to 1. The moments with these functions give the moments with
-/// every weighted sum of them.
+/// A few functions of the zenith with absolute values up to 1. Their weighted sums give a sky at all wavelengths.
 class SkyBasis {
  public:
-  /// Chooses some of `functions`, given by their values at the nodes. Adds the worst represented one until weighted
-  /// sums of the chosen ones represent each function to `tolerance` of its largest value, or until kMostSkyFunctions
-  /// are chosen.
+  /// Chooses some of `functions`, given at the nodes. Adds the worst represented one until weighted sums represent each
+  /// function to `tolerance` of its largest value, or until kMostSkyFunctions are chosen.
   SkyBasis(SkyNodes nodes, const std::vector<Eigen::VectorXd>& functions, double tolerance);
 
   const SkyNodes& nodes() const { return nodes_; }
   std::size_t size() const { return static_cast<std::size_t>(values_.cols()); }
-  /// The values of the functions of the basis at a zenith.
   Eigen::RowVectorXd at(double zenith_deg) const { return nodes_.at(zenith_deg, values_); }
   SkyWeights weights_of(const Eigen::VectorXd& function) const;
-  /// A basis with only one function of this basis.
   SkyBasis only(std::size_t function) const {
     return {nodes_, {values_.col(static_cast<Eigen::Index>(function))}, 0.0};
   }
@@ -82,10 +73,9 @@ class SkyBasis {
  private:
   SkyNodes nodes_;
   Eigen::MatrixXd values_;  ///< nodes x functions
-  LeastSquares sums_;       ///< finds weighted sums of these functions
+  LeastSquares sums_;
 };
 
-/// Most functions of a basis. Kernels take no more.
-inline constexpr std::size_t kMostSkyFunctions = 8;
+inline constexpr std::size_t kMostSkyFunctions = 8;  ///< limit of the kernels
 
 }  // namespace dolp

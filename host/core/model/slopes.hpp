@@ -1,30 +1,24 @@
-// The distribution of the facets' slopes.
 #pragma once
 
 #include "model/choices.hpp"
 
 namespace dolp {
 
-/// The two parameters of the slope distribution. The gaussian ignores q.
 struct SlopeShape {
   double sigma = 0.0;
-  double q = 2.0;
+  double q = 2.0;  ///< ignored by the gaussian
   friend bool operator==(const SlopeShape&, const SlopeShape&) = default;
 };
 
-/// m = sqrt(2) sigma. Slopes are measured in this unit.
-double slope_width(const SlopeShape& shape);
+double slope_width(const SlopeShape& shape);  ///< m = sqrt(2) sigma, the unit of slopes
 
 /// Slope width sigma of the sea in a wind of U m/s. The slopes are summed over all directions.
-///
 /// Equation: 2 sigma^2 = m^2 = 0.003 + 0.00512 U.
 /// Source: Cox and Munk, J. Opt. Soc. Am. 44 (1954) 838: clean sea, U from 1 to 14 m/s, 12.5 m above the water.
 double sigma_of_wind(double wind_m_s);
-/// Inverse of sigma_of_wind.
 double wind_of_sigma(double sigma);
 
 /// Share of the facets that are steeper than a slope.
-///
 /// Equation: exp(-u^2) for the gaussian, (1 + u^2)^(1 - q) for the cauchy distribution, with u = slope / m.
 /// Domain: slope >= 0. With sigma = 0 no facet is steeper.
 double steeper_share(Distribution distribution, const SlopeShape& shape, double slope);

@@ -37,14 +37,12 @@ ReflectedAmplitudes interface_amplitudes(const Wave& above, const Wave& below) {
 using Complex = std::complex<double>;
 
 SmoothAbsorptance bare_absorptance(const OpticalConstants& index, double cosine) {
-  // If n and k are smaller than this, fourth powers of N underflow. Such a medium absorbs less than 4e-75, so this n
-  // may replace its n.
+  // Below this n and k, fourth powers of N underflow. The medium absorbs less than 4e-75, so this n may replace its n.
   constexpr double kLeast = 1e-75;
   const double n = index.k < kLeast ? std::max(index.n, kLeast) : index.n;
   const double k = index.k;
   const Complex square((n - k) * (n + k), 2.0 * n * k);
-  // Real part of N^2 - sin^2(beta). The first form keeps the digits of a small N^2, the second those of N^2 - 1 for n
-  // near 1.
+  // Real part of N^2 - sin^2(beta). The first form keeps the digits of a small N^2, the second the digits of N^2 - 1.
   const bool is_small = n < 0.5 && k < 0.5;
   const double real =
       is_small ? square.real() - (1.0 - cosine) * (1.0 + cosine) : (n - 1.0) * (n + 1.0) - k * k + cosine * cosine;
@@ -56,7 +54,6 @@ SmoothAbsorptance bare_absorptance(const OpticalConstants& index, double cosine)
           transmitted / of_s * (std::norm(square - 1.0) / of_p)};
 }
 
-/// 1 - R_s and 1 - R_p of a medium under films, or from measured reflectances.
 SmoothAbsorptance covered_absorptance(const FacetOptics& optics, double cosine) {
   if (!optics.measured) {
     const ReflectedAmplitudes r = film_amplitudes(optics, cosine);
@@ -78,8 +75,7 @@ SmoothAbsorptance covered_absorptance(const FacetOptics& optics, double cosine) 
   return {1.0 - mean - half, 1.0 - mean + half};
 }
 
-/// (R_s - R_p) / sin^2(beta). At normal incidence this is 0 / 0; near it the quotient is extrapolated linearly in
-/// sin^2(beta).
+/// (R_s - R_p) / sin^2(beta). Near normal incidence, where it is 0 / 0, it is extrapolated linearly in sin^2(beta).
 double split_of(const FacetOptics& optics, double cosine, const SmoothAbsorptance& absorbed_here) {
   constexpr double kStep = 1e-5;
   const double sin2 = (1.0 - cosine) * (1.0 + cosine);

@@ -7,14 +7,12 @@
 
 namespace dolp {
 
-/// Reflection coefficients of a facet, for amplitudes.
 struct ReflectedAmplitudes {
   std::complex<double> s;
   std::complex<double> p;
 };
 
 /// Amplitude reflection coefficients of a medium under films.
-///
 /// Equation: the recursion r = (r_j + r e^(2 i delta)) / (1 + r_j r e^(2 i delta)) from the medium outward, with the
 /// coefficient r_j of interface j, delta = 2 pi d q / lambda and q = sqrt(N^2 - sin^2 beta) of the film below it.
 /// Source: Born and Wolf, Principles of Optics, section 1.6. Conventions: r_p = -r_s at normal incidence.
@@ -31,8 +29,6 @@ struct SmoothAbsorptance {
   double split = 0.0;  ///< (R_s - R_p) / sin^2(angle of incidence)
 };
 
-/// Absorptance of a smooth surface at an angle of incidence.
-///
 /// Equation: a bare medium has 1 - R_s = 4 c Re(w) / |c + w|^2 and 1 - R_p = 4 c Re(N^2* w) / |N^2 c + w|^2, with w =
 /// sqrt(N^2 - 1 + c^2). With films it is 1 - |r|^2, with r of film_amplitudes.
 /// Domain: cosine c in (0, 1], n > 0, k >= 0. Total reflection (n < 1, k = 0) gives exactly 0.
@@ -44,15 +40,11 @@ SmoothAbsorptance smooth_absorptance(const FacetOptics& optics, double cosine);
 /// normal incidence. Otherwise both are means over four angles, because films may reflect nothing at one angle.
 double reflectance_level(const FacetOptics& optics);
 
-/// Cosine of the angle at which total reflection begins, sqrt(1 - Re N^2), if the reflectances have a kink there (k =
-/// 0) or nearly one; else 0.
+/// Cosine at which total reflection begins, sqrt(1 - Re N^2), if the reflectances have a kink or nearly one; else 0.
 double critical_cosine(const FacetOptics& optics);
 
-/// Moments of a mirror, which is the limit of every surface for sigma -> 0: R_s and R_p at the direction, without
-/// masking.
-///
-/// Domain: cosine in (0, 1].
-/// Accuracy: the same as for smooth_absorptance.
+/// Moments of a mirror, the limit of every surface for sigma -> 0: R_s and R_p at the direction, without masking.
+/// Domain: cosine in (0, 1]. Accuracy: see smooth_absorptance.
 Moments mirror_moments(const FacetOptics& optics, double cosine);
 
 }  // namespace dolp

@@ -1,4 +1,3 @@
-// Diffuse reflection of a scene's surface at one index.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +15,6 @@ struct DiffuseLight {
 };
 
 /// The diffuse part of a pBRDF.
-///
 /// Equation: f = k_d / pi (cos theta_i cos theta_r)^c. With diffuse_polarisation "transmission" the light enters the
 /// body, loses its polarisation there and leaves. Then f also has the factor t(theta_r) t(theta_i)^T / t_+(0)^2, with t
 /// = (t_+, t_-, 0, 0) and t_+- = (T_s +- T_p) / 2 of the smooth surface; the angle 0 is normal incidence.
@@ -26,14 +24,13 @@ class DiffuseReflection {
  public:
   DiffuseReflection(const Surface& surface, const FacetOptics& optics);
 
-  /// The diffuse part of rho. By reciprocity it is also the reflectance for uniform incident light. Domain: cosine in
-  /// [0, 1].
+  /// By reciprocity this is also the reflectance for uniform incident light. Domain: cosine in [0, 1].
   DiffuseLight rho(double cosine) const;
   /// The diffuse pBRDF times pi cos(theta_i).
   DiffuseLight beam(double cos_theta_i, double cos_theta_r) const;
   /// t_+ and t_- at a direction, each divided by t_+ at normal incidence. (1, 0) without diffuse_polarisation.
   DiffuseLight transmitted(double cosine) const;
-  /// Weights of a sky's values at nodes. The weighted sum is the mean radiance that the diffuse part receives.
+  /// Weights that sum a sky's values at nodes to the mean radiance that the diffuse part receives.
   Eigen::VectorXd mean_weights(const SkyNodes& nodes) const;
 
  private:

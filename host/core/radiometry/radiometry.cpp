@@ -95,8 +95,7 @@ bool is_known(const Moments& moments) {
   return !std::isnan(moments.r_i) && !std::isnan(moments.r_q) && !std::isnan(moments.deficit);
 }
 
-// The specular part of rho has a limit if it belongs to a mirror or to n = 1. Then it stays below 2 as the cosine
-// vanishes.
+// The specular part of rho has a limit for a mirror or n = 1, and then stays below 2 as the cosine vanishes.
 bool reflectance_diverges(const Surface& surface, const Direction& direction, std::span<const Moments> moments) {
   if (direction.theta_deg != kRightAngle_deg) return false;
   if (direction.cos_theta == 0.0 || diffuse_diverges(surface)) return true;
@@ -106,7 +105,6 @@ bool reflectance_diverges(const Surface& surface, const Direction& direction, st
 }
 
 /// The terms of I and Q that grow fastest as cos(theta) -> 0, times a factor that makes them finite.
-///
 /// Equation: let D be the exitance of the surroundings, minus pi B unless the emission is fresnel. If D is not 0, the
 /// terms are D r_i and D r_q. If D is 0, they are E0 r_i, E0 r_q, the path and, unless the emission is fresnel, pi B.
 Stokes grazing_stokes(const SceneModel& scene, const SpectralRule& rule, std::span<const SkyWeights> sky,
@@ -142,8 +140,7 @@ PointResult grazing_limit(const SceneModel& scene, const SpectralRule& rule, std
   result[kRhoErrorEstimate] = 0.0;
   if (keeps_projected_area(surface.masking)) {
     if (direction.cos_theta > 0.0) result[kAlbedo] = moments.front().albedo / direction.cos_theta;
-    // A diverging diffuse part is unpolarised, so DOLP is 0. A fresnel emission at the temperature of the surroundings
-    // is an exception, for which no limit is given.
+    // A diverging diffuse part is unpolarised, so DOLP is 0. No limit is given if emission and surroundings cancel.
     const bool cancels = emission_model(scene) == EmissionModel::kFresnel && is_isothermal(rule);
     if (diffuse_diverges(surface) && !cancels) result[kDolp] = result[kQOverI] = result[kErrorEstimate] = 0.0;
     return result;
@@ -229,7 +226,7 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
                                  double cos_theta_i, std::span<const Scattered> scattered) const {
   const bool bistatic = scene_.geometry.mode == Mode::kBistatic;
   PointResult result;
-  boost::container::small_vector<Reflectance, 1> reflected;  // needs no allocation in most scenes, which have one sample
+  boost::container::small_vector<Reflectance, 1> reflected;  // most scenes have one sample
   boost::container::small_vector<DiffuseSample, 1> diffuse;
   boost::container::small_vector<DiffuseLight, 1> diffuse_beam;
   for (std::size_t j = 0; j < moments.size(); ++j) {

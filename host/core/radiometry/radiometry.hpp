@@ -1,5 +1,3 @@
-// Converts moments to the quantities that a sensor measures: rho, Stokes parameters, DOLP, error bounds and status, in
-// double.
 #pragma once
 
 #include <memory>
@@ -16,8 +14,7 @@
 
 namespace dolp {
 
-/// Radiometry of a scene. The constructor prepares everything that does not depend on the entry.
-///
+/// Converts moments to the quantities that a sensor measures.
 /// Equation: I = pi B (1 - rho_I) + X rho_I and Q = (X - pi B) rho_Q, with X = E0 cos(theta) + pi B(T_surr); then the
 /// path is applied. With emission.model = "fresnel" the emission uses 1 - R_s(theta) and 1 - R_p(theta) of the smooth
 /// surface instead of 1 - rho_s and 1 - rho_p, for any k_s and diffuse part. In bistatic mode X has no E0, the sums are
@@ -27,17 +24,14 @@ namespace dolp {
 class Radiometry {
  public:
   /// `kept`: effects that contribute. If the moments are not kept, the specular part of rho counts as 0, `point`
-  /// ignores the numbers in its Moments, and quantities that need them are NaN. `dropped`: bound by which the other
-  /// effects change DOLP; it is added to the error estimates. `sky`: basis with which the moments were computed; null
-  /// means the basis of this scene.
+  /// ignores the numbers in its Moments, and quantities that need them are NaN. `dropped`: bound of the change of DOLP
+  /// by other effects; it is added to the error estimates. `sky`: basis of the moments; null: basis of the scene.
   explicit Radiometry(const SceneModel& scene, const KeptEffects& kept = {}, double dropped = 0.0,
                       const std::shared_ptr<const SkyBasis>& sky = nullptr);
 
   /// The spectral rule of the scene. `point` needs moments for the index of each of its samples, in this order.
   const SpectralRule& rule() const { return rule_; }
 
-  /// Result at one entry.
-  /// Shape: one Moments per sample of rule(), in the order of the samples.
   /// Domain: if a moment is NaN, the entry is outside the model's domain, the status is 4 and every quantity is NaN. At
   /// 90 degrees rho diverges with masking none or integral, or with k_d > 0 and c < 0. Then rho and the Stokes
   /// parameters are NaN with status 1 | 4, and dolp is the limit.
@@ -51,8 +45,7 @@ class Radiometry {
   };
   Optics optics_with(std::vector<FacetOptics> facets) const;
 
-  /// Result at an entry with a separate n or k, so that its facets are not those of rule(). Only the fresnel emission
-  /// and a polarised diffuse part use `optics`.
+  /// For an entry with a separate n or k. Only fresnel emission and a polarised diffuse part use `optics`.
   PointResult point(const Direction& direction, std::span<const Moments> moments, const Optics& optics) const;
 
   /// Result in bistatic mode. `moments` and rho belong to the direction of the view; the source is at theta_i.
@@ -71,13 +64,13 @@ class Radiometry {
   SceneModel scene_;  ///< the surface lacks its specular or diffuse part if that is dropped
   double beam_specular_;
   KeptEffects kept_;
-  double dropped_;  ///< bound by which dropped effects change DOLP
+  double dropped_;
   bool knows_rho_;
   SpectralRule rule_;
   SpectralRule kept_rule_;                 ///< rule_ with the factors of dropped effects set to 0
   std::shared_ptr<const SkyBasis> basis_;  ///< basis of the sky; null if the sky is absent or dropped
   std::vector<SkyWeights> sky_;            ///< weights of the sky in each sample; empty without a profile
-  Optics optics_;                          ///< optics of rule_
+  Optics optics_;
 };
 
 }  // namespace dolp

@@ -9,11 +9,10 @@
 namespace dolp {
 namespace {
 
-// Rounding of reflectances, which are computed by fewer than 8 operations on positive terms.
+// Reflectances are computed by fewer than 8 operations on positive terms.
 constexpr double kReflectanceRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
-/// The weight of a sample in the mean reflectance: its emission if the scene emits, else the light that falls on the
-/// surface, else the width of its band.
+/// A sample counts with its emission if the scene emits, else with the incident light, else with the width of its band.
 double mean_weight(const SpectralSample& sample, double total_emitted, double total_incident, double cos_theta) {
   if (total_emitted != 0.0) return sample.emitted;
   if (total_incident != 0.0) return sample.irradiance * cos_theta + sample.surroundings;

@@ -1,4 +1,3 @@
-// Reflectance and emissivity of a scene's surface, with bounds of their errors.
 #pragma once
 
 #include <span>
@@ -10,7 +9,6 @@
 
 namespace dolp {
 
-/// Reflectance at one index, with bounds of the errors.
 struct Reflectance {
   double rho_i = 0.0;
   double rho_q = 0.0;
@@ -30,14 +28,12 @@ struct Emissivity {
   double terms = 0.0;  ///< sum of the magnitudes of the terms of i, or of q; rounding is relative to it
 };
 
-/// Mean of rho over the spectral samples.
 struct MeanReflectance {
   double rho_i = 0.0;
   double rho_q = 0.0;
   double error = 0.0;  ///< error of rho_i or of rho_q, whichever is larger
 };
 
-/// Reflectance that follows from the moments. `diffuse`: the diffuse part of rho.
 Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta, const DiffuseLight& diffuse);
 
 /// True if rho_s or rho_p is outside [0, 1] by more than its error.
@@ -46,11 +42,9 @@ bool is_unphysical(const Reflectance& r);
 /// Mean of rho over the samples. Its weights depend on the radiation that the scene has (see Quantity).
 MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances, double cos_theta);
 
-/// Emissivity of the smooth surface.
 Emissivity fresnel_emissivity(const FacetOptics& index, double cos_theta);
 
 /// Emissivity for the light that facets emit straight to the viewer (direct emission).
-///
 /// Equation: eps_I = k_s eps_I,direct + 1 - k_s - diffuse_I, eps_Q = k_s eps_Q,direct - diffuse_Q.
 Emissivity direct_emissivity(const Surface& surface, const Moments& moments, double cos_theta,
                              const DiffuseLight& diffuse);

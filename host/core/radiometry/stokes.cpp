@@ -11,8 +11,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Rounding of the Stokes sums, relative to their terms: one or two units in the last place, times Planck's exponent,
-// which is at most 745.
+// Relative to the terms of a sum: one or two units in the last place, times Planck's exponent, at most 745.
 constexpr double kRadianceRounding = 1e-12;
 
 /// Contribution of one sample to I, with the emission 1 - rho of Kirchhoff's law.
@@ -22,10 +21,9 @@ struct Intensity {
   double error = 0.0;  ///< error that follows from the errors of the moments
 };
 
-/// Equation: I = pi B (1 - rho_I) + X rho_I = pi B + (X - pi B) rho_I. The function uses the form with the smaller
-/// terms. The first form keeps digits for a metal; the second keeps them for a reflectance far above 1, and for equal
-/// temperatures. The errors of rho_I and of the absorbed part are correlated. So the error bound may use only one of
-/// them and add their mismatch.
+/// Equation: I = pi B (1 - rho_I) + X rho_I = pi B + (X - pi B) rho_I. The form with the smaller terms is used: the
+/// first keeps digits for a metal, the second for equal temperatures and for a reflectance far above 1. The errors of
+/// rho_I and of the absorbed part are correlated, so the error bound may use only one of them and add their mismatch.
 Intensity moments_intensity(double emitted, double incident, double net, double net_terms, const Reflectance& r) {
   const double split_terms = std::abs(emitted * r.absorbed) + std::abs(incident * r.rho_i);
   const double whole_terms = std::abs(emitted) + net_terms * std::abs(r.rho_i);
@@ -53,7 +51,6 @@ void add_moments_sample(Stokes& sum, const SpectralSample& sample, const Reflect
   sum.q_error += std::abs(net) * r.rho_q_error + rounding * net_terms * std::abs(r.rho_q);
 }
 
-/// Adds one sample whose emission is not 1 - rho to the sums.
 void add_emitting_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, const Emissivity& e,
                          double direct, double rounding) {
   const double incident = direct + sample.surroundings;

@@ -1,4 +1,3 @@
-// Stokes parameters summed over the spectral samples, with bounds of their errors.
 #pragma once
 
 #include <optional>
@@ -26,7 +25,6 @@ struct Stokes {
 };
 
 /// Lower and upper bound of the DOLP that the surface has with all bounces.
-///
 /// Equation: the true eps_I exceeds the direct eps_I by some d with 0 <= d <= D = 1 - rho_I - eps_I,direct, and eps_Q
 /// changes by at most d. Let X be the exitance of source and surroundings, and N = pi B - X. Then I = X + N eps_I and Q
 /// = N eps_Q. The extreme values of DOLP are at d = D, where I is the I of single scattering: (|sum N eps_Q,direct| -+
@@ -40,23 +38,20 @@ struct Bracket {
   double error = 0.0;  ///< bound of the absolute error of each end
 };
 
-/// Sums the exitances of the emission, of the reflected surroundings and, if `with_source`, of the source's light that
-/// is reflected into the hemisphere.
+/// Sums emission, reflected surroundings and, if `with_source`, the source's light reflected into the hemisphere.
 Stokes stokes_sum(const SpectralRule& rule, std::span<const Reflectance> reflectances,
                   std::span<const Emissivity> emissivities, EmissionModel model, double cos_theta, bool with_source);
 
 /// Adds net * r_i to I and net * r_q to Q. So the sum has the factor cos(theta) of the moments.
 void add_specular(Stokes& sum, double net, const Moments& moments);
 
-/// The diffuse part of rho in a sample. `beyond_mean`: mean exitance of the sky that this part receives, minus the
-/// plain mean.
+/// The diffuse part in a sample. `beyond_mean`: mean sky exitance that this part receives, minus the plain mean.
 struct DiffuseSample {
   DiffuseLight rho;
   double beyond_mean = 0.0;
 };
 
 /// Adds the reflection of a sky's difference from its mean. `weights` is empty without a sky.
-///
 /// Equation: in I and in Q, pi (S - mean(L) rho) = k_s / cos(theta) sum_k w_k r_k + pi rho_diffuse (mean_diffuse(L) -
 /// mean(L)). r_k is the moment with function k of the basis, w_k its weight in pi (L - mean(L)) of the sample.
 void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std::span<const SkyWeights> weights,
@@ -65,16 +60,14 @@ void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std:
 /// Adds only the specular part of add_sky: `specular` times the weighted sum of the moments with the functions.
 void add_specular_sky(Stokes& sum, double specular, double rounding, const SkyWeights& weights, const Moments& moments);
 
-/// Adds pi E0 cos(theta_i) f, the reflected beam of the source. The factor pi converts this radiance to the exitances
-/// of the sum. `diffuse`: pi cos(theta_i) f of the diffuse part.
+/// Adds the beam of the source as an exitance, pi E0 cos(theta_i) f. `diffuse`: pi cos(theta_i) f of the diffuse part.
 void add_beam(Stokes& sum, double k_s, const SpectralRule& rule, std::span<const Scattered> scattered,
               std::span<const DiffuseLight> diffuse, double cos_theta_r);
 
 /// Applies a path: multiplies the sums by its transmittance, then adds its exitance to I.
 void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance);
 
-/// Computes the bracket of DOLP. `direct`: emissivities of the direct emission. `sky`: Stokes parameters that add_sky
-/// adds.
+/// `direct`: emissivities of the direct emission. `sky`: Stokes parameters that add_sky adds.
 Bracket bracket(const SceneModel& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,
                 std::span<const Emissivity> direct, const Stokes& sky, double cos_theta);
 

@@ -55,7 +55,6 @@ std::optional<std::size_t> position_of(const std::vector<CsvColumn>& columns, st
   return static_cast<std::size_t>(found - columns.begin());
 }
 
-/// Refuses a line whose cells are separated by semicolons, tabs or blanks instead of commas.
 void check_separators(const CsvReader& row, const std::vector<CsvColumn>& columns) {
   for (const auto& [character, name] : {std::pair(';', "semicolons"), {'\t', "tabs"}, {' ', "blanks"}}) {
     for (const std::string_view cell : row.cells()) {

@@ -1,4 +1,3 @@
-// Reads comma-separated text (CSV) written by people or programs.
 #pragma once
 
 #include <cstddef>
@@ -17,11 +16,9 @@ struct CsvForm {
   std::size_t first_line = 1;
 };
 
-/// Goes through a text line by line: `for (CsvReader row(text, name); row.next();)`.
-///
-/// Accepts the line ends and byte order mark that split_lines accepts. A cell in double quotes may contain separators;
-/// its value is the text between the quotes. Leaves out lines at the end of the text that have no value. All views
-/// point into `text`.
+/// Goes through a text line by line: `for (CsvReader row(text, name); row.next();)`. Accepts the line ends and byte
+/// order mark that split_lines accepts. A cell in double quotes may contain separators; its value is the text between
+/// the quotes. Leaves out lines at the end of the text that have no value. All views point into `text`.
 class CsvReader {
  public:
   CsvReader(std::string_view text, std::string name, CsvForm form = {});
@@ -32,7 +29,6 @@ class CsvReader {
   /// The line and its cells, without blanks at both ends.
   std::string_view line() const { return line_; }
   const std::vector<std::string_view>& cells() const { return cells_; }
-  /// True if at least one cell is a number.
   bool has_numbers() const;
 
   std::size_t line_number() const;
@@ -41,8 +37,7 @@ class CsvReader {
   std::string where() const;
   [[noreturn]] void fail(const std::string& what) const;
 
-  /// The number in a cell. `column` is the name of its column, for messages.
-  /// Errors: InputError that names file, line, column and value and, if `range` is given, what is allowed.
+  /// Errors: InputError that names file, line, `column`, value and, if `range` is given, what is allowed.
   double number(std::size_t cell, std::string_view column, const NumberRange* range = nullptr) const;
 
  private:
@@ -54,7 +49,6 @@ class CsvReader {
   std::vector<std::string_view> cells_;
 };
 
-/// A column that a file may have.
 struct CsvColumn {
   std::string name;
   NumberRange range = {};
@@ -63,15 +57,14 @@ struct CsvColumn {
   std::string unit = {};        ///< unit for messages, if `name` does not contain it
 };
 
-/// The columns of a file, found by the names in its header. The names may be in any order and in upper or lower case.
+/// The columns of a file. The names in its header may be in any order and in upper or lower case.
 class CsvColumns {
  public:
-  /// Reads a header; leaves out columns whose names are in `ignored`.
-  /// Errors: InputError for an unknown name (the message suggests a known one that is near), for a name that appears
-  /// twice, for a missing required column, for a separator other than the comma, and for numbers instead of names.
+  /// Leaves out columns in `ignored`. Errors: InputError for a name that is unknown (with a suggestion), repeated, or
+  /// required and missing; for a separator other than the comma; and for numbers instead of names.
   CsvColumns(const CsvReader& header, std::vector<CsvColumn> known, const std::vector<std::string>& ignored = {});
 
-  /// For rows without a header: all known columns, in their order.
+  /// For rows without a header, which have all known columns in their order.
   explicit CsvColumns(std::vector<CsvColumn> known);
   /// Reads the first line as a header. Errors: also InputError for a text without lines.
   static CsvColumns first_of(CsvReader& reader, std::vector<CsvColumn> known,
@@ -82,8 +75,7 @@ class CsvColumns {
   /// For each cell of a row, the position of its column among the known columns; nullopt for a column that is left out.
   const std::vector<std::optional<std::size_t>>& cells() const { return cells_; }
 
-  /// The number that a row has in the column `name`; nullopt if the file lacks the column.
-  /// Errors: InputError that names column, value and range; InputError for a row with more cells than the header.
+  /// Nullopt if the file lacks the column. Errors: InputError for a wrong value, or for more cells than the header has.
   std::optional<double> number(const CsvReader& row, std::string_view name) const;
   double number_at(const CsvReader& row, std::size_t cell) const;
 

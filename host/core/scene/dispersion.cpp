@@ -17,7 +17,6 @@ double sum_of_pairs(Coefficients c, std::size_t first, const Term& term) {
   return sum;
 }
 
-/// A coefficient, or 0 if the list ends before it.
 double at_or_zero(Coefficients c, std::size_t i) { return i < c.size() ? c[i] : 0.0; }
 
 /// A term such as C2 l^C3 / (l^2 - C4^C5), with C2 = c[first]. 0 if the list ends before it.

@@ -1,4 +1,3 @@
-// The dispersion formulas of refractiveindex.info.
 #pragma once
 
 #include <cstddef>
@@ -9,15 +8,13 @@ namespace dolp {
 inline constexpr int kDispersionFormulas = 9;
 
 /// A refractive index n as one of nine formulas of the wavelength, with the coefficients C1, C2, …
-///
 /// Source: M. Polyanskiy, "Dispersion formulas", in the refractiveindex.info database, which numbers the formulas.
 /// Accuracy: reproduces published indices to their last digit (test Dispersion_Formulas_*).
 struct Dispersion {
   int number = 0;                    ///< number of the formula, 1 to kDispersionFormulas; 0 means no formula
   std::vector<double> coefficients;  ///< C1, C2, …; coefficient_counts lists how many there may be
 
-  /// n at a wavelength; NaN if the formula gives a negative n^2.
-  double at(double wavelength_um) const;
+  double at(double wavelength_um) const;  ///< n; NaN if the formula gives a negative n^2
 };
 
 /// The numbers of coefficients that a formula may have. Coefficients missing at the end are zero.

@@ -19,14 +19,11 @@ namespace {
 
 constexpr int kFormulaSteps = 1000;
 
-/// Positions of the columns of host/data/materials.csv.
 enum IndexColumn : std::size_t { kIndexName = 0, kWavelength = 1, kN = 2, kK = 3, kIndexColumns = 4 };
 
-/// Positions of the used columns of host/data/materials_sources.csv, which has name, rii_path, from_um, to_um,
-/// points_in_table, points_kept, source.
+/// The columns are name, rii_path, from_um, to_um, points_in_table, points_kept, source.
 enum SourceColumn : std::size_t { kName = 0, kSource = 6, kSourceColumns = 7 };
 
-/// The materials with their names and sources, but without n and k.
 std::vector<Material> read_sources() {
   std::vector<Material> materials;
   CsvReader row(embedded_materials_sources_csv(), "materials_sources.csv (built in)");
@@ -73,8 +70,7 @@ std::vector<const Material*> materials_with(std::string_view words) {
   return found;
 }
 
-/// Finds a material by its full name, else by the first words of its name, else by any whole words of its name. Null if
-/// not exactly one material fits.
+/// By the full name, else by its first words, else by any whole words. Null if not exactly one material fits.
 const Material* match_name(std::string_view name) {
   const std::string wanted = lower_case(trim(name));
   std::vector<const Material*> beginning;

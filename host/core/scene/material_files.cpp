@@ -1,4 +1,3 @@
-// The user's files of refractive indices: refractiveindex.info database records, and CSV.
 #include <fmt/format.h>
 #include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/yaml.h>
@@ -21,8 +20,7 @@ namespace {
 
 // The longest record of the database has 2.6 MB. A text of 4 MiB takes up to 2 s and 0.7 GB.
 constexpr std::size_t kMostRecordBytes = 4U << 20U;
-// Number of steps in which the range of a formula is searched for wavelengths at which n is allowed.
-constexpr int kRangeSteps = 1000;
+constexpr int kRangeSteps = 1000;  // steps of a search for wavelengths at which n is allowed
 // A measured k near 0 may be negative by this noise. A lower k follows another sign convention, or is a mistake.
 constexpr double kKNoise = 1e-5;
 constexpr NumberRange kNoisyKRange{-kKNoise, kKRange.max};
@@ -42,7 +40,6 @@ class IndexRows {
     }
   }
 
-  /// Ends a table: appends the collected rows to the material.
   void end_table() {
     append_rows(material_.n, std::exchange(n_, {}), {"n", 0.0, kNRange}, material_.source);
     append_rows(material_.k, std::exchange(k_, {}), {"k", 0.0, kKRange}, material_.source);
@@ -53,7 +50,6 @@ class IndexRows {
   std::vector<SpectralRow> n_, k_;
 };
 
-/// The columns of a table of n, k or both.
 std::vector<CsvColumn> index_columns(bool has_n = true, bool has_k = true) {
   std::vector<CsvColumn> columns = {{"wavelength_um", kPositiveRange, true, "wl"}};
   if (has_n) columns.push_back({"n", kNRange});
@@ -61,7 +57,6 @@ std::vector<CsvColumn> index_columns(bool has_n = true, bool has_k = true) {
   return columns;
 }
 
-/// True for a text that has the list DATA of a record of refractiveindex.info.
 bool is_record_text(std::string_view text) { return text.starts_with("DATA:") || text.find("\nDATA:") != text.npos; }
 
 void parse_csv(Material& material, IndexRows& rows, std::string_view text) {

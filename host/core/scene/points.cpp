@@ -22,8 +22,7 @@ constexpr std::size_t kMostPointsBytes = 1U << 30U;
 
 using FilmColumn = std::pair<std::size_t, FilmValue::Part>;
 
-/// A column that a file may have: the coordinate on an axis, or a number of a film, or an angle of a pair of
-/// directions, which is required.
+/// A column: the coordinate on an axis, a number of a film, or an angle of a pair of directions, which is required.
 struct ColumnRule {
   std::string name;
   NumberRange range;
@@ -54,8 +53,7 @@ void append_film_rules(std::vector<ColumnRule>& rules, const std::vector<std::st
   }
 }
 
-/// The columns that points may have. `names`: the columns that are given, because only given columns of films get a
-/// rule.
+/// The columns that points may have. Columns of films have a rule only if they are among `names`.
 std::vector<ColumnRule> column_rules(PointsKind kind, const std::vector<std::string>& names) {
   std::vector<ColumnRule> rules;
   const bool has_pairs = kind == PointsKind::kGeometries;
@@ -121,7 +119,6 @@ void check_required(Points& points, const std::vector<ColumnRule>& rules) {
   if (!missing.empty()) throw InputError(fmt::format("{}: {}", points.where(), fmt::join(missing, "; ")));
 }
 
-/// Adds the columns of a file to `points`, except columns that are left out.
 void add_columns(const CsvReader& header, const CsvColumns& columns, const std::vector<ColumnRule>& rules,
                  Points& points) {
   std::vector<std::string_view> kept;

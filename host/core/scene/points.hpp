@@ -1,4 +1,3 @@
-// Reads the CSV of scattered points for the commands `eval`, `lookup` and `mueller`.
 #pragma once
 
 #include <cstddef>
@@ -33,8 +32,7 @@ struct Points {
   AxisArray<Column> coordinates;
   /// Labels in the columns of a file, for axes with labels. The values of such a column are positions in this list.
   AxisLabels labels;
-  /// Numbers of films, by layer (from 0) and part. The columns have the names of scene keys, for example
-  /// "surface.coating.1.thickness_um".
+  /// Numbers of films, by layer (from 0) and part. Columns have names like "surface.coating.1.thickness_um".
   std::map<std::pair<std::size_t, FilmValue::Part>, Column> films;
   bool has_winds = false;                          ///< true if winds were given instead of sigma
   Column theta_i_deg, theta_r_deg, delta_phi_deg;  ///< only for kGeometries, which have no theta_deg and wavelength_um
@@ -45,35 +43,28 @@ struct Points {
   const Column& operator[](Axis axis) const { return coordinates[axis]; }
   /// The value in a row of an axis's column, as messages show it.
   std::string text_at(Axis axis, std::size_t row) const;
-  /// The numbers of films in a row.
   std::vector<FilmValue> films_at(std::size_t row) const;
-  /// The place of a row, with which messages begin: "file:line" or "points[row]". Without a row, the place of the
-  /// header.
+  /// The beginning of messages: "file:line" or "points[row]". Without a row, the line of the header.
   std::string where(std::size_t row) const;
   std::string where() const;
 };
 
-/// The value of a column in a row, or `fallback` if the points lack the column.
 inline double value_or(const Points::Column& column, std::size_t row, double fallback) {
   return column ? (*column)[row] : fallback;
 }
 
-/// For each point, the position in `known` of its label on an axis. Case does not matter. A part of a label is enough
-/// if no other label contains it. Errors: InputError that lists the known labels.
+/// For each point: position in `known` of its label. Case does not matter. A part of a label is enough if no other
+/// label contains it. Errors: InputError that lists the known labels.
 std::vector<double> label_positions(const Points& points, Axis axis, const AxisLabels& known);
 
-/// Makes `count` points from arrays in memory.
-/// Errors: the InputErrors of read_points for names and values, and InputError for a column whose length is neither 1
-/// nor `count`.
+/// Errors: InputErrors of read_points, and InputError for a column whose length is neither 1 nor `count`.
 Points points_of(std::span<const Column> columns, std::size_t count, PointsKind kind);
 
 /// Reads the points in the CSV file at `path` ("-" is stdin). A header without rows is a valid list of no points.
-///
 /// Accepts CRLF line ends, a UTF-8 byte order mark, blanks and double quotes around cells, lines that begin with #, and
 /// empty lines at the end of the file. Leaves out columns whose names are in `results`.
 /// Units: angles in degrees. delta_phi_deg is in [-360, 360], and 180 is the specular side.
-/// Errors: InputError, one line that names file, line, column, value and allowed range; also if the file cannot be
-/// opened.
+/// Errors: InputError that names file, line, column, value and allowed range, or a file that cannot be opened.
 Points read_points(const std::string& path, PointsKind kind, const std::vector<std::string>& results = {});
 
 /// Reads points from a text in memory. `path_name` is the name of the text in messages.

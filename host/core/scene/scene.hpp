@@ -15,9 +15,8 @@
 
 namespace dolp {
 
-/// A quantity tabulated over strictly ascending wavelengths, and the kind of interpolation between them. If there is a
-/// formula, it replaces the interpolation. `at` is only called between the first and the last wavelength, because the
-/// scene reader refuses other scenes.
+/// A quantity tabulated over strictly ascending wavelengths. A `formula` replaces the interpolation. The scene reader
+/// ensures that `at` is only called between the first and the last wavelength.
 struct SpectralTable {
   enum class Interpolation { kLinear, kLogLog };
   std::vector<double> wavelength_um;
@@ -27,33 +26,28 @@ struct SpectralTable {
   double at(double wavelength_um) const;
 };
 
-/// A refractive index n + ik over wavelength. If `n.wavelength_um` is empty, the index is `constant` at every
-/// wavelength.
+/// A refractive index n + ik. If `n.wavelength_um` is empty, it is `constant` at every wavelength.
 struct Material {
   std::string name;    ///< empty if the scene gives n and k as numbers
   std::string source;  ///< origin of the values; empty if the scene gives n and k as numbers
   OpticalConstants constant;
   SpectralTable n, k;
-  /// The whole table, if `constant` was read from a table at one wavelength.
-  std::shared_ptr<const Material> tabulated = {};
+  std::shared_ptr<const Material> tabulated = {};  ///< the whole table, if `constant` was read from one
   double least_k = 0.0;  ///< least k in the file if it is below 0, else 0; a k below 0 counts as 0
   bool is_constant() const { return n.wavelength_um.empty(); }
   OpticalConstants at(double wavelength_um) const;
 };
 
-/// A film of a coating.
 struct Layer {
   Material material;
   double thickness_um = 0.0;
 };
 
-/// Measured reflectances of a smooth surface at ascending wavelengths. A single element of `measured` holds at every
-/// wavelength.
+/// Reflectances at ascending wavelengths. A single element of `measured` holds at every wavelength.
 struct ReflectanceTable {
   std::vector<double> wavelength_um;
   std::vector<std::shared_ptr<const MeasuredReflectance>> measured;
-  /// The reflectances at a wavelength, interpolated linearly.
-  std::shared_ptr<const MeasuredReflectance> at(double wavelength_um) const;
+  std::shared_ptr<const MeasuredReflectance> at(double wavelength_um) const;  ///< linear in the wavelength
 };
 
 struct Surface {
@@ -73,7 +67,6 @@ struct Surface {
   /// True if the masking needs a finite mean slope. The cauchy distribution has one only for q in kSmithCauchyQRange.
   bool needs_mean_slope() const { return masking == Masking::kSmith && distribution == Distribution::kCauchy; }
   bool is_bare() const { return coating.empty() && !reflectance; }
-  /// True if the reflectances of facets are the same at every wavelength.
   bool has_constant_optics() const;
   FacetOptics optics_at(double wavelength_um) const;
   /// Wavelengths at which the optics may have corners: the rows of tables.
@@ -128,8 +121,7 @@ struct Accuracy {
   bool may_interpolate = true;  ///< allows interpolation between slope distributions, and responses
 };
 
-/// Names that a scene gives; a name is empty if the scene does not give it. `material` is the full name of the
-/// material.
+/// Names that a scene gives, else empty. `material` is the full name of the material.
 struct SceneNames {
   struct OfLayer {
     std::string material, material_file;
@@ -172,11 +164,9 @@ struct SceneValues : SceneModel {
 /// The scene at one wavelength. Errors: InputError if n, k or E0 are not known at this wavelength.
 SceneModel at_wavelength(const SceneModel& scene, double wavelength_um);
 
-/// Replaces numbers of the films of a surface.
 void set_films(Surface& surface, const std::vector<FilmValue>& films);
 
-/// The scene with the changes of a variant. Domain: the scene has the films that the variant changes. Errors: errors of
-/// at_wavelength.
+/// Domain: the scene has the films that the variant changes. Errors: errors of at_wavelength.
 SceneModel with_variant(const SceneModel& scene, const SceneVariant& variant);
 
 }  // namespace dolp

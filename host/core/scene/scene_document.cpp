@@ -33,8 +33,7 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// The line on which keys and values are nested deeper than kMostDepth, or 0. Such a text is refused, because the TOML
-/// parser recurses at each level.
+/// Line where nesting exceeds kMostDepth, or 0. Such a text is refused, because the TOML parser recurses at each level.
 std::size_t line_of_deep_nesting(std::string_view text) {
   std::vector<std::size_t> around = {0};  // depths at the beginning of the text and of each open bracket
   std::size_t depth = 0;
@@ -61,8 +60,7 @@ std::size_t line_of_deep_nesting(std::string_view text) {
   return 0;
 }
 
-/// The position in a list that a part of a key means. Keys count elements from 1. A text that is no such number means a
-/// position beyond every list.
+/// Keys count the elements of a list from 1. Any other text gives a position beyond every list.
 std::size_t list_position(std::string_view part) {
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);

@@ -12,8 +12,7 @@
 
 namespace dolp {
 
-/// True for a setting that removes a key or a table: an empty value, `{}`, or `none` where it removes
-/// (is_removed_by_none).
+/// True for an empty value, `{}`, or `none` where it removes (is_removed_by_none).
 bool is_removal(const Setting& setting);
 
 /// A value as one line of TOML. Without `is_escaped`, which is for messages, texts are quoted without escapes.
@@ -21,8 +20,7 @@ std::string toml_text(const toml::node& node, bool is_escaped = true);
 
 class SceneDocument {
  public:
-  /// Errors: InputError for a TOML syntax error, which names its line; for nesting deeper than 100; and for a text
-  /// longer than kMostTextBytes.
+  /// Errors: InputError for a syntax error, nesting deeper than 100, or a text longer than kMostTextBytes.
   SceneDocument(const std::string& text, const std::string& path_name);
 
   /// Gives a key another value, or removes it. Errors: InputError.
@@ -35,11 +33,10 @@ class SceneDocument {
   /// For a message about keys that contradict each other: the first of them that a setting gave, else the first.
   std::string first_set(std::initializer_list<std::string> keys) const;
 
-  /// Throws InputError that names the line or the setting of the key, the key, its value and the problem. For an absent
-  /// key it names the line of the table.
+  /// InputError with line or setting of the key, its value and the problem. An absent key has the line of the table.
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
 
-  /// The beginning of such a message, before the problem.
+  /// The beginning of the message of fail(), before the problem.
   std::string prefix(std::string_view key) const;
 
   /// The line of a key's value, else of the nearest table around it, else 1.
@@ -53,7 +50,7 @@ class SceneDocument {
 
   std::string name_;
   toml::table root_;
-  std::map<std::string, std::string, std::less<>> origins_;  // for each key that a setting gave: where it comes from
+  std::map<std::string, std::string, std::less<>> origins_;  // origin of each key that a setting gave
 };
 
 }  // namespace dolp

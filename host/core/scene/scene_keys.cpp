@@ -19,7 +19,6 @@ namespace {
 
 using Type = Key::Type;
 
-// Convert a value of a scene to the value of a key, and back.
 KeyValue value_of(double number) { return {.number = number}; }
 KeyValue value_of(bool flag) { return {.word = flag ? 1U : 0U, .text = flag ? "true" : "false"}; }
 KeyValue value_of(const std::string& text) { return {.text = text}; }
@@ -55,8 +54,7 @@ std::optional<KeyValue> value_at(const Content* at) {
 
 bool always(const SceneValues&) { return true; }
 
-/// A key whose value is at the address that `address` gives in a scene, or a null pointer; the scene has the value if
-/// `is_there`.
+/// A key whose value is at `address(scene)`, which may be null. The scene has the value if `is_there`.
 template <class Address, class IsThere>
 SceneKey key_at(Key description, Address address, IsThere is_there) {
   return {std::move(description), [address](SceneValues& s, const KeyValue& v) { assign(*address(s), v); },

@@ -1,4 +1,3 @@
-// The table of all scene keys: their descriptions, and how a scene stores their values.
 #pragma once
 
 #include <functional>
@@ -24,12 +23,11 @@ struct KeyValue {
 struct SceneKey {
   Key description;
   std::function<void(SceneValues& scene, const KeyValue& value)> set;
-  /// The value in a scene. nullopt if the scene does not have it, for example n of a named material, or the temperature
-  /// without emission.
+  /// Nullopt if the scene lacks the value, for example n of a named material, or the temperature without emission.
   std::function<std::optional<KeyValue>(const SceneValues& scene)> value;
 };
 
-/// Keys that belong together. Any of `heads` chooses the alternative; `companions` need one of these beside them.
+/// Keys that belong together. Any of `heads` chooses the alternative; `companions` also need one of the heads.
 struct KeyAlternative {
   std::vector<std::string> heads;
   std::vector<std::string> companions = {};
@@ -51,10 +49,9 @@ const std::vector<SceneKey>& scene_key_table();
 const std::vector<KeyChoice>& key_choices();
 const SceneKey* find_scene_key(std::string_view key);
 
-/// The keys that a setting of `key` replaces: the keys of other alternatives.
+/// The keys of the alternatives that exclude `key`.
 std::vector<std::string> keys_replaced_by(std::string_view key);
 
-/// The tables of a scene, in the order of the keys.
 std::vector<std::string> scene_tables();
 
 /// True for a table whose absence removes an effect: emission, source, surroundings, path.
@@ -66,7 +63,6 @@ bool is_coating(std::string_view key);
 /// True if the value `none` removes a key or a table. Where `none` may be a value, only `{}` removes the key.
 bool is_removed_by_none(std::string_view key);
 
-/// Adds the effect that a table describes to the scene.
 void add_effect(SceneValues& scene, std::string_view table);
 
 class SceneDocument;

@@ -19,8 +19,8 @@
 namespace dolp {
 namespace {
 
-/// The known key or table that is most similar to `key`. A known name in another table, a known name without its table,
-/// and the beginning of a known name count as similar.
+/// The most similar known key or table. A known name in another table, a known name without its table, and the
+/// beginning of a known name count as similar.
 std::string key_hint(const std::string& key) {
   std::vector<std::string> known = scene_tables();
   for (const Key& description : dolp::keys()) known.push_back(description.key);
@@ -33,7 +33,6 @@ std::string key_hint(const std::string& key) {
                            [&](const std::string& a, const std::string& b) { return distance(a) < distance(b); });
 }
 
-/// Appends the keys of a coating, which is a list of tables.
 void append_layer_keys(const SceneDocument& document, const std::string& coating, const toml::node& node,
                        std::vector<std::string>& keys) {
   const std::string allowed = fmt::format(
@@ -103,11 +102,11 @@ void check_choice(const SceneDocument& document, const KeyChoice& choice) {
                                            find_scene_key(heads.front())->description.allowed(), join(heads)));
 }
 
-/// Refuses a key whose needs are not met. The message names all of these needs.
 struct Needs {
   bool are_met;
   const char* text;
 };
+/// The message names all needs that are not met.
 void check_needs(const SceneDocument& document, std::string_view key, const std::vector<Needs>& needs) {
   std::vector<std::string> missing;
   for (const Needs& need : needs) {
@@ -190,8 +189,7 @@ std::string resolve_path(const std::string& file, const std::string& scene_path)
   return is_as_given ? file : scene_path.substr(0, slash + 1) + file;
 }
 
-/// Calls `read` for a file that the scene names. Errors: those of `read`; with `known`, an InputError that begins with
-/// `prefix` if the file may not be opened or cannot be read.
+/// With `known`, an InputError begins with `prefix` if the file may not be opened or cannot be read.
 template <class Read>
 auto read_file_of(SceneValues& scene, const std::string& file, const std::string& prefix, const KnownData* known,
                   const Read& read) {
@@ -221,8 +219,7 @@ Spectrum all_wavelengths(const SceneValues& scene) {
   return all;
 }
 
-/// Loads the material of a table: "surface", or a layer of the coating. `own`: the material that a table file contains;
-/// null if there is none.
+/// `table`: "surface", or a layer of the coating. `stored`: material from a table file; null if there is none.
 void load_material(SceneValues& scene, const SceneDocument& document, const std::string& table, Material& material,
                    std::string& name, const std::string& file, const KnownData* known, const Material* stored) {
   const bool is_file = document.find(table + ".material_file") != nullptr;
@@ -271,8 +268,7 @@ std::vector<std::string> axis_names(const SceneValues& scene, const std::string&
   return names;
 }
 
-/// Loads the materials of the grid's axis; the first becomes the scene's material. `known` has the materials of a table
-/// file.
+/// The first material of the axis becomes the material of the scene.
 void load_axis_materials(SceneValues& scene, const SceneDocument& document, const KnownData* known) {
   if (!document.find("grid.material")) return;
   const std::string prefix = document.prefix("grid.material");
@@ -401,7 +397,6 @@ void fill_grid(SceneValues& scene, const SceneDocument& document) {
   if (grid[Axis::kQ].empty()) grid[Axis::kQ] = {scene.surface.q};
 }
 
-/// Refuses smith masking with a cauchy distribution whose mean slope is infinite.
 void check_smith(const SceneValues& scene, const SceneDocument& document) {
   if (!scene.surface.needs_mean_slope()) return;
   const std::string what = "masking = \"smith\" with distribution = \"cauchy\" needs q in " + kSmithCauchyQRange.text();
@@ -411,8 +406,7 @@ void check_smith(const SceneValues& scene, const SceneDocument& document) {
   }
 }
 
-/// Refuses multiple scattering, bracket, direct emission and polarised diffuse light in scenes for which they are not
-/// defined.
+/// Refuses multiple scattering, bracket, direct emission and polarised diffuse light where they are not defined.
 void check_scattering(const SceneValues& scene, const SceneDocument& document) {
   const Surface& surface = scene.surface;
   const Emission emission = scene.emission.value_or(Emission());

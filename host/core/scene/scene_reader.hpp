@@ -1,4 +1,3 @@
-// Reads a scene file (TOML) into validated SceneValues.
 #pragma once
 
 #include <dolp/key.hpp>
@@ -12,7 +11,7 @@
 namespace dolp {
 
 /// Reads the scene at `path` ("-" is stdin), applies the settings in order and validates the result. Paths in a scene
-/// are relative to the folder of the scene; for "-", to the working folder of the process.
+/// are relative to its folder; for "-", to the working folder of the process.
 /// Errors: InputError, one line: `file:line: key = value: what is wrong and what is allowed`. If a setting is wrong,
 /// its origin begins the line. A file that cannot be opened is an InputError too.
 SceneValues read_scene(const std::string& path, const std::vector<Setting>& settings = {});
@@ -20,8 +19,7 @@ SceneValues read_scene(const std::string& path, const std::vector<Setting>& sett
 /// The scene after more settings. Domain: a scene that was read. Errors: InputError, in the form of read_scene.
 SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& settings);
 
-/// Data of a table file: n, k, E0 and sky, as they were when the table was computed. They replace the files and
-/// built-in data that the scene of the table names.
+/// Data of a table file, as they were when the table was computed. They replace files and built-in data.
 struct KnownData {
   std::optional<Material> material = {};
   std::vector<std::optional<Material>> layers = {};  ///< layers of a coating
@@ -29,21 +27,16 @@ struct KnownData {
   std::optional<ReflectanceTable> reflectance = {};
   std::optional<SpectralTable> irradiance = {};
   std::optional<SkyProfile> profile = {};
-  /// Allows opening files for data that are missing here; messages then do not quote the files.
-  bool may_open_files = false;
+  bool may_open_files = false;  ///< opens files for missing data; messages then do not quote the files
 };
 
-/// Reads a scene from a text in memory, for example from a table file. `path_name` is for messages, and its folder is
-/// the folder for the paths in the scene. With `known`, the reader opens files only if `may_open_files` is set.
-/// Otherwise data of files that `known` lacks are an InputError.
+/// `path_name` is for messages, and its folder is the folder for the paths in the scene. With `known`, the reader opens
+/// files only if `may_open_files` is set; otherwise an InputError reports missing data of files.
 SceneValues parse_scene(const std::string& text, const std::string& path_name,
                         const std::vector<Setting>& settings = {}, const KnownData* known = nullptr);
 
-/// Writes a scene as TOML that reads back as the same scene. Keys are in the order of dolp::keys(), a number is the
-/// shortest text that reads back as the same double, and there are no comments.
-///
-/// Paths of files are relative to `folder`, where the text will be saved.
-/// Domain: a scene that was read.
+/// Writes a scene as TOML that reads back as the same scene, without comments, with keys in the order of dolp::keys().
+/// Paths of files are relative to `folder`, where the text will be saved. Domain: a scene that was read.
 std::string scene_toml(const SceneValues& scene, const std::filesystem::path& folder);
 
 }  // namespace dolp

@@ -20,8 +20,7 @@ double read_number(const SceneDocument& document, std::string_view key, const to
   const auto* integer = node.as_integer();
   const auto* real = node.as_floating_point();
   if (!integer && !real) document.fail(key, "must be " + allowed);
-  // node.value<double>() is empty for an integer that no double can hold exactly. Such an integer is rounded to the
-  // nearest double.
+  // node.value<double>() is empty for an integer that no double can hold exactly. Rounds it to the nearest double.
   const double number = integer ? static_cast<double>(integer->get()) : real->get();
   if (!range.contains(number)) document.fail(key, fmt::format("{} is out of range; must be {}", number, allowed));
   return number;
@@ -75,8 +74,7 @@ AxisRange read_axis_rule(const SceneDocument& document, const Key& description, 
   return rule;
 }
 
-/// The values of an axis. The ends are exact. Exchanging `from` and `to` gives exactly the same values in reverse
-/// order.
+/// The ends are exact. Exchanging `from` and `to` gives exactly the same values in reverse order.
 std::vector<double> axis_values(const AxisRange& rule) {
   std::vector<double> values(rule.count, rule.from);
   const auto last = static_cast<double>(rule.count - 1);
@@ -116,7 +114,6 @@ std::vector<double> read_pair(const SceneDocument& document, const Key& descript
   return pair;
 }
 
-/// Reads one pair, or a list of pairs, as numbers one after the other.
 std::vector<double> read_pairs(const SceneDocument& document, const Key& description, const toml::node& node) {
   const toml::array* array = node.as_array();
   if (!array || array->empty() || !array->front().is_array()) return read_pair(document, description, node);

@@ -14,7 +14,6 @@
 namespace dolp {
 namespace {
 
-/// True if the value of a key is the path of a file.
 bool names_file(const std::string& key, const std::string& value) {
   return key.ends_with("material_file") || key == "surface.reflectance_file" || key == "source.file" ||
          (key == "surroundings.profile" && !built_in_sky(value));
@@ -22,7 +21,6 @@ bool names_file(const std::string& key, const std::string& value) {
 
 std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
 
-/// The path of a file that a scene names, relative to `folder`.
 std::string path_from(const std::filesystem::path& folder, const std::string& file, const std::string& scene_path) {
   namespace fs = std::filesystem;
   if (fs::path(file).is_absolute()) return file;

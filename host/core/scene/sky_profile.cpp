@@ -22,8 +22,8 @@ namespace {
 
 constexpr std::size_t kMostZeniths = 1000;
 
-// Zeniths at which smooth parts of a sky are divided. Near a horizon where the sky is as flat as exp(-1/cos),
-// polynomials through Chebyshev points need short parts.
+// Zeniths at which smooth parts of a sky are divided. Polynomials through Chebyshev points need short parts near a
+// horizon where the sky is as flat as exp(-1/cos).
 constexpr std::array<double, 2> kDivisions_deg = {60.0, 85.0};
 constexpr std::array<double, 11> kLayerDivisions_deg = {0.0,  30.0, 60.0,  75.0,  82.0, 86.0,
                                                         88.0, 89.0, 89.75, 89.94, 90.0};
@@ -198,7 +198,7 @@ std::optional<SkyProfile> built_in_sky(std::string_view name, const SkyAir& air,
   sky.air_K = air.temperature_K.value_or(kAir_K);
   if (is_overcast) sky.beyond_K = sky.air_K - kLapse_K_km * kCloudBase_km;
   const double vapour_hPa = vapour_pressure(air, sky.air_K, prefix);
-  // Share of the vapour that lies below the cloud, if there is one.
+  // Share of the vapour below the cloud, if there is one.
   const double below = is_overcast ? -std::expm1(-kCloudBase_km / kVapourHeight_km) : 1.0;
   const auto visible = [&](double vertical) { return is_overcast ? 1.0 - std::pow(1.0 - vertical, below) : vertical; };
   const double mean = clear_emissivity(vapour_hPa, sky.air_K);

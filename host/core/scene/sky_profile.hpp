@@ -1,4 +1,3 @@
-// The radiance of the surroundings as a function of zenith, and of wavelength.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +9,8 @@
 
 namespace dolp {
 
-/// A sky. Either it has brightness temperatures or radiances at some zeniths, with straight lines between them, or it
-/// is a layer of air in front of a black background.
-///
-/// Equation: the layer has L = t^(1 / cos(zenith)) B(beyond_K) + (1 - t^(1 / cos(zenith))) B(air_K), t = 1 -
-/// emissivity.
+/// Brightness temperatures or radiances at zeniths, linear between them; or a layer of air before a black background.
+/// Equation: air has L = t^(1 / cos(zenith)) B(beyond_K) + (1 - t^(1 / cos(zenith))) B(air_K), t = 1 - emissivity.
 /// Source: Granqvist and Hjortsberg, J. Appl. Phys. 52, 4205 (1981), for a plane-parallel atmosphere of one
 /// temperature. Idso, Water Resources Research 17, 295 (1981), for the vertical emissivities of clear air at 8-14 um
 /// and in the window at 10.5-12.5 um. The rest of 8-14 um has the emissivity that gives this mean over 8-14 um; other
@@ -53,7 +49,6 @@ struct SkyProfile {
   std::uint64_t hash() const;
 };
 
-/// A built-in profile: the word for it in scenes, and its source.
 struct BuiltInSky {
   const char* name;
   const char* source;
@@ -67,13 +62,11 @@ struct SkyAir {
   bool is_standard() const { return !vapour_cm && !temperature_K; }
 };
 
-/// The built-in profile called `name`; nullopt for another name. Errors: InputError that begins with `prefix` if air of
-/// this temperature cannot hold the vapour.
+/// Nullopt for an unknown name. Errors: InputError that begins with `prefix` if the air cannot hold the vapour.
 std::optional<SkyProfile> built_in_sky(std::string_view name, const SkyAir& air = {}, const std::string& prefix = {});
 
-/// Reads a CSV file with the columns zenith_deg, temperature_K or radiance, and wavelength_um if they depend on it.
-/// Each wavelength has the same zeniths, from 0 to 90. Errors: InputError with file, line, column, value and what is
-/// allowed.
+/// Reads a CSV with the columns zenith_deg, temperature_K or radiance, and wavelength_um if they depend on it. Each
+/// wavelength has the same zeniths, from 0 to 90. Errors: InputError that names file, line, column and value.
 SkyProfile parse_sky_profile(std::string_view text, const std::string& name);
 SkyProfile read_sky_profile(const std::string& path, const std::string& prefix);
 

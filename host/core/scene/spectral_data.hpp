@@ -1,4 +1,3 @@
-// Quantities tabulated over wavelength: the irradiance of the sun, and the user's irradiance files.
 #pragma once
 
 #include <cstddef>
@@ -16,34 +15,28 @@ namespace dolp {
 SpectralTable sun_irradiance();
 
 /// Reads a user's CSV with the columns wavelength_um and irradiance (W m-2 um-1), interpolated linearly. A file without
-/// a line of names has these columns in this order.
-///
-/// Skips blank lines and lines that begin with #. append_rows checks the rows.
+/// a line of names has these columns in this order. Skips blank lines and lines that begin with #.
 /// Domain: irradiance >= 0, at least one row.
-/// Errors: InputError; if the file cannot be opened, the message begins with `prefix`.
+/// Errors: InputError; if the file cannot be opened, the message begins with `prefix`; errors of append_rows.
 SpectralTable read_irradiance_file(const std::string& path, const std::string& prefix);
 
-/// A number from a file, its name for messages, and its allowed range.
 struct NamedValue {
   const char* name;
   double value;
   NumberRange range;
 };
 
-/// Checks that both numbers are in range and that the wavelength ascends, and appends the row. Messages begin with
-/// `where`.
+/// Checks that both numbers are in range and that the wavelength ascends. Messages begin with `where`.
 void append_row(SpectralTable& table, double wavelength_um, const NamedValue& value, const std::string& where);
 
-/// A row of a file. `line` is for messages.
 struct SpectralRow {
   double wavelength_um;
   double value;
   std::size_t line;
 };
 
-/// Sorts the rows of a file by wavelength and appends them. Leaves out rows outside of kWavelengthUmRange, and rows
-/// that repeat another row. `named` gives the name and the range of the values.
-/// Errors: InputError with file and line for two values at one wavelength; errors of append_row.
+/// Sorts and appends rows. Leaves out rows outside of kWavelengthUmRange and repeated rows. `named`: name and range of
+/// the values. Errors: InputError with file and line for two values at one wavelength; errors of append_row.
 void append_rows(SpectralTable& table, std::vector<SpectralRow> rows, const NamedValue& named, const std::string& file);
 
 /// A row of a CSV of values over an angle from 0 to 90 degrees, and maybe over wavelength.
@@ -59,7 +52,7 @@ struct AngleRow {
 std::vector<AngleRow> read_angle_rows(CsvReader& row, const CsvColumns& columns, const std::string& angle,
                                       const std::vector<std::string>& values, const std::string& file);
 
-/// The interval of an ascending list that holds a value, and the value's share of the way through it.
+/// The interval of an ascending list that contains a value, and the fraction of the interval below the value.
 struct Between {
   std::size_t first = 0;
   double share = 0.0;

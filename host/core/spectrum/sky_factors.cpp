@@ -7,8 +7,7 @@
 namespace dolp {
 namespace {
 
-// Largest error by which sums over a basis may miss a sky, as a share of the scene's tolerance. Chosen: each further
-// function of a basis adds a sixth to the time of a kernel.
+// Chosen. Largest error of a sky, as a share of the tolerance. Each function of a basis slows a kernel by a sixth.
 constexpr double kBasisShare = 0.02;
 
 Eigen::VectorXd vector_of(const std::vector<double>& values) {

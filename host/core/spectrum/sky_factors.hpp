@@ -1,4 +1,3 @@
-// The sky of a scene as a function of the zenith, for each spectral sample.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,8 +13,7 @@ namespace dolp {
 /// The radiance of a scene's profile at a wavelength. Units: W m-2 sr-1 um-1.
 double sky_radiance(const SkyProfile& profile, double wavelength_um, double zenith_deg);
 
-/// Gives the exitances pi L of a scene's profile at the nodes of a SkyNodes, and their mean. A uniform sky with the
-/// mean exitance gives the same irradiance.
+/// Exitances pi L of a sky at the nodes. A uniform sky with the mean exitance gives the same irradiance.
 class SkySampler {
  public:
   explicit SkySampler(const SkyProfile& profile);
@@ -29,12 +27,10 @@ class SkySampler {
   Eigen::VectorXd mean_weights_;
 };
 
-/// A basis for the sky's differences from its mean, in all samples of a scene's variants. Null if all differences are
-/// 0.
+/// A basis for the sky's differences from its mean in all variants. Null if all differences are 0.
 std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, const std::vector<SceneVariant>& variants);
 
-/// For each sample of a rule, the weights with which the functions of a basis sum to the sky's difference from its
-/// mean. Empty without a basis or a sky.
+/// For each sample: weights of the basis functions in the sky's difference from its mean. Empty without basis or sky.
 std::vector<SkyWeights> sky_weights(const SpectralRule& rule, const SkyBasis* basis);
 
 }  // namespace dolp

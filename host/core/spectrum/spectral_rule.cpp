@@ -28,27 +28,23 @@ constexpr double kPieceWavelengthRatio = 1.5;
 // h c / k_B in um K, used to choose pieces, and the exponent beyond which Planck's function underflows.
 constexpr double kExponentScale_umK = 14388.0;
 constexpr double kLargestPlanckExponent = 750.0;
-// Bound of the relative error of sums over pieces. Each piece is accurate to rounding.
-constexpr double kPieceRelativeError = 1e-12;
+constexpr double kPieceRelativeError = 1e-12;  // for sums over pieces, each of which is accurate to rounding
 
-// A segment of the material gets so many nodes that absorptances of the smooth surface have at most this relative
-// error. The error is relative to reflectance or absorptance, whichever is smaller, but to no less than kSmallestPart
-// of the whole, because with n = 1 the reflectance is 0.
+// Largest relative error of the smooth surface's absorptances in a segment. It is relative to reflectance or
+// absorptance, whichever is smaller, but to no less than kSmallestPart, because with n = 1 the reflectance is 0.
 constexpr double kNodesRelativeError = 1e-10;
 constexpr double kSmallestPart = 1e-4;
 constexpr int kMostNodes = 24;
 // The nodes of a segment are checked with absorptances of the smooth surface at these probes, because a rough surface
-// averages such absorptances over angles. Other probes are the critical angles at a few wavelengths of the segment:
-// there an absorptance has a square root in wavelength. The bound is kProbeSafety times the largest error at the
-// probes.
+// averages them over angles. Other probes are the critical angles at some wavelengths, where an absorptance has a
+// square root in wavelength. The bound is kProbeSafety times the largest error at the probes.
 constexpr double kProbeSafety = 10.0;
 constexpr std::array<double, 7> kProbeCosines = {1.0, 0.5, 0.25, 0.15, 0.1, 0.07, 0.04};
 constexpr std::array<double, 7> kCriticalShares = {0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};  // positions in a segment
-// If more nodes do not reduce the error of a segment to kShareOfTolerance of the scene's tolerance, the segment is cut
-// into equal panels, each with separate nodes. The number of panels grows until the error at the probes is below
-// kPanelShareOfTolerance of the tolerance, or until the whole band would have about kMostPanels. Mirrors may have more
-// panels, because their moments are cheap and their roots are not smoothed by roughness. panel_error estimates the
-// remaining error.
+// If more nodes do not reduce the error of a segment to kShareOfTolerance of the tolerance, the segment is cut into
+// panels. Their number grows until the error at the probes is below kPanelShareOfTolerance of the tolerance, or until
+// the whole band would have about kMostPanels. Mirrors may have more panels, because their moments are cheap and
+// roughness does not smooth their roots. panel_error estimates the remaining error.
 constexpr double kShareOfTolerance = 0.005;
 constexpr double kPanelShareOfTolerance = 0.03;
 constexpr int kLeastPanels = 4;
@@ -85,7 +81,6 @@ const SkyProfile* profile_of(const SceneModel& scene) {
   return scene.surroundings ? scene.surroundings->profile.get() : nullptr;
 }
 
-/// nullopt for a scene without a profile.
 std::optional<SkySampler> sampler_of(const SceneModel& scene) {
   const SkyProfile* profile = profile_of(scene);
   return profile ? std::optional<SkySampler>(*profile) : std::nullopt;
@@ -158,7 +153,6 @@ void append_fine_nodes(const SceneModel& scene, const std::optional<SkySampler>&
   }
 }
 
-/// The ends of the band and the tabulated wavelengths inside it, ascending.
 std::vector<double> segment_ends(double from_um, double to_um,
                                  std::initializer_list<const std::vector<double>*> wavelengths_um) {
   std::vector<double> ends = {from_um, to_um};
@@ -183,7 +177,6 @@ std::vector<FineNode> fine_nodes(const SceneModel& scene, double from_um, double
   return nodes;
 }
 
-/// The fine nodes of both halves of an interval.
 std::vector<FineNode> finer_nodes(const SceneModel& scene, double from_um, double to_um) {
   const double middle_um = 0.5 * (from_um + to_um);
   std::vector<FineNode> nodes = fine_nodes(scene, from_um, middle_um);
@@ -240,7 +233,6 @@ std::vector<double> fringe_ends(const SceneModel& scene) {
   return ends_um;
 }
 
-/// The cosines at which the nodes of a segment are checked.
 std::vector<double> probe_cosines(const Surface& surface, double from_um, double to_um) {
   std::vector<double> cosines(kProbeCosines.begin(), kProbeCosines.end());
   for (const double share : kCriticalShares) {
@@ -270,7 +262,6 @@ void add_probe(ProbeSums& sums, const Node& node, const FacetOptics& index, doub
   }
 }
 
-/// The integrals by the fine rule, at each cosine.
 std::vector<ProbeSums> exact_sums(const Surface& surface, const std::vector<FineNode>& fine,
                                   const std::vector<double>& cosines) {
   std::vector<ProbeSums> sums(cosines.size());
@@ -281,8 +272,8 @@ std::vector<ProbeSums> exact_sums(const Surface& surface, const std::vector<Fine
   return sums;
 }
 
-/// The largest error of the samples' integrals of an absorptance. It is relative to the integral of reflectance or
-/// absorptance, whichever is smaller, but to no less than `least` of the whole integral.
+/// Largest error of the samples' integrals of an absorptance, relative to the integral of reflectance or absorptance,
+/// whichever is smaller, but to no less than `least` of the whole integral.
 double nodes_error(const std::vector<SpectralSample>& samples, const std::vector<ProbeSums>& exact,
                    const std::vector<double>& cosines, double least) {
   double worst = 0.0;
@@ -309,7 +300,6 @@ void append_merged(std::vector<SpectralSample>& samples, const SpectralSample& s
   same->add(sample, 1.0);
 }
 
-/// The samples of one segment, and their relative error at the probes.
 struct SegmentRule {
   std::vector<SpectralSample> samples;
   double error = 0.0;
@@ -335,8 +325,7 @@ SegmentRule smooth_segment(const SceneModel& scene, double from_um, double to_um
   return rule;
 }
 
-/// Cuts a segment into `panels` equal parts, each with kPanelNodes nodes. To check them, each half of a panel has twice
-/// as many nodes.
+/// Cuts a segment into equal panels. To check them, each half of a panel gets twice as many nodes.
 SegmentRule segment_of_panels(const SceneModel& scene, double from_um, double to_um, int panels,
                               const std::vector<double>& cosines) {
   SegmentRule rule;

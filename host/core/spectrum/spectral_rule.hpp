@@ -21,8 +21,7 @@ struct KeptEffects {
   friend bool operator==(const KeptEffects&, const KeptEffects&) = default;
 };
 
-/// Integrals over wavelength of the radiation times a weight function. Units: exitances and irradiances are in W m-2
-/// um-1 at a single wavelength, in W m-2 over a band.
+/// Integrals of the radiation times a weight function. Units: W m-2 over a band, W m-2 um-1 at a single wavelength.
 struct SpectralFactors {
   double emitted = 0.0;          ///< pi B(T); 0 without [emission]
   double surroundings = 0.0;     ///< pi B(T_surr), or the mean of a profile; 0 without [surroundings]
@@ -35,7 +34,6 @@ struct SpectralFactors {
 };
 
 /// One refractive index at which moments are needed, and the integrals of the radiation that multiply these moments.
-///
 /// The moments rho(lambda) depend on the wavelength only through the index. On each segment between rows of the
 /// material, rho is taken as the polynomial through its values at the Gauss nodes of the segment. So the band integral
 /// of F rho, for a factor F, is a sum over the nodes: rho at the node times the integral of F times the node's Lagrange
@@ -49,7 +47,6 @@ struct SpectralSample : SpectralFactors {
 /// reflection begins. At each zenith rho has a square root in the wavelength there.
 inline constexpr std::size_t kPanelNodes = 8;
 
-/// The different indices of a scene, with their spectral weights.
 struct SpectralRule {
   std::vector<SpectralSample> samples;
   double path_exitance = 0.0;   ///< pi times the path radiance; 0 without [path]
@@ -58,15 +55,12 @@ struct SpectralRule {
   std::vector<FacetOptics> indices() const;
 };
 
-/// Makes the spectral rule of a scene. A single wavelength or a constant index needs one sample. Otherwise each segment
-/// of the material gets Gauss nodes, as many as the reflectances of the smooth surface require.
-///
+/// A single wavelength or a constant index needs one sample. Otherwise each segment of the material gets as many Gauss
+/// nodes as the reflectances of the smooth surface require.
 /// Accuracy: 1e-9 relative for band sums (tests SpectralRule_*Band*), except for panels.
 SpectralRule spectral_rule(const SceneModel& scene);
 
-/// Estimates the error of a sum over the panels of a rule. `term(j, m)`: the term of sample j, with the moments of
-/// sample m.
-///
+/// Estimates the error of a sum over the panels. `term(j, m)`: term of sample j, with the moments of sample m.
 /// The term at every second node of a panel is predicted from the terms at the other nodes. The estimate is the sum of
 /// the errors of these predictions. For a square root that begins anywhere in a panel, the estimate is at least 2.3
 /// times the error, and 6 times in the median (tests Bands_*).

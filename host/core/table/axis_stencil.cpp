@@ -8,8 +8,7 @@
 namespace dolp {
 namespace {
 
-// Two values with a smaller relative difference count as equal: one of them was typed with fewer digits than a double
-// has.
+// Values with a smaller relative difference count as equal. One may have been typed with fewer digits.
 constexpr double kSame = 4.0 * std::numeric_limits<double>::epsilon();
 
 bool is_same(double a, double b) { return std::abs(a - b) <= kSame * std::max(std::abs(a), std::abs(b)); }

@@ -1,4 +1,3 @@
-// Selects the values of a table's axis from which a lookup interpolates, and computes their weights.
 #pragma once
 
 #include <array>
@@ -42,18 +41,17 @@ class LookupAxis {
   /// Where a value lies among the values of the axis. Domain: contains(value).
   struct Location {
     double coordinate = 0.0;
-    std::size_t next = 0;   ///< number of an equal value, or of the first value above
-    bool is_value = false;  ///< true if an equal value is on the axis
+    std::size_t next = 0;  ///< rank of an equal value, or of the first value above
+    bool is_value = false;
   };
   Location locate(double value) const;
 
-  /// Lagrange interpolation from the `count` values around a location, or from all values if there are fewer. A
-  /// location at a value of the axis gives only this value. `shift` moves the window by so many values, as long as it
-  /// contains the location. Domain: count from 2 to kMostStencil.
+  /// Lagrange interpolation from `count` values (or all, if fewer) around a location, or from the value at it. `shift`
+  /// moves the window by some values, as long as it contains the location. Domain: count from 2 to kMostStencil.
   Stencil stencil(const Location& location, std::size_t count, int shift = 0) const;
 
-  /// Factors of `count` values from number `first` in their divided difference. The factor of coordinate x_i is 1 /
-  /// product of (x_i - x_j) over the other values j. Domain: count from 2 to kMostStencil, first + count <= size().
+  /// Factors 1 / product of (x_i - x_j), j != i, of `count` values x_i from rank `first` in their divided difference.
+  /// Domain: count from 2 to kMostStencil, first + count <= size().
   std::span<const double> divided_difference(std::size_t first, std::size_t count) const {
     return std::span(factors_[count][first]).first(count);
   }
@@ -65,8 +63,8 @@ class LookupAxis {
 
   Scale scale_;
   double origin_;
-  std::vector<double> values_;          ///< ascending
-  std::vector<double> coordinates_;     ///< coordinates of values_
+  std::vector<double> values_;  ///< ascending
+  std::vector<double> coordinates_;
   std::vector<std::size_t> positions_;  ///< positions of values_ in the table
   /// factors_[count][first] is divided_difference(first, count).
   std::array<std::vector<std::array<double, kMostStencil>>, kMostStencil + 1> factors_;

@@ -1,4 +1,3 @@
-// Owners of HDF5 objects, which they close. A NetCDF-4 file is an HDF5 file.
 #pragma once
 
 #include <hdf5.h>

@@ -30,7 +30,6 @@ std::uint64_t sum_of_values(std::span<const Value> values, std::size_t first_pos
   return sum;
 }
 
-/// The elements first, ..., first + count - 1 of a list.
 std::vector<double> slice(const std::vector<double>& list, std::size_t first, std::size_t count) {
   const auto begin = list.begin() + static_cast<std::ptrdiff_t>(first);
   return {begin, begin + static_cast<std::ptrdiff_t>(count)};

@@ -1,4 +1,3 @@
-// Layout of a lookup table, its parts, and the hash of its values.
 #pragma once
 
 #include <algorithm>
@@ -14,15 +13,13 @@
 
 namespace dolp {
 
-/// Most entries of a table.
 inline constexpr std::size_t kMostTableEntries = std::size_t{1} << 36U;
 
 /// Name and value of the attribute with the conventions that a table file follows.
 inline constexpr const char* kConventions = "Conventions";
 inline constexpr const char* kConventionsOfFiles = "CF-1.8";
 
-/// The attribute of a file with n, k and E0 of the scene. Each line of its text has a name, a wavelength in um and a
-/// value.
+/// Attribute with n, k and E0 of the scene. Each line of its text has a name, a wavelength in um and a value.
 inline constexpr const char* kSpectralData = "spectral_data";
 
 /// The text of the attribute kSpectralData; empty for a table without curves.
@@ -49,7 +46,6 @@ struct TableLayout {
   std::vector<ResponseVariable> responses = {};
 };
 
-/// The layout of a table in memory.
 TableLayout layout_of(const TableValues& table);
 
 /// Calls use(of, width) for each variable, in the order of files. of(values) is its column in TableValues, and `width`
@@ -67,7 +63,6 @@ void for_each_variable(const TableLayout& layout, const Use& use) {
         [](auto& table) -> auto& { return table.status; }, std::size_t{1});
 }
 
-/// Converts results to columns: one for each of `quantities`, and the status.
 ResultColumns columns_of(std::span<const PointResult> results, const Quantities& quantities);
 
 /// A part of a table: `count` values of each axis, beginning at the positions `first`.
@@ -76,11 +71,9 @@ struct TableBox {
   PerAxis count = {};
 };
 
-/// Cuts a table into boxes that follow each other in the order of the table. A box has at most `most` entries, but at
-/// least one.
+/// Boxes in the order of the table, with at most `most` entries but at least one each.
 std::vector<TableBox> boxes_in_order(const PerAxis& counts, std::size_t most);
 
-/// The head of a part of a table.
 TableHead head_of(const TableHead& whole, const TableBox& box);
 
 /// The attribute with the hash of a table's values, by which a reader detects damage.
@@ -93,7 +86,6 @@ using ValueSums = std::vector<std::uint64_t>;
 /// The sums of a part of a table that begins at the positions `first`.
 ValueSums sums_of(const TableValues& part, const TableLayout& layout, const PerAxis& first);
 
-/// Adds the sums of another part to `sums`.
 void add(ValueSums& sums, const ValueSums& of_part);
 
 /// The hash of all values of a table, and of the axes and curves of its head.

@@ -22,14 +22,13 @@ constexpr std::size_t kBlock = 16 * kRowsAtOnce;  // rows whose text is in memor
 
 namespace fs = std::filesystem;
 
-/// The axes that a table has.
 std::vector<Axis> present_axes(const Axes& axes) {
   std::vector<Axis> present;
   std::ranges::copy_if(kAllAxes, std::back_inserter(present), [&](Axis axis) { return !axes[axis].empty(); });
   return present;
 }
 
-/// Calls use(axis, value) for each axis of the table, with the coordinate of an entry on it.
+/// Calls use(axis, value) for each axis of the table, with the coordinate of the entry.
 template <class Use>
 void each_coordinate(const Axes& axes, std::size_t position, const Use& use) {
   const PerAxis on_axes = positions_on_axes(position, counts_of(axes));
@@ -82,8 +81,7 @@ std::string csv_rows(const TableValues& part, const TableLayout& layout) {
   });
 }
 
-/// The header of a .npy file. Source: the NumPy enhancement proposal "A Simple File Format for NumPy Arrays", version
-/// 1.0.
+/// Source: NumPy enhancement proposal "A Simple File Format for NumPy Arrays", version 1.0.
 std::string npy_header(const TableLayout& layout) {
   constexpr std::size_t kAlignment = 64;
   constexpr std::size_t kPreambleSize = 10;

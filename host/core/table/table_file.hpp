@@ -1,4 +1,3 @@
-// Tables as files. The suffix of a path chooses the format. Every file is complete or absent.
 #pragma once
 
 #include <dolp/results.hpp>
@@ -16,18 +15,17 @@ namespace dolp {
 /// Appends the first cells of a row, with a comma after each. The results come after them.
 using RowStart = std::function<void(std::string& text, std::size_t row)>;
 
-/// The part of a CSV header for results: the names of the quantities and of the status, separated by commas.
+/// Names of the quantities and of the status, separated by commas.
 std::string result_header(const Quantities& quantities, bool has_status = true);
 
 /// CSV rows. Each row has the cells that `start` appends, then the quantities in the given order, then the status.
 std::string result_rows(const ResultColumns& results, std::size_t rows, const Quantities& quantities,
                         const RowStart& start);
 
-/// Sorts quantities into the order of CSV files of points.
 Quantities in_csv_order(const Quantities& quantities);
 
-/// Writes points and their results as CSV. A file is complete or absent, and its rows are written as they come. Rows
-/// for standard output ("-") are written when all are complete.
+/// Writes points and their results as CSV. A file gets rows as they come, and is complete or absent. Standard output
+/// ("-") gets all rows at the end.
 class ResultCsv {
  public:
   /// `columns`: header for the cells that `start` appends. Errors: IoError.
@@ -50,25 +48,22 @@ class ResultCsv {
 
 enum class TableFormat { kNetcdf, kCsv, kNpy };
 
-/// The format that belongs to the suffix of a path. Errors: InputError for another suffix.
+/// Errors: InputError for an unknown suffix.
 TableFormat format_of(const std::filesystem::path& path);
 
 /// Refuses an output path that a table cannot have, before the table is computed.
-///
-/// Domain: a name with the suffix .nc, .csv or .npy in a folder that can be written to, or "-" (CSV on standard
-/// output).
+/// Domain: suffix .nc, .csv or .npy in a folder that can be written to, or "-" (CSV on standard output).
 /// Errors: InputError for another suffix, IoError for a folder or file that cannot be written.
 void check_output_path(const std::filesystem::path& path);
 
-/// Writes a table.
-///
+/// The suffix of the path chooses the format.
 /// .nc: NetCDF-4 with the conventions CF-1.8. Its coordinates are wavelength, n and k if the table has these axes, and
 /// theta, sigma, q. The status is an int, because CF-1.8 has no unsigned int. Nothing is compressed.
 /// .csv and "-": one row per entry, with the columns `wavelength_um,n,k,theta_deg,sigma,q` and the variables. Each
 /// attribute is a line `# name: value` before the header. After a newline inside a value the next line begins with `#`
 /// and three blanks. Each number is the shortest text that reads back as the same double.
-/// .npy: a structured array with the shape of the axes. Its fields have the names of the columns in a .csv, so
-/// `t["dolp"][i, j, k]` and `t["theta_deg"][:, 0, 0]` work. The format has no attributes.
+/// .npy: a structured array with the shape of the axes, without attributes. Its fields have the names of the columns in
+/// a .csv, so `t["dolp"][i, j, k]` and `t["theta_deg"][:, 0, 0]` work.
 /// Errors: errors of check_output_path; IoError if writing fails, and then the target is unchanged.
 void write_table(const TableValues& table, const std::filesystem::path& path);
 

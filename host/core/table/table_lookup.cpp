@@ -46,13 +46,13 @@ using enum Quantity;
 constexpr std::array kSmooth = {kStokesI, kStokesQ,     kStokesU,     kStokesV, kRhoI,    kRhoQ,
                                 kAlbedo,  kEmissivityS, kEmissivityP, kDolpLow, kDolpHigh};
 
-/// True if an error that lookup states depends on the interpolation error of the quantity.
+/// True if a stated error depends on the interpolation error of the quantity.
 bool has_error(Quantity quantity) {
   constexpr std::array kWithout = {kStokesV, kAlbedo, kEmissivityS, kEmissivityP};
   return std::ranges::find(kWithout, quantity) == kWithout.end();
 }
 
-/// Quantities that a table must have for lookup, in addition to the status.
+/// Quantities that lookup needs in a table, in addition to the status.
 constexpr std::array kNeeded = {kDolp, kStokesI, kStokesQ, kStokesU, kStokesV, kErrorEstimate};
 
 const std::vector<double>& checked(const std::vector<double>& values, const char* axis, const std::string& name) {
@@ -62,7 +62,6 @@ const std::vector<double>& checked(const std::vector<double>& values, const char
   return values;
 }
 
-/// The axes of a table. An axis that the table lacks gets one value.
 std::vector<LookupAxis> axes_of(const TableValues& table, const std::string& name) {
   std::vector<LookupAxis> axes;
   for (const Axis axis : kAllAxes) {
@@ -117,13 +116,12 @@ std::vector<double> masking_kinks(const SceneModel& scene) {
   for (int theta_deg = 0; theta_deg < 90; ++theta_deg) {
     const double below = hidden(theta_deg);
     const double above = hidden(theta_deg + 1);
-    // A secant over one degree finds the kink within some 0.01 degrees. The size of its error hardly depends on that.
+    // A secant over one degree finds the kink within some 0.01 degrees, which hardly changes the size of its error.
     if ((below > 0.0) != (above > 0.0)) kinks_deg.push_back(theta_deg + below / (below - above));
   }
   return kinks_deg;
 }
 
-/// The entries that an interpolation reads: the product of one stencil per axis.
 struct TableLookup::Window {
   std::array<LookupAxis::Location, kAxisCount> locations;
   std::array<Stencil, kAxisCount> stencils;
@@ -139,7 +137,7 @@ struct TableLookup::Window {
   bool is_entry() const {
     return std::ranges::all_of(stencils, [](const Stencil& of_axis) { return of_axis.count == 1; });
   }
-  /// The number of the last value of an axis that is not above the point.
+  /// Rank of the last value of an axis that is not above the point.
   std::size_t below(std::size_t axis) const {
     return locations[axis].is_value ? locations[axis].next : locations[axis].next - 1;
   }
@@ -177,7 +175,7 @@ struct TableLookup::Rows {
     for (std::size_t axis = 0; axis < kQ; ++axis) {
       const Stencil& stencil = window.stencils[axis];
       const std::size_t before = rows.size();
-      for (std::size_t i = stencil.count; i-- > 0;) {  // i = 0 is last, because it overwrites the row that the others read
+      for (std::size_t i = stencil.count; i-- > 0;) {  // i = 0 is last: it overwrites the row that the others read
         const std::size_t begin = lookup.position(axis, stencil.first + i);
         for (std::size_t row = 0; row < before; ++row) {
           const Row next = {rows[row].begin + begin, rows[row].weight * stencil.weights[i]};
@@ -210,7 +208,7 @@ struct TableLookup::Rows {
   static double used(double weight) {
     return kOfSizes ? std::abs(weight) : weight;
   }
-  /// The same sum with loops whose length the compiler knows. Two partial sums run side by side.
+  /// Computes sum() with loops whose length the compiler knows. Two partial sums run side by side.
   template <std::size_t kCount, bool kOfSizes, class Value>
   double sum_dense(const Value& value) const {
     std::array<double, kCount> weights;
@@ -234,16 +232,13 @@ struct TableLookup::Rows {
   }
 };
 
-/// How much one more value of an axis changes the result, on the lines along this axis through the corners of the
-/// point's cell.
+/// Changes of the result by one more value of an axis, on the lines along it through the corners of the point's cell.
 struct TableLookup::Lines {
-  /// The change of an interpolation if one value is added at one of its ends. It is a divided difference of `count`
-  /// values.
+  /// A divided difference of `count` values: the change of an interpolation by one more value at one of its ends.
   struct Change {
     std::size_t first = 0;  ///< position on a line of the first value that the change uses
     std::size_t count = 0;
-    /// 0: `count` is the window and one value more, or the whole axis; each next level has one value fewer; kLevels: a
-    /// kink.
+    /// 0: the window and one more value, or the whole axis; each next level has one value fewer; kLevels: a kink.
     std::size_t level = 0;
   };
   static constexpr std::size_t kLevels = 3;  // levels of a short axis; other axes have one level fewer
@@ -300,9 +295,8 @@ struct TableLookup::Lines {
     }
   }
 
-  /// Adds a change for the kink of the masking in the window. The kink is modelled as a ramp that begins there, as
-  /// steep as the second difference at the kink. Of several kinks, takes the one whose ramp has the largest
-  /// interpolation error.
+  /// Adds a change for the kink of the masking in the window, modelled as a ramp that begins there, as steep as the
+  /// second difference at the kink. Of several kinks, the one whose ramp has the largest interpolation error counts.
   void add_kink(const LookupAxis& axis, double theta_deg, const Stencil& stencil, std::size_t start,
                 const std::vector<double>& kinks_deg) {
     const std::size_t last = stencil.first + stencil.count - 1;
@@ -330,8 +324,7 @@ struct TableLookup::Lines {
     changes.push_back({middle - 1 - start, 3, kLevels});
   }
 
-  /// The changes on a line with unknown entries. Each change uses only the entries that it needs, so some changes are
-  /// known.
+  /// Each change uses only the entries that it needs, so some changes on a line with unknown entries are known.
   void known_changes(const double* values, double* sums) const {
     for (std::size_t j = 0; j < changes.size(); ++j) {
       sums[j] = 0.0;
@@ -372,8 +365,7 @@ struct TableLookup::Lines {
     }
     if (largest[0] < 0.0) return kInfinity;
     if (largest[0] == 0.0) return 0.0;
-    // On a coarse axis the changes of all lines may pass through 0 together. So changes at the next levels limit the
-    // fall.
+    // On a coarse axis the changes of all lines may pass through 0 together, so the next levels limit the fall.
     largest[0] = std::max(largest[0], kFastestFall * largest[1]);
     if (is_short) largest[0] = std::max(largest[0], kFastestFallOfTwo * largest[2]);
     return factor * (largest[0] + std::max(largest[kLevels], 0.0));
@@ -415,7 +407,7 @@ bool TableLookup::make_known(Window& window, double theta_deg) const {
   std::size_t count = kWindow[kTheta];
   const int away = theta_deg > 45.0 ? -1 : 1;
   while (!is_known(window)) {
-    // First the window moves away from the unknown entries, up to kMostShift values. Then it gets one value fewer.
+    // The window moves away from unknown entries by up to kMostShift values, then gets one value fewer.
     if (++shift > kMostShift) {
       shift = 0;
       if (--count < 2) return false;

@@ -1,4 +1,3 @@
-// Interpolation in a lookup table, with an estimate of its error.
 #pragma once
 
 #include <string>
@@ -13,14 +12,12 @@
 namespace dolp {
 
 /// Zenith angles of the source, in degrees, at which the masking of a bistatic beam has a kink for all sigma and q.
-///
 /// Method: `integral` and V-cavities depend on the lower of the two directions, which changes where the source has the
 /// zenith of the view. V-cavities have another kink where G reaches 1 (shaders/physics/README.md, section 2).
 /// Domain: kinks of further bounces and of total reflection are not included.
 std::vector<double> masking_kinks(const SceneModel& scene);
 
 /// Reads a table between its entries.
-///
 /// Method: a tensor product of polynomials. Along theta, ln sigma and ln(q - 1) they have degree five, through the six
 /// values around the point. Along the logarithms of wavelength, temperature, n and k they have degree three, through
 /// four values. The degree is lower if an axis has fewer values. On an axis with labels a point must be at a value.
@@ -34,9 +31,8 @@ std::vector<double> masking_kinks(const SceneModel& scene);
 /// Accuracy: tests LookupEstimates.
 class TableLookup {
  public:
-  /// `table` must outlive the object. `scene`: the scene of the table. Errors: InputError that begins with `name`, for
-  /// an axis with equal values; for a table without dolp, its error, the Stokes parameters or the status; and for a
-  /// table with an error of rho but without rho.
+  /// `table` must outlive the object. Errors: InputError that begins with `name`, for an axis with equal values; for a
+  /// table without dolp, its error, the Stokes parameters or the status; and for an error of rho without rho.
   TableLookup(const TableValues& table, const SceneModel& scene, const std::string& name);
 
   const AxisLabels& labels() const { return table_.labels; }
@@ -47,10 +43,8 @@ class TableLookup {
 
   /// A value on each axis; values on axes that the table lacks are ignored.
   using Point = AxisArray<double>;
-  /// The interpolated result at a point inside the axes. At an entry it is the entry. Quantities that the table lacks
-  /// are NaN.
-  /// Domain: next to entries outside the model's domain the window moves away from them. Between such entries the
-  /// result is NaN with status 4.
+  /// The result at a point inside the axes. Quantities that the table lacks are NaN. Next to entries outside the
+  /// model's domain the window moves away from them. Between such entries the result is NaN with status 4.
   PointResult at(const Point& point) const;
   PointResult at(double theta_deg, double sigma, double q) const {
     Point point{};
@@ -74,7 +68,7 @@ class TableLookup {
   void add_status(PointResult& result) const;
 
   const TableValues& table_;
-  double tolerance_;               ///< tolerance of the scene, for the status
+  double tolerance_;               ///< for the status
   std::vector<double> kinks_deg_;  ///< values of theta at which the masking has a kink
   std::vector<LookupAxis> axes_;   ///< axes in the table's order; an absent axis has one value
   PerAxis strides_ = {};           ///< distance in the table between neighbours on each axis

@@ -14,8 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Rows of a .csv or .npy that are in memory at a time.
-constexpr std::size_t kConvertedRowsAtOnce = std::size_t{1} << 17U;
+constexpr std::size_t kConvertedRowsAtOnce = std::size_t{1} << 17U;  // rows in memory at a time
 constexpr std::string_view kIdentityEnd = "; ";
 
 // The partial file is beside the file to which a link leads, because the link may be on another file system.

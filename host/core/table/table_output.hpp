@@ -1,4 +1,3 @@
-// Writes a table part by part, so that an interrupted run can continue.
 #pragma once
 
 #include <dolp/errors.hpp>
@@ -14,9 +13,9 @@
 
 namespace dolp {
 
-/// A table file that is being written. A resumable table of several parts is in PATH.partial until it is complete, and
-/// PATH.partial.txt has a line for each finished part, with a hash of its values. Any other table is in a file without
-/// a name until it is complete. A .csv or .npy is made from the values at the end.
+/// A table file that is being written part by part. A resumable table of several parts is in PATH.partial until it is
+/// complete, and PATH.partial.txt has a line for each finished part, with a hash of its values. Any other table is in a
+/// file without a name until it is complete. A .csv or .npy is made from the values at the end.
 class TableOutput {
  public:
   struct Job {
@@ -27,9 +26,9 @@ class TableOutput {
     bool is_resumed = false;    ///< continues PATH.partial if it exists
     Progress progress = {};     ///< called while finished parts are read, with 0 as the number of done entries
   };
-  /// Opens the output. If `is_resumed`, reuses finished parts of an earlier run, up to the first that is missing or
-  /// changed. Errors: errors of check_output_path; InputError if the partial file has another identity, or another
-  /// process writes it; IoError if PATH.partial or PATH.partial.txt is a link; Cancelled.
+  /// If `is_resumed`, reuses finished parts of an earlier run, up to the first that is missing or changed.
+  /// Errors: errors of check_output_path; InputError if the partial file has another identity, or another process
+  /// writes it; IoError if PATH.partial or PATH.partial.txt is a link; Cancelled.
   explicit TableOutput(Job job);
   ~TableOutput();
   TableOutput(const TableOutput&) = delete;
@@ -39,13 +38,12 @@ class TableOutput {
   std::size_t parts_done() const { return parts_done_; }
   const std::string& note() const { return note_; }
 
-  /// Writes the next part, which begins at the positions `first`. `note`: a line to store with it. Errors: IoError,
-  /// Cancelled.
+  /// `note`: a line to store with the part, which begins at the positions `first`. Errors: IoError, Cancelled.
   void write(TableValues part, const PerAxis& first, const std::string& note);
   /// Adds attributes and makes the file at PATH. Errors: IoError, Cancelled; then PATH is unchanged.
   void finish(const std::vector<Attribute>& more);
 
-  /// A sentence that tells how to continue from the partial file; nullopt if there is none.
+  /// How to continue from the partial file; nullopt if there is none.
   std::optional<std::string> rest() const;
 
  private:
@@ -66,8 +64,7 @@ class TableOutput {
   std::string note_;
 };
 
-/// The first difference between two identities of the form "name value; name value", for example "evaluator cpu, not
-/// vulkan". nullopt if they are equal.
+/// The first difference of two identities "name value; ...", such as "evaluator cpu, not vulkan"; nullopt if equal.
 std::optional<std::string> difference(const std::string& identity, const std::string& wanted);
 
 }  // namespace dolp

@@ -26,10 +26,8 @@ constexpr std::size_t kMostAngles = 1024;                      // most angles of
 
 namespace fs = std::filesystem;
 
-// Other tools may compress a table with deflate, which leaves at least a 1032nd of the bytes.
-constexpr std::size_t kMostShrinking = 1032;
-// Limit for texts in a file. The longest text is the scene, with at most 16 MiB.
-constexpr std::size_t kMostStoredTextBytes = 64U << 20U;
+constexpr std::size_t kMostShrinking = 1032;              // other tools may use deflate, which leaves at least a 1032nd
+constexpr std::size_t kMostStoredTextBytes = 64U << 20U;  // the longest text is the scene, with at most 16 MiB
 
 constexpr const char* kPartHint =
     "as in a part of a table; in Python dolp.lookup(xarray.load_dataset(FILE), ...) takes parts";
@@ -129,8 +127,7 @@ std::vector<double> read_list(const Reader& reader, const std::string& name, std
   return values;
 }
 
-/// Texts of one length, with zero bytes at the end, or of any length, as other writers store texts that are not ASCII.
-/// `read` fills the memory of `count` texts.
+/// Texts of one length, padded with zero bytes, or of any length. `read` fills the memory of `count` texts.
 template <class Read>
 std::vector<std::string> read_texts(const Reader& reader, const std::string& name, const Hdf5Handle& type,
                                     const Hdf5Handle& space, std::size_t count, const Read& read) {
@@ -154,7 +151,6 @@ std::vector<std::string> read_texts(const Reader& reader, const std::string& nam
   return texts;
 }
 
-/// The labels of an axis.
 std::vector<std::string> read_labels(const Reader& reader, const std::string& name, std::size_t most) {
   const Hdf5Handle variable = reader.find(name);
   if (!variable) return {};
@@ -196,8 +192,7 @@ std::optional<std::string> find_text(const Reader& reader, const Hdf5Handle& obj
   return text ? std::optional(*text) : std::nullopt;
 }
 
-/// The attribute at a position, in the order in which attributes were made. If the file lacks this order, in the order
-/// of names.
+/// Attributes are in the order in which they were made, or by name if the file lacks this order.
 Hdf5Handle attribute_at(const Reader& reader, hsize_t position) {
   for (const H5_index_t index : {H5_INDEX_CRT_ORDER, H5_INDEX_NAME}) {
     Hdf5Handle attribute(
@@ -317,7 +312,6 @@ struct TableReader::Impl {
     }
   }
 
-  /// Reads a part of a variable with `width` values per entry.
   template <class Value>
   void read(std::size_t number, const TableBox& box, std::vector<Value>& values, std::size_t width) const {
     const auto& [name, variable] = open[number];

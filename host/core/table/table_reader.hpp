@@ -1,4 +1,3 @@
-// Reads a table from a file, part by part.
 #pragma once
 
 #include <dolp/errors.hpp>
@@ -10,8 +9,8 @@
 
 namespace dolp {
 
-/// An open .nc table. Errors of all calls: InputError for a file that cannot be opened, is not a table of dolp, is
-/// damaged, or claims more values than a file of its size can hold.
+/// Reads a .nc table part by part. Errors of all calls: InputError for a file that cannot be opened, is not a table of
+/// dolp, is damaged, or claims more values than a file of its size can hold.
 class TableReader {
  public:
   explicit TableReader(const std::filesystem::path& path);
@@ -23,8 +22,7 @@ class TableReader {
   const TableHead& head() const { return layout().head; }
 
   TableValues read(const TableBox& box) const;
-  /// The entries at ascending positions; each variable has one value per position. Reads the whole table, part by part,
-  /// and refuses what check_hash refuses. Errors: also Cancelled.
+  /// Reads the entries at ascending positions, and checks the hash of the whole table. Errors: also Cancelled.
   TableValues read_entries(std::span<const std::size_t> positions, const Progress& progress) const;
 
   /// The sums of a part that was read, for check_hash.

@@ -27,8 +27,7 @@
 namespace dolp {
 namespace {
 
-/// Most bytes that HDF5 adds to values and texts, for shapes, names and units.
-constexpr std::uint64_t kMostOverhead = 1U << 20U;
+constexpr std::uint64_t kMostOverhead = 1U << 20U;  ///< bytes that HDF5 adds for shapes, names and units
 
 /// A file in memory, without a name. Only written bytes take memory; the other bytes read as zero.
 class MemoryFile {
@@ -64,7 +63,6 @@ class MemoryFile {
   int descriptor_;
 };
 
-/// Why the last call of HDF5 failed.
 struct Hdf5Failure {
   std::string reason;      ///< reason in HDF5's words; empty if HDF5 had no memory for them
   bool is_memory = false;  ///< true if the reason is lack of memory
@@ -78,8 +76,7 @@ struct Hdf5Failure {
   }
 };
 
-/// Makes the HDF5 objects of a table in a MemoryFile. If a call fails, throws std::bad_alloc, or IoError with HDF5's
-/// reason.
+/// Makes HDF5 objects in a MemoryFile. Errors: std::bad_alloc, or IoError with HDF5's reason, if a call fails.
 class Writer {
  public:
   explicit Writer(const MemoryFile& memory) : memory_(memory) {
@@ -134,16 +131,14 @@ class Writer {
     put_text(object, "flag_meanings", fmt::format("{}", fmt::join(meanings, " ")));
   }
 
-  /// Creates a variable without values, and reserves its space in the file. The variable is not compressed, because
-  /// zlib saves half of the file but takes longer than everything else in writing a table. It is contiguous, because
-  /// pointers to chunks have no checksum.
+  /// Reserves the space of the variable. It is not compressed, because zlib saves half of the file but takes longer
+  /// than everything else in writing a table. It is contiguous, because pointers to chunks have no checksum.
   Hdf5Handle define(const char* name, hid_t type, const std::vector<hsize_t>& shape, const void* fill,
                     H5D_alloc_time_t allocation = H5D_ALLOC_TIME_EARLY) const {
     const Hdf5Handle creation = take(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     check(H5Pset_attr_creation_order(creation.id(), kOrdered));
     check(H5Pset_obj_track_times(creation.id(), false));
-    // Filling would write every variable twice, because each is written whole. HDF5 requires it for texts of variable
-    // length.
+    // Filling would write each variable twice. HDF5 requires it for texts of variable length.
     if (H5Tis_variable_str(type) <= 0) check(H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER));
     check(H5Pset_alloc_time(creation.id(), allocation));
     if (fill) check(H5Pset_fill_value(creation.id(), type, fill));
@@ -178,8 +173,7 @@ void put_long_text(const Writer& writer, const std::string& name, const std::str
   const std::vector<hsize_t> shape = {text.size()};
   const Hdf5Handle length =  // never written, so that it takes no space in the file
       writer.define((name + "_length").c_str(), H5T_IEEE_F32BE, shape, nullptr, H5D_ALLOC_TIME_LATE);
-  // The netCDF library marks a dimension without coordinates by this text. The number at its end is the length, as ten
-  // characters.
+  // The netCDF library marks a dimension without coordinates by this text and the length in ten characters.
   std::string digits = std::to_string(text.size());
   digits.insert(0, 10 - std::min<std::size_t>(digits.size(), 10), ' ');
   writer.check(H5DSset_scale(length.id(), ("This is a netCDF dimension but not a netCDF variable." + digits).c_str()));
@@ -206,8 +200,7 @@ void put_attributes(const Writer& writer, const TableHead& head) {
   if (const std::string data = spectral_data_of(head); !data.empty()) put_more(writer, {{kSpectralData, data}});
 }
 
-/// Writes a coordinate. Without `along` it is a dimension. With `along` it is a variable over this dimension, or a
-/// single value if the handle is empty.
+/// `along`: dimension of the coordinate, or an empty handle for a single value; null if the coordinate is a dimension.
 template <class Described>
 Hdf5Handle put_coordinate(const Writer& writer, const Described& described, const std::vector<double>& values,
                           const Hdf5Handle* along = nullptr) {
@@ -234,8 +227,7 @@ Hdf5Handle put_labels(const Writer& writer, const TableHead& head, Axis axis) {
   return variable;
 }
 
-/// The coordinate variables of the axes. An axis that the table lacks has an empty handle.
-using AxisVariables = AxisArray<Hdf5Handle>;
+using AxisVariables = AxisArray<Hdf5Handle>;  ///< an absent axis has an empty handle
 
 AxisVariables put_axes(const Writer& writer, const TableHead& head) {
   AxisVariables axes;
@@ -271,15 +263,13 @@ Hdf5Handle define_over_axes(const Writer& writer, const TableHead& head, const A
   return variable;
 }
 
-/// Offset in the file at which the values of a variable begin.
 std::uint64_t offset_of(const Writer& writer, const Hdf5Handle& variable) {
   const haddr_t offset = H5Dget_offset(variable.id());
   writer.check(offset == HADDR_UNDEF ? -1 : 0);
   return offset;
 }
 
-/// Creates a variable of doubles, and returns the offset of its values. `qualifiers`: names of the variables that
-/// qualify it (its error, the status), or "".
+/// Returns the offset of the values. `qualifiers`: names of variables such as its error or the status, or "".
 template <class Described>
 std::uint64_t put_variable(const Writer& writer, const TableHead& head, const AxisVariables& axes,
                            const Described& described, const std::string& units, const char* qualifiers,
@@ -310,7 +300,6 @@ std::uint64_t bytes_of(const std::vector<Attribute>& attributes) {
   return bytes;
 }
 
-/// Upper bound for the length of a file with this layout.
 std::uint64_t most_bytes(const TableLayout& layout) {
   const TableHead& head = layout.head;
   const std::size_t of_entry =
@@ -339,8 +328,7 @@ struct TableStore::Impl {
   AtomicFile& file;
   MemoryFile memory;
   Writer writer{memory};
-  /// Offset in the file at which the values of each variable begin, in the order of for_each_variable.
-  std::vector<std::uint64_t> offsets;
+  std::vector<std::uint64_t> offsets;  ///< where the values of each variable begin, in the order of for_each_variable
 
   Impl(TableLayout of_file, AtomicFile& of_table)
       : layout(std::move(of_file)), file(of_table), memory(of_table.path().string()) {

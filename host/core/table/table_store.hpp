@@ -1,4 +1,3 @@
-// Writes a table to disk, part by part.
 #pragma once
 
 #include <memory>
@@ -11,8 +10,8 @@
 namespace dolp {
 
 /// Writes a NetCDF-4 table whose values may come in any order. Checksums of HDF5 protect names, shapes and attributes;
-/// the hash protects the values. HDF5 makes everything except the values, and does so in memory, because it crashes if
-/// a disk is full. A text that is too long for an attribute becomes a variable of characters with the attribute's name.
+/// the hash protects the values. HDF5 makes everything except the values, in memory, because it crashes if a disk is
+/// full. A text that is too long for an attribute becomes a variable of characters with the attribute's name.
 class TableStore {
  public:
   /// `file` must outlive the object. The constructor writes nothing to it.
@@ -22,8 +21,7 @@ class TableStore {
   TableStore& operator=(const TableStore&) = delete;
   ~TableStore();
 
-  /// Writes the values of a part, which has the quantities of the layout. Returns the sums of the part, which the
-  /// caller adds up. Errors: IoError, Cancelled.
+  /// Writes a part. Returns its sums, for the caller to add up. Errors: IoError, Cancelled.
   ValueSums write(const TableValues& part, const PerAxis& first);
   /// Reads a written part. Errors: IoError.
   TableValues read(const TableBox& box) const;

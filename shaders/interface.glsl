@@ -40,14 +40,13 @@
 #define DOLP_COLUMNS_SKY_RESPONSE 2u  // responses of the reflected light, weighted with a function of a sky
 #define DOLP_COLUMNS_DIRECT 3u        // responses of the direct emission
 
-// ---- Push constants of all entry points
+// ---- Push constants of all entry points -----------------------------------------------------------------------------
 // count: number of tasks (moments.comp), slopes (slopes.comp), entries (mueller.comp) or shapes (masking_table.comp).
 // first: position of the first of them. Output i of slopes.comp and mueller.comp belongs to input first + i. In
 // moments.comp the outputs from i * DOLP_WIDTH to (i + 1) * DOLP_WIDTH - 1 belong to task first + i.
 // largest_order: largest order of the rules in DOLP_BINDING_RULE_NODES.
 // sky: log2 of the cells per function of the sky (from bit 0), number of corners (from bit DOLP_SKY_CORNERS_SHIFT), and
-// position of the first cell among the rule nodes (from bit DOLP_SKY_START_SHIFT). The corners' cosines follow the
-// cells.
+// position of the first cell among the rule nodes (from bit DOLP_SKY_START_SHIFT). Corners' cosines follow the cells.
 #define DOLP_PUSH_CONSTANTS uint first; uint count; uint largest_order; uint sky;
 #define DOLP_SKY_CORNERS_SHIFT 5
 #define DOLP_SKY_START_SHIFT 10
@@ -136,7 +135,7 @@ struct ShapeNode {
   real scale;          // scale of the map t = scale sinh(X)
   real cut;            // slopes above it are left out
   real table_scale;    // scale of the masking table: v = 1 + tau/table_scale
-  real cusp_digits;    // smith: see cusp_digits() of plan/rule.hpp
+  real cusp_digits;    // smith: log10 of the cusp's error, see cusp_digits() of plan/rule.hpp
 };
 
 struct IndexNode {
@@ -202,7 +201,7 @@ struct MomentsNode {
   real r_q;
   real albedo;
   real deficit;
-  real behind;               // part of `deficit` with a negative sign (slope_sums); for the bound of its rounding
+  real behind;               // sum with a negative sign in `deficit` (slope_sums), for its rounding
   real many;                 // part of r_i from grooves with more bounces than DOLP_MOST_BOUNCES
   real direct_i;             // direct emission
   real direct_q;

@@ -20,8 +20,7 @@ using std::numbers::pi;
 namespace {
 
 constexpr double kRounding = 256.0 * std::numeric_limits<double>::epsilon();
-// Facets with a slope above this times max(1, width) / sin(theta) count as vertical. The relative error is 1 /
-// kVertical.
+// Facets count as vertical above this times max(1, width) / sin(theta), with a relative error of 1 / kVertical.
 constexpr double kVertical = 1e10;
 constexpr double kSmallestSine = 1e-12;
 constexpr double kNoShare = 1e-19;  // a smaller share of the facets contributes less than rounding
@@ -66,8 +65,8 @@ class Facets {
   }
 
  private:
-  // e: area seen from the view over horizontal area. `side`: 1 is facet A (azimuth phi), -1 facet B (phi + 180
-  // degrees).
+  // e: the area of a facet seen from the view, divided by its horizontal projection. `side` is 1 for facet A, at the
+  // azimuth phi, and -1 for facet B, at phi + 180 degrees.
   double facing(const SlopePoint& point, double side) const {
     return view_.cos + side * point.t * view_.sin * point.sin_chi;
   }
@@ -111,14 +110,13 @@ class Facets {
     return number;
   }
 
-  // Steeper facets count as vertical or, if that is a smaller slope, are a share of only kNoShare.
+  // The slope beyond which facets count as vertical, or beyond which only kNoShare of the facets lie, if it is smaller.
   double end() const {
     const double vertical = kVertical * std::max(1.0, slopes_.width()) / std::max(view_.sin, kSmallestSine);
     return std::min(vertical, slopes_.quantile(kNoShare));
   }
 
-  // Emission of facets steeper than t, counted as vertical. With smith e G_1 is proportional to t, with v-cavity
-  // constant.
+  // Emission of the facets steeper than t. With smith masking e G_1 is proportional to t there, with v-cavity constant.
   Emitted tail(double t, const Refinement& refinement) {
     const double share = masking_ == Masking::kVCavity ? slopes_.share_above(t) : slopes_.length_above(t) / t;
     if (share < kNoShare) return {};

@@ -35,8 +35,7 @@ constexpr double kHorizonGap = 1e-30;
 // thin. Panels could step over this layer, so break points become denser towards the horizon.
 constexpr double kNearHorizon_rad = 1e-3;
 constexpr double kLayerGrowth = 10.0;
-constexpr double kInnerShare =
-    0.02;  // errors of the inner integrals, relative to the error of the integral around them
+constexpr double kInnerShare = 0.02;  // errors of inner integrals, relative to the error of the integral around them
 // An azimuth integral cannot have a smaller relative error: a Kronrod panel has a rounding of 1e-15 of its magnitude.
 constexpr double kInnerFloor = 4e-15;
 constexpr double kNegligible = 1e-12;  // integrals below this share of the albedo are zero except for rounding
@@ -58,7 +57,6 @@ Values<N> moment_scales(const Values<N>& value) {
   return scales;
 }
 
-// The moments of one direction, and the data of all nested integrands.
 template <std::size_t K>
 class Hemisphere {
  public:
@@ -120,8 +118,8 @@ class Hemisphere {
     Zenith running;
     Attenuation attenuation;
   };
-  // In u, where tan((theta_r - theta)/2) = width sinh(u): the specular direction u = 0, corners of the sky, and zenith
-  // angles at which a break point of the azimuth appears at Delta_phi = 180 or 0 degrees.
+  // Break points in u, where tan((theta_r - theta)/2) = width sinh(u): the specular direction u = 0, corners of the
+  // sky, and zenith angles at which a break point of the azimuth appears at Delta_phi = 180 or 0 degrees.
   Breaks zenith_breaks() const {
     const double width = slopes_.width();
     Breaks breaks(std::asinh(-std::tan(0.5 * theta_rad_) / width),
@@ -212,7 +210,6 @@ class Hemisphere {
     return scales;
   }
 
-  // The azimuth integrals at one running zenith angle, and their errors.
   BothValues row_values(double u) {
     const double t = slopes_.width() * std::sinh(u);
     const double half_rad = std::atan(t);

@@ -86,7 +86,7 @@ reference::Amplitudes<Number> fresnel_amplitudes(const FacetOptics& constants,
   return {(cos_beta - w) / (cos_beta + w), (n2 * cos_beta - w) / (n2 * cos_beta + w)};
 }
 
-// Its columns are the reflected (s, p) amplitudes for an incident s wave and an incident p wave of unit amplitude. The
+// The columns are the reflected (s, p) amplitudes for an incident s wave and an incident p wave of unit amplitude. The
 // facet's s is normal to both beams. In the retro direction any s works, because r_p = -r_s.
 Jones<Complex> jones_matrix(const BeamFrame& in, const BeamFrame& out, const reference::Amplitudes<Complex>& r) {
   const Vector normal = cross(in.k, out.k);

@@ -34,8 +34,8 @@ struct Arc {
   real quarter;     // tan of a quarter of its length
   real origin;      // phi at the beginning, or at the end at which the rule has a symmetry or a singularity
   real span;        // length in phi
-  int section;      // of the rule nodes
-  bool is_critical; // w of fresnel.glsl vanishes at or near the centre
+  int section;      // section of the rule nodes
+  bool is_critical; // true if w of fresnel.glsl vanishes at or near the centre
   real resolution;  // width of the square root at the centre, see critical_arc of orders.glsl; or 0
 };
 
@@ -66,8 +66,7 @@ Arc make_arc(real2 from, real2 to) {
   return arc;
 }
 
-// If `has_root`, the arc has a singularity at its beginning or, if `at_end`, at its end, and gets a cluster of nodes
-// there.
+// If `has_root`, the arc has a singularity at its beginning (`at_end`: its end), and gets a cluster of nodes there.
 Arc with_root(Arc arc, bool at_end, bool has_root) {
   real2 root = choose(at_end, arc.to, arc.from);
   arc.centre_cos = choose(has_root, cosine(root), arc.centre_cos);
@@ -115,7 +114,7 @@ Azimuth azimuth(Arc arc, real2 node) {
 struct SplitLines {
   real2 end[DOLP_MAX_ARCS];  // end of each arc; the first begins at phi = 0
   int arcs;
-  int leaving;     // arcs whose reflected ray leaves the surface
+  int leaving;     // number of arcs whose reflected ray leaves the surface
   real2 horizon;   // theta_r = 90 degrees; beyond it the reflected ray does not leave
   real2 critical;  // cos(beta) = critical_cos, with a square root on both sides
 };

@@ -1,13 +1,13 @@
 
 struct Slope {
   real t;
-  real digits;        // required of the sum over the azimuths
+  real digits;        // digits required of the sum over the azimuths
   MaskingTerms masking_in;
   bool has_split_line;
   int most_azimuths;
   bool is_coarse;
   SkyPlace sky;
-  real weight[DOLP_WIDTH];  // in the columns, for each entry of the row
+  real weight[DOLP_WIDTH];  // weight of this slope in the columns, for each entry of the row
 };
 
 // `member` and `columns` have an element for each entry of a row.

@@ -11,8 +11,8 @@
 
 // A kernel reads these once, because devices would read push constants again in each turn of a loop.
 struct SkyPlace {
-  int cells;  // of a function
-  int start;  // the first cell
+  int cells;  // number of cells of a function
+  int start;  // position of the first cell
   int corners;
 };
 

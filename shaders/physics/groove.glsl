@@ -12,17 +12,17 @@
 // goes on to bounce k, with X_0 = max(a sin(psi - gamma), 0).
 
 // A ray on its way through the fan. Groups of 2, 4, 8 ... bounces in the middle of its path count as one bounce; near
-// the first and the last bounce, which may be grazing, groups are smaller. Error: host/compute/plan/error_bounds.cpp.
+// the first and last bounce, which may be grazing, groups are smaller. error_bounds.cpp of host/ bounds the error.
 struct Fan {
   real2 turn;    // (cos, sin) of gamma times `taken`
-  real gamma;    // set, like the next members, only for steep grooves, see fan()
+  real gamma;    // like the next members, set only for steep grooves, see fan()
   real left;     // bounces ahead; (pi/2 - psi) / gamma at first
   real done;
   real slant;    // psi / gamma, at most 1
   real taken;    // bounces in the next group, 2^doublings
   int doublings;
   bool is_steep;
-  bool is_black;  // so many bounces that no light is left
+  bool is_black;  // true if the ray has so many bounces that no light is left
 };
 
 // The ray has the vertical component c and the component u across the groove.
@@ -38,7 +38,7 @@ Fan fan(real t, real c, real u) {
   f.doublings = 0;
   f.is_steep = false;
   f.is_black = false;
-  // A ray has at most pi/gamma < pi t + 2 bounces. This loop of one turn is an `if` that devices skip if not needed.
+  // A ray has at most pi/gamma < pi t + 2 bounces. A loop of one turn replaces the `if`: devices skip it if not needed.
   for (bool may_be = t > real(DOLP_MOST_BOUNCES) / kPi; may_be; may_be = false) {
     real to_horizon = arc_tangent(c / max(abs(u), real(1e-30)));
     f.gamma = arc_tangent(real(1.0) / t);
@@ -80,7 +80,7 @@ struct Bounce {
   real2 cross;    // r_s r_p*, with the sign for which r_p = r_s at normal incidence
 };
 
-// By 2^doublings facets: r_p / r_s = (cos(beta) w - sin^2(beta)) / (cos(beta) w + sin^2(beta)) for each.
+// Reflection by 2^doublings equal facets. r_p / r_s = (cos(beta) w - sin^2(beta)) / (cos(beta) w + sin^2(beta)).
 Bounce bounce(IndexNode index, real cos_beta, real sin2_beta, int doublings) {
   real2 w = sqrt_upper(index.n2m1_re + cos_beta * cos_beta, index.n2m1_im);
   real2 s_sum = real2(cos_beta + w.x, w.y);
@@ -140,7 +140,7 @@ struct GrooveLight {
   real cos_last;
 };
 
-// Integrand of the moments per radian, for rays that meet the facet first. cos(theta_r) is -a cos(psi + 2 k gamma).
+// Moments per radian for rays that meet the facet first. After k bounces cos(theta_r) is -a cos(psi + 2 k gamma).
 GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   real c = theta.c;
   real u = theta.s * x;

@@ -53,7 +53,7 @@ struct TableCell {
   real d1;
   real e0;
   real e1;
-  real g0;  // g at the ends
+  real g0;  // weight g at the ends
   real g1;
 };
 
@@ -92,7 +92,7 @@ real masking_height(TableCell cell, uint table) {
 // The arguments at which tables are read for 1 - G1(theta, alpha), equal for all tables of one table_scale.
 struct ShadowRange {
   real kappa;
-  bool is_limited;  // d > 0, so that tb limits the integral
+  bool is_limited;  // true if d > 0, so that tb limits the integral
   real far;         // tb
   real gap;         // tb - mu
 };

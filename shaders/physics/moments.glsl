@@ -25,7 +25,7 @@ Piece make_piece(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task 
   piece.root_at_a = task.root_at_start;
   bool ends_before_cut = b < shape.cut;
   piece.root_at_b = ends_before_cut && task.root_at_end;
-  // A square root outside counts as a root at an end, if its distance from it is a small part of the piece's length.
+  // A square root outside the piece counts as a root at an end if it is nearer than a small part of the piece's length.
   real end = piece.start + piece.extent;
   real before = asinh_real(task.before / shape.scale);
   bool is_near_a = piece.start - before < kNearRoot * piece.extent;
@@ -54,7 +54,6 @@ real2 position_on_piece(Piece piece, real v) {
   return choose(has_both, both, one_or_none);
 }
 
-// The sums of one rule, for each entry of a row.
 struct PieceSums {
   real4 member[DOLP_WIDTH];
   Columns columns[DOLP_WIDTH];

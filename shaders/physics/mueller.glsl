@@ -9,13 +9,12 @@
 //   turn by -eta_r
 // The host computes A, B, C and S (host/compute/plan/beam.cpp).
 
-// The masking G of one geometry.
 real attenuation(GeometryNode g, ShapeNode shape) {
   if (kMasking == DOLP_MASKING_NONE) return real(1.0);
   if (kMasking == DOLP_MASKING_SMITH) {
     return real(1.0) / (real(1.0) + in_plane_lambda(shape, g.c_i, g.s_i) + in_plane_lambda(shape, g.c_r, g.s_r));
   }
-  bool incident_is_lower = g.c_i * g.s_r < g.c_r * g.s_i;  // tangents, because near the normal all cosines are 1 in a float
+  bool incident_is_lower = g.c_i * g.s_r < g.c_r * g.s_i;  // tangents: near the normal a float cosine is 1
   real lower_cos = incident_is_lower ? g.c_i : g.c_r;
   real lower_sin = incident_is_lower ? g.s_i : g.s_r;
   if (kMasking == DOLP_MASKING_V_CAVITY) {

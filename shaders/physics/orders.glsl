@@ -1,4 +1,4 @@
-// The number of nodes for a piece of the slope axis or an arc of azimuths. It only affects accuracy and work.
+// The number of nodes for a piece of the slope axis or an arc of azimuths. It affects only accuracy and work.
 //
 // Let y0 be the singularity of the integrand that is nearest to [0, 1]. A Gauss rule of n nodes then has an error of
 // about e^(-2 n mu), with cosh(mu) = |y0| + |y0 - 1| (Trefethen 2013, chapter 19). So a decimal digit costs ln(10) / (2
@@ -11,9 +11,9 @@ CONST real kInverseLn10 = real(0.43429448190325182765);
 // Beside an arc, a square root with a larger Arc::resolution counts as an ordinary singularity.
 CONST real kWideResolution = real(0.1);
 CONST real kSharpResolution = real(1e-6);
-CONST real kMoreDigits = real(0.3);  // on the slope axis, for each digit beyond kPlainDigits
+CONST real kMoreDigits = real(0.3);  // digits added on the slope axis for each digit beyond kPlainDigits
 CONST real kPlainDigits = real(7.0);
-CONST real kLeastWeight = real(1e-20);  // of a slope; gives all slopes equal weight at 90 degrees
+CONST real kLeastWeight = real(1e-20);  // least weight of a slope; gives all slopes equal weight at 90 degrees
 
 // acosh(1 + gap), without cancellation.
 real acosh_above_1(real gap) { return log1p_real(gap + sqrt(gap) * sqrt(gap + real(2.0))); }
@@ -26,7 +26,7 @@ real gap_beside_unit(real a, real b) {
   return off_axis + real(2.0) * (max(a - real(1.0), real(0.0)) + max(-a, real(0.0)));
 }
 
-// In the upper half plane of the integrand's variable.
+// A singularity in the upper half plane of the integrand's variable.
 struct Singularity {
   real re;
   real im;
@@ -49,7 +49,7 @@ real nodes_per_digit(real mu) { return kHalfLn10 / max(mu, real(1e-3)); }
 
 int order_between(real nodes, int limit) { return int(clamp(floor(nodes + real(0.5)), real(1.0), real(limit))); }
 
-// Two rules with few nodes often agree by chance, so below three nodes the coarser rule has one node more instead.
+// Two rules with few nodes often agree by chance. So below three nodes the order is one above that of the finer rule.
 int coarse_order(int order) {
   int fewer = (8 * order + 5) / 10;
   int more = order + 1;
@@ -64,8 +64,7 @@ real weight_of_slope(ThetaNode theta, real t) {
   return kMasking == DOLP_MASKING_V_CAVITY ? min(bare, max(real(2.0) * theta.c, kLeastWeight)) : bare;
 }
 
-// Estimated contribution of all facets to the albedo. Up to slope t1 all rays are reflected upwards, up to t2 about
-// half.
+// Estimated contribution of all facets to the albedo. They reflect all rays upwards up to slope t1, half up to t2.
 real weight_of_shape(ThetaNode theta, ShapeNode shape) {
   real t1 = theta.c / (real(1.0) + theta.s);
   real t2 = (real(1.0) + theta.s) / max(theta.c, real(1e-15));
@@ -126,8 +125,8 @@ real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, 
 }
 
 // Nodes per digit on a piece because of Fresnel's branch point, cos(beta) = b, on a line at which arcs end: the
-// horizon, sec(alpha) = 2 b / c (`ratio` 2), or theta_r = theta, sec(alpha) = b / c. Total reflection has breakpoints
-// there.
+// horizon, sec(alpha) = 2 b / c, or theta_r = theta, sec(alpha) = b / c. `ratio` is the factor of b / c. Under total
+// reflection these slopes are breakpoints.
 real line_piece_cost(ThetaNode theta, ShapeNode shape, IndexNode index, Piece piece, real ratio) {
   real stretch = ratio / max(theta.c, real(1e-12));
   real2 sec = real2(stretch * index.branch_re, stretch * index.branch_im);
@@ -310,8 +309,7 @@ Arc masked_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_l
 
 // The arc gets a cluster of nodes at one end, if this end is the critical line of total reflection. There w^2 =
 // cos^2(beta) - critical_cos^2 + i Im N^2 vanishes or is small. The resolution is |w^2| there over the range of w^2 on
-// the arc. If it is large, the arc is ordinary; if negligible, the root counts as sharp, with an error of about
-// resolution^(3/2).
+// the arc. If it is large, the arc is ordinary; if negligible, the root is sharp; error: about resolution^(3/2).
 Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc, bool at_end, bool is_beside) {
   real level = index.critical_cos * index.critical_cos;
   real r2 = real(1.0) / (real(1.0) + t * t);
@@ -356,8 +354,7 @@ real arc_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index,
   map = choose(arc.section == kSectionCircle, real(0.0), map);
   real cost = max(max(map, fresnel_cost(rule, theta, index, t, arc)), masking_cost(theta, shape, t, arc, zone));
   // Before a rule converges, it must resolve cos(phi) to cos(3 phi), with nodes in proportion to the arc's length, and
-  // the spreading e^(2 a v) of place_on_arc. In a cluster dphi is proportional to the abscissa, which costs half a
-  // node.
+  // the spreading e^(2 a v) of place_on_arc. In a cluster dphi is proportional to the abscissa: half a node more.
   real base = rule.phi_nodes * arc.span + choose(arc.section == kSectionCluster, real(1.0), real(0.5));
   if (kTotalReflection) {
     real spread = real(0.5) * asinh_real(real(1.0) / sqrt(arc.resolution));

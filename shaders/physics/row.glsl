@@ -28,7 +28,7 @@ MaskingTerms unmasked() {
   return masked;
 }
 
-// The part without the slope: Smith's L (at 90 degrees so large that G is 0), or l of masking.glsl for `integral`.
+// The part that does not depend on the slope: Smith's L (G is 0 at 90 degrees), or l of masking.glsl for `integral`.
 MaskingTerms masking_of_direction(Row row, real cos_theta, real sin_theta) {
   MaskingTerms heights = unmasked();
   if (kMasking == DOLP_MASKING_SMITH) {

@@ -4,7 +4,7 @@ struct Task {
   int piece;
   bool root_at_start;
   bool root_at_end;
-  bool root_before_start;  // at the start of the preceding piece
+  bool root_before_start;  // square root at the start of the preceding piece
   bool root_after_end;
   bool has_split_line;
   int most_azimuths;
@@ -41,8 +41,7 @@ Task with_slopes(Task task, ThetaNode theta) {
 }
 
 // A piece [a, b] of the slope axis. X = asinh(t/scale) is linear in y, from 0 to 1. The map y(v) from the abscissa v of
-// a rule removes square roots at the ends: y = v^2 with a root at a, 1 - (1-v)^2 with a root at b, v^2 (3 - 2v) with
-// both.
+// a rule removes square roots: y = v^2 for a root at a, 1 - (1-v)^2 at b, v^2 (3 - 2v) at both ends.
 struct Piece {
   real start;   // X at a
   real extent;  // in X
@@ -52,6 +51,6 @@ struct Piece {
   real root_after;        // X of a square root at the end of the next piece, unless it is near b; else X at b
   real mass[DOLP_WIDTH];  // share of the facets, for each entry of a row
   real fall;              // logarithm of the share of facets steeper than a divided by the share steeper than b
-  real digits;            // required by the most demanding entry of a row
+  real digits;            // digits that the most demanding entry of a row requires
   int order;
 };

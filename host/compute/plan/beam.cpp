@@ -26,8 +26,7 @@ constexpr int kLargestOrder = 16;  // must equal kInPlaneOrder of physics/in_pla
 // G leaves out the share exp(-kCutExponent) of the in-plane slopes, far below the rounding of a double.
 constexpr double kCutExponent = 45.0;
 
-// Smoother surfaces use the G of this sigma, because squares of slopes over m overflow a float. Only for q < 1.1 does G
-// differ.
+// Smoother surfaces use this sigma for G, or squares of slopes over m would overflow. G differs only for q < 1.1.
 constexpr double kSmallestMaskingSigma = 1e-15;
 
 // If N^2 - sin^2(beta) is below this share of its terms, the difference has lost digits that its square root needs.

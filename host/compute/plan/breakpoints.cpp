@@ -20,10 +20,10 @@ constexpr double kNoEnd = 1e30;  // a finite slope beyond every cut
 
 constexpr double kCoincident = 1e-9;  // relative distance of breakpoints that differ only by rounding
 
-constexpr std::size_t kMostSkyBreakpoints = 60;  // with a sky
+constexpr std::size_t kMostSkyBreakpoints = 60;  // most breakpoints of a direction with a sky
 
-// Slopes of grazing directions reach far beyond 1 before they meet the horizon. These slopes divide a heavy tail into
-// pieces of about ten units of X = asinh(t/w).
+// In grazing directions, slopes reach far beyond 1 before they meet the horizon. These breakpoints divide a heavy tail
+// into pieces of about ten units of X = asinh(t/w).
 constexpr std::array kPlainBreakpoints = {30.0, 3e5};
 constexpr std::array kSteepBreakpoints = {1e5, 3e8, 1e12};  // for grooves, which have no horizon
 
@@ -51,7 +51,7 @@ void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   add(critical / (std::hypot(a.cos, 2.0 * critical) - a.cos), at_slope_1);
 }
 
-// Slopes at which the line b = pi/2 of `integral` meets phi = 0 or pi or theta_r = theta; the slope of smith's cusp.
+// Slopes at which the line b = pi/2 of `integral` meets phi = 0, pi or theta_r = theta. For smith: slope of its cusp.
 void add_line_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, Masking masking) {
   if (masking == Masking::kSmith) {
     points.push_back({tan_deg(0.5 * theta_deg), kRoots});
@@ -99,7 +99,7 @@ void add_critical_bounces(std::vector<Breakpoint>& points, double theta_deg, dou
   }
 }
 
-// Slopes at which the lines of groove_lines (arcs.glsl) meet each other, phi = 0 or phi = pi (psi = +-theta).
+// Slopes at which the lines of groove_lines (arcs.glsl) meet each other, phi = 0 or phi = pi.
 void add_groove_breakpoints(std::vector<Breakpoint>& points, double theta_deg, int splits) {
   const auto add = [&](double gamma_deg, unsigned roots) {
     if (gamma_deg > 0.0 && gamma_deg <= 90.0) points.push_back({tan_deg(90.0 - gamma_deg), roots});

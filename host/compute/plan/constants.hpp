@@ -14,7 +14,7 @@ namespace dolp {
 
 // ---- Rules (rule.cpp; `dolp-calibrate fit` finds kModels there)
 
-inline constexpr double kCoarseShare = 0.8;  // share of the finer rule's nodes; proved: coarse_order of orders.glsl
+inline constexpr double kCoarseShare = 0.8;  // share of the finer rule's nodes, proved: coarse_order of orders.glsl
 /// Nodes per digit, roughly, on a piece with a cusp or line of the masking at which it is not split.
 inline constexpr double kNodesPerDigit = 1.2;  // 502, 461, 425
 /// Pieces are split at a line of the masking if the error without this split would exceed this share of the tolerance.
@@ -28,7 +28,8 @@ inline constexpr double kClusterBelowQ = 0.3;  // 563, 608, 609
 inline constexpr double kLineSigma = 0.6;  // 632, 608, 542
 inline constexpr double kTightLineSigma = 0.3;
 inline constexpr double kTightDigits = 8.0;  // 632, 608, 608
-/// The error of smith's cusp falls as the number of nodes to the power -2q (proved); for the Gaussian, as with q = 2.
+/// Smith's cusp leaves an error of n^-2q for n nodes (proved). The Gaussian's cusp resembles the Cauchy cusp with q =
+/// 2.
 inline constexpr double kGaussianCuspPower = 4.0;
 /// The largest order of a rule is kPlainOrder, or kOrderPerDigit times the digits if this is more.
 inline constexpr int kPlainOrder = 64;
@@ -36,7 +37,7 @@ inline constexpr double kOrderPerDigit = 8.0;
 /// In grooves the azimuths are split where the beam of k bounces ends, for k up to the digits over this value. With
 /// half the value, the value and double, 5, 11 and 23 % of the entries miss the tolerance.
 inline constexpr double kDigitsPerSplit = 2.0;  // 2350, 1765, 1394
-/// Additional nodes, of the slope axis and of the azimuth, per fringe of films from normal to grazing incidence.
+/// Nodes for each interference fringe that films have from normal to grazing incidence, on both axes.
 inline constexpr double kNodesOfFringe = 2.0;
 inline constexpr double kCurveRoundings = 4.0;  // rounding of a position in a table of reflectances, in unit roundoffs
 /// Less light than this share of the tolerance is neglected; even the darkest surfaces reflect far more.
@@ -48,7 +49,7 @@ inline constexpr double kCutShare = 0.01;  // the slopes that the kernel leaves 
 /// A plain breakpoint (breakpoints.cpp) is used if the largest slope exceeds it by more than this factor.
 inline constexpr double kLongWay = 300.0;
 /// Limits of the scale of the masking table, which otherwise is the slope distribution's width. The table ends at 5e8
-/// scales. With q < kLightTailQ this must be far beyond slope 1, because the power-law tail beyond it matters.
+/// scales. If q < kLightTailQ, the tail matters there, so this end must lie where p is a power law.
 inline constexpr double kSmallestHeavyTableScale = 1e-4;
 inline constexpr double kLightTailQ = 1.5;
 inline constexpr double kLargestTableScale = 0.5;
@@ -84,8 +85,7 @@ inline constexpr double kSkyRoundings = 4.0;
 
 // ---- Bounds (error_bounds.cpp)
 
-/// Interpolation error of G in the masking table, relative to the albedo, with 8 (float) or 64 (double) cells per
-/// octave.
+/// Interpolation error of G in the masking table, relative to the albedo: 8 cells per octave in float, 64 in double.
 inline constexpr double kMaskingTableErrorFloat = 3e-8;
 inline constexpr double kMaskingTableErrorDouble = 1e-12;
 /// The interpolation error of smith's G grows near q = 3/2 by the factor 1 + kDivergingSlope / (2q - 3).
@@ -114,8 +114,8 @@ inline constexpr double kLeastShareOfTolerance = 0.1;
 /// The rounding error in grooves is at most this times the unit roundoff times cos(theta). It is not relative to the
 /// reflected light: the last bounces may be grazing, and then even weak reflectors reflect everything.
 inline constexpr double kGrooveRoundings = 4.0;
-/// Error of treating several bounces in a groove as one, divided by cos(theta) and by the share of such grooves. It is
-/// largest for the best conductors. Fitted to the steep cases of tests/compute/grooves_test.cpp.
+/// Error of treating several bounces in a groove as one, divided by cos(theta) and by the share of such grooves. From
+/// kVeryManyBounces bounces it is larger. Fitted to the steep cases of tests/compute/grooves_test.cpp.
 inline constexpr double kManyBouncesError = 1e-3;
 inline constexpr double kVeryManyBounces = 1024.0;
 inline constexpr double kVeryManyBouncesError = 1e-2;
@@ -125,7 +125,7 @@ inline constexpr double kNotGrazing = 0.6;
 
 // ---- pBRDF of grooves (further_bounces.cpp)
 
-/// The work grows as the square of this. With N = 10 + 60i, q = 2.02 and theta_r = theta_i, the rest is 1e-5 of f.
+/// The work grows as the square of this. For N = 10 + 60i, q = 2.02 and theta_r = theta_i, later bounces add 1e-5 of f.
 inline constexpr int kMostBouncesOfBeam = 1000;
 inline constexpr double kNegligibleBounces = 0.01;  // share of the wanted accuracy that the omitted bounces may take
 /// Smallest 2q - 3 in the bound of the omitted bounces. Below it absorption ends the sum before the slope density does.
@@ -135,11 +135,10 @@ inline constexpr double kSlowestFall = 0.1;
 // 32 x 32 entries at 1e-4 (theta to 85 degrees, sigma 0.05 to 1, q 1.75 to 6), first with integral, then with smith
 // masking.
 
-/// Fewest nodes of an interpolated axis, and nodes beyond those for the digits: few coefficients show no reliable
-/// decay.
+/// Fewest nodes of an axis (fewer coefficients show no reliable decay), and nodes in addition to those for the digits.
 inline constexpr double kLeastShapeNodes = 6.0;
 inline constexpr double kFirstShapeNodes = 3.0;  // 1.87, 1.87, 2.44; 1.70, 1.81, 2.37
-/// Interpolation needs this many values per node of an axis, and entries per node of a grid (each direction and index).
+/// An interpolated axis has at least this many values per node; an interpolated grid has this many entries per node.
 inline constexpr double kLeastAxisGain = 1.25;     // 1.87, 1.87, 3.84; 1.81, 1.81, 2.66
 inline constexpr std::size_t kLeastShapeGain = 2;  // 1.87, 1.87, 3.84; 1.81, 1.81, 2.66
 /// Tolerance of the nodes, divided by that of the request; below 1, because the interpolant's weights increase bounds.
@@ -153,9 +152,8 @@ inline constexpr int kLastShapeCoefficients = 3;
 inline constexpr double kSlowestShapeFall = 0.9;
 /// Largest ratio of two values of q - 1 in a chunk. Shapes that differ more need nodes at other slopes.
 inline constexpr double kMostRowSpread = 6.0;
-/// Grids whose shapes fill more than this share of rows of kRowWidth members are computed in such rows. Half-filled
-/// rows still take less time than rows of one member. A quarter makes sparser grids slower; nine tenths few grids
-/// reach.
+/// Grids are computed in rows of kRowWidth members if their shapes fill more than this share of such rows. Half-filled
+/// rows still take less time than rows of one member. A quarter makes sparser grids slower; few grids fill nine tenths.
 inline constexpr double kLeastRowUse = 0.5;  // 1.87, 1.87, 5.63; 1.81, 1.81, 5.60
 /// If an entry misses its tolerance by a factor f, its next level is tighter by f times kRefinementSafety, so that it
 /// does not narrowly miss again, but by at least kLeastDecades and at most kMostDecades.

@@ -28,7 +28,8 @@ bool KeptEffects::*flag(Part part) { return kFlags[static_cast<std::size_t>(part
 
 double or_infinite(double bound) { return std::isnan(bound) ? kInfinity : bound; }
 
-/// Upper bound E|t_x| / (2 mu) of Smith's Lambda = E[max(t_x - mu, 0)] / mu; mu = cot(theta), t_x: slope in one plane.
+/// Upper bound E|t_x| / (2 mu) of Smith's E[max(t_x - mu, 0)] / mu, with mu = cot(theta), in-plane slope t_x and mean
+/// E.
 double most_lambda(Distribution distribution, const SlopeShape& shape, const CosSin& a) {
   if (shape.sigma == 0.0 || a.sin == 0.0) return 0.0;
   double mean = slope_width(shape) / kRootPi;
@@ -37,7 +38,7 @@ double most_lambda(Distribution distribution, const SlopeShape& shape, const Cos
 }
 
 /// Upper bound of the albedo A. `v-cavity` and `smith` reflect at most all incident light. For the other maskings, G <=
-/// 1 gives c A <= E[max(c + s t_x, 0)] <= c + s E|t_x| / 2, with the slope t_x in the plane of incidence.
+/// 1 gives c A <= E[max(c + s t_x, 0)] <= c + s E|t_x| / 2: t_x is the slope in the plane of incidence, E the mean.
 double most_albedo(const Surface& surface, const CosSin& a, const SlopeShape& roughest) {
   return keeps_projected_area(surface.masking) ? 1.0 : 1.0 + most_lambda(surface.distribution, roughest, a);
 }

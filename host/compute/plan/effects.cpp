@@ -29,8 +29,8 @@ bool add_nothing(const std::vector<EffectBounds>& bounds, Part part, const KeptE
       bounds, [&](const EffectBounds& variant_bounds) { return variant_bounds.adds_nothing(part, kept); });
 }
 
-/// The largest bound over all variants. A part that matters in the whole scene is kept, even without the parts that it
-/// multiplies. Moments and a profile are dropped only if they add exactly nothing, so this does not concern them.
+/// The largest bound over all variants. Moments and a profile are dropped only if they add exactly nothing. Other parts
+/// that matter in the whole scene are kept, even if the parts that they multiply have been dropped.
 double worst_bound(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
   double worst = 0.0;
   for (const EffectBounds& variant_bounds : bounds) {

@@ -18,7 +18,6 @@ namespace dolp {
 bool is_kept(const KeptEffects& kept, Part part);
 KeptEffects without(KeptEffects kept, Part part);
 
-/// Ranges of the parameters of some entries.
 struct EntriesExtent {
   std::vector<double> theta_deg;
   SlopeShape roughest;   ///< the largest sigma and the smallest q
@@ -77,11 +76,11 @@ class EffectBounds {
 struct EffectPlan {
   bool keep_all = false;
   KeptEffects kept;
-  std::map<Part, double> dropped;       ///< the parts that the scene has, with bounds of their change of (Q/I, U/I)
+  std::map<Part, double> dropped;       ///< for parts of the scene: bounds of the change of (Q/I, U/I)
   double bound = 0.0;                   ///< bound of the change by all dropped parts together
-  bool needs_direct = false;            ///< the moments of the direct emission
-  bool needs_beams = false;             ///< f from the source's direction into the view
-  std::shared_ptr<const SkyBasis> sky;  ///< set by with_sky; null without a profile
+  bool needs_direct = false;            ///< the run needs the moments of the direct emission
+  bool needs_beams = false;             ///< the run needs f from the source's direction into the view
+  std::shared_ptr<const SkyBasis> sky;  ///< functions of the sky, set by with_sky; null without a profile
   bool gives_rho = true;  ///< rho_i, rho_q and rho_error_estimate are known; the albedo only with the moments
 };
 

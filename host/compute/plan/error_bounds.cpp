@@ -41,8 +41,7 @@ double mean_slope(Distribution distribution, const kernel::ShapeNode& shape) {
 }
 
 // Upper bound of G; v-cavity needs none, because it has e G <= 2 c. With smith masking the projections e of the visible
-// facets sum to c. So G <= G1(theta) = c / (integral of e over e > 0), where the integral is at least (c + s mean|t_x|)
-// / 2.
+// facets sum to c. So G <= G1(theta) = c / (integral of e over e > 0), which is at least half of c + s mean|t_x|.
 double masking_bound(Distribution distribution, Masking masking, const kernel::ThetaNode& theta,
                      const kernel::ShapeNode& shape) {
   if (masking != Masking::kSmith) return 1.0;
@@ -92,7 +91,7 @@ double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
 
 // Upper bound, at most `most`, of the share of light that is left after `bounces` bounces with cos(beta) >= a/2; a is
 // the length of the ray's direction projected across the groove. It is at least `level`, except at azimuths with
-// sin(theta) |cos(phi)| < sqrt(level^2 - c^2). They have at most twice their share of all azimuths of the light.
+// sin(theta) |cos(phi)| < sqrt(level^2 - c^2). The share of light there is at most twice the share of azimuths.
 double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double bounces, double most) {
   double least = most;
   for (double level = 1.0; level > 1e-6; level *= 0.5) {
@@ -122,8 +121,7 @@ double steep_reflectance(const KernelData& data, const kernel::IndexNode& index,
 // Bound of the error in grooves with more than DOLP_MOST_BOUNCES bounces, several of which the kernel treats as one.
 // `reflected` is the light of these grooves as computed; below `least` it is negligible. Treating several bounces as
 // one changes the logarithm of the remaining light by less than a hundredth, so a small value is small in truth, except
-// under total reflection, where some bounces have no loss. The kernel takes the light after DOLP_LAST_BOUNCES bounces
-// as 0.
+// under total reflection, where some bounces have no loss. After DOLP_LAST_BOUNCES bounces the kernel assumes no light.
 double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::IndexNode& index,
                           const kernel::ShapeNode& shape, double reflected, double least) {
   const auto beyond = [&](double bounces, double most) {
@@ -146,13 +144,13 @@ double pair_factor(const KernelData& data, const kernel::IndexNode& index) {
   return index.critical_cos > 0.0 ? kCriticalFactor * smooth : smooth;
 }
 
-// Errors of the table, of corners that do not split pieces, and of rounding, where 1 - cos(theta_r) loses digits at 0.
+// Errors of the table, of corners that do not split pieces, and of rounding: near the zenith 1 - cos loses digits.
 double sky_error(const KernelData& data, std::size_t function, double unit_roundoff) {
   return data.sky.error[function] + kUnsplitBends * data.sky.bends[function] + kSkyRoundings * unit_roundoff +
          data.sky.steepness[function] * std::sqrt(kSkyCosineRoundings * unit_roundoff);
 }
 
-// A Chebyshev polynomial's error: rounding of its abscissa times its largest slope, degree^2, plus its recurrence's.
+// Rounding of the abscissa times the largest slope of the polynomial, degree^2, plus rounding of the recurrence.
 double response_rounding(std::size_t degree, double unit_roundoff) {
   return kResponseRoundings * unit_roundoff * static_cast<double>(1 + degree * degree);
 }
@@ -162,7 +160,7 @@ struct Shares {
   double reflected_cut = 0.0;  ///< light that the facets beyond the cut reflect
   double grooves = 0.0;        ///< error of bounces in grooves
   double masking = 0.0;        ///< relative error of G
-  double rounding = 0.0;       ///< relative
+  double rounding = 0.0;       ///< relative rounding error
   double least = 0.0;          ///< least relative error bound of a sum
   double pair = 1.0;
   // Two rules with few nodes may agree by chance, so the bound of a sum is at least a share of the tolerance.

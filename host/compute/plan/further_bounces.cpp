@@ -40,8 +40,7 @@ Eigen::Matrix2d turned(double x, double y) {
 }
 
 /// The Jones matrix of a bounce at cos(beta) = c, if the facet's frame is rotated by the angle of the vector (x, y). In
-/// the unfolded groove r_p equals r_s at normal incidence. Complex roots and quotients would be slow: bounces may be
-/// thousands.
+/// the unfolded groove r_p equals r_s at normal incidence. Complex roots and quotients would be slow.
 class Facet {
  public:
   explicit Facet(const OpticalConstants& index)
@@ -115,10 +114,10 @@ double beam_width(const Across& at, double gamma, int bounces) {
 struct FurtherBeams {
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
   double unfollowed = 0.0;  ///< bound of m00 of the bounces that are left out
-  int bounces = 0;          ///< summed over all beams
+  int bounces = 0;          ///< bounces computed so far, over all beams
 };
 
-/// Light of all beams with more than `bounces` bounces over that of the last: light falls like k^(2 - 2q) or faster.
+/// Bound of the light after more than `bounces` bounces, over the light after `bounces`: light falls like k^(2 - 2q).
 double beyond_last(const ScatteringRequest& request, const SlopeShape& shape, int bounces) {
   const bool is_cauchy = request.distribution == Distribution::kCauchy;
   return is_cauchy ? bounces / std::clamp(2.0 * shape.q - 3.0, kSlowestFall, 1.0) : bounces;

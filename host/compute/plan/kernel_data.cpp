@@ -28,9 +28,9 @@ constexpr double kSmallestPole = 1e-6;  // lower bound for |N^2 + 1| and |N^2 - 
 
 /// Upper bounds of the loop iterations for a piece, except the orders of its rules.
 struct Loops {
-  double arcs = 1.0;     ///< of the azimuth at one slope
+  double arcs = 1.0;     ///< arcs of the azimuth at one slope
   double turns = 0.0;    ///< with all bounces: iterations over the bounces at one azimuth
-  double corners = 0.0;  ///< of a sky, which split the arcs
+  double corners = 0.0;  ///< corners of a sky that split the arcs
 };
 
 // Loop iterations for a ray: one for each bounce or group of bounces (next_bounces in groove.glsl).
@@ -148,7 +148,7 @@ kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& sh
   return node;
 }
 
-// With the pole of R_p in cos(beta) and the branch point of the amplitudes, both with real and imaginary part >= 0.
+// The node has the pole of R_p in cos(beta) and the branch point of the amplitudes, with real and imaginary parts >= 0.
 // Films add no branch points: their amplitudes are even functions of the wave number in each film.
 kernel::IndexNode index_node(const FacetOptics& optics) {
   const auto [n, k] = optics.index;
@@ -189,8 +189,8 @@ void add_curves(KernelData& data, const MomentsRequest& request) {
   data.rule.phi_nodes += kNodesOfFringe * fringes;
 }
 
-// All directions of the grid; then, for each index with total reflection, all directions with its critical line. If a
-// shape needs a line of the masking, adds each set of directions also with this line.
+// Adds all directions of the grid; then, for each index with total reflection, all directions with its critical line.
+// If a shape needs a line of the masking, adds each set of directions also with this line.
 void add_grid_directions(KernelData& data, const MomentsRequest& request) {
   const bool any_line = std::ranges::find(data.needs_line, 1) != data.needs_line.end();
   const std::uint32_t lines = any_line ? 2 : 1;

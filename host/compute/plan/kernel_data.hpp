@@ -41,12 +41,11 @@ inline constexpr unsigned kRootBelow = 2;  ///< the integrand has a square root 
 /// The pieces of the slope axis of one direction; ThetaNode has their ends.
 struct Pieces {
   std::uint32_t count = 0;
-  std::array<std::uint8_t, DOLP_MAX_PIECES + 3> roots{};  ///< bits kRootAbove, kRootBelow of each end
-  std::array<std::uint8_t, DOLP_MAX_PIECES + 1>
-      most_nodes{};  // largest number of nodes of an arc, per piece; bounds the loops
+  std::array<std::uint8_t, DOLP_MAX_PIECES + 3> roots{};       ///< bits kRootAbove, kRootBelow of each end
+  std::array<std::uint8_t, DOLP_MAX_PIECES + 1> most_nodes{};  ///< most nodes of an arc, for each piece
   /// One number per piece. Pieces with equal numbers have equal loop bounds, so they may run in lockstep.
   std::array<std::uint16_t, DOLP_MAX_PIECES> lockstep{};
-  bool has_split_line = false;  ///< at the line b = pi/2 of `integral`, or at smith's cusp
+  bool has_split_line = false;  ///< split at the line b = pi/2 of `integral`, or at smith's cusp
 };
 
 /// Positions of one entry in three lists of KernelData.
@@ -59,7 +58,7 @@ struct MomentsEntry {
 /// Bounds for each quantity in the reflectance table of an index.
 struct CurveError {
   double absolute = 0.0;
-  double per_roundoff = 0.0;  ///< divided by the unit roundoff of the kernel's precision
+  double per_roundoff = 0.0;  ///< error divided by the unit roundoff of the kernel's precision
 };
 
 /// Inputs of one run of the kernel. For a grid, `indices` and `shapes` (sigma x q, q fastest) follow its axes. `thetas`
@@ -76,14 +75,14 @@ struct KernelData {
   int rule_order = 1;
   bool has_total_reflection = false;  ///< an index reflects totally, sharply or nearly so
   bool has_curves = false;            ///< the kernel reads reflectances from tables
-  /// Errors of these tables, per index; empty without tables.
+  /// Errors of the reflectance tables, per index; empty without tables.
   std::vector<CurveError> curve_errors;
   bool is_grid = false;
-  std::size_t directions = 0;  ///< of the request
+  std::size_t directions = 0;  ///< directions of the request
   std::vector<kernel::ThetaNode> thetas;
   std::vector<Pieces> pieces;  ///< one for each of `thetas`
   std::vector<kernel::ShapeNode> shapes;
-  std::vector<char> needs_line;  ///< per shape: 1 if it needs the line of its masking
+  std::vector<char> needs_line;  ///< for each shape: 1 if it needs the line of its masking
   std::vector<kernel::IndexNode> indices;
   std::vector<std::uint32_t> index_variant;  ///< for each index of a grid: position of its first variant
   std::vector<std::uint32_t> shape_of;
@@ -154,7 +153,8 @@ void take_complement(Moments& moments, double cosine);
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
                             double unit_roundoff, std::span<const double> columns = {});
 
-/// False if the shape's masking table is too coarse for G: coarser than the slopes, and cot(theta) below table_scale.
+/// False if the table is too coarse to resolve G: coarser than the slope distribution, and cot(theta) below
+/// table_scale.
 bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin_theta);
 
 /// Upper bound for one invocation. Drivers may stop it after 65,535 iterations, without an error and with wrong sums.

@@ -19,7 +19,7 @@ struct MomentsStep {
   std::optional<ResponsePlan> responses;
 
   const MomentsRequest& nodes() const { return shapes ? shapes->nodes : request; }
-  /// The step computes fewer moments than it gives.
+  /// True if the step computes fewer moments than it gives.
   bool saves_work() const { return shapes || responses; }
   std::vector<const MomentsRequest*> kernel_requests() const;
 };

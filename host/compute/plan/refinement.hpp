@@ -13,8 +13,8 @@ namespace dolp {
 struct RefinementLevel {
   Precision precision = Precision::kFloat;
   double tolerance = 1e-4;                          ///< MomentsRequest::tolerance
-  bool may_interpolate = false;                     ///< over slope distributions
-  bool is_check = false;                            ///< made by check_level, which splits the slopes differently
+  bool may_interpolate = false;                     ///< interpolation over slope distributions is allowed
+  bool is_check = false;                            ///< a level of check_level, which splits the slopes differently
   std::shared_ptr<const ResponseBasis> basis = {};  ///< MomentsRequest::basis
   /// Orders by cost: float before double, then wide tolerances before tight ones.
   friend bool operator<(const RefinementLevel& a, const RefinementLevel& b) {

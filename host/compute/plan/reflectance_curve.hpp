@@ -18,8 +18,8 @@ struct ReflectanceCurve {
   std::complex<double> pole;
 };
 
-/// Has as many cells as a share of the tolerance needs, up to a limit. The tolerance is relative to the smaller of
-/// reflectance and absorptance at normal incidence. Domain: optics that are not bare.
+/// The curve has as many cells as a share of the tolerance needs, up to a limit. The tolerance is relative to the
+/// smaller of reflectance and absorptance at normal incidence. Domain: optics that are not bare.
 ReflectanceCurve reflectance_curve(const FacetOptics& optics, double tolerance);
 
 }  // namespace dolp

@@ -50,8 +50,8 @@ struct Responses {
     }
   }
   enum Part : std::uint8_t { kI, kQ, kIApart, kQApart, kError, kParts };
-  std::vector<RowMajor> all;           // per part: responses x shapes, of one pass at one direction
-  std::vector<double> relative_error;  ///< per shape
+  std::vector<RowMajor> all;           // one matrix per part, responses x shapes, for one direction
+  std::vector<double> relative_error;  ///< one value for each shape
 };
 
 /// Always sums in the same order. Eigen's order depends on the sizes, so a grid's division would change the last bits.
@@ -159,8 +159,8 @@ class Combination {
         sum.r_q_error = from.r_q_error + more_split.error(index, shape) + more_absorbed.error(index, shape) +
                         (own.split_error + of_reference.split_error) * albedo;
       }
-      // Differences of the rules may cancel in a sum. The reference index adds their magnitudes: the least relative
-      // bound.
+      // In a sum the differences of the two rules may cancel by chance. The bound of the reference index adds their
+      // magnitudes, so it is the least relative bound.
       const double whole_error = from.r_i_error * std::max(sum.r_i / from.r_i, 0.0);
       sum.r_i_error = std::max(sum.r_i_error, whole_error);
       sum.r_q_error = std::max(sum.r_q_error, whole_error);
@@ -205,7 +205,7 @@ class Combination {
   const MomentsRequest& request_;
   const std::vector<ResponsePlan::Source>& sources_;
   std::size_t passes_;
-  std::vector<std::size_t> reached_;  ///< indices that have weights
+  std::vector<std::size_t> reached_;  ///< positions of the indices that have weights
   RowMajor absorbed_, split_, absorbed_apart_, split_apart_, reflected_;
 };
 

@@ -15,7 +15,7 @@ namespace dolp {
 /// (model/response_basis.hpp). The result of an entry does not depend on the other entries.
 struct ResponsePlan {
   struct Source {
-    std::optional<ResponseWeights> weights;  ///< of the responses; empty if the index is computed directly
+    std::optional<ResponseWeights> weights;  ///< weights of the responses; empty if the index is computed directly
     std::size_t other = 0;                   ///< position in the indices of `others`, if there are no weights
   };
   /// A point's positions in three lists: the points of each pass, which all differ in direction or slope distribution;
@@ -25,8 +25,8 @@ struct ResponsePlan {
     std::uint32_t source = 0;
     std::uint32_t other = 0;
   };
-  /// Each pass has the directions and slope distributions of the request at the reference index: responses of the
-  /// reflected light and, if wanted, of the direct emission, and of the reflected light times each function of the sky.
+  /// The request's directions and slope distributions at the reference index: for responses of the reflected light and,
+  /// if wanted, of the direct emission, and of the reflected light times each function of the sky.
   std::vector<MomentsRequest> passes;
   std::optional<MomentsRequest> others;                ///< the indices, or points, that have no weights
   std::shared_ptr<const std::vector<Source>> sources;  ///< one per index of a grid, or per distinct index of points

@@ -24,12 +24,12 @@ struct Row {
   std::uint32_t direction = 0;
   std::uint32_t index = 0;
   std::uint32_t chunk = 0;
-  std::uint32_t used = 1;  ///< wanted members
+  std::uint32_t used = 1;  ///< number of wanted members
 };
 
 struct RowPiece {
   std::uint32_t row = 0;
-  std::uint32_t piece = 0;  ///< of the slope axis
+  std::uint32_t piece = 0;  ///< piece of the slope axis
 };
 
 struct Rows {

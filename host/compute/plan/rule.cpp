@@ -50,8 +50,8 @@ double decades_per_node(const SlopeShape& shape, double digits) {
   return std::log10(std::max(kNodesPerDigit * digits / width, 1.5));
 }
 
-// log10 of the error of smith's cusp at theta_r = 0 in rules that do not split there. Near the cusp Smith's Lambda is L
-// = C (m tan(theta_r))^(2q-2). It is a point of the slope plane, so n nodes in each dimension leave an error of n^-2q.
+// log10 of the error of smith's cusp at theta_r = 0 in rules that do not split there. Near it Smith's Lambda is L = C
+// (m tan(theta_r))^(2q-2). The cusp is a point of the slope plane, so n nodes per dimension leave an error of n^-2q.
 double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double digits) {
   const double per_node = decades_per_node(shape, digits);
   if (distribution == Distribution::kGaussian) {
@@ -66,8 +66,7 @@ double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double d
   return size - 2.0 * shape.q * per_node;
 }
 
-// log10 of the error of the line b = pi/2 of `integral` without a split: steep facets contribute |x|^(2q-1) at distance
-// x.
+// log10 of the error of the line b = pi/2 of `integral` without a split. Steep facets at a distance x add |x|^(2q-1).
 double unsplit_line(Distribution distribution, const SlopeShape& shape, double digits) {
   if (distribution == Distribution::kGaussian) {
     return shape.sigma > (digits > kTightDigits ? kTightLineSigma : kLineSigma) ? 0.0 : kNone;
@@ -121,7 +120,7 @@ RuleNodes make_rule_nodes(const Rules& gauss, int largest_order) {
 
 RuleNodes gauss_legendre(int order) {
   RuleNodes nodes;
-  for (const double x : boost::math::legendre_p_zeros<double>(order)) {  // those that are not negative
+  for (const double x : boost::math::legendre_p_zeros<double>(order)) {  // the zeros that are not negative
     const double slope = boost::math::legendre_p_prime(order, x);
     const double weight = 2.0 / ((1.0 - x) * (1.0 + x) * slope * slope);
     nodes.push_back({x, weight});

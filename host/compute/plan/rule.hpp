@@ -7,10 +7,10 @@
 
 namespace dolp {
 
-/// Numbers by which `dolp-calibrate fit` minimises the work for random entries, repeated computations included. All
+/// Numbers that `dolp-calibrate fit` has fitted to minimise the work for random entries, including repetitions. All
 /// others follow from the positions of the integrand's singularities (shaders/physics/orders.glsl).
 struct RuleModel {
-  double margin_digits = 0.0;  ///< digits of the coarser rule in addition to the tolerance's
+  double margin_digits = 0.0;  ///< digits of the coarser rule in addition to the tolerance's digits
   double t_nodes = 0.0;        ///< t_nodes to phi_digits: see kernel::RuleNode
   double t_digits = 0.0;
   double t_fall = 0.0;
@@ -32,15 +32,16 @@ int split_bounces(double digits);
 
 int largest_order(double digits);
 
-/// True if, without a split at the line b = pi/2 of `integral` or at smith's cusp, the error would exceed kLineShare.
+/// True if the error without a split at the line b = pi/2 of `integral` or smith's cusp exceeds kLineShare of
+/// `tolerance`.
 bool needs_line(Distribution distribution, Masking masking, const SlopeShape& shape, double digits, double tolerance);
 
-/// log10 of the error, relative to L, due to smith's cusp at theta_r = 0 without a split; below -100 without a cusp.
+/// log10 of the error without a split at smith's cusp, relative to Smith's Lambda. Below -100 without a cusp.
 double cusp_digits(Distribution distribution, Masking masking, const SlopeShape& shape, double digits);
 
 using RuleNodes = std::vector<std::array<double, 2>>;  // (abscissa, weight) of each node
 
-/// On [-1, 1], ascending. Accuracy: 1e-15 (tests/compute/plan_test.cpp integrates degree 2 * order - 1).
+/// Ascending nodes on [-1, 1]. Accuracy: 1e-15 (tests/compute/plan_test.cpp, polynomials of degree 2 * order - 1).
 RuleNodes gauss_legendre(int order);
 
 /// The sections of physics/quadrature.glsl, each with the orders 1 to `largest_order`. The reference stays valid.

@@ -13,7 +13,7 @@ namespace {
 
 using Values = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Values of value_of(node). Shape: nodes of sigma x nodes of q.
+/// value_of(node) at each node. Shape: nodes of sigma x nodes of q.
 template <class ValueOf>
 Values at_nodes(const ShapePlan& plan, std::span<const Moments> nodes, const ValueOf& value_of) {
   Values values(static_cast<Eigen::Index>(plan.sigma.nodes.size()), static_cast<Eigen::Index>(plan.q.nodes.size()));
@@ -21,8 +21,7 @@ Values at_nodes(const ShapePlan& plan, std::span<const Moments> nodes, const Val
   return values;
 }
 
-/// Interpolation error of each column of `values`: the sum of the omitted coefficients, if they fall like the last
-/// ones.
+/// Interpolation error of each column of `values`: the omitted coefficients, if they fall like the last ones.
 Eigen::RowVectorXd tails(const ShapeAxis& axis, const Values& values) {
   if (!axis.is_interpolated()) return Eigen::RowVectorXd::Zero(values.cols());
   const Eigen::MatrixXd sizes = (axis.coefficients.bottomRows(2 * kLastShapeCoefficients) * values).cwiseAbs();

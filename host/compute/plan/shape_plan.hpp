@@ -16,11 +16,10 @@ namespace dolp {
 /// Groups of directions that can share one interpolation over slope distributions. Grazing directions are one group.
 std::vector<std::vector<std::size_t>> split_grazing_directions(const MomentsRequest& request);
 
-/// Values of a parameter, and the nodes from which they are interpolated.
 struct ShapeAxis {
   std::vector<double> nodes;     ///< equal to the values if interpolation gains nothing
   Eigen::MatrixXd cardinal;      ///< values x nodes: weights of the moments at the nodes
-  Eigen::MatrixXd coefficients;  ///< nodes x nodes: from values at the nodes to Chebyshev coefficients; or empty
+  Eigen::MatrixXd coefficients;  ///< nodes x nodes: values at the nodes to Chebyshev coefficients; else empty
   bool is_interpolated() const { return coefficients.size() > 0; }
 };
 
@@ -32,8 +31,8 @@ struct ShapePlan {
   std::size_t nodes_of_a_direction() const { return sigma.nodes.size() * q.nodes.size(); }
 };
 
-/// For directions that form one group of split_grazing_directions. Empty if every entry is computed separately, for
-/// instance if only some entries of a direction and index are wanted.
+/// The plan for one group of split_grazing_directions(). Empty if every entry is computed separately, for instance if
+/// only some entries of a direction and index are wanted.
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request);
 
 /// Interpolates the moments of one direction and index at the request's sigma x q. Bounds are the nodes' bounds,

@@ -58,7 +58,7 @@ Eigen::RowVectorXd middle_distances(const SkyBasis& basis, double cells) {
 
 struct Corner {
   double zenith_deg = 0.0;
-  Eigen::RowVectorXd bend;  // for each function, the change of its slope in u
+  Eigen::RowVectorXd bend;  // change of the slope of each function in u
 };
 
 /// The sharpest corners come first.

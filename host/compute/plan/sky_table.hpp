@@ -11,10 +11,10 @@ namespace dolp {
 /// The functions of a basis over u = sqrt(1 - cos(zenith)), as straight lines in cells of equal width.
 struct SkyTable {
   std::uint32_t count = 0;
-  std::uint32_t log2_cells = 0;     ///< per function
-  std::uint32_t corners = 0;        ///< that split the azimuths; their cosines follow the cells
+  std::uint32_t log2_cells = 0;     ///< log2 of the cells of each function
+  std::uint32_t corners = 0;        ///< corners that split the azimuths; their cosines follow the cells
   std::uint32_t start = 0;          ///< position of the first cell among the rule nodes
-  bool has_cusp = false;            ///< of a function, at the zenith
+  bool has_cusp = false;            ///< a function has a cusp at the zenith
   std::vector<double> corners_deg;  ///< zeniths of the corners that split, the sharpest first
   std::vector<double> error;        ///< bound of the table's distance from each function
   /// For each function: root of the sum of squares of its changes of slope in u, at the corners that do not split.

@@ -31,7 +31,7 @@ struct SampledSlope {
   double digits = 0.0;  ///< digits that the sum over the azimuths needs
 };
 
-/// A piece of the slope axis. In SlopeSamples::slopes, the `coarse` slopes of its coarser rule follow the `fine` ones.
+/// A piece of the slope axis: in SlopeSamples::slopes `fine` slopes from position `first`, then `coarse` slopes.
 struct SampledPiece {
   double start = 0.0;
   double end = 0.0;
@@ -49,7 +49,6 @@ struct SlopeSamples {
   std::vector<SampledSlope> slopes;
 };
 
-/// Results of the kernel for a number of slopes.
 struct SampledAzimuths {
   SampledAzimuths(std::size_t slopes, const KernelData& data)
       : nodes(slopes), per_slope(column_azimuths(data)), columns(slopes * per_slope) {}

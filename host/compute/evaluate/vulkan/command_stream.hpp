@@ -44,7 +44,7 @@ class CommandStream {
   UniqueFence fence_;
   UniqueQueryPool timestamps_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
-  bool has_copies_ = false;  ///< recorded since the last barrier
+  bool has_copies_ = false;  ///< copies were recorded since the last barrier
 };
 
 /// A buffer on the device that the host writes, directly or through a staging buffer, and kernels read.

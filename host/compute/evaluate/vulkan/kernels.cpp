@@ -82,8 +82,7 @@ UniquePipeline compile(VkDevice device, VkPipelineLayout layout, std::uint32_t l
 }
 
 constexpr auto kInterruptInterval = std::chrono::milliseconds(20);
-constexpr double kDefaultCompilationLimitS =
-    120.0;  // SwiftShader needs 7 s for the largest kernel on an idle processor
+constexpr double kDefaultCompilationLimitS = 120.0;  // SwiftShader on an idle processor needs at most 7 s
 constexpr const char* kCompilationLimit = "DOLP_COMPILATION_LIMIT_S";
 
 /// Seconds that a driver may take for one kernel. InputError if the environment variable is not a number above 0.

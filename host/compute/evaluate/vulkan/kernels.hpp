@@ -49,8 +49,7 @@ class Kernels {
     std::array<VkBuffer, kStorageCount> buffers{};
     std::array<VkBufferView, kTexelCount> texels{};  ///< the first is DOLP_BINDING_RULE_NODES
   };
-  /// A missing buffer or view is replaced by another: no pipeline reads it, but it must not refer to a destroyed
-  /// buffer.
+  /// A missing buffer or view is replaced by another: nothing reads it, but it must not refer to a destroyed buffer.
   void bind(const Bindings& bindings);
 
   VkPipeline pipeline(const KernelVariant& variant);

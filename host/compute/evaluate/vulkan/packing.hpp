@@ -47,8 +47,8 @@ class Packing {
   /// Largest relative rounding error in the kernels' precision.
   double unit_roundoff() const { return float64_ ? kDoubleRoundoff : kFloatRoundoff; }
 
-  /// Fills `bytes` with node_of(0), ..., node_of(count - 1), called in any order by all cores. Large numbers may
-  /// overflow.
+  /// Fills `bytes` with node_of(0), ..., node_of(count - 1), called by all cores in any order. Numbers beyond the range
+  /// of float become infinite.
   template <class NodeOf>
   void pack(std::size_t count, const NodeOf& node_of, std::vector<std::byte>& bytes) const {
     constexpr std::size_t kNodesAtOnce = 8192;

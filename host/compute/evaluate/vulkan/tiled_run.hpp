@@ -71,7 +71,7 @@ class TiledRun {
 template <class Result>
 class Run : public TiledRun {
  public:
-  /// The results of wanted entries at their positions; nothing if `progress` returned false. Errors: DeviceError.
+  /// Results at the positions of their entries; nothing if `progress` returned false. Errors: DeviceError.
   virtual std::optional<std::vector<Result>> compute(const Progress& progress) = 0;
 
  protected:

@@ -20,8 +20,8 @@ using MaskingNode = std::array<double, 4>;
 
 /// Buffer bytes per invocation (a piece of a row, a slope or a beam) and per shape.
 struct TileCosts {
-  std::uint64_t invocation_bytes = 0;  ///< all buffers that grow with the invocations of a tile
-  std::uint64_t shape_bytes = 1;       ///< node and masking table of a shape; 1 if tiles bind no shapes
+  std::uint64_t invocation_bytes = 0;  ///< bytes in all buffers that grow with the invocations of a tile
+  std::uint64_t shape_bytes = 1;       ///< bytes of a shape's node and masking table; 1 if tiles bind no shapes
   std::uint64_t shape_texels = 0;      ///< texels of a shape's masking table
 };
 
@@ -46,10 +46,9 @@ struct Block {
 /// Slope samples that are planned, sampled and integrated together, and the kernel's input for them.
 struct SlopeBatch {
   std::vector<SlopeSamples> samples;
-  std::vector<std::size_t> first;  ///< position in `slopes` of the first slope of each of `samples`
+  std::vector<std::size_t> first;  ///< for each of `samples`, the position of its first slope in `slopes`
   std::vector<kernel::SlopeNode> slopes;
-  std::vector<std::uint32_t>
-      in_lockstep;  ///< positions in `slopes`, in the order for the device; repeated to fill groups
+  std::vector<std::uint32_t> in_lockstep;  ///< positions in `slopes`; some are repeated to fill groups
 };
 
 struct DispatchCount {
@@ -57,9 +56,9 @@ struct DispatchCount {
   std::uint32_t block_shapes = 0;
   std::uint32_t row_width = 1;  ///< largest number of entries per invocation, see plan/rows.hpp
   std::uint64_t rows = 0;       ///< kernel rows; with slope samples, pairs of a direction and an index
-  std::uint64_t slopes = 0;     ///< over all slope samples
+  std::uint64_t slopes = 0;     ///< slopes of all slope samples
   std::uint64_t dispatches = 0;
-  std::uint64_t device_bytes = 0;  ///< upper bound for all buffers
+  std::uint64_t device_bytes = 0;  ///< upper bound of the memory of all buffers
 };
 
 /// The dispatches of a request for moments by kernel rows.
@@ -89,7 +88,7 @@ struct SlopeTiles {
   KernelData data;
   SlopeSampling sampling;
   TileCosts costs;
-  std::uint32_t slopes = 0;  ///< per dispatch: a multiple of kLockstep, so that no group in lockstep is divided
+  std::uint32_t slopes = 0;  ///< slopes per dispatch: a multiple of kLockstep, so that no group is divided
 };
 
 /// The dispatches of a request for pBRDFs. There are no blocks, because a BeamNode contains its shape.
@@ -101,7 +100,7 @@ struct BeamTiles {
   BeamPlan plan;
   TileCosts costs;
   std::size_t entries = 0;
-  std::uint32_t beams = 0;  ///< per dispatch
+  std::uint32_t beams = 0;  ///< beams per dispatch
 };
 
 /// Numbers the members of a list in the order of their first use, so that a tile binds only these members.
@@ -125,8 +124,7 @@ namespace dolp {
 vulkan::DispatchCount count_dispatches(const MomentsRequest& request, const dolp::Device& device);
 vulkan::DispatchCount count_dispatches(const ScatteringRequest& request, const dolp::Device& device);
 
-/// A device with the limits that every Vulkan device guarantees, for plans without a device. Its memory size is a
-/// guess.
+/// A device with the limits that every Vulkan device guarantees, for plans without a device. Its memory is a guess.
 dolp::Device least_device();
 
 }  // namespace dolp

@@ -18,8 +18,8 @@ struct VulkanOptions {
   /// Any message of the validation layer makes `evaluate` throw DeviceError.
   ValidationMode validation = ValidationMode::kFromEnvironment;
   // The following options do not change results.
-  std::uint32_t max_tile_invocations = 65'536;  ///< per dispatch; progress and cancelling wait for its end
-  std::uint32_t max_block_shapes = 4'096;       ///< shapes whose masking tables are on the device at a time
+  std::uint32_t max_tile_invocations = 65'536;  ///< largest dispatch; progress and cancelling wait for its end
+  std::uint32_t max_block_shapes = 4'096;       ///< most shapes whose masking tables are on the device at a time
   /// Copies inputs through staging buffers even if the host can map the memory of the device.
   bool staged_uploads = false;
   double tile_timeout_s = 600.0;

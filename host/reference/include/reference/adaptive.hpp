@@ -77,8 +77,7 @@ Integral<N> kronrod_panel(const Integrand& integrand, double low, double high) {
   return result;
 }
 
-/// An interval as the image of [0, 1] under s -> s^2 (3 - 2 s). Square roots and 3/2 powers at its ends become smooth
-/// in s.
+/// An interval as the image of [0, 1] under s -> s^2 (3 - 2 s), which makes roots and 3/2 powers at its ends smooth.
 struct Stretch {
   double low;
   double high;
@@ -130,8 +129,7 @@ double scaled_error(const Values<N>& error, const Values<N>& scale) {
   return worst;
 }
 
-/// Halves the worst panel until all errors are within `goal.relative` times `scale(values)`, or `goal.max_panels`
-/// exist.
+/// Halves the worst panel until all errors are within `goal.relative` times the scales, or until `goal.max_panels`.
 template <std::size_t N, class Integrand, class Scale>
 Integral<N> integrate(const Integrand& integrand, const Breaks& breaks, const Goal& goal, const Scale& scale) {
   const std::vector<double> points = breaks.sorted();

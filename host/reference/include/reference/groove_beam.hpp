@@ -42,7 +42,7 @@ class GrooveBeam {
 
   /// Flux on the current facet; 0 when all light has left.
   const Real& flux() const { return flux_; }
-  /// Propagates toward the current facet or, when all light has left, away from the groove.
+  /// Direction toward the current facet or, when all light has left, away from the groove.
   const Vector<Real>& direction() const { return k_; }
   /// Outward normal of the current facet.
   Vector<Real> normal() const { return {-side_ * groove_.sin_alpha, Real(0), groove_.cos_alpha}; }
@@ -64,7 +64,7 @@ class GrooveBeam {
     if (cos_beta <= 0) return 0;
     const Vector<Real> rim{side_ * groove_.cos_alpha, Real(0), Real(0)};
     const Vector<Real> down{-side_ * groove_.cos_alpha, Real(0), -groove_.sin_alpha};
-    Real depth = 1;  // of the edge from the rim, along the facet
+    Real depth = 1;  // distance of the edge from the rim, along the facet
     if (!meets_apex_) {
       const Vector<Real> from_rim = sum(edge_, scaled(Real(-1), rim));
       const Vector<Real> hit = sum(from_rim, scaled(Real(dot(from_rim, n) / cos_beta), k_));

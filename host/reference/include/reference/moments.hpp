@@ -37,14 +37,12 @@ Zenith zenith_from_deg(double theta_deg);
 Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
                            const Refinement& refinement, const SkyFunction* sky = nullptr);
 
-/// r_i and r_q relative to the albedo, with curves that bend at the cosine `bend` instead of the reflectances.
+/// r_i and r_q, relative to the albedo, with curves instead of the reflectances. The curves bend at the cosine `bend`.
 std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking masking, double theta_deg,
                                                 const Curves& curves, double bend, const Refinement& refinement);
 
 /// The moments of a mirror (sigma = 0), with its direct emission.
 Moments mirror_moments(double theta_deg, const FacetOptics& constants);
-
-// V-grooves: follows beams and their electric vectors in space.
 
 /// The moments of a rough surface (sigma > 0) of symmetric V-grooves with all bounces, for k_s = 1.
 ///
@@ -64,20 +62,18 @@ struct GrooveLight {
   double albedo = 0.0;          ///< flux that leaves if nothing is absorbed
   double reflected = 0.0;       ///< I that leaves, for unpolarised light
   double polarised = 0.0;       ///< Q: half the difference between the light that leaves for s light and for p light
-  double absorbed = 0.0;        ///< by all bounces
+  double absorbed = 0.0;        ///< absorbed by all bounces
   double lost = 0.0;            ///< I after the last followed bounce; it counts as neither reflected nor absorbed
   double once_reflected = 0.0;  ///< I that leaves after one bounce
-  double once_absorbed = 0.0;   ///< by the first bounce
+  double once_absorbed = 0.0;   ///< absorbed by the first bounce
   double sky_reflected = 0.0;   ///< `reflected` with the function of the sky
   double sky_polarised = 0.0;   ///< `polarised` with the function of the sky
-  double bounces = 0.0;         ///< followed bounces
+  double bounces = 0.0;         ///< number of followed bounces
 };
 
 /// Domain: t > 0; cos(theta) > 0; chi = 90 degrees - phi, with sin_chi = cos(phi).
 GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zenith& view, const FacetOptics& constants,
                             const SkyFunction* sky = nullptr);
-
-// Emission of the facets that goes straight to the viewer.
 
 /// The direct emission of a rough surface (sigma > 0): direct_i, direct_q and their errors. All other members are 0.
 /// Equation: cos(theta) eps = int P t dt dphi e G_1 (1 - |r|^2) in the view's frame, over all facets with e =
@@ -87,8 +83,8 @@ GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zeni
 Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
                         const Refinement& refinement);
 
-/// A curve that bends at the cosine `bend` replaces 1 - (R_s + R_p) / 2 and (R_p - R_s) / (2 sin^2). The accuracy is
-/// relative to cos(theta).
+/// The direct emission with a curve instead of 1 - (R_s + R_p) / 2 and (R_p - R_s) / (2 sin^2). The accuracy is
+/// relative to cos(theta). The curve bends at the cosine `bend`.
 Moments direct_response(const Slopes& slopes, Masking masking, double theta_deg,
                         const std::function<double(double cos_beta)>& curve, double bend, const Refinement& refinement);
 

@@ -9,7 +9,7 @@
 namespace dolp {
 
 struct ReferenceOptions {
-  /// Tolerance of the integrals; relative to r_i for r_i and r_q, to their values for albedo and absorbed part.
+  /// Tolerance of the integrals, relative to r_i for r_i and r_q, and to their values for albedo and absorbed part.
   double relative_tolerance = 1e-9;
   /// Equal parts of each first panel of the quadratures. A value of 2 repeats the computation with other nodes.
   int subdivisions = 1;

@@ -51,7 +51,7 @@ class Slopes {
 /// With both angles nothing cancels at grazing incidence.
 struct Zenith {
   double elevation_rad = 0.0;
-  double cos = 1.0;  ///< of the zenith angle
+  double cos = 1.0;  ///< cosine of the zenith angle
   double sin = 0.0;
 };
 

@@ -110,8 +110,8 @@ struct SlopeTask {
   std::function<Values<N>(const Values<N>&)> scales;  ///< scales to which Goal::relative refers
   double steepest;                                    ///< upper end of t
   double bends_end;                                   ///< bends are searched up to this t, at most `steepest`
-  /// Integrals over chi of less weight may have the absolute error of one with this weight per v; 0 if they grow with
-  /// t.
+  /// Integrals over chi with less weight per v than this may have the absolute error of integrals with this weight. 0
+  /// if integrals may grow with t.
   double thin_weight = 0.0;
   std::function<double()> work = [] { return 0.0; };  ///< work done so far, in any unit
   double most_work = 1.0;                             ///< after this much work no integral is refined

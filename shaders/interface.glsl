@@ -1,24 +1,20 @@
-// The interface between host and shaders: bindings, specialization constants, push constants and structures. The
-// shaders and the C++ code of the host include this file. The structures contain only members of type `real` (float or
-// double), so std430 packs them tightly, and the host may treat an array of structures as an array of numbers. Counts
-// that are stored as `real` are small integers.
+// The interface between host and shaders. Structures have only members of type `real` (float or double), so std430
+// packs them tightly, and the host may treat them as numbers. Counts that are stored as `real` are small integers.
 
 // ---- Bindings of descriptor set 0: storage buffers; from DOLP_BINDING_RULE_NODES, texel buffers ---------------------
 #define DOLP_BINDING_THETAS 0         // ThetaNode[]
 #define DOLP_BINDING_SHAPES 1         // ShapeNode[]
 #define DOLP_BINDING_INDICES 2        // IndexNode[]
-#define DOLP_BINDING_TASKS 3          // uvec4[]: positions of direction, first shape and index in their buffers, and
-                                      // the task word
-#define DOLP_BINDING_MASKING_TABLE 4  // real4[]: one table per ShapeNode, see physics/masking.glsl; masking_table.comp
-                                      // writes here
+#define DOLP_BINDING_TASKS 3          // uvec4[]: positions of direction, first shape and index; task word
+#define DOLP_BINDING_MASKING_TABLE 4  // real4[]: written by masking_table.comp, one table per ShapeNode
 #define DOLP_BINDING_MOMENTS 5        // MomentsNode[]: the output, DOLP_WIDTH nodes per task
 #define DOLP_BINDING_RULE 6           // RuleNode: one for all tasks
 #define DOLP_BINDING_RULE_NODES 7     // real2[]: nodes of the rules, see physics/quadrature.glsl
 #define DOLP_BINDING_MASKING_NODES 8  // the masking tables as texels, from which moments.comp reads
-// slopes.comp has other buffers at the bindings of the tasks and the moments:
+// slopes.comp has other buffers at the bindings of the tasks and the moments.
 #define DOLP_BINDING_SLOPES DOLP_BINDING_TASKS      // SlopeNode[]: the input, one node per invocation
 #define DOLP_BINDING_AZIMUTHS DOLP_BINDING_MOMENTS  // AzimuthNode[]: the output, one node per invocation
-// mueller.comp has other buffers at the bindings of the directions and the moments:
+// mueller.comp has other buffers at the bindings of the directions and the moments.
 #define DOLP_BINDING_BEAMS DOLP_BINDING_THETAS      // BeamNode[]: the input, one node per entry
 #define DOLP_BINDING_MUELLERS DOLP_BINDING_MOMENTS  // MuellerNode[]: the output, one node per entry
 
@@ -44,15 +40,13 @@
 #define DOLP_COLUMNS_SKY_RESPONSE 2u  // responses of the reflected light, weighted with a function of a sky
 #define DOLP_COLUMNS_DIRECT 3u        // responses of the direct emission
 
-// ---- Push constants: four uints, used by all entry points -----------------------------------------------------------
-// count: number of tasks (moments.comp), slopes (slopes.comp), entries (mueller.comp) or shapes (masking_table.comp)
-//   in this dispatch.
-// first: position of the first of them in its buffer. Output i of slopes.comp and mueller.comp belongs to input
-//   first + i. In moments.comp the outputs from i * DOLP_WIDTH to (i + 1) * DOLP_WIDTH - 1 belong to task first + i.
+// ---- Push constants of all entry points -----------------------------------------------------------------------------
+// count: number of tasks (moments.comp), slopes (slopes.comp), entries (mueller.comp) or shapes (masking_table.comp).
+// first: position of the first of them. Output i of slopes.comp and mueller.comp belongs to input first + i. In
+// moments.comp the outputs from i * DOLP_WIDTH to (i + 1) * DOLP_WIDTH - 1 belong to task first + i.
 // largest_order: largest order of the rules in DOLP_BINDING_RULE_NODES.
-// sky: three numbers. Bits from 0: log2 of the number of cells per function of the sky. Bits from
-//   DOLP_SKY_CORNERS_SHIFT: number of corners. Bits from DOLP_SKY_START_SHIFT: position of the first cell among the
-//   rule nodes. The cosines of the corners follow the cells of all functions.
+// sky: log2 of the cells per function of the sky (from bit 0), number of corners (from bit DOLP_SKY_CORNERS_SHIFT), and
+// position of the first cell among the rule nodes (from bit DOLP_SKY_START_SHIFT). Corners' cosines follow the cells.
 #define DOLP_PUSH_CONSTANTS uint first; uint count; uint largest_order; uint sky;
 #define DOLP_SKY_CORNERS_SHIFT 5
 #define DOLP_SKY_START_SHIFT 10
@@ -79,8 +73,7 @@
 #define DOLP_COLUMNS 24          // largest number of columns of any kind
 #define DOLP_SKY_FUNCTIONS 8     // largest number of functions of a sky; DOLP_MOST_COLUMNS in kernels for skies
 #define DOLP_MOST_SKY_CORNERS 24 // largest number of corners of a sky that split the azimuths
-#define DOLP_COLUMN_PARTS 4      // numbers per column that moments.comp writes: r_i, r_q by the coarser rule, then by
-                                 // the finer one
+#define DOLP_COLUMN_PARTS 4      // numbers of a column: r_i, r_q by the coarser rule, then by the finer one
 #define DOLP_MAX_PIECES 63       // largest number of pieces of the slope axis for one direction
 #define DOLP_MAX_ARCS 13        // largest number of azimuth arcs at one slope, not counting those of total reflection
 // V-grooves, see physics/groove.glsl
@@ -99,7 +92,7 @@
 
 // ---- Structures ----------------------------------------------------------------------------------------------------
 
-// Parameters of the rules. physics/orders.glsl has the formulas for the orders.
+// The rules; physics/orders.glsl has the formulas for the orders.
 struct RuleNode {
   real digits;            // decimal digits required of the sums
   real t_nodes;           // slope axis: constant part of the number of nodes of a piece
@@ -115,13 +108,12 @@ struct RuleNode {
   real response_norm;     // for responses: 2 / asinh(1 / c0)
 };
 
-// One direction theta, with the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. Under total
-// reflection the pieces also depend on the index, so a direction has a ThetaNode for each such index. With `integral`
-// and smith masking some slope distributions need one more breakpoint, and these have another ThetaNode.
+// One direction theta, with the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. An index with
+// total reflection has separate ThetaNodes; so have slope distributions that need one more breakpoint.
 struct ThetaNode {
   real c;                         // cos(theta)
   real s;                         // sin(theta)
-  // ends of the pieces as ascending slopes; elements after the last end repeat it. The last end may exceed any cut.
+  // Ascending slopes; elements after the last end repeat it. The last end may exceed any cut.
   real end[DOLP_MAX_PIECES + 1];
 };
 
@@ -135,7 +127,6 @@ struct SlopeNode {
   real is_coarse;      // 1 if the slope belongs to the coarser rule, else 0
 };
 
-// One slope distribution.
 struct ShapeNode {
   real m;              // sqrt(2) sigma
   real q_minus_1;      // q - 1, stored because a float q does not resolve it near 1; unused by the Gaussian
@@ -144,11 +135,9 @@ struct ShapeNode {
   real scale;          // scale of the map t = scale sinh(X)
   real cut;            // slopes above it are left out
   real table_scale;    // scale of the masking table: v = 1 + tau/table_scale
-  real cusp_digits;    // smith: log10 of the relative error of L that the cusp at theta_r = 0 causes if rules do not
-                       // split there; below -100 without a cusp
+  real cusp_digits;    // smith: log10 of the cusp's error, see cusp_digits() of plan/rule.hpp
 };
 
-// One complex refractive index N = n + ik.
 struct IndexNode {
   real n2m1_re;       // Re(N^2 - 1)
   real n2m1_im;       // Im(N^2 - 1)
@@ -161,7 +150,6 @@ struct IndexNode {
   real curve_cells;   // number of cells of the table of reflectances; 0 without a table
 };
 
-// One geometry of the pBRDF: incident beam, reflected beam, and the facet between them.
 struct GeometryNode {
   real c_i;  // cos(theta_i)
   real s_i;
@@ -175,13 +163,11 @@ struct GeometryNode {
   real sin_2eta_r;
 };
 
-// One pBRDF to evaluate. The host computes the parts that would cancel or overflow in a float: the geometry, the
-// reflection of the facet and the density.
+// The host computes what would cancel or overflow in a float: geometry, reflection of the facet and density.
 struct BeamNode {
   GeometryNode g;
   ShapeNode shape;  // with the scale and the cut that physics/in_plane.glsl needs
-  real density;     // D(alpha) / 4 [1/sr] divided by a power of two, so that it is 0 or in [1/2, 1); the host
-                    // multiplies the result by this power
+  real density;     // D(alpha) / 4 [1/sr], divided by a power of two: 0 or in [1/2, 1)
   // Mueller matrix of the facet in its frame: [m00 m01 0 0; m01 m00 0 0; 0 0 cross_re -cross_im; 0 0 cross_im
   // cross_re], with r_s* r_p = cross_re + i cross_im.
   real m00;
@@ -190,7 +176,6 @@ struct BeamNode {
   real cross_im;
 };
 
-// A Mueller matrix, row by row.
 struct MuellerNode {
   real m[16];
 };
@@ -198,7 +183,7 @@ struct MuellerNode {
 #define DOLP_AZIMUTH_NUMBERS 8  // numbers of an AzimuthNode
 #define DOLP_MOMENTS_NUMBERS 13  // numbers of a MomentsNode
 
-// Moments of the facets of one slope t, divided by their weight P(t) t dt: integrals over the azimuths from 0 to pi.
+// Integrals over the azimuths from 0 to pi for the facets of one slope t, divided by their weight P(t) t dt.
 struct AzimuthNode {
   real r_i;
   real r_q;
@@ -210,16 +195,14 @@ struct AzimuthNode {
   real evaluations;
 };
 
-// Moments times cos(theta) (shaders/physics/README.md, section 3), computed by the finer of two rules, and the
-// differences between the results of both rules (physics/moments.glsl).
+// Moments times cos(theta) (physics/README.md, section 3) by the finer of two rules, and the differences of both rules.
 struct MomentsNode {
   real r_i;
   real r_q;
   real albedo;
   real deficit;
-  real behind;               // sum that `deficit` contains with a negative sign (slope_sums of physics/azimuths.glsl);
-                             // for the bound of its rounding
-  real many;                 // part of r_i from grooves in which rays bounce more often than DOLP_MOST_BOUNCES
+  real behind;               // sum with a negative sign in `deficit` (slope_sums), for its rounding
+  real many;                 // part of r_i from grooves with more bounces than DOLP_MOST_BOUNCES
   real direct_i;             // direct emission
   real direct_q;
   real reflected_difference; // the larger of the differences of r_i and of r_q

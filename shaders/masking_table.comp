@@ -1,7 +1,5 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Each invocation computes the masking table of one shape.
-
 #include "physics/prelude.glsl"
 #include "interface.glsl"
 #include "physics/buffers.glsl"

@@ -1,9 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Each invocation computes the contribution of one piece of the slope axis to the moments of a row of DOLP_WIDTH
-// entries, which differ only in the exponent q.
+// Computes one piece of the slope axis for a row of DOLP_WIDTH entries that differ only in the exponent q.
 
-// Scenes with all bounces in grooves use slopes.comp. Without the code for grooves, drivers compile this kernel faster.
+// Scenes with all bounces use slopes.comp. Without the code for grooves, drivers compile this kernel faster.
 #define DOLP_SINGLE_SCATTERING
 #include "physics/prelude.glsl"
 #include "interface.glsl"

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Each invocation sums over the azimuths at one slope. It serves only maskings that do not depend on the slope
-// distribution, so the sums hold for every distribution (host/compute/evaluate/kernel/slope_samples.hpp).
+// Sums over the azimuths at one slope per invocation. The masking does not depend on the slope distribution, so the
+// sums hold for every distribution (host/compute/evaluate/kernel/slope_samples.hpp).
 
 #include "physics/prelude.glsl"
 #include "interface.glsl"

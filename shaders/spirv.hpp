@@ -1,4 +1,3 @@
-// The compiled entry points, embedded at build time (see CMakeLists.txt and embed.cmake).
 #pragma once
 
 #include <cstdint>

@@ -15,11 +15,9 @@ using std::numbers::pi;
 
 namespace {
 
-// Beyond this slope gamma equals pi/2 in double precision.
-constexpr double kVerticalSlope = 1e17;
+constexpr double kVerticalSlope = 1e17;  // beyond this slope gamma equals pi/2 in double precision
 
-// Integral of p(t) weight(t) dt over slopes in [low, high]. With t = width sinh(v), both densities and their algebraic
-// tails are smooth in v on a scale of 1.
+// Integral of p(t) weight(t) dt over [low, high]. With t = width sinh(v), the integrand is smooth in v.
 template <class Weight>
 double integrate_slopes(const Slopes& slopes, double low, double high, double tolerance, const Weight& weight) {
   const double width = slopes.width();
@@ -52,7 +50,6 @@ double smith_lambda(const Slopes& slopes, const Zenith& zenith) {
 
 IntegralMasking::IntegralMasking(const Slopes& slopes, const Zenith& zenith, double tolerance)
     : slopes_(slopes), zenith_(zenith), tolerance_(tolerance) {
-  // slope_a_ is tan a = cot theta, at most kVerticalSlope.
   slope_a_ = zenith.cos >= kVerticalSlope * zenith.sin ? kVerticalSlope : zenith.cos / zenith.sin;
   share_below_ = 0.5 + integrate_slopes(slopes, 0.0, slope_a_, tolerance, [](double) { return 1.0; });
 }
@@ -89,8 +86,7 @@ double Attenuation::operator()(double tan2_alpha, double cos2_beta) const {
     case Masking::kNone:
       return 1.0;
     case Masking::kVCavity:
-      // G is 2 cos(alpha) cos(theta) / cos(beta), with theta of the lower direction and
-      // cos(alpha) = (cos a + cos b) / (2 cos(beta)).
+      // G is 2 cos(alpha) cos(theta) / cos(beta) with the larger theta; cos(alpha) = (cos a + cos b) / (2 cos(beta)).
       return std::min(1.0, v_cavity_ / cos2_beta);
     case Masking::kIntegral:
       return (*integral_)(std::atan(std::sqrt(tan2_alpha)));

@@ -20,21 +20,18 @@ using std::numbers::pi;
 namespace {
 
 constexpr double kRounding = 256.0 * std::numeric_limits<double>::epsilon();
-// Facets count as vertical if their slope exceeds max(1, width) / sin(theta) by this factor. The relative error of this
-// is the inverse of the factor.
+// Facets count as vertical above this times max(1, width) / sin(theta), with a relative error of 1 / kVertical.
 constexpr double kVertical = 1e10;
 constexpr double kSmallestSine = 1e-12;
-// A smaller share of the facets contributes less than rounding does.
-constexpr double kNoShare = 1e-19;
+constexpr double kNoShare = 1e-19;  // a smaller share of the facets contributes less than rounding
 constexpr int kHalvings = 60;
 
 enum Component : std::size_t { kIntensity, kPolarised, kCount };
 using Emitted = Values<kCount>;
 
-/// Absorptances of a facet as a function of the cosine of the local angle of incidence.
 using Absorption = std::function<FresnelCoefficients(double cos_beta)>;
 
-// The facets of one surface that are visible from one direction. If `is_response`, errors are relative to cos(theta).
+// The facets of a surface that are visible from one direction. If `is_response`, errors are relative to cos(theta).
 class Facets {
  public:
   Facets(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants, Absorption absorption,
@@ -68,8 +65,8 @@ class Facets {
   }
 
  private:
-  // e: the area of a facet seen from the view, divided by the area of its horizontal projection. `side` is 1 for facet
-  // A, at the azimuth phi, and -1 for facet B, at phi + 180 degrees.
+  // e: the area of a facet seen from the view, divided by its horizontal projection. `side` is 1 for facet A, at the
+  // azimuth phi, and -1 for facet B, at phi + 180 degrees.
   double facing(const SlopePoint& point, double side) const {
     return view_.cos + side * point.t * view_.sin * point.sin_chi;
   }
@@ -95,7 +92,6 @@ class Facets {
     return {visible * 0.5 * (from_s + from_p), visible * 0.5 * (from_s - from_p)};
   }
 
-  // Mean of the two facets A and B.
   Emitted of_pair(const SlopePoint& point) {
     evaluations_ += 1.0;
     const Emitted a = of_facet(point, 1.0);
@@ -114,15 +110,13 @@ class Facets {
     return number;
   }
 
-  // The slope beyond which facets count as vertical or, if that is smaller, beyond which only kNoShare of the facets
-  // lie.
+  // The slope beyond which facets count as vertical, or beyond which only kNoShare of the facets lie, if it is smaller.
   double end() const {
     const double vertical = kVertical * std::max(1.0, slopes_.width()) / std::max(view_.sin, kSmallestSine);
     return std::min(vertical, slopes_.quantile(kNoShare));
   }
 
-  // Emission of the facets steeper than t, which count as vertical. With smith masking e G_1 is proportional to t; with
-  // v-cavity masking it no longer grows.
+  // Emission of the facets steeper than t. With smith masking e G_1 is proportional to t there, with v-cavity constant.
   Emitted tail(double t, const Refinement& refinement) {
     const double share = masking_ == Masking::kVCavity ? slopes_.share_above(t) : slopes_.length_above(t) / t;
     if (share < kNoShare) return {};

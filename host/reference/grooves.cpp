@@ -22,42 +22,35 @@ namespace {
 using Vector3 = Vector<double>;
 
 constexpr double kRounding = 256.0 * std::numeric_limits<double>::epsilon();
-// Light of lower intensity is not followed.
-constexpr double kDark = 1e-24;
-// Largest number of bounces that are followed. It stays unknown how much of the remaining light leaves the groove.
+constexpr double kDark = 1e-24;  // light of lower intensity is not followed
+// Most bounces that are followed. How much of the remaining light leaves the groove stays unknown.
 constexpr int kMostFollowed = 2000;
 constexpr double kSteepest = 1e15;
 constexpr double kSteeper = 1.5;
-// Beyond the steepest slope that is followed, grooves reflect less, except for jumps where the number of bounces
-// changes. This factor allows for the jumps.
+// Beyond the steepest slope that is followed, grooves reflect less, but for jumps where the number of bounces changes.
 constexpr double kTailRoom = 2.0;
-constexpr double kTailShare = 0.01;  // error from grooves that are not followed, as a share of the tolerance
+constexpr double kTailShare = 0.01;  // share of the tolerance for the error from grooves that are not followed
 // The number of bounces of a beam changes over angles of about the groove's half-angle gamma.
 constexpr double kStepsPerGamma = 3.0;
 // The search for bends ends at kSteepestBends, or earlier, at the slope beyond which this share of the integral
 // remains. Steeper grooves have many small bends.
 constexpr double kBendShare = 1e-2;
 constexpr double kSteepestBends = 10.0;
-// Limit of the bounces in one attempt; this many take about two seconds. An attempt beyond the limit is abandoned, and
-// the next one has a tolerance larger by the factor kLessAmbitious. From the tolerance kLeastAmbition an attempt is the
-// last, and returns the accuracy that it reaches.
+// An attempt with more bounces than this, about two seconds of work, is abandoned. The next has a tolerance larger by
+// the factor kLessAmbitious. From kLeastAmbition an attempt is the last, and returns the accuracy that it reaches.
 constexpr double kMostBounces = 2e7;
 constexpr double kLessAmbitious = 100.0;
 constexpr double kLeastAmbition = 1e-5;
-// kThinWeight is SlopeTask::thin_weight. Integrals below the share kNegligible of the albedo are zero except for
-// rounding.
-constexpr double kThinWeight = 0.02;
-constexpr double kNegligible = 1e-12;
-// Factor of the errors, for panels that still have bends. On such panels the difference of two rules is about as large
-// as the error, and by chance it may be smaller.
+constexpr double kThinWeight = 0.02;   // SlopeTask::thin_weight
+constexpr double kNegligible = 1e-12;  // integrals below this share of the albedo are zero except for rounding
+// Factor of the errors of panels that still have bends: there the difference of two rules may be below the error.
 constexpr double kBentErrors = 6.0;
-// The first estimate of a surface uses kLookShares quantiles of the slopes, none above kLookSteepest, and kLookAzimuths
-// azimuths.
+// The first estimate uses kLookShares quantiles of the slopes, none above kLookSteepest, and kLookAzimuths azimuths.
 constexpr int kLookShares = 16;
 constexpr int kLookAzimuths = 16;
 constexpr double kLookSteepest = 50.0;
 
-// Components of the integrals. Lost light may or may not leave the groove; it counts as reflected.
+// Lost light may or may not leave the groove; it counts as reflected.
 enum Component : std::size_t {
   kAlbedo,
   kReflected,
@@ -109,8 +102,7 @@ void follow(const Groove<double>& groove, const SlopePoint& point, const Vector3
   }
 }
 
-// Encodes the history of the beam that meets `first` first: for each bounce, whether none, some or all of the beam
-// leaves after it, and the side of the special angles.
+// Encodes for each bounce of a beam whether none, some or all of it leaves, and the side of the special angles.
 std::uint64_t history(const SlopePoint& point, const Vector3& omega, Facet first, const SpecialAngles& special,
                       const SkyFunction* sky) {
   constexpr std::uint64_t kPrime = 1099511628211U;
@@ -144,7 +136,6 @@ GrooveValues values_of(const GrooveLight& light) {
           light.lost,   light.sky_reflected,          light.sky_polarised};
 }
 
-// Integrates over the grooves of one surface for one direction of the view.
 class Surveyor {
  public:
   Surveyor(const Slopes& slopes, double theta_deg, const FacetOptics& constants, const Refinement& refinement,
@@ -157,7 +148,7 @@ class Surveyor {
         sky_(sky),
         may_abandon_(may_abandon) {}
 
-  /// The moments; meaningless if the attempt is abandoned.
+  /// Meaningless if the attempt is abandoned.
   Moments moments() {
     const GrooveValues expected = look_at_all();
     const auto [bends_end, end] = ends(expected);
@@ -219,7 +210,6 @@ class Surveyor {
     evaluations_ += 1.0;
     return values_of(light);
   }
-  // Mean of the integrand over a few azimuths.
   GrooveValues look(double t) {
     GrooveValues mean{};
     for (int i = 0; i < kLookAzimuths; ++i) {
@@ -238,10 +228,9 @@ class Surveyor {
     return mean;
   }
 
-  /// Slopes beyond which less work is done.
   struct Ends {
-    double bends;  ///< the slope beyond which bends are not searched
-    double all;    ///< the slope beyond which no beam is followed
+    double bends;  ///< bends are not searched beyond this slope
+    double all;    ///< no beam is followed beyond this slope
   };
   // Slopes beyond which the rest is negligible, or light has too many bounces to be followed.
   Ends ends(const GrooveValues& expected) {

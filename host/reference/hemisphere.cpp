@@ -24,34 +24,28 @@ namespace {
 
 constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// The absorbed part is only added to cos(theta) - albedo. If it is below this share of the albedo, it needs no relative
-// accuracy.
+// The absorbed part is added to cos(theta) - albedo. Below this share of the albedo it needs no relative accuracy.
 constexpr double kSmallAbsorbed = 1e-2;
-// Directions are stored as elevations above the horizon. An elevation has an error of a few ulps even if it is tiny,
-// and so has everything proportional to it (test ReferenceMoments_NextToGrazing_KeepTheirDigits).
+// Elevations, and all that is proportional to them, have an error of a few ulps even if they are tiny (test
+// ReferenceMoments_NextToGrazing_KeepTheirDigits).
 constexpr double kElevationRounding = 32.0 * std::numeric_limits<double>::epsilon();
-// At theta = 90 degrees the integral over u ends at this distance from the horizon, u = 0. The rest follows a power
-// law.
+// At theta = 90 degrees the integral over u ends at this distance from the horizon. The rest follows a power law.
 constexpr double kHorizonGap = 1e-30;
-// If the elevation of the fixed direction is below this, the masking changes in a layer of running elevations that is
-// about as thin. Panels could step over this layer, so break points become denser towards the horizon.
+// If the elevation of the fixed direction is below this, the masking changes in a layer of running elevations about as
+// thin. Panels could step over this layer, so break points become denser towards the horizon.
 constexpr double kNearHorizon_rad = 1e-3;
 constexpr double kLayerGrowth = 10.0;
-// Errors of the inner integrals, relative to the error of the integral around them.
-constexpr double kInnerShare = 0.02;
-// Smallest relative error to which an azimuth integral can be refined: the rounding of a Kronrod panel is 1e-15 of its
-// magnitude.
+constexpr double kInnerShare = 0.02;  // errors of inner integrals, relative to the error of the integral around them
+// An azimuth integral cannot have a smaller relative error: a Kronrod panel has a rounding of 1e-15 of its magnitude.
 constexpr double kInnerFloor = 4e-15;
-// Integrals below this share of the albedo are zero except for rounding, so they are not refined.
-constexpr double kNegligible = 1e-12;
+constexpr double kNegligible = 1e-12;  // integrals below this share of the albedo are zero except for rounding
 
-// Absolute error of G, which is of order 1. The error is larger than rounding, and so small that the quadrature over
-// the azimuth does not take it for structure of the integrand.
+// G is of order 1. Its error is above rounding, but too small to look like structure to the azimuth's quadrature.
 double masking_tolerance_for(const Refinement& refinement) {
   return std::max(1e-14, 1e-3 * kInnerShare * refinement.relative_tolerance);
 }
 
-// Components of the integrals, followed by K responses of the reflected part and K responses of the polarised part.
+// K responses of the reflected part and K responses of the polarised part follow the moments.
 enum Component : std::size_t { kAlbedo, kReflected, kPolarised, kAbsorbed, kMomentCount };
 template <std::size_t N>
 Values<N> moment_scales(const Values<N>& value) {
@@ -63,12 +57,11 @@ Values<N> moment_scales(const Values<N>& value) {
   return scales;
 }
 
-// Integrates the moments of one direction, and holds the data of all nested integrands.
 template <std::size_t K>
 class Hemisphere {
  public:
-  // The integrals have these components: moments and responses, then the two moments with a function of the sky. As
-  // many others follow: the errors of the azimuth integrals, which the outer rule only sums.
+  // Components: moments and responses, then the two moments with a function of the sky. As many others follow: the
+  // errors of the azimuth integrals, which the outer rule only sums.
   static constexpr std::size_t kAzimuthCount = kMomentCount + 2 * K;
   static constexpr std::size_t kSkyReflected = kAzimuthCount;
   static constexpr std::size_t kSkyPolarised = kAzimuthCount + 1;
@@ -117,7 +110,7 @@ class Hemisphere {
   double evaluations() const { return evaluations_; }
 
  private:
-  // One running zenith angle, with the values that depend on both zenith angles but not on the azimuth.
+  // One running zenith angle, with values that depend on both zenith angles but not on the azimuth.
   struct Row {
     double t;
     double cos2_mean;
@@ -126,7 +119,7 @@ class Hemisphere {
     Attenuation attenuation;
   };
   // Break points in u, where tan((theta_r - theta)/2) = width sinh(u): the specular direction u = 0, corners of the
-  // sky, and the zenith angles at which a break point of the azimuth appears at Delta_phi = 180 or 0 degrees.
+  // sky, and zenith angles at which a break point of the azimuth appears at Delta_phi = 180 or 0 degrees.
   Breaks zenith_breaks() const {
     const double width = slopes_.width();
     Breaks breaks(std::asinh(-std::tan(0.5 * theta_rad_) / width),
@@ -158,7 +151,7 @@ class Hemisphere {
     return breaks;
   }
 
-  // Break points of the azimuth. They lie at these values of s2:
+  // The break points lie at these values of s2:
   //   the special angles of beta
   //   v-cavity: (cos theta + cos theta_r) min(cos theta, cos theta_r) = cos^2 beta
   //   integral: alpha = 2 max(theta, theta_r) - pi/2, above which b = pi/2
@@ -186,8 +179,7 @@ class Hemisphere {
     return breaks;
   }
 
-  // Integrates over v, where tan(delta/4) = width sinh(v). D has fallen off at tan(delta/4) = width, because 4
-  // tan^2(delta/4) is about s2.
+  // v is given by tan(delta/4) = width sinh(v). D has fallen off at v = 1, because 4 tan^2(delta/4) is about s2.
   Integral<kAzimuthCount> integrate_azimuth(const Row& row) {
     const double t2 = row.t * row.t;
     const double scale2 =
@@ -218,7 +210,6 @@ class Hemisphere {
     return scales;
   }
 
-  // The integrand in u: the azimuth integrals at one running zenith angle, and their errors.
   BothValues row_values(double u) {
     const double t = slopes_.width() * std::sinh(u);
     const double half_rad = std::atan(t);
@@ -228,7 +219,7 @@ class Hemisphere {
     const Row row{t, cos_mean * cos_mean, fixed_.sin * running.sin, running,
                   Attenuation(slopes_, masking_, fixed_, running, masking_tolerance_for(refinement_))};
     const auto inner = integrate_azimuth(row);
-    // twice, because delta covers only half of the azimuth
+    // Twice, because delta covers only half of the azimuth.
     const double jacobian = 2.0 * running.sin * 2.0 * slopes_.width() * std::cosh(u) / (1.0 + t * t);
     BothValues both;
     for (std::size_t k = 0; k < inner.value.size(); ++k) {
@@ -243,9 +234,8 @@ class Hemisphere {
     return both;
   }
 
-  // D G M / 4, the reduced form of cos(theta) f cos(theta_r), with R, with R = 1 and with 1 - R. M00 and M01 of eq. (7)
-  // need only the squared lengths of the columns of the Jones matrix of eq. (4), which the rotation by eta_r does not
-  // change.
+  // cos(theta) f cos(theta_r) = D G M / 4 with R, with 1 instead of R, and with 1 - R. M00 and M01 of eq. (7) need only
+  // squared lengths of columns of the Jones matrix of eq. (4), which the rotation by eta_r does not change.
   AzimuthValues integrand(const Row& row, double delta) const {
     const double sin_half = std::sin(0.5 * delta);
     const double cos_half = std::cos(0.5 * delta);
@@ -257,9 +247,8 @@ class Hemisphere {
 
     const double cos_beta = std::sqrt(cos2_beta);
     const FresnelCoefficients r = fresnel(constants_, cos_beta);
-    // sin_eta and cos_eta are the components of the facet normal h = (omega_i + omega_r) / (2 cos beta) across and
-    // along the plane of omega_i and z, divided by sin beta. In the retro direction (beta = 0) there is no eta and no
-    // polarisation, because r_p = -r_s.
+    // sin_eta and cos_eta are the components of the facet normal across and along the plane of omega_i and z, divided
+    // by sin beta. In the retro direction (beta = 0) there is no eta and no polarisation, because r_p = -r_s.
     const double sin_2beta = 2.0 * std::sqrt(cos2_beta * sin2_beta);
     double from_s = 0.5 * (std::norm(r.r_s) + std::norm(r.r_p));
     double from_p = from_s;
@@ -302,13 +291,12 @@ class Hemisphere {
   double evaluations_ = 0.0;
 };
 
-// The amplitudes r_s and r_p have an absolute error. It matters in their squares if they are small, as for N near 1.
+// r_s and r_p have an absolute error. It matters in their squares if they are small, as for N near 1.
 double amplitude_rounding(double reflected, double albedo) {
   return kRounding * (2.0 * std::sqrt(reflected * albedo) + kRounding * albedo);
 }
 
-// The error of component k. Rounding and the error of G are relative to `magnitude`. The factor 2 is there because G_1
-// may be as small as 1/2.
+// Rounding and the error of G are relative to `magnitude`. The factor 2 is there because G_1 may be as small as 1/2.
 template <std::size_t N>
 double error_of(const Integral<N>& integral, std::size_t k, double magnitude, const Refinement& refinement) {
   const double masking_error = 2.0 * masking_tolerance_for(refinement);
@@ -359,8 +347,7 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   moments.albedo_error = error_at(kAlbedo);
   moments.r_i_error = error_at(kReflected) + amplitude_error;
   moments.r_q_error = error_at(kPolarised) + amplitude_error;
-  // If little light is reflected, cos(theta) - r_i is more accurate. If little is absorbed,
-  // (cos(theta) - albedo) + absorbed is more accurate.
+  // cos(theta) - r_i is more accurate if little is reflected; (cos(theta) - albedo) + absorbed, if little is absorbed.
   const double direct_error = moments.r_i_error + kRounding * cos_theta;
   const double split_error = moments.albedo_error + error_at(kAbsorbed) + kRounding * cos_theta;
   const bool is_split = split_error < direct_error;

@@ -19,8 +19,7 @@ namespace dolp {
 
 namespace {
 
-// 34 digits are enough for the textbook formulas, which cancel near grazing, in the retro direction and at the critical
-// angle.
+// 34 digits suffice for the textbook formulas, which cancel near grazing, retro direction and critical angle.
 using Real = boost::multiprecision::cpp_bin_float_quad;
 using Complex = boost::multiprecision::cpp_complex_quad;
 using Vector = reference::Vector<Real>;
@@ -29,12 +28,10 @@ using Jones = std::array<std::array<Number, 2>, 2>;
 
 constexpr double kMaskingTolerance = 1e-13;
 constexpr double kRetro = 1e-50;  // below this sin^2(2 beta) there is no plane of incidence
-// If the squared horizontal part of omega_i + omega_r is below this, each beam is the mirror image of the other, and
-// grooves of every azimuth reflect one into the other.
+// Below this squared horizontal part of omega_i + omega_r, grooves of every azimuth reflect one beam into the other.
 constexpr double kMirrored = 1e-50;
 constexpr int kMostMuellerBounces = 2000;
-// Light with more bounces is only a correction, so double precision suffices for it.
-constexpr int kMostInQuad = 24;
+constexpr int kMostInQuad = 24;  // light with more bounces is only a correction, so double precision suffices
 // The sum ends if the last kIdleBounces terms together are at most the share kIdleShare of it.
 constexpr int kIdleBounces = 8;
 constexpr double kIdleShare = 1e-14;
@@ -45,7 +42,7 @@ using reference::scaled;
 using reference::sum;
 using reference::unit;
 
-/// An incident or reflected beam with its frame: direction k of propagation, s = k x z / |k x z|, p = k x s.
+/// k is the direction of propagation, s = k x z / |k x z| and p = k x s.
 struct BeamFrame {
   Vector k;
   Vector s;
@@ -54,14 +51,13 @@ struct BeamFrame {
 
 Real radians(double angle_deg) { return Real(angle_deg) * boost::math::constants::pi<Real>() / 180; }
 
-/// The unit vector toward a zenith and an azimuth.
 Vector toward(double zenith_deg, double azimuth_deg) {
   const Real zenith = radians(zenith_deg);
   const Real azimuth = radians(azimuth_deg);
   return {sin(zenith) * cos(azimuth), sin(zenith) * sin(azimuth), cos(zenith)};
 }
 
-/// The incident beam, whose source is at azimuth 0. At zenith 0 its `s` is the limit of k x z.
+/// The source is at azimuth 0. At zenith 0 `s` is the limit of k x z.
 BeamFrame incident_beam(double zenith_deg) {
   const Vector k = scaled<Real>(-1, toward(zenith_deg, 0.0));
   const Vector s{0, 1, 0};
@@ -90,9 +86,8 @@ reference::Amplitudes<Number> fresnel_amplitudes(const FacetOptics& constants,
   return {(cos_beta - w) / (cos_beta + w), (n2 * cos_beta - w) / (n2 * cos_beta + w)};
 }
 
-// The Jones matrix of a facet. Its columns are the reflected (s, p) amplitudes for an incident s wave and an incident p
-// wave of unit amplitude. The facet's s is normal to both beams. In the retro direction any s works, because
-// r_p = -r_s.
+// The columns are the reflected (s, p) amplitudes for an incident s wave and an incident p wave of unit amplitude. The
+// facet's s is normal to both beams. In the retro direction any s works, because r_p = -r_s.
 Jones<Complex> jones_matrix(const BeamFrame& in, const BeamFrame& out, const reference::Amplitudes<Complex>& r) {
   const Vector normal = cross(in.k, out.k);
   const Vector facet_s = dot(normal, normal) > kRetro ? unit(normal) : in.s;
@@ -110,8 +105,8 @@ Jones<Complex> jones_matrix(const BeamFrame& in, const BeamFrame& out, const ref
   return jones;
 }
 
-// The Mueller matrix of a Jones matrix J. Element (a, b) is half the trace of sigma_a J sigma_b J^+. The matrices sigma
-// turn the coherency matrix <E E^+> into the Stokes parameters I, Q, U = 2 Re(E_s* E_p), V = 2 Im(E_s* E_p).
+// Element (a, b) is half the trace of sigma_a J sigma_b J^+. The matrices sigma turn the coherency matrix <E E^+> into
+// the Stokes parameters I, Q, U = 2 Re(E_s* E_p), V = 2 Im(E_s* E_p).
 template <class Number>
 ReferenceMueller mueller_from_jones(const Jones<Number>& jones) {
   using Matrix = Jones<Number>;
@@ -143,8 +138,8 @@ void add(ReferenceMueller& total, const ReferenceMueller& term) {
   for (std::size_t i = 0; i < 16; ++i) total[i / 4][i % 4] += term[i / 4][i % 4];
 }
 
-/// The plane across the grooves that reflect one beam into another. The direction u across the grooves is along or
-/// against the horizontal part of omega_i + omega_r, because reflection keeps the component along the groove.
+/// The plane across the grooves that reflect one beam into another. Its horizontal direction u is along or against the
+/// horizontal part of omega_i + omega_r, because reflection keeps the component along the groove.
 struct GroovePlane {
   Vector u, v;
   Real across;        ///< length of the horizontal part of omega_i + omega_r
@@ -186,7 +181,7 @@ Number along(const RealVector<Number>& a, const std::array<Number, 3>& e) {
   return a[0] * e[0] + a[1] * e[1] + a[2] * e[2];
 }
 
-// f^(k) cos(theta_i) cos(theta_r) of the beams that meet A of one groove plane first. `Number` is a complex type.
+// f^(k) cos(theta_i) cos(theta_r) of the beams that meet A of one groove plane first. `Number` is complex.
 template <class Number>
 ReferenceMueller bounces_in_plane(const reference::Slopes& slopes, const FacetOptics& constants, const BeamFrame& in,
                                   const BeamFrame& out, const GroovePlane& plane, int bounces) {
@@ -233,7 +228,7 @@ struct GroovePair {
     return total;
   }
   /// True if no ray can leave at psi_r after `bounces` or more bounces. Unfolded, the ray passes the apex at a distance
-  /// between cos(gamma) sin(|psi| - gamma) and sin(|psi| + gamma). This holds both for psi = psi_i and for psi = psi_r.
+  /// between cos(gamma) sin(|psi| - gamma) and sin(|psi| + gamma), both for psi = psi_i and for psi = psi_r.
   bool is_beyond(int bounces) const {
     const Real widest = std::max(toward.gamma(bounces), against.gamma(bounces));
     return abs(Real(abs(toward.psi_i) - abs(toward.psi_r))) > 4 * widest;
@@ -272,8 +267,7 @@ BouncesSum reference_all_bounces(const Surface& surface, const FacetOptics& cons
     for (const double value : latest) recent += value;
     if (k >= kIdleBounces && recent <= kIdleShare * sum.matrix[0][0]) return sum;
   }
-  // This bounds the rest if the terms fall at least like the power -9/8 of the number of bounces, or by the share 1e-4
-  // with each bounce.
+  // Bounds the rest if the terms fall at least like bounces^(-9/8), or by the share 1e-4 per bounce.
   sum.error = recent * kMostMuellerBounces;
   return sum;
 }

@@ -26,7 +26,7 @@ void require(bool is_met, const std::string& what, double value) {
   if (!is_met) throw InputError("reference: " + what + ", but it is " + std::to_string(value));
 }
 
-// The condition is written so that NaN does not meet it.
+// Written so that NaN fails.
 void check_zenith(double theta_deg) {
   require(theta_deg >= 0.0 && theta_deg <= 90.0, "theta must be in [0, 90] degrees", theta_deg);
 }
@@ -85,7 +85,7 @@ Moments mirror_of(const MomentsRequest& request, const MomentsPoint& point) {
   return m;
 }
 
-/// The responses of the reflected light, or of the direct emission.
+/// Responses of the reflected light, or of the direct emission.
 std::vector<ColumnMoments> responses_of(const MomentsRequest& request, const MomentsPoint& point,
                                         const reference::Slopes& slopes, const reference::Refinement& refinement) {
   const double c0 = request.response->c0;
@@ -160,7 +160,7 @@ ScatteringMatrix matrix_of(const ScatteringRequest& request, const ScatteringEnt
   return matrix;
 }
 
-// The relative tolerance stated under "Accuracy" of ReferenceEvaluator.
+// The tolerance stated under "Accuracy" of ReferenceEvaluator.
 double relative_tolerance(const ReferenceOptions& options, double requested) {
   if (requested <= 0.0) return options.relative_tolerance;
   return std::min(0.5 * requested, std::max(options.relative_tolerance, 0.01 * requested));

@@ -9,17 +9,15 @@ namespace {
 constexpr int kBisections = 60;
 constexpr int kMostSteps = 150;
 constexpr int kPlainSteps = 12;
-// If there are more bends than this, each is so small that refinement without break points is as good.
+// If there are more bends, each is so small that refinement without break points is as good.
 constexpr std::size_t kMostBends = 40;
-// The scan of t has equal steps of 1/gamma, because the bends of grooves have equal distances in 1/gamma, and equal
-// steps of log t.
+// The scan of t has equal steps of 1/gamma, because bends of grooves have equal distances in 1/gamma, and of log t.
 constexpr double kStepInverse = 0.04;
 constexpr double kMostInverse = 10.0;
 constexpr int kStepsPerDecade = 16;
-// Slopes below this share of the width contribute less than rounding does.
-constexpr double kSmallestShare = 1e-7;
-// Integrands may vary in a layer next to chi = 0 or t = 0. A layer thinner than this gets break points at distances
-// that grow by the factor kPlaneLayerGrowth.
+constexpr double kSmallestShare = 1e-7;  // slopes below this share of the width contribute less than rounding
+// Integrands may vary in a layer next to chi = 0 or t = 0. If it is thinner than kThinLayer, the distances of its break
+// points grow by the factor kPlaneLayerGrowth.
 constexpr double kThinLayer = 0.05;
 constexpr double kPlaneLayerGrowth = 8.0;
 

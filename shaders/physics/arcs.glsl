@@ -1,10 +1,6 @@
-// The azimuths at one slope: the lines that split [0, pi] into arcs on which the integrand is smooth, and the positions
-// of a rule's nodes on an arc.
-//
-// An azimuth phi is stored as its half angle (cos(phi/2), sin(phi/2)). This keeps its digits at 0 and pi and needs no
-// arc cosine.
+// Lines split the azimuths [0, pi] at one slope into arcs on which the integrand is smooth. An azimuth phi is stored as
+// its half angle (cos(phi/2), sin(phi/2)), which keeps its digits at 0 and pi and needs no arc cosine.
 
-// The half angle of phi from 1 + cos(phi) and 1 - cos(phi), clamped to [0, pi].
 real2 half_angle(real one_plus_x, real one_minus_x) {
   return real2(sqrt(clamp(real(0.5) * one_plus_x, real(0.0), real(1.0))),
                sqrt(clamp(real(0.5) * one_minus_x, real(0.0), real(1.0))));
@@ -12,27 +8,23 @@ real2 half_angle(real one_plus_x, real one_minus_x) {
 
 real cosine(real2 half_phi) { return (half_phi.x - half_phi.y) * (half_phi.x + half_phi.y); }
 
-// atan(y) for y >= 0.
 real arc_tangent(real y) {
   bool is_small = y <= real(1.0);
   real angle = atan_unit(choose(is_small, y, real(1.0) / y));
   return choose(is_small, angle, real(0.5) * kPi - angle);
 }
 
-// phi in radians.
-real phase(real2 half_phi) { return real(4.0) * arc_tangent(half_phi.y / (real(1.0) + half_phi.x)); }
+real phase(real2 half_phi) { return real(4.0) * arc_tangent(half_phi.y / (real(1.0) + half_phi.x)); }  // phi in radians
 
 bool is_before(real2 from, real2 to) { return to.y * from.x > to.x * from.y; }
 
-// The azimuth in [from, to] nearest to `phi`.
 real2 clamp_half_angle(real2 phi, real2 from, real2 to) {
   real2 above = is_before(from, phi) ? phi : from;
   return is_before(above, to) ? above : to;
 }
 
-// An arc of azimuths on which the integrand is smooth: phi = centre + psi with psi = 4 atan(extent * abscissa). The
-// centre may be the middle, the beginning or the end of the arc. The extent is negative for an arc with a root at its
-// end.
+// An arc of azimuths with a smooth integrand: phi = centre + psi with psi = 4 atan(extent * abscissa). The centre may
+// be the middle, the beginning or the end of the arc. The extent is negative for an arc with a root at its end.
 struct Arc {
   real2 from;
   real2 to;
@@ -40,15 +32,13 @@ struct Arc {
   real centre_sin;
   real extent;
   real quarter;     // tan of a quarter of its length
-  real origin;      // phi of the beginning, or of the end at which the rule has a symmetry or a singularity
+  real origin;      // phi at the beginning, or at the end at which the rule has a symmetry or a singularity
   real span;        // length in phi
   int section;      // section of the rule nodes
   bool is_critical; // true if w of fresnel.glsl vanishes at or near the centre
-  real resolution;  // width of the square root at the centre if absorption smooths it, else 0; see critical_arc of
-                    // orders.glsl
+  real resolution;  // width of the square root at the centre, see critical_arc of orders.glsl; or 0
 };
 
-// The arc between two azimuths.
 Arc make_arc(real2 from, real2 to) {
   real sin_half = to.y * from.x - to.x * from.y;
   real cos_half = to.x * from.x + to.y * from.y;
@@ -76,8 +66,7 @@ Arc make_arc(real2 from, real2 to) {
   return arc;
 }
 
-// If `has_root`, the arc has a square root or another singularity, at its end if `at_end`, otherwise at its beginning.
-// Then it gets a rule that clusters nodes there.
+// If `has_root`, the arc has a singularity at its beginning (`at_end`: its end), and gets a cluster of nodes there.
 Arc with_root(Arc arc, bool at_end, bool has_root) {
   real2 root = choose(at_end, arc.to, arc.from);
   arc.centre_cos = choose(has_root, cosine(root), arc.centre_cos);
@@ -88,7 +77,7 @@ Arc with_root(Arc arc, bool at_end, bool has_root) {
   return arc;
 }
 
-// An azimuth of an arc as (cos(phi), sin(phi)), and the weight that the rule gives it, including dphi.
+// (cos(phi), sin(phi)) of a node, and its weight, including dphi.
 struct Azimuth {
   real x;
   real sin_phi;
@@ -121,17 +110,16 @@ Azimuth azimuth(Arc arc, real2 node) {
   return at;
 }
 
-// The azimuths, as half angles in ascending order, that split [0, pi] into arcs on which the integrand is smooth. The
-// critical azimuth may lie on any of these arcs.
+// Half angles that split [0, pi] into arcs, in ascending order. The critical azimuth may lie on any arc.
 struct SplitLines {
   real2 end[DOLP_MAX_ARCS];  // end of each arc; the first begins at phi = 0
   int arcs;
   int leaving;     // number of arcs whose reflected ray leaves the surface
-  real2 horizon;   // theta_r = 90 degrees; beyond this azimuth the reflected ray does not leave
-  real2 critical;  // cos(beta) = critical_cos; there the integrand has a square root on both sides
+  real2 horizon;   // theta_r = 90 degrees; beyond it the reflected ray does not leave
+  real2 critical;  // cos(beta) = critical_cos, with a square root on both sides
 };
 
-// The azimuth with cos(phi) = level / (s t), as a half angle. `st` is s t.
+// The azimuth with cos(phi) = level / (s t), as a half angle.
 real2 line_at(real level, real st) { return half_angle((st + level) / st, (st - level) / st); }
 
 SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines lines) {
@@ -190,14 +178,12 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
 //   psi = pi/2 - j gamma, pi - (2j + 1) gamma and pi/2 - (j + 1) gamma with the next j, unless split_bounces ended
 //     the first lines;
 //   psi = -gamma, beyond which facets face away.
-// groove_line() gives the azimuth of a line from (cos(psi), sin(psi)).
 real2 groove_line(ThetaNode theta, real cos_psi, real sin_psi) {
   return line_at(theta.c * sin_psi / max(cos_psi, real(1e-30)), max(theta.s, real(1e-30)));
 }
 
-// A slope with so small a share that this many digits suffice is split only at psi = -gamma, where facets turn away
-// from the ray. Grooves steeper than DOLP_STEEPEST_SPLIT are not split where the number of bounces changes, because it
-// changes too often.
+// If this many digits suffice for a slope, it is split only at psi = -gamma, where facets turn away from the ray. So
+// are slopes above DOLP_STEEPEST_SPLIT, because their number of bounces changes too often.
 CONST real kDigitsOfLines = real(3.0);
 
 SplitLines groove_lines(RuleNode rule, ThetaNode theta, real t, real digits, SplitLines lines) {

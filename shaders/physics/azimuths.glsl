@@ -1,6 +1,4 @@
-// The sums over the azimuths at one slope, by Gauss rules on the smooth arcs.
 
-// One slope of a piece, with the values that all its arcs use.
 struct Slope {
   real t;
   real digits;        // digits required of the sum over the azimuths
@@ -12,10 +10,10 @@ struct Slope {
   real weight[DOLP_WIDTH];  // weight of this slope in the columns, for each entry of the row
 };
 
-// Sums over azimuths. `member` and `columns` have an element for each entry of a row.
+// `member` and `columns` have an element for each entry of a row.
 struct AzimuthSums {
   real4 member[DOLP_WIDTH];
-  Columns columns[DOLP_WIDTH];  // columns of preceding slopes and arcs, to which this sum is added
+  Columns columns[DOLP_WIDTH];  // begin with the columns of preceding slopes and arcs
   real2 direct;       // direct emission of the facets as (I, Q), before smith masking
   real behind;        // MomentsNode::behind
   real evaluations;
@@ -34,7 +32,7 @@ AzimuthSums no_azimuths(Columns columns[DOLP_WIDTH]) {
 }
 
 // sin(theta_r). If the mean slope is about to diverge, G varies so close to the zenith that 1 - cos(theta_r) has lost
-// its digits there. The sine is then computed as the length of the ray's horizontal part.
+// its digits; the sine is then the length of the ray's horizontal part.
 real sine_of_ray(ThetaNode theta, Row row, Facet f, real t, Azimuth at) {
   if (!is_diverging(row.shape[0])) return sqrt((real(1.0) - f.cos_r) * (real(1.0) + f.cos_r));
   real turned = real(2.0) * f.e * t / (real(1.0) + t * t);
@@ -43,7 +41,7 @@ real sine_of_ray(ThetaNode theta, Row row, Facet f, real t, Azimuth at) {
   return sqrt(along * along + across * across);
 }
 
-// Factors of a column's function in the two sums of the column: in the sum that replaces r_i, and in the sum for r_q.
+// Factors of a column's function in its two sums, which correspond to r_i and r_q.
 real2 column_factors(Slope slope, Facet f) {
   if (kColumns == DOLP_COLUMNS_SKY) return real2(f.m00, f.m01);
   real sky = (kColumns == DOLP_COLUMNS_SKY_RESPONSE) ? sky_function(slope.sky, 0, f.cos_r) : real(1.0);
@@ -93,8 +91,8 @@ real2 corner_line(ThetaNode theta, Slope slope, int corner) {
   return line_at(level, max(theta.s * t, real(1e-30)));
 }
 
-// Integral over the azimuths from 0 to pi. A zone lies between two neighbouring split lines. It is one arc, or two if
-// the critical line of total reflection divides it. Corners of a sky divide the arcs further.
+// Integral from 0 to pi. A zone lies between two neighbouring split lines. The critical line of total reflection
+// divides it into two arcs, and corners of a sky divide the arcs further.
 AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope, SplitLines lines,
                          Columns columns[DOLP_WIDTH]) {
   AzimuthSums sums = no_azimuths(columns);
@@ -118,9 +116,8 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
     for (int corner = 0; corner <= slope.sky.corners; ++corner) {
       real2 stop = to;
       if (corner < slope.sky.corners) stop = clamp_half_angle(corner_line(theta, slope, corner), start, to);
-      // Devices that run invocations in lockstep compute both branches of an `if`, but skip a loop of one turn if no
-      // invocation needs it. The turn counts as an iteration, see worst_iterations of
-      // host/compute/plan/kernel_data.hpp.
+      // Devices with lockstep compute both branches of an `if`, but skip a loop of one turn if no invocation needs it.
+      // The turn counts as an iteration, see worst_iterations of host/compute/plan/kernel_data.hpp.
       for (bool run_once = is_before(start, stop); run_once; run_once = false) {
         bool is_first = !is_before(from, start);
         Arc arc = masked_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits,
@@ -163,13 +160,12 @@ AzimuthSums slope_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index,
   return sums;
 }
 
-// The results of slopes.comp.
 struct SlopeResult {
   AzimuthNode node;
   Columns columns;
 };
 
-// The sums at one slope as slopes.comp returns them. No row is needed, because its maskings do not depend on the shape.
+// No row is needed, because slopes.comp serves only maskings that do not depend on the shape.
 SlopeResult azimuths_of(RuleNode rule, ThetaNode theta, IndexNode index, SlopeNode slope_node) {
   Slope slope;
   slope.t = slope_node.t;

@@ -1,18 +1,15 @@
-// Columns: sums over the facets in addition to the moments. kColumnCount is the number of columns, kColumns their kind:
-//
+// Columns: sums over the facets in addition to the moments. Their kinds are
 //   sky: the moments with functions g of the zenith of the reflected ray as factors, |g| <= 1. They give what a sky
 //     that changes with the zenith adds to a uniform sky (README.md beside this file, section 11).
 //   responses: the moments with Chebyshev polynomials of the local angle of incidence instead of the reflectances.
 //     The moments of every index are weighted sums of responses (section 8). Responses are of the reflected light, of
 //     the reflected light times the first function of a sky, or of the direct emission.
 //
-// A function g is stored as straight lines over u = sqrt(1 - cos(theta_r)) = sqrt(2) sin(theta_r / 2): in cells of
-// equal width, each with the value at its start and the change over the cell. A sky that has a slope at the zenith
-// depends on the square root of 1 - cos(theta_r) there, but is smooth in u. The cells follow the nodes of the rules.
-// host/compute/plan/sky_table.cpp fills them.
+// A function g is stored as straight lines over u = sqrt(1 - cos(theta_r)), in cells of equal width, each with the
+// value at its start and the change over the cell. A sky that has a slope at the zenith is smooth in u, but not in
+// cos(theta_r). The cells follow the nodes of the rules (host/compute/plan/sky_table.cpp).
 
-// Position of the functions among the rule nodes. A kernel reads it once, because devices would read push constants
-// again in each turn of a loop.
+// A kernel reads these once, because devices would read push constants again in each turn of a loop.
 struct SkyPlace {
   int cells;  // number of cells of a function
   int start;  // position of the first cell
@@ -69,7 +66,6 @@ ColumnValues chebyshev_at(RuleNode rule, real cos_beta) {
   return values;
 }
 
-// The column functions at a facet with the local angle beta and the zenith theta_r of the reflected ray.
 ColumnValues column_values(RuleNode rule, SkyPlace table, real cos_beta, real cos_r) {
   if (kColumns == DOLP_COLUMNS_SKY) return sky_at(table, cos_r);
   return chebyshev_at(rule, cos_beta);
@@ -95,7 +91,6 @@ Columns scaled_columns(Columns sums, real factor) {
   return sums;
 }
 
-// Stores the columns of one slope.
 void store_azimuth_columns(Columns sums) {
   for (int k = 0; k < DOLP_MOST_COLUMNS; ++k) {
     if (k < int(kColumnCount)) {
@@ -118,7 +113,7 @@ void store_columns(int member, bool is_coarse, Columns sums) {
 
 SkyPlace sky_place() { return SkyPlace(sky_cells(), sky_start(), pushed_corners()); }
 
-// cos(theta_r) at corner i of the sky. Corners split the azimuths; they are in ascending order of the zenith.
+// cos(theta_r) at corner i of the sky. Corners are in ascending order of the zenith.
 real cos_of_corner(SkyPlace table, int i) { return rule_node(table.start + sky_functions() * table.cells + i).x; }
 #else
 struct ColumnValues {

@@ -1,16 +1,14 @@
-// Elementary functions, built from arithmetic, sqrt, frexp and ldexp. GLSL's own functions are too coarse (a driver may
-// return sinh with an error of several percent near 0) and do not exist in double.
+// Elementary functions from arithmetic, sqrt, frexp and ldexp. GLSL's own functions are too coarse (sinh near 0 may be
+// off by several percent) and do not exist in double.
 // Accuracy: a few units in the last place in the ranges stated here (tests/compute/kernel_source_test.cpp).
 
 CONST real kPi = real(3.14159265358979323846);
-CONST real kLn2High = real(0.693145751953125);             // few bits: it and its products with an exponent are exact
-                                                           // in a float
+CONST real kLn2High = real(0.693145751953125);             // few bits: its products with exponents are exact in a float
 CONST real kLn2Low = real(1.42860682030941723212e-6);      // ln 2 - kLn2High
 CONST real kInverseLn2 = real(1.44269504088896340736);
 CONST real kSqrtHalf = real(0.70710678118654752440);
 
-// Selects one of two computed values. `c ? a : b` is a branch unless a and b are names or constants, and each branch in
-// a loop doubles the time that some drivers need to analyse it.
+// `c ? a : b` of expressions is a branch, which in a loop doubles the time that some drivers need to analyse it.
 real choose(bool condition, real yes, real no) { return condition ? yes : no; }
 real2 choose(bool condition, real2 yes, real2 no) { return condition ? yes : no; }
 
@@ -99,7 +97,7 @@ real log1p_real(real u) {
   return k * kLn2High + (series + (k * kLn2Low + choose(u < real(1.0), lost_of_u, lost_of_one) / v));
 }
 
-// ln(x) for 0 < x <= 1. It is coarse below 1e-30.
+// The logarithm for 0 < x <= 1; it is coarse below 1e-30.
 real log_unit(real x) { return -log1p_real((real(1.0) - x) / max(x, real(1e-30))); }
 
 // ln(1 + u^2) for u >= 0. Above 1e9, where u^2 may overflow, it is 2 ln(u).

@@ -1,5 +1,4 @@
-// Reflection and emission of one facet: the integrand of the moments in slope space (sections 1 to 3 of README.md
-// beside this file).
+// One facet: the integrand of the moments in slope space (README.md beside this file, sections 1 to 3).
 //
 // A facet has the slope t and the azimuth phi, measured from the plane of incidence. Let c = cos(theta),
 // s = sin(theta), x = cos(phi), r = cos(alpha) = 1 / sqrt(1 + t^2), r2 = r^2 and e = c + s t x. Facets from phi = 0 to
@@ -47,26 +46,24 @@ Facet facet(ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   return result;
 }
 
-// The projection e of a facet in two parts: e G is visible, e (1 - G) is hidden by masking. Each part is computed
-// directly, because e minus the other part would lose digits if the two are nearly equal.
+// e G is visible, e (1 - G) is hidden by masking. Each is computed directly: a difference from e would lose digits.
 struct Projection {
   real visible;
   real hidden;
 };
 
-// Integrand of (r_i, r_q, albedo, deficit) per radian of azimuth.
+// The integrand of (r_i, r_q, albedo, deficit) per radian of azimuth.
 real4 reflected(Facet f, Projection part) {
   return real4(part.visible * f.m00, part.visible * f.m01, part.visible, part.hidden + part.visible * f.absorbed);
 }
 
-// The part of e that the direct emission of a facet shows to the viewer, with v-cavity masking of theta if there is
-// any.
+// The part of e that the viewer sees by direct emission, with v-cavity masking of theta if there is any.
 real seen_directly(ThetaNode theta, Facet f) {
   return (kMasking == DOLP_MASKING_V_CAVITY) ? min(f.e, real(2.0) * theta.c) : f.e;
 }
 
-// Direct emission of a facet per radian of azimuth, as (I, Q): e G1 (1 - M00) and -e G1 M01, where G1 masks only toward
-// the viewer, theta. The G1 of smith masking is equal for all facets, and moments.glsl applies it later.
+// (I, Q) per radian of azimuth: e G1 (1 - M00) and -e G1 M01, where G1 masks only toward the viewer, theta. The G1 of
+// smith masking is equal for all facets, and moments.glsl applies it later.
 real2 emitted(ThetaNode theta, Facet f) {
   real visible = seen_directly(theta, f);
   return real2(visible * f.absorbed, -visible * f.m01);

@@ -1,4 +1,4 @@
-// Fresnel reflection for N = n + ik: the quantities that the moments need, in forms without cancellation.
+// Fresnel reflection for N = n + ik, in forms without cancellation.
 //
 // With c = cos(beta), w = sqrt(N^2 - sin^2 beta) = sqrt((N^2 - 1) + c^2), B = |c + w|^2, a = |N^2 - 1|^2 / B:
 //   R_s = |c - w|^2 / B = a / B                      because (c - w)(c + w) = 1 - N^2
@@ -9,7 +9,7 @@
 CONST real kSmallestSquare = real(1e-37);
 
 struct Fresnel {
-  real r_s;                // R_s
+  real r_s;
   real absorbed_s;         // 1 - R_s
   real split_over_sin2;    // (R_s - R_p) / sin^2(beta)
 };
@@ -22,7 +22,7 @@ real2 sqrt_upper(real re, real im) {
   return real2(re >= real(0.0) ? larger : smaller, re >= real(0.0) ? smaller : larger);
 }
 
-// The coefficients from N^2 - 1, cos(beta), w, c + w (`s_sum`) and N^2 c + w (`p_sum`).
+// Arguments: N^2 - 1, cos(beta), w, c + w (`s_sum`) and N^2 c + w (`p_sum`).
 Fresnel fresnel_of_sums(real2 n2m1, real cos_beta, real2 w, real2 s_sum, real2 p_sum) {
   // Without the lower limit, N = 1 at grazing incidence would give 0/0 if the squares underflow.
   real inverse_b = real(1.0) / max(s_sum.x * s_sum.x + s_sum.y * s_sum.y, kSmallestSquare);
@@ -35,7 +35,7 @@ Fresnel fresnel_of_sums(real2 n2m1, real cos_beta, real2 w, real2 s_sum, real2 p
   return f;
 }
 
-// The coefficients of a bare surface. Domain: 0 < cos_beta <= 1.
+// The formulas for a bare surface. Domain: 0 < cos_beta <= 1.
 Fresnel fresnel(IndexNode index, real cos_beta) {
   real2 w = sqrt_upper(index.n2m1_re + cos_beta * cos_beta, index.n2m1_im);
   real2 s_sum = real2(cos_beta + w.x, w.y);
@@ -43,8 +43,8 @@ Fresnel fresnel(IndexNode index, real cos_beta) {
   return fresnel_of_sums(real2(index.n2m1_re, index.n2m1_im), cos_beta, w, s_sum, p_sum);
 }
 
-// The coefficients from a table (host/compute/plan/reflectance_curve.cpp). It has cubics over sqrt(cos(beta)), in cells
-// of equal width, for R_s, for 1 - R_s and for (R_s - R_p) / sin^2(beta).
+// The table (host/compute/plan/reflectance_curve.cpp) has cubics over sqrt(cos(beta)), in cells of equal width, for
+// R_s, for 1 - R_s and for (R_s - R_p) / sin^2(beta).
 Fresnel reflectance_at(IndexNode index, real cos_beta) {
   int cells = int(index.curve_cells);
   real position = sqrt(cos_beta) * real(cells);

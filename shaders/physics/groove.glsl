@@ -11,23 +11,21 @@
 // by eta_k. The beam that meets the facet first has the width min(e, 2c). Its share (min(X_k, X_1) - X_0) / (X_1 - X_0)
 // goes on to bounce k, with X_0 = max(a sin(psi - gamma), 0).
 
-// A ray on its way through the fan. If it has many bounces, groups of 2, 4, 8 ... bounces count as one bounce at their
-// middle. Near the first and the last bounce, which may be grazing, the groups are smaller.
-// host/compute/plan/error_bounds.cpp bounds the error of this.
+// A ray on its way through the fan. Groups of 2, 4, 8 ... bounces in the middle of its path count as one bounce; near
+// the first and last bounce, which may be grazing, groups are smaller. error_bounds.cpp of host/ bounds the error.
 struct Fan {
-  real2 turn;    // (cos, sin) of gamma times the number of bounces in the next group
-  real gamma;    // this and the next members are set only for steep grooves, see fan()
-  real left;     // number of bounces ahead; (pi/2 - psi) / gamma at first
+  real2 turn;    // (cos, sin) of gamma times `taken`
+  real gamma;    // like the next members, set only for steep grooves, see fan()
+  real left;     // bounces ahead; (pi/2 - psi) / gamma at first
   real done;
   real slant;    // psi / gamma, at most 1
-  real taken;    // number of bounces in the next group, 2^doublings
+  real taken;    // bounces in the next group, 2^doublings
   int doublings;
   bool is_steep;
   bool is_black;  // true if the ray has so many bounces that no light is left
 };
 
-// The start of a ray in a groove of slope t. The ray has the vertical component c and the component u across the
-// groove.
+// The ray has the vertical component c and the component u across the groove.
 Fan fan(real t, real c, real u) {
   real r = real(1.0) / sqrt(real(1.0) + t * t);
   Fan f;
@@ -40,8 +38,7 @@ Fan fan(real t, real c, real u) {
   f.doublings = 0;
   f.is_steep = false;
   f.is_black = false;
-  // A ray has at most pi/gamma < pi t + 2 bounces. This loop of one turn stands for an `if`, because devices skip a
-  // loop that no invocation needs.
+  // A ray has at most pi/gamma < pi t + 2 bounces. A loop of one turn replaces the `if`: devices skip it if not needed.
   for (bool may_be = t > real(DOLP_MOST_BOUNCES) / kPi; may_be; may_be = false) {
     real to_horizon = arc_tangent(c / max(abs(u), real(1e-30)));
     f.gamma = arc_tangent(real(1.0) / t);
@@ -54,14 +51,13 @@ Fan fan(real t, real c, real u) {
   return f;
 }
 
-// Share of the beam that goes on to one more bounce, for a ray with many bounces. The sines of small angles are
-// replaced by the angles.
+// Share of the beam that goes on to one more bounce after many. The sines of small angles are replaced by the angles.
 real last_share(Fan f) {
   real sum = max(real(1.0) + f.slant, real(1e-30));
   return (real(2.0) * f.left + f.slant - real(1.0)) / sum;
 }
 
-// Chooses the size of the next group of bounces: the more bounces lie behind and ahead, the larger it may be.
+// The more bounces lie behind and ahead, the larger the next group may be.
 Fan next_bounces(Fan f) {
   real distance = min(f.done, f.left) * (real(1.0) / real(DOLP_GROUPS_PER_DISTANCE));
   if (real(2.0) * f.taken <= distance) {
@@ -75,7 +71,7 @@ Fan next_bounces(Fan f) {
   return f;
 }
 
-// Mueller matrix of a facet in the frame of the facet, for Stokes vectors (I, Q, U, V):
+// Mueller matrix of a facet in its frame, for Stokes vectors (I, Q, U, V):
 // [m00 m01 0 0; m01 m00 0 0; 0 0 cross.x cross.y; 0 0 -cross.y cross.x].
 struct Bounce {
   real m00;
@@ -84,8 +80,7 @@ struct Bounce {
   real2 cross;    // r_s r_p*, with the sign for which r_p = r_s at normal incidence
 };
 
-// The reflection by 2^doublings equal facets in succession. r_p / r_s = (cos(beta) w - sin^2(beta)) / (cos(beta)
-// w + sin^2(beta)).
+// Reflection by 2^doublings equal facets. r_p / r_s = (cos(beta) w - sin^2(beta)) / (cos(beta) w + sin^2(beta)).
 Bounce bounce(IndexNode index, real cos_beta, real sin2_beta, int doublings) {
   real2 w = sqrt_upper(index.n2m1_re + cos_beta * cos_beta, index.n2m1_im);
   real2 s_sum = real2(cos_beta + w.x, w.y);
@@ -115,7 +110,7 @@ Bounce bounce(IndexNode index, real cos_beta, real sin2_beta, int doublings) {
   return combined;
 }
 
-// The Stokes vector after the bounce `by`, whose plane of incidence is turned by eta. `twice` is (cos, sin) of 2 eta.
+// The plane of incidence is turned by eta. `twice` is (cos, sin) of 2 eta.
 real4 bounced(Bounce by, real2 twice, real4 stokes) {
   real q = twice.x * stokes.y + twice.y * stokes.z;
   real u = twice.x * stokes.z - twice.y * stokes.y;
@@ -136,7 +131,7 @@ real2 further_on(real2 at, real2 step) {
   return real2(at.x * step.x + at.y * step.y, at.y * step.x - at.x * step.y);
 }
 
-// Light that leaves a groove. A part of the beam may leave one bounce earlier than the rest.
+// A part of the beam may leave one bounce earlier than the rest.
 struct GrooveLight {
   real4 moments;    // (r_i, r_q, albedo, deficit), as in facet.glsl
   real2 before;     // r_i and r_q of the part that leaves earlier
@@ -145,8 +140,7 @@ struct GrooveLight {
   real cos_last;
 };
 
-// Integrand of the moments per radian of azimuth, for the rays that meet the facet (t, phi) first. After k bounces
-// cos(theta_r) is -a cos(psi + 2 k gamma).
+// Moments per radian for rays that meet the facet first. After k bounces cos(theta_r) is -a cos(psi + 2 k gamma).
 GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   real c = theta.c;
   real u = theta.s * x;
@@ -154,15 +148,15 @@ GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index,
   real inverse_a2 = real(1.0) / max(c * c + u * u, kSmallestSquare);
   Fan f = fan(t, c, u);
   real first = c * f.turn.y + u * f.turn.x;  // X_1
-  // Near the horizon X_1 - X_0 and X_k - X_1 are differences of nearly equal numbers. So X_(k+1) - X_k is computed as 2
-  // sin(gamma) times a cos(psi + 2 k gamma).
+  // Near the horizon X_1 - X_0 and X_k - X_1 would lose digits. So X_(k+1) - X_k is computed as 2 sin(gamma) times a
+  // cos(psi + 2 k gamma).
   real width = (u * f.turn.x > c * f.turn.y) ? real(2.0) * c * f.turn.y : first;
   real inverse_width = real(1.0) / max(width, real(1e-30));
   real rise = real(0.0);        // X_k - X_1
   real2 between = real2(u, c);  // a (sin, cos) of psi + 2 k gamma
   real share = f.is_black ? real(0.0) : real(1.0);  // share of the beam that continues
   real absorbed = real(1.0) - share;
-  // Stokes vectors of two rays in the frame of the surface: one has I = 1 and is unpolarised, the other has only Q = 1.
+  // Stokes vectors in the frame of the surface: one has I = 1 and is unpolarised, the other has only Q = 1.
   real4 natural = real4(share, real(0.0), real(0.0), real(0.0));
   real2 seen = doubled_angle(-x, c * sin_phi);
   real4 polarised = real4(real(0.0), share * seen.x, share * seen.y, real(0.0));

@@ -1,5 +1,5 @@
 // G of `integral` and smith masking at one geometry, by Gauss rules over the in-plane slopes tau. It uses no table,
-// because a pBRDF needs G only once or twice; the moments need it thousands of times. With mu = cot(theta):
+// because a pBRDF needs G only once or twice. With mu = cot(theta):
 //   smith, height-correlated:  L(theta) = (1 / mu) int_mu^inf p(tau) (tau - mu) dtau.
 //   `integral`:  1 - G1 = int_mu^inf p(tau) min(1, kappa (tau - mu) / sqrt(1 + tau^2)) dtau, eqs. (9)-(12)
 //   of the paper with tau = tan(gamma). masking.glsl defines kappa and the slope tb at which the minimum switches.
@@ -18,13 +18,12 @@ CONST real kPowerLawSlope = real(1e4);
 CONST real kSmallestSine = real(1e-18);
 CONST real kLargestSwitch = real(1e20);  // upper limit of tb; beyond it the minimum hardly switches
 
-// Functions that multiply p in the integrals.
 CONST uint kWeightOne = 0u;
 CONST uint kWeightVisible = 1u;  // tau - mu; for `integral` divided by sqrt(1 + tau^2)
 
 real in_plane_end(ShapeNode shape) { return min(shape.cut, kPowerLawSlope * max(shape.m, real(1.0))); }
 
-// Integral of p times a weight over the slopes from `from` to `to`; 0 if to <= from.
+// The sum is 0 if to <= from.
 real in_plane_sum(ShapeNode shape, uint weight, real mu, real from, real to) {
   if (to <= from) return real(0.0);
   real start = asinh_real(from / shape.scale);
@@ -45,7 +44,7 @@ real in_plane_sum(ShapeNode shape, uint weight, real mu, real from, real to) {
   return sum * length * shape.scale;
 }
 
-// Integral of p times a weight over all slopes above `from`, where p ~ tau^(1 - 2q). For the Gaussian it counts as 0.
+// Integral over all slopes above `from`, where p ~ tau^(1 - 2q). For the Gaussian it counts as 0.
 real power_law_sum(ShapeNode shape, uint weight, real mu, real from) {
   if (kDistribution == DOLP_GAUSSIAN) return real(0.0);
   real a = real(2.0) * shape.q_minus_1;
@@ -66,7 +65,7 @@ real in_plane_lambda(ShapeNode shape, real cos_theta, real sin_theta) {
   return in_plane_beyond(shape, kWeightVisible, mu, mu) / mu;
 }
 
-// 1 - G1(theta, alpha) of `integral` for the direction (cos_theta, sin_theta) and the facet slope t.
+// 1 - G1(theta, alpha) of `integral` for the facet slope t.
 real in_plane_shadowed(ShapeNode shape, real cos_theta, real sin_theta, real t) {
   real s = max(sin_theta, kSmallestSine);
   real mu = cos_theta / s;

@@ -19,12 +19,12 @@ CONST uint kMaskingNodes = DOLP_MASKING_NODES(kCellBits);
 CONST uint kUnusedBits = 23u - kCellBits;
 CONST uint kFirstNodeBits = 0x3f800000u >> kUnusedBits;  // exponent and leading mantissa bits of v = 1.0f
 
-// v of a node. The float v has the number of the node in its exponent and the first bits of its mantissa.
+// The float v has the number of the node in its exponent and the first bits of its mantissa.
 real masking_node_v(uint node) { return real(uintBitsToFloat((node + kFirstNodeBits) << kUnusedBits)); }
 
 real masking_node_tau(ShapeNode shape, uint node) { return (masking_node_v(node) - real(1.0)) * shape.table_scale; }
 
-// The weight g of the tables' integrals.
+// The factor g of the integrals.
 real masking_weight(real tau) {
   return (kMasking == DOLP_MASKING_SMITH) ? real(1.0) : real(1.0) / sqrt(real(1.0) + tau * tau);
 }
@@ -42,10 +42,9 @@ real weight_decay(real tau) {
   return (kMasking == DOLP_MASKING_SMITH) ? real(0.0) : tau / (real(1.0) + tau * tau);
 }
 
-// The cell that contains tau, in all tables of one table_scale, with the weights of quintic Hermite interpolation: f
-// for the values, d for the first and e for the second derivatives at both ends of the cell. Beyond its end a table
-// continues with its last value. Only facets within 1e-5 of the line d = 0 and directions within 2e-5 of the normal
-// read there.
+// The cell that contains tau, in all tables of one table_scale, with the weights of quintic Hermite interpolation at
+// both ends: f for the values, d and e for the first and second derivatives. Beyond its end a table continues with its
+// last value, which matters only within 1e-5 of the line d = 0 and 2e-5 of the normal.
 struct TableCell {
   uint node;  // the last node at or before tau
   real f0;
@@ -54,7 +53,7 @@ struct TableCell {
   real d1;
   real e0;
   real e1;
-  real g0;  // the weight g at the ends
+  real g0;  // weight g at the ends
   real g1;
 };
 
@@ -82,7 +81,7 @@ TableCell table_cell(ShapeNode shape, real tau) {
   return cell;
 }
 
-// l(tau) by interpolation in a cell, with l' = -C and l'' = g p. `table` is the first node of the table.
+// l(tau), with l' = -C and l'' = g p. `table` is the first node of the table.
 real masking_height(TableCell cell, uint table) {
   real4 n0 = masking_node(table + cell.node);
   real4 n1 = masking_node(table + cell.node + 1u);
@@ -90,8 +89,7 @@ real masking_height(TableCell cell, uint table) {
          (cell.e0 * cell.g0 * n0.w + cell.e1 * cell.g1 * n1.w);
 }
 
-// The arguments at which tables are read for 1 - G1(theta, alpha), for a direction and a facet slope t. They are equal
-// for all tables of one table_scale.
+// The arguments at which tables are read for 1 - G1(theta, alpha), equal for all tables of one table_scale.
 struct ShadowRange {
   real kappa;
   bool is_limited;  // true if d > 0, so that tb limits the integral
@@ -118,9 +116,9 @@ ShadowRange shadow_range(ShapeNode shape, real cos_theta, real sin_theta, real t
   return range;
 }
 
-// 1 - G1 is kappa l(mu) plus, if b < pi/2, the term Pt(tb) - kappa [l(tb) + (tb - mu) C(tb)]. This term is a sum of the
-// table's values at both ends of the cell that contains tb. The structure has the factors of these values. They use
-// C'' = g p (-p'/p - g'/g) and Pt'' = p (-p'/p), in which only p and -p'/p depend on the shape.
+// 1 - G1 is kappa l(mu) plus, if b < pi/2, the term Pt(tb) - kappa [l(tb) + (tb - mu) C(tb)]. The term is a sum of
+// these factors times the table's values at both ends of the cell of tb. The factors use C'' = g p (-p'/p - g'/g) and
+// Pt'' = p (-p'/p), in which only p and -p'/p depend on the shape.
 struct LimitTerms {
   real l0;
   real l1;

@@ -1,10 +1,8 @@
-// Builds the masking table of one shape, from its far end inwards. All terms are positive, so the smallest integrals
-// have full relative accuracy, too.
+// Builds the table of one shape from its far end inwards. All terms are positive, so no digits are lost.
 
 CONST int kTableOrder = 4;  // Gauss order on one cell, in which v grows by at most an eighth
 
-// The contribution of the cell [tau0, tau1] to l, C and Pt. Added to their values at tau1 (`beyond`), it gives the
-// values at tau0. The last component is not a contribution, but p(tau0).
+// The cell's contributions to l, C and Pt, whose values at tau1 are `beyond`; the last component is p(tau0).
 real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
   real h = tau1 - tau0;
   real height = real(0.0);
@@ -23,9 +21,8 @@ real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
   return real4(h * beyond.y + height, first, probability, marginal_density(shape, tau0));
 }
 
-// (l, C, Pt, p) at the end of the table. There the cauchy's p is a power law, tau^(1-2q), and slopes are assumed to be
-// large. If the end lies below slope 1, almost no facets are left beyond it, and l and C have the right order of
-// magnitude. The integrals of the Gaussian are negligible.
+// (l, C, Pt, p) at the end of the table, with the power law p ~ tau^(1-2q) of the cauchy. If the end is below slope 1,
+// almost no facets are left beyond it. The integrals of the Gaussian are negligible.
 real4 masking_table_end(ShapeNode shape, real tau) {
   real p = marginal_density(shape, tau);
   if (kDistribution == DOLP_GAUSSIAN) return real4(real(0.0), real(0.0), real(0.0), p);
@@ -36,8 +33,7 @@ real4 masking_table_end(ShapeNode shape, real tau) {
   return real4(tail * tau * weight / (a + real(1.0)), tail * a * weight / (a + real(1.0)), tail, p);
 }
 
-// Fills the table that starts at node `table`. The sums are compensated (Kahan 1965), because a heavy tail adds
-// hundreds of nearly equal terms.
+// `table` is the first node. The sums are compensated (Kahan 1965): a heavy tail adds hundreds of nearly equal terms.
 void build_masking_table(ShapeNode shape, uint table) {
   real tau1 = masking_node_tau(shape, kMaskingNodes - 1u);
   real4 tails = masking_table_end(shape, tau1);

@@ -1,6 +1,6 @@
-// The moments of a row of entries. They are computed for each piece of the slope axis by a Gauss rule over the slopes,
-// with sums over the azimuths at each slope. Everything is summed twice, by rules of two orders. The finer sum is the
-// result; its difference from the coarser sum bounds the error (host/compute/plan/error_bounds.cpp).
+// The moments of a row of entries: for each piece of the slope axis a Gauss rule over the slopes, with sums over the
+// azimuths at each slope. Everything is summed by rules of two orders. The finer sum is the result; its difference from
+// the coarser sum bounds the error (host/compute/plan/error_bounds.cpp).
 
 CONST real kNearRoot = real(0.2);
 
@@ -25,8 +25,7 @@ Piece make_piece(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task 
   piece.root_at_a = task.root_at_start;
   bool ends_before_cut = b < shape.cut;
   piece.root_at_b = ends_before_cut && task.root_at_end;
-  // A square root outside the piece counts as a root at an end, if its distance from this end is a small part of the
-  // piece's length.
+  // A square root outside the piece counts as a root at an end if it is nearer than a small part of the piece's length.
   real end = piece.start + piece.extent;
   real before = asinh_real(task.before / shape.scale);
   bool is_near_a = piece.start - before < kNearRoot * piece.extent;
@@ -45,7 +44,7 @@ Piece make_piece(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task 
   return piece;
 }
 
-// Position y on a piece for the abscissa v of its rule, and dy/dv. See Piece.
+// Position y for the abscissa v of the piece's rule, and dy/dv. See Piece.
 real2 position_on_piece(Piece piece, real v) {
   bool has_both = piece.root_at_a && piece.root_at_b;
   real2 both = real2(v * v * (real(3.0) - real(2.0) * v), real(6.0) * v * (real(1.0) - v));
@@ -55,7 +54,6 @@ real2 position_on_piece(Piece piece, real v) {
   return choose(has_both, both, one_or_none);
 }
 
-// Sums over the slopes of a piece by one rule, for each entry of a row.
 struct PieceSums {
   real4 member[DOLP_WIDTH];
   Columns columns[DOLP_WIDTH];
@@ -136,13 +134,11 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
   return sums;
 }
 
-// The moments of the entries of a row.
 struct RowMoments {
   MomentsNode member[DOLP_WIDTH];
 };
 
-// Contribution of one piece to the moments of a row. The first piece also adds the facets beyond the last slope to the
-// deficit.
+// The first piece also adds the facets beyond the last slope to the deficit.
 RowMoments piece_moments(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task task) {
   real cut = row.shape[0].cut;
   Piece piece = make_piece(rule, theta, row, index, task);

@@ -1,5 +1,4 @@
-// All 16 elements of the specular Mueller pBRDF of one geometry (README.md beside this file, sections 1 and 2, eqs. 4,
-// 7 and 15).
+// The specular Mueller pBRDF of one geometry (README.md beside this file, sections 1 and 2, eqs. 4, 7 and 15).
 //
 // The Jones matrix turns s and p by eta_i into the frame of the facet, reflects, and turns back by eta_r into the frame
 // of the reflected beam. The s vector of the facet is cos(eta) s + sin(eta) p. With s = k x z and p = k x s, sin(eta)
@@ -10,14 +9,12 @@
 //   turn by -eta_r
 // The host computes A, B, C and S (host/compute/plan/beam.cpp).
 
-// The masking G of one geometry.
 real attenuation(GeometryNode g, ShapeNode shape) {
   if (kMasking == DOLP_MASKING_NONE) return real(1.0);
   if (kMasking == DOLP_MASKING_SMITH) {
     return real(1.0) / (real(1.0) + in_plane_lambda(shape, g.c_i, g.s_i) + in_plane_lambda(shape, g.c_r, g.s_r));
   }
-  bool incident_is_lower = g.c_i * g.s_r < g.c_r * g.s_i;  // compares tangents: in a float all cosines near the normal
-                                                           // are 1
+  bool incident_is_lower = g.c_i * g.s_r < g.c_r * g.s_i;  // tangents: near the normal a float cosine is 1
   real lower_cos = incident_is_lower ? g.c_i : g.c_r;
   real lower_sin = incident_is_lower ? g.s_i : g.s_r;
   if (kMasking == DOLP_MASKING_V_CAVITY) {

@@ -1,5 +1,4 @@
-// The number of nodes for a piece of the slope axis or an arc of azimuths. This file decides only how accurate the sums
-// are.
+// The number of nodes for a piece of the slope axis or an arc of azimuths. It affects only accuracy and work.
 //
 // Let y0 be the singularity of the integrand that is nearest to [0, 1]. A Gauss rule of n nodes then has an error of
 // about e^(-2 n mu), with cosh(mu) = |y0| + |y0 - 1| (Trefethen 2013, chapter 19). So a decimal digit costs ln(10) / (2
@@ -9,17 +8,17 @@
 CONST real kHalfLn10 = real(1.15129254649702284);
 CONST real kLn10 = real(2.30258509299404568402);
 CONST real kInverseLn10 = real(0.43429448190325182765);
-// beside an arc, a square root with a larger Arc::resolution counts as an ordinary singularity
+// Beside an arc, a square root with a larger Arc::resolution counts as an ordinary singularity.
 CONST real kWideResolution = real(0.1);
 CONST real kSharpResolution = real(1e-6);
-CONST real kMoreDigits = real(0.3);  // additional digits on the slope axis for each digit beyond kPlainDigits
+CONST real kMoreDigits = real(0.3);  // digits added on the slope axis for each digit beyond kPlainDigits
 CONST real kPlainDigits = real(7.0);
-CONST real kLeastWeight = real(1e-20);  // smallest weight of a slope; gives all slopes equal weight at 90 degrees
+CONST real kLeastWeight = real(1e-20);  // least weight of a slope; gives all slopes equal weight at 90 degrees
 
 // acosh(1 + gap), without cancellation.
 real acosh_above_1(real gap) { return log1p_real(gap + sqrt(gap) * sqrt(gap + real(2.0))); }
 
-// |y| + |y - 1| - 1 for y = a + i b, without cancellation. It measures the distance of y from [0, 1].
+// |y| + |y - 1| - 1 for y = a + i b, without cancellation: the distance of y from [0, 1].
 real gap_beside_unit(real a, real b) {
   real to_0 = sqrt(a * a + b * b);
   real to_1 = sqrt((a - real(1.0)) * (a - real(1.0)) + b * b);
@@ -27,13 +26,12 @@ real gap_beside_unit(real a, real b) {
   return off_axis + real(2.0) * (max(a - real(1.0), real(0.0)) + max(-a, real(0.0)));
 }
 
-// A singularity of the integrand in the upper half plane of its variable.
+// A singularity in the upper half plane of the integrand's variable.
 struct Singularity {
   real re;
   real im;
 };
 
-// acos(u).
 real arc_cosine(real u) {
   real angle = real(2.0) * atan_unit(sqrt((real(1.0) - abs(u)) / (real(1.0) + abs(u))));
   return choose(u < real(0.0), kPi - angle, angle);
@@ -51,8 +49,7 @@ real nodes_per_digit(real mu) { return kHalfLn10 / max(mu, real(1e-3)); }
 
 int order_between(real nodes, int limit) { return int(clamp(floor(nodes + real(0.5)), real(1.0), real(limit))); }
 
-// Order of the coarser rule of a pair. The difference between the results of a pair bounds the error. Two rules with
-// few nodes often agree by chance, so below three nodes the order is one more than that of the finer rule.
+// Two rules with few nodes often agree by chance. So below three nodes the order is one above that of the finer rule.
 int coarse_order(int order) {
   int fewer = (8 * order + 5) / 10;
   int more = order + 1;
@@ -67,8 +64,7 @@ real weight_of_slope(ThetaNode theta, real t) {
   return kMasking == DOLP_MASKING_V_CAVITY ? min(bare, max(real(2.0) * theta.c, kLeastWeight)) : bare;
 }
 
-// Estimated contribution of all facets to the albedo. Facets up to slope t1 reflect every ray upwards, facets between
-// t1 and t2 about half of the rays.
+// Estimated contribution of all facets to the albedo. They reflect all rays upwards up to slope t1, half up to t2.
 real weight_of_shape(ThetaNode theta, ShapeNode shape) {
   real t1 = theta.c / (real(1.0) + theta.s);
   real t2 = (real(1.0) + theta.s) / max(theta.c, real(1e-15));
@@ -81,7 +77,7 @@ real weight_of_shape(ThetaNode theta, ShapeNode shape) {
              kLeastWeight);
 }
 
-// Digits required of a part that contributes a share of the albedo: RuleNode::digits plus log10(share).
+// Digits required of a part that contributes a share of the albedo.
 real digits_of_share(RuleNode rule, real share) {
   return max(rule.digits + kInverseLn10 * log_unit(min(share, real(1.0))), real(0.0));
 }
@@ -92,14 +88,13 @@ real digits_of_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, real a, re
   return digits_of_share(rule, mass * typical / weight_of_shape(theta, shape));
 }
 
-// Digits required of the sum over the azimuths at slope t, which is one of `order` slopes of a piece and stands for the
-// share `mass` of the facets. They are fewer than the piece's `digits` if the slope contributes less than its part,
-// 1/order, of the piece. `all` is weight_of_shape.
+// Digits of the sum over the azimuths at slope t, which stands for the share `mass` of the facets: at most the piece's
+// `digits`, fewer if it contributes less than its part, 1/order. `all` is weight_of_shape.
 real digits_of_slope(RuleNode rule, ThetaNode theta, real all, real digits, int order, real t, real mass) {
   return min(digits_of_share(rule, real(order) * mass * weight_of_slope(theta, t) / all), digits);
 }
 
-// Nodes per digit on a piece because of a singularity at X = re + i im. If the piece has a square root at one end, the
+// Nodes per digit on a piece because of a singularity at X = re + i im. With a square root at one end of the piece, the
 // abscissa of the rule is the square root of the distance from that end.
 real piece_cost(Piece piece, real re, real im) {
   real2 z = real2((re - piece.start) / piece.extent, im / piece.extent);
@@ -111,8 +106,7 @@ real piece_cost(Piece piece, real re, real im) {
   return nodes_per_digit(acosh_above_1(gap_beside_unit(y.x, y.y)));
 }
 
-// Nodes because of an essential singularity exp(-1/x^2) at an end. They grow with the square of the digits at which it
-// matters.
+// Nodes for a singularity exp(-1/x^2) at an end grow with the square of the digits at which it matters.
 real essential_nodes(ShapeNode shape, real digits) {
   real wanted = max(digits - kInverseLn10 / (shape.m * shape.m), real(0.0));
   return real(0.25) * wanted * wanted;
@@ -130,9 +124,9 @@ real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, 
   return piece_cost(piece, choose(x < real(0.0), -bent, bent), im / (unit * max(abs(x), real(1.0))));
 }
 
-// Nodes per digit on a piece because of Fresnel's branch point, cos(beta) = b, on a line at which arcs end. With
-// `ratio` 2 the line is the horizon, where sec(alpha) = 2 b / c; with `ratio` 1 it is theta_r = theta, where
-// sec(alpha) = b / c. Under total reflection these slopes are breakpoints.
+// Nodes per digit on a piece because of Fresnel's branch point, cos(beta) = b, on a line at which arcs end: the
+// horizon, sec(alpha) = 2 b / c, or theta_r = theta, sec(alpha) = b / c. `ratio` is the factor of b / c. Under total
+// reflection these slopes are breakpoints.
 real line_piece_cost(ThetaNode theta, ShapeNode shape, IndexNode index, Piece piece, real ratio) {
   real stretch = ratio / max(theta.c, real(1e-12));
   real2 sec = real2(stretch * index.branch_re, stretch * index.branch_im);
@@ -142,9 +136,9 @@ real line_piece_cost(ThetaNode theta, ShapeNode shape, IndexNode index, Piece pi
   return piece_cost(piece, x.im, x.re - real(0.5) * kPi);
 }
 
-// Nodes of a piece beside smith's cusp if the mean slope is about to diverge. L is then about m tan(theta) / (pi
-// (2q - 3)). From theta_r = 0, G falls within the distance tan(theta) + pi (2q - 3) / m, as if there were a pole at
-// this distance beyond the cusp. The contribution of the pole is proportional to the distance.
+// Nodes of a piece beside smith's cusp if the mean slope is about to diverge. L is then about m tan(theta) / (pi (2q -
+// 3)). From theta_r = 0, G falls within the distance tan(theta) + pi (2q - 3) / m, as if there were a pole at this
+// distance beyond the cusp. The contribution of the pole is proportional to the distance.
 real diverging_nodes(ThetaNode theta, ShapeNode shape, Piece piece) {
   real t = theta.s / (real(1.0) + theta.c);
   real cusp = asinh_real(t / shape.scale);
@@ -155,11 +149,10 @@ real diverging_nodes(ThetaNode theta, ShapeNode shape, Piece piece) {
   return max(piece.digits + kInverseLn10 * log_unit(min(beside / piece.extent, real(1.0))), real(0.0)) * cost;
 }
 
-// Number of nodes of a piece. The singularities over the slopes are the cauchy's density at t = i m, the geometry at
-// t = i, Fresnel's coefficients, and the square roots at the breakpoints beyond the ends of the piece. Before a rule
-// converges, it must resolve the fall of the density over the piece, which takes nodes in proportion to the logarithm
-// of the fall. A square root at an end, together with the map that removes it, raises the degree of the integrand by
-// two.
+// The singularities over the slopes are the cauchy's density at t = i m, the geometry at t = i, Fresnel's coefficients,
+// and the square roots at the breakpoints beyond the ends of the piece. Before a rule converges, it must resolve the
+// fall of the density over the piece, with nodes in proportion to the logarithm of the fall. A square root at an end,
+// together with the map that removes it, raises the degree of the integrand by two.
 real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, Piece piece) {
   real cost = piece_cost(piece, real_part_of_asinh(real(1.0) / shape.scale), real(0.5) * kPi);
   if (kDistribution == DOLP_CAUCHY) {
@@ -174,8 +167,7 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
   cost = max(cost, choose(piece.root_before < piece.start, before, real(0.0)));
   real after = piece_cost(piece, piece.root_after, real(0.0));
   cost = max(cost, choose(piece.root_after > piece.start + piece.extent, after, real(0.0)));
-  // With roots at both ends the map is y = v^2 (3 - 2v). It also takes v = 3/2 to y = 0 and v = -1/2 to y = 1, and
-  // there the roots stay.
+  // With two roots, y = v^2 (3 - 2v) also takes v = 3/2 to y = 0 and v = -1/2 to y = 1, where the roots stay.
   bool has_two_roots = piece.root_at_a && piece.root_at_b;
   cost = max(cost, choose(has_two_roots, nodes_per_digit(acosh_above_1(real(1.0))), real(0.0)));
   real roots = (piece.root_at_a ? real(1.0) : real(0.0)) + (piece.root_at_b ? real(1.0) : real(0.0));
@@ -185,7 +177,7 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
   // If many digits are required, the order of the poles and weaker singularities matter, too.
   real digits = piece.digits + kMoreDigits * max(piece.digits - kPlainDigits, real(0.0));
   real nodes = rule.t_nodes + roots + rule.t_fall * resolved + (digits + rule.t_digits) * cost;
-  // If pieces are split at smith's cusp, the Gaussian's L has an essential singularity at an end, as in line_nodes().
+  // At the cusp of smith, where pieces are split, the Gaussian's L has an essential singularity, as in line_nodes().
   if (kMasking == DOLP_MASKING_SMITH && kDistribution == DOLP_GAUSSIAN) {
     nodes = max(nodes, choose(has_split_line, rule.t_nodes + essential_nodes(shape, piece.digits), real(0.0)));
   }
@@ -198,9 +190,8 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
 
 // ---- Azimuth -------------------------------------------------------------------------------------------------------
 
-// Nodes per digit on an arc because of a singularity at the azimuth `at`. A rule of section `half` is even about its
-// centre, so it converges like a Gauss rule in the square of its abscissa. A rule of section `cluster` converges like a
-// Gauss rule in the square root of its abscissa.
+// Nodes per digit on an arc because of a singularity at the azimuth `at`. Rules of section `half` converge like Gauss
+// rules in the square of their abscissa, rules of section `cluster` like Gauss rules in its square root.
 real arc_cost(Arc arc, Singularity at) {
   real re = abs(at.re - arc.origin) / arc.span;
   real im = at.im / arc.span;
@@ -211,9 +202,8 @@ real arc_cost(Arc arc, Singularity at) {
   return nodes_per_digit(choose(arc.section == kSectionCircle, at.im, mu));
 }
 
-// Nodes per digit on an arc because of the singularities of Fresnel's coefficients: the pole of R_p at
-// cos(beta) = -1 / sqrt(N^2 + 1), and the branch point of w at cos^2(beta) = 1 - N^2. `facet` is (cos, sin) of the
-// angle of the facet from the vertical, so that cos(beta) = c facet.y + s x facet.x.
+// Nodes per digit on an arc because of the pole of R_p at cos(beta) = -1 / sqrt(N^2 + 1), and of w's branch point at
+// cos^2(beta) = 1 - N^2. `facet` is (cos, sin) of its angle from the vertical: cos(beta) = c facet.y + s x facet.x.
 real bounce_cost(ThetaNode theta, IndexNode index, real2 facet, Arc arc) {
   real slant = theta.s * facet.x;
   real size = max(abs(slant), real(1e-15));
@@ -281,9 +271,8 @@ real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
 }
 
 // Nodes of an arc because of smith's cusp. At the facet with t = tan(theta/2) and phi = 0, theta_r is 0. Near it
-// Smith's L is proportional to |theta_r|^(2q - 2), which is smooth only if q is an integer, and less smooth for smaller
-// q. On the arc that begins at phi = 0, the cusp lies at the imaginary azimuth phi = i y with
-//   cosh(y) = 1 + (1 + c) (t - tan(theta/2))^2 / (2 s t).
+// Smith's L is proportional to |theta_r|^(2q - 2), which is smooth only if q is an integer. On the arc that begins at
+// phi = 0, the cusp lies at the imaginary azimuth phi = i y with cosh(y) = 1 + (1 + c) (t - tan(theta/2))^2 / (2 s t).
 // The Gaussian's L is smooth, but grows without bound toward imaginary theta_r. For the required digits this matters at
 // |theta_r| = 1 / (m sqrt(digits ln 10)).
 real cusp_nodes(ThetaNode theta, ShapeNode shape, real t, real digits, Arc arc) {
@@ -300,8 +289,7 @@ real cusp_nodes(ThetaNode theta, ShapeNode shape, real t, real digits, Arc arc) 
   return choose(shape.cusp_digits < real(-100.0), real(0.0), nodes);
 }
 
-// The arc with a cluster of nodes at its beginning, if it is the first arc of a zone and the masking has a singularity
-// there.
+// The arc gets a cluster of nodes at its beginning, if it begins a zone and the masking has a singularity there.
 Arc masked_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_line, real t, real digits, Arc arc,
                int zone, bool is_first) {
   bool has_root = is_first && has_split_line;
@@ -319,10 +307,9 @@ Arc masked_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_l
   return arc;
 }
 
-// The arc with a cluster of nodes at one end, if this end is the critical line of total reflection. There
-// w^2 = cos^2(beta) - critical_cos^2 + i Im N^2 vanishes or is small. The resolution is |w^2| at this end divided by
-// the range of w^2 on the arc. If it is large, the arc is treated like any other. If it is negligible, the root counts
-// as sharp, which causes an error of the order of resolution^(3/2).
+// The arc gets a cluster of nodes at one end, if this end is the critical line of total reflection. There w^2 =
+// cos^2(beta) - critical_cos^2 + i Im N^2 vanishes or is small. The resolution is |w^2| there over the range of w^2 on
+// the arc. If it is large, the arc is ordinary; if negligible, the root is sharp; error: about resolution^(3/2).
 Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc, bool at_end, bool is_beside) {
   real level = index.critical_cos * index.critical_cos;
   real r2 = real(1.0) / (real(1.0) + t * t);
@@ -343,16 +330,15 @@ Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc,
   return arc;
 }
 
-// Nodes of the arcs that begin at the line b = pi/2 of `integral`. There the Gaussian's G behaves like
-// exp(-1/distance^2).
+// Nodes for arcs that begin at the line b = pi/2 of `integral`, where the Gaussian's G behaves like exp(-1/distance^2).
 real line_nodes(ShapeNode shape, bool has_split_line, real digits, int zone) {
   if (kMasking != DOLP_MASKING_INTEGRAL || kDistribution != DOLP_GAUSSIAN) return real(0.0);
   bool is_line = has_split_line && zone == 2;
   return choose(is_line, essential_nodes(shape, digits), real(0.0));
 }
 
-// Nodes because of a square root that absorption smooths. In the abscissa v of place_on_arc it has singularities at
-// v = asinh(sqrt(+-i)) / a = (0.76 +- 0.57 i) / a. They contribute a share of resolution^(3/2).
+// Nodes because of a square root that absorption smooths. In the abscissa v of place_on_arc it has singularities at v =
+// asinh(sqrt(+-i)) / a = (0.76 +- 0.57 i) / a. They contribute a share of resolution^(3/2).
 real resolution_nodes(real digits, real resolution) {
   real wanted = max(digits + real(1.5) * kInverseLn10 * log_unit(resolution), real(0.0));
   real a = asinh_real(real(1.0) / sqrt(resolution));
@@ -360,16 +346,15 @@ real resolution_nodes(real digits, real resolution) {
   return choose(resolution <= real(0.0), real(0.0), nodes);
 }
 
-// Number of nodes of an arc. With fewer than two nodes on the whole half circle, cos(2 phi) would not average out.
+// With fewer than two nodes on the whole half circle, cos(2 phi) would not average out.
 real arc_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, real t, real digits,
                Arc arc, int zone) {
   real map = nodes_per_digit(asinh_real(real(1.0) / max(abs(arc.extent), real(1e-9))));  // dphi = 4 dtau / (1 + tau^2)
   map = choose(arc.section == kSectionHalf, real(0.5) * map, map);
   map = choose(arc.section == kSectionCircle, real(0.0), map);
   real cost = max(max(map, fresnel_cost(rule, theta, index, t, arc)), masking_cost(theta, shape, t, arc, zone));
-  // Before a rule converges, it must resolve cos(phi) to cos(3 phi), which takes nodes in proportion to the length of
-  // the arc. If place_on_arc moves the nodes, it must also resolve their spreading e^(2 a v). In a cluster dphi is
-  // proportional to the abscissa, which costs half a node.
+  // Before a rule converges, it must resolve cos(phi) to cos(3 phi), with nodes in proportion to the arc's length, and
+  // the spreading e^(2 a v) of place_on_arc. In a cluster dphi is proportional to the abscissa: half a node more.
   real base = rule.phi_nodes * arc.span + choose(arc.section == kSectionCluster, real(1.0), real(0.5));
   if (kTotalReflection) {
     real spread = real(0.5) * asinh_real(real(1.0) / sqrt(arc.resolution));

@@ -1,9 +1,8 @@
-// The only file that depends on the language. `real` is float or double in both languages.
+// The only file that depends on the language.
 //
 // GLSL: the build defines DOLP_DOUBLE for the modules in double.
-// C++:  the including class is in a namespace that defines `real` and its GLM vector types (real2, real4) and makes
-//       GLM's sqrt, abs, min, max, clamp, floor, ldexp, floatBitsToUint visible. The whole source is the body of that
-//       class, and the functions that read data (masking_node, rule_node) are its members.
+// C++:  the including class is in a namespace with `real`, its GLM types (real2, real4) and GLM's sqrt, abs, min, max,
+// clamp, floor, ldexp, floatBitsToUint. The functions that read data (masking_node, rule_node) are members.
 #ifdef __cplusplus
 #define CONST static constexpr
 #define precise

@@ -1,5 +1,5 @@
-// The nodes of the Gauss rules, one buffer of pairs (abscissa, weight), which host/compute/plan/rule.cpp fills. It has
-// five sections. Within a section the rule of order n begins at position n (n - 1) / 2.
+// The nodes of the Gauss rules: one buffer of pairs (abscissa, weight), filled by host/compute/plan/rule.cpp. In each
+// of its five sections the rule of order n begins at position n (n - 1) / 2.
 //   gauss: Gauss-Legendre on [0, 1]
 //   centre: Gauss-Legendre on [-1, 1], for an arc of azimuths between two split lines
 //   half: positive nodes of the Gauss-Legendre rule of order 2n on [-1, 1], for an arc that begins or ends at phi = 0

@@ -1,11 +1,9 @@
-// A row: entries that one invocation computes together. They differ only in the exponent q, so they share nodes, facets
-// and reflection. Only the masking is computed for each entry.
+// Entries that one invocation computes together. They differ only in the exponent q, so only the masking is not shared.
 
-// The entries are in ascending order of q. All shapes have the scale, cut, table_scale and cusp_digits of the most
-// demanding one.
+// The entries are in ascending order of q. Scale, cut, table_scale and cusp_digits are those of the most demanding one.
 struct Row {
   ShapeNode shape[DOLP_WIDTH];
-  uint table[DOLP_WIDTH];  // first node of the masking table of each shape
+  uint table[DOLP_WIDTH];  // first node of each shape's masking table
 };
 
 // A row for maskings that do not depend on the shape.
@@ -19,8 +17,7 @@ Row no_row() {
   return row;
 }
 
-// Masking toward one direction, for each entry of a row: 1 - G1 for facets of slope t with `integral`, Smith's L with
-// smith.
+// Masking toward one direction, for each entry of a row: 1 - G1 of `integral` for facets of one slope t, or Smith's L.
 struct MaskingTerms {
   real value[DOLP_WIDTH];
 };
@@ -31,8 +28,7 @@ MaskingTerms unmasked() {
   return masked;
 }
 
-// The part of the masking that does not depend on the slope: Smith's L (at 90 degrees so large that G is 0), or the
-// integral l of masking.glsl for `integral`.
+// The part that does not depend on the slope: Smith's L (G is 0 at 90 degrees), or l of masking.glsl for `integral`.
 MaskingTerms masking_of_direction(Row row, real cos_theta, real sin_theta) {
   MaskingTerms heights = unmasked();
   if (kMasking == DOLP_MASKING_SMITH) {
@@ -48,8 +44,7 @@ MaskingTerms masking_of_direction(Row row, real cos_theta, real sin_theta) {
   return heights;
 }
 
-// 1 - G1 of `integral` for a direction and facets of slope t. Every invocation computes it: an invocation that does not
-// need it would wait for its neighbours anyway.
+// 1 - G1 of `integral`. Every invocation computes it: one that does not need it would wait for its neighbours anyway.
 MaskingTerms shadows(Row row, MaskingTerms heights, real cos_theta, real sin_theta, real t) {
   ShadowRange range = shadow_range(row.shape[0], cos_theta, sin_theta, t);
   TableCell cell = table_cell(row.shape[0], range.far);
@@ -62,7 +57,7 @@ MaskingTerms shadows(Row row, MaskingTerms heights, real cos_theta, real sin_the
   return masked;
 }
 
-// Masking toward the reflected ray. In zone 0 `integral` uses only the masking of theta, see project().
+// In zone 0 `integral` uses only the masking of theta, see project().
 MaskingTerms masking_of_ray(Row row, real cos_r, real sin_r, real t, int zone) {
   if (kMasking == DOLP_MASKING_SMITH) return masking_of_direction(row, cos_r, sin_r);
   MaskingTerms masked = unmasked();
@@ -72,13 +67,11 @@ MaskingTerms masking_of_ray(Row row, real cos_r, real sin_r, real t, int zone) {
   return masked;
 }
 
-// Smith's G1, the share of a facet's direct emission that masking leaves. `masking_in` is L of theta. Other maskings
-// give 1.
+// The share of a facet's direct emission that masking leaves; 1 for other maskings. `masking_in` is L of theta.
 real smith_g1(real masking_in) { return (kMasking == DOLP_MASKING_SMITH) ? real(1.0) / (real(1.0) + masking_in) : real(1.0); }
 
-// The visible and the hidden part of a facet's projection, masked toward theta and toward the reflected ray. `zone`
-// counts the intervals between split lines from phi = 0. In zone 0 theta_r < theta, so `integral` takes the masking of
-// theta.
+// A facet's projection, masked toward theta and toward the reflected ray. `zone` counts the intervals between split
+// lines from phi = 0. In zone 0 theta_r < theta, so `integral` takes the masking of theta.
 Projection project(ThetaNode theta, Facet f, int zone, real masking_in, real masking_out) {
   if (kMasking == DOLP_MASKING_NONE) return Projection(f.e, real(0.0));
   if (kMasking == DOLP_MASKING_V_CAVITY) {

@@ -10,8 +10,8 @@ real slope_tail_exponent(ShapeNode shape, real t) { return exponent_factor(shape
 
 real slope_tail(ShapeNode shape, real t) { return exp_real(-slope_tail_exponent(shape, t)); }
 
-// P(t) t m. Times dt / m, it is the share of facets between the slopes t and t + dt, per radian of azimuth. The formula
-// contains neither m^2 nor t^2, so no roughness overflows. `exponent` is common_exponent(u).
+// P(t) t m: times dt / m, the share of facets between t and t + dt, per radian of azimuth. `exponent` is
+// common_exponent(u). Without m^2 and t^2 no roughness overflows.
 real slope_density(ShapeNode shape, real u, real exponent) {
   real shape_factor = (kDistribution == DOLP_CAUCHY) ? shape.q_minus_1 / (u + real(1.0) / u) : u;
   return shape_factor * exp_real(-exponent_factor(shape) * exponent) / kPi;
@@ -24,8 +24,7 @@ real marginal_density(ShapeNode shape, real tau) {
   return shape.marginal_norm * exp_real(-exponent);
 }
 
-// True if q is so close to 3/2, where smith masking ends, that the mean slope is about to diverge.
-CONST real kDivergingSlope = real(0.2);  // largest value of 2q - 3 for this
+CONST real kDivergingSlope = real(0.2);  // largest 2q - 3 for which the mean slope is about to diverge
 bool is_diverging(ShapeNode shape) {
   return kMasking == DOLP_MASKING_SMITH && kDistribution == DOLP_CAUCHY && shape.two_q_minus_3 < kDivergingSlope;
 }

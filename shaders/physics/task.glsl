@@ -30,8 +30,7 @@ Task task_of(uint word) {
   return task;
 }
 
-// The task with its slopes filled in. moments.comp reads these slopes one by one instead, because a copy of all slopes
-// of a direction costs a driver half a second of compilation.
+// moments.comp reads the slopes one by one instead: a copy of all slopes costs a driver half a second of compilation.
 Task with_slopes(Task task, ThetaNode theta) {
   task.before = theta.end[max(task.piece - 1, 0)];
   task.start = theta.end[task.piece];
@@ -41,9 +40,8 @@ Task with_slopes(Task task, ThetaNode theta) {
   return task;
 }
 
-// A piece [a, b] of the slope axis. X = asinh(t/scale) is linear in y, which runs from 0 to 1. The map y(v) from the
-// abscissa v of a rule removes square roots at the ends: y = v without roots, v^2 with a root at a, 1 - (1-v)^2 with a
-// root at b, v^2 (3 - 2v) with both.
+// A piece [a, b] of the slope axis. X = asinh(t/scale) is linear in y, from 0 to 1. The map y(v) from the abscissa v of
+// a rule removes square roots: y = v^2 for a root at a, 1 - (1-v)^2 at b, v^2 (3 - 2v) at both ends.
 struct Piece {
   real start;   // X at a
   real extent;  // in X
@@ -51,7 +49,7 @@ struct Piece {
   bool root_at_b;
   real root_before;       // X of a square root at the start of the preceding piece, unless it is near a; else X at a
   real root_after;        // X of a square root at the end of the next piece, unless it is near b; else X at b
-  real mass[DOLP_WIDTH];  // share of the facets in the piece, for each entry of a row
+  real mass[DOLP_WIDTH];  // share of the facets, for each entry of a row
   real fall;              // logarithm of the share of facets steeper than a divided by the share steeper than b
   real digits;            // digits that the most demanding entry of a row requires
   int order;

@@ -19,7 +19,7 @@ bool is_finite(const Moments& m) {
          std::isfinite(m.r_i_error + m.r_q_error + m.albedo_error + m.deficit_error);
 }
 
-/// Fills in the moments of each direction and index whose nodes are finite. Flags the other wanted entries.
+/// Interpolates pairs of direction and index whose nodes are finite. Entries of other wanted pairs are 1 in the result.
 std::vector<char> interpolate_all(const ShapePlan& plan, std::span<const Moments> nodes, const MomentsRequest& request,
                                   std::span<Moments> moments) {
   const std::size_t of_nodes = plan.nodes_of_a_direction();
@@ -39,7 +39,6 @@ std::vector<char> interpolate_all(const ShapePlan& plan, std::span<const Moments
   return is_left;
 }
 
-/// Carries out a plan step by step.
 class PlannedMoments {
  public:
   PlannedMoments(const MomentsPlan& plan, ModelEvaluator& evaluator, const Progress& progress, Work& work)
@@ -101,7 +100,6 @@ class PlannedMoments {
     return moments;
   }
 
-  /// Computes the pairs of direction and index that could not be interpolated, entry by entry.
   void compute_left(const MomentsRequest& request, std::vector<char> is_left, std::span<Moments> moments) {
     MomentsRequest direct = request;
     direct.basis = nullptr;

@@ -23,11 +23,10 @@ using std::numbers::pi;
 
 constexpr int kLargestOrder = 16;  // must equal kInPlaneOrder of physics/in_plane.glsl
 
-// G leaves out the share exp(-kCutExponent) of the in-plane slopes, which is far below the rounding of a double.
+// G leaves out the share exp(-kCutExponent) of the in-plane slopes, far below the rounding of a double.
 constexpr double kCutExponent = 45.0;
 
-// Smoother surfaces use the G of this sigma, because squares of slopes over m would overflow a float. Their G differs
-// from it only for q < 1.1.
+// Smoother surfaces use this sigma for G, or squares of slopes over m would overflow. G differs only for q < 1.1.
 constexpr double kSmallestMaskingSigma = 1e-15;
 
 // If N^2 - sin^2(beta) is below this share of its terms, the difference has lost digits that its square root needs.
@@ -62,7 +61,7 @@ double exact_w_squared(const BeamAngles& angles, const OpticalConstants& index) 
   return static_cast<double>((n - k) * (n + k) - (1 - cos_2beta) / 2);
 }
 
-// Mueller matrix of a facet in its own frame: (R_s + R_p) / 2, (R_s - R_p) / 2 and r_s* r_p.
+// Mueller matrix of a facet in its frame: (R_s + R_p) / 2, (R_s - R_p) / 2 and r_s* r_p.
 struct FacetReflection {
   double m00 = 0.0;
   double m01 = 0.0;
@@ -90,7 +89,7 @@ FacetReflection bare_reflection(const BeamAngles& angles, const BeamGeometry& ge
   return {r_s - m01, m01, r_s * (sin2 - c * w) * s_sum * std::conj(p_sum) / p_norm};
 }
 
-// A measurement of reflectances gives no phase, so r_s* r_p is set to 0.
+// A measurement of reflectances has no phase, so r_s* r_p is set to 0.
 FacetReflection covered_reflection(const BeamGeometry& geometry, const FacetOptics& optics) {
   const double c = std::max(geometry.node.cos_beta, kSmallestFacetCosine);
   const SmoothAbsorptance absorbed = smooth_absorptance(optics, c);
@@ -100,7 +99,7 @@ FacetReflection covered_reflection(const BeamGeometry& geometry, const FacetOpti
   return {std::norm(r.s) - m01, m01, std::conj(r.s) * r.p};
 }
 
-// (cos(2 eta), sin(2 eta)), where eta is the angle of the vector (x, y). Without a direction eta is 0.
+// (cos(2 eta), sin(2 eta)) for the angle eta of the vector (x, y). For a zero vector eta is 0.
 CosSin double_angle(double x, double y) {
   const double length = std::max(std::abs(x), std::abs(y));
   if (length == 0.0) return {};
@@ -109,8 +108,7 @@ CosSin double_angle(double x, double y) {
   return {(u - v) * (u + v) / (u * u + v * v), 2.0 * u * v / (u * u + v * v)};
 }
 
-// Cosine and sine of the mean of two zeniths. Near the horizon it takes the mean of the elevations, because a sum of
-// zeniths would lose their digits.
+// Near the horizon it takes the mean of the elevations, because a sum of zeniths would lose their digits.
 CosSin mean_zenith(double theta_i_deg, double theta_r_deg) {
   if (theta_i_deg + theta_r_deg <= 90.0) return cos_sin_deg(0.5 * (theta_i_deg + theta_r_deg));
   const CosSin elevation = cos_sin_deg(0.5 * ((90.0 - theta_i_deg) + (90.0 - theta_r_deg)));
@@ -155,8 +153,7 @@ BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_
   const double sin_azimuth = std::copysign(2.0, azimuth_deg) * half.sin * half.cos;
   const bool along_normal = i.sin == 0.0 && r.sin == 0.0;
   const double cos_azimuth = (half.cos - half.sin) * (half.cos + half.sin);
-  // If both beams are along the normal, eta_i is the angle between the planes of azimuth 0 and delta_phi. This is the
-  // limit from all sides.
+  // If both beams are along the normal, eta_i is the limit: the angle between the planes of azimuth 0 and delta_phi.
   const CosSin eta_i =
       along_normal ? double_angle(-cos_azimuth, sin_azimuth) : double_angle(toward_i, r.sin * sin_azimuth);
   const CosSin eta_r = double_angle(toward_r, i.sin * sin_azimuth);

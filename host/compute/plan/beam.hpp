@@ -1,4 +1,3 @@
-// Inputs of the pBRDF kernel for one entry, computed in double.
 #pragma once
 
 #include <vector>
@@ -8,14 +7,12 @@
 
 namespace dolp {
 
-/// The facet between two beams.
 struct BeamGeometry {
   kernel::GeometryNode node{};
   double sin2_beta = 0.0;
 };
 
-/// Computes the facet that reflects one beam into the other, and the rotation angles eta of eq. (4), in double and
-/// without cancellation.
+/// The facet between two beams, and the rotation angles eta of eq. (4), in double and without cancellation.
 ///
 /// Equation: eqs. (2)-(6) in the form |w_i + w_r|^2 = 4 cos^2(beta), |w_i - w_r|^2 = 4 sin^2(beta). With i = theta_i
 /// and r = theta_r, eta_i is the angle of the vector (sin i cos r - cos i sin r cos(dphi), sin r sin(dphi)), and eta_r
@@ -25,28 +22,27 @@ struct BeamGeometry {
 /// plane of incidence has azimuth 0; at theta_r = 0 it has azimuth delta_phi.
 BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_phi_deg);
 
-/// Inputs of the kernel for one entry; the pBRDF is the kernel's result times 2^power.
+/// Inputs of the kernel for one entry. The pBRDF is the kernel's result times 2^power.
 struct Beam {
   kernel::BeamNode node{};
   int power = 0;
 };
 
-/// Makes the beams of a request. The request must outlive the object. operator() is a pure function.
+/// Makes the beams of a request, which must outlive the object. operator() is a pure function.
 ///
-/// The host computes the geometry, D and the reflection of the facet. In a float their rounding would exceed 1e-5 of
-/// m00 near the normal and the retro direction, far down the slope distribution, and near the critical angle. The
+/// The host computes the geometry, D and the reflection of the facet, because their rounding in a float would exceed
+/// 1e-5 of m00 near the normal, the retro direction and the critical angle, and far down the slope distribution. The
 /// kernel gets D over 2^Beam::power, so that no float over- or underflows.
 class BeamPlan {
  public:
   explicit BeamPlan(const ScatteringRequest& request);
   Beam operator()(const ScatteringEntry& entry) const;
 
-  /// The Mueller pBRDF with its error bound: the kernel's result times 2^Beam::power and, with Scattering::kMultiple,
-  /// the bounces after the first. `unit_roundoff` belongs to the kernel's precision.
+  /// The pBRDF with its error bound and all its bounces. `unit_roundoff` is that of the kernel's precision.
   ScatteringMatrix matrix(const kernel::MuellerNode& node, const Beam& beam, const ScatteringEntry& entry,
                           double unit_roundoff) const;
 
-  /// The kernel data besides the beams: the model and the rule nodes.
+  /// The kernel data without beams: the model and the rule nodes.
   const KernelData& data() const { return data_; }
 
  private:
@@ -62,13 +58,11 @@ class BeamPlan {
 /// for odd k and (pi - psi_i + psi_r)/(2 k) for even k. psi_i and psi_r are the zeniths of the two beams in the plane
 /// across the groove, positive toward u. Then
 ///   f^(k) cos(theta_i) cos(theta_r) = D sin(alpha) a ds_k M / (2 k |h|),
-/// where a ds_k is the width of the beam of k bounces, and M is its Mueller matrix (shaders/physics/README.md, section
-/// 3).
-/// Domain: masking v-cavity. At h = 0, the mirror direction, the result is NaN, because grooves of all azimuths reflect
-/// into it.
+/// where a ds_k is the width of the beam of k bounces, and M its Mueller matrix (shaders/physics/README.md, section 3).
+/// Domain: masking v-cavity. At h = 0, the mirror direction, grooves of all azimuths contribute, and the result is NaN.
 /// Accuracy: relative error `accuracy` of the added m00. Next to |psi_i| = |psi_r|, more than kMostBouncesOfBeam
 /// bounces of a strong reflector may count; f.error then includes a bound of the light that they may add.
-/// Returns the number of computed bounces, which is proportional to the time.
+/// Returns the number of computed bounces, a measure of the time.
 int add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, const ScatteringEntry& entry,
                         double accuracy);
 

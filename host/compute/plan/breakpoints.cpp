@@ -20,11 +20,10 @@ constexpr double kNoEnd = 1e30;  // a finite slope beyond every cut
 
 constexpr double kCoincident = 1e-9;  // relative distance of breakpoints that differ only by rounding
 
-// Largest number of breakpoints of a direction with a sky.
-constexpr std::size_t kMostSkyBreakpoints = 60;
+constexpr std::size_t kMostSkyBreakpoints = 60;  // most breakpoints of a direction with a sky
 
-// For grazing directions, whose slopes reach far beyond 1 before they meet the horizon. These slopes divide a heavy
-// tail into pieces of about ten units of X = asinh(t/w).
+// In grazing directions, slopes reach far beyond 1 before they meet the horizon. These breakpoints divide a heavy tail
+// into pieces of about ten units of X = asinh(t/w).
 constexpr std::array kPlainBreakpoints = {30.0, 3e5};
 constexpr std::array kSteepBreakpoints = {1e5, 3e8, 1e12};  // for grooves, which have no horizon
 
@@ -52,8 +51,7 @@ void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   add(critical / (std::hypot(a.cos, 2.0 * critical) - a.cos), at_slope_1);
 }
 
-// Slopes at which the line b = pi/2 of `integral` meets phi = 0, phi = pi or theta_r = theta; for smith the slope of
-// its cusp.
+// Slopes at which the line b = pi/2 of `integral` meets phi = 0, pi or theta_r = theta. For smith: slope of its cusp.
 void add_line_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, Masking masking) {
   if (masking == Masking::kSmith) {
     points.push_back({tan_deg(0.5 * theta_deg), kRoots});
@@ -87,8 +85,8 @@ void add_v_cavity_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   }
 }
 
-// Slopes at which a bounce after the first meets the critical line at phi = 0 or pi. There cos(beta) of a bounce is the
-// sine of its angle in the unfolded groove (groove.glsl). At theta = 0 this holds for all phi.
+// Slopes at which a bounce after the first meets the critical line at phi = 0 or pi; at theta = 0, at all phi. There
+// cos(beta) of a bounce is the sine of its angle in the unfolded groove (groove.glsl).
 void add_critical_bounces(std::vector<Breakpoint>& points, double theta_deg, double critical) {
   const double critical_deg = std::asin(critical) * 180.0 / pi;
   for (int k = 2; k <= kCriticalBounces; ++k) {
@@ -101,8 +99,7 @@ void add_critical_bounces(std::vector<Breakpoint>& points, double theta_deg, dou
   }
 }
 
-// Slopes at which the lines of groove_lines (arcs.glsl) meet each other, phi = 0 (psi = theta) or phi = pi (psi =
-// -theta).
+// Slopes at which the lines of groove_lines (arcs.glsl) meet each other, phi = 0 or phi = pi.
 void add_groove_breakpoints(std::vector<Breakpoint>& points, double theta_deg, int splits) {
   const auto add = [&](double gamma_deg, unsigned roots) {
     if (gamma_deg > 0.0 && gamma_deg <= 90.0) points.push_back({tan_deg(90.0 - gamma_deg), roots});
@@ -136,9 +133,8 @@ std::vector<Breakpoint> without_coincident(const std::vector<Breakpoint>& points
   return distinct;
 }
 
-// Slopes at which a corner of the sky meets phi = 0 or pi. The reflected rays of a slope have zeniths from |theta - 2
-// alpha| to theta + 2 alpha. A sky that changes linearly with the zenith near 0 has a cusp there. Next to these slopes,
-// the sum over the azimuths has a term with the distance to the power 3/2.
+// Slopes at which a corner of the sky meets phi = 0 or pi. A sky that is linear in the zenith near 0 has a cusp there.
+// Next to these slopes, the sum over the azimuths has a term with the distance to the power 3/2.
 void add_sky_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const SkyTable& sky) {
   if (sky.has_cusp) points.push_back({tan_deg(0.5 * theta_deg), kRoots});
   for (const double corner_deg : sky.corners_deg) {

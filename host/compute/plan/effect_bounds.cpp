@@ -20,8 +20,7 @@ constexpr double kRounding = 1e-8;  // relative rounding of the sums here, and o
 constexpr double kRoundingOfOne = 1e-13;
 constexpr double kSmallestCosine = 1e-300;  // safe as a divisor
 
-/// The flags of the parts, in the order of Part.
-constexpr std::array<bool KeptEffects::*, 8> kFlags = {
+constexpr std::array<bool KeptEffects::*, 8> kFlags = {  // in the order of Part
     &KeptEffects::further_bounces, &KeptEffects::moments,       &KeptEffects::source,  &KeptEffects::surroundings,
     &KeptEffects::emission,        &KeptEffects::path_radiance, &KeptEffects::diffuse, &KeptEffects::profile};
 
@@ -29,8 +28,8 @@ bool KeptEffects::*flag(Part part) { return kFlags[static_cast<std::size_t>(part
 
 double or_infinite(double bound) { return std::isnan(bound) ? kInfinity : bound; }
 
-/// Upper bound E|t_x| / (2 mu) of Smith's Lambda(theta) = E[max(t_x - mu, 0)] / mu, mu = cot(theta). t_x is the slope
-/// in one plane, and E its mean.
+/// Upper bound E|t_x| / (2 mu) of Smith's E[max(t_x - mu, 0)] / mu, with mu = cot(theta), in-plane slope t_x and mean
+/// E.
 double most_lambda(Distribution distribution, const SlopeShape& shape, const CosSin& a) {
   if (shape.sigma == 0.0 || a.sin == 0.0) return 0.0;
   double mean = slope_width(shape) / kRootPi;
@@ -39,13 +38,11 @@ double most_lambda(Distribution distribution, const SlopeShape& shape, const Cos
 }
 
 /// Upper bound of the albedo A. `v-cavity` and `smith` reflect at most all incident light. For the other maskings, G <=
-/// 1 gives c A <= E[max(c + s t_x, 0)] <= c + s E|t_x| / 2, where t_x is the slope in the plane of incidence, and E its
-/// mean.
+/// 1 gives c A <= E[max(c + s t_x, 0)] <= c + s E|t_x| / 2: t_x is the slope in the plane of incidence, E the mean.
 double most_albedo(const Surface& surface, const CosSin& a, const SlopeShape& roughest) {
   return keeps_projected_area(surface.masking) ? 1.0 : 1.0 + most_lambda(surface.distribution, roughest, a);
 }
 
-/// Range of a quantity.
 struct Range {
   double least = 0.0;
   double most = kInfinity;
@@ -63,10 +60,9 @@ Range reflectance(const std::vector<FacetOptics>& indices, double cosine) {
   return range;
 }
 
-/// Range of the slope density P at `slope`, over all sigma and q of an extent.
-///
-/// Equation: As a function of m^2, P rises to a maximum at t^2 (Gaussian) or (q - 1) t^2 (Cauchy), and then falls. The
-/// factors q - 1 and (1 + t^2 / m^2)^-q of P are monotonic in q.
+/// Range of the slope density P at `slope`, over all sigma and q of an extent. As a function of m^2, P rises to a
+/// maximum at t^2 (Gaussian) or (q - 1) t^2 (Cauchy), and then falls. The factors q - 1 and (1 + t^2 / m^2)^-q are
+/// monotonic in q.
 Range slope_density(Distribution distribution, const EntriesExtent& extent, double slope) {
   const bool is_gaussian = distribution == Distribution::kGaussian;
   const double m2_low = std::pow(slope_width(extent.smoothest), 2);
@@ -84,8 +80,7 @@ Range slope_density(Distribution distribution, const EntriesExtent& extent, doub
 }
 
 /// Range of f_00 cos(theta_i) cos(theta_r) = P (1 + t^2)^2 G M00 / 4 for k_s = 1, in 1/sr. G is exact for `none` and
-/// `v-cavity`, and in [1/2, 1] for `integral`. For `smith` it is in [1 / (1 + L_i + L_r), 1], where L_i and L_r bound
-/// Lambda of the two beams.
+/// `v-cavity`, in [1/2, 1] for `integral`, and in [1 / (1 + L_i + L_r), 1] for `smith`, where L_i and L_r bound Lambda.
 Range beam_range(const Surface& surface, const BeamAngles& angles, const EntriesExtent& extent,
                  const std::vector<FacetOptics>& indices) {
   if (!has_facet(angles)) return {};
@@ -156,7 +151,7 @@ KeptEffects without(KeptEffects kept, Part part) {
   return kept;
 }
 
-/// Bounds of the Stokes parameters of some parts together.
+/// Bounds of the Stokes parameters, summed over some parts of a scene.
 struct EffectBounds::Sums {
   double least_i = 0.0;
   double most_qu = 0.0;  ///< upper bound of the length of (Q, U)

@@ -14,7 +14,6 @@ namespace {
 constexpr std::array kDroppingOrder = {Part::kSource,       Part::kSurroundings, Part::kProfile,       Part::kEmission,
                                        Part::kPathRadiance, Part::kMoments,      Part::kFurtherBounces};
 
-/// The bounds for each variant of a scene that its entries have.
 std::vector<EffectBounds> bounds_of(const SceneValues& scene, const SceneEntries& entries) {
   const std::vector<EntriesExtent> extents = extents_of(entries);
   std::vector<EffectBounds> bounds;
@@ -30,8 +29,8 @@ bool add_nothing(const std::vector<EffectBounds>& bounds, Part part, const KeptE
       bounds, [&](const EffectBounds& variant_bounds) { return variant_bounds.adds_nothing(part, kept); });
 }
 
-/// A part that matters in the whole scene is kept, even if the parts that it multiplies have been dropped. This does
-/// not hold for the moments and a profile, which are dropped only where they add exactly nothing.
+/// The largest bound over all variants. Moments and a profile are dropped only if they add exactly nothing. Other parts
+/// that matter in the whole scene are kept, even if the parts that they multiply have been dropped.
 double worst_bound(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
   double worst = 0.0;
   for (const EffectBounds& variant_bounds : bounds) {
@@ -43,7 +42,7 @@ double worst_bound(const std::vector<EffectBounds>& bounds, Part part, const Kep
 
 bool has_profile(const SceneValues& scene) { return scene.surroundings && scene.surroundings->profile; }
 
-/// Functions that tell whether a scene has a part, in the order of Part.
+/// These functions tell whether a scene has a part, in the order of Part.
 constexpr std::array<bool (*)(const SceneValues&), 8> kHasPart = {
     [](const SceneValues& scene) { return scene.surface.scattering == Scattering::kMultiple; },
     [](const SceneValues& scene) { return scene.surface.specular > 0.0; },
@@ -85,7 +84,7 @@ void set_needs(EffectPlan& plan, const SceneValues& scene, const std::vector<Eff
   plan.gives_rho = plan.kept.moments || scene.surface.specular == 0.0;
 }
 
-/// The reason why the moments are not needed, if the results are exact without them.
+/// A text for plans without moments whose results are exact nevertheless.
 std::string why_no_moments(const SceneValues& scene, const KeptEffects& kept) {
   const bool has_emission = scene.emission && kept.emission;
   const bool has_surroundings = scene.surroundings && kept.surroundings;
@@ -98,8 +97,7 @@ std::string why_no_moments(const SceneValues& scene, const KeptEffects& kept) {
 
 Effect absent(const char* name, std::string why) { return {name, EffectState::kAbsent, std::move(why)}; }
 
-/// The row of a part in the table of effects. `row` describes the part as a kept one; if the plan drops it, its state,
-/// bound and reason replace those of `row`.
+/// `row` describes the part as a kept one. If the plan drops it, its state, bound and reason replace those of `row`.
 Effect part_row(const SceneValues& scene, const EffectPlan& plan, Part part, Effect row) {
   row.part = part;
   const auto dropped = plan.dropped.find(part);
@@ -113,7 +111,6 @@ Effect part_row(const SceneValues& scene, const EffectPlan& plan, Part part, Eff
   return row;
 }
 
-/// What a run computes for the specular part, as text for the table of effects.
 std::string needs_of_moments(const SceneValues& scene, const EffectPlan& plan) {
   if (!plan.kept.moments) return "closed form";
   return is_bistatic(scene) ? fmt::format("moments at {:g} deg", scene.geometry.view_zenith_deg)
@@ -139,7 +136,7 @@ Effect specular_row(const SceneValues& scene, const EffectPlan& plan) {
   return row;
 }
 
-/// The row of a choice of the model in the table of effects. If the choice is kept, its text is followed by `reason`.
+/// The row of a choice of the model. `reason` follows the text of a choice that is kept.
 Effect model_row(const SceneValues& scene, const EffectPlan& plan, const char* name, const std::string& choice,
                  const SceneEntries& entries, const char* reason = ", a choice of the model: never swapped") {
   const auto is_flat = [](const SceneEntry& entry) { return entry.shape.sigma == 0.0; };

@@ -19,9 +19,8 @@ constexpr double kCosineRounding = 2.0 * std::numeric_limits<double>::epsilon();
 constexpr double kGrazingCosine = 1e-9;  // directions with a smaller cosine count as this one
 
 // Rounding error in unit roundoffs, relative to the integral of absolute values. The masking tables of `integral` with
-// q near 1, and of smith with q near 3/2, are sums of hundreds of nearly equal terms. The position of the critical line
-// of total reflection is a difference of angles, which loses more digits if the surface is smoother or the direction is
-// nearer to the horizon.
+// q near 1, and of smith with q near 3/2, are sums of hundreds of nearly equal terms. The critical line of total
+// reflection follows from a difference of angles, which loses digits if the surface is smooth or the direction grazing.
 double roundings(const KernelData& data, const kernel::ThetaNode& theta, const kernel::ShapeNode& shape,
                  const kernel::IndexNode& index) {
   if (index.critical_cos > 0.0) {
@@ -41,9 +40,8 @@ double mean_slope(Distribution distribution, const kernel::ShapeNode& shape) {
   return distribution == Distribution::kGaussian ? gaussian : 2.0 * gaussian / shape.two_q_minus_3;
 }
 
-// Upper bound of G over all facets; v-cavity, which has e G <= 2 c, does not need it. With smith masking the
-// projections e of the visible facets sum to c, so G <= G1(theta) = c / (integral of e over e > 0). This integral is at
-// least (c + s mean|t_x|) / 2, where t_x is the slope in one plane.
+// Upper bound of G; v-cavity needs none, because it has e G <= 2 c. With smith masking the projections e of the visible
+// facets sum to c. So G <= G1(theta) = c / (integral of e over e > 0), which is at least half of c + s mean|t_x|.
 double masking_bound(Distribution distribution, Masking masking, const kernel::ThetaNode& theta,
                      const kernel::ShapeNode& shape) {
   if (masking != Masking::kSmith) return 1.0;
@@ -72,8 +70,7 @@ double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const k
   return masking_bound(data.distribution, data.masking, theta, shape) * (theta.c * tail + theta.s * slopes);
 }
 
-// Bound of the error that the masking table causes, relative to the albedo. With smith masking and Cauchy slopes it
-// grows like the mean slope, which diverges at q = 3/2.
+// Error relative to the albedo. With smith masking and Cauchy slopes it grows like the mean slope, infinite at q = 3/2.
 double masking_error(const KernelData& data, const MomentsEntry& entry, double unit_roundoff) {
   if (!data.needs_masking_table()) return 0.0;
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
@@ -84,7 +81,7 @@ double masking_error(const KernelData& data, const MomentsEntry& entry, double u
   return table * (may_diverge ? 1.0 + kDivergingSlope / shape.two_q_minus_3 : 1.0);
 }
 
-// R_s, an upper bound of M00. It falls as cos(beta) grows; with films the result is 1.
+// An upper bound of M00, which falls as cos(beta) grows.
 double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
   if (index.curve_cells > 0.0) return 1.0;  // with films R_s may grow with cos(beta)
   const std::complex<double> w =
@@ -92,10 +89,9 @@ double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
   return std::min(1.0, std::norm((cos_beta - w) / (cos_beta + w)));
 }
 
-// Upper bound of the share of light that is left after `bounces` bounces with cos(beta) >= a/2; a is the length of the
-// ray's direction projected across the groove. The length a is at least `level`, except at azimuths with sin(theta)
-// |cos(phi)| < sqrt(level^2 - c^2). The share of light at these azimuths is at most twice their share of all azimuths.
-// The result is at most `most`.
+// Upper bound, at most `most`, of the share of light that is left after `bounces` bounces with cos(beta) >= a/2; a is
+// the length of the ray's direction projected across the groove. It is at least `level`, except at azimuths with
+// sin(theta) |cos(phi)| < sqrt(level^2 - c^2). The share of light there is at most twice the share of azimuths.
 double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double bounces, double most) {
   double least = most;
   for (double level = 1.0; level > 1e-6; level *= 0.5) {
@@ -109,9 +105,9 @@ double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index
 }
 
 // Upper bound of the share of their light that the facets beyond the cut reflect. A ray that leaves after one bounce
-// has cos(theta_r) > 0, so cos(beta) > c sqrt(1 + t^2) / 2, and M00 is at most R_s at this cosine. In grooves of angle
-// gamma, with cot(gamma) = slope, the bounces of a ray are at the angles psi + gamma, psi + 3 gamma ... of the unfolded
-// groove. At least slope * min(pi/3, pi/2 - theta) - 1 of them have cos(beta) >= a/2.
+// has cos(theta_r) > 0, so cos(beta) > c sqrt(1 + t^2) / 2, and M00 is at most R_s at this cosine. In grooves of
+// half-angle gamma, with cot(gamma) = slope, the bounces of a ray are at the angles psi + gamma, psi + 3 gamma ... of
+// the unfolded groove. At least slope * min(pi/3, pi/2 - theta) - 1 of them have cos(beta) >= a/2.
 double steep_reflectance(const KernelData& data, const kernel::IndexNode& index, const kernel::ThetaNode& theta,
                          const kernel::ShapeNode& shape) {
   if (data.scattering == Scattering::kSingle) {
@@ -124,9 +120,8 @@ double steep_reflectance(const KernelData& data, const kernel::IndexNode& index,
 
 // Bound of the error in grooves with more than DOLP_MOST_BOUNCES bounces, several of which the kernel treats as one.
 // `reflected` is the light of these grooves as computed; below `least` it is negligible. Treating several bounces as
-// one changes the logarithm of the remaining light by less than a hundredth, so a small computed value is small in
-// truth. This does not hold under total reflection, where bounces without loss may be combined with bounces that lose
-// light. The kernel takes the light after DOLP_LAST_BOUNCES bounces as 0.
+// one changes the logarithm of the remaining light by less than a hundredth, so a small value is small in truth, except
+// under total reflection, where some bounces have no loss. After DOLP_LAST_BOUNCES bounces the kernel assumes no light.
 double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::IndexNode& index,
                           const kernel::ShapeNode& shape, double reflected, double least) {
   const auto beyond = [&](double bounces, double most) {
@@ -142,28 +137,24 @@ double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta
 }
 
 // Factor from the difference between the results of two rules to the error of the finer rule. It allows for slower
-// convergence than expected. The masking G, where it comes from a table, has cusps and lines at which it is not smooth;
-// there the rules converge only algebraically.
+// convergence than expected: at the cusps and lines of a tabulated G the rules converge only algebraically.
 double pair_factor(const KernelData& data, const kernel::IndexNode& index) {
   const bool is_multiple = data.scattering == Scattering::kMultiple;
   const double smooth = is_multiple ? kGroovePairFactor : data.needs_masking_table() ? kTablePairFactor : kPairFactor;
   return index.critical_cos > 0.0 ? kCriticalFactor * smooth : smooth;
 }
 
-// Error bound of a function of the sky: the errors of its table, of corners that do not split pieces, and of rounding.
-// The rounding of 1 - cos(theta_r) matters only near the zenith.
+// Errors of the table, of corners that do not split pieces, and of rounding: near the zenith 1 - cos loses digits.
 double sky_error(const KernelData& data, std::size_t function, double unit_roundoff) {
   return data.sky.error[function] + kUnsplitBends * data.sky.bends[function] + kSkyRoundings * unit_roundoff +
          data.sky.steepness[function] * std::sqrt(kSkyCosineRoundings * unit_roundoff);
 }
 
-// Rounding error of a Chebyshev polynomial: the rounding of its abscissa times its largest slope, degree^2, and the
-// rounding of the recurrence.
+// Rounding of the abscissa times the largest slope of the polynomial, degree^2, plus rounding of the recurrence.
 double response_rounding(std::size_t degree, double unit_roundoff) {
   return kResponseRoundings * unit_roundoff * static_cast<double>(1 + degree * degree);
 }
 
-/// Contributions to the error of an entry.
 struct Shares {
   double cut = 0.0;            ///< bound of the albedo beyond the cut
   double reflected_cut = 0.0;  ///< light that the facets beyond the cut reflect
@@ -171,9 +162,8 @@ struct Shares {
   double masking = 0.0;        ///< relative error of G
   double rounding = 0.0;       ///< relative rounding error
   double least = 0.0;          ///< least relative error bound of a sum
-  double pair = 1.0;           ///< factor of pair_factor()
-  // Two rules with few nodes may agree by chance. So the bound of a sum is at least a share of the tolerance of its
-  // rules plus its rounding.
+  double pair = 1.0;
+  // Two rules with few nodes may agree by chance, so the bound of a sum is at least a share of the tolerance.
   double of_rule() const { return least + rounding; }
   double of_masked() const { return of_rule() + masking; }
 };
@@ -226,7 +216,7 @@ void add_curve_errors(Moments& moments, const kernel::MomentsNode& node, const k
   for (double* const bound : {&moments.direct_i_error, &moments.direct_q_error}) *bound += of_facet * theta.c;
 }
 
-/// Column `k` with its error bounds. `sums` has i and q of the finer rule, and their differences from the coarser rule.
+/// `sums` has i and q of the finer rule, and their differences from the coarser rule.
 ColumnMoments column_moments(std::span<const double> sums, std::size_t k, const kernel::MomentsNode& node,
                              const KernelData& data, const kernel::ThetaNode& theta, const Shares& shares,
                              double unit_roundoff) {
@@ -287,7 +277,7 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
     const auto sums = columns.subspan(DOLP_COLUMN_PARTS * k, DOLP_COLUMN_PARTS);
     moments.columns.push_back(column_moments(sums, k, node, data, theta, shares, unit_roundoff));
   }
-  // If an inaccurate r_i of grooves exceeds cos(theta), the deficit is not computed from it: it would be negative.
+  // An r_i of grooves above cos(theta) is inaccurate, and would give a negative deficit.
   if (!is_multiple || moments.r_i < theta.c || moments.deficit_error <= moments.r_i_error)
     take_complement(moments, theta.c);
   return moments;

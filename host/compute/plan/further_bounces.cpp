@@ -31,7 +31,7 @@ struct Across {
 /// A Jones matrix: (E_s, E_p) after the bounces for each of (E_s, E_p) before.
 using Jones = Eigen::Matrix2cd;
 
-/// The matrix that converts fields to a frame rotated from s toward p by the angle of the vector (x, y).
+/// Converts fields to a frame that is rotated from s toward p by the angle of the vector (x, y).
 Eigen::Matrix2d turned(double x, double y) {
   const double length = std::hypot(x, y);
   const double cosine = length > 0.0 ? x / length : 1.0;
@@ -40,8 +40,7 @@ Eigen::Matrix2d turned(double x, double y) {
 }
 
 /// The Jones matrix of a bounce at cos(beta) = c, if the facet's frame is rotated by the angle of the vector (x, y). In
-/// the unfolded groove r_p equals r_s at normal incidence. The code avoids complex roots and quotients, which are slow,
-/// because there may be thousands of bounces.
+/// the unfolded groove r_p equals r_s at normal incidence. Complex roots and quotients would be slow.
 class Facet {
  public:
   explicit Facet(const OpticalConstants& index)
@@ -62,14 +61,14 @@ class Facet {
   }
 
  private:
-  /// The square root of re + i im_. Domain: im_ >= 0.
+  /// sqrt(re + i im_). Domain: im_ >= 0.
   Complex root(double re) const {
     const double larger = std::sqrt(0.5 * (std::abs(re) + std::sqrt(re * re + im_ * im_)));
     const double smaller = larger > 0.0 ? 0.5 * im_ / larger : 0.0;
     return re >= 0.0 ? Complex(larger, smaller) : Complex(smaller, larger);
   }
 
-  double re_;  ///< real part of N^2 - 1; im_ is the imaginary part
+  double re_;  ///< N^2 - 1 = re_ + i im_
   double im_;
 };
 
@@ -86,9 +85,8 @@ Eigen::Matrix4d mueller(const Jones& j) {
       {(of_s + of_p).imag(), (of_s - of_p).imag(), (straight + crossed).imag(), (straight - crossed).real()}};
 }
 
-/// The Mueller matrix of `bounces` bounces in a groove of angle gamma. The fields go from facet to facet of the
-/// unfolded groove. After an odd number of bounces the unfolded groove is a mirror image, which reverses one axis of
-/// the frame.
+/// Mueller matrix of a beam with `bounces` bounces. The fields go from facet to facet of the unfolded groove. After an
+/// odd number of bounces it is a mirror image, which reverses one axis of the frame.
 Eigen::Matrix4d chain(const Across& at, const Facet& facet, double gamma, int bounces) {
   Jones fields = turned(-at.from.x(), at.from.y() * at.cos_i).transpose().cast<Complex>();
   const Complex turn = std::polar(1.0, 2.0 * gamma);
@@ -103,7 +101,6 @@ Eigen::Matrix4d chain(const Across& at, const Facet& facet, double gamma, int bo
   return mueller(fields);
 }
 
-/// The width a ds_k of the beam of k = `bounces` bounces.
 double beam_width(const Across& at, double gamma, int bounces) {
   if (at.psi_i <= -gamma) return 0.0;
   const auto edge = [&](int k) { return at.a * std::sin(at.psi_i + (2 * k + 1) * gamma); };
@@ -117,11 +114,10 @@ double beam_width(const Across& at, double gamma, int bounces) {
 struct FurtherBeams {
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
   double unfollowed = 0.0;  ///< bound of m00 of the bounces that are left out
-  int bounces = 0;          ///< bounces computed so far, summed over all beams
+  int bounces = 0;          ///< bounces computed so far, over all beams
 };
 
-/// Bound of the light of all beams with more than `bounces` bounces, over the light of the beam with `bounces` bounces.
-/// The light of k bounces falls like k^(2 - 2q) or faster.
+/// Bound of the light after more than `bounces` bounces, over the light after `bounces`: light falls like k^(2 - 2q).
 double beyond_last(const ScatteringRequest& request, const SlopeShape& shape, int bounces) {
   const bool is_cauchy = request.distribution == Distribution::kCauchy;
   return is_cauchy ? bounces / std::clamp(2.0 * shape.q - 3.0, kSlowestFall, 1.0) : bounces;
@@ -134,7 +130,7 @@ FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, c
   const Facet facet(request.optics[entry.index].index);
   const double least_gamma = 0.49 * std::abs(std::abs(at.psi_i) - std::abs(at.psi_r));
   FurtherBeams beams;
-  // Bounds of the light of all further even, and all further odd, numbers of bounces. These follow different laws.
+  // Bounds for all further even, and all further odd, numbers of bounces, which follow different laws.
   std::array<double, 2> beyond = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (int k = 2; k <= kMostBouncesOfBeam; ++k) {
     const double gamma = (pi - at.psi_i + (k % 2 == 1 ? -at.psi_r : at.psi_r)) / (2.0 * k);

@@ -33,8 +33,7 @@ struct Loops {
   double corners = 0.0;  ///< corners of a sky that split the arcs
 };
 
-// Loop iterations of a ray with `bounces` bounces: one for each bounce, or for each group of bounces that next_bounces
-// in groove.glsl combines.
+// Loop iterations for a ray: one for each bounce or group of bounces (next_bounces in groove.glsl).
 double turns_of(double bounces) {
   double turns = 2.0;
   double taken = 1.0;
@@ -50,8 +49,7 @@ double turns_of(double bounces) {
   return turns;
 }
 
-// Loop bounds in grooves, for a piece from slope `start` to `end`. A vertical ray bounces pi / (2 gamma) times, where
-// cot(gamma) is the slope. Steep grooves are not split at lines below psi = gamma.
+// A vertical ray bounces pi / (2 gamma) times, cot(gamma) = slope. Steep grooves have no splits below psi = gamma.
 Loops groove_loops(const KernelData& data, double start, double end) {
   const double most = pi / (2.0 * std::atan(1.0 / end));
   const double splits = data.rule.split_bounces;
@@ -76,15 +74,13 @@ Loops loops_of(const KernelData& data, double critical, double start, double end
   return loops;
 }
 
-// Most loop iterations of one invocation. The driver lavapipe stops an invocation after 65,535 iterations, without an
-// error.
+// The driver lavapipe stops an invocation after 65,535 iterations, without an error.
 constexpr double kMostIterations = 64'000.0;
 constexpr double kMostArcs = 2.0 * DOLP_MAX_ARCS;
 constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // iterations that search for the lines of a groove
 
-// Upper bound of the loop iterations of one invocation. An invocation for a piece loops over two rules, slopes, arcs
-// and azimuths. An invocation for a slope sample loops over arcs, azimuths and bounces. Invocations in lockstep wait
-// for each other, so the bound covers the entry with the most work.
+// Upper bound of the loop iterations of one invocation: over two rules, slopes, arcs and azimuths, or for a slope
+// sample over arcs, azimuths and bounces. Because of lockstep it covers the entry with the most work.
 double iterations(const KernelData& data, const Loops& loops, double most_nodes) {
   const double arcs = loops.arcs + loops.corners;
   const double idle = data.sky.count == 0 ? 0.0 : 2.0 * loops.arcs * (1.0 + loops.corners);  // corners outside an arc
@@ -95,8 +91,7 @@ double iterations(const KernelData& data, const Loops& loops, double most_nodes)
   return of_rule(1.0) + of_rule(kCoarseShare + 1.0 / data.rule_order);
 }
 
-// Largest number of nodes of an arc with which an invocation stays below kMostIterations. If these nodes are too few
-// for the tolerance, the error bound shows it.
+// Most nodes of an arc that keep an invocation below kMostIterations. If they are too few, the error bound shows it.
 std::uint8_t most_nodes(const KernelData& data, const Loops& loops) {
   int most = data.rule_order;
   while (iterations(data, loops, most) > kMostIterations) --most;
@@ -153,8 +148,8 @@ kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& sh
   return node;
 }
 
-// With the pole of R_p in cos(beta) and the branch point of the amplitudes, whose real and imaginary parts are at least
-// 0. Films add no singularities, because their amplitudes are even in the wave number.
+// The node has the pole of R_p in cos(beta) and the branch point of the amplitudes, with real and imaginary parts >= 0.
+// Films add no branch points: their amplitudes are even functions of the wave number in each film.
 kernel::IndexNode index_node(const FacetOptics& optics) {
   const auto [n, k] = optics.index;
   const std::complex<double> n_complex(n, k);
@@ -175,7 +170,7 @@ kernel::IndexNode index_node(const FacetOptics& optics) {
           0.0};
 }
 
-// Adds tables of the reflectances of all indices, and more nodes to the rules for the fringes of films.
+// Adds the reflectance tables of all indices, and more nodes to the rules for the fringes of films.
 void add_curves(KernelData& data, const MomentsRequest& request) {
   data.has_curves = std::ranges::any_of(request.optics, [](const FacetOptics& optics) { return !optics.is_bare(); });
   if (!data.has_curves) return;
@@ -222,8 +217,7 @@ void add_shape(KernelData& data, const MomentsRequest& request, const SlopeShape
 
 static_assert(kMostResponses == DOLP_COLUMNS);
 
-/// Adds responses to the data. The rules are planned as if the integrand had a pole at cos(beta) = i * bend, unless an
-/// index has a nearer pole.
+/// Plans the rules as if the integrand had a pole at cos(beta) = i * bend, unless an index has a nearer pole.
 void take_responses(KernelData& data, const Response& response) {
   data.response = response;
   data.rule.response_scale = 1.0 / response.c0;

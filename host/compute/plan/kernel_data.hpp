@@ -1,4 +1,4 @@
-// All inputs of the kernel, computed in double. The evaluators convert them to the kernel's precision.
+// All inputs of the kernel in double. The evaluators convert them to the kernel's precision.
 #pragma once
 
 #include <algorithm>
@@ -17,13 +17,13 @@
 
 namespace dolp {
 
-/// The structures and constants of shaders/interface.glsl with real = double.
+/// The structures of shaders/interface.glsl with real = double.
 namespace kernel {
 using real = double;
 #include "interface.glsl"  // NOLINT: one source for host and shaders
 }  // namespace kernel
 
-/// Converts a structure that holds only FromReal to its counterpart that holds only ToReal.
+/// Converts structures with only FromReal members to their counterparts with only ToReal members.
 template <class ToReal, class To, class FromReal, class From>
 To convert_reals(const From& from) {
   constexpr std::size_t kCount = sizeof(From) / sizeof(FromReal);
@@ -41,22 +41,21 @@ inline constexpr unsigned kRootBelow = 2;  ///< the integrand has a square root 
 /// The pieces of the slope axis of one direction; ThetaNode has their ends.
 struct Pieces {
   std::uint32_t count = 0;
-  std::array<std::uint8_t, DOLP_MAX_PIECES + 3> roots{};  ///< bits kRootAbove, kRootBelow of each end
-  /// Largest number of nodes of an arc, per piece. It bounds the loop iterations.
-  std::array<std::uint8_t, DOLP_MAX_PIECES + 1> most_nodes{};
-  /// A number per piece. Pieces with equal numbers have equal loop bounds, so they may run in lockstep.
+  std::array<std::uint8_t, DOLP_MAX_PIECES + 3> roots{};       ///< bits kRootAbove, kRootBelow of each end
+  std::array<std::uint8_t, DOLP_MAX_PIECES + 1> most_nodes{};  ///< most nodes of an arc, for each piece
+  /// One number per piece. Pieces with equal numbers have equal loop bounds, so they may run in lockstep.
   std::array<std::uint16_t, DOLP_MAX_PIECES> lockstep{};
   bool has_split_line = false;  ///< split at the line b = pi/2 of `integral`, or at smith's cusp
 };
 
-/// One entry for the kernel: positions in three lists of KernelData.
+/// Positions of one entry in three lists of KernelData.
 struct MomentsEntry {
   std::uint32_t theta = 0;
   std::uint32_t shape = 0;
   std::uint32_t index = 0;
 };
 
-/// Error bounds that hold for each quantity in the reflectance table of an index.
+/// Bounds for each quantity in the reflectance table of an index.
 struct CurveError {
   double absolute = 0.0;
   double per_roundoff = 0.0;  ///< error divided by the unit roundoff of the kernel's precision
@@ -73,10 +72,10 @@ struct KernelData {
   bool has_direct = false;
   double tolerance = 1e-4;
   kernel::RuleNode rule{};
-  int rule_order = 1;                 ///< largest order of the rule nodes
-  bool has_total_reflection = false;  ///< at least one index reflects totally, sharply or nearly so
-  bool has_curves = false;            ///< the kernel reads the reflectances of all indices from tables
-  /// Errors of these tables, per index; empty without tables.
+  int rule_order = 1;
+  bool has_total_reflection = false;  ///< an index reflects totally, sharply or nearly so
+  bool has_curves = false;            ///< the kernel reads reflectances from tables
+  /// Errors of the reflectance tables, per index; empty without tables.
   std::vector<CurveError> curve_errors;
   bool is_grid = false;
   std::size_t directions = 0;  ///< directions of the request
@@ -86,8 +85,8 @@ struct KernelData {
   std::vector<char> needs_line;  ///< for each shape: 1 if it needs the line of its masking
   std::vector<kernel::IndexNode> indices;
   std::vector<std::uint32_t> index_variant;  ///< for each index of a grid: position of its first variant
-  std::vector<std::uint32_t> shape_of;       ///< shape of each point
-  /// nodes of the rules, then cells of the sky and of reflectance tables
+  std::vector<std::uint32_t> shape_of;
+  /// Nodes of the rules, then cells of the sky and of reflectance tables.
   std::vector<std::array<double, 2>> rule_nodes;
   SkyTable sky;
   std::optional<Response> response;  ///< kind of the columns; null if they are functions of the sky
@@ -95,13 +94,12 @@ struct KernelData {
   std::size_t column_count() const { return response ? response->count : sky.count; }
   bool needs_masking_table() const { return masking == Masking::kIntegral || masking == Masking::kSmith; }
   std::size_t size() const { return is_grid ? directions * indices.size() * shapes.size() : directions; }
-  /// The position in `thetas` of a direction, for an index and a shape.
+  /// The position of a direction in `thetas`, for an index and a shape.
   std::uint32_t theta_of(std::uint32_t direction, std::uint32_t index, std::uint32_t shape) const {
     if (!is_grid) return direction;
     const std::uint32_t variant = index_variant[index] + (needs_line[shape] != 0 ? 1U : 0U);
     return variant * static_cast<std::uint32_t>(directions) + direction;
   }
-  /// The position of the entry with this direction, index and shape.
   std::size_t entry_of(std::uint32_t direction, std::uint32_t index, std::uint32_t shape) const {
     return is_grid ? (index * directions + direction) * shapes.size() + shape : direction;
   }
@@ -110,17 +108,15 @@ struct KernelData {
 
 struct RuleModel;
 
-/// Chooses splits, orders, nodes and constants for a request at its tolerance. Without `model`, uses the fitted numbers
-/// of its masking. Pure function.
+/// Without `model`, uses the fitted numbers of the request's masking. Pure function.
 KernelData kernel_data(const MomentsRequest& request);
 KernelData kernel_data(const MomentsRequest& request, const RuleModel& model);
 
-/// Count of numbers for the columns, which follow each MomentsNode and each AzimuthNode.
+/// Counts of the numbers for the columns, which follow each MomentsNode and each AzimuthNode.
 inline std::size_t column_sums(const KernelData& data) { return DOLP_COLUMN_PARTS * data.column_count(); }
 inline std::size_t column_azimuths(const KernelData& data) { return 2 * data.column_count(); }
-/// Adds the kernel's columns of a piece to `sums`, DOLP_COLUMN_PARTS numbers per column: i and q of the finer rule, and
-/// their differences from the coarser rule. For functions of a sky there is only the larger magnitude of the two
-/// differences.
+/// Adds a piece to `sums`. There are DOLP_COLUMN_PARTS numbers per column: i and q of the finer rule, and their
+/// differences from the coarser rule. Functions of a sky have only the larger of the two differences.
 template <class Real>
 void add_columns(const KernelData& data, std::span<const Real> piece, std::span<double> sums) {
   for (std::size_t first = 0; first < piece.size(); first += DOLP_COLUMN_PARTS) {
@@ -142,29 +138,26 @@ inline std::uint32_t column_kind(const KernelData& data) {
 /// The task word of interface.glsl for one piece of a row of `members` entries.
 std::uint32_t task_word(const Pieces& pieces, std::uint32_t piece, std::uint32_t members);
 
-/// Number of pieces of the slope axis up to the cut, which the kernel has to compute; at least the first one.
+/// Pieces of the slope axis up to the cut, which the kernel has to compute; at least one.
 std::uint32_t piece_count(const KernelData& data, std::uint32_t theta, const kernel::ShapeNode& shape);
 
 /// The slope of V-grooves in which a vertical ray bounces `bounces` times.
 double slope_with_bounces(double bounces);
 
-/// Adds the kernel's result for a piece to the sum over other pieces.
 void add_piece(kernel::MomentsNode& sum, const kernel::MomentsNode& piece);
 
 /// r_i + deficit = cos(theta): computes the less accurate of the two from the other.
 void take_complement(Moments& moments, double cosine);
 
-/// Converts the kernel's result for one entry into moments with error bounds; `unit_roundoff` belongs to the kernel's
-/// precision. `columns`: DOLP_COLUMN_PARTS sums for each column of the data.
+/// Moments with error bounds from the kernel's result, and from DOLP_COLUMN_PARTS sums for each column of the data.
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
                             double unit_roundoff, std::span<const double> columns = {});
 
-/// True if the masking table of a shape resolves the structure of G at a direction. A table that is coarser than the
-/// slope distribution does not resolve G if cot(theta) is below table_scale.
+/// False if the table is too coarse to resolve G: coarser than the slope distribution, and cot(theta) below
+/// table_scale.
 bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin_theta);
 
-/// Upper bound of the loop iterations of one invocation, over all nested loops and all entries of `data`. Drivers may
-/// stop an invocation after 65,535 iterations, without an error and with wrong sums.
+/// Upper bound for one invocation. Drivers may stop it after 65,535 iterations, without an error and with wrong sums.
 double worst_iterations(const KernelData& data);
 
 }  // namespace dolp

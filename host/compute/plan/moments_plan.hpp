@@ -1,4 +1,3 @@
-// Decides which moments of a request the kernels compute, and how the other moments follow.
 #pragma once
 
 #include <cstddef>
@@ -12,25 +11,20 @@
 
 namespace dolp {
 
-/// Directions of a request that are computed together.
 struct MomentsStep {
   std::vector<std::size_t> directions;  ///< positions in the request's directions; empty for points
   MomentsRequest request;               ///< the request's entries at these directions
-  /// Nodes for the interpolation over slope distributions; empty if each distribution is computed.
-  std::optional<ShapePlan> shapes;
-  /// Responses from which the moments of the indices are summed (at the nodes of `shapes`, if there are any); empty if
-  /// each index is computed.
+  std::optional<ShapePlan> shapes;      ///< empty if each slope distribution is computed
+  /// Responses from which the moments of the indices are summed; empty if each index is computed.
   std::optional<ResponsePlan> responses;
 
   const MomentsRequest& nodes() const { return shapes ? shapes->nodes : request; }
   /// True if the step computes fewer moments than it gives.
   bool saves_work() const { return shapes || responses; }
-  /// The requests that the kernels get.
   std::vector<const MomentsRequest*> kernel_requests() const;
 };
 
-/// The plan of a request. It depends only on the request, and an entry's moments do not depend on the other directions
-/// of the request.
+/// Depends only on the request. An entry's moments do not depend on the other directions of the request.
 class MomentsPlan {
  public:
   explicit MomentsPlan(const MomentsRequest& request);
@@ -42,9 +36,8 @@ class MomentsPlan {
   std::size_t saved_entries() const;
   /// Moments that the kernels compute for the saved entries.
   std::size_t nodes_of_saved() const;
-  /// Moments that the kernels compute in all steps.
   std::size_t kernel_moments() const;
-  /// For each direction of a grid: true if its entries are interpolated or combined. Empty for points.
+  /// For each direction of a grid: 1 if its entries are interpolated or combined. Empty for points.
   std::vector<char> saving_directions() const;
 
  private:

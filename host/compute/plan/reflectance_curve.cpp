@@ -57,8 +57,7 @@ void add_cell(ReflectanceCurve& curve, const FacetOptics& optics, double start, 
   }
 }
 
-/// The pole c + i b in cos(beta) that explains the steepest slope of R_s or R_p: such a pole changes R by its whole
-/// range over the width 2 b.
+/// The pole c + i b in cos(beta) that explains the steepest slope: it changes R by its whole range over the width 2 b.
 std::complex<double> steepest_pole(const FacetOptics& optics, std::size_t cells) {
   std::complex<double> pole(0.0, 1.0);
   for (const double SmoothAbsorptance::*part : {&SmoothAbsorptance::s, &SmoothAbsorptance::p}) {

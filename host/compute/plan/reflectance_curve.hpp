@@ -1,4 +1,3 @@
-// Reflectance tables for facets without a formula in the kernel: films and measurements.
 #pragma once
 
 #include <array>
@@ -9,8 +8,7 @@
 
 namespace dolp {
 
-/// A reflectance curve as cubics over sqrt(cos(beta)), in cells of equal width. Each cell takes DOLP_CURVE_NODES rule
-/// nodes (physics/fresnel.glsl).
+/// Cubics over sqrt(cos(beta)), in cells of equal width with DOLP_CURVE_NODES rule nodes each (physics/fresnel.glsl).
 struct ReflectanceCurve {
   std::vector<std::array<double, 2>> nodes;
   std::size_t cells = 0;
@@ -20,8 +18,8 @@ struct ReflectanceCurve {
   std::complex<double> pole;
 };
 
-/// Computes a curve with as many cells as a share of the tolerance needs, up to a limit. The tolerance is relative to
-/// the smaller of reflectance and absorptance at normal incidence. Domain: optics that are not bare.
+/// The curve has as many cells as a share of the tolerance needs, up to a limit. The tolerance is relative to the
+/// smaller of reflectance and absorptance at normal incidence. Domain: optics that are not bare.
 ReflectanceCurve reflectance_curve(const FacetOptics& optics, double tolerance);
 
 }  // namespace dolp

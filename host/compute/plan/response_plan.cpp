@@ -18,8 +18,7 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Flags of the wanted entries of a grid with some of the request's indices. `needed_by` lists, for each index of the
-/// grid, the indices of the request that need it.
+/// Flags for a grid of some of the request's indices. `needed_by` lists, for each of them, the indices that need it.
 std::vector<char> wanted_of(const MomentsRequest& request, const std::vector<std::vector<std::size_t>>& needed_by) {
   const std::size_t of_index = request.theta_deg.size() * request.shapes();
   std::vector<char> wanted;
@@ -32,7 +31,6 @@ std::vector<char> wanted_of(const MomentsRequest& request, const std::vector<std
   return wanted;
 }
 
-/// The responses of one pass at one direction: responses x shapes.
 struct Responses {
   /// Unwanted entries have no columns; their responses are 0.
   Responses(std::span<const Moments> moments, std::size_t responses) : all(kParts) {
@@ -52,12 +50,11 @@ struct Responses {
     }
   }
   enum Part : std::uint8_t { kI, kQ, kIApart, kQApart, kError, kParts };
-  std::vector<RowMajor> all;
+  std::vector<RowMajor> all;           // one matrix per part, responses x shapes, for one direction
   std::vector<double> relative_error;  ///< one value for each shape
 };
 
-/// The matrix product, always summed in the same order. Eigen's order depends on the sizes, so with Eigen the last bits
-/// of an entry would depend on how the grid is divided.
+/// Always sums in the same order. Eigen's order depends on the sizes, so a grid's division would change the last bits.
 RowMajor product(const RowMajor& weights, const RowMajor& part) {
   RowMajor sums = RowMajor::Zero(weights.rows(), part.cols());
   for (Eigen::Index i = 0; i < weights.rows(); ++i) {
@@ -79,8 +76,7 @@ struct Sums {
     for (Eigen::Index shape = 0; shape < error.cols(); ++shape)
       error.col(shape) += responses.relative_error[static_cast<std::size_t>(shape)] * value.col(shape).cwiseAbs();
   }
-  /// Sums with the weights of the difference of two curves. The difference may change its sign, so relative errors
-  /// refer to its largest magnitude.
+  /// Sums for the difference of two curves, which may change its sign: relative errors refer to its largest magnitude.
   static Sums of_difference(const Responses& responses, Responses::Part of, Responses::Part apart,
                             const RowMajor& weights) {
     Sums sums(responses, of, apart, weights);
@@ -95,7 +91,6 @@ struct Sums {
   RowMajor error;
 };
 
-/// Combines the moments of all indices that have weights, direction by direction.
 class Combination {
  public:
   Combination(const MomentsRequest& request, const ResponsePlan& plan)
@@ -117,7 +112,7 @@ class Combination {
     if (rows > 0) reflected_.col(0).array() += 1.0;
   }
 
-  /// `passes` has the moments of all shapes at one direction. `moments` receives the moments of all indices and shapes.
+  /// `passes` has the moments of all shapes at one direction; `moments` receives them for all indices and shapes.
   void operator()(double cosine, std::span<const std::span<const Moments>> passes, std::span<Moments> moments) const {
     add_reflected(cosine, passes.front(), moments);
     std::size_t pass = 1;
@@ -229,7 +224,6 @@ std::size_t response_passes(bool wants_direct, std::size_t sky_functions) {
 
 namespace {
 
-/// The sources of some indices. A source depends only on the basis and the index.
 std::vector<ResponsePlan::Source> sources_of(const ResponseBasis& basis, std::span<const FacetOptics> indices) {
   std::vector<ResponsePlan::Source> sources(indices.size());
   parallel_ranges(sources.size(), 1, [&](std::size_t first, std::size_t last) {
@@ -259,7 +253,6 @@ void add_passes(ResponsePlan& plan, const MomentsRequest& request, MomentsReques
   }
 }
 
-/// The request with all its entries removed.
 MomentsRequest without_entries(const MomentsRequest& request) {
   MomentsRequest empty = request;
   empty.basis = nullptr;

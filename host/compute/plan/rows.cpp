@@ -11,14 +11,13 @@ namespace {
 // If m is smaller, shapes do not share a chunk: the masking tables of heavy and light tails need different scales.
 constexpr double kSmallestSharedM = 1e-3;
 
-// True if shape `next` may join the chunk that begins with shape `first`.
 bool belongs(const KernelData& data, std::uint32_t first, std::uint32_t next) {
   const kernel::ShapeNode& a = data.shapes[first];
   return data.distribution == Distribution::kCauchy && a.m >= kSmallestSharedM &&
          data.shapes[next].q_minus_1 <= kMostRowSpread * a.q_minus_1 && data.needs_line[first] == data.needs_line[next];
 }
 
-// Gives the shapes of a chunk common values of the members that the kernel reads only from the first shape.
+// Unites the members that the kernel reads only from a chunk's first shape.
 void unite(std::span<kernel::ShapeNode> chunk) {
   kernel::ShapeNode common = chunk.front();
   for (const kernel::ShapeNode& shape : chunk) {
@@ -45,8 +44,7 @@ void add_chunk(Rows& rows, const KernelData& data, std::span<const std::uint32_t
   unite(std::span(rows.shapes).subspan(first));
 }
 
-// The chunks of a grid: sigma by sigma, in ascending order of q. They do not depend on the wanted entries, so an entry
-// always has the same neighbours.
+// Adds chunks in ascending order of q. All entries count, wanted or not, so an entry always has the same neighbours.
 void add_grid_chunks(Rows& rows, const MomentsRequest& request, const KernelData& data) {
   std::vector<std::uint32_t> ascending(request.q.size());
   std::iota(ascending.begin(), ascending.end(), 0U);
@@ -67,7 +65,6 @@ void add_grid_chunks(Rows& rows, const MomentsRequest& request, const KernelData
   }
 }
 
-// The number of wanted members of a row.
 std::uint32_t used_members(const Rows& rows, const MomentsRequest& request, const KernelData& data, const Row& row) {
   const Chunk& chunk = rows.chunks[row.chunk];
   if (request.wanted.empty()) return chunk.count;
@@ -78,7 +75,6 @@ std::uint32_t used_members(const Rows& rows, const MomentsRequest& request, cons
   return used;
 }
 
-// The chunks of a grid; the rows are still missing.
 Rows grid_chunks(const MomentsRequest& request, const KernelData& data) {
   Rows rows;
   rows.width = kRowWidth;

@@ -1,5 +1,5 @@
-// Groups the entries that one invocation of the kernel computes together. Entries of a grid that differ only in the
-// exponent q share nodes, facets and reflection (Row of shaders/physics/row.glsl).
+// Entries of a grid that differ only in the exponent q share nodes, facets and reflection, so one invocation of the
+// kernel computes them together (Row of shaders/physics/row.glsl).
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,7 @@ namespace dolp {
 /// Largest number of members of a row. The kernel is compiled for rows of one member and of this many.
 inline constexpr std::uint32_t kRowWidth = DOLP_ROW_WIDTH;
 
-/// Consecutive shapes with the same sigma, in ascending order of q, which share their nodes. For points, a single
-/// shape.
+/// Consecutive shapes with one sigma, in ascending order of q, which share their nodes. For points, a single shape.
 struct Chunk {
   std::uint32_t first = 0;  ///< position in Rows::shapes
   std::uint32_t count = 1;  ///< at most the width of a row
@@ -22,19 +21,17 @@ struct Chunk {
 
 /// A kernel row: the entries of one direction, one index and one chunk.
 struct Row {
-  std::uint32_t direction = 0;  ///< position in the request's directions
+  std::uint32_t direction = 0;
   std::uint32_t index = 0;
   std::uint32_t chunk = 0;
   std::uint32_t used = 1;  ///< number of wanted members
 };
 
-/// One invocation of the kernel.
 struct RowPiece {
   std::uint32_t row = 0;
   std::uint32_t piece = 0;  ///< piece of the slope axis
 };
 
-/// The rows of a request that have a wanted entry.
 struct Rows {
   std::uint32_t width = 1;                ///< 1 or kRowWidth
   std::vector<kernel::ShapeNode> shapes;  ///< ordered by chunk; the shapes of a chunk share scale, cut and cusp
@@ -52,8 +49,7 @@ struct Rows {
 /// only on the shapes, not on directions, indices and wanted entries.
 Rows rows_of(const MomentsRequest& request, const KernelData& data);
 
-/// The invocations of `count` rows, from row `first`. Neighbouring invocations mostly differ only in the direction, so
-/// they take the same time.
+/// Invocations of `count` rows from row `first`. Neighbours take equal time, because mostly only the direction differs.
 std::vector<RowPiece> pieces_of(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count);
 
 }  // namespace dolp

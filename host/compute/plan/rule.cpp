@@ -44,15 +44,14 @@ constexpr std::array<RuleModel, 5> kModels = {{
 
 constexpr double kNone = -1000.0;
 
-// log10 of the number of nodes within a distance of 1/m from a line or cusp, where the share of steep facets varies.
+// log10 of the nodes within a distance of 1/m from a line or cusp, where the share of steep facets varies.
 double decades_per_node(const SlopeShape& shape, double digits) {
   const double width = std::max(1.0, slope_width(shape));
   return std::log10(std::max(kNodesPerDigit * digits / width, 1.5));
 }
 
-// log10 of the error of smith's cusp at theta_r = 0 in rules that do not split there. Near the cusp Smith's Lambda is L
-// = C (m tan(theta_r))^(2q-2). The cusp is a point of the slope plane, so n nodes in each dimension leave an error of
-// n^-2q.
+// log10 of the error of smith's cusp at theta_r = 0 in rules that do not split there. Near it Smith's Lambda is L = C
+// (m tan(theta_r))^(2q-2). The cusp is a point of the slope plane, so n nodes per dimension leave an error of n^-2q.
 double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double digits) {
   const double per_node = decades_per_node(shape, digits);
   if (distribution == Distribution::kGaussian) {
@@ -67,8 +66,7 @@ double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double d
   return size - 2.0 * shape.q * per_node;
 }
 
-// log10 of the error of the line b = pi/2 of `integral` in rules that do not split there. At a distance x from the
-// line, facets steeper than 45 degrees contribute |x|^(2q-1).
+// log10 of the error of the line b = pi/2 of `integral` without a split. Steep facets at a distance x add |x|^(2q-1).
 double unsplit_line(Distribution distribution, const SlopeShape& shape, double digits) {
   if (distribution == Distribution::kGaussian) {
     return shape.sigma > (digits > kTightDigits ? kTightLineSigma : kLineSigma) ? 0.0 : kNone;
@@ -79,7 +77,7 @@ double unsplit_line(Distribution distribution, const SlopeShape& shape, double d
 
 using Rules = std::map<int, RuleNodes>;  // by order
 
-// Adds the Gauss rules of the orders 1 to `largest_order`, and of twice these orders, on all cores.
+// Adds rules of the orders 1 to `largest_order`, and of twice these orders.
 void add_gauss_rules(Rules& rules, int largest_order) {
   std::vector<Rules::value_type*> missing;
   for (int i = 1; i <= largest_order; ++i) {

@@ -21,8 +21,7 @@ Values at_nodes(const ShapePlan& plan, std::span<const Moments> nodes, const Val
   return values;
 }
 
-/// Error bounds of the interpolation of each column of `values` at the axis's nodes: the sum of the omitted
-/// coefficients, if they fall like the last known ones.
+/// Interpolation error of each column of `values`: the omitted coefficients, if they fall like the last ones.
 Eigen::RowVectorXd tails(const ShapeAxis& axis, const Values& values) {
   if (!axis.is_interpolated()) return Eigen::RowVectorXd::Zero(values.cols());
   const Eigen::MatrixXd sizes = (axis.coefficients.bottomRows(2 * kLastShapeCoefficients) * values).cwiseAbs();
@@ -36,7 +35,6 @@ Eigen::RowVectorXd tails(const ShapeAxis& axis, const Values& values) {
   return bounds;
 }
 
-/// Interpolates a quantity, with error bounds, from its values and bounds at the nodes.
 class Interpolation {
  public:
   explicit Interpolation(const ShapePlan& plan)
@@ -57,7 +55,7 @@ class Interpolation {
   Values q_;
 };
 
-/// Interpolates column `k` of the moments. The result has all its error in ColumnMoments::error.
+/// Interpolates column `k`. The result has all its error in ColumnMoments::error.
 void interpolate_column(const ShapePlan& plan, const Interpolation& interpolated, std::span<const Moments> nodes,
                         std::size_t k, std::span<Moments> moments) {
   for (Moments& of_entry : moments) of_entry.columns.resize(k + 1);
@@ -76,7 +74,7 @@ void interpolate_column(const ShapePlan& plan, const Interpolation& interpolated
   }
 }
 
-/// True if the request wants all entries of a direction and index, or none, for each of them.
+/// True if, for each direction and index, all entries are wanted or none.
 bool wants_whole_directions(const MomentsRequest& request) {
   if (request.layout != MomentsRequest::Layout::kGrid) return false;
   const std::size_t shapes = request.shapes();
@@ -86,14 +84,14 @@ bool wants_whole_directions(const MomentsRequest& request) {
   return true;
 }
 
-/// The moments are analytic in ln(x - origin) within `strip` of the real axis, where x is sigma or q.
+/// The moments are analytic in ln(x - origin) within `strip` of the real axis, where x is sigma or q. A polynomial
+/// through n nodes in the logarithm has an error of rho^-n, rho = exp(asinh(strip / half length)), where the length is
+/// the range of the logarithm.
 ///
 /// For sigma: with the slope in units of m, sigma enters only P(u) = (1 + u^2)^-q, which is analytic for |Im ln m| <
 /// pi/2. Near this limit P grows like the distance to the power -q, so a narrower strip is used. For q: P is analytic
-/// for Re q > 1. The mean slope, which smith masking needs, is analytic for Re q > 3/2; so is the projected area of the
-/// facets at grazing incidence, if the masking does not limit it (shaders/physics/README.md, section 2). A polynomial
-/// through n nodes in the logarithm has an error of rho^-n, rho = exp(asinh(strip / half length)), where the length is
-/// the range of the logarithm.
+/// for Re q > 1. The mean slope, which smith masking needs, is analytic for Re q > 3/2; so is the projected area of
+/// facets at grazing incidence, if the masking does not limit it (shaders/physics/README.md, section 2).
 struct ShapeParameter {
   double origin = 0.0;
   double strip = 1.0;
@@ -117,7 +115,7 @@ ShapeParameter sigma_parameter(Distribution distribution) {
   return {0.0, distribution == Distribution::kGaussian ? 0.78 : 1.15};
 }
 
-/// Domain: requests in which all directions are grazing, or none.
+/// Domain: all directions are grazing, or none.
 ShapeParameter q_parameter(const MomentsRequest& request) {
   const bool needs_mean_slope =
       request.masking == Masking::kSmith ||
@@ -126,7 +124,7 @@ ShapeParameter q_parameter(const MomentsRequest& request) {
   return {needs_mean_slope && has_mean_slope ? 1.5 : 1.0, 1.45};
 }
 
-/// Nodes for `values`, all different, such that the interpolation keeps `digits` decimal digits.
+/// Different nodes for `values` with which the interpolation keeps `digits` decimal digits.
 ShapeAxis shape_axis(const ShapeParameter& parameter, const std::vector<double>& values, double digits) {
   const auto [least, largest] = std::minmax_element(values.begin(), values.end());
   const double start = std::log(*least - parameter.origin);

@@ -1,7 +1,5 @@
-// Selects which moments of a grid are computed. The others are interpolated.
-//
-// The moments of one direction and one index are analytic in ln(sigma) and ln(q - 1). So the moments of many slope
-// distributions follow from a few Chebyshev nodes, which have a tighter tolerance.
+// Interpolation over slope distributions: moments of one direction and index are analytic in ln(sigma) and ln(q - 1),
+// so a few Chebyshev nodes with a tighter tolerance suffice.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,11 +13,9 @@
 
 namespace dolp {
 
-/// Groups of directions of a grid that can share one interpolation over slope distributions. Grazing directions form a
-/// separate group.
+/// Groups of directions that can share one interpolation over slope distributions. Grazing directions are one group.
 std::vector<std::vector<std::size_t>> split_grazing_directions(const MomentsRequest& request);
 
-/// Values of a parameter, and the nodes from which they are interpolated.
 struct ShapeAxis {
   std::vector<double> nodes;     ///< equal to the values if interpolation gains nothing
   Eigen::MatrixXd cardinal;      ///< values x nodes: weights of the moments at the nodes
@@ -27,7 +23,6 @@ struct ShapeAxis {
   bool is_interpolated() const { return coefficients.size() > 0; }
 };
 
-/// Plan for a grid. It depends only on the request.
 struct ShapePlan {
   ShapeAxis sigma;
   ShapeAxis q;
@@ -36,13 +31,12 @@ struct ShapePlan {
   std::size_t nodes_of_a_direction() const { return sigma.nodes.size() * q.nodes.size(); }
 };
 
-/// The plan of a request whose directions form one group (split_grazing_directions). Empty if every entry is computed
-/// separately, for instance if only some entries of a direction and index are wanted.
+/// The plan for one group of split_grazing_directions(). Empty if every entry is computed separately, for instance if
+/// only some entries of a direction and index are wanted.
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request);
 
-/// Interpolates the moments of one direction and index at the request's sigma x q from the moments at the nodes. Bounds
-/// are the nodes' bounds, weighted by the interpolant's weights, plus an interpolation error estimated from the last
-/// Chebyshev coefficients.
+/// Interpolates the moments of one direction and index at the request's sigma x q. Bounds are the nodes' bounds,
+/// weighted by the interpolant's weights, plus an interpolation error estimated from the last Chebyshev coefficients.
 void interpolate(const ShapePlan& plan, std::span<const Moments> nodes, std::span<Moments> moments);
 
 }  // namespace dolp

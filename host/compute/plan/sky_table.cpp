@@ -42,7 +42,6 @@ Eigen::RowVectorXd distances_at(const SkyBasis& basis, double u, double cells) {
   return (line - values_at(basis, u)).cwiseAbs();
 }
 
-/// The largest of these distances at the corners.
 Eigen::RowVectorXd corner_distances(const SkyBasis& basis, double cells) {
   Eigen::RowVectorXd largest = Eigen::RowVectorXd::Zero(static_cast<Eigen::Index>(basis.size()));
   for (const double end_deg : basis.nodes().ends_deg())
@@ -50,7 +49,6 @@ Eigen::RowVectorXd corner_distances(const SkyBasis& basis, double cells) {
   return largest;
 }
 
-/// The largest of these distances in the middles of the cells.
 Eigen::RowVectorXd middle_distances(const SkyBasis& basis, double cells) {
   Eigen::RowVectorXd largest = Eigen::RowVectorXd::Zero(static_cast<Eigen::Index>(basis.size()));
   for (double cell = 0.0; cell < cells; ++cell)
@@ -58,13 +56,12 @@ Eigen::RowVectorXd middle_distances(const SkyBasis& basis, double cells) {
   return largest;
 }
 
-/// A corner, and for each function the change of its slope in u there.
 struct Corner {
   double zenith_deg = 0.0;
-  Eigen::RowVectorXd bend;
+  Eigen::RowVectorXd bend;  // change of the slope of each function in u
 };
 
-/// The corners of a basis, the sharpest first.
+/// The sharpest corners come first.
 std::vector<Corner> corners_of(const SkyBasis& basis) {
   constexpr double kStep = 1e-4;
   std::vector<Corner> corners;

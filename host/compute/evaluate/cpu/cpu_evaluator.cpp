@@ -36,7 +36,6 @@ std::vector<std::size_t> wanted_entries(const MomentsRequest& request) {
   return entries;
 }
 
-/// Computes the moments entry by entry. Masking tables exist for one block of shapes at a time.
 std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData& data, CpuKernel& kernel,
                                 double unit_roundoff, const Progress& progress) {
   const std::vector<std::size_t> all = wanted_entries(request);
@@ -70,7 +69,6 @@ std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData&
   return moments;
 }
 
-/// Computes the moments from slope samples, direction by direction.
 std::vector<Moments> by_slope_samples(const MomentsRequest& request, const KernelData& data, CpuKernel& kernel,
                                       double unit_roundoff, const Progress& progress) {
   const SlopeSampling sampling(data);

@@ -1,4 +1,3 @@
-// Moments and pBRDFs on all cores of the CPU, from the kernel source.
 #pragma once
 
 #include "model/evaluator.hpp"
@@ -7,8 +6,7 @@
 
 namespace dolp {
 
-/// The evaluator "cpu". It has the kernel source and the rules of the Vulkan evaluator; the C++ compiler compiles the
-/// source.
+/// The evaluator "cpu". It runs the kernel source, compiled as C++, with the rules of the Vulkan evaluator.
 class CpuEvaluator final : public ModelEvaluator {
  public:
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;

@@ -1,4 +1,3 @@
-// The source of the shaders compiled as C++, in one translation unit for float and one for double.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +9,7 @@
 
 namespace dolp {
 
-/// The kernels of shaders/*.comp for one set of kernel data, which must outlive the object.
+/// The kernel source, compiled as C++, for one set of kernel data. The data must outlive the object.
 class CpuKernel {
  public:
   virtual ~CpuKernel() = default;
@@ -18,10 +17,10 @@ class CpuKernel {
   /// Builds the masking tables of `shapes`, which must be in ascending order, and drops earlier tables. If the masking
   /// needs tables, `moments` accepts only entries with these shapes.
   virtual void build_masking_tables(std::vector<std::uint32_t> shapes) = 0;
-  /// The moments of an entry. Adds DOLP_COLUMN_PARTS sums for each column of the data to `columns`.
+  /// Adds DOLP_COLUMN_PARTS sums for each column of the data to `columns`.
   virtual kernel::MomentsNode moments(const MomentsEntry& entry, std::span<double> columns) = 0;
 
-  /// The sums over the azimuths at a slope. Writes the two sums of each column of the data to `columns`.
+  /// Writes the two sums of each column of the data to `columns`.
   virtual kernel::AzimuthNode azimuths(const kernel::SlopeNode& slope, std::span<double> columns) = 0;
 
   /// The pBRDF f cos(theta_i) cos(theta_r) for k_s = 1, in 1/sr, divided by the power of two that BeamNode::density

@@ -43,8 +43,7 @@ inline double ldexp(double x, int k) { return x * std::bit_cast<double>(static_c
 
 #include "physics/prelude.glsl"
 
-/// The kernel source as the body of a class. Members of the class stand for the buffers and the specialization
-/// constants.
+/// The kernel source as the body of a class, whose members stand for the buffers and specialization constants.
 struct KernelSource {
 #include "interface.glsl"
 #include "physics/all.glsl"
@@ -64,7 +63,7 @@ struct KernelSource {
   std::vector<real2> rule_nodes;
   std::vector<real4> masking_table;
 
-  /// The kernel source with the model and the rules of `data`, without masking tables.
+  /// `source` has the model and the rules of `data`, but no masking tables.
   static KernelSource of(const KernelData& data) {
     KernelSource source;
     source.kDistribution = static_cast<uint>(data.distribution);

@@ -20,28 +20,24 @@ namespace {
 // spacing, in e-folds of slope. Tuned. Evaluations in thousands for the grid of plan/constants.hpp, at half this value,
 // this and double: masking none 27.4, 24.0, 22.1; v-cavity 54.2, 50.9, 49.2.
 constexpr double kWidthStep = 1.3;
-// The number of nodes is determined for widths at this spacing, in e-folds.
-constexpr double kNodeWidthStep = 0.4;
+constexpr double kNodeWidthStep = 0.4;  // the number of nodes is determined for widths at this spacing, in e-folds
 
-// A share of the facets below exp(-kNoFacets) counts as zero.
-constexpr double kNoFacets = 80.0;
+constexpr double kNoFacets = 80.0;  // a share of the facets below exp(-kNoFacets) counts as zero
 
-// What one shape of corners_of() requires of the rule of a piece.
+// The requirements of a shape of corners_of() on the rule of a piece.
 struct SampleRequest {
-  double all = 0.0;     // weight_of_shape() of orders.glsl for this shape
-  double digits = 0.0;  // digits that it requires of the piece
+  double all = 0.0;  // weight_of_shape() of orders.glsl
+  double digits = 0.0;
 };
 
-// An end of a piece on the slope axis.
 struct End {
   double slope = 0.0;
   std::uint32_t direction_piece = 0;  // number of the last breakpoint at or before this end
   bool is_breakpoint = false;         // true if this end is that breakpoint itself
 };
 
-// Factors of the weights of the sampled slopes, shared by all shapes of one width m. A weight is
-// common * exp(-exponent_factor(shape) * exponent), without constant factors, which the normalisation of the weights
-// cancels.
+// Factors of the weights of the sampled slopes, for all shapes of one width m. A weight is common *
+// exp(-exponent_factor(shape) * exponent). Constant factors are left out: the normalisation cancels them.
 struct SlopeWeights {
   double m = 0.0;
   Eigen::ArrayXd exponent;  // common_exponent() of slope.glsl
@@ -89,8 +85,8 @@ struct SlopeSampling::Impl {
   explicit Impl(const KernelData& of)
       : data(of), source(KernelSource::of(of)), rule(std::bit_cast<KernelSource::RuleNode>(of.rule)) {}
 
-  // The ends of the pieces: the breakpoints of the direction up to the first one at or beyond the cut, and more ends
-  // between the narrowest and the widest of the shapes `corners`.
+  // The ends of the pieces: the direction's breakpoints up to the first at or beyond the cut, and more ends between the
+  // narrowest and the widest of the shapes `corners`.
   std::vector<End> ends_of(std::uint32_t theta, std::span<const kernel::ShapeNode> corners) {
     const kernel::ThetaNode& node = data.thetas[theta];
     const double cut = corners.front().cut;
@@ -131,8 +127,7 @@ struct SlopeSampling::Impl {
     return task;
   }
 
-  // The piece with the largest number of nodes that a shape of `corners` requires. Writes the digits that each of these
-  // shapes requires to `requests`.
+  // The piece with the most nodes that a shape of `corners` requires. `requests` receives the digits for each shape.
   KernelSource::Piece hardest_piece(const KernelSource::ThetaNode& theta, const KernelSource::IndexNode& index,
                                     std::span<const kernel::ShapeNode> corners, const KernelSource::Task& task,
                                     std::vector<SampleRequest>& requests) {
@@ -198,8 +193,7 @@ struct SlopeSampling::Impl {
     return std::bit_cast<kernel::AzimuthNode>(sums);
   }
 
-  // Adds to `sums`, for each column, the sums of the finer rule over a piece and their differences from the coarser
-  // rule.
+  // Adds to `sums`, per column, the sums of the finer rule over a piece and their differences from the coarser rule.
   void add_columns(const SampledPiece& piece, const Eigen::ArrayXd& shape_weights, double share,
                    std::span<const double> azimuths, std::span<double> sums) {
     const auto functions = static_cast<Eigen::Index>(sums.size() / DOLP_COLUMN_PARTS);
@@ -222,8 +216,7 @@ struct SlopeSampling::Impl {
     }
   }
 
-  // The moments of one shape, without the slopes beyond the cut. `own` is memory for the weights. `columns` receives
-  // the sums of the columns.
+  // The moments of one shape, without the slopes beyond the cut. `columns` receives the sums of the columns.
   kernel::MomentsNode moments_of(const SlopeSamples& samples, const KernelSource::ShapeNode& shape,
                                  const SlopeWeights& weights, std::span<const kernel::AzimuthNode> azimuths,
                                  std::span<const double> of_columns, Eigen::ArrayXd& shape_weights,

@@ -1,5 +1,5 @@
-// Slope samples. Without masking and with v-cavity masking, the sums over the azimuths at a slope do not depend on the
-// slope distribution. The slope samples of a direction and an index are these sums at slopes along the slope axis. The
+// Without masking and with v-cavity masking, the sums over the azimuths at a slope do not depend on the slope
+// distribution. The slope samples of a direction and an index are these sums at slopes along the slope axis. The
 // moments of a slope distribution are integrals over the samples, with the weights of the distribution.
 #pragma once
 
@@ -15,10 +15,9 @@
 
 namespace dolp {
 
-/// True if the moments of a request are integrals over slope samples.
 bool has_slope_samples(const MomentsRequest& request);
 
-/// The wanted entries of one direction and one index, as positions in KernelData: `shapes` lists their shapes.
+/// The wanted entries of one direction and one index. `theta` and `shapes` are positions in KernelData.
 struct SampledEntries {
   std::uint32_t direction = 0;
   std::uint32_t theta = 0;
@@ -26,15 +25,13 @@ struct SampledEntries {
   std::vector<std::uint32_t> shapes;
 };
 
-/// One slope of a rule, and its weight dt.
 struct SampledSlope {
   double t = 0.0;
   double dt = 0.0;
   double digits = 0.0;  ///< digits that the sum over the azimuths needs
 };
 
-/// A piece of the slope axis. Its two rules have consecutive slopes in SlopeSamples::slopes: from position `first`,
-/// `fine` slopes of the finer rule, then `coarse` slopes of the coarser rule.
+/// A piece of the slope axis: in SlopeSamples::slopes `fine` slopes from position `first`, then `coarse` slopes.
 struct SampledPiece {
   double start = 0.0;
   double end = 0.0;
@@ -44,8 +41,7 @@ struct SampledPiece {
   std::uint32_t direction_piece = 0;  ///< number of the direction's piece (KernelData::pieces) that contains it
 };
 
-/// The slopes at which a direction and an index are sampled for all wanted shapes. They do not depend on the other
-/// entries of a request.
+/// The slopes at which a direction and an index are sampled for all wanted shapes. They do not depend on other entries.
 struct SlopeSamples {
   SampledEntries entries;
   double cut = 0.0;  ///< slopes above it are left out
@@ -53,7 +49,6 @@ struct SlopeSamples {
   std::vector<SampledSlope> slopes;
 };
 
-/// Results of the kernel for a number of slopes.
 struct SampledAzimuths {
   SampledAzimuths(std::size_t slopes, const KernelData& data)
       : nodes(slopes), per_slope(column_azimuths(data)), columns(slopes * per_slope) {}
@@ -71,14 +66,12 @@ class SlopeSampling {
   ~SlopeSampling();
 
   SlopeSamples plan(SampledEntries entries) const;
-  /// Appends the kernel's input for each slope to `nodes`.
   void append(const SlopeSamples& samples, std::vector<kernel::SlopeNode>& nodes) const;
   /// Writes the moments of all shapes of `samples` to `moments`, at the positions of their entries in the request. The
-  /// kernel's results for the slopes of `samples` begin at position `first` of `azimuths`. `unit_roundoff` is that of
-  /// the kernel's precision.
+  /// kernel's results for these samples begin at position `first` of `azimuths`.
   void integrate(const SlopeSamples& samples, const SampledAzimuths& azimuths, std::size_t first, double unit_roundoff,
                  std::span<Moments> moments) const;
-  /// Plans, computes and integrates samples with the kernel source compiled for the CPU.
+  /// Plans, computes and integrates samples on the CPU.
   void compute(SampledEntries entries, CpuKernel& kernel, double unit_roundoff, std::span<Moments> moments) const;
 
  private:
@@ -86,8 +79,7 @@ class SlopeSampling {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The wanted entries of the directions from `first` to `last` - 1 of a request, one element per pair of direction and
-/// index.
+/// One element per pair of direction and index, for the directions from `first` to `last` - 1.
 std::vector<SampledEntries> sampled_entries(const MomentsRequest& request, const KernelData& data, std::size_t first,
                                             std::size_t last);
 

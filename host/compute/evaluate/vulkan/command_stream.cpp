@@ -25,8 +25,7 @@ struct BarrierScopes {
 };
 
 constexpr VkPipelineStageFlags kCompute = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
-/// In the order of Barrier.
-constexpr std::array<BarrierScopes, 3> kScopes = {
+constexpr std::array<BarrierScopes, 3> kScopes = {  // in the order of Barrier
     {{VK_PIPELINE_STAGE_TRANSFER_BIT, kCompute, VK_ACCESS_TRANSFER_WRITE_BIT, VK_ACCESS_SHADER_READ_BIT},
      {kCompute, kCompute, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_SHADER_READ_BIT},
      {kCompute, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_HOST_READ_BIT}}};

@@ -1,4 +1,3 @@
-// Recording and submission of commands, and the buffers that their kernels read.
 #pragma once
 
 #include <cstddef>
@@ -14,27 +13,26 @@ namespace dolp::vulkan {
 
 class Kernels;
 
-/// The accesses that a barrier separates.
 enum class Barrier {
   kUploadToKernel,  ///< staging copies write, a kernel reads; does nothing if no copies were recorded
   kKernelToKernel,  ///< a kernel writes, the next kernels read
   kKernelToHost,    ///< kernels write, the host reads after the wait
 };
 
-/// One command buffer that is recorded and submitted again and again. At most one submission is in flight.
+/// One command buffer, recorded and submitted again and again. At most one submission is in flight.
 class CommandStream {
  public:
   explicit CommandStream(const Device& device);
 
-  /// Starts the recording and the clock.
+  /// Begins a new recording, and starts the clock.
   void begin();
   void copy(const Buffer& from, VkBuffer to, VkDeviceSize bytes);
   void barrier(Barrier barrier);
   /// Runs `pipeline` on `count` invocations from `first` (see DOLP_PUSH_CONSTANTS); does nothing if `count` is 0.
   void dispatch(const Kernels& kernels, VkPipeline pipeline, std::uint32_t first, std::uint32_t count,
                 int largest_order, std::uint32_t sky = 0);
-  /// Submits the recording and waits until it is done. Returns the seconds that it took, measured by the device's
-  /// clock. If the queue has no timestamps, the host's clock measures them, including the submission.
+  /// Submits the recording and waits for its end. Returns its duration in seconds by the device's clock or, if the
+  /// queue has no timestamps, by the host's clock; this includes the submission.
   /// Errors: DeviceTimeout after `timeout_s`; DeviceError if the device is lost.
   double submit_and_wait(double timeout_s);
 
@@ -46,20 +44,18 @@ class CommandStream {
   UniqueFence fence_;
   UniqueQueryPool timestamps_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
-  bool has_copies_ = false;  ///< true if copies were recorded since the last barrier
+  bool has_copies_ = false;  ///< copies were recorded since the last barrier
 };
 
-/// A buffer in the memory of the device that the host writes and kernels read. If the host can map this memory, it
-/// writes directly, otherwise through a staging buffer.
+/// A buffer on the device that the host writes, directly or through a staging buffer, and kernels read.
 class InputBuffer {
  public:
-  /// If `force_staging` is true, the buffer uses staging on every device.
+  /// If `force_staging`, the buffer uses staging on every device. Otherwise it does if the host cannot map the memory.
   InputBuffer(const Device& device, VkDeviceSize bytes, bool force_staging, VkFormat texels = VK_FORMAT_UNDEFINED);
 
   VkBuffer get() const { return buffer_.get(); }
   VkBufferView texels() const { return buffer_.texels(); }
-  /// Writes `bytes` to the start of the buffer. If this needs a staging copy, it is recorded in `stream`, which must be
-  /// recording.
+  /// Writes to the start of the buffer. A staging copy is recorded in `stream`, which must be recording.
   void write(std::span<const std::byte> bytes, CommandStream& stream);
 
  private:

@@ -20,11 +20,9 @@
 namespace dolp::vulkan {
 namespace {
 
-/// The SPIR-V module of a variant.
 std::span<const std::uint32_t> module_of(const KernelVariant& variant, bool float64) {
   using namespace spirv;
   using Module = std::array<std::span<const std::uint32_t>, 2>;  // SPIR-V in float and in double
-  // Without columns, with functions of a sky, with responses.
   const std::array<std::array<Module, 3>, 3> modules = {
       {{{{slopes_float, slopes_double},
          {slopes_sky_float, slopes_sky_double},
@@ -48,7 +46,6 @@ VkDescriptorType descriptor_type(std::uint32_t binding) {
   return binding < kStorageCount ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER : VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
 }
 
-/// Lets the driver compile a variant of a module.
 UniquePipeline compile(VkDevice device, VkPipelineLayout layout, std::uint32_t local_size,
                        std::span<const std::uint32_t> spirv, const KernelVariant& variant) {
   const VkShaderModuleCreateInfo module_info{
@@ -56,7 +53,7 @@ UniquePipeline compile(VkDevice device, VkPipelineLayout layout, std::uint32_t l
   const auto shader =
       created<UniqueShaderModule>(device, vkCreateShaderModule, module_info, "creating a shader module");
 
-  // The values are in the order of DOLP_SPEC_*. The enumerators have the numbers of interface.glsl.
+  // The order is that of DOLP_SPEC_*; the enumerators have the numbers of interface.glsl.
   const std::array<std::uint32_t, 9> values{local_size,
                                             static_cast<std::uint32_t>(variant.distribution),
                                             static_cast<std::uint32_t>(variant.masking),
@@ -85,12 +82,10 @@ UniquePipeline compile(VkDevice device, VkPipelineLayout layout, std::uint32_t l
 }
 
 constexpr auto kInterruptInterval = std::chrono::milliseconds(20);
-// SwiftShader compiles the largest kernel in 7 s on an idle processor.
-constexpr double kDefaultCompilationLimitS = 120.0;
+constexpr double kDefaultCompilationLimitS = 120.0;  // SwiftShader on an idle processor needs at most 7 s
 constexpr const char* kCompilationLimit = "DOLP_COMPILATION_LIMIT_S";
 
-/// Seconds that a driver may take to compile a kernel. Errors: InputError if the environment variable is not a number
-/// above 0.
+/// Seconds that a driver may take for one kernel. InputError if the environment variable is not a number above 0.
 double compilation_limit_s() {
   const char* const wish = std::getenv(kCompilationLimit);
   if (wish == nullptr) return kDefaultCompilationLimitS;
@@ -210,8 +205,7 @@ VkPipeline Kernels::pipeline(const KernelVariant& variant) {
 
 UniquePipeline Kernels::create(std::span<const std::uint32_t> spirv, const KernelVariant& variant) const {
   const double limit_s = compilation_limit_s();
-  // A driver may never finish a compilation, and nothing can stop it. So the compilation has a thread that can be
-  // abandoned.
+  // A driver may never finish a compilation, and nothing can stop it. So it gets a thread that can be abandoned.
   std::packaged_task<UniquePipeline()> compilation(
       [device = device_.get(), layout = layout_.get(), local_size = local_size(), spirv, variant] {
         return compile(device, layout, local_size, spirv, variant);

@@ -1,4 +1,4 @@
-// The compute pipelines of shaders/*.comp, and the descriptor set that they share.
+// The compute pipelines of shaders/*.comp; they share one descriptor set.
 #pragma once
 
 #include <array>
@@ -20,10 +20,8 @@ static_assert(kStorageCount == DOLP_BINDING_RULE_NODES &&
               kTexelCount == DOLP_BINDING_MASKING_NODES + 1 - kStorageCount);
 constexpr std::uint32_t kPushConstantCount = 4;
 
-/// The entry points of shaders/*.comp.
 enum class EntryPoint { kMoments, kSlopes, kMaskingTable, kMueller };
 
-/// Variant of a pipeline: the specialization constants of interface.glsl, and the width of a row.
 struct KernelVariant {
   EntryPoint entry = EntryPoint::kMoments;
   Distribution distribution = Distribution::kCauchy;
@@ -38,33 +36,30 @@ struct KernelVariant {
   auto operator<=>(const KernelVariant&) const = default;
 };
 
-/// The variants that the data of a request require.
 KernelVariant moments_variant(const KernelData& data, std::uint32_t width);
 KernelVariant slopes_variant(const KernelData& data);
 KernelVariant masking_table_variant(const KernelData& data);
 
-/// Creates pipelines on demand, one for each variant. Any thread may ask for a pipeline.
+/// Creates a pipeline on demand for each variant. Any thread may ask for one.
 class Kernels {
  public:
   Kernels(const Device& device, bool float64);
 
-  /// The buffers for the bindings of interface.glsl. A binding covers its whole buffer.
   struct Bindings {
     std::array<VkBuffer, kStorageCount> buffers{};
     std::array<VkBufferView, kTexelCount> texels{};  ///< the first is DOLP_BINDING_RULE_NODES
   };
-  /// Writes the bindings to the descriptor set. A binding without a buffer or view gets that of another binding: no
-  /// pipeline reads it, but it must not refer to a destroyed buffer.
+  /// A missing buffer or view is replaced by another: nothing reads it, but it must not refer to a destroyed buffer.
   void bind(const Bindings& bindings);
 
   VkPipeline pipeline(const KernelVariant& variant);
-  /// True if the pipeline exists already.
+  /// True if the pipeline has been created.
   bool has(const KernelVariant& variant) { return known(variant) != VK_NULL_HANDLE; }
   std::uint32_t local_size() const { return device_.local_size(); }
   VkPipelineLayout layout() const { return layout_.get(); }
   VkDescriptorSet descriptor_set() const { return set_; }
 
-  /// Creates a pipeline from any SPIR-V module that has the interface of interface.glsl.
+  /// Creates a pipeline from any SPIR-V module with the interface of interface.glsl.
   UniquePipeline create(std::span<const std::uint32_t> spirv, const KernelVariant& variant) const;
 
  private:

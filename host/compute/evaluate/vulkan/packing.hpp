@@ -1,4 +1,3 @@
-// Converts structures of interface.glsl (real = double on the host) to bytes in the kernels' precision, and back.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -16,44 +15,40 @@
 
 namespace dolp::vulkan {
 
-/// Number of `real` in a structure that holds nothing else.
+/// Number of `real` members of a structure that has no other members.
 template <class Node>
 constexpr std::size_t real_count() {
   static_assert(std::is_standard_layout_v<Node> && alignof(Node) == alignof(double));
   return sizeof(Node) / sizeof(double);
 }
 
-/// Converts between the host's double and the precision in which the kernels store `real`.
 class Packing {
  public:
   explicit Packing(bool float64) : float64_(float64) {}
 
   std::size_t real_bytes() const { return float64_ ? sizeof(double) : sizeof(float); }
-  /// Bytes of one structure in a buffer.
   template <class Node>
   std::size_t node_bytes() const {
     return real_count<Node>() * real_bytes();
   }
-  /// Bytes of output per structure if `numbers` numbers belong to each structure. These numbers follow all structures.
+  /// Bytes of a structure and of `numbers` numbers that belong to it. The numbers follow all structures.
   template <class Node>
   std::size_t output_bytes(std::size_t numbers) const {
     return node_bytes<Node>() + numbers * real_bytes();
   }
-  /// Number of nodes in the masking table of one shape.
   std::size_t masking_nodes() const {
     return float64_ ? DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_DOUBLE)
                     : DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_FLOAT);
   }
-  /// Texel formats of rule nodes and of masking tables, and the number of texels of a masking table. In double a node
-  /// of a masking table takes two texels.
+  /// In double a node of a masking table takes two texels.
   VkFormat rule_texels() const { return float64_ ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32_SFLOAT; }
   VkFormat masking_texels() const { return float64_ ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT; }
   std::size_t texels_of_table() const { return masking_nodes() * (float64_ ? 2 : 1); }
-  /// Largest relative error of rounding to the kernels' precision.
+  /// Largest relative rounding error in the kernels' precision.
   double unit_roundoff() const { return float64_ ? kDoubleRoundoff : kFloatRoundoff; }
 
-  /// Fills `bytes` with the structures node_of(0), ..., node_of(count - 1). All cores call node_of, in any order.
-  /// Numbers beyond the range of float become infinite.
+  /// Fills `bytes` with node_of(0), ..., node_of(count - 1), called by all cores in any order. Numbers beyond the range
+  /// of float become infinite.
   template <class NodeOf>
   void pack(std::size_t count, const NodeOf& node_of, std::vector<std::byte>& bytes) const {
     constexpr std::size_t kNodesAtOnce = 8192;
@@ -64,7 +59,6 @@ class Packing {
     });
   }
 
-  /// Reads the structure at `position` in an array of such structures.
   template <class Node>
   Node read(std::span<const std::byte> bytes, std::size_t position) const {
     const std::span<const std::byte> source = bytes.subspan(position * node_bytes<Node>(), node_bytes<Node>());

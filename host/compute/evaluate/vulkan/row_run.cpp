@@ -10,7 +10,6 @@ namespace {
 
 using TaskWords = std::array<std::uint32_t, 4>;
 
-// Rows that a thread processes at a time.
 constexpr std::size_t kRowsAtOnce = 512;
 
 class RowRun final : public Run<Moments> {
@@ -73,7 +72,7 @@ class RowRun final : public Run<Moments> {
     return invocations * rows_.width * packing_.output_bytes<kernel::MomentsNode>(column_sums(data_));
   }
 
-  /// Begins the submission of the block's first tile, with the inputs that all tiles of the block share.
+  /// Begins the submission of the block's first tile, with the inputs that all its tiles share.
   void begin_block(const Block& block) {
     CommandStream& stream = context_.stream;
     stream.begin();

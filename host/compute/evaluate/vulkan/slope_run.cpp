@@ -87,7 +87,7 @@ class SlopeRun final : public Run<Moments> {
   SlopeTiles tiles_;
   const KernelData& data_;
   Renumbering thetas_, indices_;
-  std::vector<kernel::SlopeNode> nodes_;  ///< the slopes of a tile
+  std::vector<kernel::SlopeNode> nodes_;
 };
 
 }  // namespace

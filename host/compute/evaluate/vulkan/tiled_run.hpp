@@ -16,7 +16,6 @@
 
 namespace dolp::vulkan {
 
-/// Objects that a run uses; they outlive the run.
 struct KernelContext {
   const Device& device;
   const dolp::Device& description;
@@ -26,11 +25,11 @@ struct KernelContext {
   double tile_timeout_s = 0.0;
 };
 
-/// The buffers of a request on the device, by their bindings. The inputs of a tile are recorded, then its kernel runs.
+/// Base of the runs. For each tile, a run records the upload of the inputs, then runs the kernel.
 class TiledRun {
  public:
   virtual ~TiledRun() = default;
-  /// Creates the pipelines before the computation, so that the time for this is measured separately.
+  /// Creates the pipelines before the computation, so that this time is measured separately.
   virtual void create_pipelines() { context_.kernels.pipeline(variant_); }
   const Work& cost() const { return cost_; }
 
@@ -43,7 +42,7 @@ class TiledRun {
   void add_inputs(std::uint32_t binding, std::size_t count, VkFormat texels = VK_FORMAT_UNDEFINED) {
     add_input(binding, count * packing_.node_bytes<Node>(), texels);
   }
-  /// Adds the buffer that the kernel writes, then the buffers of the rule, and binds all buffers.
+  /// Creates the buffer for the results and the buffers of the rule, then binds all buffers.
   void add_results(std::uint32_t binding, std::size_t bytes, const KernelData& data, const KernelVariant& variant);
   /// Records the upload of node_of(0), ..., node_of(count - 1).
   template <class NodeOf>
@@ -52,7 +51,7 @@ class TiledRun {
     inputs_[binding]->write(scratch_, context_.stream);
   }
   void upload_rule(const KernelData& data);
-  /// Reports the share of the wanted entries that is done. False if the caller of the run cancels it.
+  /// `share` is the part of the wanted entries that is done. False if the caller cancels the run.
   static bool goes_on(const Progress& progress, double share, std::size_t wanted) {
     return !progress || progress(static_cast<std::size_t>(share * static_cast<double>(wanted)), wanted);
   }
@@ -72,22 +71,19 @@ class TiledRun {
 template <class Result>
 class Run : public TiledRun {
  public:
-  /// The results of the wanted entries, at their positions in the request; nothing if `progress` returned false.
-  /// Errors: DeviceError.
+  /// Results at the positions of their entries; nothing if `progress` returned false. Errors: DeviceError.
   virtual std::optional<std::vector<Result>> compute(const Progress& progress) = 0;
 
  protected:
   using TiledRun::TiledRun;
 };
 
-/// A run that computes moments by kernel rows.
 std::unique_ptr<Run<Moments>> row_run(const KernelContext& context, const MomentsRequest& request,
                                       const VulkanOptions& options);
-/// A run that computes moments from slope samples, for some directions at a time. The samples serve all slope
-/// distributions.
+/// Computes slope samples, which serve all slope distributions, for some directions at a time.
 std::unique_ptr<Run<Moments>> slope_run(const KernelContext& context, const MomentsRequest& request,
                                         const VulkanOptions& options);
-/// A run for pBRDFs. A BeamNode contains its shape and needs no masking table, so the size of a tile limits the memory.
+/// A BeamNode contains its shape and needs no masking table, so only the size of a tile determines the memory.
 std::unique_ptr<Run<ScatteringMatrix>> scattering_run(const KernelContext& context, const ScatteringRequest& request,
                                                       const VulkanOptions& options);
 

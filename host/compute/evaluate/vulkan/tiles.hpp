@@ -1,4 +1,4 @@
-// Divides a request into dispatches for a device. Runs and forecasts of runs use it; it does not call Vulkan.
+// Divides a request into dispatches for a device, without calls of Vulkan. Runs and their forecasts use it.
 #pragma once
 
 #include <array>
@@ -16,24 +16,23 @@
 
 namespace dolp::vulkan {
 
-/// A node of a masking table, in double.
 using MaskingNode = std::array<double, 4>;
 
 /// Buffer bytes per invocation (a piece of a row, a slope or a beam) and per shape.
 struct TileCosts {
   std::uint64_t invocation_bytes = 0;  ///< bytes in all buffers that grow with the invocations of a tile
   std::uint64_t shape_bytes = 1;       ///< bytes of a shape's node and masking table; 1 if tiles bind no shapes
-  std::uint64_t shape_texels = 0;      ///< texels of the masking table
+  std::uint64_t shape_texels = 0;      ///< texels of a shape's masking table
 };
 
-/// Number of invocations per dispatch, and number of shapes that are bound at a time; at least one each.
+/// Invocations per dispatch, and shapes that are bound at a time; at least one each.
 struct TileSizes {
   std::uint32_t invocations = 1;
   std::uint32_t shapes = 1;
 };
 
-/// Number of invocations that may run in lockstep on a device that limits the iterations of loops. In lockstep all
-/// iterate as often as the longest one. lavapipe's widest vector has this many lanes.
+/// Number of invocations that may run in lockstep: lavapipe's widest vector has this many lanes. On a device with a
+/// limit of loop iterations, all of them iterate as often as the longest.
 inline constexpr std::uint32_t kLockstep = 16;
 
 /// Consecutive chunks of shapes (plan/rows.hpp) whose masking tables are bound together, and the rows that need them.
@@ -44,20 +43,18 @@ struct Block {
   std::uint32_t row_count = 0;
 };
 
-/// Slope samples that are planned, sampled and integrated together, with the kernel's input for them.
+/// Slope samples that are planned, sampled and integrated together, and the kernel's input for them.
 struct SlopeBatch {
   std::vector<SlopeSamples> samples;
-  std::vector<std::size_t> first;          ///< for each of `samples`, the position of its first slope in `slopes`
-  std::vector<kernel::SlopeNode> slopes;   ///< the slopes of all samples
-  std::vector<std::uint32_t> in_lockstep;  ///< positions in `slopes`, in the order for the device; some are repeated to
-                                           ///< fill groups
+  std::vector<std::size_t> first;  ///< for each of `samples`, the position of its first slope in `slopes`
+  std::vector<kernel::SlopeNode> slopes;
+  std::vector<std::uint32_t> in_lockstep;  ///< positions in `slopes`; some are repeated to fill groups
 };
 
-/// Size of the dispatches of a request, and their number.
 struct DispatchCount {
   std::uint32_t tile_invocations = 0;
   std::uint32_t block_shapes = 0;
-  std::uint32_t row_width = 1;  ///< largest number of entries that share an invocation, see plan/rows.hpp
+  std::uint32_t row_width = 1;  ///< largest number of entries per invocation, see plan/rows.hpp
   std::uint64_t rows = 0;       ///< kernel rows; with slope samples, pairs of a direction and an index
   std::uint64_t slopes = 0;     ///< slopes of all slope samples
   std::uint64_t dispatches = 0;
@@ -67,7 +64,7 @@ struct DispatchCount {
 /// The dispatches of a request for moments by kernel rows.
 struct RowTiles {
   RowTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options);
-  /// Groups the rows into blocks of at most sizes.shapes shapes. A chunk is never divided.
+  /// A block has at most sizes.shapes shapes. A chunk is never divided.
   std::vector<Block> blocks() const;
   DispatchCount count() const;
 
@@ -78,13 +75,11 @@ struct RowTiles {
   TileSizes sizes;
 };
 
-/// The dispatches of a request for moments from slope samples, for some directions at a time. The request must outlive
-/// it.
+/// The dispatches of a request for moments from slope samples. The request must outlive the object.
 struct SlopeTiles {
   SlopeTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options);
-  /// Number of directions in a batch. It is small enough to limit the memory of the batch.
+  /// Directions in a batch; few enough to limit its memory.
   std::size_t batch_directions() const;
-  /// The batch that begins at direction `first`.
   SlopeBatch batch(std::size_t first) const;
   DispatchCount count() const;
 
@@ -93,10 +88,10 @@ struct SlopeTiles {
   KernelData data;
   SlopeSampling sampling;
   TileCosts costs;
-  std::uint32_t slopes = 0;  ///< slopes per dispatch: a multiple of kLockstep, so that no group in lockstep is divided
+  std::uint32_t slopes = 0;  ///< slopes per dispatch: a multiple of kLockstep, so that no group is divided
 };
 
-/// The dispatches of a request for pBRDFs. It needs no blocks, because a BeamNode contains its shape.
+/// The dispatches of a request for pBRDFs. There are no blocks, because a BeamNode contains its shape.
 struct BeamTiles {
   BeamTiles(const ScatteringRequest& request, const dolp::Device& device, const VulkanOptions& options);
   DispatchCount count() const;
@@ -105,16 +100,15 @@ struct BeamTiles {
   BeamPlan plan;
   TileCosts costs;
   std::size_t entries = 0;
-  std::uint32_t beams = 0;  ///< beams of a dispatch
+  std::uint32_t beams = 0;  ///< beams per dispatch
 };
 
-/// Numbers the members of a list in the order of their first use, so that a tile binds only used members.
+/// Numbers the members of a list in the order of their first use, so that a tile binds only these members.
 class Renumbering {
  public:
   explicit Renumbering(std::size_t list_size) : number_(list_size, kUnused) {}
-  /// The number of a member of the list.
   std::uint32_t operator()(std::uint32_t member);
-  /// The members in the order of their numbers.
+  /// These members, in the order of their numbers.
   std::span<const std::uint32_t> used() const { return used_; }
   void clear();
 
@@ -127,12 +121,10 @@ class Renumbering {
 
 namespace dolp {
 
-/// The dispatches of VulkanEvaluator for a request on a device.
 vulkan::DispatchCount count_dispatches(const MomentsRequest& request, const dolp::Device& device);
 vulkan::DispatchCount count_dispatches(const ScatteringRequest& request, const dolp::Device& device);
 
-/// A device with the limits that every Vulkan device guarantees, for plans without a device. Its memory size is a
-/// guess.
+/// A device with the limits that every Vulkan device guarantees, for plans without a device. Its memory is a guess.
 dolp::Device least_device();
 
 }  // namespace dolp

@@ -69,8 +69,7 @@ class VulkanEvaluator::Impl {
   std::vector<std::string> validation_messages() const { return context_.validation_messages(); }
   const VulkanOptions& options() const { return options_; }
 
-  /// Releases the buffers of the last request, and uses smaller tiles for all later ones. Returns false if the tiles
-  /// are as small as is sensible.
+  /// Releases the buffers of the last request, and shrinks later tiles. Returns false if they cannot shrink further.
   bool shrink_tiles() {
     run_.reset();
     if (options_.max_tile_invocations <= kSmallestTile) return false;
@@ -79,7 +78,7 @@ class VulkanEvaluator::Impl {
     return true;
   }
 
-  /// Computes a request and adds its cost to `report`. After a DeviceTimeout this object must not be destroyed.
+  /// Adds the cost to `report`. After a DeviceTimeout this object must not be destroyed.
   std::vector<Moments> compute(const MomentsRequest& request, const Progress& progress, EvaluationReport& report) {
     run_.reset();
     const auto make_run = has_slope_samples(request) ? vulkan::slope_run : vulkan::row_run;
@@ -145,8 +144,7 @@ class VulkanEvaluator::Impl {
   std::optional<vulkan::Kernels> float_kernels_, double_kernels_;
   std::future<void> prepared_;  ///< pipelines in preparation; the destructor waits for the thread
   vulkan::CommandStream stream_;
-  std::unique_ptr<vulkan::TiledRun> run_;  ///< the current run, a member so that its buffers outlive a submission that
-                                           ///< never ends
+  std::unique_ptr<vulkan::TiledRun> run_;  ///< the current run; its buffers must outlive a submission that never ends
 };
 
 VulkanEvaluator::VulkanEvaluator(const VulkanOptions& options) {

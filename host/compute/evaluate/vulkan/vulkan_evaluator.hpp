@@ -1,4 +1,3 @@
-// Moments and pBRDFs on a Vulkan device.
 #pragma once
 
 #include <cstdint>
@@ -14,29 +13,25 @@
 namespace dolp {
 
 struct VulkanOptions {
-  std::string device;         ///< name or position of the device, see choose_device
-  bool needs_double = false;  ///< true if the device must support double precision
-  /// Use of the validation layer. Any message of the layer makes `evaluate` throw DeviceError.
+  std::string device;  ///< name or position of the device, see choose_device
+  bool needs_double = false;
+  /// Any message of the validation layer makes `evaluate` throw DeviceError.
   ValidationMode validation = ValidationMode::kFromEnvironment;
   // The following options do not change results.
-  std::uint32_t max_tile_invocations = 65'536;  ///< largest number per dispatch; progress and cancelling wait for its
-                                                ///< end
-  std::uint32_t max_block_shapes = 4'096;       ///< largest number of shapes whose masking tables are on the device at
-                                                ///< a time
-  /// copies inputs through staging buffers even if the host can map the memory of the device
+  std::uint32_t max_tile_invocations = 65'536;  ///< largest dispatch; progress and cancelling wait for its end
+  std::uint32_t max_block_shapes = 4'096;       ///< most shapes whose masking tables are on the device at a time
+  /// Copies inputs through staging buffers even if the host can map the memory of the device.
   bool staged_uploads = false;
   double tile_timeout_s = 600.0;
 };
 
-/// Adapts the options to a device and a precision. On a processor dispatches get fewer invocations, because a processor
-/// is slow at the most expensive entries, and a call must end within a second of a cancel.
+/// On a processor dispatches get fewer invocations, because a call must end within a second of a cancel.
 VulkanOptions for_device(VulkanOptions options, const dolp::Device& device, Precision precision);
 
-/// Computes moments and pBRDFs with the kernels of shaders/. Device and pipelines live as long as the object.
+/// The device and the pipelines live as long as the object.
 class VulkanEvaluator : public ModelEvaluator {
  public:
-  /// Errors: DeviceError if no usable device matches, if the device lacks double precision although it is required, or
-  /// if the validation layer is requested and missing.
+  /// Errors: DeviceError if no device matches or has the required precision, or if the validation layer is missing.
   explicit VulkanEvaluator(const VulkanOptions& options);
   ~VulkanEvaluator() override;
 
@@ -56,11 +51,11 @@ class VulkanEvaluator : public ModelEvaluator {
 
   bool has_double() const override;
 
-  /// Totals over all calls since clear_report.
+  /// Totals since clear_report().
   EvaluationReport report() const override;
   void clear_report() override;
 
-  /// Warnings and errors of the validation layer so far; empty after a tile that did not finish in time.
+  /// Warnings and errors so far; empty after a tile that did not finish in time.
   std::vector<std::string> validation_messages() const;
 
  private:

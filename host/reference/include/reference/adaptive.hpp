@@ -1,4 +1,3 @@
-// Globally adaptive Gauss-Kronrod quadrature of several integrands at once.
 #pragma once
 
 #include <algorithm>
@@ -16,21 +15,19 @@ namespace dolp::reference {
 template <std::size_t N>
 using Values = std::array<double, N>;
 
-/// Integrals of N functions with bounds of their absolute errors.
 template <std::size_t N>
 struct Integral {
   Values<N> value{};
   Values<N> error{};
 };
 
-/// Stop criterion of a quadrature.
 struct Goal {
   double relative = 1e-9;        ///< required error of each integral, divided by the integral's scale
   std::size_t max_panels = 400;  ///< the quadrature stops at this number and returns the error reached
   int subdivisions = 1;          ///< equal parts of each first panel; more parts give a different, finer rule
 };
 
-/// The ends of the first panels of a quadrature: both ends of the interval, and all break points between them.
+/// The ends of the first panels: both ends of the interval, and all break points between them.
 class Breaks {
  public:
   Breaks(double low, double high) : points_{low, high} {}
@@ -47,10 +44,8 @@ class Breaks {
   std::vector<double> points_;
 };
 
-/// Integrates one panel with the 21-point Kronrod rule. The error is the difference from the 10-point Gauss rule that
-/// it contains, plus rounding. For smooth integrands this is very pessimistic, but the usual sharper estimate fails for
-/// other integrands.
-/// Source: nodes and weights of Boost.Math.
+/// 21-point Kronrod rule. The error is the difference from the 10-point Gauss rule in it, plus rounding: very
+/// pessimistic for smooth integrands, but the usual sharper estimate fails for others. Source: Boost.Math.
 template <std::size_t N, class Integrand>
 Integral<N> kronrod_panel(const Integrand& integrand, double low, double high) {
   using Kronrod = boost::math::quadrature::gauss_kronrod<double, 21>;
@@ -82,8 +77,7 @@ Integral<N> kronrod_panel(const Integrand& integrand, double low, double high) {
   return result;
 }
 
-/// The interval between two break points, as the image of [0, 1] under s -> s^2 (3 - 2 s). Square roots and 3/2 powers
-/// of the distance to a break point become smooth functions of s.
+/// An interval as the image of [0, 1] under s -> s^2 (3 - 2 s), which makes roots and 3/2 powers at its ends smooth.
 struct Stretch {
   double low;
   double high;
@@ -94,7 +88,7 @@ struct Stretch {
   double derivative(double s) const { return 6.0 * (high - low) * s * (1.0 - s); }
 };
 
-/// A part of a Stretch, from s = `low` to s = `high`, and its integral.
+/// The part of a Stretch from s = `low` to s = `high`, and its integral.
 template <std::size_t N>
 struct Panel {
   Stretch stretch;
@@ -125,7 +119,7 @@ Integral<N> sum_of(const std::vector<Panel<N>>& panels) {
   return total;
 }
 
-/// Largest of the N errors, each divided by its scale. A component with infinite scale does not count.
+/// Each error is divided by its scale. A component with infinite scale does not count.
 template <std::size_t N>
 double scaled_error(const Values<N>& error, const Values<N>& scale) {
   double worst = 0.0;
@@ -135,8 +129,7 @@ double scaled_error(const Values<N>& error, const Values<N>& scale) {
   return worst;
 }
 
-/// Integrates N functions over the panels between `breaks`. Halves the worst panel until every error is within
-/// `goal.relative` times `scale(values)`, or until there are `goal.max_panels` panels.
+/// Halves the worst panel until all errors are within `goal.relative` times the scales, or until `goal.max_panels`.
 template <std::size_t N, class Integrand, class Scale>
 Integral<N> integrate(const Integrand& integrand, const Breaks& breaks, const Goal& goal, const Scale& scale) {
   const std::vector<double> points = breaks.sorted();

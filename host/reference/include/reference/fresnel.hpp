@@ -1,4 +1,3 @@
-// Fresnel reflection in complex amplitudes, as the reference computes it.
 #pragma once
 
 #include <boost/math/constants/constants.hpp>
@@ -9,7 +8,7 @@
 
 namespace dolp::reference {
 
-/// Amplitude coefficients of reflection, and absorptances that are computed without cancellation.
+/// Complex reflection amplitudes, and absorptances without cancellation.
 struct FresnelCoefficients {
   std::complex<double> r_s;
   std::complex<double> r_p;
@@ -17,12 +16,10 @@ struct FresnelCoefficients {
   double absorbed_p = 0.0;  ///< 1 - |r_p|^2
 };
 
-/// Reflection at the angle beta from the facet normal.
-/// Conventions: r_p = -r_s at normal incidence.
+/// beta is the angle from the facet normal. At normal incidence r_p = -r_s.
 FresnelCoefficients fresnel(const FacetOptics& optics, double cos_beta);
 
-/// Amplitudes of reflection at a medium under films, from the characteristic matrices of the films. The caller chooses
-/// the number type.
+/// Amplitudes of a medium under films, from the characteristic matrices of the films, in any number type.
 ///
 /// Equation: the tangential fields (E, H) above a film are [cos d, -i sin d / y; -i y sin d, cos d] times the fields
 /// below it. Here q = sqrt(N^2 - sin^2 beta), d = 2 pi q thickness, and y is q for s and q / N^2 for p. The fields of

@@ -11,7 +11,6 @@
 
 namespace dolp::reference {
 
-/// A groove, described by the slope angle alpha of its facets.
 template <class Real>
 struct Groove {
   Real cos_alpha;
@@ -24,15 +23,14 @@ enum class Facet { kA, kB };
 ///
 /// Its flux is per unit of length along the groove. The beams that meet A first and B first have the flux 2 cos(alpha)
 /// cos(theta) together. On a facet the beam covers an interval. The edge nearer to the apex is followed as a ray. The
-/// other edge is flux / cos(beta) away from it, because reflection keeps the flux. The part of the beam above the rim
-/// misses the facet.
+/// other edge is flux / cos(beta) away, because reflection keeps the flux. Above the rim the beam misses the facet.
 template <class Real>
 class GrooveBeam {
  public:
-  /// `omega`: unit vector toward the source, omega[2] > 0. `first`: the facet that the beam meets first.
+  /// `omega`: unit vector toward the source, omega[2] > 0.
   GrooveBeam(const Groove<Real>& groove, const Vector<Real>& omega, Facet first)
       : groove_(groove), side_(first == Facet::kA ? Real(-1) : Real(1)), k_(scaled(Real(-1), omega)) {
-    // `to_apex` is where the ray to the apex crosses the aperture. Rays on A's side of it meet A first.
+    // Where the ray to the apex crosses the aperture. Rays on A's side of it meet A first.
     const Real to_apex = groove.sin_alpha * omega[0] / omega[2];
     const Real inside = std::clamp<Real>(to_apex, -groove.cos_alpha, groove.cos_alpha);
     meets_apex_ = inside == to_apex;
@@ -44,7 +42,7 @@ class GrooveBeam {
 
   /// Flux on the current facet; 0 when all light has left.
   const Real& flux() const { return flux_; }
-  /// Direction of propagation toward the current facet or, when all light has left, away from the groove.
+  /// Direction toward the current facet or, when all light has left, away from the groove.
   const Vector<Real>& direction() const { return k_; }
   /// Outward normal of the current facet.
   Vector<Real> normal() const { return {-side_ * groove_.sin_alpha, Real(0), groove_.cos_alpha}; }
@@ -59,8 +57,7 @@ class GrooveBeam {
   }
 
  private:
-  // Moves the edge that is nearer to the apex along the beam to the facet on `side_`. Returns the flux between this
-  // edge and the rim.
+  // Moves the edge nearer to the apex along the beam to the facet on `side_`. Returns the flux between edge and rim.
   Real land() {
     const Vector<Real> n = normal();
     const Real cos_beta = -dot(k_, n);

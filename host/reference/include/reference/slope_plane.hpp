@@ -1,10 +1,9 @@
 // Integrals over the slopes of the facets, for integrands that bend along unknown curves.
 //
-// A slope is given by its length t and by the angle chi with sin(chi) = cos(phi), measured from the normal of the plane
-// of incidence. An integrand covers two facets at once: A at the azimuth phi, and B at phi + 180 degrees. The plane of
-// incidence is a plane of symmetry. So chi runs only from 0 to pi/2. The bends of the integrand are not computed but
-// detected: a number `regime` encodes on which side of each bend a slope lies, and bisection finds where this number
-// changes.
+// A slope is given by its length t and by the angle chi with sin(chi) = cos(phi), from the normal of the plane of
+// incidence. An integrand covers two facets at once: A at the azimuth phi, and B at phi + 180 degrees. The plane of
+// incidence is a plane of symmetry, so chi runs only from 0 to pi/2. The bends of the integrand are detected: a number
+// `regime` encodes on which side of each bend a slope lies, and bisection finds where this number changes.
 #pragma once
 
 #include <algorithm>
@@ -27,26 +26,22 @@
 
 namespace dolp::reference {
 
-/// A facet slope of length t at the angle chi.
 struct SlopePoint {
   double t;
   double sin_chi;  ///< cos(phi)
   double cos_chi;  ///< sin(phi)
 };
 
-/// The slope of length t at the angle chi, from 0 to pi/2.
 inline SlopePoint slope_point(double t, double chi_rad) { return {t, std::sin(chi_rad), std::cos(chi_rad)}; }
 
 using Electric = std::array<std::complex<double>, 3>;
 
-/// The unit vector toward the view in the axes of a groove: u across it, at the azimuth phi from the plane of
-/// incidence, v along it, z up.
+/// The axes are those of a groove: u across it, at the azimuth phi from the plane of incidence, v along it, z up.
 inline Vector<double> toward_view(const SlopePoint& point, const Zenith& view) {
   return {view.sin * point.sin_chi, -view.sin * point.cos_chi, view.cos};
 }
 
-/// Electric vectors of two waves of unit amplitude toward k. Their polarisations are s = k x z (at theta = 0 its limit)
-/// and p = k x s.
+/// Electric vectors of two waves of unit amplitude toward k, with s = k x z (at theta = 0 its limit) and p = k x s.
 struct UnitLight {
   Electric from_s;
   Electric from_p;
@@ -72,7 +67,7 @@ class SpecialAngles {
       : brewster_(1.0 / std::hypot(1.0, constants.index.n, constants.index.k)),
         critical_(constants.index.n < 1.0 ? std::sqrt(1.0 - constants.index.n * constants.index.n) : 0.0) {}
 
-  /// Encodes the interval between special angles that contains cos(beta): 0 to 3.
+  /// The interval between special angles that contains cos(beta): 0 to 3.
   std::uint64_t side(double cos_beta) const {
     return (cos_beta < brewster_ ? 1U : 0U) + (cos_beta < critical_ ? 2U : 0U);
   }
@@ -85,9 +80,9 @@ class SpecialAngles {
 /// A number for each slope. It differs between slopes on different sides of a bend.
 using Regime = std::function<std::uint64_t(const SlopePoint&)>;
 
-/// Steps of the scan of chi that are added to a dozen equal steps.
+/// Steps of the scan of chi in addition to a dozen equal steps.
 struct ScanSteps {
-  /// number of equal steps of the view's zenith in the plane across the groove, per half-angle gamma of the groove
+  /// Equal steps of the view's zenith in the plane across the groove, per half-angle gamma of the groove.
   double per_gamma = 0.0;
   int halvings = 0;  ///< steps toward chi = 0, each half as long as the previous one
 };
@@ -97,9 +92,9 @@ class RegimeScan {
  public:
   RegimeScan(const Zenith& view, double theta_rad, const ScanSteps& steps, Regime regime)
       : view_(view), theta_rad_(theta_rad), steps_(steps), regime_(std::move(regime)) {}
-  /// Break points of chi in (0, pi/2) at one t. Only those of a thin layer if there would be too many.
+  /// Break points in (0, pi/2) at one t. If there are too many, only those of a thin layer.
   std::vector<double> chi_breaks(double t) const;
-  /// Break points of t up to `end`: the values of t at which a bend begins or ends at chi = 0 or pi/2.
+  /// Break points up to `end`: the values of t at which a bend begins or ends at chi = 0 or pi/2.
   std::vector<double> t_breaks(double width, double end) const;
 
  private:
@@ -109,22 +104,21 @@ class RegimeScan {
   Regime regime_;
 };
 
-/// Description of the integrand of an integral over slopes.
 template <std::size_t N>
 struct SlopeTask {
   std::function<Values<N>(const SlopePoint&)> integrand;
   std::function<Values<N>(const Values<N>&)> scales;  ///< scales to which Goal::relative refers
   double steepest;                                    ///< upper end of t
-  double bends_end;                                   ///< t up to which bends are searched, at most `steepest`
-  /// Rows with less weight per v may have the errors of rows with this weight; 0 if rows may become larger with t.
+  double bends_end;                                   ///< bends are searched up to this t, at most `steepest`
+  /// Integrals over chi with less weight per v than this may have the absolute error of integrals with this weight. 0
+  /// if integrals may grow with t.
   double thin_weight = 0.0;
   std::function<double()> work = [] { return 0.0; };  ///< work done so far, in any unit
   double most_work = 1.0;                             ///< after this much work no integral is refined
 };
 
-/// Integrals of N functions over all slopes up to `steepest`: int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi.
-/// After these N values follow N others, the integrated errors of the inner integrals. `expected` has roughly the
-/// expected values.
+/// Integrals of N functions: int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi. After these N values follow N others,
+/// the integrated errors of the inner integrals. `expected` has roughly the expected values.
 template <std::size_t N>
 Integral<2 * N> integrate_slopes_of(const SlopeTask<N>& task, const Slopes& slopes, const RegimeScan& scan,
                                     const Refinement& refinement, const Values<N>& expected) {

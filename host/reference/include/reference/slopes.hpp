@@ -1,4 +1,3 @@
-// The two slope distributions of the reference, and their geometric attenuation ("masking").
 #pragma once
 
 #include <cmath>
@@ -8,33 +7,29 @@
 
 namespace dolp::reference {
 
-/// A slope distribution, in the forms that the moments and the masking need.
 class Slopes {
  public:
   /// Domain: sigma > 0; cauchy q > 1.
   Slopes(Distribution distribution, double sigma, double q);
 
-  /// D(alpha), the facet distribution.
-  /// Equation: (8) for the cauchy, (1) for the gaussian. Units: sr^-1.
+  /// D(alpha) in 1/sr. Equation: (8) for the cauchy, (1) for the gaussian.
   double facet_density(double tan2_alpha) const;
 
-  /// The density p(t) of the slope t = tan(gamma) in one vertical plane.
+  /// p(t), the density of the slope t = tan(gamma) in one vertical plane.
   double in_plane_density(double slope) const;
 
-  /// Share of the in-plane slopes above `slope`, which must be so large that p equals its leading power.
-  /// Domain: slope >= 1e8 m.
+  /// Share of the in-plane slopes above `slope`. Domain: slope >= 1e8 m, where p equals its leading power.
   double in_plane_tail(double slope) const;
 
   /// Share of all facets with slopes above t, at any azimuth.
   double share_above(double t) const;
 
-  /// The slope t that this share of all facets exceeds.
   double quantile(double share) const;
 
   /// int 2 pi P t^2 dt over all slopes above t. Domain: cauchy q > 3/2; t >= 1e8 m, where P equals its leading power.
   double length_above(double t) const;
 
-  /// The integration variable v with t = width sinh(v), and the density 2 pi P t dt/dv, whose integral over v is 1.
+  /// t = width sinh(v), and its inverse. density_at() is 2 pi P t dt/dv, whose integral over v is 1.
   double at(double v) const { return width_ * std::sinh(v); }
   double coordinate_of(double t) const { return std::asinh(t / width_); }
   double density_at(double v) const;
@@ -53,24 +48,22 @@ class Slopes {
   double in_plane_norm_;  ///< p(0)
 };
 
-/// A zenith angle and its elevation above the horizon. With both, nothing cancels at grazing incidence.
+/// With both angles nothing cancels at grazing incidence.
 struct Zenith {
   double elevation_rad = 0.0;
   double cos = 1.0;  ///< cosine of the zenith angle
-  double sin = 0.0;  ///< sine of the zenith angle
+  double sin = 0.0;
 };
 
-/// Lambda of the height-correlated Smith masking, in closed form.
-/// Domain: cos(zenith) > 0; cauchy q > 3/2.
+/// Lambda of the height-correlated masking, in closed form. Domain: cos(zenith) > 0; cauchy q > 3/2.
 double smith_lambda(const Slopes& slopes, const Zenith& zenith);
 
 /// G_1 of the paper's masking, by direct numerical integration over the in-plane tilt gamma.
-/// Equation: G_1 = P(gamma < a) + int_a^b p (1 + cos(theta + gamma)/cos(theta - alpha)), a = pi/2 - theta,
-///   b = min(pi/2, pi - 2 theta + alpha). Source: eqs. (9)-(12).
-/// Accuracy: `tolerance`, absolute.
+/// Equation: G_1 = P(gamma < a) + int_a^b p (1 + cos(theta + gamma)/cos(theta - alpha)), a = pi/2 - theta, b =
+/// min(pi/2, pi - 2 theta + alpha). Source: eqs. (9)-(12). Accuracy: `tolerance`, absolute.
 class IntegralMasking {
  public:
-  /// Fixes the zenith angle. Integrates the terms that do not depend on alpha.
+  /// Integrates the terms that do not depend on alpha.
   IntegralMasking(const Slopes& slopes, const Zenith& zenith, double tolerance);
   double operator()(double alpha_rad) const;
 
@@ -82,7 +75,6 @@ class IntegralMasking {
   double share_below_;  ///< P(gamma < a)
 };
 
-/// G for one pair of zenith angles, as a function of the facet.
 class Attenuation {
  public:
   Attenuation(const Slopes& slopes, Masking masking, const Zenith& a, const Zenith& b, double tolerance);

@@ -36,8 +36,7 @@ Vector<Real> unit(const Vector<Real>& a) {
   return scaled(Real(1) / sqrt(dot(a, a)), a);
 }
 
-/// A reflection at a facet. s is normal to the incident direction k and to the reflected one k_out; p_in = k x s,
-/// p_out = k_out x s.
+/// s is normal to the incident direction k and the reflected direction k_out; p_in = k x s, p_out = k_out x s.
 template <class Real>
 struct Bounce {
   Real cos_beta;
@@ -45,8 +44,7 @@ struct Bounce {
   Vector<Real> k_out;
 };
 
-/// Reflection of the direction k at a facet. At normal incidence s is `s_at_normal`, a unit vector in the facet; any s
-/// would do, because r_p = -r_s.
+/// At normal incidence s is `s_at_normal`, a unit vector in the facet; any s would do, because r_p = -r_s.
 template <class Real>
 Bounce<Real> bounce(const Vector<Real>& k, const Vector<Real>& normal, const Vector<Real>& s_at_normal) {
   constexpr double kNormal = 1e-30;  // below this sin^2 beta the direction of s is only rounding
@@ -60,7 +58,6 @@ Bounce<Real> bounce(const Vector<Real>& k, const Vector<Real>& normal, const Vec
   return b;
 }
 
-/// The components along s and p of the electric vector of a plane wave that meets a facet.
 template <class Complex>
 struct Amplitudes {
   Complex s;

@@ -11,6 +11,7 @@
 #include "base/text.hpp"
 #include "explore/files.hpp"
 #include "explore/window/app.hpp"
+#include "terminal/embedded_texts.hpp"
 #include "terminal/exit_status.hpp"
 #include "terminal/guarded.hpp"
 #include "terminal/progress_bar.hpp"
@@ -166,7 +167,7 @@ int run_explore(const Options& options) {
   }
   const std::vector<Setting> settings = is_session ? std::vector<Setting>{} : all_settings(options);
   explore::run_program(options.scene_path.empty() || is_session
-                           ? Scene::from_text(explore::kFirstScene, settings, "night_paint")
+                           ? Scene::from_text(std::string(embedded_night_paint_toml()), settings, "night_paint")
                            : load_scene(options),
                        program);
   return kExitDone;

@@ -9,40 +9,13 @@
 #include <dolp/dolp.hpp>
 
 #include "cli/commands.hpp"
+#include "terminal/embedded_texts.hpp"
 #include "terminal/exit_status.hpp"
 
 namespace dolp::cli {
 namespace {
 
 using Words = std::vector<std::string>;
-
-// Each script asks the program for the words that complete a line: `dolp completion words -- WORD... :CURRENT`.
-
-constexpr const char* kBash = R"script(# bash completion of dolp
-_dolp() {
-  local current=${COMP_WORDS[COMP_CWORD]} begin= at=$COMP_CWORD
-  [[ $current != = ]] || { current= at=$((COMP_CWORD - 1)) begin=${COMP_WORDS[COMP_CWORD - 1]}=; }
-  [[ ${COMP_WORDS[COMP_CWORD - 1]} != = ]] || { at=$((COMP_CWORD - 2)) begin=${COMP_WORDS[COMP_CWORD - 2]}=; }
-  mapfile -t COMPREPLY < <(dolp completion words -- "${COMP_WORDS[@]:1:at-1}" ":$begin$current" | cut -f1)
-  COMPREPLY=("${COMPREPLY[@]#"$begin"}")  # bash cuts KEY=WORD in three
-  [[ ${COMPREPLY[*]} != *= ]] || compopt -o nospace 2>/dev/null
-}
-complete -o default -F _dolp dolp
-)script";
-
-constexpr const char* kZsh = R"script(#compdef dolp
-local -a found=(${(f)"$(dolp completion words -- "${(@)words[2,CURRENT-1]}" ":$words[CURRENT]")"})
-found=(${${found//:/\\:}/$'\t'/:})
-if (($#found)); then
-  _describe dolp found
-else
-  _files
-fi
-)script";
-
-constexpr const char* kFish = R"script(# fish completion of dolp
-complete -c dolp -a '(dolp completion words -- (commandline -opc)[2..] :(commandline -ct))'
-)script";
 
 bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
@@ -137,49 +110,6 @@ std::string manual_options(const CLI::App& command) {
   return text;
 }
 
-constexpr const char* kManualDescription = R"(.SH DESCRIPTION
-.B dolp
-computes the degree of linear polarisation of the infrared radiation that leaves a rough surface: its own emission plus
-what it reflects. A scene, a TOML file, describes surface, radiation and accuracy; the results are lookup tables, lists
-of points or Mueller matrices, each number with a bound of its numerical error and a status. The integrals run on a
-Vulkan device, a GPU or the processor through Mesa's lavapipe.
-)";
-
-constexpr const char* kManualEnd = R"(.SH FILES
-.TP
-.I SCENE
-TOML;
-.B dolp keys
-lists its keys. Files that it names are looked for beside it.
-.TP
-.I FILE.nc\fR, \fIFILE.csv\fR, \fIFILE.npy
-tables, whole or absent. What an interrupted run has finished lies in
-.I FILE.partial
-until
-.B \-\-resume
-takes it up.
-.TP
-.I PREFIX/share/dolp
-scenes to start from, materials, the sun, plot_table.py.
-.SH ENVIRONMENT
-.TP
-.B VK_DRIVER_FILES
-of the Vulkan loader: manifests of the drivers to use, for example that of lavapipe.
-.TP
-.B SLURM_ARRAY_TASK_ID\fR, \fBSLURM_ARRAY_TASK_MIN\fR, \fBSLURM_ARRAY_TASK_COUNT
-what
-.B \-\-shard auto
-computes.
-.TP
-.B DOLP_VALIDATION
-1: run with the Vulkan validation layer; its messages are errors.
-.SH SEE ALSO
-.BR ncdump (1),
-.BR vulkaninfo (1);
-.B dolp \-\-cite
-says how to cite program and model.
-)";
-
 std::string manual_page(const CLI::App& app) {
   std::string commands;
   for (const CLI::App* command : app.get_subcommands({})) {
@@ -194,7 +124,7 @@ std::string manual_page(const CLI::App& app) {
       ".SH EXIT STATUS\n0 done; 1 an accuracy was missed that was asked for; 2 bad input; 3 no usable device; 4 a "
       "file "
       "could not be read or written; 5 an internal error; 6 out of memory; 130 interrupted.\n{}",
-      version(), kManualDescription, commands, kManualEnd);
+      version(), embedded_description_man(), commands, embedded_end_man());
 }
 
 }  // namespace
@@ -203,9 +133,9 @@ int run_completion(const Options& options) {
   Options unused;
   const std::unique_ptr<CLI::App> app = command_line(unused);
   const std::string& form = options.completion;
-  const std::string text = form == "bash"    ? kBash
-                           : form == "zsh"   ? kZsh
-                           : form == "fish"  ? kFish
+  const std::string text = form == "bash"    ? std::string(embedded_dolp_bash())
+                           : form == "zsh"   ? std::string(embedded_dolp_zsh())
+                           : form == "fish"  ? std::string(embedded_dolp_fish())
                            : form == "words" ? completing_words(*app, options.words)
                                              : manual_page(*app);
   std::fputs(text.c_str(), stdout);

@@ -21,8 +21,7 @@ std::string without_text(const Session& session, const std::string& effect);
 std::string without_words(const Session& session, const std::string& effect);
 std::vector<std::string> cost_lines(const Session& session);  ///< of the finished curve: time, work, error
 std::string table_command(const SceneEdits& edits);           ///< a shell command that writes the scene's table
-extern const char* const kPlotScript;                         ///< text of host/tools/plot_view.py
-/// JSON for this script: the visible curves with the axes `x` and `y`, the measured points, and the map if it is
+/// JSON for tools/plot_view.py: the visible curves with the axes `x` and `y`, the measured points, and the map if it is
 /// shown. Units: as in the labels. Values that the model does not give are null.
 std::string plot_json(const Session& session, const Scale& x, const Scale& y);
 

@@ -71,8 +71,6 @@ struct ProgramOptions : AppOptions {
   std::vector<Setting> settings = {};  ///< changes of the session
 };
 
-extern const char* const kFirstScene;  ///< text of host/scenes/night_paint.toml, the scene for a first look
-
 /// Shows the window. If `frames` is given, prints their durations. Errors: the errors of the public header.
 void run_program(const Scene& scene, const ProgramOptions& options);
 

@@ -9,6 +9,7 @@
 #include "base/stopwatch.hpp"
 #include "explore/readout.hpp"
 #include "explore/window/ui.hpp"
+#include "terminal/embedded_texts.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -70,7 +71,7 @@ void Actions::save_plot(const std::string& path, const Scale& x, const Scale& y)
   session_.tell("drawing " + path);
   plot_task_.start([path, json = plot_json(session_, x, y)](const Progress&) -> BackgroundTask::Ending {
     check_writable(path);
-    draw_with_python(kPlotScript, json, path);
+    draw_with_python(std::string(embedded_plot_view_py()).c_str(), json, path);
     return [text = "saved " + path] { return text; };
   });
 }

@@ -1,0 +1,21 @@
+// The files that are built into the programs, as text.
+#pragma once
+
+#include <string_view>
+
+namespace dolp {
+
+std::string_view embedded_night_paint_toml();  ///< the scene for a first look
+std::string_view embedded_plot_view_py();      ///< draws the plots of the window
+
+// Completions of shells. Each script asks `dolp completion words -- WORD... :CURRENT` for the words that complete a
+// line.
+std::string_view embedded_dolp_bash();
+std::string_view embedded_dolp_fish();
+std::string_view embedded_dolp_zsh();
+
+// Parts of the manual page, before and after the commands.
+std::string_view embedded_description_man();
+std::string_view embedded_end_man();
+
+}  // namespace dolp

@@ -204,7 +204,7 @@ def native_scene(scene: Scene) -> _native.Scene:
 
 
 def with_axes(scene: Scene, axes: Mapping[str, Array]) -> _native.Scene:
-    """The scene with `axes` instead of its axes. The names in `axes` are names of columns, such as theta_deg."""
+    """The scene with `axes` in place of axes of its grid. The names in `axes` are column names, such as theta_deg."""
     native = native_scene(scene)
     check_names("axes", axes, [column for column, *_ in _native.axes()])
     return native.with_([(f"grid.{axis}", label_values(values) if axis in native.labels() else axis_values(axis, values))

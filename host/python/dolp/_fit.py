@@ -20,7 +20,7 @@ _SYMBOLS = {"dolp": "DOLP", "q_over_i": "Q/I", "emissivity_s": "ε_s", "emissivi
 
 
 class Fit:
-    """The result of a fit. It prints as a report.
+    """The result of a fit. `print` shows it as a report.
 
     `params`: dictionary of the fitted values; `fit[key]` is one of them.
     `stderr`: dictionary of the standard errors of these values. An error is None if the parameter is at a bound, if the

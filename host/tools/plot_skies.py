@@ -2,7 +2,7 @@
 """Draws Q/I of paint over zenith under a uniform, a clear and an overcast sky, and the temperatures of these skies.
 
 Usage: plot_skies.py DOLP OUT.png [--band FROM TO]
-DOLP is the program. The temperature of the uniform sky gives it the same irradiance as the clear sky.
+DOLP is the program. The uniform sky has the temperature at which its irradiance equals the irradiance of the clear sky.
 Needs python3-numpy and python3-matplotlib.
 Exit status: 0 done, 2 usage; if DOLP fails, the status of DOLP.
 """

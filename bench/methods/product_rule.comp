@@ -12,7 +12,7 @@
 
 layout(std430, binding = DOLP_BINDING_THETAS) readonly buffer Thetas { real2 thetas[]; };  // cos, sin
 layout(std430, binding = DOLP_BINDING_INDICES) readonly buffer Indices { IndexNode indices[]; };
-// One element per invocation: positions of theta, shape and index; then first zenith + 65536 * number of zeniths.
+// For each invocation: the positions of its theta, shape and index; then first zenith + 65536 * number of zeniths.
 layout(std430, binding = DOLP_BINDING_TASKS) readonly buffer Entries { uvec4 entries[]; };
 // product[0].x is n. Then come n zeniths (cos(theta_r), sin(theta_r), weight) and n azimuths (cos(delta_phi), weight).
 layout(std430, binding = DOLP_BINDING_RULE) readonly buffer Product { real4 product[]; };

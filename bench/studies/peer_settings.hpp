@@ -50,7 +50,7 @@ struct TriedSetting {
 /// computes a nested grid in one call; any other method computes the entries of the sample one by one.
 class PeerSettings {
  public:
-  /// `most_s`: after a longer run, in seconds, no finer setting is tried.
+  /// `most_s`: after a run that takes more seconds, no finer setting is tried.
   PeerSettings(const Method& method, Solver& solver, const PeerSample& sample, double most_s);
 
   /// The first setting that meets the tolerance at all entries of the sample; null if there is none.

@@ -30,8 +30,8 @@ constexpr int kWidth = 1920;
 constexpr int kHeight = 1080;
 constexpr double kDrag_s = 3.0;
 constexpr int kMovesPerSecond = 30;
-constexpr double kGoalOfOne = 20.0;  // fresh curves per second, for one wavelength
-constexpr double kGoalOfBand = 8.0;  // fresh curves per second, for a band with n(lambda)
+constexpr double kGoalOfOne = 20.0;  // goal for one wavelength: up-to-date curves per second
+constexpr double kGoalOfBand = 8.0;  // goal for a band with n(lambda): up-to-date curves per second
 
 /// A drag of the slider of `key`, in the scene with `changes`.
 struct DragCase {

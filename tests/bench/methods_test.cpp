@@ -180,7 +180,7 @@ TEST(BenchTiming, MedianAndSpread_OddAndEven_AreThoseOfTheList) {
   EXPECT_DOUBLE_EQ(spread({1.0, 1.5, 9.0}), 0.5);
 }
 
-/// A study with one result, on an idle machine with a release build. No condition gives a warning.
+/// A study with one result, on an idle machine with a release build. Nothing in it is a reason for a warning.
 nlohmann::ordered_json quiet_study() {
   return {
       {"study", "test"},

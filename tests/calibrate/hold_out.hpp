@@ -1,5 +1,5 @@
-// Test of the error bounds with new random entries. Compares the results with finer rules or with the independent
-// reference. A climb then searches near a bad entry for a worse one.
+// Test of the error bounds with random entries that did not take part in the fit of the rules. Compares the results
+// with finer rules or with the independent reference. A climb then searches near a bad entry for a worse one.
 #pragma once
 
 #include <cstddef>

@@ -16,7 +16,7 @@ using namespace scene_run_support;
 
 // A dozen roundings, and near grazing incidence the rounding of the cosine.
 constexpr double kFresnelRounding = 4e-15;
-// Larger than the error of the independent integral, which has 180 x 180 Gauss points, for sigma from 0.3.
+// For sigma from 0.3 it is larger than the error of the independent integral, which has 180 x 180 Gauss points.
 constexpr double kGgxAccuracy = 1e-9;
 
 double radians(double angle_deg) { return angle_deg * std::numbers::pi / 180.0; }

@@ -69,7 +69,7 @@ Reflected reflected_of(const SceneValues& scene, const PointResult& result) {
   return {result[kStokesI] / pi - emitted * (1.0 - result[kRhoI]), result[kStokesQ] / pi + emitted * result[kRhoQ]};
 }
 
-// The manual has five digits, and the temperature is linear between 361 zeniths.
+// Tolerance: the manual has five digits, and the temperature of this sky is linear between 361 zeniths.
 constexpr double kDigits = 6e-6;
 
 TEST(Sky, QuadraticProfile_GivesTheValuesOfTheModel) {

@@ -199,7 +199,7 @@ TEST_F(Verify, OneCorruptedValue_Exit1AndIsNamed) {
                                       : table[Quantity::kRhoErrorEstimate][at_entry] * table[Quantity::kRhoI][at_entry];
     if (name.starts_with("stokes")) bound *= table[Quantity::kStokesI][at_entry];
     if (corruption.quantity == Quantity::kStokesI) bound /= table[Quantity::kDolp][at_entry];
-    // The true error is at most one bound, so after this change the error is at least two.
+    // The stored error is at most one bound. So after this change of three bounds the error is at least two bounds.
     put_value(at("t.nc"), corruption.quantity, at_entry, table[corruption.quantity][at_entry] + 3.0 * bound);
     const nlohmann::json json = verify_json(kAccuracy);
     EXPECT_EQ(json["passed"], false);

@@ -185,7 +185,7 @@ TEST(ReferenceGrooves, LimitsOfTheMaterial) {
 
 TEST(ReferenceGrooves, SmoothSurface_IsFresnels) {
   constexpr double kSigma = 1e-3;
-  constexpr double kTolerance = 2e-4;  // slopes have the variance 2 sigma^2, times a logarithm for q = 2
+  constexpr double kTolerance = 2e-4;  // the variance of the slopes, 2 sigma^2, times a logarithm for q = 2
   for (const OpticalConstants index : {kPaint, kMetal}) {
     for (const double theta_deg : {0.0, 60.0}) {
       const Moments mirror = all_bounces({kCauchy, theta_deg, {0.0, 2.0}, index});

@@ -1,4 +1,4 @@
-// Adaptive cubature by libcubature over the directions of the running beam, which direct_brdf.hpp defines.
+// Adaptive cubature by libcubature over the directions of one beam; the other beam is fixed.
 #include <cubature.h>
 
 #include <algorithm>

@@ -66,7 +66,7 @@ class DirectSurface {
   /// The running beam in a direction with cos_r > 0, including its part of the masking G.
   RunningBeam beam(double cos_r, double sin_r) const;
 
-  /// G M00 and G M01 of the facet that reflects one beam into the other. M01 is 0 if the rotation eta is undefined.
+  /// Masking G times M00 and M01 of the facet that reflects one beam into the other. M01 is 0 if eta is undefined.
   Reflected reflected(const RunningBeam& beam, double cos_alpha, double tan_alpha, double cos_beta) const;
 
  private:

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Product rule over the running beam. Each invocation sums over some zeniths theta_r of one entry, and for each of them
-// over all azimuths. Density, geometry and rotations use the plain formulas. Fresnel reflectances and masking use the
-// code of dolp.
+// Product rule over the directions of one beam; the other beam is fixed. Each invocation sums over some zeniths theta_r
+// of one entry, and for each of them over all azimuths. Density, geometry and rotations use the plain formulas. Fresnel
+// reflectances and masking use the code of dolp.
 //   r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r) / 2
 
 #include "physics/prelude.glsl"

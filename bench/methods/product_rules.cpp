@@ -1,5 +1,5 @@
-// Product rules over the directions of the running beam: r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M
-// sin(theta_r)/2. Half a circle of azimuths suffices, because the integrand is symmetric.
+// Product rules over the directions of one beam: r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r)/2.
+// Half a circle of azimuths suffices, because the integrand is symmetric.
 #include "methods/product_rules.hpp"
 
 #include <gsl/gsl_integration.h>

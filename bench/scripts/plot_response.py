@@ -55,8 +55,8 @@ def transform(count):
 
 
 def errors(counts):
-    """Errors of moments that are sums of responses, which replace reflectances by Chebyshev polynomials. Returns the
-    larger error of rho_i and rho_q, divided by rho_i, for each index and number of angles."""
+    """Errors of moments from responses, in which Chebyshev polynomials replace the reflectances. Returns the larger
+    error of rho_i and rho_q, divided by rho_i, for each index and number of angles."""
     scene = SCENE.with_({"accuracy.tolerance": TIGHT})
     response = dolp.response(scene, evaluator="cpu", **GRID)
     c0, most = response.attrs["c0"], response.sizes["beta"]

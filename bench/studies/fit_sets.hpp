@@ -21,7 +21,7 @@ struct FitSet {
   std::size_t points = 0;              ///< number of zeniths, evenly spaced from 2 to 80 degrees
   double uncertainty = 0.0;            ///< standard deviation of the noise in DOLP or Q/I
   bool has_noise = true;               ///< without noise the data are exact
-  std::vector<Setting> of_truth = {};  ///< settings for the scene of the data only; the fitted scene lacks them
+  std::vector<Setting> of_truth = {};  ///< settings that the scene of the data has and the fitted scene lacks
   ModelError model_error = ModelError::kNone;
 
   /// Keys of the varied parameters, joined by blanks.

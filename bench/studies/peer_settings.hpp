@@ -56,7 +56,7 @@ class PeerSettings {
   /// The first setting that meets the tolerance at all entries of the sample; null if there is none.
   const TriedSetting* reaching(double tolerance);
 
-  /// Records that a setting has a larger error, found on a larger grid.
+  /// Records a larger error of a setting, which a run on a larger grid has shown.
   void reject(const TriedSetting& setting, double error);
 
   /// The reason why `reaching` found no setting.

@@ -46,7 +46,7 @@ void run_effects(const StudyOptions& options);
 void run_throughput(const StudyOptions& options);
 
 /// `dolp-bench peers`: finds for every method the cheapest setting that meets a tolerance on a sample of a grid's
-/// entries. Reports its time per entry, and the ratio of this time to the time of dolp's float kernels.
+/// entries. Reports the method's time per entry, and its ratio to the time of dolp's float kernels.
 ///
 /// `cases` are maskings. Errors: InputError for an unknown case or method; DeviceError if `device` is given and not
 /// available; IoError; Cancelled.

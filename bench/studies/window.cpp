@@ -188,7 +188,7 @@ ordered_json drag_row(const DragCase& one, const std::string& device) {
   explore::App app(explore::SceneEdits(Scene::from_text(kScene, one.changes, one.name)), {.device = device});
   xdotool(fmt::format("windowsize --sync %1 {} {} windowfocus %1", kWidth, kHeight));
   app.settle();
-  // During the first drag, coarse results compile kernels. So only the second drag counts.
+  // The first drag also compiles the kernels for coarse results. So only the second drag counts.
   ordered_json measured;
   for (int i = 0; i < 2; ++i) {
     Watch watch(app);

@@ -15,7 +15,7 @@ struct HoldOutOptions {
   double tolerance = 1e-4;
   std::size_t entries = 1000;
   std::uint64_t seed = 1;
-  std::size_t climbs = 0;          ///< number of entries, the worst first, from which a climb starts
+  std::size_t climbs = 0;          ///< number of the worst random entries near which a climb looks for worse ones
   bool against_reference = false;  ///< compare with the reference, which takes a second of one core per entry
   /// multiplies all bounds; the smallest value that passes shows how much bounds exceed errors
   double bound_share = 1.0;

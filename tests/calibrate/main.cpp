@@ -1,4 +1,4 @@
-// dolp-calibrate: fits the constants of the rules in plan/rule.cpp, and tests the error bounds.
+// dolp-calibrate: fits the constants of the quadrature rules in plan/rule.cpp, and tests the error bounds.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

@@ -70,7 +70,7 @@ TEST_P(MuellerKernel, AllElements_AgreeWithExplicitVectors) {
   EXPECT_LE(worst, tolerance()) << text_of(points[where]);
 }
 
-// By mirror symmetry f(-dphi) = T f(dphi) T with T = diag(1, 1, -1, -1). The kernels give this bit for bit.
+// By mirror symmetry the pBRDF obeys f(-dphi) = T f(dphi) T, T = diag(1, 1, -1, -1). Kernels give this bit for bit.
 TEST_P(MuellerKernel, OppositeAzimuth_TurnsTheSignsOfUAndV) {
   const Matrix mirror = Eigen::Vector4d(1.0, 1.0, -1.0, -1.0).asDiagonal();
   std::vector<ScatteringPoint> points = random().draw(kPoints);

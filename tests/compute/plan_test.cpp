@@ -171,7 +171,7 @@ TEST(Rows, WantedEntriesOfAGrid_AreEachInOneRowOfShapesAlike) {
 // ---- Orders and levels ---------------------------------------------------------------------------------------------
 
 TEST(Rule, DigitsAndShapes_DecideOrdersAndLines) {
-  EXPECT_DOUBLE_EQ(rule_digits({.margin_digits = 2.0}, 1e-3), 6.25);  // (3 + 2)/0.8; the coarser rule has 0.8 the nodes
+  EXPECT_DOUBLE_EQ(rule_digits({.margin_digits = 2.0}, 1e-3), 6.25);  // (3 + 2)/0.8; the coarser rule has 80 % of nodes
   EXPECT_EQ(largest_order(4.0), 64);
   EXPECT_EQ(largest_order(10.0), 80);
   EXPECT_EQ(largest_order(99.0), DOLP_MAX_ORDER);

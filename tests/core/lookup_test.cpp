@@ -1,4 +1,4 @@
-// Lookups in artificial tables whose values between the entries are known, and the stated errors.
+// Lookups in artificial tables whose values between the entries are known, and the errors that lookups state.
 #include <gtest/gtest.h>
 
 #include <algorithm>

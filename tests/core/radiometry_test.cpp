@@ -1,4 +1,4 @@
-// Stokes parameters, rho and DOLP of the radiometry, compared with the printed formulas, and their exact properties.
+// Stokes parameters, rho and DOLP of the radiometry agree with the paper's printed formulas and obey exact relations.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// A run computes an entry at several levels and keeps the best. A check with another rule finds wrong bounds.
+// A run keeps an entry's best result of several levels of accuracy. A check by another rule finds wrong bounds.
 #include <gtest/gtest.h>
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Exact results of shaders/physics/README.md, section 6, in whole runs.
+// Whole runs give the exact results that shaders/physics/README.md lists in section 6.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace scene_run_support;
 
-// A dozen roundings, and near grazing incidence the rounding of the cosine.
+// Tolerance for a dozen roundings and, near grazing incidence, for the rounding of the cosine.
 constexpr double kFresnelRounding = 4e-15;
 // For sigma from 0.3 it is larger than the error of the independent integral, which has 180 x 180 Gauss points.
 constexpr double kGgxAccuracy = 1e-9;

@@ -75,7 +75,7 @@ class PartsOfModel : public testing::TestWithParam<std::tuple<Distribution, Mask
   double least_q() const { return scene().surface.needs_mean_slope() ? 1.51 : 1.2; }
 };
 
-// Directions near 90 degrees need other nodes, and many entries with heavy tails are computed again.
+// Directions near 90 degrees need other quadrature nodes. Many entries with heavy tails are computed again.
 TEST_P(PartsOfModel, InterpolatedGrid_KeepsItsBitsInParts) {
   SceneValues dense = scene();
   dense.grid =

@@ -236,7 +236,7 @@ TEST(ReferenceDirect, BracketsTheEmission) {
     EXPECT_LT(0.0, multiple.direct_i);
     EXPECT_LT(multiple.direct_i, multiple.deficit);
     EXPECT_LT(multiple.deficit, single.deficit);
-    // Bounces after the first cannot add more polarised light than light.
+    // Bounces after the first cannot add more polarised light than light in total.
     EXPECT_LE(std::abs(-multiple.r_q - multiple.direct_q), multiple.deficit - multiple.direct_i);
   }
 }

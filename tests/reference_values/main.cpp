@@ -65,7 +65,7 @@ dolp::MomentsRequest request_of(const Group& group, const std::vector<Case>& cas
   return request;
 }
 
-/// The finer result. Its errors are raised to its distance from the coarser result.
+/// The finer result, with errors of at least its distance from the coarser result.
 Moments compared(const Moments& coarse, const Moments& fine) {
   Moments result = fine;
   result.r_i_error = std::max(fine.r_i_error, std::abs(coarse.r_i - fine.r_i));

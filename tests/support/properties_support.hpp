@@ -150,7 +150,7 @@ inline bool are_same(const Moments& a, const Moments& b) {
   return a.evaluations == b.evaluations && std::ranges::all_of(kHemisphereMembers, is_same);
 }
 
-/// Expects that all moments agree within both stated errors. Returns the largest ratio of difference to their sum.
+/// Expects that all moments agree within both stated errors. Returns the largest ratio of difference to sum of errors.
 inline double expect_within_bounds(const Moments& a, const Moments& b, const std::string& where, double slack = 0.0) {
   double worst = 0.0;
   for (const auto& [value, error] : kMomentMembers) {

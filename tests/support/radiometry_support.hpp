@@ -1,4 +1,4 @@
-// The radiometry of shaders/physics/README.md, section 4, once more in long double, with scenes and moments to test.
+// The radiometry of shaders/physics/README.md, section 4, programmed again in long double; scenes and moments to test.
 #pragma once
 
 #include <algorithm>

@@ -36,7 +36,7 @@ TEST_F(FitTest, ModelErrorOfTheBracket_ResidualIsTheDistanceFromTheInterval) {
   }
 }
 
-// At an end of the interval of n, chi^2 minimised over sigma is the quantile for 20 degrees of freedom.
+// At the ends of n's interval, chi^2 minimised over sigma is the quantile of its distribution (20 degrees of freedom).
 TEST_F(FitTest, ModelErrorOfTheBracket_IntervalsEndAtTheQuantileOfChiSquared) {
   const SceneValues scene = parse_scene(kScene, "scene");
   const FitRange sigma = number("surface.sigma", 0.05, 0.5);

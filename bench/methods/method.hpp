@@ -87,7 +87,7 @@ std::unique_ptr<Solver> make_hcubature();
 std::unique_ptr<Solver> make_pcubature();
 /// Errors: Unavailable without an interpreter that has SciPy.
 std::unique_ptr<Solver> make_dblquad(const SolverOptions& options);
-/// Errors: Unavailable without a usable device of this precision.
+/// Errors: Unavailable without a device that computes in this precision.
 std::unique_ptr<Solver> make_vulkan(const SolverOptions& options, Precision precision);
 /// The Vulkan method in float that interpolates between slope distributions where the entries are dense.
 std::unique_ptr<Solver> make_vulkan_table(const SolverOptions& options);

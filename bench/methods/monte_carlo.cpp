@@ -1,5 +1,5 @@
-// Importance sampling of the facets. Half vectors are drawn from D cos(alpha), so this factor drops out of the
-// integrand.
+// Importance sampling of the facets. Facet normals are drawn from the density D cos(alpha), so the integrand does not
+// contain this factor.
 #include <cmath>
 #include <cstdint>
 #include <limits>

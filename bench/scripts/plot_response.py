@@ -86,8 +86,8 @@ def seconds(call):
 
 
 def times(numbers):
-    """Seconds for a response table, for the table of one material, and for the moments of several materials from the
-    response table."""
+    """Measures the seconds for a response table, for the table of one material, and for the moments of several
+    materials from the response table."""
     axes = {"theta_deg": np.linspace(0, 85, 32), "sigma": np.geomspace(0.05, 1, 8), "q": np.linspace(1.75, 6, 8)}
     response = dolp.response(SCENE, **axes)
     pass_s = seconds(lambda: dolp.response(SCENE, **axes))

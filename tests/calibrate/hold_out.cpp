@@ -15,7 +15,7 @@ namespace {
 constexpr double kFinerBy = 1e-5;
 constexpr double kFinest = 1e-13;
 constexpr double kReferenceTolerance = 1e-9;
-constexpr std::size_t kAtOnce = 2000;  // entries per call of an evaluator, which holds their masking tables in memory
+constexpr std::size_t kAtOnce = 2000;  // entries per call of an evaluator, which keeps all their masking tables
 constexpr std::size_t kClimbSteps = 40;
 constexpr std::size_t kNeighbours = 16;
 

@@ -104,8 +104,8 @@ TEST_P(CoarseRule, CoarseAndFineRule_DifferByNoMoreThanTheyState) {
 INSTANTIATE_TEST_SUITE_P(Kernels, CoarseRule, testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kModels)),
                          kernel_and_model_name);
 
-// Entries for which two rules once agreed by chance or made equal errors, so that their difference hid the error.
-// Because of them a bound is at least a share of the tolerance, and a multiple of the difference.
+// Entries for which the two rules of an error estimate once agreed by chance or made equal errors. Because of them a
+// bound is at least a share of the tolerance, and a multiple of the difference of the rules.
 struct HardEntry {
   Model model;
   double tolerance;
@@ -114,7 +114,7 @@ struct HardEntry {
 
 constexpr Model kCauchySmith{Distribution::kCauchy, Masking::kSmith};
 constexpr std::array<HardEntry, 9> kHardEntries{{
-    // Just above q = 3/2, where the mean slope of Smith's masking diverges.
+    // Here q is just above 3/2, where the mean slope of Smith's masking diverges.
     {kCauchySmith, 1e-4, {0.0, {4.4985874, 1.505362511}, {4.483711324, 9.059458356}}},
     {kCauchySmith, 1e-4, {0.0, {6.854371606, 1.507915401}, {1.035031297, 0.01023949105}}},
     {kCauchySmith, 1e-4, {0.0130314, {7.418917168, 1.508037519}, {3.801393770, 0.0}}},

@@ -164,7 +164,7 @@ TEST(VulkanEvaluator, PointsAndMasks_SayTheSameAsTheGrid) {
   }
 }
 
-// One evaluator computes requests in float and in double. They must not affect each other.
+// One evaluator computes requests in float and in double. These requests must not affect each other.
 TEST(VulkanEvaluator, RequestsInBothPrecisions_AreThoseOfEvaluatorsOfTheirOwn) {
   for (const Masking masking : {Masking::kVCavity, Masking::kIntegral}) {
     MomentsRequest request = small_request(Distribution::kCauchy, masking);

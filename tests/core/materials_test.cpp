@@ -347,7 +347,7 @@ TEST(MaterialFile_KBelowZeroByNoise, CountsAsZero) {
   EXPECT_EQ(material.least_k, -2e-7);
 }
 
-// n^2 = 1 + 0.5 um^2 / (um^2 - 11^2) has a pole at 11 um. n is not real between 8.98 um and the pole.
+// At a wavelength of L um, n^2 = 1 + 0.5 L^2 / (L^2 - 11^2), with a pole at 11 um. From 8.98 um to 11 um n is not real.
 TEST(MaterialFile_FormulaWithAPole, HoldsWhereTheSpectrumHasNone) {
   const TemporaryFile file("f.yml", formula("20 0.05", "0 0.5 11"));
   const std::string set = "surface.material_file=" + file.path();

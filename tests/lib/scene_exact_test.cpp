@@ -16,7 +16,7 @@ using namespace scene_run_support;
 
 // Tolerance for a dozen roundings and, near grazing incidence, for the rounding of the cosine.
 constexpr double kFresnelRounding = 4e-15;
-// For sigma from 0.3 it is larger than the error of the independent integral, which has 180 x 180 Gauss points.
+// This tolerance exceeds the error of the independent integral (180 x 180 Gauss points) if sigma is 0.3 or more.
 constexpr double kGgxAccuracy = 1e-9;
 
 double radians(double angle_deg) { return angle_deg * std::numbers::pi / 180.0; }

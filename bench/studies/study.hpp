@@ -14,7 +14,7 @@ struct StudyOptions {
   std::vector<std::string> cases;    ///< empty means all
   std::vector<std::string> methods;  ///< empty means all
   std::size_t entries = 1024;        ///< entries per call of a batched method; some studies use it differently
-  /// Number of the first set of fits. The constants of fits were tuned on sets with lower numbers.
+  /// Number of the first set of fits. The constants of the fit algorithm were tuned on sets with lower numbers.
   std::size_t first_set = 1000;
   bool quick = false;
   bool quiet = false;                  ///< no progress bar

@@ -132,7 +132,7 @@ struct MaterialAxes {
   std::vector<double> n = {}, k = {}, wavelength_um = {};
   std::optional<OpticalConstants> index = {};  ///< replaces n and k of the scene
   std::vector<Layer> coating = {};
-  std::size_t over = 0;  ///< position of the case by whose kernel time the kernel time of this case is divided
+  std::size_t over = 0;  ///< results divide this case's kernel time by that of the case at this position
   std::vector<Spectrum> bands = {};
   std::vector<double> temperature_K = {};
   bool has_all_materials = false;

@@ -29,7 +29,7 @@ using dolp::name_of;
 using dolp::reference::Case;
 using dolp::reference::Group;
 
-// Smaller shares of the albedo are rounding errors of a reflection that is 0, with n = 1 and k = 0.
+// A reflection below this share of the albedo is the rounding error of 0, which n = 1 and k = 0 give.
 constexpr double kNegligible = 1e-12;
 // Relative rounding error of a closed form, which has fewer than 16 operations.
 constexpr double kClosedFormRounding = 16.0 * std::numeric_limits<double>::epsilon();

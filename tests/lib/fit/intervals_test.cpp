@@ -106,7 +106,7 @@ TEST_F(FitTest, Intervals_HoldTheTruthAsOftenAsTheySay) {
       options.starts = 1;
       const FitResult result =
           fitted(measured(kNoise, {}, has_uncertainties, 5, static_cast<std::uint64_t>(draw)), parameters, options);
-      // Tests one parameter per draw, because both parameters of a draw are correlated.
+      // Tests one parameter per data set, because the errors of both parameters are correlated.
       const std::size_t j = static_cast<std::size_t>(draw) % 2;
       const auto holds = [&](const FitInterval& interval) {
         return interval.low.value_or(0.0) <= truth[j] && truth[j] <= interval.high.value_or(10.0);

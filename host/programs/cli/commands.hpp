@@ -10,7 +10,7 @@
 
 namespace dolp::cli {
 
-/// The values of the command line. A missing option has an empty text.
+/// The values of all options of the command line. If a text is empty, the user has not given the option.
 struct Options {
   int (*run)(const Options&) = nullptr;  ///< function of the command; null if there is no command
   std::string command_line;              ///< written into a table as its history
@@ -27,7 +27,7 @@ struct Options {
   std::vector<std::string> data, vary, compare;
   std::size_t starts = 24;
   std::string loss = "squares", model_error = "none";
-  std::size_t frames = 0;  ///< 0: until the window is closed
+  std::size_t frames = 0;  ///< frames that the window draws; 0: until it is closed
   std::string panel;
   std::string key, material, wavelength_um;
   std::string completion;
@@ -39,12 +39,12 @@ void check_one_stdin(const Options& options);  ///< Errors: InputError if two in
 /// All settings of the command line: those of --set first, then --tolerance and --precision. Errors: InputError.
 std::vector<Setting> all_settings(const Options& options);
 
-std::string allowed(const std::string& key);  ///< for example "a number in [0, 10]"
+std::string allowed(const std::string& key);  ///< values that a scene key allows: "a number in [0, 10]"
 
-/// Reads the scene, and applies all_settings() and then `more`. Prints each remark as a warning on stderr.
+/// Reads the scene, and applies all_settings() and then `more`. Prints Scene::remarks() as warnings on stderr.
 Scene load_scene(const Options& options, const std::vector<Setting>& more = {});
 
-/// The evaluator of --evaluator and --device. Errors: InputError if --device is given for an evaluator without devices.
+/// The evaluator that --evaluator and --device choose. Errors: InputError if this evaluator cannot choose a device.
 Evaluator evaluator_of(const Options& options);
 
 /// Prints a report according to --json and --quiet: to stdout, or to stderr if the results themselves go to stdout.
@@ -63,8 +63,8 @@ int run_merge(const Options& options);
 int run_eval(const Options& options);
 int run_mueller(const Options& options);
 int run_plan(const Options& options);
-/// Returns kExitAccuracy if a true error exceeds its stated bound, or if an entry misses its tolerance and its status
-/// does not tell so.
+/// Returns kExitAccuracy if a true error exceeds its stated bound, or if an entry misses its tolerance without a status
+/// bit that says so (kToleranceNotMet, kRhoToleranceNotMet).
 int run_verify(const Options& options);
 int run_lookup(const Options& options);
 int run_fit(const Options& options);  ///< kExitAccuracy if no minimum is found

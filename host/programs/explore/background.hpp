@@ -27,7 +27,7 @@ std::jthread run_in_background(Work work, std::future<Result>& result, const std
 }
 
 template <class Result>
-bool is_ended(const std::future<Result>& result) {  // true also if no work was started
+bool is_ended(const std::future<Result>& result) {  // true also for a future without work
   return !result.valid() || result.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
@@ -35,13 +35,13 @@ bool is_ended(const std::future<Result>& result) {  // true also if no work was 
 /// window's thread calls the other functions.
 class BackgroundTask {
  public:
-  /// The last step of the work, in the window's thread. Returns the message for the user. May throw the errors of Work.
+  /// A function that finish() calls after the work, in the window's thread. Returns a message for the user. May throw.
   using Ending = std::function<std::string()>;
-  /// Work for a separate thread. Throws Cancelled if its Progress returns false.
+  /// Work for a separate thread. It must throw Cancelled if the Progress function returns false.
   using Work = std::function<Ending(const Progress&)>;
   enum class State { kNone, kRunning, kDone, kFailed, kCancelled };
 
-  /// The thread calls `on_change` at each progress and at the end.
+  /// The thread of the work calls `on_change` at each progress and at the end.
   explicit BackgroundTask(std::function<void()> on_change) : on_change_(std::move(on_change)) {}
   ~BackgroundTask() { cancel(); }  ///< waits for the end of the work
 
@@ -51,8 +51,8 @@ class BackgroundTask {
 
   State state() const { return state_; }
   bool is_running() const { return state_ == State::kRunning; }
-  double progress() const { return progress_; }  ///< of the current phase, from 0 to 1
-  /// Empty if the work has only one phase. The work sets it; progress then restarts from 0.
+  double progress() const { return progress_; }  ///< done part of the current phase, from 0 to 1
+  /// Name of the current phase; empty if the work has only one. Call set_phase() at its beginning.
   std::string phase() const {
     const std::scoped_lock lock(mutex_);
     return phase_;
@@ -76,15 +76,15 @@ class BackgroundTask {
   std::jthread thread_;  ///< last member, so it ends before the members that it uses
 };
 
-/// Points of a scene that the window wants, computed as `dolp eval` computes them.
+/// A request of the window: points of a scene, to be computed as `dolp eval` computes them.
 struct Job {
   std::string key;  ///< jobs with the same key have the same content
   Scene scene;
-  std::vector<PointList> parts;  ///< computed one after the other; more urgent jobs may come in between
-  double tolerance = 0.0;        ///< replaces a lower tolerance of the scene
+  std::vector<PointList> parts;  ///< computed one by one; between two, a more urgent job may run
+  double tolerance = 0.0;        ///< used if the scene has a lower tolerance
   bool keep_all = false;
   bool wants_effects = false;
-  bool is_brief = false;  ///< once begun, it runs to its end even if it is no longer wanted
+  bool is_brief = false;  ///< once begun, the job runs to its end even if it is no longer wanted
 };
 
 struct JobPart {
@@ -100,14 +100,14 @@ struct JobPart {
   double evaluations = 0.0;
 };
 
-/// The points of a job with one part. They stay on display until the points of a later job are complete.
+/// The points of a job with one part. After follow(), the points of the earlier job stay until the new ones are there.
 class Sweep {
  public:
   /// Switches to the points of `job`. `column` is the column in which these points differ.
   void follow(Job job, const std::string& column = "theta_deg");
   std::optional<Job> wanted() const { return is_finished() ? std::nullopt : job_; }
   bool take(const JobPart& news);
-  bool is_finished() const { return job_ && shown_key_ == job_->key; }  ///< shows the points of the last follow()
+  bool is_finished() const { return job_ && shown_key_ == job_->key; }  ///< points() are of the last follow()
   const std::vector<Point>& points() const { return points_; }
   const std::vector<double>& at() const { return at_; }  ///< values of `column`, one per point
 
@@ -118,11 +118,11 @@ class Sweep {
   std::vector<double> at_;
 };
 
-/// A function like explore::evaluate. Only the worker's thread calls it.
+/// A function that computes points, such as explore::evaluate(). Only the worker's thread calls it.
 using Evaluate = std::function<Results(const Scene& scene, const PointList& list, const RunOptions& options)>;
 
-/// Computes the wanted jobs in order. A job that is no longer wanted stops after the current tile of the device, unless
-/// is_brief is true.
+/// A thread that computes the wanted jobs in order. It stops a job that is no longer wanted when the evaluator reports
+/// progress, unless Job::is_brief is true.
 class Worker {
  public:
   /// The worker's thread calls `on_news` after each part and after a failure.
@@ -176,7 +176,7 @@ class Worker {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::condition_variable arrived_;
-  std::vector<Task> tasks_;  ///< the wanted jobs, in order of their rank
+  std::vector<Task> tasks_;  ///< the wanted jobs, the most urgent first
   bool is_running_ = false;
   std::vector<JobPart> news_;
   bool is_stopping_ = false;

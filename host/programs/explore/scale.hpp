@@ -17,13 +17,13 @@ struct Scale {
   bool is_log = false;
 
   std::string refusal() const;  ///< the reason why the range cannot be drawn; empty if it can
-  /// The value at a position, and the position of a value. Both may lie outside the range.
+  /// The value at a position, and the position of a value. Values and positions may lie outside the range.
   double value(double position) const;
   double position(double value) const {
     return is_log ? std::log(value / from) / std::log(to / from) : (value - from) / (to - from);
   }
   double clamp(double value) const { return std::clamp(value, from, to); }
-  double rounded(double position) const;                ///< value rounded to four digits, clamped to the range
+  double rounded(double position) const;                ///< value(position) with four digits, in the range
   std::vector<double> values(std::size_t count) const;  ///< at equal steps of the position, with both ends
   /// The range between two positions, which may lie outside this range.
   Scale between(double first, double last) const { return {value(first), value(last), is_log}; }
@@ -38,7 +38,7 @@ struct Scale {
   Scale including(double value) const {
     return is_log && !(value > 0.0) ? *this : Scale{std::min(from, value), std::max(to, value), is_log};
   }
-  /// This range, linear or logarithmic. A logarithmic range cannot begin at 0; it then begins at 1/180 of its end.
+  /// This range as a linear or logarithmic one. If a logarithmic range would begin at or below 0, it begins at to/180.
   Scale with_log(bool wants_log) const;
 
   /// Round values in the range, at most `most` of them (at least 2). Linear: multiples of 1, 2 or 5 times a power of
@@ -49,8 +49,8 @@ struct Scale {
   friend bool operator==(const Scale&, const Scale&) = default;
 };
 
-/// A range for the values of curves, with space above them. A linear range contains 0; a logarithmic range ignores
-/// values that are not positive. Values that are not finite are ignored.
+/// A range for a plot of curves with these values, with space above the largest one. A linear range contains 0. Ignores
+/// values that are not finite and, for a logarithmic range, values that are not positive.
 Scale range_of(std::vector<double> values, bool is_log);
 
 std::string tick_text(double value);  ///< at most four digits

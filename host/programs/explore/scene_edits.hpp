@@ -15,12 +15,12 @@ namespace dolp::explore {
 /// The control of a key: a slider for a number, a list for words, a box for a flag.
 struct Control {
   const Key* key;
-  std::string label;     ///< the symbol of a number, in UTF-8
-  const char* equation;  ///< in UTF-8, with its number in the paper if it has one
-  Scale slider = {};     ///< a part of the key's range; the user can type other values
+  std::string label;     ///< symbol of a number, or name of a choice, in UTF-8
+  const char* equation;  ///< formula or explanation for a tooltip, in UTF-8
+  Scale slider = {};     ///< range of the slider; the user can also type other values
   /// Returns false if the scene does not use the key; the window then hides the control. Null: it is never hidden.
   bool (*is_used)(const Scene& scene) = nullptr;
-  std::optional<double> standard = {};  ///< value of a number without which a scene is valid
+  std::optional<double> standard = {};  ///< default value of a number that a scene may omit
 
   /// The scene's number; empty for words, and if the window hides the control.
   std::optional<double> value(const Scene& scene) const;
@@ -33,18 +33,18 @@ struct Control {
 
 const Key& described(const std::string& key);  ///< the key must exist
 
-/// All sliders, in the order of the scene keys, with the numbers of films last; and all lists and boxes.
+/// The controls of all keys that the window can change, in the order of the scene keys. The numbers of films come last.
 const std::vector<Control>& controls();
 
 const Control& control(const std::string& key);              ///< the key must have a control
-Scale range_in(const Scene& scene, const Control& control);  ///< of a slider, without values that the masking excludes
+Scale range_in(const Scene& scene, const Control& control);  ///< range of its slider that the masking allows
 std::string table_of(const std::string& key);                ///< "surface.coating.1" of "surface.coating.1.n"
 std::string unit_text(const Key& key);                       ///< for display: "°" for degree, empty for 1
 bool is_bistatic(const Scene& scene);
 
-/// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1". With `other`, only the words about the
-/// shape that `other` does not have, and the material. If shape and material are those of `other`, also the numbers
-/// that differ.
+/// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1". If `other` is given, the text omits
+/// words about the shape that also describe `other`. If shape and material of both scenes are equal, the text has the
+/// numbers that differ.
 std::string surface_name(const Scene& scene, const Scene* other = nullptr);
 
 /// A scene file with changes. The window computes what `dolp eval` computes with these settings.
@@ -54,8 +54,8 @@ class SceneEdits {
   /// Errors: the errors of set().
   SceneEdits(const Scene& opened, const std::vector<Setting>& changes) : SceneEdits(opened) { become(changes); }
 
-  /// A table name with an empty value, for example "source", removes this effect; a later change of one of its keys
-  /// restores it. A change of a key removes its alternatives, for example `material` removes n and k.
+  /// A table name with an empty value, such as "source", removes this effect. A later change of a key of the table
+  /// restores the effect. A change of a key removes the key's alternatives: `material` removes n and k, for example.
   /// Errors: InputError; the scene then stays unchanged.
   void set(const std::vector<Setting>& changes);
 
@@ -87,12 +87,12 @@ class SceneEdits {
 
 /// The settings of a film: n and k, or material, or material_file; and thickness_um, which is last.
 using Film = std::vector<Setting>;
-std::vector<Film> films_of(const Scene& scene);      ///< from the outside in
-Setting coating_of(const std::vector<Film>& films);  ///< gives a scene these films
-std::string word_of(const Value& value);             ///< without quotes
+std::vector<Film> films_of(const Scene& scene);      ///< the outermost film first
+Setting coating_of(const std::vector<Film>& films);  ///< setting that gives a scene these films
+std::string word_of(const Value& value);             ///< text of a value, without quotes
 
-/// Applies a change. If the scene refuses it, replaces as few choices as possible by compatible words, and returns
-/// these. Errors: InputError if this does not help; the edits then stay unchanged.
+/// Applies a change. If the scene refuses it, also changes other choices, as few as possible, to words that exclude
+/// nothing. Returns these choices. Errors: InputError if this does not help; the edits then stay unchanged.
 std::vector<Setting> change_with_needed(SceneEdits& edits, const std::function<void(SceneEdits&)>& change);
 
 /// A sky whose brightness temperature is linear in the zenith.

@@ -39,7 +39,7 @@ int fail_out_of_memory(const char* program) noexcept {
   std::array<char, 128> line{};
   const int length = std::snprintf(line.data(), line.size(), "%.40s: out of memory: more than %ld MiB wanted\n",
                                    program, used.ru_maxrss / 1024);
-  // If even this fails, nothing more can be reported.
+  // If even write() fails, no message is possible.
   if (length > 0) static_cast<void>(!::write(STDERR_FILENO, line.data(), static_cast<std::size_t>(length)));
   return kExitMemory;
 }

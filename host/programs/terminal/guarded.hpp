@@ -12,7 +12,7 @@ int fail(const std::string& program, int status, const std::string& message);
 
 void warn(const std::string& program, const std::vector<std::string>& remarks);
 
-/// Prints the line for lack of memory, without using memory. Returns kExitMemory.
+/// Prints a line that memory is short; allocates no memory for it. Returns kExitMemory.
 int fail_out_of_memory(const char* program) noexcept;
 
 /// Returns the result of `body`. If it throws, prints one line and returns the error's exit status.

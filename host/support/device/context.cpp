@@ -23,7 +23,7 @@ constexpr const char* kDriverNotLoaded =
 constexpr const char* kTooFewThreads =
     "out of memory: the system allows too few threads for a Vulkan driver (ulimit -u); the evaluator cpu needs one";
 
-/// Reports that there is no driver. The loader also skips a driver if the process has too little address space for it.
+/// Reports that there is no driver. The cause may be too little address space: then the Vulkan loader skips drivers.
 [[noreturn]] void fail_without_driver() {
   if (lacks_addresses()) throw MemoryError("out of memory: too little is left to load a Vulkan driver");
   throw DeviceError(kNoDriver);
@@ -113,7 +113,7 @@ Instance::~Instance() {
 std::vector<VkPhysicalDevice> Instance::physical_devices() const {
   std::uint32_t count = 0;
   const VkResult result = vkEnumeratePhysicalDevices(instance_, &count, nullptr);
-  // If drivers find no hardware, the loader reports it in one of these two ways.
+  // The Vulkan loader has these two ways to report that no driver has found hardware.
   if (result == VK_ERROR_INITIALIZATION_FAILED || (result == VK_SUCCESS && count == 0)) fail_without_driver();
   check(result, "listing the devices");
   std::vector<VkPhysicalDevice> devices(count);

@@ -24,11 +24,11 @@ struct Area {
   ImVec2 at(float x, float y) const { return {min.x + x * width(), min.y + y * height()}; }
 };
 
-/// Queues the events of a window. ImGui reads the state of keys and buttons once per frame, and would miss a key that
-/// goes down and up between two frames. So each event gets a frame; the window shows only some of these frames.
+/// A queue of the events of a window. ImGui reads the state of keys and buttons once per frame, and would miss a key
+/// that goes down and up between two frames. So each event gets its ImGui frame. The window shows only some of them.
 class Input {
  public:
-  /// Becomes the window's user pointer. `on_drop` gets the path of each file that is dropped on the window.
+  /// Sets GLFW's user pointer of `window` to this object. `on_drop` gets the path of each file dropped on the window.
   Input(GLFWwindow* window, std::function<void(const std::string&)> on_drop);
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
@@ -56,7 +56,7 @@ class Input {
   bool has_news_ = false;
   Clock::time_point last_event_;
   std::map<std::string, Area> areas_;
-  // State of keyboard and mouse after the events that ImGui has got so far.
+  // State of keyboard and mouse after the events that left the queue so far.
   int pressed_key_ = 0;
   bool is_inside_ = false;
   ImVec2 mouse_;

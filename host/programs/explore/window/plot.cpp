@@ -91,7 +91,7 @@ Plot::Plot(const char* id, ImVec2 size, PlotAxis x, PlotAxis y, float right, boo
 
 void Plot::follow_mouse(Zoom& zoom, const Scale& all_x) const {
   constexpr float kPerNotch = 1.25F;
-  constexpr double kLeastPart = 1e-4;  // shortest range after zooming, relative to the whole axis
+  constexpr double kLeastPart = 1e-4;  // shortest range after zooming, relative to the range without zoom
   const ImGuiIO& io = ImGui::GetIO();
   if (is_hovered_ && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) zoom = {};
   if (is_shifted_ && (io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F)) {

@@ -76,7 +76,7 @@ class Plot {
   bool is_hovered_ = false;
 };
 
-/// Draws a line through points in a style, with width and dashes scaled(). A point kGap interrupts the line.
+/// Draws a line through `points`. Width and dashes grow with the text size (scaled()). The point kGap makes a gap.
 inline const ImVec2 kGap{std::numeric_limits<float>::quiet_NaN(), 0.0F};
 void draw_line(ImDrawList* list, const std::vector<ImVec2>& points, const CurveStyle& style, float width);
 

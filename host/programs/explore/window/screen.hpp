@@ -22,7 +22,7 @@ class Texture {
 
   /// Replaces the image by `count` rows of `count` colours. The first row is the lowest; a row begins on the left.
   void set(const std::vector<ImU32>& colours, std::size_t count);
-  /// Draws the image between two corners. Each colour fills a cell around its position; outer cells are cut in half.
+  /// Draws the image between two corners. Each colour fills a cell; the cells at the edges are only half as large.
   void draw(ImDrawList* list, ImVec2 min, ImVec2 max) const;
 
  private:

@@ -26,7 +26,7 @@ ImU32 viridis(double position);
 /// Source: C. Brewer, ColorBrewer (Apache License 2.0), linear between its eleven colours.
 ImU32 diverging(double position);
 
-/// The style of a curve. Curves never differ only in colour.
+/// The style of a curve. Any two styles also differ in their dashes, for readers who do not see colours.
 struct CurveStyle {
   ImU32 colour;
   float dash;  ///< length of dashes in pixels; 0 for a solid line
@@ -47,10 +47,10 @@ inline constexpr Themed kGridColour{IM_COL32(62, 66, 72, 255), IM_COL32(214, 217
 inline constexpr Themed kPlotColour{IM_COL32(20, 21, 24, 255), IM_COL32(255, 255, 255, 255)};
 inline constexpr Themed kBackground{IM_COL32(28, 31, 33, 255), IM_COL32(240, 241, 243, 255)};
 inline constexpr Themed kLabelGround{IM_COL32(20, 21, 24, 215), IM_COL32(255, 255, 255, 215)};
-/// Colour of entries with a status.
+/// Colour where the status of an entry is bad.
 inline constexpr Themed kBadColour{IM_COL32(110, 112, 116, 255), IM_COL32(150, 152, 156, 255)};
 inline constexpr Themed kErrorColour{IM_COL32(255, 150, 110, 255), IM_COL32(178, 40, 0, 255)};
-inline constexpr Themed kRefusedColour{IM_COL32(110, 48, 34, 255), IM_COL32(255, 200, 186, 255)};  // background
+inline constexpr Themed kRefusedColour{IM_COL32(110, 48, 34, 255), IM_COL32(255, 200, 186, 255)};  // fill
 inline constexpr Themed kStaleVeil{IM_COL32(20, 21, 24, 150), IM_COL32(255, 255, 255, 150)};
 inline constexpr Themed kIntervalColour{IM_COL32(90, 205, 130, 255), IM_COL32(0, 130, 60, 255)};
 inline constexpr Themed kHeadingColour{IM_COL32(230, 179, 0, 255), IM_COL32(148, 98, 0, 255)};

@@ -15,7 +15,7 @@
 
 namespace dolp::explore {
 
-/// Runs `work` on a new thread, which calls `on_end` afterwards. `result` gets the value or the exception of `work`.
+/// Starts a thread that calls `work` and then `on_end`. `result` gets the value or the exception of `work`.
 template <class Result, class Work>
 std::jthread run_in_background(Work work, std::future<Result>& result, const std::function<void()>& on_end) {
   std::packaged_task<Result()> task(std::move(work));
@@ -31,8 +31,8 @@ bool is_ended(const std::future<Result>& result) {  // true also for a future wi
   return !result.valid() || result.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
-/// One piece of work at a time, which the user starts, watches and may cancel. The work may call set_phase(); only the
-/// window's thread calls the other functions.
+/// Runs one piece of work at a time on a separate thread. The user starts, watches and may cancel it. The work may call
+/// set_phase(). Only the window's thread may call the other functions.
 class BackgroundTask {
  public:
   /// A function that finish() calls after the work, in the window's thread. Returns a message for the user. May throw.
@@ -89,12 +89,12 @@ struct Job {
 
 struct JobPart {
   std::string key = {};
-  std::size_t part = 0;  ///< position among the job's parts
-  Scene scene;           ///< the job's scene with the tolerance that was used
+  std::size_t part = 0;  ///< position in Job::parts
+  Scene scene;           ///< Job::scene with the tolerance of the computation
   std::vector<Point> points = {};
   std::string csv = {};  ///< the points with the columns of `dolp eval`, if the job wants effects
   bool is_last = false;
-  // Totals of the whole job; only the last part has them.
+  // Effects and totals of the whole job. Only its last part has them.
   std::vector<Effect> effects = {};
   double wall_s = 0.0;
   double evaluations = 0.0;
@@ -132,7 +132,7 @@ class Worker {
   /// Replaces the list of wanted jobs, the most urgent first. A running job continues if its key is in the new list.
   void want(std::vector<Job> jobs);
 
-  /// The results since the last call. Errors: the exception that ended the worker, for example a DeviceError.
+  /// The parts computed since the last call. Errors: the exception that ended the worker, for example a DeviceError.
   std::vector<JobPart> take_news() {
     if (end_.valid() && is_ended(end_)) end_.get();
     const std::scoped_lock lock(mutex_);
@@ -144,7 +144,7 @@ class Worker {
     arrived_.wait_for(lock, at_most, [this] { return !news_.empty() || is_ended(end_); });
   }
 
-  /// True if all wanted jobs are done. Some results may not have been taken yet.
+  /// True if all wanted jobs are computed. take_news() may still have results of them.
   bool is_idle() const {
     const std::scoped_lock lock(mutex_);
     return (!is_running_ && std::ranges::all_of(tasks_, &Task::is_done)) || is_ended(end_);

@@ -35,9 +35,9 @@ class Curve {
   bool is_stale() const { return !points().empty() && !is_current(); }  ///< points() are of an earlier scene
   const Scene& shown_scene() const { return points().empty() ? scene_ : shown_.scene; }  ///< the scene of points()
   const std::vector<Point>& points() const { return shown_.points; }
-  std::vector<Point> drawn() const;  ///< points() and the maximum, which may lie between them
+  std::vector<Point> drawn() const;  ///< points() and, once it is known, the maximum
   void set_peak(const Point& peak) { peak_ = peak; }
-  const JobPart& finished() const { return finished_; }  ///< the last finished curve; at first without points
+  const JobPart& finished() const { return finished_; }  ///< last finished fine curve; first without points
 
   double worst_error() const {  // largest error bound of DOLP among good points
     double worst = 0.0;
@@ -71,11 +71,11 @@ struct PeakAnswer {
   // Zeniths between which the maximum lies, if every DOLP may be wrong by its error bound.
   double theta_low_deg = 0.0;
   double theta_high_deg = 0.0;
-  std::optional<double> rival_deg;  ///< a zenith away from the peak where DOLP may be larger, within the bounds
+  std::optional<double> rival_deg;  ///< zenith of another peak that may be higher, within the error bounds
   bool is_at_end = false;           ///< the next larger zenith has no good point, or is not searched
 };
 
-/// The point at the zenith of the peak, computed without one effect.
+/// The point at the zenith of the peak, computed for the scene without one effect.
 struct WithoutEffect {
   std::string effect;  ///< Effect::name, or "roughness"
   bool radiates;       ///< the effect is emission, source or surroundings, whose radiances add up

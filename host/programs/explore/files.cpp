@@ -46,7 +46,7 @@ void write_toml(const fs::path& path, const toml::table& table) {
   write_text_atomically(path, text.str());
 }
 
-std::vector<std::string> texts_in(Node node) {  // empty if there is no array
+std::vector<std::string> texts_in(Node node) {  // empty if the node is no array
   std::vector<std::string> texts;
   const toml::array* const array = node.as_array();
   for (std::size_t i = 0; array && i < array->size(); ++i) {

@@ -21,7 +21,7 @@ void save_curve(const Session& session, const std::string& path);
 
 bool is_session_file(const std::string& path);  ///< false also if the file cannot be read
 
-/// Shows measured points (.csv), a scene or a session. Errors: InputError in one line; the session stays unchanged.
+/// Shows the measured points (.csv), scene or session in a file. Errors: InputError; `session` then stays unchanged.
 void open_file(Session& session, const std::string& path);
 
 class Preferences {
@@ -44,7 +44,7 @@ class Preferences {
   }
   /// Enlarges text and controls by `steps` of 10 %; a negative number makes them smaller.
   void zoom_by(int steps) {
-    constexpr int kMostSteps = 8;  // about twice or half the size: text stays readable, and controls stay in the window
+    constexpr int kMostSteps = 8;  // about twice or half the size: the text is readable, and the controls fit
     zoom_steps_ = std::clamp(zoom_steps_ + std::clamp(steps, -2 * kMostSteps, 2 * kMostSteps), -kMostSteps, kMostSteps);
   }
   void zoom_to_default() { zoom_steps_ = 0; }

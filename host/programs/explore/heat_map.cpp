@@ -16,7 +16,7 @@ struct AxisOfNumber {
   std::optional<Scale> range = {};  ///< range of the map's axis; empty: the range of the slider
 };
 
-/// All axes except the zenith. Sigma and the wind speed share a name; no scene has sliders of both.
+/// All axes except the zenith. Sigma and the wind speed have the same name, because no scene has sliders for both.
 const std::vector<AxisOfNumber>& axes_of_numbers() {
   static const std::vector<AxisOfNumber> all = [] {
     std::vector<AxisOfNumber> axes = {{"sigma", "surface.sigma"},
@@ -47,7 +47,7 @@ Scale grid_range(const Scene& scene, const MapAxis& axis) {
 struct Corner {
   std::size_t x, y;
 };
-constexpr std::array<Corner, 4> kCorners = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};  // in the order around a square
+constexpr std::array<Corner, 4> kCorners = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};  // counterclockwise
 
 /// Adds the contour lines in the square whose lower left corner is (column, row).
 void add_lines(const MapField& field, double level, std::size_t column, std::size_t row, std::vector<Segment>& lines) {

@@ -8,7 +8,7 @@ namespace dolp::explore {
 struct MapAxis {
   std::string name = "theta";  ///< name in session files
   std::string label = "θ [°]";
-  std::string key = {};  ///< key of the scene; empty for the zenith
+  std::string key = {};  ///< scene key of the axis; empty for the zenith
   Scale scale = {0.0, 90.0};
 
   /// Name of the column of a PointList for this axis. Empty for the temperature: each value of it is a changed scene.
@@ -38,7 +38,7 @@ std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range)
 struct MapField {
   std::size_t count = 0;
   std::vector<double> values;  ///< NaN where there is no value, and for entries with a bad status
-  double min = 0.0;            ///< the smallest and the largest value
+  double min = 0.0;            ///< `min` and `max`: smallest and largest value
   double max = 0.0;
 };
 
@@ -55,8 +55,8 @@ class HeatMap {
  public:
   struct Level {
     std::size_t count;  ///< number of rows, and of columns
-    double tolerance;   ///< lower limit of the tolerance; 0: the scene's tolerance
-    std::size_t batch;  ///< number of values along the slower axis in one part of the job
+    double tolerance;   ///< used if the scene's tolerance is lower
+    std::size_t batch;  ///< number of values of the slower axis (see slower()) in one JobPart
   };
   // During a drag the curve waits for a part of the first level. So this part has only two values of the slower axis.
   static constexpr std::array<Level, 3> kLevels = {{{16, 1e-2, 2}, {64, 1e-2, 8}, {128, 0.0, 4}}};
@@ -95,7 +95,7 @@ class HeatMap {
   }
   std::size_t version() const { return version_; }  ///< changes whenever the field changes
 
-  /// The finest level that has begun. A missing point has the value of the nearest point of a coarser level.
+  /// The values at the finest level with a point. Where this level has no point yet, the nearest coarser point counts.
   MapField field(Plotted quantity) const;
 
  private:

@@ -12,12 +12,12 @@ Plotted plotted(Observable observable);  ///< the quantity that a plot draws for
 /// Reads measured points. Accepts only a regular file, because the window must not wait for a pipe. Errors: InputError.
 MeasuredData read_measured(const std::string& path);
 
-/// Measured points, and the model at their zeniths and wavelengths.
+/// Measured points, and the results of the scene at the zeniths and wavelengths of these points.
 class Residuals {
  public:
   explicit Residuals(const Scene& scene) : scene_(scene), loaded_for_(scene) {}
 
-  /// Errors: InputError if the data come with settings KEY=VALUE, which only `dolp fit` accepts.
+  /// Errors: InputError if the data file contains settings KEY=VALUE, which only `dolp fit` accepts.
   void load(MeasuredData data);
   void clear() { data_.reset(); }
   void follow(const std::string& key, const Scene& scene);
@@ -29,7 +29,7 @@ class Residuals {
   const Scene& loaded_for() const { return loaded_for_; }
   bool is_known() const { return data_ && model_.is_finished(); }
   std::vector<Measurement> measured(Plotted quantity) const;
-  /// Measured minus model, without points where the model has no value. Empty until the model has been computed.
+  /// Measured values minus the scene's. Omits points at which the model gives no value. Empty before is_known().
   std::vector<Measurement> residuals(Plotted quantity) const;
 
  private:
@@ -39,7 +39,7 @@ class Residuals {
   Sweep model_;
 };
 
-std::optional<double> rms_of(const std::vector<Measurement>& residuals);  ///< root mean square; empty without values
+std::optional<double> rms_of(const std::vector<Measurement>& residuals);  ///< root mean square; empty without residuals
 
 /// The scene keys that vary in fits, each with its range if the user typed one.
 using FitMarks = std::map<std::string, std::optional<FitRange>>;

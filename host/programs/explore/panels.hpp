@@ -42,7 +42,7 @@ Scene smooth_scene(const Scene& scene);
 
 /// The Mueller pBRDF for directions of reflection in the plane of incidence.
 struct ScatteringCut {
-  std::vector<double> theta_r_deg;  ///< from -90 to 90; positive on the side to which a mirror reflects
+  std::vector<double> theta_r_deg;  ///< from -90 to 90; a mirror reflects to the positive side
   std::vector<MuellerMatrix> matrices;
   double wavelength_um = 0.0;  ///< wavelength of the scene, or the middle of its band
 };
@@ -78,7 +78,7 @@ class SourceSky {
   void take(const JobPart& news) {
     std::ranges::any_of(rings_, [&](Sweep& ring) { return ring.take(news); });
   }
-  /// The points at an azimuth, ordered by zenith; empty while they are unknown.
+  /// The points at an azimuth, ordered by zenith; empty until they are computed.
   const std::vector<Point>& at(std::size_t azimuth) const { return rings_[azimuth].points(); }
   static double azimuth_deg(std::size_t azimuth) { return 180.0 * static_cast<double>(azimuth) / (kAzimuths - 1); }
   bool is_finished() const { return std::ranges::all_of(rings_, &Sweep::is_finished); }

@@ -26,7 +26,7 @@ struct PointList {
   }
 };
 
-bool has_wind(const Scene& scene);  ///< sigma comes from a wind speed
+bool has_wind(const Scene& scene);  ///< true if a wind speed determines sigma
 
 /// Points at the zeniths `theta_deg` with the scene's slope distribution. The zenith is the first column.
 PointList points_at(const Scene& scene, std::vector<double> theta_deg);

@@ -43,7 +43,7 @@ std::vector<Part> radiating_parts(const Session& session) {
   return parts;
 }
 
-const Point* point_without(const Session& session, const std::string& effect) {  // at the peak; null if unknown
+const Point* point_without(const Session& session, const std::string& effect) {  // at the peak; null if not computed
   if (!session.peak().answer()) return nullptr;
   const std::vector<WithoutEffect>& all = session.peak().without();
   const auto away = std::ranges::find(all, effect, &WithoutEffect::effect);

@@ -95,7 +95,7 @@ Scale range_of(std::vector<double> values, bool is_log) {
   const auto [low, high] = std::ranges::minmax(values);
   if (is_log) {
     constexpr double kMostDecades = 1e6;
-    constexpr double kRoom = 4.0;  // factor above the largest value: space for the mark of the maximum
+    constexpr double kRoom = 4.0;  // the axis ends at kRoom times the largest value, so that its mark fits
     return {std::max(low / 1.5, kRoom * high / kMostDecades), kRoom * high, true};
   }
   const double room = 0.06 * std::max(high - low, 1e-9);

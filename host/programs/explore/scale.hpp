@@ -24,17 +24,17 @@ struct Scale {
   }
   double clamp(double value) const { return std::clamp(value, from, to); }
   double rounded(double position) const;                ///< value(position) with four digits, in the range
-  std::vector<double> values(std::size_t count) const;  ///< at equal steps of the position, with both ends
+  std::vector<double> values(std::size_t count) const;  ///< `count` values at equal steps of position
   /// The range between two positions, which may lie outside this range.
   Scale between(double first, double last) const { return {value(first), value(last), is_log}; }
-  /// This range shifted into `all`; or `all` itself if this range is larger.
+  /// This range, shifted so that it lies in `all`. If this range is larger than `all`, returns `all`.
   Scale within(const Scale& all) const {
     const double first = all.position(from), last = all.position(to);
     if (last - first >= 1.0) return all;
     const double shift = std::max(-first, 0.0) + std::min(1.0 - last, 0.0);
     return all.between(first + shift, last + shift);
   }
-  /// This range extended to a value, if the scale can show the value.
+  /// This range, extended so that it contains `value`. Unchanged if a logarithmic scale cannot show `value`.
   Scale including(double value) const {
     return is_log && !(value > 0.0) ? *this : Scale{std::min(from, value), std::max(to, value), is_log};
   }
@@ -53,6 +53,6 @@ struct Scale {
 /// values that are not finite and, for a logarithmic range, values that are not positive.
 Scale range_of(std::vector<double> values, bool is_log);
 
-std::string tick_text(double value);  ///< at most four digits
+std::string tick_text(double value);  ///< label of a tick, with at most four digits
 
 }  // namespace dolp::explore

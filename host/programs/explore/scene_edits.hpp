@@ -12,7 +12,7 @@
 
 namespace dolp::explore {
 
-/// The control of a key: a slider for a number, a list for words, a box for a flag.
+/// The control of a scene key in the window: a slider for a number, a list for words, a box for a flag.
 struct Control {
   const Key* key;
   std::string label;     ///< symbol of a number, or name of a choice, in UTF-8
@@ -26,7 +26,7 @@ struct Control {
   std::optional<double> value(const Scene& scene) const;
   /// The position of the scene's word in Key::words; empty for numbers, and if the window hides the control.
   std::optional<std::size_t> word(const Scene& scene) const;
-  std::string label_with_unit() const;  ///< "λ [µm]" for a number
+  std::string label_with_unit() const;  ///< for a number with a unit: "λ [µm]"
   bool is_shown(const Scene& scene) const { return !is_used || is_used(scene); }
   bool is_number() const { return key->type == Key::Type::kNumber; }
 };
@@ -39,7 +39,7 @@ const std::vector<Control>& controls();
 const Control& control(const std::string& key);              ///< the key must have a control
 Scale range_in(const Scene& scene, const Control& control);  ///< range of its slider that the masking allows
 std::string table_of(const std::string& key);                ///< "surface.coating.1" of "surface.coating.1.n"
-std::string unit_text(const Key& key);                       ///< for display: "°" for degree, empty for 1
+std::string unit_text(const Key& key);                       ///< unit for display: "°" for "degree", "" for "1"
 bool is_bistatic(const Scene& scene);
 
 /// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1". If `other` is given, the text omits
@@ -47,7 +47,7 @@ bool is_bistatic(const Scene& scene);
 /// numbers that differ.
 std::string surface_name(const Scene& scene, const Scene* other = nullptr);
 
-/// A scene file with changes. The window computes what `dolp eval` computes with these settings.
+/// A scene file with changes. The results in the window are those of `dolp eval` with the changes as --set.
 class SceneEdits {
  public:
   explicit SceneEdits(const Scene& opened) : opened_(opened), scene_(opened), saved_(opened.settings()) {}
@@ -66,12 +66,12 @@ class SceneEdits {
   const Scene& scene() const { return scene_; }
   const Scene& opened() const { return opened_; }
   bool is_changed() const { return changes() != saved_; }
-  void note_saved() { saved_ = changes(); }  ///< declares the current scene unchanged
+  void note_saved() { saved_ = changes(); }  ///< after this call is_changed() is false
   /// Goes to another state of this file, or to another file. In another state of this file, is_changed() still compares
   /// with the state that was saved last.
   void go_to(const SceneEdits& other);
   bool is_same_scene(const SceneEdits& other) const { return is_same_file(other) && changes() == other.changes(); }
-  const std::vector<Setting>& changes() const { return scene_.settings(); }  ///< includes the opened scene's settings
+  const std::vector<Setting>& changes() const { return scene_.settings(); }  ///< with the settings of opened()
   std::vector<Setting> changes_without(const std::vector<std::string>& keys) const;
 
  private:
@@ -107,12 +107,12 @@ struct SkyPair {
 /// Reads a file with the text of SkyPair::csv. Empty if the file has another text or cannot be read.
 std::optional<SkyPair> read_sky_pair(const std::filesystem::path& file);
 
-std::filesystem::path sky_file(const Scene& scene);  ///< empty for a built-in sky and without a sky
+std::filesystem::path sky_file(const Scene& scene);  ///< empty if the scene has no sky or a built-in one
 
-/// Files of the skies that the window edits; a scene names a sky by its file. The destructor removes their folder.
+/// Temporary files of the skies that the user edits, because a scene can name only a file. The destructor removes them.
 class SkyFiles {
  public:
-  /// Writes the file of a sky and returns its path. If that fails, there is no file, and the scene refuses the path.
+  /// Writes a file with `sky` and returns the path. If the writing fails, the scene will refuse the path.
   std::string path(const SkyPair& sky);
   bool hold(const std::filesystem::path& file) const { return folder_ && file.parent_path() == folder_->path(); }
 

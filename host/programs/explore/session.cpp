@@ -318,7 +318,7 @@ void Session::follow_map() {
 void Session::follow_sweeps(const std::string& content) {
   constexpr std::size_t kSpectrum = 121;
   constexpr std::size_t kSmooth = 901;  // shows the fringes of films; is fast, because a closed form gives the values
-  constexpr double kWidth = 2.0;        // the axis goes from half the wavelength of the opened scene to twice
+  constexpr double kWidth = 2.0;        // the axis begins at wavelength / kWidth and ends at kWidth * wavelength
   const bool is_spectrum = shows(Panel::kSpectrum);
   if (!is_spectrum && !shows(Panel::kSmooth)) return;
   spectral_scene_ = at_one_wavelength(scene());

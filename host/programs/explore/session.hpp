@@ -10,7 +10,7 @@
 
 namespace dolp::explore {
 
-/// A curve that is kept while the scene changes.
+/// A curve that stays in the plot while the scene changes.
 struct Pin {
   std::string name = {};   ///< name that the user typed; if empty, the legend describes the surface
   std::size_t colour = 0;  ///< position in the list of pin colours
@@ -23,7 +23,7 @@ struct View {
   bool is_log = false;
   bool is_theta_log = false;    ///< curves are drawn over the logarithm of the zenith
   bool has_overlay = true;      ///< also draws the other slope distribution with an equal D(0)
-  bool keeps_all = false;       ///< also computes effects that the plan would drop
+  bool keeps_all = false;       ///< keeps effects that a run would drop as too small
   double theta_max_deg = 90.0;  ///< largest zenith of the plots and of the search for the maximum
   std::string map_x = "theta";  ///< name of the x axis; if the scene lacks this axis, the map takes another one
   std::string map_y = "sigma";
@@ -90,8 +90,8 @@ class Session {
   void hold(bool is_held);
   void note_saved() { state_.edits.note_saved(); }
   void pin();
-  /// Changes the view. If the quantity changes, or its axis becomes linear or logarithmic, the chosen ranges of values
-  /// and colours are removed. If the zenith axis becomes linear or logarithmic, the chosen range of zeniths is removed.
+  /// Changes the view. If View::quantity or View::is_log changes, removes the typed ranges of values and colours. If
+  /// View::is_theta_log changes, removes the typed range of zeniths. These ranges would no longer fit.
   void set_view(const View& view);
   template <class T>
   void set_view(T View::*part, const std::type_identity_t<T>& value) {
@@ -104,7 +104,7 @@ class Session {
   void set_map_cursor(double x, double y);
   void load_measured(const std::string& path);
   void clear_measured() { residuals_.clear(); }
-  void mark(const std::string& key, bool varies) {  // whether a number varies in fits
+  void mark(const std::string& key, bool varies) {  // `varies`: the number `key` varies in fits
     if (varies) {
       state_.marked.try_emplace(key);
     } else {
@@ -119,7 +119,7 @@ class Session {
   void visit_minimum(std::size_t position);
   void tell(std::string text, bool is_error = false) { message_ = {std::move(text), is_error}; }
 
-  std::vector<Job> wanted() const;                                   ///< the most urgent first
+  std::vector<Job> wanted() const;                                   ///< the most urgent job first
   bool take_changed() { return std::exchange(is_changed_, false); }  ///< true if wanted() may have changed
   void take(const std::vector<JobPart>& news);
 
@@ -135,7 +135,7 @@ class Session {
   const std::vector<Snapshot>& snapshots() const { return state_.snapshots; }
   const HeatMap& map() const { return map_; }
   const SourceSky& source_sky() const { return source_sky_; }
-  /// The scene at one wavelength, and the axis of the plots over wavelength. If the scene is known at only one
+  /// The scene at one wavelength, and the axis of the plots over wavelength. If n and k are known at only one
   /// wavelength, both ends of the axis are equal.
   const Scene& spectral_scene() const { return spectral_scene_; }
   const MapAxis& wavelengths() const { return wavelengths_; }
@@ -211,14 +211,14 @@ class Session {
   std::vector<Effect> effects_;
   std::pair<std::string, double> influences_of_;  ///< curve's key and zenith of the influences in effects_
   Message message_;
-  std::vector<std::string> remarks_;  ///< remarks on the scene that message() has already shown
+  std::vector<std::string> remarks_;  ///< remarks on the scene that message() has shown before
   bool is_changed_ = true;
   // During a drag the worker computes in turn: the curve, the map (or sky), the curve, the overlay.
   bool is_curve_next_ = true;
   bool is_map_next_ = false;
 };
 
-/// A text that identifies results. It is equal if the scene's file, the changes and `keep_all` are equal.
+/// A text that identifies results: two texts are equal if the scene files, the changes and `keep_all` are equal.
 std::string content_key(const Scene& scene, const std::vector<Setting>& changes, bool keep_all);
 
 }  // namespace dolp::explore

@@ -16,7 +16,7 @@
 namespace dolp {
 namespace {
 
-/// True if the cause is lack of memory. std::thread throws such an error if there is no memory for the thread's stack.
+/// True if lack of memory caused `error`. std::thread throws such an error if there is no memory for its stack.
 bool is_of_memory(const std::system_error& error) {
   return error.code() == std::errc::not_enough_memory || error.code() == std::errc::resource_unavailable_try_again;
 }

@@ -138,7 +138,7 @@ void sync_folder(const fs::path& folder, const fs::path& path) {
 
 }  // namespace
 
-// Replaces std::filesystem::canonical, which needs an existing target; an output need not exist.
+// std::filesystem::canonical() would fail for an output that does not exist yet.
 fs::path follow_links(fs::path path) {
   std::error_code error;
   for (int links = 0; fs::is_symlink(path, error); ++links) {
@@ -177,7 +177,7 @@ void check_writable(const fs::path& path) {
 
 struct AtomicFile::Impl {
   fs::path path;    // the argument of the constructor, for messages
-  fs::path target;  // path after symbolic links are resolved
+  fs::path target;  // follow_links(path)
   File file;
   fs::path name;         // temporary name of the incomplete file; empty: the file has no name yet
   bool is_kept = false;  // true: the destructor does not remove an incomplete file

@@ -12,8 +12,8 @@ namespace dolp {
 /// The path to which `path` leads if it is a symbolic link, otherwise `path`. Errors: IoError for too many links.
 std::filesystem::path follow_links(std::filesystem::path path);
 
-/// Checks early that an output path can be written; "-" is standard output. Errors: IoError if the path is a folder, a
-/// read-only file or too long, or if its folder is missing or not writable.
+/// Checks before a computation that its output can be written; "-" is standard output. Errors: IoError if `path` is a
+/// folder, a read-only file or too long, or if the folder of `path` is missing or not writable.
 void check_writable(const std::filesystem::path& path);
 
 /// A file that gets the name `path` only when it is complete. Write its bytes in any order, and then call commit().
@@ -24,10 +24,10 @@ class AtomicFile {
  public:
   /// Errors: the errors of check_writable(); IoError if no file can be made.
   explicit AtomicFile(const std::filesystem::path& path);
-  /// A locked file that has the name `under_way` until it is complete. If it is never completed, it keeps this name and
-  /// its bytes. If `under_way` exists, opens it with its content.
+  /// Creates and locks a file that has the name `under_way` until it is complete. If commit() is never called, the file
+  /// remains with this name. If a file `under_way` exists, opens this file and keeps its content.
   /// Errors: the errors of check_writable(); IoError if no file can be made, or if `under_way` is a symbolic link,
-  /// which could lead to any file; InputError if another process writes it.
+  /// which could lead to any file; InputError if another process has locked it.
   AtomicFile(const std::filesystem::path& path, const std::filesystem::path& under_way);
   AtomicFile(AtomicFile&&) noexcept;
   AtomicFile& operator=(AtomicFile&&) noexcept;

@@ -17,7 +17,7 @@
 namespace dolp {
 namespace {
 
-/// A file in memory, so that no folder for temporary files is needed.
+/// A file that exists only in memory, so that the program needs no folder for temporary files.
 class MemoryFile {
  public:
   MemoryFile() : file_(::fdopen(::memfd_create("picture", MFD_CLOEXEC), "w+b"), std::fclose) {}

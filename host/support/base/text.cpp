@@ -134,7 +134,7 @@ std::string one_line(std::string_view text) {
     if (!is_space) line += c;
     if (is_space && !line.empty() && line.back() != ' ') line += ' ';
     if (line.size() > kMessageBytes) {
-      // Removes a UTF-8 sequence that the cut has split: up to three bytes that continue it, and its first byte.
+      // Removes the last UTF-8 character, which may be incomplete: up to three continuation bytes and the first byte.
       for (int i = 0; i < 3 && (static_cast<unsigned char>(line.back()) & 0xC0U) == 0x80U; ++i) line.pop_back();
       line.pop_back();
       return line + "...";

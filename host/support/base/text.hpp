@@ -10,7 +10,7 @@
 namespace dolp {
 
 std::string_view trim(std::string_view text);  ///< removes blanks (space, tab) at both ends
-std::vector<std::string_view> split(std::string_view text, char separator);  ///< at least one piece
+std::vector<std::string_view> split(std::string_view text, char separator);  ///< returns at least one piece
 
 /// The lines of a text without line ends (LF or CRLF), a UTF-8 byte order mark at its start, or blank lines at its end.
 std::vector<std::string_view> split_lines(std::string_view text);
@@ -34,7 +34,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 /// The first of the candidates with the smallest edit distance from `name`. `candidates` must not be empty.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
 
-/// The candidate that a mistyped or shortened name probably means, if any is similar. `candidates` must not be empty.
+/// The candidate that a mistyped or shortened name probably means. Empty if none is similar. Needs a candidate.
 std::optional<std::string> near_name(std::string_view name, const std::vector<std::string>& candidates);
 
 std::string one_line(std::string_view text);  ///< replaces line ends by blanks; cuts long texts for a message

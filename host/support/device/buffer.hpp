@@ -8,7 +8,7 @@
 
 namespace dolp::vulkan {
 
-/// A storage buffer with its memory. It is never empty.
+/// A Vulkan storage buffer with its memory.
 class Buffer {
  public:
   /// Creates a buffer with at least `bytes`. If `texels` is a format, kernels can also read texels of this format.

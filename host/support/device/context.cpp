@@ -15,8 +15,8 @@ constexpr std::array kValidationExtensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
 constexpr const char* kNoDriver =
     "no Vulkan driver was found (on Debian, mesa-vulkan-drivers has one that needs no GPU; VK_DRIVER_FILES and "
     "VK_ICD_FILENAMES override the search)";
-// Message for a malformed driver file, which the loader reports as lack of memory. If memory were really short, the
-// process would have ended before.
+// Message for the error "out of memory" of the Vulkan loader. The true cause is a malformed driver file, because a
+// process that is really short of memory would have ended before.
 constexpr const char* kDriverNotLoaded =
     "no Vulkan driver could be loaded: its file (VK_DRIVER_FILES, VK_ICD_FILENAMES, vulkan/icd.d) is malformed";
 
@@ -36,7 +36,7 @@ VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT
 }
 
 VkDebugUtilsMessengerCreateInfoEXT messenger_info(ValidationLog* log) {
-  // Messages of the type "general" are left out. They come from the loader and may concern drivers that are never used.
+  // Leaves out messages of type "general", because the Vulkan loader sends them even for drivers that are never used.
   return {
       .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
       .messageSeverity =

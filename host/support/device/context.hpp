@@ -60,7 +60,7 @@ class Context {
   const Device& device() const { return *device_; }
 
   std::vector<std::string> validation_messages() const { return log_.messages(); }
-  /// Errors: DeviceError with the first message of the validation layer, if any.
+  /// Errors: DeviceError with the first of the validation_messages(), if there are any.
   void check_validation() const;
 
  private:

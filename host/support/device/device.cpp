@@ -44,7 +44,7 @@ VkDeviceSize largest_device_heap(const VkPhysicalDeviceMemoryProperties& memory)
 
 dolp::Device::Type type_of(VkPhysicalDeviceType type) {
   using enum dolp::Device::Type;
-  // In the order of VkPhysicalDeviceType.
+  // in the order of the values of VkPhysicalDeviceType
   constexpr std::array kTypes = {kOther, kIntegrated, kDiscrete, kVirtual, kCpu};
   const auto number = static_cast<std::size_t>(type);
   return number < kTypes.size() ? kTypes[number] : kOther;

@@ -19,9 +19,9 @@ constexpr std::uint32_t kLocalSize = 64;
 dolp::Device describe(VkPhysicalDevice physical);
 
 enum class MemoryUse {
-  kDeviceOnly,  ///< not mapped
-  kUpload,      ///< mapped; written by the host
-  kReadback,    ///< mapped; read by the host
+  kDeviceOnly,  ///< not mapped into the host's memory
+  kUpload,      ///< mapped, so that the host can write it
+  kReadback,    ///< mapped, so that the host can read it
 };
 
 struct MemoryType {
@@ -29,7 +29,7 @@ struct MemoryType {
   VkMemoryPropertyFlags flags = 0;
 };
 
-/// A logical device with a queue that computes.
+/// A logical Vulkan device with one compute queue.
 class Device {
  public:
   /// `float64` enables double precision in shaders; the device must support it.

@@ -6,7 +6,7 @@
 
 namespace dolp {
 
-/// Whether the Khronos validation layer is used, for tests.
+/// Whether Vulkan's validation layer checks all calls. It is for tests.
 enum class ValidationMode {
   kFromEnvironment,  ///< used if the environment variable DOLP_VALIDATION is 1
   kOff,

@@ -52,7 +52,7 @@ bool lacks_addresses() {
 
 bool lacks_threads() {
   // The driver lavapipe starts two threads per core (for at most 32 cores), one thread for its queue, and two for its
-  // cache of kernels. If it cannot start one of them, it waits forever.
+  // cache of kernels. If lavapipe cannot start a thread, it waits forever.
   const std::size_t needed = 2 * std::clamp(std::thread::hardware_concurrency(), 1U, 32U) + 3;
   std::promise<void> end;
   const std::shared_future<void> ended = end.get_future().share();
@@ -63,7 +63,7 @@ bool lacks_threads() {
   } catch (const std::system_error&) {
     // the system refused to start a thread
   } catch (...) {
-    end.set_value();  // `end` must outlive the threads
+    end.set_value();  // otherwise the threads would wait forever
     throw;
   }
   end.set_value();

@@ -1,4 +1,4 @@
-// Converts results of Vulkan calls to exceptions, and owns the objects that these calls create.
+// Functions that convert results of Vulkan calls to exceptions, and owners of the objects that these calls create.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -15,7 +15,7 @@ struct DeviceTimeout : DeviceError {
   explicit DeviceTimeout(const std::string& message);
 };
 
-/// True after a DeviceTimeout. Then the program must end without cleaning up, because the driver's threads still run.
+/// True after a DeviceTimeout. The program must then end without destructors, because the driver's threads still run.
 bool driver_is_busy();
 
 /// The device became unusable. A new logical device may work, even on the same hardware.

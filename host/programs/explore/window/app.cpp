@@ -18,7 +18,7 @@ constexpr double kBlink_s = 0.3;  // period in which the text cursor blinks
 // Twice this time makes frames of slow scenes too long. With half of it, curves of bands lag behind the slider.
 constexpr double kCatchUp_s = 0.03;
 constexpr std::size_t kFramesAfterEvent = 4;  // ImGui draws some effects, such as an open list, some frames later
-constexpr std::size_t kFramesAfterNews = 2;   // tables adapt to the width of their text one frame later
+constexpr std::size_t kFramesAfterNews = 2;   // ImGui fits tables to their text one frame later
 
 std::string times_text(std::vector<double> times_s) {
   if (times_s.empty()) return "none";
@@ -97,7 +97,7 @@ bool App::answer(const AfterFrame& after_frame) {
     if (after_frame) after_frame(seconds_since(start));
     if (!is_open) return false;
     const bool has_news = input_.take_news() || !actions_.picture_path.empty();
-    if (session_.is_dragged()) return true;  // only one frame per move, to leave the processor to the curves
+    if (session_.is_dragged()) return true;  // draws once per mouse move, because curves need the processor
     left = has_news ? kFramesAfterEvent : left - 1;
   }
   return true;
@@ -112,7 +112,7 @@ void App::reopen() { glfwSetWindowShouldClose(screen_.window(), GLFW_FALSE); }
 
 void App::run(const AfterFrame& after_frame) {
   while (answer(after_frame)) {
-    // Draws once more when the mouse has rested for kTooltipDelay_s, because then a note appears.
+    // Draws once more when the mouse has rested for kTooltipDelay_s, because then a tooltip appears.
     constexpr double kNote_s = static_cast<double>(kTooltipDelay_s) + 0.05;
     if (ImGui::GetIO().WantTextInput) {
       glfwWaitEventsTimeout(kBlink_s);

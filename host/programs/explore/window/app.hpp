@@ -8,7 +8,7 @@ namespace dolp::explore {
 
 struct AppOptions {
   std::string device;                      ///< position of the device, or a part of its name
-  std::string command_line;                ///< written into tables as their history
+  std::string command_line;                ///< text that tables contain as their history
   std::filesystem::path preferences = {};  ///< file of the preferences; empty: preferences are not stored
 };
 
@@ -26,7 +26,7 @@ class App {
   const AxisEditor& axis_editor() const { return ui_.axis_editor; }
 
   /// Takes input and results, and draws one frame. Returns false if the user has closed the window.
-  /// Errors: DeviceError if no device can compute, or if it is lost.
+  /// Errors: DeviceError if no device can compute, or if the device is lost.
   bool frame();
   /// Draws frames until the window shows the effect of all events. Returns false if the user has closed the window.
   bool answer(const AfterFrame& after_frame = {});
@@ -40,7 +40,7 @@ class App {
 
   /// True if nothing remains to be computed and the session has all results.
   bool is_idle() { return worker_.is_idle() && is_all_taken_ && !actions_.fit_task.is_running(); }
-  void settle();  ///< draws until is_idle()
+  void settle();  ///< draws frames until is_idle() is true
   /// Writes a picture of the window with its next frame. Errors: IoError.
   void save_picture(const std::string& path) { actions_.picture_path = path; }
 
@@ -68,7 +68,7 @@ struct ProgramOptions : AppOptions {
   std::string screenshot_path;         ///< PNG of the last frame; empty: none
   std::string panel = {};              ///< name of the first panel; empty: the map
   std::string session_path = {};       ///< session file that replaces the scene; empty: none
-  std::vector<Setting> settings = {};  ///< changes of the session
+  std::vector<Setting> settings = {};  ///< --set: changes of the scene in the session
 };
 
 extern const char* const kFirstScene;  ///< text of night_paint.toml, the scene of a window without a file

@@ -14,8 +14,8 @@ namespace {
 
 constexpr const char* kSkyProfile = "surroundings.profile";
 constexpr const char* kUniformSky = "surroundings.temperature_K";
-constexpr double kUniformSky_K = 250.0;    // used if the opened scene has no uniform sky
-constexpr Scale kSkySlider{150.0, 350.0};  // in K; the user can type other temperatures
+constexpr double kUniformSky_K = 250.0;    // for a new uniform sky, if the opened scene has none
+constexpr Scale kSkySlider{150.0, 350.0};  // range in K; the user can type other values
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
@@ -165,7 +165,7 @@ struct Controls {
     }
   }
 
-  // Each control reads its value again, because an earlier control may have changed the scene.
+  // Both loops read each value from the session, because an earlier control may have changed the scene.
   void draw_choices(const std::string& table) {
     for (const Control& control : controls()) {
       if (table_of(control.key->key) != table) continue;
@@ -229,7 +229,7 @@ struct Controls {
       Film chosen = draw_material(film);
       if (is_removed) films.erase(films.begin() + static_cast<std::ptrdiff_t>(layer) - 1);
       if (!chosen.empty()) {
-        chosen.push_back(films[layer - 1].back());  // the thickness
+        chosen.push_back(films[layer - 1].back());  // keeps the thickness, which is last in a Film
         films[layer - 1] = chosen;
       }
       if (is_removed || !chosen.empty()) return session.set({coating_of(films)});

@@ -12,8 +12,8 @@ namespace {
 
 constexpr float kCurveWidth = 2.0F;
 // Heights of the curve view, in lines of text.
-constexpr float kRoomForTwo = 18.0F;        // a higher view has a legend of two lines
-constexpr float kRoomForResiduals = 17.0F;  // a higher view has residuals below the curve
+constexpr float kRoomForTwo = 18.0F;        // if the view is higher, the legend has two lines
+constexpr float kRoomForResiduals = 17.0F;  // if the view is higher, residuals are below the curve
 constexpr float kLeastResiduals = 7.0F;
 
 struct Shown {
@@ -36,7 +36,7 @@ std::vector<Shown> shown_curves(const Session& session) {
   for (const Pin& pin : session.pins()) {
     if (pin.is_visible) add(pin.curve, pin_style(pin.colour));
   }
-  add(session.curve(), current_style());  // last, so that it is on top
+  add(session.curve(), current_style());  // the last curve is drawn on top of the others
   return curves;
 }
 
@@ -266,7 +266,7 @@ void CurveView::choose_axes(const Session& session, Zoom& zoom, const Scale& zen
   if (zoom.y && zoom.y->is_log == values.is_log) {
     values = *zoom.y;
   } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left) && is_same) {
-    // While a slider is dragged the axis only grows, so that only the curve moves.
+    // During a drag of a slider the axis may grow but not shrink, so that the curve moves and the axis rests.
     values = {std::min(y_.from, values.from), std::max(y_.to, values.to), y_.is_log};
   }
   quantity_ = session.view().quantity;

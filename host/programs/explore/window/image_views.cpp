@@ -18,7 +18,7 @@ struct Disc {
   ImVec2 middle;
   float radius;
 
-  /// The point at a share of the radius, and at an angle counterclockwise from the right.
+  /// The point at `share` times the radius, at an angle that counts counterclockwise from the right.
   ImVec2 at(double share, double angle_deg) const {
     const double angle = angle_deg * kDegree;
     return {middle.x + radius * static_cast<float>(share * std::cos(angle)),
@@ -62,14 +62,14 @@ void draw_lobe(ImDrawList* list, const Disc& disc, const ScatteringCut& cut, std
   }
 }
 
-ImU32 angle_colour(double angle_deg) {  // equal at 0 and 180 degrees
+ImU32 angle_colour(double angle_deg) {  // the colours for 0 and 180 degrees are equal
   float r = 0.0F, g = 0.0F, b = 0.0F;
   ImGui::ColorConvertHSVtoRGB(static_cast<float>(angle_deg / 180.0), 0.65F, 0.95F, r, g, b);
   return ImGui::ColorConvertFloat4ToU32({r, g, b, 1.0F});
 }
 
 struct Colours {
-  Scale dolp;             ///< range from the darkest colour to the lightest
+  Scale dolp;             ///< DOLP of the darkest and of the lightest colour
   bool is_angle = false;  ///< the image shows the angle of polarisation instead of DOLP
 
   ImU32 colour(const std::optional<ImagePolarisation>& polarisation) const {

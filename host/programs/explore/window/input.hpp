@@ -20,7 +20,7 @@ struct Area {
 
   float width() const { return max.x - min.x; }
   float height() const { return max.y - min.y; }
-  /// The point at fractions of width and height from the upper left corner.
+  /// The point at `x` times the width and `y` times the height from the upper left corner.
   ImVec2 at(float x, float y) const { return {min.x + x * width(), min.y + y * height()}; }
 };
 
@@ -39,7 +39,7 @@ class Input {
   /// True if events since the last call may have changed the window.
   bool take_news() { return std::exchange(has_news_, false); }
   double rest_s() const { return std::chrono::duration<double>(Clock::now() - last_event_).count(); }
-  std::map<std::string, Area>& areas() { return areas_; }  ///< named items of this frame, for tests
+  std::map<std::string, Area>& areas() { return areas_; }  ///< named areas of this frame, for tests
 
  private:
   using Clock = std::chrono::steady_clock;

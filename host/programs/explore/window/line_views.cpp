@@ -24,7 +24,7 @@ Scale values_range(const std::vector<NamedLine>& lines, bool is_log) {
 void draw_lines(const Plot& plot, const std::vector<double>& xs, const std::vector<NamedLine>& lines,
                 bool is_above = false) {
   plot.clip();
-  for (const NamedLine& line : std::views::reverse(lines)) {  // so that the first line is on top
+  for (const NamedLine& line : std::views::reverse(lines)) {  // the first line is drawn last, on top
     std::vector<ImVec2> points;
     for (std::size_t i = 0; i < xs.size(); ++i)
       points.push_back(plot.can_show(xs[i], line.values[i]) ? plot.at(xs[i], line.values[i]) : kGap);

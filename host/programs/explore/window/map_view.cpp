@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kMostContrast = 1e3;  // largest ratio of the values of the last and the first colour, if logarithmic
 constexpr std::size_t kMostLines = 7;
-constexpr ImU32 kLightLine = IM_COL32(255, 255, 255, 190);  // over the colours of a map, in both themes
-constexpr ImU32 kDarkLine = IM_COL32(0, 0, 0, 170);         // over the white of the colour map diverging()
+constexpr ImU32 kLightLine = IM_COL32(255, 255, 255, 190);  // lines on the colours of viridis()
+constexpr ImU32 kDarkLine = IM_COL32(0, 0, 0, 170);         // lines on the colours of diverging()
 constexpr float kBarRoom = 5.4F;                            // space right of the map, in lines of text
 
 Scale times(const Scale& range, double factor) { return {factor * range.from, factor * range.to, range.is_log}; }

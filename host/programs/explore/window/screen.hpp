@@ -40,18 +40,18 @@ class Screen {
 
   GLFWwindow* window() const { return window_; }
   void follow(const Preferences& wanted);  ///< applies theme and size of the text; call it between two frames
-  /// Shows ImGui's frame, unless the window has no area. Returns the shown frame as a PNG file if that is wanted.
+  /// Shows ImGui's frame, unless the window has no area. If `wants_picture`, returns the frame as a PNG file.
   std::string show(bool wants_picture) const;
 
  private:
-  struct Library {  // starts GLFW once and ends it, which also closes the window
+  struct Library {  // starts GLFW; the destructor ends GLFW, which closes the window
     Library();
     ~Library();
   };
 
   Library library_;
   GLFWwindow* window_;
-  float scale_ = 0.0F;  ///< size of the text, relative to a usual display
+  float scale_ = 0.0F;  ///< factor for the size of text and controls
 };
 
 }  // namespace dolp::explore

@@ -39,7 +39,7 @@ CurveStyle current_style();
 CurveStyle overlay_style();
 CurveStyle pin_style(std::size_t pin);
 CurveStyle stale(const CurveStyle& style);   ///< for a curve of an earlier scene
-ImU32 band_colour(const CurveStyle& style);  ///< fill of the band around a curve
+ImU32 band_colour(const CurveStyle& style);  ///< for the area between the limits of a DOLP
 
 inline constexpr Themed kTextColour{IM_COL32(225, 228, 232, 255), IM_COL32(24, 26, 30, 255)};
 inline constexpr Themed kDimColour{IM_COL32(150, 156, 163, 255), IM_COL32(96, 101, 108, 255)};
@@ -60,17 +60,17 @@ inline constexpr Themed kCursorColour{IM_COL32(255, 255, 255, 200), IM_COL32(40,
 void load_font(float pixels);
 inline constexpr float kFontPixels = 15.0F;  ///< default size of the font
 
-float scaled(float pixels);                ///< `pixels` at the default text size; grows with the text
+float scaled(float pixels);                ///< `pixels` times the ratio of current to default text size
 std::string shown(std::string_view text);  ///< for display: without DejaVu Sans, names replace Greek letters and signs
 std::string ascii(std::string_view text);  ///< names replace Greek letters and signs
 
 /// Breaks the lines of a text only at spaces, so that numbers and paths stay whole if they fit in a line.
 std::string in_lines(std::string text, float width);
 
-void coloured_text(ImU32 colour, const std::string& text);  ///< at ImGui's cursor, wrapped at the edge of the window
+void coloured_text(ImU32 colour, const std::string& text);  ///< draws text at ImGui's cursor, in lines
 
-inline constexpr float kTooltipDelay_s = 0.5F;  ///< delay before a note appears at a resting mouse
+inline constexpr float kTooltipDelay_s = 0.5F;  ///< time that the mouse rests before a tooltip appears
 
-void tooltip(const std::string& text);  ///< shows a note beside the last item while the mouse rests on it
+void tooltip(const std::string& text);  ///< shows `text` while the mouse rests on the last item
 
 }  // namespace dolp::explore

@@ -28,7 +28,7 @@ bool is_stale(const Session& session) { return !session.effects().empty() && !se
 void draw_row(const Session& session, const Effect& row) {
   const bool is_absent = row.state == EffectState::kAbsent;
   const ImU32 colour = is_absent || is_stale(session) ? kDimColour : kTextColour;
-  const bool is_slopes = row.name == "distribution";  // without its distribution the surface is smooth
+  const bool is_slopes = row.name == "distribution";  // the surface without slope distribution is smooth
   const std::string removed = is_slopes ? "roughness" : row.name;
   const std::string without = is_absent ? "" : without_text(session, removed);
   cell(row.name, colour);
@@ -84,7 +84,7 @@ void draw_effects(const Session& session) {
   struct Column {
     const char* name;
     const char* meaning;
-    float width;  ///< in units of the font size
+    float width;  ///< width in units of the font size
   };
   const std::array<Column, 5> columns = {
       {{is_stale(session) ? "the scene before" : "effect", "a part of the scene", 6.8F},

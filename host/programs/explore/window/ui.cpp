@@ -22,7 +22,7 @@ void label(const char* text) {
   ImGui::SameLine();
 }
 
-/// Continues beside the last item, or in a new line if the free space is narrower than `width` times the font size.
+/// Continues beside the last item, or in a new line if the room is narrower than `width` times the font size.
 void continue_row(float width) {
   ImGui::SameLine();
   if (ImGui::GetContentRegionAvail().x < width * ImGui::GetFontSize()) ImGui::NewLine();
@@ -197,7 +197,7 @@ void draw_panel_tabs(Ui& ui) {
 void draw_panel(Ui& ui, ImVec2 size) {
   using Draw = void (*)(Ui&, ImVec2);
   constexpr std::array<Draw, kPanelNames.size()> kDraw = {
-      // in the order of Panel
+      // the order is that of the enum Panel
       [](Ui& u, ImVec2 room) { u.map.draw(u.session, u.axis_editor, room); },
       [](Ui& u, ImVec2 room) { draw_slopes(u.session, room); },
       [](Ui& u, ImVec2 room) { draw_material(u.session, room); },
@@ -235,7 +235,7 @@ void draw_one_page(Ui& ui) {
   draw_panel(ui, ImGui::GetContentRegionAvail());
 }
 
-void draw_right(Ui& ui, float window_height) {  // everything right of the controls
+void draw_right(Ui& ui, float window_height) {  // draws everything right of the controls
   draw_view_controls(ui.session, ui.fields);
   const float em = ImGui::GetFontSize();
   const ImVec2 room = ImGui::GetContentRegionAvail();

@@ -20,8 +20,8 @@ class Actions {
   void open(const std::string& path);  ///< opens a scene, a session or measured points
   /// Saves a picture of the window shortly afterwards, when the dialog for its path has disappeared. Errors: IoError.
   void save_picture(const std::string& path);
-  // The next four functions start work in the background. The session's message later tells the outcome of a plot or a
-  // fit. save_plot writes the curves with the axes `x` and `y`, and the map, as .svg, .pdf or .png.
+  // The next four functions start work in the background. Afterwards Session::message() has the outcome of a plot or a
+  // fit. save_plot() writes the curves with the axes `x` and `y`, and the map, as .svg, .pdf or .png.
   void save_plot(const std::string& path, const Scale& x, const Scale& y);
   void export_table(const std::string& path);
   void find_true_error();
@@ -58,9 +58,9 @@ struct Ui {
   ShapeView shape_view = {};
   CurveView curves = {};
   PathDialog dialog = {};
-  std::pair<std::string, std::filesystem::path> saved = {};  ///< scene file, and the folder last chosen for it
+  std::pair<std::string, std::filesystem::path> saved = {};  ///< scene file, and folder last chosen for it
   bool is_narrow = false;
-  std::string page = "curve";  ///< view in a narrow window; empty: the view of View::panel
+  std::string page = "curve";  ///< in a narrow window the only view; empty: View::panel
   bool shows_help = false;
 };
 

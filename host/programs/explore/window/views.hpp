@@ -28,7 +28,7 @@ struct NamedLine {
 class CurveView {
  public:
   void draw(Session& session, AxisEditor& editor, ImVec2 size);
-  const Area& area() const { return area_; }  ///< last drawn area of the curves
+  const Area& area() const { return area_; }  ///< area of the plot in the last frame
   const Scale& x() const { return x_; }
   const Scale& y() const { return y_; }
 
@@ -62,13 +62,13 @@ class ScatteringView {
   Evaluator evaluator_{EvaluatorOptions{.evaluator = "cpu"}};
   std::string key_;
   ScatteringCut cut_;
-  std::string reason_;  ///< reason why there is no cut
+  std::string reason_;  ///< reason why cut_ is empty
 };
 
 /// Images of a sphere and a tilted plate with the scene's surface. They show DOLP and angle of polarisation.
 class ShapeView {
  public:
-  void draw(Session& session, ImVec2 size);  ///< a drag tilts the plate and moves the cursor to its zenith
+  void draw(Session& session, ImVec2 size);  ///< a drag sets azimuth and zenith of the plate's normal
 
  private:
   double azimuth_deg_ = 30.0;  ///< direction of the tilt from the image's horizontal
@@ -79,10 +79,10 @@ void draw_fit_result(Session& session);
 
 void draw_sky(const Session& session, ImVec2 size);  ///< DOLP over the directions of the source, as a polar map
 
-/// Changes the typed range of a wavelength axis or of a map axis.
+/// Stores in the session's view a range that the user typed for a wavelength axis or a map axis.
 void set_range(Session& session, const MapAxis& axis, const AxisEditor::Change& change);
 
-/// Map, contour lines, colour bar and cursor. A click or drag moves the cursor, and the scene follows.
+/// Map, contour lines, colour bar and cursor. A click or drag moves the cursor and gives the scene the values there.
 class MapView {
  public:
   void draw(Session& session, AxisEditor& editor, ImVec2 size);

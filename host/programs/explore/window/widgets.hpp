@@ -24,7 +24,7 @@ class NumberFields {
     const auto typed = typed_.find(id);
     return typed == typed_.end() ? "" : typed->second.text;
   }
-  std::string reason(const std::string& id) const {  // why the text was refused; empty if it was not
+  std::string reason(const std::string& id) const {  // why the typed text was refused; "" if it was not
     const auto typed = typed_.find(id);
     return typed == typed_.end() ? "" : typed->second.reason;
   }
@@ -54,17 +54,17 @@ std::optional<std::size_t> draw_list(const std::string& id, float width, const s
 
 void row_label(const std::string& text);  ///< draws a label, and the next control beside it
 
-/// Draws a field for a name, which a right click on the last item opens. Returns the name typed in this frame.
+/// Draws a text field for a name. A right click on the last item opens it. Returns the name if the user changes it.
 std::optional<std::string> typed_name(std::string name, const std::string& hint = {});
 
-/// A small window for one axis. A double click on the numbers of the axis opens it.
+/// A small window to type the range of an axis. A double click on the numbers beside the axis opens it.
 class AxisEditor {
  public:
   struct Change {
     std::optional<Scale> range;  ///< typed range; empty: an automatic one
     bool is_log = false;
   };
-  using Check = std::function<std::string(const Scale& range)>;  ///< returns the reason of a refusal, or nothing
+  using Check = std::function<std::string(const Scale& range)>;  ///< why the range is refused, or ""
 
   /// Draws the small window if the user opened it for the axis `label`. `numbers` is the area of this axis's numbers.
   std::optional<Change> draw(const std::string& label, const Area& numbers, const Scale& now, const Check& check);
@@ -75,7 +75,7 @@ class AxisEditor {
   std::optional<Change> draw_content(const Scale& now, const Check& check);
 
   NumberFields fields_;
-  std::string shown_;  ///< label of the axis; empty: no axis
+  std::string shown_;  ///< label of the axis; empty if the window is closed
   bool is_opening_ = false;
 };
 
@@ -90,7 +90,7 @@ class PathDialog {
   };
 
   void open(Request request);
-  /// Draws the dialog if it is open. Areas have the names of the listed files and folders; folders end with a slash.
+  /// Draws the dialog if it is open. The areas (Input::areas) have the names of the files, and of the folders with "/".
   void draw();
 
  private:
@@ -101,8 +101,8 @@ class PathDialog {
   Request request_;
   bool is_opening_ = false;
   bool wants_focus_ = false;
-  std::filesystem::path folder_;     ///< empty: the program's working folder
-  std::vector<std::string> listed_;  ///< folders, then files
+  std::filesystem::path folder_;     ///< folder on display; empty: the working folder
+  std::vector<std::string> listed_;  ///< names of its folders, then of its files
   std::string name_;
 };
 

@@ -20,8 +20,8 @@ double most_of(const Point& point) { return dolp_of(point) + point[Quantity::kEr
 struct Removal {
   const char* effect;
   bool radiates;
-  const char* key;  ///< key by whose value is_in() tells whether a scene has the effect
-  Setting change;   ///< removes the effect
+  const char* key;  ///< is_in() looks at this key to tell whether a scene has the effect
+  Setting change;   ///< change of a scene that removes the effect
 
   bool is_in(const Scene& scene) const {
     const bool is_number = described(key).type == Key::Type::kNumber;

@@ -24,8 +24,8 @@ struct MapAxis {
   friend bool operator==(const MapAxis&, const MapAxis&) = default;
 };
 
-/// The axes that maps of a scene can have. The range of an axis is the range of its values in the scene's grid, or the
-/// range of its slider. It includes the scene's value.
+/// The axes that maps of a scene can have. The range of an axis is the range of its values in the scene's grid, or else
+/// the range of its slider, extended so that it contains the scene's value.
 std::vector<MapAxis> map_axes(const Scene& scene, double theta_max_deg);
 
 /// The part of the wavelength axis `axis` in which n and k of the materials are known. For a material from a file, the
@@ -38,7 +38,7 @@ std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range)
 struct MapField {
   std::size_t count = 0;
   std::vector<double> values;  ///< NaN where there is no value, and for entries with a bad status
-  double min = 0.0;            ///< `min` and `max`: smallest and largest value
+  double min = 0.0;            ///< smallest value; `max` is the largest value
   double max = 0.0;
 };
 

@@ -47,7 +47,7 @@ struct ScatteringCut {
   double wavelength_um = 0.0;  ///< wavelength of the scene, or the middle of its band
 };
 
-/// Errors: the errors of Evaluator::mueller; InputError if the scene has no pBRDF.
+/// Light comes from the zenith `theta_i_deg`. Errors: the errors of Evaluator::mueller; InputError without a pBRDF.
 ScatteringCut scattering_cut(Evaluator& evaluator, const Scene& scene, double theta_i_deg, std::size_t count);
 
 struct ImagePolarisation {
@@ -65,7 +65,7 @@ std::optional<ImagePolarisation> polarisation_at(const std::vector<Point>& curve
 class SourceSky {
  public:
   static constexpr std::size_t kZeniths = 31;   ///< 0 to 90 degrees
-  static constexpr std::size_t kAzimuths = 37;  ///< from 0 to 180 degrees; the other half is the mirror image
+  static constexpr std::size_t kAzimuths = 37;  ///< 0 to 180 degrees; the other half of the sky is the mirror image
 
   void follow(const std::string& key, const Scene& scene);  ///< `key`: content_key() without the azimuth
   std::vector<Job> wanted() const {                         // one job for each azimuth that is not computed yet

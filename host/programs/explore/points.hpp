@@ -54,10 +54,10 @@ enum class Plotted : std::uint8_t { kDolp, kSignedDolp, kRhoS, kRhoP, kEmissivit
 
 struct PlottedDescription {
   Plotted quantity;
-  const char* name;               ///< UTF-8
+  const char* name;               ///< name in UTF-8
   const char* meaning;            ///< text in UTF-8, with the equation
-  bool in_percent;                ///< shown multiplied by 100
-  bool needs_rho;                 ///< known only if the plan drops no effect
+  bool in_percent;                ///< true: plots show 100 times the value
+  bool needs_rho;                 ///< true: needs rho, so a run must keep all effects
   double (*value)(const Point&);  ///< NaN where the model gives no value
   bool is_signed = false;
 

@@ -13,7 +13,7 @@ std::string pin_name(const Session& session, const Pin& pin);
 const char* stale_text(bool is_stale);           ///< ", the scene before" or ""
 std::string peak_text(const Session& session);   ///< position of the maximum, and its uncertainty
 std::string cause_text(const Session& session);  ///< the parts of Q/I at the maximum: emission, source, surroundings
-std::string no_residuals_text(const Session& session, const Scale& theta);  ///< reason; empty if there are residuals
+std::string no_residuals_text(const Session& session, const Scale& theta);  ///< why there are none, or ""
 std::string cursor_text(const Session& session);
 /// Q/I at the maximum with all effects and without one, in percent: "-14.36 → -59.59 %". Empty if it is not known.
 std::string without_text(const Session& session, const std::string& effect);

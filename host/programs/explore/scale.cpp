@@ -44,7 +44,7 @@ std::vector<double> log_ticks(double low, double high, std::size_t a_decade) {
 }  // namespace
 
 std::string Scale::refusal() const {
-  constexpr double kLeastSpan = 1e-9;  // relative to the larger end. In a smaller range, rounding moves the points.
+  constexpr double kLeastSpan = 1e-9;  // smallest span / larger end. On a smaller span, rounding moves the points.
   if (!std::isfinite(to - from)) return "must be finite";
   if (!(from < to)) return "must be from < to";
   if (is_log && from <= 0.0) return "must be above 0 on a logarithmic axis";

@@ -66,9 +66,9 @@ class SceneEdits {
   const Scene& scene() const { return scene_; }
   const Scene& opened() const { return opened_; }
   bool is_changed() const { return changes() != saved_; }
-  void note_saved() { saved_ = changes(); }  ///< after this call is_changed() is false
-  /// Goes to another state of this file, or to another file. In another state of this file, is_changed() still compares
-  /// with the state that was saved last.
+  void note_saved() { saved_ = changes(); }  ///< makes is_changed() false until the next change
+  /// Becomes `other`, which may have the same scene file or another one. With the same file, is_changed() still
+  /// compares with the state that was saved last.
   void go_to(const SceneEdits& other);
   bool is_same_scene(const SceneEdits& other) const { return is_same_file(other) && changes() == other.changes(); }
   const std::vector<Setting>& changes() const { return scene_.settings(); }  ///< with the settings of opened()
@@ -95,7 +95,7 @@ std::string word_of(const Value& value);             ///< text of a value, witho
 /// nothing. Returns these choices. Errors: InputError if this does not help; the edits then stay unchanged.
 std::vector<Setting> change_with_needed(SceneEdits& edits, const std::function<void(SceneEdits&)>& change);
 
-/// A sky whose brightness temperature is linear in the zenith.
+/// A sky whose brightness temperature is a linear function of the zenith angle.
 struct SkyPair {
   double zenith_K = 220.0;
   double horizon_K = 285.0;

@@ -13,7 +13,7 @@ namespace dolp::explore {
 /// A curve that stays in the plot while the scene changes.
 struct Pin {
   std::string name = {};   ///< name that the user typed; if empty, the legend describes the surface
-  std::size_t colour = 0;  ///< position in the list of pin colours
+  std::size_t colour = 0;  ///< number of the colour, see pin_style()
   bool is_visible = true;
   Curve curve;
 };
@@ -21,7 +21,7 @@ struct Pin {
 struct View {
   Plotted quantity = Plotted::kDolp;
   bool is_log = false;
-  bool is_theta_log = false;    ///< curves are drawn over the logarithm of the zenith
+  bool is_theta_log = false;    ///< true: the zenith axis of the curves is logarithmic
   bool has_overlay = true;      ///< also draws the other slope distribution with an equal D(0)
   bool keeps_all = false;       ///< keeps effects that a run would drop as too small
   double theta_max_deg = 90.0;  ///< largest zenith of the plots and of the search for the maximum
@@ -35,7 +35,7 @@ struct View {
 
   static constexpr const char* kZeniths = "curve zenith";
   static constexpr const char* kValues = "curve values";
-  static constexpr const char* kColours = "map colours";  ///< values of the first and the last colour
+  static constexpr const char* kColours = "map colours";  ///< range: value of the first colour to value of the last
 
   std::optional<Scale> range(const std::string& axis) const;
   void set_range(const std::string& axis, const std::optional<Scale>& range);
@@ -139,9 +139,11 @@ class Session {
   /// wavelength, both ends of the axis are equal.
   const Scene& spectral_scene() const { return spectral_scene_; }
   const MapAxis& wavelengths() const { return wavelengths_; }
-  const Sweep& spectrum() const { return spectrum_; }                ///< results over wavelength at the cursor
-  const Sweep& smooth_spectrum() const { return smooth_spectrum_; }  ///< the same surface, as spectrum()
-  const Sweep& smooth() const { return smooth_; }                    ///< the surface with sigma = 0, over zenith
+  const Sweep& spectrum() const { return spectrum_; }  ///< results over wavelength at the cursor
+  const Sweep& smooth_spectrum() const {
+    return smooth_spectrum_;
+  }                                                ///< sigma = 0, over wavelength at the cursor's zenith
+  const Sweep& smooth() const { return smooth_; }  ///< the surface with sigma = 0, over zenith
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
   bool is_foreign(const Scene& other) const { return other.name() != scene().name() || other.text() != scene().text(); }

@@ -16,7 +16,7 @@ class App {
  public:
   using AfterFrame = std::function<void(double frame_s)>;
 
-  App(SceneEdits edits, const AppOptions& options);  ///< Errors: the errors of Screen
+  App(SceneEdits edits, const AppOptions& options);  ///< Errors: the errors of Screen()
 
   Session& session() { return session_; }
   /// The area of a named item in the last frame. Errors: std::out_of_range if the last frame did not draw this item.

@@ -15,7 +15,7 @@ struct PlotAxis {
   Scale scale;
 };
 
-/// The part of a plot that the user chose by mouse or by typing; empty: the whole axis.
+/// The ranges of a plot that the user chose by mouse or by typing. An empty one means the whole axis.
 struct Zoom {
   std::optional<Scale> x, y;
 };

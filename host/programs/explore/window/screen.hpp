@@ -26,7 +26,7 @@ class Texture {
   void draw(ImDrawList* list, ImVec2 min, ImVec2 max) const;
 
  private:
-  unsigned id_ = 0;  ///< OpenGL's name of the texture; 0: none
+  unsigned id_ = 0;  ///< OpenGL's number of the texture; 0 before set()
   std::size_t count_ = 0;
 };
 

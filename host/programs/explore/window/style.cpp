@@ -147,7 +147,7 @@ void tooltip(const std::string& text) {
   const bool is_still = io.MouseDelta.x == 0.0F && io.MouseDelta.y == 0.0F && !ImGui::IsAnyMouseDown();
   if (!is_still) still_since_s = now_s;
   if (now_s - still_since_s < kTooltipDelay_s) return;
-  // The note is beside the panel or above the item, because below the item it would hide other values.
+  // The tooltip is beside the panel or above the item, because below the item it would hide other values.
   const float width = 28.0F * ImGui::GetFontSize();
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const ImVec2 first = ImGui::GetItemRectMin(), last = ImGui::GetItemRectMax();

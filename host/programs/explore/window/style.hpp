@@ -33,7 +33,7 @@ struct CurveStyle {
   float gap;
 };
 
-/// The styles of the current curve, of the overlay, and of pins by number.
+/// The styles of the current curve, of the overlay, and of a pin with the colour number `pin` (Pin::colour).
 /// Source: M. Okabe, K. Ito, Color Universal Design (2008).
 CurveStyle current_style();
 CurveStyle overlay_style();
@@ -56,7 +56,7 @@ inline constexpr Themed kIntervalColour{IM_COL32(90, 205, 130, 255), IM_COL32(0,
 inline constexpr Themed kHeadingColour{IM_COL32(230, 179, 0, 255), IM_COL32(148, 98, 0, 255)};
 inline constexpr Themed kCursorColour{IM_COL32(255, 255, 255, 200), IM_COL32(40, 40, 40, 200)};
 
-/// Loads the font DejaVu Sans, or ImGui's ASCII font if it is not installed. Needs an ImGui context.
+/// Loads the font DejaVu Sans if it is installed, otherwise ImGui's ASCII font. Needs an ImGui context.
 void load_font(float pixels);
 inline constexpr float kFontPixels = 15.0F;  ///< default size of the font
 

@@ -30,7 +30,8 @@ class Actions {
   const Preferences& preferences() const { return preferences_; }
 
   void finish();  ///< takes the results of finished work in the background
-  std::string due_picture() const { return Clock::now() < picture_time_ ? "" : picture_path; }  ///< its path
+  /// Path of the picture that must be saved with this frame; empty if none is due.
+  std::string due_picture() const { return Clock::now() < picture_time_ ? "" : picture_path; }
   bool is_true_error_old() const;  ///< the true error is for a curve that is no longer on display
 
   std::string picture_path;  ///< file for a picture of the next frame; empty: no picture
@@ -70,7 +71,6 @@ struct Ui {
 /// text of a menu's entry. draw_controls() and PathDialog name more.
 void draw_all(Ui& ui, const std::function<void()>& catch_up);
 
-// Defined in commands.cpp.
 void run_shortcuts(Ui& ui);
 void draw_menus(Ui& ui);
 void draw_help(Ui& ui);

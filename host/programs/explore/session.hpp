@@ -139,11 +139,9 @@ class Session {
   /// wavelength, both ends of the axis are equal.
   const Scene& spectral_scene() const { return spectral_scene_; }
   const MapAxis& wavelengths() const { return wavelengths_; }
-  const Sweep& spectrum() const { return spectrum_; }  ///< results over wavelength at the cursor
-  const Sweep& smooth_spectrum() const {
-    return smooth_spectrum_;
-  }                                                ///< sigma = 0, over wavelength at the cursor's zenith
-  const Sweep& smooth() const { return smooth_; }  ///< the surface with sigma = 0, over zenith
+  const Sweep& spectrum() const { return spectrum_; }                ///< results over wavelength at the cursor
+  const Sweep& smooth_spectrum() const { return smooth_spectrum_; }  ///< sigma = 0, over wavelength at the cursor
+  const Sweep& smooth() const { return smooth_; }                    ///< the surface with sigma = 0, over zenith
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
   bool is_foreign(const Scene& other) const { return other.name() != scene().name() || other.text() != scene().text(); }

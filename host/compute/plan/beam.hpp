@@ -38,7 +38,7 @@ class BeamPlan {
   explicit BeamPlan(const ScatteringRequest& request);
   Beam operator()(const ScatteringEntry& entry) const;
 
-  /// The pBRDF with its error bound and all its bounces. `unit_roundoff` is that of the kernel's precision.
+  /// The pBRDF of all bounces, with its error bound. `unit_roundoff` is the roundoff of the kernel's precision.
   ScatteringMatrix matrix(const kernel::MuellerNode& node, const Beam& beam, const ScatteringEntry& entry,
                           double unit_roundoff) const;
 
@@ -66,7 +66,7 @@ class BeamPlan {
 int add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, const ScatteringEntry& entry,
                         double accuracy);
 
-/// ln(D / 4) at a slope.
+/// ln(D / 4), with the density D of the facet normals, at a slope.
 double log_density(Distribution distribution, const SlopeShape& shape, double slope);
 
 }  // namespace dolp

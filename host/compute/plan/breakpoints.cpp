@@ -51,7 +51,7 @@ void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   add(critical / (std::hypot(a.cos, 2.0 * critical) - a.cos), at_slope_1);
 }
 
-// Slopes at which the line b = pi/2 of `integral` meets phi = 0, pi or theta_r = theta. For smith: slope of its cusp.
+// For `integral`, slopes at which the line b = pi/2 (b of eq. 11) meets phi = 0, pi or theta_r = theta; smith's cusp.
 void add_line_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, Masking masking) {
   if (masking == Masking::kSmith) {
     points.push_back({tan_deg(0.5 * theta_deg), kRoots});
@@ -85,8 +85,8 @@ void add_v_cavity_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   }
 }
 
-// Slopes at which a bounce after the first meets the critical line at phi = 0 or pi; at theta = 0, at all phi. There
-// cos(beta) of a bounce is the sine of its angle in the unfolded groove (groove.glsl).
+// Slopes at which total reflection begins, at phi = 0 or pi, for a bounce after the first (if theta = 0, at all phi).
+// At these phi, cos(beta) of a bounce is the sine of the bounce's angle in the unfolded groove (groove.glsl).
 void add_critical_bounces(std::vector<Breakpoint>& points, double theta_deg, double critical) {
   const double critical_deg = std::asin(critical) * 180.0 / pi;
   for (int k = 2; k <= kCriticalBounces; ++k) {
@@ -133,8 +133,9 @@ std::vector<Breakpoint> without_coincident(const std::vector<Breakpoint>& points
   return distinct;
 }
 
-// Slopes at which a corner of the sky meets phi = 0 or pi. A sky that is linear in the zenith near 0 has a cusp there.
-// Next to these slopes, the sum over the azimuths has a term with the distance to the power 3/2.
+// Slopes at which a corner (kink) of the sky meets phi = 0 or pi. A sky that is linear in the zenith near 0 has a cusp
+// there. Beside these slopes, the sum over the azimuths has a term proportional to the distance from the slope to the
+// power 3/2.
 void add_sky_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const SkyTable& sky) {
   if (sky.has_cusp) points.push_back({tan_deg(0.5 * theta_deg), kRoots});
   for (const double corner_deg : sky.corners_deg) {

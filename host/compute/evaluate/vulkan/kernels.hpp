@@ -47,7 +47,7 @@ class Kernels {
 
   struct Bindings {
     std::array<VkBuffer, kStorageCount> buffers{};
-    std::array<VkBufferView, kTexelCount> texels{};  ///< the first is DOLP_BINDING_RULE_NODES
+    std::array<VkBufferView, kTexelCount> texels{};  ///< texels[0] is bound to DOLP_BINDING_RULE_NODES
   };
   /// A missing buffer or view is replaced by another: nothing reads it, but it must not refer to a destroyed buffer.
   void bind(const Bindings& bindings);

@@ -31,7 +31,7 @@ class Packing {
   std::size_t node_bytes() const {
     return real_count<Node>() * real_bytes();
   }
-  /// Bytes of a structure and of `numbers` numbers that belong to it. The numbers follow all structures.
+  /// Bytes of a Node and of `numbers` numbers that belong to this Node. In a buffer all numbers follow all Nodes.
   template <class Node>
   std::size_t output_bytes(std::size_t numbers) const {
     return node_bytes<Node>() + numbers * real_bytes();

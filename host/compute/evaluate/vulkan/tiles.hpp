@@ -32,7 +32,7 @@ struct TileSizes {
 };
 
 /// Number of invocations that may run in lockstep: lavapipe's widest vector has this many lanes. On a device with a
-/// limit of loop iterations, all of them iterate as often as the longest.
+/// limit of loop iterations, all invocations of such a group iterate as often as the longest of them.
 inline constexpr std::uint32_t kLockstep = 16;
 
 /// Consecutive chunks of shapes (plan/rows.hpp) whose masking tables are bound together, and the rows that need them.
@@ -48,7 +48,7 @@ struct SlopeBatch {
   std::vector<SlopeSamples> samples;
   std::vector<std::size_t> first;  ///< for each of `samples`, the position of its first slope in `slopes`
   std::vector<kernel::SlopeNode> slopes;
-  std::vector<std::uint32_t> in_lockstep;  ///< positions in `slopes`; some are repeated to fill groups
+  std::vector<std::uint32_t> in_lockstep;  ///< positions in `slopes`, in groups of kLockstep; repeated ones fill groups
 };
 
 struct DispatchCount {
@@ -108,7 +108,7 @@ class Renumbering {
  public:
   explicit Renumbering(std::size_t list_size) : number_(list_size, kUnused) {}
   std::uint32_t operator()(std::uint32_t member);
-  /// These members, in the order of their numbers.
+  /// The numbered members, in the order of their numbers.
   std::span<const std::uint32_t> used() const { return used_; }
   void clear();
 

@@ -144,7 +144,7 @@ struct IndexNode {
   real n2m1_im;       // Im(N^2 - 1)
   real pole_re;       // pole of R_p as a function of cos(beta), -1 / sqrt(N^2 + 1)
   real pole_im;
-  real branch_re;     // branch point of w = sqrt(N^2 - sin^2(beta)) over cos(beta): i sqrt(N^2 - 1), parts > 0
+  real branch_re;     // branch point of w = sqrt(N^2 - sin^2(beta)) over cos(beta): i sqrt(N^2 - 1), parts >= 0
   real branch_im;
   real critical_cos;  // cos(beta) at which total reflection begins, sqrt(1 - Re N^2), if k is 0 or small; else 0
   real curve_start;   // position of the table of reflectances among the rule nodes

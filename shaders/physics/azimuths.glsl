@@ -1,4 +1,3 @@
-
 struct Slope {
   real t;
   real digits;        // digits required of the sum over the azimuths

@@ -100,7 +100,6 @@ void store_azimuth_columns(Columns sums) {
   }
 }
 
-// Stores the columns of one entry of a row, computed by one of the two rules of a piece.
 void store_columns(int member, bool is_coarse, Columns sums) {
   uint first = uint(member) * kColumnCount * DOLP_COLUMN_PARTS + (is_coarse ? 0u : 2u);
   for (int k = 0; k < DOLP_MOST_COLUMNS; ++k) {

@@ -3,7 +3,7 @@
 // Accuracy: a few units in the last place in the ranges stated here (tests/compute/kernel_source_test.cpp).
 
 CONST real kPi = real(3.14159265358979323846);
-CONST real kLn2High = real(0.693145751953125);             // few bits, so that products with exponents are exact in float
+CONST real kLn2High = real(0.693145751953125);             // few bits, so products with exponents are exact in float
 CONST real kLn2Low = real(1.42860682030941723212e-6);      // ln 2 - kLn2High
 CONST real kInverseLn2 = real(1.44269504088896340736);
 CONST real kSqrtHalf = real(0.70710678118654752440);

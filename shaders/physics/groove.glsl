@@ -12,8 +12,7 @@
 // goes on to bounce k, with X_0 = max(a sin(psi - gamma), 0).
 
 // A ray on its way through the fan. Groups of 2, 4, 8 ... bounces in the middle of its path count as one bounce; near
-// the first and last bounce, which may be grazing, groups are smaller. host/compute/plan/error_bounds.cpp has the
-// error.
+// the first and last bounce, which may be grazing, groups are smaller (error: host/compute/plan/error_bounds.cpp).
 struct Fan {
   real2 turn;    // (cos, sin) of gamma times `taken`
   real gamma;    // pi/2 - alpha; gamma, left and slant are set only for steep grooves, see fan()
@@ -39,8 +38,7 @@ Fan fan(real t, real c, real u) {
   f.doublings = 0;
   f.is_steep = false;
   f.is_black = false;
-  // There are at most pi/gamma < pi t + 2 bounces. The loop of one turn is an `if` that devices skip if no ray needs
-  // it.
+  // At most pi/gamma < pi t + 2 bounces. The loop of one turn is an `if` that devices skip if no ray needs it.
   for (bool may_be = t > real(DOLP_MOST_BOUNCES) / kPi; may_be; may_be = false) {
     real to_horizon = arc_tangent(c / max(abs(u), real(1e-30)));
     f.gamma = arc_tangent(real(1.0) / t);
@@ -142,8 +140,7 @@ struct GrooveLight {
   real cos_last;
 };
 
-// Moments per radian, for rays that meet the facet at phi first. After k bounces cos(theta_r) = -a cos(psi + 2 k
-// gamma).
+// Moments per radian for rays that meet the facet at phi first. After k bounces cos(theta_r) = -a cos(psi + 2 k gamma).
 GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   real c = theta.c;
   real u = theta.s * x;

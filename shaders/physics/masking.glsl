@@ -97,7 +97,6 @@ struct ShadowRange {
   real gap;         // tb - mu
 };
 
-// cot(theta), the argument of l.
 real shadow_cot(real cos_theta, real sin_theta) { return cos_theta / max(sin_theta, real(1e-10)); }
 
 ShadowRange shadow_range(ShapeNode shape, real cos_theta, real sin_theta, real t) {

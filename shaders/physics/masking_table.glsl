@@ -21,7 +21,7 @@ real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
   return real4(h * beyond.y + height, first, probability, marginal_density(shape, tau0));
 }
 
-// (l, C, Pt, p) at the end of the table, by the power law p ~ tau^(1-2q) of the cauchy. The formulas assume an end far
+// (l, C, Pt, p) at the end of the table, by the power law p ~ tau^(1-2q) of the cauchy. With `integral` the end must be far
 // above slope 1; otherwise almost no facets are left beyond the end. For the Gaussian the integrals are negligible.
 real4 masking_table_end(ShapeNode shape, real tau) {
   real p = marginal_density(shape, tau);
@@ -33,8 +33,7 @@ real4 masking_table_end(ShapeNode shape, real tau) {
   return real4(tail * tau * weight / (a + real(1.0)), tail * a * weight / (a + real(1.0)), tail, p);
 }
 
-// `table` is the first node. A heavy tail adds hundreds of nearly equal terms, so the sums are compensated (Kahan
-// 1965).
+// `table` is the first node. Heavy tails add hundreds of nearly equal terms, so sums are compensated (Kahan 1965).
 void build_masking_table(ShapeNode shape, uint table) {
   real tau1 = masking_node_tau(shape, kMaskingNodes - 1u);
   real4 tails = masking_table_end(shape, tau1);

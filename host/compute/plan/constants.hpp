@@ -58,7 +58,7 @@ inline constexpr int kCriticalBounces = 3;  // the critical line of each bounce 
 /// Tolerance of the responses divided by the tolerance of the request: below 1, because their weights increase bounds.
 /// Million evaluations for 50 wavelengths of water with 0.1, 0.25, 0.5: smith 6.6, 6.9, 9.2; integral 8.3, 7.4, 8.5.
 inline constexpr double kResponseTolerance = 0.25;
-inline constexpr double kResponseRoundings = 4.0;  // rounding of the abscissa of a response's polynomial, in unit roundoffs
+inline constexpr double kResponseRoundings = 4.0;  // rounding of a response's x (chebyshev_at), in unit roundoffs
 
 // ---- Skies (sky_table.cpp). The numbers are for two sets of entries: first the 19 rows of `dolp-bench effects` with
 // integral masking, then `dolp table` with smith masking and 16 x 6 x 6 entries at 1e-4 (theta to 85 degrees, sigma
@@ -129,8 +129,7 @@ inline constexpr double kNotGrazing = 0.6;
 /// The work grows as the square of this. For N = 10 + 60i, q = 2.02 and theta_r = theta_i, later bounces add 1e-5 of f.
 inline constexpr int kMostBouncesOfBeam = 1000;
 inline constexpr double kNegligibleBounces = 0.01;  // share of the wanted accuracy that the omitted bounces may take
-/// Smallest 2q - 3 in the bound of the omitted bounces. Below this, absorption ends the sum before the slope density
-/// does.
+/// Smallest 2q - 3 in the bound of the omitted bounces. Below, absorption ends the sum before the slope density does.
 inline constexpr double kSlowestFall = 0.1;
 
 // ---- Grids (shape_plan.cpp, rows.cpp, refinement.cpp). The numbers are million evaluations of `dolp table` for 32 x
@@ -148,8 +147,7 @@ inline constexpr std::size_t kLeastShapeGain = 2;  // 1.87, 1.87, 3.84; 1.81, 1.
 inline constexpr double kShapeNodeTolerance = 0.125;  // 2.03, 1.87, 1.75; 1.86, 1.81, 1.78
 inline constexpr double kExtraShapeDigits = 1.0;      // 1.84, 1.87, 2.33; 1.75, 1.81, 2.32
 /// The error bound of an interpolation is kShapeTail * l / (1 - f). l is the largest of the last kLastShapeCoefficients
-/// Chebyshev coefficients. f is l divided by the largest of as many coefficients before them, at most
-/// kSlowestShapeFall.
+/// Chebyshev coefficients. f is l divided by the largest of as many before them, at most kSlowestShapeFall.
 inline constexpr double kShapeTail = 3.0;  // 1.87, 1.87, 1.89; 1.80, 1.81, 2.00
 inline constexpr int kLastShapeCoefficients = 3;
 inline constexpr double kSlowestShapeFall = 0.9;

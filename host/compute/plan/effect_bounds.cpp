@@ -29,7 +29,7 @@ bool KeptEffects::*flag(Part part) { return kFlags[static_cast<std::size_t>(part
 double or_infinite(double bound) { return std::isnan(bound) ? kInfinity : bound; }
 
 /// Upper bound of Smith's Lambda = E[max(t_x - mu, 0)] / mu, with mu = cot(theta), the in-plane slope t_x and the mean
-/// E. It is E|t_x| / (2 mu).
+/// E. This bound is E|t_x| / (2 mu).
 double most_lambda(Distribution distribution, const SlopeShape& shape, const CosSin& a) {
   if (shape.sigma == 0.0 || a.sin == 0.0) return 0.0;
   double mean = slope_width(shape) / kRootPi;

@@ -25,7 +25,7 @@ struct EntriesExtent {
   std::vector<FacetOptics> optics;
 };
 
-/// One extent for a grid, because each of its directions has all variants of the scene. For points, one per variant.
+/// A grid has one extent, because each direction has all variants of the scene. Points have one extent per variant.
 std::vector<EntriesExtent> extents_of(const SceneEntries& entries);
 
 /// Bounds of the change that each part of a scene causes at any of the entries.
@@ -64,7 +64,7 @@ class EffectBounds {
   bool is_bistatic_;
   SpectralSample total_;       ///< sums of |factor| over the spectral samples; `emitted` keeps its sign
   double sky_apart_ = 0.0;     ///< the largest distance of a profile from its mean
-  bool has_negative_ = false;  ///< a weight is negative, as in the interpolation of a steep factor
+  bool has_negative_ = false;  ///< a spectral weight is negative, as in the interpolation of a steep factor
   double path_;
   double most_specular_ = 0.0;  ///< upper bound of the specular rho_I
   double most_diffuse_ = 0.0;   ///< upper bound of the diffuse rho
@@ -94,7 +94,6 @@ EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, b
 
 EffectPlan plan_to_keep(const SceneValues& scene, const KeptEffects& kept);
 
-/// plan_effects() with `keep_all`.
 EffectPlan keep_everything(const SceneValues& scene);
 
 /// Adds the basis of the sky at the wavelengths of these entries, if the moments need one and the plan has none.

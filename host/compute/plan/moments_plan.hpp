@@ -24,7 +24,7 @@ struct MomentsStep {
   std::vector<const MomentsRequest*> kernel_requests() const;
 };
 
-/// Depends only on the request. An entry's moments do not depend on the other directions of the request.
+/// The plan depends only on the request. The moments of an entry do not depend on other directions of the request.
 class MomentsPlan {
  public:
   explicit MomentsPlan(const MomentsRequest& request);

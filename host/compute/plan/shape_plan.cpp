@@ -21,7 +21,7 @@ Values at_nodes(const ShapePlan& plan, std::span<const Moments> nodes, const Val
   return values;
 }
 
-/// Interpolation error of each column of `values`: the omitted coefficients, if they fall like the last ones.
+/// Interpolation error of each column of `values`: the omitted Chebyshev coefficients, if they fall like the last ones.
 Eigen::RowVectorXd tails(const ShapeAxis& axis, const Values& values) {
   if (!axis.is_interpolated()) return Eigen::RowVectorXd::Zero(values.cols());
   const Eigen::MatrixXd sizes = (axis.coefficients.bottomRows(2 * kLastShapeCoefficients) * values).cwiseAbs();
@@ -124,7 +124,7 @@ ShapeParameter q_parameter(const MomentsRequest& request) {
   return {needs_mean_slope && has_mean_slope ? 1.5 : 1.0, 1.45};
 }
 
-/// Different nodes for `values` with which the interpolation keeps `digits` decimal digits.
+/// Nodes from which interpolation to `values` keeps `digits` decimal digits; `values` themselves if that saves little.
 ShapeAxis shape_axis(const ShapeParameter& parameter, const std::vector<double>& values, double digits) {
   const auto [least, largest] = std::minmax_element(values.begin(), values.end());
   const double start = std::log(*least - parameter.origin);

@@ -53,7 +53,6 @@ class Kernels {
   void bind(const Bindings& bindings);
 
   VkPipeline pipeline(const KernelVariant& variant);
-  /// True if the pipeline has been created.
   bool has(const KernelVariant& variant) { return known(variant) != VK_NULL_HANDLE; }
   std::uint32_t local_size() const { return device_.local_size(); }
   VkPipelineLayout layout() const { return layout_.get(); }

@@ -46,7 +46,6 @@ class VulkanEvaluator : public ModelEvaluator {
   /// Creates the pipeline for `request` in the background. If this fails, `scatter` throws the error again.
   void prepare(const ScatteringRequest& request) override;
 
-  /// Errors: the errors of evaluate().
   std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override;
 
   bool has_double() const override;

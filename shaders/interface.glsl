@@ -5,8 +5,8 @@
 #define DOLP_BINDING_THETAS 0         // ThetaNode[]
 #define DOLP_BINDING_SHAPES 1         // ShapeNode[]
 #define DOLP_BINDING_INDICES 2        // IndexNode[]
-#define DOLP_BINDING_TASKS 3          // uvec4[]: positions of direction, first shape and index; task word
-#define DOLP_BINDING_MASKING_TABLE 4  // uvec4[]: positions of ThetaNode, first ShapeNode and IndexNode; task word
+#define DOLP_BINDING_TASKS 3          // uvec4[]: positions of ThetaNode, first ShapeNode and IndexNode; task word
+#define DOLP_BINDING_MASKING_TABLE 4  // real4[]: written by masking_table.comp, one table per ShapeNode
 #define DOLP_BINDING_MOMENTS 5        // MomentsNode[]: the output, DOLP_WIDTH nodes per task
 #define DOLP_BINDING_RULE 6           // RuleNode: one for all tasks
 #define DOLP_BINDING_RULE_NODES 7     // real2[]: nodes of the Gauss rules, see physics/quadrature.glsl
@@ -36,7 +36,7 @@
 #define DOLP_MASKING_INTEGRAL 2u
 #define DOLP_MASKING_SMITH 3u
 #define DOLP_COLUMNS_SKY 0u           // moments times functions of a sky, see physics/columns.glsl
-#define DOLP_COLUMNS_RESPONSE 1u      // responses (see there): moments of reflected light, polynomials as reflectances
+#define DOLP_COLUMNS_RESPONSE 1u      // responses: moments of reflected light, with polynomials as reflectances
 #define DOLP_COLUMNS_SKY_RESPONSE 2u  // responses times a function of a sky
 #define DOLP_COLUMNS_DIRECT 3u        // responses of the direct emission
 

@@ -66,7 +66,7 @@ Arc make_arc(real2 from, real2 to) {
   return arc;
 }
 
-// If `has_root`, clusters the nodes at the beginning of the arc, or if `at_end` at its end, because of a singularity.
+// If `has_root`, clusters nodes at the beginning (if `at_end`, the end) of the arc, where the integrand is singular.
 Arc with_root(Arc arc, bool at_end, bool has_root) {
   real2 root = choose(at_end, arc.to, arc.from);
   arc.centre_cos = choose(has_root, cosine(root), arc.centre_cos);
@@ -86,8 +86,7 @@ struct Azimuth {
 
 // Returns `node` of an arc's rule. If absorption smooths the square root at the centre of the arc, the node is moved: a
 // cluster has the abscissae v^2, which become (sinh(a v) / sinh(a))^2 with a = asinh(1 / sqrt(resolution)). Then the
-// distances of nodes from the centre grow geometrically where they exceed the resolution, and like v^2 where they are
-// smaller.
+// distances of nodes from the centre grow geometrically beyond the resolution, and like v^2 below it.
 real2 place_on_arc(Arc arc, real2 node) {
   if (!kTotalReflection) return node;
   real scale = real(1.0) / sqrt(arc.resolution);  // sinh(a)
@@ -184,8 +183,7 @@ real2 groove_line(ThetaNode theta, real cos_psi, real sin_psi) {
 }
 
 // If a slope needs no more digits than this, its azimuths are split only at psi = -gamma, where facets turn away from
-// the ray. Above DOLP_STEEPEST_SPLIT they are split only at psi = +-gamma, because the number of bounces changes too
-// often.
+// the ray. Above DOLP_STEEPEST_SPLIT they are split only at psi = +-gamma, or there would be too many splits.
 CONST real kDigitsOfLines = real(3.0);
 
 SplitLines groove_lines(RuleNode rule, ThetaNode theta, real t, real digits, SplitLines lines) {

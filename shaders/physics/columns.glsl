@@ -2,17 +2,17 @@
 //   sky: the moments with functions g of the zenith of the reflected ray as factors, |g| <= 1. They give what a sky
 //     that changes with the zenith adds to a uniform sky (README.md beside this file, section 11).
 //   responses: the moments with Chebyshev polynomials of the local angle of incidence instead of the reflectances.
-//   The moments of every index are weighted sums of responses (section 8). There are responses of the reflected
-//   light, of the reflected light times the first function of a sky, and of the direct emission.
+//     The moments of every index are weighted sums of responses (section 8). There are responses of the reflected
+//     light, of the reflected light times the first function of a sky, and of the direct emission.
 //
 // A function g is stored as straight lines over u = sqrt(1 - cos(theta_r)), in cells of equal width. A cell stores the
 // value at its start and the change over the cell. A sky that has a slope at the zenith is smooth in u, but not in
 // cos(theta_r). The buffer has the cells behind the nodes of the rules (host/compute/plan/sky_table.cpp).
 
-// Where the tables of a sky begin. A kernel reads these push constants once; a loop would read them in each turn.
+// Copies of push constants about the tables of a sky: devices would read push constants again in each turn of a loop.
 struct SkyPlace {
-  int cells;  // number of cells of a function
-  int start;  // position of the first cell
+  int cells;    // number of cells of a function
+  int start;    // position of the first cell
   int corners;  // number of corners (kinks over the zenith) of the sky
 };
 

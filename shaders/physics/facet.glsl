@@ -46,7 +46,7 @@ Facet facet(ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   return result;
 }
 
-// The visible part e G of e and the hidden part e (1 - G). A difference of e and one part would lose digits.
+// The visible part e G of the projection e, and the hidden part e (1 - G): e minus one part would lose digits.
 struct Projection {
   real visible;
   real hidden;

@@ -17,7 +17,7 @@ struct Fan {
   real2 turn;    // (cos, sin) of gamma times `taken`
   real gamma;    // pi/2 - alpha; gamma, left and slant are set only for steep grooves, see fan()
   real left;     // number of bounces ahead; (pi/2 - psi) / gamma at first
-  real done;  // number of bounces behind
+  real done;     // number of bounces behind
   real slant;    // psi / gamma, at most 1
   real taken;    // number of bounces in the next group, 2^doublings
   int doublings;
@@ -136,7 +136,7 @@ struct GrooveLight {
   real4 moments;    // (r_i, r_q, albedo, deficit), as in facet.glsl
   real2 before;     // r_i and r_q of the part that leaves earlier
   real cos_before;  // cos(theta_r) of that part
-  real2 last;  // r_i and r_q of the rest, which leaves after the last bounce
+  real2 last;       // r_i and r_q of the rest, which leaves after the last bounce
   real cos_last;
 };
 

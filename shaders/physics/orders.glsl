@@ -49,7 +49,7 @@ real nodes_per_digit(real mu) { return kHalfLn10 / max(mu, real(1e-3)); }
 
 int order_between(real nodes, int limit) { return int(clamp(floor(nodes + real(0.5)), real(1.0), real(limit))); }
 
-// Two rules with few nodes often agree by chance. So if the coarser rule had fewer than three nodes, it is a finer one.
+// Two rules with few nodes often agree by chance. If the coarser rule had fewer than 3 nodes, a finer one replaces it.
 int coarse_order(int order) {
   int fewer = (8 * order + 5) / 10;
   int more = order + 1;
@@ -64,7 +64,7 @@ real weight_of_slope(ThetaNode theta, real t) {
   return kMasking == DOLP_MASKING_V_CAVITY ? min(bare, max(real(2.0) * theta.c, kLeastWeight)) : bare;
 }
 
-// Estimated contribution of all facets to the albedo: all rays leave facets up to slope t1, half of them up to t2.
+// Estimated contribution of all facets to the albedo. Facets up to slope t1 reflect all light up, up to t2 half of it.
 real weight_of_shape(ThetaNode theta, ShapeNode shape) {
   real t1 = theta.c / (real(1.0) + theta.s);
   real t2 = (real(1.0) + theta.s) / max(theta.c, real(1e-15));
@@ -106,7 +106,7 @@ real piece_cost(Piece piece, real re, real im) {
   return nodes_per_digit(acosh_above_1(gap_beside_unit(y.x, y.y)));
 }
 
-// Nodes for a singularity exp(-1/x^2) at an end: the square of the digits at which the singularity matters, over 4.
+// Nodes for a singularity exp(-1/x^2) at an end: a quarter of the square of the digits for which it matters.
 real essential_nodes(ShapeNode shape, real digits) {
   real wanted = max(digits - kInverseLn10 / (shape.m * shape.m), real(0.0));
   return real(0.25) * wanted * wanted;

@@ -28,7 +28,8 @@ MaskingTerms unmasked() {
   return masked;
 }
 
-// The part that does not depend on t: for smith Lambda, so large at 90 degrees that G is 0; for `integral` l(cot theta).
+// The part of the masking that does not depend on the slope t. For smith it is Lambda, at 90 degrees so large that G is
+// 0. For `integral` it is l(cot(theta)) of masking.glsl.
 MaskingTerms masking_of_direction(Row row, real cos_theta, real sin_theta) {
   MaskingTerms heights = unmasked();
   if (kMasking == DOLP_MASKING_SMITH) {

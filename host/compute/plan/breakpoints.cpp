@@ -51,7 +51,7 @@ void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   add(critical / (std::hypot(a.cos, 2.0 * critical) - a.cos), at_slope_1);
 }
 
-// For `integral`, slopes at which the line b = pi/2 (b of eq. 11) meets phi = 0, pi or theta_r = theta; smith's cusp.
+// With `integral`, slopes where the line b = pi/2 (eq. 11) meets phi = 0, pi or theta_r = theta. With smith, the cusp.
 void add_line_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, Masking masking) {
   if (masking == Masking::kSmith) {
     points.push_back({tan_deg(0.5 * theta_deg), kRoots});
@@ -134,8 +134,7 @@ std::vector<Breakpoint> without_coincident(const std::vector<Breakpoint>& points
 }
 
 // Slopes at which a corner (kink) of the sky meets phi = 0 or pi. A sky that is linear in the zenith near 0 has a cusp
-// there. Beside these slopes, the sum over the azimuths has a term proportional to the distance from the slope to the
-// power 3/2.
+// there. Beside such a slope, the sum over the azimuths has a term (distance from the slope)^(3/2).
 void add_sky_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const SkyTable& sky) {
   if (sky.has_cusp) points.push_back({tan_deg(0.5 * theta_deg), kRoots});
   for (const double corner_deg : sky.corners_deg) {

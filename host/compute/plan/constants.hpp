@@ -20,9 +20,9 @@ inline constexpr double kNodesPerDigit = 1.2;  // 502, 461, 425
 /// Pieces are split at a line of the masking if the error without this split would exceed this share of the tolerance.
 /// The difference between the two rules of a piece would not show this error, because both rules would make it.
 inline constexpr double kLineShare = 0.1;  // 471, 461, 452
-/// At an end of a rule with n nodes, an integrand |x|^p causes an error of n^-(p + 2). A cluster of nodes at this end
-/// squares the error, but costs nodes. At the line b = pi/2 of `integral`, p = 2q - 1; a cluster pays if q is below
-/// this times the digits.
+/// At an end of a rule with n nodes, an integrand |x|^p causes an error of n^-(p + 2). A cluster of nodes there squares
+/// the error, but costs nodes. At the line b = pi/2 of `integral` (p = 2q - 1) it pays for q below this times the
+/// digits.
 inline constexpr double kClusterBelowQ = 0.3;  // 563, 608, 609
 /// With Gaussian slopes G is smooth at the line b = pi/2 of `integral`, but steep on rough surfaces. The line splits
 /// pieces if sigma exceeds kLineSigma, or kTightLineSigma if the rules need more than kTightDigits digits.
@@ -76,8 +76,7 @@ inline constexpr double kSkyTableSafety = 1.25;  // 690, 690, 690; 465, 465, 479
 /// A function of a sky has a corner where its slope in u = sqrt(1 - cos(theta_r)) changes (bends) by at least this.
 inline constexpr double kLeastBend = 1e-2;
 /// The sharpest corners split the integral, until b <= kMostBends times the tolerance, where b is the root of the sum
-/// of squares of the bends of the other corners. The other corners cause an error of at most kUnsplitBends times r_i
-/// times b.
+/// of squares of the bends of the other corners. The others cause an error of at most kUnsplitBends times r_i times b.
 inline constexpr double kMostBends = 2e4;      // 837, 690, 693; 742, 465, 485
 inline constexpr double kUnsplitBends = 1e-4;  // 658, 690, 747; 450, 465, 587
 /// Rounding errors of cos(theta_r) and of a value from the table, in unit roundoffs.
@@ -116,7 +115,7 @@ inline constexpr double kLeastShareOfTolerance = 0.1;
 /// reflected light: the last bounces may be grazing, and then even weak reflectors reflect everything.
 inline constexpr double kGrooveRoundings = 4.0;
 /// Error of treating several bounces in a groove as one, divided by cos(theta) and by the share of such grooves. From
-/// kVeryManyBounces bounces the second value holds. Fitted to the steep cases of tests/compute/grooves_test.cpp.
+/// kVeryManyBounces bounces kVeryManyBouncesError holds. Fitted to the steep cases of tests/compute/grooves_test.cpp.
 inline constexpr double kManyBouncesError = 1e-3;
 inline constexpr double kVeryManyBounces = 1024.0;
 inline constexpr double kVeryManyBouncesError = 1e-2;

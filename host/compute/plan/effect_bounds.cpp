@@ -80,8 +80,8 @@ Range slope_density(Distribution distribution, const EntriesExtent& extent, doub
 }
 
 /// Range of f_00 cos(theta_i) cos(theta_r) = P (1 + t^2)^2 G M00 / 4 for k_s = 1, in 1/sr, with the slope density P and
-/// M00 = (R_s + R_p) / 2. The masking G is known for `none` and `v-cavity`; it is in [1/2, 1] for `integral`, and in [1
-/// / (1 + L_i + L_r), 1] for `smith`, where L_i and L_r are upper bounds of Lambda.
+/// M00 = (R_s + R_p) / 2. The masking G is known for `none` and `v-cavity`; it is in [1/2, 1] for `integral`; for
+/// `smith` in [1 / (1 + L_i + L_r), 1], where L_i and L_r are upper bounds of Lambda.
 Range beam_range(const Surface& surface, const BeamAngles& angles, const EntriesExtent& extent,
                  const std::vector<FacetOptics>& indices) {
   if (!has_facet(angles)) return {};

@@ -97,7 +97,7 @@ std::string why_no_moments(const SceneValues& scene, const KeptEffects& kept) {
 
 Effect absent(const char* name, std::string why) { return {name, EffectState::kAbsent, std::move(why)}; }
 
-/// `row` describes the part as if it were kept. If the plan drops the part, its state, bound and reason replace those.
+/// `row` describes the part as if it were kept. If the plan drops the part, state, bound and reason of `row` change.
 Effect part_row(const SceneValues& scene, const EffectPlan& plan, Part part, Effect row) {
   row.part = part;
   const auto dropped = plan.dropped.find(part);

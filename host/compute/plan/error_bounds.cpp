@@ -89,8 +89,8 @@ double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
   return std::min(1.0, std::norm((cos_beta - w) / (cos_beta + w)));
 }
 
-// Upper bound, at most `most`, of the share of light that is left after `bounces` bounces with cos(beta) >= a/2; a is
-// the length of the ray's direction projected across the groove. It is at least `level`, except at azimuths with
+// Upper bound, at most `most`, of the share of light that is left after `bounces` bounces with cos(beta) >= a/2, where
+// a is the length of the ray's direction projected across the groove. a is at least `level`, except at azimuths with
 // sin(theta) |cos(phi)| < sqrt(level^2 - c^2). The share of light there is at most twice the share of azimuths.
 double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double bounces, double most) {
   double least = most;
@@ -163,7 +163,7 @@ struct Shares {
   double masking = 0.0;        ///< relative error of G
   double rounding = 0.0;       ///< relative rounding error
   double least = 0.0;          ///< least error bound of a sum, relative to the sum
-  double pair = 1.0;           // factor from the difference of two rules to the bound
+  double pair = 1.0;           ///< factor from the difference of two rules to the bound
   // Two rules with few nodes may agree by chance, so the bound of a sum is at least a share of the tolerance.
   double of_rule() const { return least + rounding; }
   double of_masked() const { return of_rule() + masking; }

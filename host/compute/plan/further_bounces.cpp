@@ -20,7 +20,7 @@ using Complex = std::complex<double>;
 struct Across {
   double a = 0.0;                                  ///< length of omega_i projected into the plane across the groove
   double psi_i = 0.0;                              ///< zenith of omega_i in this plane, positive toward u
-  double psi_r = 0.0;                              // zenith of omega_r in this plane
+  double psi_r = 0.0;                              ///< zenith of omega_r in this plane
   double along = 0.0;                              ///< component of omega_i along the groove
   Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< unit vectors of the beams' azimuths: across, along
   Eigen::Vector2d to = Eigen::Vector2d::Zero();

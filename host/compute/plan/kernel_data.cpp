@@ -91,7 +91,7 @@ double iterations(const KernelData& data, const Loops& loops, double most_nodes)
   return of_rule(1.0) + of_rule(kCoarseShare + 1.0 / data.rule_order);
 }
 
-// Largest number of nodes of an arc with less than kMostIterations. If it is too small, the error bound shows it.
+// Most nodes of an arc for an invocation below kMostIterations loop turns. If too few, the error bound shows it.
 std::uint8_t most_nodes(const KernelData& data, const Loops& loops) {
   int most = data.rule_order;
   while (iterations(data, loops, most) > kMostIterations) --most;

@@ -89,7 +89,7 @@ struct KernelData {
   /// Nodes of the rules, then cells of the sky and of reflectance tables.
   std::vector<std::array<double, 2>> rule_nodes;
   SkyTable sky;
-  std::optional<Response> response;  ///< kind of the columns; null if they are functions of the sky
+  std::optional<Response> response;  ///< set if the columns are responses; null if they belong to functions of a sky
 
   std::size_t column_count() const { return response ? response->count : sky.count; }
   bool needs_masking_table() const { return masking == Masking::kIntegral || masking == Masking::kSmith; }
@@ -137,7 +137,7 @@ inline std::uint32_t column_kind(const KernelData& data) {
 /// The task word of interface.glsl for one piece of a row of `members` entries.
 std::uint32_t task_word(const Pieces& pieces, std::uint32_t piece, std::uint32_t members);
 
-/// Pieces of the slope axis up to the cut, which the kernel has to compute; at least one.
+/// Pieces of the slope axis up to the slope cut of `shape`, which the kernel has to compute; at least one.
 std::uint32_t piece_count(const KernelData& data, std::uint32_t theta, const kernel::ShapeNode& shape);
 
 /// The slope of V-grooves in which a vertical ray bounces `bounces` times.

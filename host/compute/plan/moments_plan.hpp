@@ -32,12 +32,12 @@ class MomentsPlan {
   std::size_t size() const { return size_; }              ///< entries of the request
   std::size_t directions() const { return directions_; }  ///< directions of a grid; 0 for points
   std::span<const MomentsStep> steps() const { return steps_; }
-  /// Wanted entries that are interpolated or combined instead of computed.
+  /// Wanted entries that are interpolated, or combined from responses, instead of computed by a kernel.
   std::size_t saved_entries() const;
   /// Moments that the kernels compute for the saved entries.
   std::size_t nodes_of_saved() const;
   std::size_t kernel_moments() const;
-  /// For each direction of a grid: 1 if its entries are interpolated or combined. Empty for points.
+  /// For each direction of a grid: 1 if the entries are interpolated or combined from responses. Empty for points.
   std::vector<char> saving_directions() const;
 
  private:

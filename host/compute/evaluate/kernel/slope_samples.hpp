@@ -41,7 +41,7 @@ struct SampledPiece {
   std::uint32_t direction_piece = 0;  ///< number of the direction's piece (KernelData::pieces) that contains this piece
 };
 
-/// The slopes at which the kernel samples a direction and an index for all wanted shapes, whatever else is computed.
+/// The slopes at which the kernel samples a direction and an index for all wanted shapes. Other pairs do not matter.
 struct SlopeSamples {
   SampledEntries entries;
   double cut = 0.0;  ///< slopes above this one are left out

@@ -205,7 +205,7 @@ VkPipeline Kernels::pipeline(const KernelVariant& variant) {
 
 UniquePipeline Kernels::create(std::span<const std::uint32_t> spirv, const KernelVariant& variant) const {
   const double limit_s = compilation_limit_s();
-  // A driver may never finish a compilation, and nothing can stop it. So the compilation gets a thread to be abandoned.
+  // A driver may never finish a compilation, and nothing can stop it. So a thread compiles that can be abandoned.
   std::packaged_task<UniquePipeline()> compilation(
       [device = device_.get(), layout = layout_.get(), local_size = local_size(), spirv, variant] {
         return compile(device, layout, local_size, spirv, variant);

@@ -78,7 +78,7 @@ struct RowTiles {
 /// The dispatches of a request for moments from slope samples. The request must outlive the object.
 struct SlopeTiles {
   SlopeTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options);
-  /// Directions in a batch; few enough to limit its memory.
+  /// Number of directions in a batch; it limits the memory of a batch.
   std::size_t batch_directions() const;
   SlopeBatch batch(std::size_t first) const;
   DispatchCount count() const;

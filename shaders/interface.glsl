@@ -80,9 +80,9 @@
 // V-grooves, see physics/groove.glsl
 #define DOLP_STEEPEST_SPLIT 20.0  // for slopes below this, azimuths are split where the number of bounces changes
 #define DOLP_MOST_SPLITS 8       // largest RuleNode::split_bounces
-#define DOLP_MOST_BOUNCES 32      // if a ray has more, 2, 4, 8 ... bounces in the middle of its path count as one
+#define DOLP_MOST_BOUNCES 32      // longer paths: groups of 2, 4, 8 ... bounces in the middle of a path count as one
 #define DOLP_GROUPS_PER_DISTANCE 6 // before and after a group of n bounces lie at least n times this many bounces
-#define DOLP_MOST_DOUBLINGS 12   // a group has at most 2^12 bounces
+#define DOLP_MOST_DOUBLINGS 12    // a group has at most 2^12 bounces
 #define DOLP_LAST_BOUNCES (DOLP_MOST_BOUNCES << DOLP_MOST_DOUBLINGS)  // a ray with more bounces is absorbed
 #define DOLP_CURVE_NODES 6       // rule nodes per cell of a table of reflectances: two per cubic, for three quantities
 #define DOLP_MAX_ORDER 128       // largest Gauss order of the rule nodes

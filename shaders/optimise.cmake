@@ -10,7 +10,7 @@ set(cleaning --ccp --eliminate-dead-branches --eliminate-dead-code-aggressive --
 set(passes ${inlining} ${into_ssa})
 set(input ${RAW})
 if(UNROLL)
-  # glslang marks a loop for unrolling only if the source has an attribute that C++, the other language of it, lacks.
+  # glslang marks a loop for unrolling only if the loop has an attribute. C++, which compiles the source too, lacks it.
   execute_process(COMMAND ${SPIRV_DIS} ${RAW} OUTPUT_VARIABLE text COMMAND_ERROR_IS_FATAL ANY)
   string(REGEX REPLACE "(OpLoopMerge %[^ ]+ %[^ ]+) None" "\\1 Unroll" text "${text}")
   file(WRITE ${MODULE}.asm "${text}")

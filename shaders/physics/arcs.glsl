@@ -32,7 +32,7 @@ struct Arc {
   real centre_sin;
   real extent;
   real quarter;     // tan of a quarter of the arc's length
-  real origin;      // phi at the end of the arc where the rule is symmetric or has a cluster; else phi at the beginning
+  real origin;      // phi where the rule is symmetric (0 or pi) or has a cluster; else phi at the beginning of the arc
   real span;        // length in phi
   int section;      // section of the rule nodes, kSection*
   bool is_critical; // true if w of fresnel.glsl vanishes at or near the centre (total reflection)

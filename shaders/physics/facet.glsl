@@ -3,7 +3,8 @@
 // A facet has the slope t and the azimuth phi, measured from the plane of incidence. Let c = cos(theta),
 // s = sin(theta), x = cos(phi), r = cos(alpha) = 1 / sqrt(1 + t^2), r2 = r^2 and e = c + s t x. Facets from phi = 0 to
 // phi_m have reflected rays that leave the surface. Then
-//   rho c = integral P(t) t dt * 2 integral_0^phi_m e G M dphi,     cos(beta) = r e,     cos(theta_r) = 2 r2 e - c,
+//   rho_I c = integral P(t) t dt * 2 integral_0^phi_m e G M00 dphi,  rho_Q c with M01,
+//   cos(beta) = r e,   cos(theta_r) = 2 r2 e - c,
 //   sin^2(beta)             = r2 [(c t x - s)^2 + t^2 (1 - x^2)],
 //   sin^2(beta) cos(2 eta)  = r2 [(c t x - s)^2 - t^2 (1 - x^2)],
 //   M00 = R_s - D sin^2(beta) / 2,   M01 = D sin^2(beta) cos(2 eta) / 2,   D = (R_s - R_p) / sin^2(beta).

@@ -51,7 +51,7 @@ Fan fan(real t, real c, real u) {
   return f;
 }
 
-// Share of the beam that goes on to the next bounce, in a steep groove: its small angles replace their sines.
+// Share of the beam that goes on to the next bounce in a steep groove. Small angles replace their sines.
 real last_share(Fan f) {
   real sum = max(real(1.0) + f.slant, real(1e-30));
   return (real(2.0) * f.left + f.slant - real(1.0)) / sum;

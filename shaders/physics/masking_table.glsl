@@ -1,6 +1,6 @@
 // Builds the table of one shape from its far end inwards. All terms are positive, so no digits are lost.
 
-CONST int kTableOrder = 4;  // Gauss order on one cell; across a cell v = 1 + tau / table_scale grows at most by 9/8
+CONST int kTableOrder = 4;  // Gauss order; across a cell v = 1 + tau / table_scale grows by a factor of at most 9/8
 
 // The contributions of the cell to l, C and Pt; the last component is p(tau0). `beyond` is (l, C, Pt, p) at tau1.
 real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {

@@ -12,14 +12,13 @@ struct BeamGeometry {
   double sin2_beta = 0.0;
 };
 
-/// The facet between two beams, and the rotation angles eta of eq. (4) of the paper, in double and without
-/// cancellation.
+/// The facet between two beams, and the angles eta of eq. (4) of the paper, in double and without cancellation.
 ///
 /// Equation: eqs. (2)-(6) in the form |omega_i + omega_r|^2 = 4 cos^2(beta), |omega_i - omega_r|^2 = 4 sin^2(beta).
 /// With i = theta_i and r = theta_r, eta_i is the angle of the vector (sin i cos r - cos i sin r cos(dphi), sin r
 /// sin(dphi)), and eta_r the angle of (sin r cos i - cos r sin i cos(dphi), sin i sin(dphi)). Conventions: delta_phi =
-/// 180 degrees is the specular side; eta turns s toward p and has the sign of sin(delta_phi). Domain: zeniths in [0,
-/// 90] degrees, but not both 90. In the retro direction eta is undefined; the result is the limit eta_i = eta_r = 0. At
+/// 180 degrees is the specular side; eta turns s toward p and has the sign of sin(delta_phi). Domain: zeniths from 0 to
+/// 90 degrees, but not both 90. In the retro direction eta is undefined; the result is the limit eta_i = eta_r = 0. At
 /// theta_i = 0 the plane of incidence has azimuth 0; at theta_r = 0 it has azimuth delta_phi.
 BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_phi_deg);
 

@@ -20,9 +20,8 @@ inline constexpr double kNodesPerDigit = 1.2;  // 502, 461, 425
 /// Pieces are split at a line of the masking if the error without this split would exceed this share of the tolerance.
 /// The difference between the two rules of a piece would not show this error, because both rules would make it.
 inline constexpr double kLineShare = 0.1;  // 471, 461, 452
-/// At an end of a rule with n nodes, an integrand |x|^p causes an error of n^-(p + 2). A cluster of nodes there squares
-/// the error, but costs nodes. At the line b = pi/2 of `integral` (p = 2q - 1) it pays for q below this times the
-/// digits.
+/// At an end of a rule with n nodes, |x|^p causes the error n^-(p + 2). A cluster of nodes there squares the error, but
+/// costs nodes. At the line b = pi/2 of `integral`, where p = 2q - 1, it pays if q is below this times the digits.
 inline constexpr double kClusterBelowQ = 0.3;  // 563, 608, 609
 /// With Gaussian slopes G is smooth at the line b = pi/2 of `integral`, but steep on rough surfaces. The line splits
 /// pieces if sigma exceeds kLineSigma, or kTightLineSigma if the rules need more than kTightDigits digits.

@@ -210,7 +210,7 @@ bool EffectBounds::emits(const KeptEffects& kept, EmissionModel model) const {
   return kept.emission && scene_.emission && scene_.emission->model == model;
 }
 
-/// Upper bound of the exitance that multiplies rho.
+/// Upper bound of the exitance that multiplies the reflectance rho.
 double EffectBounds::weight(const KeptEffects& kept) const {
   const double emitted = emits(kept, EmissionModel::kMoments) ? total_.emitted : 0.0;
   const double source = is_bistatic_ || !kept.source ? 0.0 : total_.irradiance;

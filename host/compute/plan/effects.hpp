@@ -43,8 +43,8 @@ class EffectBounds {
  public:
   EffectBounds(const SceneModel& scene, const EntriesExtent& extent);
 
-  /// Bound of the change of (Q/I, U/I), at any entry, if `part` is dropped from `kept`. It is exactly 0 if the part
-  /// contributes nothing. Otherwise it is infinite if no bound is known, and always for moments, further bounces,
+  /// Bound of the change of (Q/I, U/I), at any entry, if `part` is dropped from `kept`. The bound is exactly 0 if the
+  /// part contributes nothing. Otherwise it is infinite if no bound is known, and always for moments, further bounces,
   /// profile, diffuse part and a source of the hemisphere, whose bounds would save no work in any known case.
   double bound(Part part, const KeptEffects& kept) const;
 

@@ -22,7 +22,7 @@ struct Across {
   double psi_i = 0.0;                              ///< zenith of omega_i in this plane, positive toward u
   double psi_r = 0.0;                              ///< zenith of omega_r in this plane
   double along = 0.0;                              ///< component of omega_i along the groove
-  Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< unit vectors of the beams' azimuths: across, along
+  Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< unit vectors of the azimuths: across and along the groove
   Eigen::Vector2d to = Eigen::Vector2d::Zero();
   double cos_i = 1.0;
   double cos_r = 1.0;

@@ -84,7 +84,7 @@ struct KernelData {
   std::vector<kernel::ShapeNode> shapes;
   std::vector<char> needs_line;  ///< for each shape: 1 if it needs splits at a line or cusp of the masking
   std::vector<kernel::IndexNode> indices;
-  std::vector<std::uint32_t> index_variant;  ///< for each index of a grid: position of its first variant
+  std::vector<std::uint32_t> index_variant;  ///< for each index of a grid: number of its first DirectionVariant
   std::vector<std::uint32_t> shape_of;
   /// Nodes of the rules, then cells of the sky and of reflectance tables.
   std::vector<std::array<double, 2>> rule_nodes;
@@ -152,8 +152,8 @@ void take_complement(Moments& moments, double cosine);
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
                             double unit_roundoff, std::span<const double> columns = {});
 
-/// False if the masking table is too coarse to resolve G: its cells are wider than the slope distribution, and
-/// cot(theta) is below table_scale.
+/// False if the masking table is too coarse to resolve G: table_scale exceeds the width m of the slope distribution,
+/// and cot(theta) is below table_scale.
 bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin_theta);
 
 /// Most loop iterations of one invocation. Drivers may stop it after 65,535, without an error and with wrong sums.

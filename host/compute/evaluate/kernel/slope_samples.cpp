@@ -16,9 +16,9 @@ using sampling_kernel::KernelSource;
 
 namespace {
 
-// If distributions differ in width, the slopes between the narrowest and the widest are split at ends with this
-// spacing, in e-folds of slope. Tuned. Evaluations in thousands for the grid of plan/constants.hpp, at half this value,
-// this and double: masking none 27.4, 24.0, 22.1; v-cavity 54.2, 50.9, 49.2.
+// Spacing, in e-folds of slope, of more ends of pieces between the narrowest and the widest of several distributions.
+// Tuned. Evaluations in thousands for the grid of plan/constants.hpp, at half this value, this and double: masking none
+// 27.4, 24.0, 22.1; v-cavity 54.2, 50.9, 49.2.
 constexpr double kWidthStep = 1.3;
 constexpr double kNodeWidthStep = 0.4;  // the number of nodes is determined for widths at this spacing, in e-folds
 

@@ -25,7 +25,7 @@ struct TileCosts {
   std::uint64_t shape_texels = 0;      ///< texels of a shape's masking table
 };
 
-/// Invocations per dispatch, and shapes that are bound at a time; at least one each.
+/// Invocations per dispatch, and shapes whose masking tables are bound at a time; at least one each.
 struct TileSizes {
   std::uint32_t invocations = 1;
   std::uint32_t shapes = 1;

@@ -11,7 +11,7 @@
 
 // Copies of push constants about the tables of a sky: devices would read push constants again in each turn of a loop.
 struct SkyPlace {
-  int cells;    // number of cells of a function
+  int cells;    // number of cells of each function's table
   int start;    // position of the first cell
   int corners;  // number of corners (kinks over the zenith) of the sky
 };

@@ -202,8 +202,9 @@ real arc_cost(Arc arc, Singularity at) {
   return nodes_per_digit(choose(arc.section == kSectionCircle, at.im, mu));
 }
 
-// Nodes per digit on an arc because of the pole of R_p at cos(beta) = -1 / sqrt(N^2 + 1), and of w's branch point at
-// cos^2(beta) = 1 - N^2. With `facet` = (cos, sin) of its angle from the vertical, cos(beta) = c facet.y + s x facet.x.
+// Nodes per digit on an arc because of the pole of R_p at cos(beta) = -1 / sqrt(N^2 + 1), and of the branch point of w
+// = sqrt(N^2 - sin^2(beta)) at cos^2(beta) = 1 - N^2. With `facet` = (cos, sin) of its angle from the vertical,
+// cos(beta) = c facet.y + s x facet.x.
 real bounce_cost(ThetaNode theta, IndexNode index, real2 facet, Arc arc) {
   real slant = theta.s * facet.x;
   real size = max(abs(slant), real(1e-15));
@@ -337,8 +338,8 @@ real line_nodes(ShapeNode shape, bool has_split_line, real digits, int zone) {
   return choose(is_line, essential_nodes(shape, digits), real(0.0));
 }
 
-// Nodes because of a square root that absorption smooths. In the abscissa v of place_on_arc it has singularities at v =
-// asinh(sqrt(+-i)) / a = (0.76 +- 0.57 i) / a. Their share of the integral is about resolution^(3/2).
+// Nodes because of a square root that absorption smooths. In the abscissa v of place_on_arc the root has singularities
+// at v = asinh(sqrt(+-i)) / a = (0.76 +- 0.57 i) / a. Their share of the integral is about resolution^(3/2).
 real resolution_nodes(real digits, real resolution) {
   real wanted = max(digits + real(1.5) * kInverseLn10 * log_unit(resolution), real(0.0));
   real a = asinh_real(real(1.0) / sqrt(resolution));

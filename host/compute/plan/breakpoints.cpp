@@ -18,12 +18,12 @@ using std::numbers::pi;
 constexpr unsigned kRoots = kRootAbove | kRootBelow;
 constexpr double kNoEnd = 1e30;  // a finite slope beyond every cut
 
-constexpr double kCoincident = 1e-9;  // relative distance of breakpoints that differ only by rounding
+constexpr double kCoincident = 1e-9;  // breakpoints within this relative distance differ only by rounding
 
 constexpr std::size_t kMostSkyBreakpoints = 60;  // most breakpoints of a direction with a sky
 
 // In grazing directions, slopes reach far beyond 1 before they meet the horizon. These breakpoints divide a heavy tail
-// into pieces of about ten units of X = asinh(t/w).
+// into pieces of about ten units of X = asinh(t / ShapeNode::scale).
 constexpr std::array kPlainBreakpoints = {30.0, 3e5};
 constexpr std::array kSteepBreakpoints = {1e5, 3e8, 1e12};  // for grooves, which have no horizon
 

@@ -44,7 +44,7 @@ inline constexpr double kDimmest = 1e-10;
 
 // ---- Slopes (breakpoints.cpp, kernel_data.cpp)
 
-inline constexpr double kCutShare = 0.01;  // the slopes that the kernel leaves out may have this share of the tolerance
+inline constexpr double kCutShare = 0.01;  // leaving out the steepest slopes may cost this share of the tolerance
 /// A plain breakpoint (breakpoints.cpp) is used if the largest slope exceeds it by more than this factor.
 inline constexpr double kLongWay = 300.0;
 /// Limits of the scale of the masking table, which otherwise is the width of the slope distribution. The table ends at

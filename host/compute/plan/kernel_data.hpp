@@ -61,10 +61,10 @@ struct CurveError {
   double per_roundoff = 0.0;  ///< error divided by the unit roundoff of the kernel's precision
 };
 
-/// Inputs of one run of the kernel. For a grid, `indices` and `shapes` (sigma x q, q fastest) follow its axes. `thetas`
-/// has all directions of the grid once per variant (DirectionVariant). Variants differ in split lines: total reflection
-/// has lines that depend on the index, and some shapes need one more line. For points, each point has a direction and
-/// an index; neighbouring points with equal shapes share one shape.
+/// Inputs of one run of the kernel. For a grid, `indices` and `shapes` (sigma x q, q fastest) follow the axes of the
+/// grid. `thetas` has all directions of the grid once per variant (DirectionVariant). Variants differ in split lines:
+/// total reflection has lines that depend on the index, and some shapes need one more line. For points, each point has
+/// a direction and an index; neighbouring points with equal shapes share one shape.
 struct KernelData {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
@@ -108,7 +108,7 @@ struct KernelData {
 
 struct RuleModel;
 
-/// Without `model`, uses the fitted numbers of the request's masking. Pure function.
+/// The data of a request. Without `model`, they use the fitted numbers (RuleModel) of its masking. Pure function.
 KernelData kernel_data(const MomentsRequest& request);
 KernelData kernel_data(const MomentsRequest& request, const RuleModel& model);
 

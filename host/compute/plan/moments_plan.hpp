@@ -41,7 +41,7 @@ class MomentsPlan {
   std::vector<char> saving_directions() const;
 
  private:
-  /// Adds a step, or several steps if its responses would take too much memory.
+  /// Adds a step, or several steps if the responses of the step would take too much memory.
   void add(MomentsStep step);
 
   std::size_t size_ = 0;

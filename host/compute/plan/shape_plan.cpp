@@ -55,7 +55,7 @@ class Interpolation {
   Values q_;
 };
 
-/// Interpolates column `k`. The result has all its error in ColumnMoments::error.
+/// Interpolates column `k` of the moments. The whole error bound of the result is in ColumnMoments::error.
 void interpolate_column(const ShapePlan& plan, const Interpolation& interpolated, std::span<const Moments> nodes,
                         std::size_t k, std::span<Moments> moments) {
   for (Moments& of_entry : moments) of_entry.columns.resize(k + 1);

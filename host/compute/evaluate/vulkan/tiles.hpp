@@ -91,7 +91,7 @@ struct SlopeTiles {
   std::uint32_t slopes = 0;  ///< slopes per dispatch: a multiple of kLockstep, so that no group is divided
 };
 
-/// The dispatches of a request for pBRDFs. There are no blocks, because a BeamNode contains its shape.
+/// The dispatches of a request for pBRDFs. They need no blocks of masking tables, because a BeamNode has its ShapeNode.
 struct BeamTiles {
   BeamTiles(const ScatteringRequest& request, const dolp::Device& device, const VulkanOptions& options);
   DispatchCount count() const;

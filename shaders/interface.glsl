@@ -207,9 +207,9 @@ struct MomentsNode {
   real many;                 // part of r_i from grooves with more bounces than DOLP_MOST_BOUNCES
   real direct_i;             // direct emission
   real direct_q;
-  real reflected_difference; // the larger of the differences of r_i and of r_q
+  real reflected_difference; // larger difference between both rules: of r_i or of r_q
   real albedo_difference;
   real deficit_difference;
-  real direct_difference;    // the larger of the differences of direct_i and of direct_q
+  real direct_difference;    // larger difference between both rules: of direct_i or of direct_q
   real evaluations;
 };

@@ -13,7 +13,7 @@ layout(constant_id = DOLP_SPEC_CURVES) const bool kHasCurves = false;
 #if DOLP_MOST_COLUMNS > 0
 layout(constant_id = DOLP_SPEC_COLUMN_COUNT) const uint kColumnCount = 0u;
 layout(constant_id = DOLP_SPEC_COLUMNS) const uint kColumns = DOLP_COLUMNS_SKY;
-// With responses a sky has only one function.
+// If the columns are responses, the kernel uses only one function of the sky.
 int sky_functions() { return kColumns == DOLP_COLUMNS_SKY ? int(kColumnCount) : 1; }
 #else
 const uint kColumns = DOLP_COLUMNS_SKY;

@@ -156,7 +156,7 @@ GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index,
   real2 between = real2(u, c);  // a (sin, cos) of psi + 2 k gamma
   real share = f.is_black ? real(0.0) : real(1.0);  // share of the beam that continues
   real absorbed = real(1.0) - share;
-  // Stokes vectors in the frame of the surface: one has I = 1 and is unpolarised, the other has only Q = 1.
+  // Stokes vectors in the frame of the surface: `natural` has I = 1 and is unpolarised, `polarised` has only Q = 1.
   real4 natural = real4(share, real(0.0), real(0.0), real(0.0));
   real2 seen = doubled_angle(-x, c * sin_phi);
   real4 polarised = real4(real(0.0), share * seen.x, share * seen.y, real(0.0));

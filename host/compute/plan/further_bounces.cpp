@@ -130,7 +130,7 @@ FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, c
   const Facet facet(request.optics[entry.index].index);
   const double least_gamma = 0.49 * std::abs(std::abs(at.psi_i) - std::abs(at.psi_r));
   FurtherBeams beams;
-  // Bounds for all further even, and all further odd, numbers of bounces, which follow different laws.
+  // Two bounds: for all further even numbers of bounces, and for all further odd ones. The two follow different laws.
   std::array<double, 2> beyond = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (int k = 2; k <= kMostBouncesOfBeam; ++k) {
     const double gamma = (pi - at.psi_i + (k % 2 == 1 ? -at.psi_r : at.psi_r)) / (2.0 * k);

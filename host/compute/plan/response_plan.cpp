@@ -50,7 +50,7 @@ struct Responses {
     }
   }
   enum Part : std::uint8_t { kI, kQ, kIApart, kQApart, kError, kParts };
-  std::vector<RowMajor> all;           // one matrix per part, responses x shapes, for one direction
+  std::vector<RowMajor> all;           // one matrix (responses x shapes) per Part, for one direction
   std::vector<double> relative_error;  ///< one value for each shape
 };
 
@@ -112,7 +112,7 @@ class Combination {
     if (rows > 0) reflected_.col(0).array() += 1.0;
   }
 
-  /// `passes` has the moments of all shapes at one direction; `moments` receives them for all indices and shapes.
+  /// `passes` has, for each pass, the moments of all shapes at one direction; `moments` gets those of all indices.
   void operator()(double cosine, std::span<const std::span<const Moments>> passes, std::span<Moments> moments) const {
     add_reflected(cosine, passes.front(), moments);
     std::size_t pass = 1;

@@ -74,7 +74,7 @@ void interpolate_column(const ShapePlan& plan, const Interpolation& interpolated
   }
 }
 
-/// True if, for each direction and index, all entries are wanted or none.
+/// True if the request wants, for each pair of direction and index, either all entries or no entry.
 bool wants_whole_directions(const MomentsRequest& request) {
   if (request.layout != MomentsRequest::Layout::kGrid) return false;
   const std::size_t shapes = request.shapes();

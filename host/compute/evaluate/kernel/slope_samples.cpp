@@ -216,7 +216,7 @@ struct SlopeSampling::Impl {
     }
   }
 
-  // The moments of one shape, without the slopes beyond the cut. `columns` receives the sums of the columns.
+  // The moments of one shape, without the facets beyond the slope cut. `columns` receives the sums of the columns.
   kernel::MomentsNode moments_of(const SlopeSamples& samples, const KernelSource::ShapeNode& shape,
                                  const SlopeWeights& weights, std::span<const kernel::AzimuthNode> azimuths,
                                  std::span<const double> of_columns, Eigen::ArrayXd& shape_weights,

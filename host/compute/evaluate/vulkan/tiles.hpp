@@ -88,7 +88,7 @@ struct SlopeTiles {
   KernelData data;
   SlopeSampling sampling;
   TileCosts costs;
-  std::uint32_t slopes = 0;  ///< slopes per dispatch: a multiple of kLockstep, so that no group is divided
+  std::uint32_t slopes = 0;  ///< slopes per dispatch: a multiple of kLockstep, so that no lockstep group is divided
 };
 
 /// The dispatches of a request for pBRDFs. They need no blocks of masking tables, because a BeamNode has its ShapeNode.

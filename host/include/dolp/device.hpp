@@ -17,7 +17,7 @@ struct Device {
   std::string api_version;
   bool usable = false;
   std::string why_not;                         ///< empty when usable
-  bool has_double = false;                     ///< kernels can use double precision
+  bool has_double = false;                     ///< the device supports double precision
   std::uint64_t memory_bytes = 0;              ///< size of the largest heap of device-local memory
   std::uint64_t max_storage_buffer_bytes = 0;  ///< maxStorageBufferRange
   std::uint32_t max_texels = 0;                ///< maxTexelBufferElements
@@ -33,8 +33,8 @@ DOLP_EXPORT std::string type_name(Device::Type type);
 /// All devices, in the order of the Vulkan loader. EvaluatorOptions::device may be a position in this list.
 DOLP_EXPORT std::vector<Device> devices();
 
-/// Throws if this device cannot be used. With an empty name, throws if no device can be used. `device` has the same
-/// meaning as in EvaluatorOptions. Errors: DeviceError with the reason.
+/// Throws if `device` cannot be used or, with an empty `device`, if no device can be used. `device` is a position or a
+/// part of a name as in EvaluatorOptions::device. Errors: DeviceError with the reason.
 DOLP_EXPORT void require_device(const std::string& device = {});
 
 }  // namespace dolp

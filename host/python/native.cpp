@@ -317,7 +317,7 @@ dolp::Table table_of(const Columns& columns, const std::map<std::string, std::ve
   for (const dolp::Quantity quantity : dolp::kAllQuantities) take(dolp::description_of(quantity).name, table[quantity]);
   for (const dolp::TableCurve& known : dolp::kTableCurves) {
     dolp::Curve& curve = table.*known.curve;
-    take(known.name + std::string("_wavelength"), curve.wavelength_um);  // only in files of dolp 0.2
+    take(known.name + std::string("_wavelength"), curve.wavelength_um);  // variables that only files of dolp 0.2 have
     take(known.name, curve.wavelength_um.empty() ? curve.used : curve.values);
   }
   table.status.assign(status.data(), status.data() + status.size());

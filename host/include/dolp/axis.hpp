@@ -28,7 +28,7 @@ struct AxisDescription {
   const char* long_name;
   NumberRange range;
   bool is_required;         ///< every table has the axis; otherwise a table can lack it and use one value of the scene
-  bool has_labels = false;  ///< the numbers on the axis are positions (from 0) in a list of names
+  bool has_labels = false;  ///< the values are positions (from 0) in a list of labels: names of materials or bands
 };
 
 inline constexpr std::array<AxisDescription, kAxisCount> kAxes = {{
@@ -59,7 +59,7 @@ inline constexpr std::array<Axis, kAxisCount> kColumnOrder = {Axis::kTheta,    A
 
 /// The values of each axis, in any order and without repetition. A grid has at least one value of each required axis.
 using Axes = AxisArray<std::vector<double>>;
-/// Names of materials and bands (such as "8-14"), for axes whose numbers are positions in such a list; else empty.
+/// The labels of axes with labels: names of materials, and bands such as "8-14". Empty for other axes.
 using AxisLabels = AxisArray<std::vector<std::string>>;
 /// One integer per axis, such as a position along the axis or its number of values.
 using PerAxis = AxisArray<std::size_t>;

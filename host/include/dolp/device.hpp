@@ -13,10 +13,10 @@ struct Device {
   enum class Type { kDiscrete, kIntegrated, kVirtual, kCpu, kOther };
   std::string name;
   Type type = Type::kOther;
-  std::string driver;  ///< name and version
+  std::string driver;  ///< name and version of the driver
   std::string api_version;
   bool usable = false;
-  std::string why_not;                         ///< empty when usable
+  std::string why_not;                         ///< why the device is not usable; empty if it is
   bool has_double = false;                     ///< the device supports double precision
   std::uint64_t memory_bytes = 0;              ///< size of the largest heap of device-local memory
   std::uint64_t max_storage_buffer_bytes = 0;  ///< maxStorageBufferRange

@@ -127,7 +127,7 @@ DOLP_EXPORT std::string example_scene();
 
 struct BuiltInMaterial {
   std::string name;      ///< name of the material, as a value of the key surface.material
-  double from_um = 0.0;  ///< n and k are known from from_um to to_um
+  double from_um = 0.0;  ///< n and k are known at the wavelengths from from_um to to_um
   double to_um = 0.0;
   std::string source;
 };
@@ -138,7 +138,7 @@ DOLP_EXPORT BuiltInMaterial material(const std::string& name);
 /// Results at points, in the order of the points: computed, or interpolated in a table.
 struct Results : ResultColumns {
   Quantities given;          ///< quantities that results of the scene have; a value that was not computed is NaN
-  std::string stokes_units;  ///< UDUNITS: "W m-2 um-1"
+  std::string stokes_units;  ///< unit of the Stokes parameters for UDUNITS, such as "W m-2 um-1"
   /// The global attributes that a table file would have: device, precision, effects, rule, ...
   std::vector<Attribute> attributes;
   double integrand_evaluations = 0.0;  ///< evaluations of the integrand for these results

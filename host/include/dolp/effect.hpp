@@ -27,7 +27,7 @@ enum class Part : std::uint8_t {
   kEmission,
   kPathRadiance,
   kDiffuse,
-  kProfile  ///< variation of the surroundings around their mean
+  kProfile  ///< difference of the radiance of the surroundings from its mean over directions
 };
 
 /// An effect that a scene can have, and what a run over given entries does with it.

@@ -73,7 +73,7 @@ struct DOLP_EXPORT Comparison {
 };
 
 /// What a residual r adds to the objective, which a fit minimises: r^2 for kSquares. The other losses add less than
-/// r^2, mainly for residuals above one uncertainty, so that outliers count less.
+/// r^2, mainly if |r| exceeds one uncertainty, so that outliers count less.
 enum class Loss { kSquares, kHuber, kSoftL1, kCauchy, kTukey };
 
 /// "squares", "huber", "soft-l1", "cauchy", "tukey", in the order of Loss.
@@ -99,8 +99,8 @@ struct FitOptions {
   std::uint64_t seed = 1;                              ///< seed of the starting points
   Progress progress = {};                              ///< counts the items of each phase; may be empty
   std::function<void(const std::string&)> phase = {};  ///< gets the name of each phase before it begins; may be empty
-  Loss loss = Loss::kSquares;                          ///< all losses except squares need uncertainties
-  ModelError model_error = ModelError::kNone;          ///< kBracket needs uncertainties
+  Loss loss = Loss::kSquares;                          ///< kHuber to kTukey need data with uncertainties
+  ModelError model_error = ModelError::kNone;          ///< kBracket needs data with uncertainties
   std::vector<Comparison> compare = {};                ///< each combination of the compared words gets a fit
   std::filesystem::path output = {};  ///< file for the scene with the fitted values; "-" is stdout; empty: no file
   /// File (.png, .pdf or .svg) for a picture with data, model and residuals, which Matplotlib draws. Empty: no picture.

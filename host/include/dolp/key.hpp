@@ -24,7 +24,7 @@ struct DOLP_EXPORT NumberRange {
 
 struct DOLP_EXPORT Key {
   enum class Type { kNumber, kWord, kFlag, kText, kPair, kAxis, kNames, kPairs };
-  std::string key;  ///< dotted: "surface.sigma"
+  std::string key;  ///< table and key of a scene file, with a dot: "surface.sigma"
   Type type = Type::kNumber;
   std::string unit;                      ///< "1" for numbers without a unit, empty for words and texts
   NumberRange range;                     ///< allowed range of a number, and of each value of pairs and axes

@@ -25,12 +25,12 @@ enum class Quantity : std::uint8_t {
   kStokesQ,
   kStokesU,
   kStokesV,
-  kRhoI,         ///< includes k_s and the diffuse part
-  kRhoQ,         ///< includes k_s and the polarisation of the diffuse part
-  kAlbedo,       ///< A(theta): reflectance if all facets reflect perfectly; without k_s and the diffuse part
+  kRhoI,         ///< reflectance, with the specular weight k_s and the diffuse part
+  kRhoQ,         ///< polarised part of the reflectance, with k_s and the diffuse part
+  kAlbedo,       ///< A(theta): specular reflectance if all facets reflect perfectly, without the weight k_s
   kEmissivityS,  ///< emissivity in the computed emission; over a band a mean weighted by pi B(T)
   kEmissivityP,
-  kDolpLow,  ///< dolp_low and dolp_high: bounds of the DOLP of the surface with all bounces
+  kDolpLow,  ///< kDolpLow and kDolpHigh bound the DOLP that all bounces of light would give
   kDolpHigh,
   kErrorEstimate,     ///< bound of the error of dolp, q_over_i, dolp_low and dolp_high; infinite if unknown
   kRhoErrorEstimate,  ///< bound of the errors of rho_i and rho_q, relative to rho_i; infinite if unknown

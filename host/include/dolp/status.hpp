@@ -9,7 +9,7 @@ namespace dolp {
 enum Status : std::uint32_t {
   kReflectanceOutsideZeroToOne = 1,  ///< rho_s or rho_p is outside [0, 1] by more than its error bound
   kToleranceNotMet = 2,              ///< DOLP misses the scene's tolerance
-  kOutsideModelDomain = 4,           ///< outside the model's domain; undefined quantities are NaN
+  kOutsideModelDomain = 4,           ///< the entry is outside the model's domain; undefined quantities are NaN
   kIntensityNotPositive = 8,         ///< I <= 0: such radiation does not exist
   kRhoToleranceNotMet = 16,          ///< rho misses the scene's tolerance; DOLP may still meet it
   /// Estimate: I changes by more than 5 %, because single scattering loses light or a masking function creates light.

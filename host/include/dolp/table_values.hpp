@@ -40,7 +40,7 @@ struct TableHead {
   Curve index_n;                 ///< n, k and E0 with which the table was computed; empty curves if the table has none
   Curve index_k;
   Curve irradiance;                         ///< E0 before multiplication by source.scale
-  std::string stokes_units = "W m-2 um-1";  ///< UDUNITS; "W m-2" over a band; with " sr-1" in bistatic mode
+  std::string stokes_units = "W m-2 um-1";  ///< for UDUNITS; "W m-2" over a band, with " sr-1" if bistatic
   /// Attributes in the order of the file. The file also has those that only Table::file_attributes() returns.
   std::vector<Attribute> attributes;
 

@@ -2,7 +2,8 @@
 // beside a constant are costs: how many parameter sets a fit evaluates at half the constant, at the constant and at
 // twice the constant. They are means over the test problems 900 to 919 of `dolp-bench fit --first-set 900 --entries
 // 20`. With all these values the fits find all global minima. If a constant has no numbers, half and double change no
-// result. "The scale" in this file is how much the objective rises one standard deviation from a minimum.
+// result. "The scale" is how much the objective (chi^2 or another loss) rises one standard deviation from a minimum.
+// "Growth" is how much it exceeds its minimum, divided by the scale.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +20,7 @@ inline constexpr double kAssumedUncertainty = 1e-3;
 
 /// A parameter counts as at its bound if its coordinate (0 to 1 over its range) is closer than this to 0 or 1.
 inline constexpr double kAtBound = 1e-6;
-/// Words for an undetermined direction name the parameters whose component exceeds this share of the largest one.
+/// A report names those parameters of an undetermined direction whose component exceeds this share of the largest.
 inline constexpr double kInDirection = 0.1;
 inline constexpr double kDoubtfulBelow = 0.05;  ///< a fit is doubtful if its p-value is below this
 inline constexpr double kBadBelow = 0.001;      ///< a fit is bad if its p-value is below this
@@ -72,10 +73,10 @@ inline constexpr double kFirstProbe = 0.01;   // 1411, 1421, 1415
 /// Other branches of a valley are searched at this distance beyond an end, divided by the width of the interval.
 inline constexpr double kBeyond = 0.02;  // 1425, 1421, 1410
 /// A point beyond an end of an interval lies on another branch if its growth is below this share of the growth at the
-/// end. Proved: the growth at the end is at most the share 2 kRootTolerance, or 0.01, too small.
+/// end. Proved: by kRootTolerance, the growth at the end can be too small only by the share 0.01.
 inline constexpr double kClearlyLower = 0.97;  // 1421, 1421, 1793
 
-// The costs include no contours, so there are none for the constants below.
+// The costs above were measured without contours, so the constants for contours below have none.
 
 /// A descent for a node ends when derivatives promise that the objective falls by less than this times the scale.
 inline constexpr double kNodeGain = 1e-2;
@@ -87,9 +88,9 @@ inline constexpr double kMostDeviation = 1.0 / 12.0;
 /// The neighbours of a node are computed too if the growth at the node is below this. This limit is above the higher
 /// contour level, because its contour may cross a cell whose corners all lie above the level.
 inline constexpr double kSpreadGrowth = 9.0;
-/// Largest number of grids that are tried. The step of each grid is twice that of the grid before.
+/// Largest number of grids of contours that are tried. The step of each grid is twice that of the grid before.
 inline constexpr std::size_t kMostGrids = 3;
-/// Number of points of the drawn grid for one step of the computed grid.
+/// Number of points of the drawn grid of contours for one step of the computed grid.
 inline constexpr int kPartsOfACell = 4;
 
 }  // namespace dolp::fit

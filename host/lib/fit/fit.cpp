@@ -347,7 +347,7 @@ class Fit {
     double misfit = result_.chi_square;
     if (!model_.has_uncertainties()) {
       misfit = points * std::log(std::max(result_.chi_square, std::numeric_limits<double>::min()) / points);
-      parameters += 1.0;  // the scale is a parameter too
+      parameters += 1.0;  // without uncertainties, the scale is a parameter too
     }
     result_.aic = misfit + 2.0 * parameters;
     result_.bic = misfit + std::log(points) * parameters;

@@ -19,7 +19,7 @@
 namespace dolp::fit {
 namespace {
 
-// Scattered points can differ in these keys, so one call serves all parameter sets that differ only in these keys.
+// Scattered points can differ in these keys. So the evaluator computes sets that differ only in these keys together.
 constexpr std::array<std::string_view, 5> kPointKeys = {"surface.n", "surface.k", "surface.sigma", "surface.wind_m_s",
                                                         "surface.q"};
 

@@ -145,7 +145,7 @@ class Side {
 
   Eigen::Index parameter_;
   int direction_;
-  double most_;   ///< largest distance
+  double most_;   ///< largest distance that stays in the range of the parameter
   double least_;  ///< objective of the best minimum
   const ProfileOptions* options_;
   std::vector<ProfilePoint> points_;  ///< points in the order of their distances

@@ -146,7 +146,7 @@ void add_misfit(ReportBuilder& report, const fit::Model& model, const FitResult&
                 "as many parameters as points: no interval can be given");
 }
 
-/// With a model error, adds the share of each range that the intervals leave, and names the model that leaves less.
+/// With a model error, adds how much of each parameter's range the 95 % interval covers, and a model that narrows it.
 void add_model_error(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   if (!model.has_model_error()) return;
   const auto is_empty_95 = [](const auto& parameter) { return parameter.interval_95.is_empty; };

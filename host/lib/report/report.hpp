@@ -14,7 +14,7 @@
 namespace dolp {
 
 inline constexpr double kMebibyte = 1048576.0;
-inline constexpr double kPoints = 100.0;  ///< one point of DOLP is 0.01
+inline constexpr double kPoints = 100.0;  ///< converts DOLP to points: one point is 0.01
 inline constexpr double kPercent = 100.0;
 
 /// A value with its position in the JSON: a path of keys, separated by slashes.

@@ -62,7 +62,7 @@ SceneEntries spread_entries(const SceneEntries& entries) {
 /// A few entries of a scene with a few wavelengths of the band.
 struct Sample {
   SceneValues scene;
-  SceneEntries entries;         ///< entries, each repeated at the wavelength of every weight
+  SceneEntries entries;         ///< each entry is repeated, once at the wavelength of each weight
   std::vector<double> weights;  ///< weights of the wavelengths in the integral over a band; {1} without a band
 };
 

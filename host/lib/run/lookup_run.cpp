@@ -117,9 +117,9 @@ constexpr std::size_t kLines = 3;        // number of lines along an axis; each 
 constexpr std::size_t kParts = 4;        // number of parts of an axis; one cell at each end of a part is examined
 constexpr std::size_t kStretch = 8;      // number of values around a cell on which a lookup in the cell depends
 constexpr std::size_t kLeastValues = 4;  // smallest number of values for which a lookup states an error
-// A lookup reads six values along theta, sigma and q, and four along each other axis. In dense grids the error that it
-// states is proportional to the spacing to the power kOrder. In the middle of a cell, the absolute values of its
-// weights add up to kWeights. It amplifies the errors from the other axes by this factor.
+// A lookup reads six values along theta, sigma and q, and four along each other axis. In dense grids its stated error
+// is proportional to the spacing to the power kOrderOfSix or kOrderOfFour. In the middle of a cell, the absolute values
+// of its weights add up to kWeightsOfSix or kWeightsOfFour. Errors from the other axes grow by this factor.
 constexpr double kOrderOfSix = 5.0;
 constexpr double kOrderOfFour = 3.0;
 constexpr double kWeightsOfSix = 356.0 / 256.0;

@@ -28,7 +28,7 @@ constexpr std::size_t kBetaAngles = kMostResponses;
 constexpr double kResponseC0 = 0.01;                // cosine near which abscissa() changes from linear to logarithmic
 constexpr OpticalConstants kUnusedIndex{1.5, 0.0};  // a request needs an index; moments of this one are not used
 // Ratio of the first tolerance of the quadrature to the tolerance of the table. Tuned for 64 x 16 x 16 entries at 1e-4.
-// Million evaluations at half, this and double: with smith 21.0, 22.5, 24.1; with integral 3.24, 3.00, 2.90.
+// Million evaluations at half, this and double: with smith masking 21.0, 22.5, 24.1; with integral 3.24, 3.00, 2.90.
 constexpr double kFirstShare = 0.1;
 // Ratio of the tolerance of a refinement level to that of the level before. Chosen: half and double change nothing.
 constexpr double kFinerBy = 0.03;
@@ -38,7 +38,7 @@ constexpr std::size_t kColumnsAtOnce = std::size_t{1} << 20U;  // number of colu
 /// The variable x of the Chebyshev polynomials: -1 at cos(beta) = 0, 1 at cos(beta) = 1.
 double abscissa(double cosine) { return 2.0 * std::asinh(cosine / kResponseC0) / std::asinh(1.0 / kResponseC0) - 1.0; }
 
-/// The Chebyshev polynomials T_m(x), m < kBetaAngles. Domain: x in [-1, 1].
+/// The values T_m(x) of the Chebyshev polynomials with m < kBetaAngles. Domain: x in [-1, 1].
 Eigen::VectorXd chebyshev_at(double x) {
   const double angle = std::acos(std::clamp(x, -1.0, 1.0));
   return Eigen::VectorXd::LinSpaced(kBetaAngles, 0.0, kBetaAngles - 1.0).unaryExpr([=](double m) {

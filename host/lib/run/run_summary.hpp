@@ -39,7 +39,7 @@ inline constexpr double kAlbedoMax = 1.05;
 /// The entries with an albedo below kAlbedoMin (or above kAlbedoMax), and the ranges of theta and sigma around them.
 struct EnergyRange {
   std::size_t entries = 0;
-  std::pair<double, double> theta_deg;  ///< in bistatic mode: zenith of the view
+  std::pair<double, double> theta_deg;  ///< zenith angle of the view in bistatic mode, otherwise theta
   std::pair<double, double> sigma;
 };
 

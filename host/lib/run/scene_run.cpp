@@ -21,8 +21,7 @@
 namespace dolp {
 namespace {
 
-// Largest number of moments in a part of a grid and in a part of a list of points, to limit the memory. Points need
-// more memory per moment, because they share nothing.
+// Largest number of moments in a part of a grid or of points, to limit the memory. Points share nothing and need more.
 constexpr std::size_t kMomentsAtOnce = 1U << 20U;
 constexpr std::size_t kPointsAtOnce = 1U << 17U;
 // A direction is computed again as a whole if more than one in so many of its entries misses the tolerance. Tuned.
@@ -187,7 +186,7 @@ bool is_better(const PointResult& a, const PointResult& b) {
                                       std::max(b[Quantity::kErrorEstimate], b[Quantity::kRhoErrorEstimate]);
 }
 
-/// True if `level` can improve an entry. Beams improve only by another precision, because their nodes are fixed.
+/// True if `level` can improve an entry. A new tolerance does not improve a beam, but a new precision does.
 bool would_improve(const RunContext& context, const RefinementLevel& level, const RefinementLevel& last,
                    const SceneEntry& entry) {
   return wants_moments(context.scene, entry, context.plan) ||

@@ -40,7 +40,7 @@ bool find_cuts(const PerAxis& counts, std::size_t count, std::size_t number, Cut
   return false;
 }
 
-/// The axes of a table or of a part of one, with positions in the scene's lists of names instead of the table's.
+/// The axes of a table or of a part of one, with positions in the scene's lists of labels instead of the table's.
 Axes scene_axes(TableHead table, const SceneValues& scene, const std::string& name) {
   use_scene_labels(table, scene, name);
   return table.axes;

@@ -52,7 +52,7 @@ class ShardSet {
   std::size_t checked_number(const TableReader& reader, const std::string& path) const;
 
   SceneValues scene_;
-  TableLayout layout_;  ///< has the attributes of the first shard
+  TableLayout layout_;  ///< layout of the whole table, with the attributes of the first shard
   std::size_t count_ = 0;
   std::map<std::size_t, std::string> paths_;  ///< paths of the shards by their numbers
 };

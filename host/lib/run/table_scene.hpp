@@ -1,4 +1,4 @@
-// The attributes of a table that hold its scene and its optical data, and how to get the scene back from them.
+// The attributes of a table that store its scene and the scene's optical data, and functions that restore the scene.
 #pragma once
 
 #include <optional>
@@ -35,13 +35,13 @@ enum class NamedData {
 /// table has no scene, if its scene was changed later, or if the reader of scenes refuses the scene.
 SceneValues table_scene(const TableHead& table, const std::string& name, NamedData named_data = NamedData::kOfTable);
 
-/// Converts a value of the table on an axis with names to the position of the same name in the scene. Errors:
-/// InputError that begins with `name` if the scene lacks the name.
+/// Converts a value on an axis with labels (materials, bands) to the position of the same label in the scene. Errors:
+/// InputError that begins with `name` if the scene lacks the label.
 double scene_position(const TableHead& table, Axis axis, double value, const SceneValues& scene,
                       const std::string& name);
 
-/// Converts the values of the table on axes with names to positions in the scene's lists. Parts of a table may number
-/// the names differently. Errors: InputError that begins with `name` if the scene lacks a name.
+/// Converts the values of the table on axes with labels to positions in the scene's lists of labels. Parts of a table
+/// may number their labels differently. Errors: InputError that begins with `name` if the scene lacks a label.
 void use_scene_labels(TableHead& table, const SceneValues& scene, const std::string& name);
 
 /// The n and k of materials as CSV, with the columns number (from 1), quantity (name, n, k or formula), wavelength_um

@@ -43,7 +43,7 @@ struct PointIntegral {
   std::vector<double> breaks;  ///< wavelengths in um at which the integrand is not smooth
   std::vector<BandPiece> intervals;
   std::size_t first_new = 0;  ///< position of the first interval that is not integrated yet
-  PointResult last;           ///< result at one of the wavelengths
+  PointResult last;           ///< result of the point at one of the wavelengths
 };
 
 std::vector<double> band_breaks_um(const SceneModel& scene) {

@@ -22,7 +22,7 @@ struct StoredCase {
   OpticalConstants index;
   Moments moments;     ///< reference moments, times cos(theta), with bounds of their errors
   std::string name;    ///< name of the case, shared by all distributions and maskings
-  std::string origin;  ///< where the values come from
+  std::string origin;  ///< source of the reference moments
 };
 
 /// Cases that are hard to compute, for all maskings and both distributions: ends of every range, split points of the
@@ -57,7 +57,7 @@ struct CaseOutcome {
   /// What is wrong; empty if errors are below the stated bounds, and tolerances are met or status bits 2 or 16 are set.
   std::string complaint;
   double worst_ratio() const;
-  bool misses_tolerance() const { return (status & kAnyToleranceNotMet) != 0; }  ///< according to its status
+  bool misses_tolerance() const { return (status & kAnyToleranceNotMet) != 0; }  ///< according to `status`
 };
 
 /// A scene for stored cases: the surface only emits, at 300 K and 10.6 um. So DOLP = |rho_Q| / (1 - rho_I).

@@ -126,7 +126,7 @@ dolp::Value value_of(const std::string& key, const py::handle& value) {
                          range.at("count").cast<std::size_t>(), word == "log"};
 }
 
-using Values = std::vector<std::pair<py::str, py::object>>;  // keys of a scene with their Python values
+using Values = std::vector<std::pair<py::str, py::object>>;  // keys of a scene, each with its value as a Python object
 
 std::vector<dolp::Setting> settings_of(const Values& values) {
   std::vector<dolp::Setting> settings;

@@ -22,12 +22,12 @@ using AxisArray = EnumArray<Axis, Value, kAxisCount>;
 inline constexpr std::array<Axis, kAxisCount> kAllAxes = enumerators<Axis, kAxisCount>();
 
 struct AxisDescription {
-  const char* name;    ///< name of the coordinate in table files and Datasets
+  const char* name;    ///< name of the coordinate in table files and in xarray Datasets
   const char* column;  ///< name in points, in .csv and .npy files, as a key of [grid], and as a Python keyword
   const char* units;
   const char* long_name;
   NumberRange range;
-  bool is_required;         ///< every table has the axis; otherwise a table can lack it and use one value of the scene
+  bool is_required;         ///< true: every table has the axis; false: a table may lack it and hold for one value
   bool has_labels = false;  ///< the values are positions (from 0) in a list of labels: names of materials or bands
 };
 

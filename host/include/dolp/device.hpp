@@ -24,7 +24,7 @@ struct Device {
   std::uint32_t max_workgroups = 0;            ///< maxComputeWorkGroupCount[0]
   std::uint32_t subgroup_size = 0;             ///< 0 when unknown (Vulkan 1.0)
   std::uint32_t local_size = 64;               ///< invocations in a workgroup of dolp's kernels
-  bool timestamps = false;                     ///< the compute queue can write timestamps
+  bool timestamps = false;                     ///< true if the compute queue can write timestamps
 };
 
 /// "discrete GPU", "integrated GPU", "virtual GPU", "CPU" or "other".

@@ -60,7 +60,7 @@ DOLP_EXPORT std::string citation();
 
 /// What a call computed, and the problems that it found.
 struct Report {
-  std::string text;              ///< lines for people
+  std::string text;              ///< report as readable lines
   std::string json;              ///< all values as JSON, as the option --json of the program prints them
   bool is_good = true;           ///< false if the result of an entry misses its tolerance or a check fails
   std::filesystem::path output;  ///< the file that the call wrote; empty if it wrote none
@@ -141,7 +141,7 @@ struct Results : ResultColumns {
   std::string stokes_units;  ///< unit of the Stokes parameters for UDUNITS, such as "W m-2 um-1"
   /// The global attributes that a table file would have: device, precision, effects, rule, ...
   std::vector<Attribute> attributes;
-  double integrand_evaluations = 0.0;  ///< evaluations of the integrand for these results
+  double integrand_evaluations = 0.0;  ///< number of evaluations of the integrand for these results
 };
 
 /// Points and their results as CSV, in the format of write_points. Errors: InputError for a column of wrong length.
@@ -181,14 +181,14 @@ class DOLP_EXPORT Table {
 
 /// The result of a fit. If the call compared models, it is the result of the best model.
 struct Fit : FitNumbers {
-  Report report;             ///< parameters, intervals, correlation, minima, residuals
+  Report report;             ///< report on parameters, intervals, correlations, minima and residuals
   bool has_minimum = false;  ///< true if any descent of the fit converged to a minimum
   Scene scene;               ///< scene with the best compared words and the fitted values; unchanged without a minimum
 };
 
-/// Computes results. It sets up the device and its kernels at first need, and keeps them until it is destroyed. It
-/// never switches from the device to the CPU by itself. Errors of all calls: InputError; DeviceError if no device is
-/// usable, or in a child process after fork(), because a Vulkan device does not survive a fork.
+/// An Evaluator computes results. It sets up the device and kernels at first need, and keeps them until its
+/// destruction. It never switches from the device to the CPU by itself. Errors of all calls: InputError; DeviceError if
+/// no device is usable, or in a child process after fork(), because a Vulkan device does not survive a fork.
 class DOLP_EXPORT Evaluator {
  public:
   explicit Evaluator(EvaluatorOptions options = {});

@@ -37,7 +37,7 @@ struct RunOptions {
 
 /// One of `count` parts of a table, of about equal size. Several processes can compute a part each. Default: no parts.
 struct Shard {
-  std::size_t number = 0;  ///< from 1 to count
+  std::size_t number = 0;  ///< number of this part, from 1 to count
   std::size_t count = 0;
   bool is_none() const { return number == 0 && count == 0; }
 };

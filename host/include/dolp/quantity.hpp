@@ -55,7 +55,7 @@ struct QuantityDescription {
   const char* ancillary;  ///< names of the variables with the quantity's error bound and status; "" if none
   QuantityNeeds needs;
 
-  /// True if results at points lack the column when the scene does not meet `needs`.
+  /// True if results at points lack this column when the scene does not meet `needs`.
   constexpr bool is_optional() const { return needs == QuantityNeeds::kEmission || needs == QuantityNeeds::kBracket; }
 };
 

@@ -1,9 +1,9 @@
-// Constants that control the cost or the accuracy of fits. All but the one marked "Proved" are chosen. Three numbers
-// beside a constant are costs: how many parameter sets a fit evaluates at half the constant, at the constant and at
-// twice the constant. They are means over the test problems 900 to 919 of `dolp-bench fit --first-set 900 --entries
-// 20`. With all these values the fits find all global minima. If a constant has no numbers, half and double change no
-// result. "The scale" is how much the objective (chi^2 or another loss) rises one standard deviation from a minimum.
-// "Growth" is how much it exceeds its minimum, divided by the scale.
+// Constants that control the cost or the accuracy of fits. All except one, which is marked "Proved", are chosen by
+// tests. Three numbers beside a constant are costs: how many parameter sets a fit evaluates at half the constant, at
+// the constant and at twice the constant. They are means over the test problems 900 to 919 of `dolp-bench fit
+// --first-set 900 --entries 20`. With all these values the fits find all global minima. If a constant has no numbers,
+// half and double change no result. "The scale" is how much the objective (chi^2 or another loss) rises one standard
+// deviation from a minimum. "Growth" is how much the objective exceeds its minimum, divided by the scale.
 #pragma once
 
 #include <cstddef>

@@ -167,7 +167,7 @@ class Fit {
         profile_(model, fine_tolerance(model), Differences::kForward, evaluator, poll_) {}
 
   std::optional<FitResult> run(double most_aic) {
-    constexpr int kMostRestarts = 4;  // limits restarts from a lower minimum that a profile found
+    constexpr int kMostRestarts = 4;  // largest number of restarts from lower minima that profiles find
     SearchOptions search{options_.starts, options_.seed, options_.loss, model_.has_uncertainties(), guess_scale()};
     search.count = [this](std::size_t done, std::size_t total) { count(done, total); };
     if (options_.phase) options_.phase("descents of the search");

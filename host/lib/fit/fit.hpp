@@ -25,7 +25,7 @@ struct FitResult : FitNumbers {
   std::size_t determined = 0;          ///< rank of the Jacobian: number of parameters that the data determine
   double numerical_error = 0.0;        ///< largest bound of the model's numerical errors, divided by the uncertainty
   double tolerance = 0.0;              ///< tolerance of the model's values
-  std::uint32_t status = 0;            ///< all status bits that some point has
+  std::uint32_t status = 0;            ///< status bits of all points, combined by OR
   Eigen::VectorXd residuals;           ///< (measured - model) / uncertainty; without uncertainties measured - model
   Eigen::VectorXd predicted;           ///< the model's values
   std::size_t evaluations = 0;         ///< parameter sets for which the model was computed

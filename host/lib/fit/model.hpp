@@ -23,7 +23,7 @@ struct Prediction {
   /// its length. With the bracket as model error: the value in the bracket nearest to the measured one, and 0.
   Eigen::MatrixX2d components;
   Eigen::VectorXd error;     ///< bound of the numerical error of each predicted observable
-  std::uint32_t status = 0;  ///< all status bits that some point has
+  std::uint32_t status = 0;  ///< status bits of all points, combined by OR
 };
 
 /// The model at the measurements of several data sets, as a function of the parameters (the varied keys).

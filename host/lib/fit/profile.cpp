@@ -86,7 +86,7 @@ class Side {
     return std::ranges::find_if(points_, [&](const ProfilePoint& point) { return point.root >= wanted(); });
   }
 
-  /// Sets ends_ for each rise that is met or cannot be met.
+  /// Sets ends_ for each rise that the growth meets or cannot meet.
   void settle() {
     for (; !is_done(); ++rise_, tries_ = 0) {
       const PointPosition above = first_above();

@@ -43,8 +43,8 @@ struct ProfileOptions {
 };
 
 struct Profiles {
-  /// For each parameter and each of ProfileOptions::rises: the stretches in which the objective, minimised over all
-  /// other parameters, has grown by less than the rise. Stretches are disjoint and in ascending order.
+  /// For each parameter and each of ProfileOptions::rises: the stretches of the parameter in which the growth of the
+  /// objective, minimised over all other parameters, is below the rise. They are disjoint and in ascending order.
   std::vector<std::array<std::vector<Stretch>, 2>> stretches;
   std::vector<Minimum> points = {};  ///< computed points of the profiles
   /// A point that is lower than the best minimum. It shows that a minimum is missing and the profiles are incomplete.

@@ -27,9 +27,9 @@ struct PlannedRun {
   RunPrediction run;
   double rule_digits = 0.0;
   int most_nodes = 0;                  ///< largest number of nodes on a slope interval or an arc; 0 without moments
-  std::vector<std::string> pipelines;  ///< Vulkan pipelines of the first level; empty if the evaluator computes nothing
-  vulkan::DispatchCount dispatches;    ///< dispatches of the first level
-  std::vector<AxisForecast> lookup;    ///< lookup forecasts for the axes with several values
+  std::vector<std::string> pipelines;  ///< Vulkan pipelines of the first refinement level; may be empty
+  vulkan::DispatchCount dispatches;    ///< dispatches of the first refinement level
+  std::vector<AxisForecast> lookup;    ///< forecasts of lookup_forecast()
   std::string device;                  ///< name of the device; empty if there is none
   std::string why_no_device;
 };

@@ -16,8 +16,8 @@ namespace dolp {
 inline constexpr const char* kModelInaccurateText =
     "single scattering, or a masking that creates light, changes I by an estimated more than 5 %";
 
-/// The report of a run. `gap`: how wrong single scattering may be; empty if the question does not arise. `shape`: the
-/// shape of the grid, or for example "200 points". `path`: the file that was written.
+/// The report of a run. `gap`: result of scattering_gap(). `shape`: the shape of the grid, or for example "200 points".
+/// `path`: the file that was written.
 ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, const std::optional<ScatteringGap>& gap,
                          const std::string& shape, const std::string& path);
 

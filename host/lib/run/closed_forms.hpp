@@ -13,7 +13,8 @@ Moments closed_form(const Surface& surface, const Direction& direction, const Sl
                     const FacetOptics& index, const SkyBasis* sky);
 
 /// Moments at exactly 90 degrees where they diverge: with masking none or `integral`, and the cauchy distribution with
-/// q <= 3/2. All moments lack the same divergent factor, so quotients of moments are limits theta -> 90 degrees.
+/// q <= 3/2. The divergent factor, which is common to all, is left out. So quotients of moments are limits theta -> 90
+/// degrees.
 /// Equation: let c = cos(theta), and v / c the slope of a facet with azimuth phi, x = cos(phi). At grazing incidence a
 /// reflected ray leaves the surface if v < 2 x, and the masking G tends to a constant. So rho c grows as c^(2q-3) times
 /// the integral over phi of x^(4-2q) R for vertical facets, with cos(beta) = x. R is (R_s + R_p) / 2 for r_i and (R_p -

@@ -25,7 +25,7 @@ constexpr double kTolerance = 1e-3;
 constexpr std::size_t kBandWavelengths = 8;
 constexpr std::size_t kDrawnPoints = 24;  // number of points that an estimate computes if the entries are points
 
-/// Largest number of values of an axis that an estimate computes. Effects are largest at one end of sigma and q.
+/// Largest number of values of an axis in an estimate. Two are enough for sigma and q: effects are largest at an end.
 std::size_t most_values(Axis axis) {
   if (axis == Axis::kMaterial) return 64;
   if (axis == Axis::kTheta || axis == Axis::kBand) return 8;
@@ -131,7 +131,7 @@ double polarisation_change(const PointResult& a, const PointResult& b) {
                     a[kStokesU] / a[kStokesI] - b[kStokesU] / b[kStokesI]);
 }
 
-/// The largest change(a, b) among entries that promise a DOLP in both `a` and `b`. Empty if there is no such entry.
+/// The largest change(a, b) among entries for which promises_dolp() holds in `a` and `b`. Empty if there is none.
 template <class Change>
 std::optional<double> largest_change(const std::vector<PointResult>& a, const std::vector<PointResult>& b,
                                      const Change& change) {

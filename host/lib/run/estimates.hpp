@@ -27,8 +27,8 @@ struct Looked {
 };
 
 /// Sets Effect::influence of each kept effect: the largest difference of (Q/I, U/I) between the scene with all effects
-/// and the scene without this effect. It stays empty if no entry promises its DOLP in both. Accuracy: within a factor
-/// of 2 of the largest difference at all entries (tests Estimates_*).
+/// and the scene without this effect. It stays empty if promises_dolp() holds for no entry in both. Accuracy: within a
+/// factor of 2 of the largest difference at all entries (tests Estimates_*).
 Looked add_influences(std::vector<Effect>& rows, const SceneValues& scene, const SceneEntries& entries);
 
 /// An estimate of how wrong DOLP may be because the model follows only one reflection.
@@ -38,13 +38,14 @@ struct ScatteringGap {
 };
 
 /// The largest difference of DOLP between two emission models: 1 - rho, where all light that meets a second facet
-/// counts as emitted, and direct emission, where no such light counts. Empty in bistatic mode; if the scene follows all
-/// bounces; without emission or with the emission of a smooth surface; if the masking has no direct emission; if
-/// nothing depends on the moments; or if no entry promises its DOLP. Accuracy: as for add_influences().
+/// counts as emitted, and direct emission, where no such light counts. The result is empty in bistatic mode; if the
+/// scene follows all bounces; without emission or with the emission of a smooth surface; if the masking has no direct
+/// emission; if nothing depends on the moments; or if promises_dolp() holds for no entry. Accuracy: as for
+/// add_influences().
 std::optional<ScatteringGap> scattering_gap(const SceneValues& scene, const SceneEntries& entries,
                                             const EffectPlan& plan);
 
-/// The largest PointResult::model_change of a few computed entries that promise their DOLP.
+/// The largest PointResult::model_change of a few computed entries, of those for which promises_dolp() holds.
 double estimated_model_change(const SceneValues& scene, const SceneEntries& entries);
 
 }  // namespace dolp

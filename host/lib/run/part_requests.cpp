@@ -208,7 +208,7 @@ void PartRequests::request_grid(const Selection& selection) {
   if (!is_whole) mark_wanted(selection);
 }
 
-/// Adds indices to the request. Consecutive index sets that are equal share theirs.
+/// Adds the indices of the used sets to the request. Equal consecutive sets share their indices.
 void PartRequests::request_indices(const SceneEntries& grid, const std::vector<char>& is_used) {
   index_set_offset_.assign(is_used.size(), 0);
   std::vector<FacetOptics> last;

@@ -32,7 +32,7 @@ SceneEntries entries_of_drawn_directions(const SceneEntries& grid, bool has_resp
   return SceneEntries::of_grid(axes, grid.index());
 }
 
-/// The work of all requests for moments (or beams). The requests of the first level come first.
+/// The work of all requests for moments (or beams). Requests of the first refinement level come first.
 struct Count {
   std::size_t first_requests = 0;  ///< number of requests of the first level that are still to come
   std::size_t first = 0;           ///< number of moments or beams in the first level
@@ -85,7 +85,7 @@ double scale_of(std::size_t all, const Count& counted) {
   return counted.first == 0 ? 0.0 : static_cast<double>(all) / static_cast<double>(counted.first);
 }
 
-/// The requests of the first level for a part of a run, with the plan of the moments.
+/// The requests of the first refinement level for a part of a run, with the plan of the moments.
 struct FirstLevel {
   FirstLevel(const SceneValues& scene, const SceneEntries& part, const EffectPlan& plan, const RefinementLevel& level)
       : indices(spectral_indices(scene, part)),

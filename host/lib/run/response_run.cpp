@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::size_t kBetaAngles = kMostResponses;
 constexpr double kResponseC0 = 0.01;                // cosine near which abscissa() changes from linear to logarithmic
-constexpr OpticalConstants kUnusedIndex{1.5, 0.0};  // a request needs an index; moments of this one are not used
+constexpr OpticalConstants kUnusedIndex{1.5, 0.0};  // a request needs an index; its moments are not used
 // Ratio of the first tolerance of the quadrature to the tolerance of the table. Tuned for 64 x 16 x 16 entries at 1e-4.
 // Million evaluations at half, this and double: with smith masking 21.0, 22.5, 24.1; with integral 3.24, 3.00, 2.90.
 constexpr double kFirstShare = 0.1;

@@ -46,12 +46,12 @@ struct EnergyRange {
 struct RunSummary {
   std::size_t entries = 0;
   std::array<std::size_t, kStatusBits.size()> status{};
-  std::optional<double> worst_error;      ///< largest error bound of DOLP among entries that promise a DOLP
+  std::optional<double> worst_error;      ///< largest error bound of DOLP among entries for which promises_dolp() holds
   std::optional<double> worst_rho_error;  ///< largest error bound of rho among entries in the model's domain
   std::size_t albedos = 0;
   std::pair<double, double> albedo;
   EnergyRange loses, gains;
-  double model_change = 0.0;  ///< largest PointResult::model_change of the entries that promise a DOLP
+  double model_change = 0.0;  ///< largest PointResult::model_change of entries for which promises_dolp() holds
   SelfCheck check;
   double radiometry_s = 0.0;
   Work work;

@@ -16,7 +16,7 @@ namespace dolp {
 namespace {
 
 constexpr double kLikelyNanometresOfFilm = 100.0;
-constexpr double kHotSky = 2.0;  // a sky gets a remark if it is hotter than this times the surface
+constexpr double kHotSky = 2.0;  // a sky hotter than this times the surface temperature gets a remark
 // Two neighbouring rows of a file leave a gap if the ratio of their wavelengths exceeds a limit: ten times the median
 // spacing of the file on a logarithmic scale, but at least kNoGapRatio and at most kGapRatio.
 constexpr double kGapRatio = 2.0;

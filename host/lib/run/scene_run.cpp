@@ -282,7 +282,7 @@ void refine(const RunContext& context, const SceneEntries& part, FirstResults& f
   }
 }
 
-/// Computes some entries of a grid again, by another kind of quadrature than in the first level.
+/// Computes some entries of a grid again, by another kind of quadrature than in the first refinement level.
 std::vector<PointResult> recompute_for_check(const RunContext& context, const SceneEntries& part,
                                              const RefinementLevel& first, std::span<const std::size_t> positions) {
   if (positions.empty()) return {};

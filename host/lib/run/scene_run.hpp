@@ -1,4 +1,4 @@
-// Runs a scene, for every front end: from the entries of a scene to moments and beams, results, and a sink.
+// What every front end runs: from the entries of a scene to moments and beams, then to results, which a sink receives.
 #pragma once
 
 #include <chrono>

@@ -24,7 +24,7 @@ TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const
 /// Sets Curve::used of each curve of `head` to the curve's values at the wavelengths of the table.
 void fill_used(TableHead& head, const SceneValues& scene);
 
-/// Attribute with the names and values of all on which a table depends, except the device. difference() compares it.
+/// Attribute that lists all on which a table's values depend, except the device. difference() compares two such lists.
 inline constexpr const char* kIdentity = "identity";
 std::string identity_of(const SceneValues& scene, const std::string& evaluator, bool keep_all);
 

@@ -106,7 +106,7 @@ class TableSink final : public Sink {
   double waited_s_ = 0.0;
 };
 
-/// Runs `body`. If it throws, adds to the message how much of the file is already on disk.
+/// Runs `body`. If it throws, adds to the error message how much of the file is already on disk.
 template <class Body>
 void with_rest(const TableOutput& output, const Body& body) {
   const auto more = [&] {

@@ -5,11 +5,11 @@
 #define DOLP_BINDING_THETAS 0         // ThetaNode[]
 #define DOLP_BINDING_SHAPES 1         // ShapeNode[]
 #define DOLP_BINDING_INDICES 2        // IndexNode[]
-#define DOLP_BINDING_TASKS 3          // uvec4[]: positions of direction, first shape and index; task word
+#define DOLP_BINDING_TASKS 3          // uvec4[]: positions of ThetaNode, first ShapeNode and IndexNode; task word
 #define DOLP_BINDING_MASKING_TABLE 4  // real4[]: written by masking_table.comp, one table per ShapeNode
 #define DOLP_BINDING_MOMENTS 5        // MomentsNode[]: the output, DOLP_WIDTH nodes per task
 #define DOLP_BINDING_RULE 6           // RuleNode: one for all tasks
-#define DOLP_BINDING_RULE_NODES 7     // real2[]: nodes of the rules, see physics/quadrature.glsl
+#define DOLP_BINDING_RULE_NODES 7     // real2[]: nodes of the Gauss rules, see physics/quadrature.glsl
 #define DOLP_BINDING_MASKING_NODES 8  // the masking tables as texels, from which moments.comp reads
 // slopes.comp has other buffers at the bindings of the tasks and the moments.
 #define DOLP_BINDING_SLOPES DOLP_BINDING_TASKS      // SlopeNode[]: the input, one node per invocation
@@ -22,10 +22,10 @@
 #define DOLP_SPEC_LOCAL_SIZE 0
 #define DOLP_SPEC_DISTRIBUTION 1  // DOLP_CAUCHY | DOLP_GAUSSIAN
 #define DOLP_SPEC_MASKING 2       // DOLP_MASKING_*
-#define DOLP_SPEC_TOTAL_REFLECTION 3  // true if IndexNode::critical_cos of any index is above 0
+#define DOLP_SPEC_TOTAL_REFLECTION 3  // true if any index has total reflection (IndexNode::critical_cos > 0)
 #define DOLP_SPEC_MULTIPLE 4          // true if rays are followed through all bounces in a groove
-#define DOLP_SPEC_DIRECT 5            // true if the request needs the direct emission
-#define DOLP_SPEC_COLUMN_COUNT 6      // number of columns, see physics/columns.glsl
+#define DOLP_SPEC_DIRECT 5            // true if the request needs the emission straight to the viewer
+#define DOLP_SPEC_COLUMN_COUNT 6      // number of columns, which are sums beside the moments, see physics/columns.glsl
 #define DOLP_SPEC_COLUMNS 7           // kind of the columns, DOLP_COLUMNS_*
 #define DOLP_SPEC_CURVES 8            // true if reflectances come from tables, for films and measured reflectances
 
@@ -35,76 +35,77 @@
 #define DOLP_MASKING_V_CAVITY 1u
 #define DOLP_MASKING_INTEGRAL 2u
 #define DOLP_MASKING_SMITH 3u
-#define DOLP_COLUMNS_SKY 0u           // moments with functions of a sky, see physics/columns.glsl
-#define DOLP_COLUMNS_RESPONSE 1u      // responses of the reflected light
-#define DOLP_COLUMNS_SKY_RESPONSE 2u  // responses of the reflected light, weighted with a function of a sky
+#define DOLP_COLUMNS_SKY 0u           // moments times functions of a sky, see physics/columns.glsl
+#define DOLP_COLUMNS_RESPONSE 1u      // responses: moments of reflected light, with polynomials as reflectances
+#define DOLP_COLUMNS_SKY_RESPONSE 2u  // responses times a function of a sky
 #define DOLP_COLUMNS_DIRECT 3u        // responses of the direct emission
 
 // ---- Push constants of all entry points -----------------------------------------------------------------------------
 // count: number of tasks (moments.comp), slopes (slopes.comp), entries (mueller.comp) or shapes (masking_table.comp).
-// first: position of the first of them. Output i of slopes.comp and mueller.comp belongs to input first + i. In
-// moments.comp the outputs from i * DOLP_WIDTH to (i + 1) * DOLP_WIDTH - 1 belong to task first + i.
+// first: position of the first task, slope, entry or shape. Output i of slopes.comp and mueller.comp belongs to input
+// first + i. In moments.comp the outputs from i * DOLP_WIDTH to (i + 1) * DOLP_WIDTH - 1 belong to task first + i.
 // largest_order: largest order of the rules in DOLP_BINDING_RULE_NODES.
-// sky: log2 of the cells per function of the sky (from bit 0), number of corners (from bit DOLP_SKY_CORNERS_SHIFT), and
-// position of the first cell among the rule nodes (from bit DOLP_SKY_START_SHIFT). Corners' cosines follow the cells.
+// sky: log2 of the number of cells in the table of each function of the sky (from bit 0), number of corners of the sky
+// (from bit DOLP_SKY_CORNERS_SHIFT), position of the first cell among the rule nodes (from bit DOLP_SKY_START_SHIFT).
+// The cosines of the corners follow the cells. A corner is a zenith at which the radiance has a kink.
 #define DOLP_PUSH_CONSTANTS uint first; uint count; uint largest_order; uint sky;
 #define DOLP_SKY_CORNERS_SHIFT 5
 #define DOLP_SKY_START_SHIFT 10
 
 // ---- Task word: the bits that describe the task of an invocation of moments.comp ------------------------------------
-#define DOLP_TASK_MEMBERS_BITS 5u    // from bit 0: number of entries in the row
+#define DOLP_TASK_MEMBERS_BITS 5u    // from bit 0: number of entries that the invocation computes
 #define DOLP_TASK_PIECE_SHIFT 5u     // from this bit: number of the piece of the slope axis
 #define DOLP_TASK_PIECE_BITS 6u
 #define DOLP_TASK_ROOT_AT_START 11u   // bit: the integrand has a square root at the start of the piece
 #define DOLP_TASK_ROOT_AT_END 12u    // bit: square root at the end of the piece
 #define DOLP_TASK_ROOT_BEFORE_START 13u // bit: square root at the start of the preceding piece
 #define DOLP_TASK_ROOT_AFTER_END 14u // bit: square root at the end of the next piece
-#define DOLP_TASK_SPLIT_LINE 15u     // bit: pieces are split at the line b = pi/2 of `integral` or at smith's cusp
-#define DOLP_TASK_AZIMUTHS_SHIFT 16u // from this bit: largest number of azimuths on an arc, a bound of the loops
+#define DOLP_TASK_SPLIT_LINE 15u     // bit: pieces end at smith's cusp, or where the limit b of `integral` is pi/2
+#define DOLP_TASK_AZIMUTHS_SHIFT 16u // from this bit: largest number of azimuth nodes on an arc; bounds the loops
 
 // ---- Sizes ---------------------------------------------------------------------------------------------------------
 #ifndef DOLP_WIDTH
 #define DOLP_WIDTH 1             // number of entries that one invocation computes, see Row of physics/row.glsl
 #endif
-#define DOLP_ROW_WIDTH 4         // the larger of the two values of DOLP_WIDTH
+#define DOLP_ROW_WIDTH 4         // DOLP_WIDTH of the kernels that compute several entries; the others have 1
 #ifndef DOLP_MOST_COLUMNS
 #define DOLP_MOST_COLUMNS 0      // largest number of columns that a kernel can compute; 0 in kernels without columns
 #endif
-#define DOLP_COLUMNS 24          // largest number of columns of any kind
+#define DOLP_COLUMNS 24          // largest number of columns that any kernel computes
 #define DOLP_SKY_FUNCTIONS 8     // largest number of functions of a sky; DOLP_MOST_COLUMNS in kernels for skies
 #define DOLP_MOST_SKY_CORNERS 24 // largest number of corners of a sky that split the azimuths
-#define DOLP_COLUMN_PARTS 4      // numbers of a column: r_i, r_q by the coarser rule, then by the finer one
+#define DOLP_COLUMN_PARTS 4      // numbers per column: r_i and r_q by the coarser of two rules, then by the finer one
 #define DOLP_MAX_PIECES 63       // largest number of pieces of the slope axis for one direction
 #define DOLP_MAX_ARCS 13        // largest number of azimuth arcs at one slope, not counting those of total reflection
 // V-grooves, see physics/groove.glsl
 #define DOLP_STEEPEST_SPLIT 20.0  // for slopes below this, azimuths are split where the number of bounces changes
 #define DOLP_MOST_SPLITS 8       // largest RuleNode::split_bounces
-#define DOLP_MOST_BOUNCES 32      // if a ray has more bounces, groups of 2, 4, 8 ... bounces in the middle count as one
-#define DOLP_GROUPS_PER_DISTANCE 6 // a group is preceded and followed by at least this many times its bounces
-#define DOLP_MOST_DOUBLINGS 12
+#define DOLP_MOST_BOUNCES 32      // longer paths: groups of 2, 4, 8 ... bounces in the middle of a path count as one
+#define DOLP_GROUPS_PER_DISTANCE 6 // before and after a group of n bounces lie at least n times this many bounces
+#define DOLP_MOST_DOUBLINGS 12    // a group has at most 2^12 bounces
 #define DOLP_LAST_BOUNCES (DOLP_MOST_BOUNCES << DOLP_MOST_DOUBLINGS)  // a ray with more bounces is absorbed
 #define DOLP_CURVE_NODES 6       // rule nodes per cell of a table of reflectances: two per cubic, for three quantities
 #define DOLP_MAX_ORDER 128       // largest Gauss order of the rule nodes
-#define DOLP_MASKING_OCTAVES 29  // octaves of v = 1 + tau/table_scale in a masking table
+#define DOLP_MASKING_OCTAVES 29  // a masking table covers this many octaves of v = 1 + (slope tau) / table_scale
 #define DOLP_MASKING_CELL_BITS_FLOAT 3   // a masking table has 2^bits cells per octave
 #define DOLP_MASKING_CELL_BITS_DOUBLE 6
 #define DOLP_MASKING_NODES(CELL_BITS) ((DOLP_MASKING_OCTAVES << (CELL_BITS)) + 1)
 
 // ---- Structures ----------------------------------------------------------------------------------------------------
 
-// The rules; physics/orders.glsl has the formulas for the orders.
+// Constants for the orders (numbers of nodes) of the Gauss rules; physics/orders.glsl has the formulas.
 struct RuleNode {
-  real digits;            // decimal digits required of the sums
+  real digits;            // decimal digits required of the moments
   real t_nodes;           // slope axis: constant part of the number of nodes of a piece
   real t_digits;          // slope axis: digits added to the required ones because of the strength of singularities
-  real t_fall;            // slope axis: nodes per e-fold by which the density falls over a piece
+  real t_fall;            // slope axis: nodes for each factor e by which the density falls over a piece
   real phi_nodes;         // azimuth: nodes per radian of an arc, in addition to the nodes for digits
   real phi_digits;        // azimuth: digits added to the required ones because of the strength of singularities
-  real cluster_stretch;   // smith: nodes per digit above which an arc clusters its nodes at the cusp
+  real cluster_stretch;   // smith: an arc that needs more nodes per digit clusters its nodes at the cusp
   real split_bounces;     // all bounces: azimuths are split where the number of bounces changes, up to this number
   real dimmest;           // all bounces: a ray is followed until less than this share of its light is left
   real cluster_below_q;   // `integral`: for q below this, arcs cluster their nodes where the limit b is pi/2
-  real response_scale;    // for responses: 1 / c0, see physics/columns.glsl
+  real response_scale;    // for responses: 1 / c0 of chebyshev_at() in physics/columns.glsl
   real response_norm;     // for responses: 2 / asinh(1 / c0)
 };
 
@@ -113,29 +114,29 @@ struct RuleNode {
 struct ThetaNode {
   real c;                         // cos(theta)
   real s;                         // sin(theta)
-  // Ascending slopes; elements after the last end repeat it. The last end may exceed any cut.
+  // The ends of the pieces, as ascending slopes. Elements after the last end repeat it. It may exceed ShapeNode::cut.
   real end[DOLP_MAX_PIECES + 1];
 };
 
-// One slope sample (host/compute/evaluate/kernel/slope_samples.hpp).
+// A slope at which slopes.comp sums over the azimuths (host/compute/evaluate/kernel/slope_samples.hpp).
 struct SlopeNode {
   real t;
   real digits;         // digits that the sum over the azimuths needs
   real theta;          // position of the direction among the ThetaNodes
   real index;          // position of the index among the IndexNodes
-  real most_azimuths;  // largest number of azimuths on an arc
+  real most_azimuths;  // largest number of azimuth nodes on an arc
   real is_coarse;      // 1 if the slope belongs to the coarser rule, else 0
 };
 
 struct ShapeNode {
   real m;              // sqrt(2) sigma
   real q_minus_1;      // q - 1, stored because a float q does not resolve it near 1; unused by the Gaussian
-  real two_q_minus_3;  // 2q - 3, stored because a float q does not resolve it near 3/2, where smith masking ends
+  real two_q_minus_3;  // 2q - 3, stored because a float q does not resolve it near q = 3/2, the limit of smith
   real marginal_norm;  // p(0), with the density p of the in-plane slopes
-  real scale;          // scale of the map t = scale sinh(X)
-  real cut;            // slopes above it are left out
-  real table_scale;    // scale of the masking table: v = 1 + tau/table_scale
-  real cusp_digits;    // smith: log10 of the cusp's error, see cusp_digits() of plan/rule.hpp
+  real scale;          // the slope t is mapped to X with t = scale sinh(X)
+  real cut;            // slopes above this one are left out
+  real table_scale;    // the masking table is a table over v = 1 + tau/table_scale, with the in-plane slope tau
+  real cusp_digits;    // smith: log10 of the error that the cusp causes, see cusp_digits() of plan/rule.hpp
 };
 
 struct IndexNode {
@@ -143,7 +144,7 @@ struct IndexNode {
   real n2m1_im;       // Im(N^2 - 1)
   real pole_re;       // pole of R_p as a function of cos(beta), -1 / sqrt(N^2 + 1)
   real pole_im;
-  real branch_re;     // branch point of w as a function of cos(beta), i sqrt(N^2 - 1), with positive parts
+  real branch_re;     // branch point of w = sqrt(N^2 - sin^2(beta)) over cos(beta): i sqrt(N^2 - 1), parts >= 0
   real branch_im;
   real critical_cos;  // cos(beta) at which total reflection begins, sqrt(1 - Re N^2), if k is 0 or small; else 0
   real curve_start;   // position of the table of reflectances among the rule nodes
@@ -163,7 +164,8 @@ struct GeometryNode {
   real sin_2eta_r;
 };
 
-// The host computes what would cancel or overflow in a float: geometry, reflection of the facet and density.
+// One pair of directions. The host computes in double what would lose digits or overflow in a float: the geometry, the
+// reflection of the facet and the density.
 struct BeamNode {
   GeometryNode g;
   ShapeNode shape;  // with the scale and the cut that physics/in_plane.glsl needs
@@ -183,7 +185,7 @@ struct MuellerNode {
 #define DOLP_AZIMUTH_NUMBERS 8  // numbers of an AzimuthNode
 #define DOLP_MOMENTS_NUMBERS 13  // numbers of a MomentsNode
 
-// Integrals over the azimuths from 0 to pi for the facets of one slope t, divided by their weight P(t) t dt.
+// Integrals over the azimuths from 0 to pi for the facets of slope t, divided by the weight P(t) t dt of this slope.
 struct AzimuthNode {
   real r_i;
   real r_q;
@@ -195,19 +197,19 @@ struct AzimuthNode {
   real evaluations;
 };
 
-// Moments times cos(theta) (physics/README.md, section 3) by the finer of two rules, and the differences of both rules.
+// Moments times cos(theta) (physics/README.md, section 3), by the finer of two rules, and how far both rules differ.
 struct MomentsNode {
   real r_i;
   real r_q;
   real albedo;
   real deficit;
-  real behind;               // sum with a negative sign in `deficit` (slope_sums), for its rounding
+  real behind;               // sum that `deficit` subtracts (slope_sums()); the rounding bound needs it
   real many;                 // part of r_i from grooves with more bounces than DOLP_MOST_BOUNCES
   real direct_i;             // direct emission
   real direct_q;
-  real reflected_difference; // the larger of the differences of r_i and of r_q
+  real reflected_difference; // larger difference between both rules: of r_i or of r_q
   real albedo_difference;
   real deficit_difference;
-  real direct_difference;    // the larger of the differences of direct_i and of direct_q
+  real direct_difference;    // larger difference between both rules: of direct_i or of direct_q
   real evaluations;
 };

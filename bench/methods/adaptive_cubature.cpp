@@ -1,4 +1,4 @@
-// Adaptive cubature by libcubature over the directions of the running beam (see direct_brdf.hpp).
+// Adaptive cubature by libcubature over the directions of one beam; the other beam is fixed.
 #include <cubature.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::size_t kMostEvaluations = 10'000'000;  // per entry; this many take a few seconds
+constexpr std::size_t kMostEvaluations = 10'000'000;  // limit per entry; so many evaluations take a few seconds
 
 struct Integral {
   const DirectSurface& surface;
@@ -47,7 +47,7 @@ class Cubature final : public Solver {
       Integral integral{surface};
       double values[2];
       double errors[2];
-      // ERROR_LINF divides the larger error by the larger value, which is r_i. So it is the error that a study reports.
+      // ERROR_LINF divides the larger error of r_i and r_q by the larger value, r_i. Studies report this ratio.
       const int status =
           routine_(2, integrand, &integral, 2, kLow, kHigh, kMostEvaluations, 0.0, setting, ERROR_LINF, values, errors);
       if (status != 0) throw Unavailable("libcubature gave up");

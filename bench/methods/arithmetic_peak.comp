@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Multiplies and adds as fast as the device can. While one of the twelve independent chains waits, the others go on.
+// Multiplies and adds as fast as the device can. While one of twelve independent chains waits, the others continue.
 
 #include "physics/prelude.glsl"
 #include "interface.glsl"
@@ -11,7 +11,7 @@ layout(std430, binding = DOLP_BINDING_MOMENTS) writeonly buffer Results { real r
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  real a = real(0.5) + real(i) * real(1e-7);  // varies with i, so that the compiler cannot compute the chains
+  real a = real(0.5) + real(i) * real(1e-7);  // depends on i, so that the compiler cannot compute the chains in advance
   real b = real(1.0) - a;
   real x0 = real(0.10), x1 = real(0.15), x2 = real(0.20), x3 = real(0.25), x4 = real(0.30), x5 = real(0.35);
   real x6 = real(0.40), x7 = real(0.45), x8 = real(0.50), x9 = real(0.55), x10 = real(0.60), x11 = real(0.65);

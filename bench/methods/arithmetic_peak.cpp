@@ -11,7 +11,7 @@
 namespace dolp::bench {
 namespace {
 
-// Sizes of the loops in arithmetic_peak.comp.
+// Numbers of chains and of their steps in arithmetic_peak.comp.
 constexpr double kChains = 12.0;
 constexpr double kSteps = 8.0 * DOLP_PEAK_TURNS;
 constexpr double kFlops = 2.0 * kChains * kSteps;  // floating-point operations per invocation

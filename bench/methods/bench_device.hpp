@@ -12,7 +12,7 @@ namespace dolp::bench {
 /// A Vulkan device with its instance and command stream. If the environment variable DOLP_VALIDATION is 1, the
 /// validation layer is on.
 struct BenchDevice {
-  /// `choice`: position or part of the name; empty means the default. Errors: DeviceError.
+  /// `choice`: position of the device in the list, or part of its name; empty means the default. Errors: DeviceError.
   explicit BenchDevice(const std::string& choice);
   BenchDevice(const BenchDevice&) = delete;
   BenchDevice& operator=(const BenchDevice&) = delete;
@@ -20,7 +20,7 @@ struct BenchDevice {
   /// Name and driver of the device.
   std::string where() const;
 
-  /// Checks the messages of the validation layer. Errors: DeviceError if there is one.
+  /// Checks the messages of the validation layer. Errors: DeviceError if there is a message.
   void check_messages() const;
 
   vulkan::ValidationLog log;

@@ -58,7 +58,7 @@ class Dblquad final : public Solver {
     add_times(reply["times_s"].get<std::vector<double>>(), solution);
   }
 
-  // Adds the times of one entry. The k-th time of a call is the sum of the k-th times of its entries.
+  // Adds the repeated times of an entry: the k-th time of a call is the sum of the k-th times of its entries.
   static void add_times(const std::vector<double>& times_s, Solution& solution) {
     if (solution.answers.size() == 1) solution.own_times_s.assign(times_s.size(), 0.0);
     solution.own_times_s.resize(std::min(solution.own_times_s.size(), times_s.size()));

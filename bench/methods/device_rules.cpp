@@ -29,12 +29,12 @@ using EntryWords = std::array<std::uint32_t, 4>;
 constexpr double kTimeout = 600.0;  // longest time of one dispatch, in seconds
 constexpr std::size_t kMostIterations = 1U
                                         << 14U;  // limit per invocation; lavapipe stops loops after 65,535 iterations
-constexpr std::size_t kMostSamples = 1U << 26U;  // limit per dispatch; the time limit is checked after each dispatch
+constexpr std::size_t kMostSamples = 1U << 26U;  // limit per dispatch; the time limit is checked only after one
 constexpr std::size_t kMostShapes = 1U << 12U;   // limit per call; each shape needs a masking table of 4 kB
 constexpr std::size_t kMostInvocations = 1U << 22U;  // limit per call
 constexpr std::uint32_t kZenithUnit = 1U << 16U;
 
-/// The nodes in the layout of product_rule.comp: the number of zeniths, then the zeniths, then the azimuths.
+/// The nodes as product_rule.comp reads them: the number of zeniths, then the zeniths, then the azimuths.
 std::vector<Node> product_nodes(const Rule& rule) {
   std::vector<Node> nodes{{static_cast<double>(rule.nodes.size()), 0.0, 0.0, 0.0}};
   for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
@@ -78,7 +78,7 @@ class DeviceRule final : public Solver {
       const std::size_t zeniths = std::min(most_zeniths, nodes - first);
       for (std::size_t i = 0; i < data.size(); ++i) {
         const MomentsEntry entry = data[i];
-        // KernelData lists the directions once for each variant. The angle does not depend on the variant.
+        // KernelData repeats the directions for each variant of split lines. The angle is the same in all variants.
         const auto direction = static_cast<std::uint32_t>(entry.theta % data.directions);
         words_.push_back(
             {direction, entry.shape, entry.index, static_cast<std::uint32_t>(first + kZenithUnit * zeniths)});

@@ -18,8 +18,8 @@ using std::numbers::pi;
 
 /// Tables of three integrals over the in-plane slope density p, from x to infinity: probability(x) = int p dtau,
 /// first(x) = int g p dtau, height(x) = int g p (tau - x) dtau. The factor g is 1 for `smith` and 1/sqrt(1 + tau^2) for
-/// `integral`. The nodes lie at equal steps of X = asinh(tau/w). Between them, quintic Hermite polynomials with exact
-/// derivatives interpolate.
+/// `integral`. The nodes lie at equal steps of X = asinh(tau/width_). Between them, quintic Hermite polynomials with
+/// exact derivatives interpolate.
 class MaskingTails {
  public:
   MaskingTails(const Entry& entry);
@@ -45,7 +45,7 @@ class MaskingTails {
   double m_;
   double q_;
   double norm_;           ///< p(0)
-  double width_;          ///< w
+  double width_;          ///< scale of tau in X = asinh(tau/width_)
   double tail_exponent_;  ///< at large tau, `height` is proportional to this power of tau
   double end_tau_;
   std::optional<Interpolant> height_, first_, probability_;
@@ -54,11 +54,11 @@ class MaskingTails {
 namespace {
 
 constexpr double kStep = 1.0 / 24.0;      // step between nodes in X; the interpolation error is 1e-12
-constexpr double kEndOverWidth = 1e6;     // end of the tables over max(1, m); tails beyond are powers of tau to 1e-12
+constexpr double kEndOverWidth = 1e6;     // last tau over max(1, m); beyond, integrals are powers of tau within 1e-12
 constexpr double kVerticalSlope = 1e100;  // steepest sampled slope; its square does not overflow
 using CellRule = boost::math::quadrature::gauss<double, 4>;
 
-/// R_s and R_p without complex numbers.
+/// Reflectances R_s and R_p, computed without complex numbers.
 /// Source: Born and Wolf, Principles of Optics, 14.2, with N cos(beta') = u + iv.
 struct Reflectances {
   double s;
@@ -74,7 +74,7 @@ Reflectances reflectances(const OpticalConstants& index, double cos_beta) {
   const double v2 = real > 0.0 ? 0.5 * imaginary * imaginary / (modulus + real) : 0.5 * (modulus - real);
   const double u = std::sqrt(u2);
   const double r_s = ((cos_beta - u) * (cos_beta - u) + v2) / ((cos_beta + u) * (cos_beta + u) + v2);
-  // R_p/R_s = ((u - g)^2 + v^2)/((u + g)^2 + v^2), g = sin(beta) tan(beta). Both parts are multiplied by cos^2(beta).
+  // R_p/R_s = ((u - g)^2 + v^2)/((u + g)^2 + v^2), g = sin(beta) tan(beta). Here cos^2(beta) multiplies both sums.
   const double low = u * cos_beta - sin2;
   const double high = u * cos_beta + sin2;
   const double v2_cos2 = v2 * cos_beta * cos_beta;
@@ -110,8 +110,8 @@ double MaskingTails::density(double tau) const {
   return norm_ * (is_gaussian_ ? std::exp(-ratio2) : std::pow(1.0 + ratio2, 0.5 - q_));
 }
 
-// The last node of the tables, with the integrals beyond it. There the Cauchy density is proportional to tau^(1-2q),
-// and the Gaussian density is negligible.
+// The last node of the tables, with the integrals from it to infinity. Beyond this node the Cauchy density is
+// proportional to tau^(1-2q), and the Gaussian density is negligible.
 MaskingTails::Node MaskingTails::end() const {
   const double p = density(end_tau_);
   Node node{.tau = end_tau_, .density = p};
@@ -145,7 +145,7 @@ MaskingTails::Node MaskingTails::cell(double tau, const Node& beyond) const {
   return node;
 }
 
-// First and second derivative of one of the integrals with respect to tau.
+// First and second derivative with respect to tau of one of the three integrals.
 std::pair<double, double> MaskingTails::derivatives(const Node& node, double Node::*value) const {
   const double tau = node.tau;
   const double p = node.density;
@@ -231,7 +231,7 @@ RunningBeam DirectSurface::beam(double cos_r, double sin_r) const {
 }
 
 // `integral` masking. With kappa = 1/(cos(alpha) (cot(theta) + t)), mu = cot(theta) and tau_b = tan(alpha - 2 theta):
-//   if the upper limit b of (11) is pi/2:  1 - G1 = kappa height(mu)
+//   if the upper limit of the tilt is pi/2:  1 - G1 = kappa height(mu)
 //   otherwise:  1 - G1 = kappa (height(mu) - height(tau_b) - (tau_b - mu) first(tau_b)) + probability(tau_b)
 double DirectSurface::attenuation(const RunningBeam& beam, double cos_alpha, double tan_alpha, double cos_beta) const {
   if (entry_.masking == Masking::kNone) return 1.0;

@@ -1,7 +1,7 @@
 // The plain textbook formulas of the model, for the methods that dolp is compared with. They share nothing with the
 // shaders or the reference. They are programmed as a user who cares about time would do it: reflectances in real
-// arithmetic, and the paper's masking from tables of three integrals.
-// A moment belongs to one fixed beam and integrates over the directions of the other one, the running beam.
+// arithmetic, and `integral` masking from tables of three integrals. A moment belongs to one beam with a fixed
+// direction. It is an integral over the directions of the other beam, which these files call the running beam.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ struct Entry {
 };
 Entry entry_of(const MomentsRequest& request, std::size_t position);
 
-/// Masking times reflectance of one facet: `i` is G M00, `q` is G M01.
+/// Masking G times two elements of the Mueller matrix M of one facet: `i` is G M00, `q` is G M01.
 struct Reflected {
   double i = 0.0;
   double q = 0.0;
@@ -30,17 +30,17 @@ struct Reflected {
 /// Tables of integrals over the tail of the in-plane slope density. `smith` and `integral` masking follow from them.
 class MaskingTails;
 
-/// A direction of the running beam. `masking` is the part of G that does not depend on the facet.
+/// A direction of the running beam, with the part of the masking G that does not depend on the facet.
 struct RunningBeam {
   double cos = 1.0;
   double sin = 0.0;
-  /// smith: G. integral: MaskingTails::height for the beam that is nearer to the horizon. Otherwise unused.
+  /// For smith masking, G. For integral masking, MaskingTails::height of the beam nearer to the horizon. Else unused.
   double masking = 0.0;
 };
 
 /// The microfacet surface seen from one fixed direction.
 ///
-/// Equation: (1), (2), (3), (5), (7), (8), (9)-(12) of the paper.
+/// Equation: (1), (2), (3), (5), (7), (8), (9)-(12) of the paper that shaders/physics/README.md names.
 /// Accuracy: moments agree with the reference to 1e-7 (test BenchFormulas).
 /// Domain: 0 < theta < 90 degrees, sigma > 0, cauchy q > 1 (smith: q > 3/2).
 class DirectSurface {
@@ -60,13 +60,13 @@ class DirectSurface {
   /// Density of the slopes t = tan(alpha) in the slope plane, P(t) = D cos^4(alpha). Units: 1.
   double slope_density(double tan2_alpha) const;
 
-  /// The slope that facets drawn from D cos(alpha) exceed with this probability, which lies in (0, 1].
+  /// With this probability, in (0, 1], a facet drawn from the density D cos(alpha) is steeper than the returned slope.
   double sampled_slope(double probability) const;
 
-  /// The running beam in a direction with cos_r > 0, with its part of G.
+  /// The running beam in a direction with cos_r > 0, including its part of the masking G.
   RunningBeam beam(double cos_r, double sin_r) const;
 
-  /// G M00 and G M01 of the facet that reflects one beam into the other. M01 is 0 where eta is undefined.
+  /// Masking G times M00 and M01 of the facet that reflects one beam into the other. M01 is 0 if eta is undefined.
   Reflected reflected(const RunningBeam& beam, double cos_alpha, double tan_alpha, double cos_beta) const;
 
  private:
@@ -78,7 +78,7 @@ class DirectSurface {
   double sin_theta_;
   double m_;
   std::unique_ptr<MaskingTails> tails_;
-  /// Part of G that belongs to the fixed beam: Lambda (smith) or MaskingTails::height (integral).
+  /// Part of the masking G that belongs to the fixed beam: Lambda (smith) or MaskingTails::height (integral).
   double fixed_masking_ = 0.0;
 };
 

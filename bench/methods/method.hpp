@@ -1,4 +1,4 @@
-// A method of the benchmark: one way to compute the moments r_i and r_q of entries, at one of its settings.
+// A method of the benchmark: one way to compute the moments r_i and r_q of entries. Its setting controls the accuracy.
 #pragma once
 
 #include <functional>
@@ -87,9 +87,9 @@ std::unique_ptr<Solver> make_hcubature();
 std::unique_ptr<Solver> make_pcubature();
 /// Errors: Unavailable without an interpreter that has SciPy.
 std::unique_ptr<Solver> make_dblquad(const SolverOptions& options);
-/// Errors: Unavailable without a usable device of this precision.
+/// Errors: Unavailable without a device that computes in this precision.
 std::unique_ptr<Solver> make_vulkan(const SolverOptions& options, Precision precision);
-/// The Vulkan method in float, interpolated between slope distributions where the entries are dense.
+/// The Vulkan method in float that interpolates between slope distributions where the entries are dense.
 std::unique_ptr<Solver> make_vulkan_table(const SolverOptions& options);
 std::unique_ptr<Solver> make_cpu(Precision precision);
 std::unique_ptr<Solver> make_native();

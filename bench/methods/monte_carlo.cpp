@@ -1,5 +1,5 @@
-// Importance sampling of the facets. Half vectors are drawn from D cos(alpha), so this factor drops out of the
-// integrand.
+// Importance sampling of the facets. Facet normals are drawn from the density D cos(alpha), so the integrand does not
+// contain this factor.
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -13,7 +13,7 @@
 namespace dolp::bench {
 namespace {
 
-/// Uniform in (0, 1), with the same numbers in every standard library.
+/// A uniform random number in (0, 1). Every standard library gives the same numbers.
 double uniform(std::mt19937_64& random) {
   constexpr double kUnit = 0x1p-53;
   return (static_cast<double>(random() >> 11U) + 0.5) * kUnit;

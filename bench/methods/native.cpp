@@ -1,4 +1,4 @@
-// The kernel source compiled for this processor, with the same algorithm, rows and pieces as on the device.
+// The kernel source compiled for this processor, with the algorithm and the pieces of kernel rows that a device has.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t kBlock = 64;  // invocations that a core takes at a time
 
-/// Calls body(i) once for each i < count. OpenMP would be slower when other programs run, because its threads spin
-/// while they wait.
+/// Calls body(i) once for each i < count, in several threads. It does not use OpenMP, whose threads spin while they
+/// wait. That is slower when other programs run.
 void on_all_cores(std::size_t count, const std::function<void(std::size_t)>& body) {
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {

@@ -16,8 +16,8 @@ struct KernelWork {
   double busy_lanes = 1.0;
 };
 
-/// Counts the operations of `workgroups` evenly spread workgroups, and extrapolates to all workgroups of the request.
-/// Accuracy: a few percent, if the others resemble the counted ones. Domain: requests that has_kernel_for accepts.
+/// Counts the operations of `workgroups` evenly spread workgroups, and extrapolates to all of the request. Accuracy: a
+/// few percent, if the other workgroups resemble the counted ones. Domain: requests that has_kernel_for accepts.
 KernelWork count_operations(const MomentsRequest& request, std::size_t workgroups, std::size_t lanes);
 
 }  // namespace dolp::bench

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Product rule over the running beam. Each invocation sums over some zeniths theta_r of one entry, and for each of them
-// over all azimuths. Density, geometry and rotations use the plain formulas. Fresnel reflectances and masking use the
-// code of dolp.
+// Product rule over the directions of one beam; the other beam is fixed. Each invocation sums over some zeniths theta_r
+// of one entry, and for each of them over all azimuths. Density, geometry and rotations use the plain formulas. Fresnel
+// reflectances and masking use the code of dolp.
 //   r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r) / 2
 
 #include "physics/prelude.glsl"
@@ -12,7 +12,7 @@
 
 layout(std430, binding = DOLP_BINDING_THETAS) readonly buffer Thetas { real2 thetas[]; };  // cos, sin
 layout(std430, binding = DOLP_BINDING_INDICES) readonly buffer Indices { IndexNode indices[]; };
-// One element per invocation: positions of theta, shape and index; then first zenith + 65536 * number of zeniths.
+// For each invocation: the positions of its theta, shape and index; then first zenith + 65536 * number of zeniths.
 layout(std430, binding = DOLP_BINDING_TASKS) readonly buffer Entries { uvec4 entries[]; };
 // product[0].x is n. Then come n zeniths (cos(theta_r), sin(theta_r), weight) and n azimuths (cos(delta_phi), weight).
 layout(std430, binding = DOLP_BINDING_RULE) readonly buffer Product { real4 product[]; };

@@ -18,8 +18,8 @@ from scipy.integrate import dblquad
 from scipy.interpolate import CubicHermiteSpline
 from scipy.special import betainc, gammaln
 
-STEP = 1 / 64  # step in asinh(tau/width)
-FAR = 1e5  # end of the tables over max(1, m); tails beyond are powers of tau
+STEP = 1 / 64  # step of asinh(tau/width) between nodes of the masking tables
+FAR = 1e5  # last tau of the masking tables over max(1, m); beyond, the integrals are powers of tau
 MOST_REPEATS = 3
 ENOUGH_S = 1.5  # after this many seconds in total no repeat follows
 
@@ -93,7 +93,7 @@ class Surface:
         return first - 0.5 * betainc(q - 1, 0.5, m * m / (m * m + mu * mu))
 
     def start_row(self, theta_r):
-        """Values that depend only on theta_r. dblquad keeps theta_r fixed while delta_phi runs."""
+        """Computes the values that depend only on theta_r. dblquad keeps theta_r fixed while delta_phi runs."""
         self.theta_r, self.cr, self.sr = theta_r, math.cos(theta_r), math.sin(theta_r)
         if self.masking == "smith":
             self.smith = 1 / (1 + self.smith_lambda(self.c / self.s) + self.smith_lambda(self.cr / self.sr))

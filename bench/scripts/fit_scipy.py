@@ -47,7 +47,7 @@ class Model:
 def main():
     question = json.loads(sys.argv[1])
     model = Model(question)
-    model.residuals(np.array(question["start"]))  # so that device and kernels are ready, as they are for dolp fit
+    model.residuals(np.array(question["start"]))  # the time excludes this start of device and kernels
     model.calls = 0
     start = time.perf_counter()
     found = scipy.optimize.least_squares(model.residuals, question["start"], model.jacobian,

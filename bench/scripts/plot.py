@@ -55,7 +55,7 @@ def read_result(path, study):
 
 
 def points(result, method, case):
-    """(error, time) of each setting that ran. An error below the bound of the reference is replaced by the bound."""
+    """(error, time per entry) of each setting that ran. The bound of the reference replaces errors below it."""
     bound = case["reference"]["bound"]
     return [(max(row["error"], bound), row["time_s"]) for row in result["results"]
             if row["method"] == method and row["case"] == case["name"] and "error" in row]

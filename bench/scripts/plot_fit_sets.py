@@ -45,7 +45,7 @@ def line_of(name, rows):
 
 
 def intervals_of(result):
-    """Both ends of each bounded 95 % interval: distances from the truth, in half-widths of the interval."""
+    """For each bounded 95 % interval, yields the distances of both ends from the truth, in half-widths."""
     for row in sets_of(result):
         for truth, (low, high) in zip(row["truth"], row["interval_95"]):
             if low is not None and high is not None:

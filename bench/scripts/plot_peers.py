@@ -7,7 +7,7 @@ TARGET_TOLERANCE = 1e-4
 
 
 def rows_of(result, method, case):
-    """The rows of a method and case, in a dictionary by tolerance."""
+    """The results of one method in one case: a dictionary from tolerances to rows."""
     return {row["tolerance"]: row for row in result["results"] if row["method"] == method and row["case"] == case}
 
 
@@ -36,8 +36,8 @@ def time_table(result):
 
 
 def ratio_text(row):
-    """The time of a row over the time of dolp's kernels. The first number is for kernels with interpolation, the second
-    for kernels that integrate every entry. A star marks times with the cheapest setting of each entry (hindsight)."""
+    """Two ratios: the row's time over the time of dolp's kernels that interpolate, and over the time of its kernels
+    that integrate every entry. A star marks times with the cheapest setting of each entry (hindsight)."""
     cells = []
     for prefix in ("table_", ""):
         ratio = row.get(f"{prefix}ratio", row.get(f"hindsight_{prefix}ratio"))

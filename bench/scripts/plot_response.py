@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws response tables: weights, accuracy against the number of angles, time against the number of materials.
+"""Draws properties of response tables: weights, accuracy against number of angles, time against number of materials.
 
 Usage: plot_response.py -o FIGURE.png, with the package dolp on PYTHONPATH. Prints the figures of bench/README.md.
 """
@@ -55,8 +55,8 @@ def transform(count):
 
 
 def errors(counts):
-    """Errors of moments from responses (moments in which a Chebyshev polynomial replaces the reflectances): the largest
-    error of rho_i and rho_q over rho_i, for each index and number of angles."""
+    """Errors of moments from responses, in which Chebyshev polynomials replace the reflectances. Returns the larger
+    error of rho_i and rho_q, divided by rho_i, for each index and number of angles."""
     scene = SCENE.with_({"accuracy.tolerance": TIGHT})
     response = dolp.response(scene, evaluator="cpu", **GRID)
     c0, most = response.attrs["c0"], response.sizes["beta"]
@@ -86,8 +86,8 @@ def seconds(call):
 
 
 def times(numbers):
-    """Seconds for a response table, for the table of one material, and for the moments of several materials from the
-    response table."""
+    """Measures the seconds for a response table, for the table of one material, and for the moments of several
+    materials from the response table."""
     axes = {"theta_deg": np.linspace(0, 85, 32), "sigma": np.geomspace(0.05, 1, 8), "q": np.linspace(1.75, 6, 8)}
     response = dolp.response(SCENE, **axes)
     pass_s = seconds(lambda: dolp.response(SCENE, **axes))

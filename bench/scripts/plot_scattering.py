@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws emissivity and DOLP of rough metal and paint: single scattering, all bounces, direct emission, bracket.
+"""Draws emissivity and DOLP of rough metal and paint: three models, and the bracket that holds all bounces' DOLP.
 
 Usage: plot_scattering.py DOLP -o FIGURE.png. DOLP is the program.
 """
@@ -47,7 +47,7 @@ theta_deg = { from = 0, to = 89, count = 90 }
 
 
 def computed(program, scene, overrides):
-    """Columns of a scene's table, by name."""
+    """Computes the table of a scene. Returns a dictionary from the names of its columns to their values."""
     command = [program, "table", scene, "-o", "-", "--quiet"]
     for override in overrides:
         command += ["--set", override]

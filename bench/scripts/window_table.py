@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The drags of dolp-bench window as a Markdown table: window_table.py RESULT.json"""
+"""Markdown table of the slider drags that `dolp-bench window` measured. Usage: window_table.py RESULT.json"""
 import json
 import sys
 

@@ -1,4 +1,4 @@
-// The cases of the study of accuracy, from easy to the hardest in the domain.
+// The test cases of the study of accuracy, from easy cases to the hardest ones that the model allows.
 #pragma once
 
 #include <cstddef>

@@ -14,8 +14,8 @@ namespace dolp::bench {
 struct DriverVariable {
   std::string name;
   std::vector<unsigned> settings;
-  /// The variable changes the machine code of kernels. Mesa's cache on disk ignores this, so each setting gets a cache
-  /// folder.
+  /// True if the variable changes the machine code of kernels. Mesa's cache on disk does not notice such a change, so
+  /// each setting gets a separate cache folder.
   bool changes_code = false;
 };
 

@@ -16,7 +16,7 @@ constexpr double kTemperature = 298.15;  // temperature of the surface, K
 constexpr double kLastTheta = 85.0;
 constexpr double kFirstSigma = 0.05;
 constexpr double kLastSigma = 1.0;
-constexpr double kIrradiance = 20.0;  // W m-2 um-1; two thirds of the exitance of a black body at kTemperature
+constexpr double kIrradiance = 20.0;  // of the source, W m-2 um-1; 2/3 of a black body's exitance at kTemperature
 constexpr double kSunAtTenUm = 0.18;  // sunlight above the atmosphere at 10.6 um, W m-2 um-1
 constexpr double kSunInVisible = 1800.0;
 constexpr double kVisible_um = 0.55;
@@ -39,7 +39,7 @@ Axes grid_of(std::size_t entries) {
   return grid;
 }
 
-/// The stainless steel of the paper, with emission and no other radiation.
+/// The stainless steel of the paper (see shaders/physics/README.md), with emission and no other radiation.
 SceneValues emitting(const Axes& grid) {
   SceneValues scene;
   scene.surface.material.constant = {1.508, 0.0};
@@ -56,7 +56,7 @@ SceneValues seen_from_one_side(const Axes& grid) {
   return scene;
 }
 
-/// The bistatic scene under a uniform cold sky. The albedo of `smith` masking is at most 1.
+/// The bistatic scene under a uniform cold sky, with `smith` masking, whose albedo is at most 1.
 SceneValues under_the_sky(const Axes& grid) {
   SceneValues scene = seen_from_one_side(grid);
   scene.surface.masking = Masking::kSmith;
@@ -70,7 +70,7 @@ Source flat_source(double irradiance) {
   return source;
 }
 
-/// A material with n and k that depend linearly on wavelength between four values.
+/// A material whose n and k are given at four wavelengths and depend linearly on the wavelength between them.
 Material dispersive() {
   Material material;
   material.name = "dispersive";

@@ -27,7 +27,7 @@ constexpr std::size_t kFullRepeats = 5;
 constexpr std::size_t kQuickRepeats = 3;
 constexpr std::size_t kQuickEntries = 4096;
 
-/// The largest |change of DOLP| over the entries for which both runs promise a DOLP, and the number of these entries.
+/// The largest |change of DOLP| over the entries whose DOLP is valid in both runs, and the number of these entries.
 struct Change {
   double dolp = 0.0;
   std::size_t compared = 0;

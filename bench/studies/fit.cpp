@@ -84,7 +84,7 @@ ordered_json coverage_json(const ordered_json& rows, const char* part) {
 }
 
 /// Runs SciPy's least_squares around the Python package, from the middle of the ranges. Returns the output of
-/// fit_scipy.py, and its largest distance from dolp's parameters in standard errors. Null without SciPy or xarray.
+/// fit_scipy.py, and the largest difference from dolp's parameters in standard errors. Null without SciPy or xarray.
 ordered_json scipy_json(const FitSet& set, const MeasuredData& data, const fit::FitResult& result) {
   const std::string script = DOLP_BENCH_SCRIPTS "/fit_scipy.py";
   if (run_child({kPython, "-c", "import scipy, xarray"}, ChildErrors::kHidden).status != 0) return {};
@@ -175,7 +175,7 @@ ordered_json spectrum_json(ModelEvaluator& evaluator) {
           {"q", result.parameters[1].value},   {"chi_square", result.chi_square}};
 }
 
-/// Length of the 95 % interval of n over the length of its search range; the median of the sets of the part `bracket`.
+/// Median over the sets of the part `bracket`: length of n's 95 % interval, divided by the length of n's range.
 double median_share_of_n(const ordered_json& rows) {
   const FitRange range = bracket_set(0).parameters.front();
   std::vector<double> shares;

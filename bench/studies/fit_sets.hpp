@@ -21,7 +21,7 @@ struct FitSet {
   std::size_t points = 0;              ///< number of zeniths, evenly spaced from 2 to 80 degrees
   double uncertainty = 0.0;            ///< standard deviation of the noise in DOLP or Q/I
   bool has_noise = true;               ///< without noise the data are exact
-  std::vector<Setting> of_truth = {};  ///< settings for the scene of the data only; the fitted scene lacks them
+  std::vector<Setting> of_truth = {};  ///< settings that the scene of the data has and the fitted scene lacks
   ModelError model_error = ModelError::kNone;
 
   /// Keys of the varied parameters, joined by blanks.
@@ -32,8 +32,8 @@ struct FitSet {
 /// points, true values inside the search ranges, and noise between 0.0005 and 0.01 (log-uniform).
 FitSet fit_set(std::size_t number);
 
-/// Makes a set with data that follow all bounces, while the fit of n and sigma uses single scattering with the bracket
-/// as model error. The data have noise if `number` is odd.
+/// Makes a set whose data include all bounces. The fit of n and sigma uses single scattering, and allows for the
+/// bracket of DOLP as an error of this model. The data have noise if `number` is odd.
 FitSet bracket_set(std::size_t number);
 
 /// The set whose fit is timed: n, k and sigma from 40 points of Q/I.
@@ -47,11 +47,11 @@ struct SetOutcome {
   fit::FitResult result;
   double chi_square_of_truth = 0.0;
   double chi_square_from_truth = 0.0;    ///< objective at the minimum that a descent from the truth reaches
-  std::size_t held_68 = 0, held_95 = 0;  ///< numbers of intervals that contain the truth
+  std::size_t held_68 = 0, held_95 = 0;  ///< numbers of 68 % and 95 % intervals that contain the truth
   double time_s = 0.0;
 
-  /// True if each interval contains its truth, unless chi^2 of the truth exceeds the minimum by more than the interval
-  /// allows. Meaningful only without a model error.
+  /// True if each interval contains its true value, except where chi^2 of the truth exceeds the minimum by more than
+  /// the interval allows. Meaningful only without a model error.
   bool is_consistent() const;
   /// True if a descent from the truth reaches no lower objective.
   bool is_global() const;

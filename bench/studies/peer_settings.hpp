@@ -50,13 +50,13 @@ struct TriedSetting {
 /// computes a nested grid in one call; any other method computes the entries of the sample one by one.
 class PeerSettings {
  public:
-  /// `most_s`: after a longer run, in seconds, no finer setting is tried.
+  /// `most_s`: after a run that takes more seconds, no finer setting is tried.
   PeerSettings(const Method& method, Solver& solver, const PeerSample& sample, double most_s);
 
   /// The first setting that meets the tolerance at all entries of the sample; null if there is none.
   const TriedSetting* reaching(double tolerance);
 
-  /// Records that a setting has a larger error, found on a larger grid.
+  /// Records a larger error of a setting, which a run on a larger grid has shown.
   void reject(const TriedSetting& setting, double error);
 
   /// The reason why `reaching` found no setting.

@@ -13,7 +13,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double kAcceptedSpread = 0.2;
-constexpr double kAcceptedLoad = 0.3;  // load per core above which a study warns; measured before it begins
+constexpr double kAcceptedLoad = 0.3;  // load per core above which a study warns; measured before the study begins
 
 /// The first four names, and how many more there are.
 std::string some_of(const std::vector<std::string>& names) {

@@ -14,7 +14,7 @@ struct StudyOptions {
   std::vector<std::string> cases;    ///< empty means all
   std::vector<std::string> methods;  ///< empty means all
   std::size_t entries = 1024;        ///< entries per call of a batched method; some studies use it differently
-  /// Number of the first set of fits. The constants of fits were tuned on sets with lower numbers.
+  /// Number of the first set of fits. The constants of the fit algorithm were tuned on sets with lower numbers.
   std::size_t first_set = 1000;
   bool quick = false;
   bool quiet = false;                  ///< no progress bar
@@ -46,7 +46,7 @@ void run_effects(const StudyOptions& options);
 void run_throughput(const StudyOptions& options);
 
 /// `dolp-bench peers`: finds for every method the cheapest setting that meets a tolerance on a sample of a grid's
-/// entries. Reports its time per entry, and the ratio of this time to the time of dolp's float kernels.
+/// entries. Reports the method's time per entry, and its ratio to the time of dolp's float kernels.
 ///
 /// `cases` are maskings. Errors: InputError for an unknown case or method; DeviceError if `device` is given and not
 /// available; IoError; Cancelled.

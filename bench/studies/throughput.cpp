@@ -43,7 +43,7 @@ constexpr std::array<GridSize, 8> kGrids = {{{32, 32, 32},
                                              {256, 64, 64},
                                              {256, 128, 64},
                                              {256, 128, 128}}};
-constexpr std::size_t kMainGrid = 1;         // position in kGrids of the grid that other parts than `grids` use
+constexpr std::size_t kMainGrid = 1;         // position in kGrids of the grid that all parts except `grids` use
 constexpr GridSize kSmallGrid = {2, 2, 16};  // for the warm-up; its entries fill whole kernel rows
 constexpr std::size_t kQuickEntries = std::size_t{24} * 24 * 24;
 constexpr std::size_t kFullRepeats = 5;
@@ -51,7 +51,7 @@ constexpr std::size_t kQuickRepeats = 2;
 constexpr double kLongTime = 1.0;  // seconds; runs that take longer are repeated kQuickRepeats times
 constexpr std::size_t kFullWorkgroups = 48;
 constexpr std::size_t kQuickWorkgroups = 6;
-constexpr std::size_t kFullRounds = 3;  // rounds in which each setting runs in one process
+constexpr std::size_t kFullRounds = 3;  // rounds; in each round every setting runs in a separate process
 constexpr std::size_t kQuickRounds = 1;
 constexpr std::size_t kPeakRepeats = 9;
 const TimingPolicy kFullTiming{.min_repeats = 5, .max_repeats = 15, .enough_s = 1.0, .most_s = 4.0};
@@ -132,7 +132,7 @@ struct MaterialAxes {
   std::vector<double> n = {}, k = {}, wavelength_um = {};
   std::optional<OpticalConstants> index = {};  ///< replaces n and k of the scene
   std::vector<Layer> coating = {};
-  std::size_t over = 0;  ///< position of the case by whose kernel time the kernel time of this case is divided
+  std::size_t over = 0;  ///< results divide this case's kernel time by that of the case at this position
   std::vector<Spectrum> bands = {};
   std::vector<double> temperature_K = {};
   bool has_all_materials = false;
@@ -345,7 +345,7 @@ void Study::run_materials(Masking masking) {
   for (std::size_t i = 0; i < kQuickRepeats; ++i) {
     for (const std::unique_ptr<TimedScene>& one : all) one->repeat();
   }
-  // The time of the kernels without the time in which the host sums responses for each entry.
+  // `kernel_s` excludes the time in which the host computes the moments of each entry from responses.
   const auto kernels_s = [&](std::size_t i) { return all[i]->work().kernel_s; };
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto entries = static_cast<double>(all[i]->entries().size());

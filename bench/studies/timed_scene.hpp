@@ -1,4 +1,4 @@
-// Times the run of a scene, as a user runs it.
+// Measures the times of whole runs of a scene.
 #pragma once
 
 #include <vector>

@@ -31,7 +31,7 @@ struct Measurement {
 double median(std::vector<double> values);
 double minimum(const std::vector<double>& values);
 
-/// The time with four digits. Raw times are not more accurate.
+/// The time rounded to four digits, because measured times are not more accurate.
 double rounded_time(double time_s);
 
 /// Rounded times per entry. `times_s` are times of calls with `entries` entries.

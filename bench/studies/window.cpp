@@ -30,8 +30,8 @@ constexpr int kWidth = 1920;
 constexpr int kHeight = 1080;
 constexpr double kDrag_s = 3.0;
 constexpr int kMovesPerSecond = 30;
-constexpr double kGoalOfOne = 20.0;  // fresh curves per second, for one wavelength
-constexpr double kGoalOfBand = 8.0;  // fresh curves per second, for a band with n(lambda)
+constexpr double kGoalOfOne = 20.0;  // goal for one wavelength: up-to-date curves per second
+constexpr double kGoalOfBand = 8.0;  // goal for a band with n(lambda): up-to-date curves per second
 
 /// A drag of the slider of `key`, in the scene with `changes`.
 struct DragCase {
@@ -188,7 +188,7 @@ ordered_json drag_row(const DragCase& one, const std::string& device) {
   explore::App app(explore::SceneEdits(Scene::from_text(kScene, one.changes, one.name)), {.device = device});
   xdotool(fmt::format("windowsize --sync %1 {} {} windowfocus %1", kWidth, kHeight));
   app.settle();
-  // During the first drag, coarse results compile kernels. So only the second drag counts.
+  // The first drag also compiles the kernels for coarse results. So only the second drag counts.
   ordered_json measured;
   for (int i = 0; i < 2; ++i) {
     Watch watch(app);

@@ -1,4 +1,4 @@
-// Python binding of the library: it takes and returns arrays and dictionaries. Users call dolp/__init__.py instead.
+// Python binding of the library, with arrays and dictionaries as arguments and results. Users call dolp/__init__.py.
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -28,7 +28,7 @@ using Columns = std::map<std::string, Array>;
 
 constexpr auto kSignalsEvery = std::chrono::milliseconds(50);
 
-/// Calls `body(progress)` in another thread. Meanwhile Python's other threads run. A signal ends the call.
+/// Calls `body(progress)` in another thread, so that other Python threads run. A signal like Ctrl-C cancels the call.
 template <class Body>
 auto interruptible(const Body& body) {
   std::atomic<bool> goes_on = true;
@@ -44,12 +44,12 @@ auto interruptible(const Body& body) {
       const py::gil_scoped_release end_of_call;
       result.wait();
     }
-    throw interrupt;  // NOLINT(misc-throw-by-value-catch-by-reference): it has to be made before the call has ended
+    throw interrupt;  // the object must exist before the call ends
   }
   return result.get();
 }
 
-constexpr const char* kOtherBytes = "surrogateescape";  // decodes bytes of paths that are not UTF-8
+constexpr const char* kOtherBytes = "surrogateescape";  // lets a str hold bytes of file names that are not UTF-8
 
 py::str text_of(const std::string& text) {
   PyObject* const decoded = PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), kOtherBytes);
@@ -102,14 +102,14 @@ std::size_t position_of(const std::string& argument, const std::string& word, co
   throw dolp::InputError(argument + " = " + word + ": must be one of " + allowed);
 }
 
-/// Converts a value of a key: None, bool, float, str, a list, or a dictionary of from, to, count and spacing.
+/// Converts a value from Python: None, bool, float, str, a list, or a dictionary with from, to, count and spacing.
 dolp::Value value_of(const std::string& key, const py::handle& value) {
   if (value.is_none()) return {};
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>();
   if (py::isinstance<py::float_>(value)) return value.cast<double>();
   if (py::isinstance<py::str>(value)) return bytes_of(value);
   if (py::isinstance<py::list>(value) && py::len(value) > 0 && !py::isinstance<py::float_>(value[py::int_(0)]))
-    return dolp::TomlText{bytes_of(py::module_::import("json").attr("dumps")(value))};  // texts, or pairs of numbers
+    return dolp::TomlText{bytes_of(py::module_::import("json").attr("dumps")(value))};  // a list of texts or of pairs
   if (!py::isinstance<py::dict>(value)) return value.cast<std::vector<double>>();
   const auto range = value.cast<std::map<std::string, py::object>>();
   for (const auto& [name, item] : range) {
@@ -126,7 +126,7 @@ dolp::Value value_of(const std::string& key, const py::handle& value) {
                          range.at("count").cast<std::size_t>(), word == "log"};
 }
 
-using Values = std::vector<std::pair<py::str, py::object>>;  // keys with their values
+using Values = std::vector<std::pair<py::str, py::object>>;  // keys of a scene, each with its value as a Python object
 
 std::vector<dolp::Setting> settings_of(const Values& values) {
   std::vector<dolp::Setting> settings;
@@ -137,7 +137,7 @@ std::vector<dolp::Setting> settings_of(const Values& values) {
   return settings;
 }
 
-/// The reverse of value_of. Settings from command lines have TOML text, which becomes a str.
+/// The reverse of value_of(). The TOML text of a setting from a command line becomes a str.
 py::object object_of(const dolp::Value& value) {
   const auto object = [](const auto& content) -> py::object {
     using Content = std::decay_t<decltype(content)>;
@@ -158,9 +158,9 @@ py::object object_of(const dolp::Value& value) {
   return std::visit(object, value.content());
 }
 
-/// Warns about each remark at the line that called the package. Throws the warning if a filter of Python demands it.
+/// Issues each remark as a warning of Python for the user's line. Throws if a filter of Python makes it an error.
 void warn(const std::vector<std::string>& remarks) {
-  constexpr int kCaller = 2;  // skips the frame of the package
+  constexpr int kCaller = 2;  // stack level of the user's line: the frame of the package is level 1
   const py::object category = py::module_::import("dolp._native").attr("InputWarning");
   for (const std::string& remark : remarks)
     py::module_::import("warnings").attr("warn")(text_of(remark), category, kCaller);
@@ -196,7 +196,7 @@ Values values_of(const dolp::Scene& scene) {
   return values;
 }
 
-/// Columns that refer to the data of arrays. The arrays must outlive the columns.
+/// Columns that view the data of NumPy arrays. The arrays must outlive the columns.
 std::vector<dolp::Column> views(const Columns& columns) {
   std::vector<dolp::Column> all;
   for (const auto& [name, values] : columns) {
@@ -229,7 +229,7 @@ py::array_t<Value> array_of(std::vector<Value> values) {
   return py::array_t<Value>(kept->size(), kept->data(), owner);
 }
 
-/// The tuple Parts of _native.pyi.
+/// Makes the tuple that _native.pyi calls Parts.
 py::tuple parts_of(dolp::ResultColumns results, const dolp::Quantities& given, const std::string& stokes_units,
                    const std::vector<dolp::Attribute>& attributes) {
   py::list quantities;
@@ -251,7 +251,7 @@ py::tuple parts_of(dolp::Results results) {
                   results.attributes);
 }
 
-/// The tuple Contents of _native.pyi.
+/// Makes the tuple that _native.pyi calls Contents.
 py::tuple contents_of(const dolp::Table& table) {
   const dolp::TableValues& values = table.values();
   py::list axes, curves;
@@ -272,7 +272,7 @@ py::tuple contents_of(const dolp::Table& table) {
                         parts_of(values, values.quantities(), values.stokes_units, table.file_attributes()));
 }
 
-/// The second element of the tuple that Evaluator.response() returns, as in _native.pyi.
+/// Makes the second element of the tuple that Evaluator.response() returns; _native.pyi describes it.
 py::tuple responses_of(const dolp::TableValues& table) {
   py::list variables;
   for (const dolp::ResponseVariable variable : dolp::kAllResponseVariables) {
@@ -286,7 +286,7 @@ py::tuple responses_of(const dolp::TableValues& table) {
 
 std::vector<double> vector_of(const Array& values) { return {values.data(), values.data() + values.size()}; }
 
-/// The labels for each column of points that takes labels. The keys are the names of the columns.
+/// The names of materials and bands that the numbers in a column of points mean, by the name of the column.
 py::dict labels_of(const dolp::AxisLabels& labels) {
   py::dict all;
   for (const dolp::Axis axis : dolp::kAllAxes) {
@@ -296,7 +296,7 @@ py::dict labels_of(const dolp::AxisLabels& labels) {
   return all;
 }
 
-/// Makes a table from those axes, curves, quantities and attributes that the arguments contain.
+/// Makes a table of the axes, curves and quantities in `columns`, with these labels, status and attributes.
 dolp::Table table_of(const Columns& columns, const std::map<std::string, std::vector<std::string>>& labels,
                      const py::array_t<std::uint32_t, py::array::forcecast>& status, const std::string& stokes_units,
                      const py::dict& attributes, const std::string& name) {
@@ -317,7 +317,7 @@ dolp::Table table_of(const Columns& columns, const std::map<std::string, std::ve
   for (const dolp::Quantity quantity : dolp::kAllQuantities) take(dolp::description_of(quantity).name, table[quantity]);
   for (const dolp::TableCurve& known : dolp::kTableCurves) {
     dolp::Curve& curve = table.*known.curve;
-    take(known.name + std::string("_wavelength"), curve.wavelength_um);  // only in files of dolp 0.2
+    take(known.name + std::string("_wavelength"), curve.wavelength_um);  // variables that only files of dolp 0.2 have
     take(known.name, curve.wavelength_um.empty() ? curve.used : curve.values);
   }
   table.status.assign(status.data(), status.data() + status.size());
@@ -464,7 +464,7 @@ PYBIND11_MODULE(_native, module) {
     });
   });
   module.def("keys", [] {
-    const auto is_first = [](const dolp::Key& key) { return key.layer <= 1; };  // all films have the keys of film 1
+    const auto is_first = [](const dolp::Key& key) { return key.layer <= 1; };  // other films have the same keys
     return list_of(dolp::keys() | std::views::filter(is_first), [](const dolp::Key& key) {
       return py::make_tuple(key.key, key.unit, key.allowed(), key.fallback, key.meaning);
     });

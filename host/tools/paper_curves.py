@@ -1,8 +1,8 @@
 """The model's curves for figures 4-7 of the paper, computed by dolp, and the numbers behind the paper's statements.
 
 The paper prints neither k_s, k_d, c, q and E0 nor the masking of its Gaussian curves. So each figure is computed for
-two readings: `integral`, with the unchanged sample scenes, and `smith`. A Gaussian has the D(0) of the Cauchy curve:
-sigma_G = sigma / sqrt(q - 1). Angles are in degrees, DOLP in percent.
+two readings of the paper: `integral`, with the unchanged sample scenes, and `smith`, with other values. A Gaussian has
+the same D(0) as the Cauchy distribution: sigma_G = sigma / sqrt(q - 1). Angles are in degrees, DOLP in percent.
 """
 import csv
 import dataclasses
@@ -23,18 +23,18 @@ READINGS = {
     "smith": {"surface.masking": "smith", "surface.q": 3.0, "surface.specular": 0.3, "surface.diffuse": 0.3,
               "surface.diffuse_exponent": -0.3, "source.relative_irradiance": 3.0},
 }
-# Keys of values that the paper does not print; --set may change them. The reading determines the masking.
+# Scene keys whose values the paper does not print; --set of paper_figure.py may change them.
 UNPRINTED = ("surface.q", "surface.specular", "surface.diffuse", "surface.diffuse_exponent",
              "source.relative_irradiance")
 VIEW_DEG = 60.0  # zenith of the view in bistatic mode
 PAPER_ANGLES_DEG = [*range(0, 60, 6), *range(60, 91, 3)]
 STEPS_PER_DEGREE = 10
 ANGLES_DEG = np.arange(90 * STEPS_PER_DEGREE + 1) / STEPS_PER_DEGREE
-MODEL_FAILS = 1 | 4 | 8  # status bits with which the model fails
+MODEL_FAILS = 1 | 4 | 8  # status bits that mark where the model fails
 
 FIGURE4_SIGMA, FIGURE4_Q, FIGURE4_THETA_I_DEG = 0.3, 2.0, 30.0
-GRAZING_THETA_I_DEG = 85.0  # at this angle of incidence, G of `integral` masking has a large corner
-GRAZING_DEG = 90.0 - 1e-6  # replaces 90 degrees, where the pBRDF diverges; G, a ratio of two pBRDFs, is finite
+GRAZING_THETA_I_DEG = 85.0  # angle of incidence at which G of the masking `integral` bends sharply over the view zenith
+GRAZING_DEG = 90.0 - 1e-6  # instead of 90 degrees, where both pBRDFs diverge whose ratio is G
 
 
 class CannotRun(Exception):
@@ -47,14 +47,14 @@ class CannotRun(Exception):
 
 @dataclasses.dataclass
 class Program:
-    """Runs dolp. `changes` has values for keys in UNPRINTED, which replace the values of both readings."""
+    """Runs dolp. `changes` has values for keys in UNPRINTED; they replace the values in READINGS."""
 
     path: pathlib.Path
     evaluator: str | None = None
     changes: dict = dataclasses.field(default_factory=dict)
 
     def columns(self, command, scene, settings, points, options=()):
-        """Columns that `dolp COMMAND` writes for `points`, a dict of columns. Errors: CannotRun."""
+        """The columns that `dolp COMMAND` writes for `points`; both are dicts of columns. Errors: CannotRun."""
         rows = [",".join(points), *(",".join(map(repr, row)) for row in zip(*(map(float, c) for c in points.values())))]
         line = [str(self.path), command, str(ROOT / "host" / "scenes" / f"{scene}.toml"), "--points", "-", "-o", "-",
                 "--quiet", *options, *(("--evaluator", self.evaluator) if self.evaluator else ())]
@@ -75,7 +75,7 @@ class Program:
 
 @dataclasses.dataclass
 class Curve:
-    """DOLP over the zenith of the source (bistatic) or of the view (hemispherical)."""
+    """DOLP of a sample over the zenith: of the source in bistatic mode, of the view in hemispherical mode."""
 
     sample: str
     reading: str
@@ -93,7 +93,7 @@ class Curve:
         return float(self.dolp[round(theta_deg * STEPS_PER_DEGREE)])
 
     def peak(self):
-        """Angle and height of the largest DOLP. None if DOLP still rises where the model fails, or at 90 degrees."""
+        """Angle and value of the largest DOLP. None if DOLP rises up to 90 degrees or to where the model fails."""
         held = np.where(self.holds(), self.dolp, -np.inf)
         top = int(np.argmax(held))
         is_inside = 0 < top < held.size - 1 and np.isfinite(held[top + 1])
@@ -106,19 +106,19 @@ class Curve:
 
 
 def scene_value(sample, settings, key):
-    """Value of a scene key such as surface.q: from `settings`, otherwise from the sample scene."""
+    """Value of a scene key such as surface.q: from `settings` if they have it, otherwise from the sample scene."""
     table, name = key.split(".")
     with open(ROOT / "host" / "scenes" / f"{SAMPLES[sample]}.toml", "rb") as file:
         return settings.get(key, tomllib.load(file)[table][name])
 
 
 def width(sigma, q, distribution):
-    """The sigma for a distribution. With it, the Gaussian has the same D(0) as the Cauchy distribution."""
+    """The sigma for `distribution`. With it the Gaussian has the same D(0) as the Cauchy distribution with `sigma`."""
     return sigma / math.sqrt(q - 1.0) if distribution == "gaussian" else sigma
 
 
 def curve(program, sample, reading, mode, distribution, roughness_of=None):
-    """The curve of a sample. `roughness_of` may name another sample, whose sigma the curve gets."""
+    """The DOLP curve of a sample. If `roughness_of` names another sample, the curve gets the sigma of that sample."""
     settings = READINGS[reading] | program.changes
     q = scene_value(sample, settings, "surface.q")
     sigma = width(scene_value(roughness_of or sample, settings, "surface.sigma"), q, distribution)
@@ -131,7 +131,7 @@ def curve(program, sample, reading, mode, distribution, roughness_of=None):
 
 
 def dolp_curves(program, samples, roughened=False):
-    """Curves of figures 5-7. `roughened` adds curves of the first sample with the sigma of the second."""
+    """DOLP curves of figures 5-7. `roughened` adds curves of the first sample with the sigma of the second sample."""
     result = []
     for reading in READINGS:
         for mode in MODES:
@@ -152,8 +152,8 @@ def largest_difference(one, other, low, high):
 
 
 def ranges_above(one, other):
-    """Ranges [from, to] of angles in which the DOLP of `one` exceeds the DOLP of `other` by more than the numerical
-    errors, and the model holds for both."""
+    """Ranges [from, to] of angles in which the model holds for both curves, and the DOLP of `one` exceeds the DOLP of
+    `other` by more than both numerical errors together."""
     is_above = (one.dolp - other.dolp > one.bound + other.bound) & one.holds() & other.holds()
     above = np.concatenate([[False], is_above, [False]])
     edges = np.flatnonzero(above[1:] != above[:-1])
@@ -162,7 +162,7 @@ def ranges_above(one, other):
 
 @dataclasses.dataclass
 class Attenuation:
-    """G over the view zenith in the plane of incidence, on the specular side."""
+    """The masking G over the view zenith, in the plane of incidence on the specular side."""
 
     masking: str
     distribution: str
@@ -173,11 +173,11 @@ class Attenuation:
         return float(self.g[round(theta_deg * STEPS_PER_DEGREE)])
 
     def slopes(self):
-        """dG/dtheta_r in 1/rad between neighbours of ANGLES_DEG."""
+        """dG/dtheta_r in 1/rad, between neighbouring angles of ANGLES_DEG."""
         return np.diff(self.g) / np.radians(1.0 / STEPS_PER_DEGREE)
 
     def corner(self):
-        """Angle of the largest jump of slope, and its size in 1/rad, from one-sided differences of second order."""
+        """Angle and size (1/rad) of the largest jump of dG/dtheta_r, from one-sided differences of second order."""
         g, step = self.g, np.radians(1.0 / STEPS_PER_DEGREE)
         right = (-3.0 * g[2:-2] + 4.0 * g[3:-1] - g[4:]) / (2.0 * step)
         left = (3.0 * g[2:-2] - 4.0 * g[1:-3] + g[:-4]) / (2.0 * step)
@@ -186,7 +186,7 @@ class Attenuation:
 
 
 def attenuation(program, masking, distribution, theta_i_deg):
-    """G as the ratio of m00 with masking to m00 without it. At k_d = 0 the pBRDF is proportional to G."""
+    """G as the ratio of m00 (of the Mueller matrix) with and without masking. At k_d = 0 m00 is proportional to G."""
     view = np.minimum(ANGLES_DEG, GRAZING_DEG)
     points = {"theta_i_deg": np.full(view.size, theta_i_deg), "theta_r_deg": view,
               "delta_phi_deg": np.full(view.size, 180.0)}
@@ -200,7 +200,7 @@ def attenuation(program, masking, distribution, theta_i_deg):
 
 
 def attenuations(program):
-    """The curves of figure 4, and `integral` near grazing incidence."""
+    """The curves G of figure 4, and a curve of the masking `integral` near grazing incidence."""
     chosen = [("integral", "cauchy", FIGURE4_THETA_I_DEG), ("integral", "gaussian", FIGURE4_THETA_I_DEG),
               ("v-cavity", "cauchy", FIGURE4_THETA_I_DEG), ("integral", "cauchy", GRAZING_THETA_I_DEG)]
     return [attenuation(program, *which) for which in chosen]

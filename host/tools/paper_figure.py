@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Draws the model's side of figure 4, 5, 6 or 7 of the paper; the paper's measured values are not printed in it.
+"""Draws the model curves of figure 4, 5, 6 or 7 of the paper. The measured values are missing: the paper prints none.
 
 Usage: paper_figure.py FIGURE [-o FIGURE.png] [--table | --json] [--set KEY=VALUE]...
   4  geometric attenuation G: integral masking against v-cavity
   5  stainless steel, 6 aviation aluminium, 7 both: DOLP, Cauchy against Gaussian slopes, in both modes
 --table prints the numbers as Markdown, --json as JSON. --set replaces a value that the paper does not print, such as
-surface.q, in both readings (paper_curves.py). Runs build/release/dolp, or the program named with --program.
+surface.q, in both readings of the paper (paper_curves.py). Runs build/release/dolp, or the program in --program.
 Needs python3-numpy, and python3-matplotlib for the picture.
 Exit status: 0 done, 2 usage or no program, 4 the picture could not be written; if dolp fails, the status of dolp.
 """
@@ -62,7 +62,7 @@ def arguments():
 
 
 def compute(options):
-    """The curves of a figure, and its report."""
+    """The curves of a figure, and the numbers that --table and --json print."""
     program = model.Program(options.program, options.evaluator, dict(options.set))
     if options.figure == 4:
         curves = model.attenuations(program)

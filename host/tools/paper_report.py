@@ -82,7 +82,7 @@ def corner_text(corner):
 
 
 def dolp_markdown(report):
-    """Markdown tables: peaks, Cauchy minus Gaussian, where the rougher sample has the larger DOLP, all DOLP."""
+    """Markdown tables: peaks of DOLP, Cauchy minus Gaussian, angles at which aluminium exceeds steel, all DOLP."""
     curves = report["curves"]
     column = {angle: i for i, angle in enumerate(model.PAPER_ANGLES_DEG)}
     heads = ["masking", "mode", "sample", "distribution", "peak", *(f"{angle}°" for angle in KEY_ANGLES_DEG),

@@ -24,13 +24,13 @@ SYMBOLS = {"surface.n": "n", "surface.k": "k", "surface.sigma": "σ", "surface.w
            "geometry.relative_azimuth_deg": "Δφ (degree)", "surface.diffuse_exponent": "c",
            "path.temperature_K": r"$T_{path}$ (K)", "path.transmittance": "τ", "source.scale": "scale of $E_0$"}
 PERCENT = 100.0
-REGIONS = ("68 %", "95 %")  # confidence regions of two parameters together; the report has their levels of chi^2
-MOST_PANELS = 4  # largest number of panels for a fit over a spectrum
+REGIONS = ("68 %", "95 %")  # joint confidence regions of two parameters, in the order of contours["levels"]
+MOST_PANELS = 4  # largest number of panels, one per zenith, for data over a spectrum
 MARKS = ".x+^sv"
 
 
 def curves(points):
-    """For each data set, quantity and wavelength: its points as arrays, in the order of the zeniths."""
+    """For each data set, quantity and wavelength: the columns of its points as arrays, by ascending zenith."""
     found = {}
     for point in points:
         found.setdefault((point["data"], point["quantity"], point["wavelength_um"]), []).append(point)
@@ -52,7 +52,7 @@ def label_of(key, several):
 
 
 def frame(axes, arrays):
-    """Sets vertical limits that contain all values."""
+    """Sets the vertical limits of `axes` so that they contain all values of `arrays`."""
     values = np.concatenate([np.ravel(array) for array in arrays])
     low, high = np.nanmin(values), np.nanmax(values)
     margin = 0.05 * ((high - low) or 1.0)
@@ -97,7 +97,7 @@ def names_in(points):
 
 
 def zeniths_of_a_spectrum(report):
-    """Zeniths to draw as spectra, if a plot over zenith could not distinguish all wavelengths; otherwise empty."""
+    """Zeniths at which to draw DOLP over wavelength. Empty if a plot over zenith can distinguish all wavelengths."""
     zeniths = sorted({point["theta_deg"] for point in report["points"]})
     wavelengths = {point["wavelength_um"] for point in report["points"]}
     if len(wavelengths) <= max(len(COLOURS), len(zeniths)):
@@ -107,7 +107,7 @@ def zeniths_of_a_spectrum(report):
 
 
 def draw_spectrum(panels, lower, report, zeniths):
-    """Draws one spectrum per zenith, and the residuals of all zeniths below them."""
+    """Draws one spectrum per zenith, and below the spectra the residuals of all these zeniths."""
     has_uncertainties = report["scale_from"] == "uncertainties"
     several = len({point["data"] for point in report["points"]}) > 1
     for panel, zenith in zip(panels, zeniths):
@@ -135,7 +135,7 @@ def draw_spectrum(panels, lower, report, zeniths):
 
 
 def draw_pair(axes, report):
-    """Draws contours over two parameters of the increase of the objective, minimised over all other parameters."""
+    """Draws contours of chi^2 minus its minimum over two parameters; chi^2 is minimised over all other parameters."""
     contours = report.get("contours")
     if contours is None:
         axes.set_axis_off()
@@ -143,7 +143,7 @@ def draw_pair(axes, report):
                   va="center", color="0.3")
         return
     x, y, growth = (np.array(contours[name], dtype=float) for name in ("x", "y", "growth"))
-    root = np.ma.masked_invalid(np.sqrt(growth))  # the root is closer to linear than the increase
+    root = np.ma.masked_invalid(np.sqrt(growth))  # closer to linear than `growth`, so its contours are smoother
     widths = (2.0, 1.0)
     axes.contour(x, y, root, np.sqrt(contours["levels"]), colors=COLOURS[0], linewidths=widths)
     for level, region, width in zip(contours["levels"], REGIONS, widths):
@@ -175,7 +175,7 @@ def caption(report):
 
 
 def alike(report):
-    """A line of the caption: how many models fit equally well, and parameter ranges over all plausible models."""
+    """A line of the caption: how many models fit equally well, and ranges over all models with a delta AIC up to 4."""
     if not report.get("alike"):
         return ""
     ends = lambda interval: " to ".join("open" if end is None else f"{end:.4g}" for end in interval or ())
@@ -185,7 +185,7 @@ def alike(report):
 
 
 def title_of(report):
-    """The scene's title, in which the wavelengths of the fit replace other wavelengths."""
+    """The scene's title, in which the wavelengths of the data replace the wavelengths of the scene."""
     title = re.sub(r"[, ]*[\d.]+( *[-–] *[\d.]+)? *[uµ]m$", "", report["title"])
     if all(point["wavelength_um"] is None for point in report["points"]):
         ends = dict.fromkeys(f"{end:g}" for end in report["spectrum_um"])

@@ -2,7 +2,7 @@
 """Draws Q/I of paint over zenith under a uniform, a clear and an overcast sky, and the temperatures of these skies.
 
 Usage: plot_skies.py DOLP OUT.png [--band FROM TO]
-DOLP is the program. The temperature of the uniform sky gives it the same irradiance as the clear sky.
+DOLP is the program. The uniform sky has the temperature at which its irradiance equals the irradiance of the clear sky.
 Needs python3-numpy and python3-matplotlib.
 Exit status: 0 done, 2 usage; if DOLP fails, the status of DOLP.
 """
@@ -31,7 +31,7 @@ MIRROR = ["surface.n=1e6", "surface.k=1e6", "surface.specular=1", "surface.diffu
 
 
 def results(program, settings, sigma):
-    """Columns of the table of the scene with these settings and this sigma, as arrays."""
+    """Columns of the table of SCENE with `settings` (KEY=VALUE) and `sigma`, as arrays."""
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "t.csv"
         command = [program, "table", str(SCENE), "-o", str(out), "--quiet", "--set", f"grid.sigma={sigma}"]
@@ -47,12 +47,12 @@ def results(program, settings, sigma):
 
 
 def sky_exitance(program, sky, band):
-    """The radiance of a sky over zenith, times pi: the table of a perfect mirror under this sky."""
+    """The table of a perfect mirror under a sky. Its column stokes_i is pi times the sky's radiance over zenith."""
     return results(program, MIRROR + [sky, band], 0)
 
 
 def uniform_temperature(program, band, wanted):
-    """The temperature with which the uniform sky has the irradiance `wanted`, by bisection."""
+    """The temperature, found by bisection, at which the uniform sky has the irradiance `wanted`."""
     low, high = 100.0, 400.0
     while high - low > 0.01:
         middle = 0.5 * (low + high)

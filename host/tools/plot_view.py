@@ -24,7 +24,7 @@ FAILING = {"color": "0.6", "linewidth": 0.8, "linestyle": "--"}
 BAND = "all bounces lie between"
 MODEL_FAILS = "the model fails here (status)"
 CONTOURS = 7
-MOST_CONTRAST = 1e3  # largest over smallest value of a logarithmic colour scale, as in the window
+MOST_CONTRAST = 1e3  # ratio of the largest to the smallest value of a logarithmic colour scale; the window has the same
 
 
 def numbers(values):
@@ -58,7 +58,7 @@ def draw_curves(axes, plots):
                       markerfacecolor="none", elinewidth=0.8, label="measured")
     set_axes(axes, plots["x"], plots["y"])
     axes.grid(alpha=0.25, linewidth=0.6)
-    entries = {}  # each curve gets an entry in the legend; brackets share one entry, and so do failing parts
+    entries = {}  # one legend entry per curve, one for all brackets, one for all parts where the model fails
     for handle, label in zip(*axes.get_legend_handles_labels()):
         entries[label if label in (MODEL_FAILS, BAND) else handle] = (handle, label)
     axes.legend(*zip(*entries.values()), frameon=False, fontsize=8)
@@ -86,7 +86,7 @@ def draw_map(figure, axes, plot):
     mesh = axes.pcolormesh(x, y, rows, cmap=colours, norm=norm, shading="nearest", rasterized=True)
     axes.set_facecolor("0.72")
     levels = [level for level in locator.tick_values(low, high) if low < level < high]
-    # The scales come first: the gaps for contour labels depend on the length of the text on these axes.
+    # Sets the scales of the axes before the labels of contours, because the gaps for these labels depend on the scales.
     set_axes(axes, plot["x"], plot["y"])
     if levels:
         lines = axes.contour(x, y, rows, levels=levels, colors="0.2" if plot["is_signed"] else "white", linewidths=0.7)
@@ -96,7 +96,7 @@ def draw_map(figure, axes, plot):
 
 
 def draw(plots, suffix):
-    # In an SVG, text remains text. Titles are not parsed as formulas, because they may contain any character.
+    # Keeps text as text in an SVG. Does not parse titles as formulas, because they may contain any character.
     plt.rcParams.update({"font.size": 10, "svg.fonttype": "none", "text.parse_math": False})
     plt.rcParams.update({"axes.spines.top": False, "axes.spines.right": False})
     has_map = plots["map"] is not None

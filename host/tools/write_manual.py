@@ -2,13 +2,13 @@
 """Rewrites the generated parts of the manual.
 
 Usage: write_manual.py [--check] [--build FOLDER] [FILE.md...]
-In each Markdown file of the repository (or in those named) the lines between
+In each Markdown file of the repository, or only in the named files, the lines between
     <!-- generated: COMMAND -->
 and
     <!-- end of generated -->
-become what COMMAND prints when it runs in the repository's root. Words of COMMAND may begin with build/release/,
-which --build replaces. --check writes nothing and names the parts that are not current.
-Exit status: 0 done or all current, 1 --check found a part that is not, 2 a command fails or a mark has no end.
+become the output of COMMAND, run in the repository's root. Words of COMMAND may begin with build/release/,
+which --build replaces. --check writes nothing and names the outdated parts.
+Exit status: 0 done or nothing outdated, 1 --check found an outdated part, 2 a command fails or a mark has no end.
 """
 import argparse
 import pathlib
@@ -23,7 +23,7 @@ PART = re.compile(r"<!-- generated: (.+?) -->\n(.*?)<!-- end of generated -->", 
 
 
 class CannotGenerate(Exception):
-    """A command failed, or a mark has no end."""
+    """A command failed, or a part has no line `end of generated`."""
 
 
 def markdown_files():
@@ -44,7 +44,7 @@ def output_of(command, build):
 
 
 def regenerated(text, build):
-    """The text with all generated parts up to date, and the commands of the parts that were not."""
+    """The text with all generated parts up to date, and the commands of the parts that were outdated."""
     if text.count("<!-- generated: ") != len(PART.findall(text)):
         raise CannotGenerate("a mark <!-- generated: COMMAND --> has no <!-- end of generated -->")
     stale = []

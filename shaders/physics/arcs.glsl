@@ -24,19 +24,19 @@ real2 clamp_half_angle(real2 phi, real2 from, real2 to) {
 }
 
 // An arc of azimuths with a smooth integrand: phi = centre + psi with psi = 4 atan(extent * abscissa). The centre may
-// be the middle, the beginning or the end of the arc. The extent is negative for an arc with a root at its end.
+// be the middle, the beginning or the end of the arc. The extent is negative if a square root lies at the end.
 struct Arc {
   real2 from;
   real2 to;
   real centre_cos;
   real centre_sin;
   real extent;
-  real quarter;     // tan of a quarter of its length
-  real origin;      // phi at the beginning, or at the end at which the rule has a symmetry or a singularity
+  real quarter;     // tan of a quarter of the arc's length
+  real origin;      // phi where the rule is symmetric (0 or pi) or has a cluster; else phi at the beginning of the arc
   real span;        // length in phi
-  int section;      // section of the rule nodes
-  bool is_critical; // true if w of fresnel.glsl vanishes at or near the centre
-  real resolution;  // width of the square root at the centre, see critical_arc of orders.glsl; or 0
+  int section;      // section of the rule nodes, kSection*
+  bool is_critical; // true if w of fresnel.glsl vanishes at or near the centre (total reflection)
+  real resolution;  // relative width of the smoothed square root at the centre, see critical_arc(); or 0
 };
 
 Arc make_arc(real2 from, real2 to) {
@@ -66,7 +66,7 @@ Arc make_arc(real2 from, real2 to) {
   return arc;
 }
 
-// If `has_root`, the arc has a singularity at its beginning (`at_end`: its end), and gets a cluster of nodes there.
+// If `has_root`, clusters nodes at the beginning (if `at_end`, the end) of the arc, where the integrand is singular.
 Arc with_root(Arc arc, bool at_end, bool has_root) {
   real2 root = choose(at_end, arc.to, arc.from);
   arc.centre_cos = choose(has_root, cosine(root), arc.centre_cos);
@@ -77,16 +77,16 @@ Arc with_root(Arc arc, bool at_end, bool has_root) {
   return arc;
 }
 
-// (cos(phi), sin(phi)) of a node, and its weight, including dphi.
+// A node of an arc's rule: cos(phi), sin(phi), and the weight, which includes dphi.
 struct Azimuth {
   real x;
   real sin_phi;
   real weight;
 };
 
-// The node of an arc's rule, moved if absorption smooths the square root at the centre of the arc. A cluster has the
-// abscissa v^2. It becomes (sinh(a v) / sinh(a))^2 with a = asinh(1 / sqrt(resolution)): the distances of the nodes
-// from the centre grow geometrically where they exceed the resolution, and like v^2 where they are smaller.
+// Returns `node` of an arc's rule. If absorption smooths the square root at the centre of the arc, the node is moved: a
+// cluster has the abscissae v^2, which become (sinh(a v) / sinh(a))^2 with a = asinh(1 / sqrt(resolution)). Then the
+// distances of nodes from the centre grow geometrically beyond the resolution, and like v^2 below it.
 real2 place_on_arc(Arc arc, real2 node) {
   if (!kTotalReflection) return node;
   real scale = real(1.0) / sqrt(arc.resolution);  // sinh(a)
@@ -110,13 +110,13 @@ Azimuth azimuth(Arc arc, real2 node) {
   return at;
 }
 
-// Half angles that split [0, pi] into arcs, in ascending order. The critical azimuth may lie on any arc.
+// Half angles that split [0, pi] into arcs, in ascending order. Total reflection may begin on any of the arcs.
 struct SplitLines {
   real2 end[DOLP_MAX_ARCS];  // end of each arc; the first begins at phi = 0
   int arcs;
   int leaving;     // number of arcs whose reflected ray leaves the surface
   real2 horizon;   // theta_r = 90 degrees; beyond it the reflected ray does not leave
-  real2 critical;  // cos(beta) = critical_cos, with a square root on both sides
+  real2 critical;  // beginning of total reflection, cos(beta) = critical_cos: a square root on both sides
 };
 
 // The azimuth with cos(phi) = level / (s t), as a half angle.
@@ -127,14 +127,14 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
   real st = max(theta.s * t, real(1e-30));
   real sec2 = real(1.0) + t * t;
   real2 same_zenith = line_at(c * t * t, st);  // theta_r = theta
-  real2 facing = line_at(-c, st);  // beyond this line facets face away
+  real2 facing = line_at(-c, st);  // beyond this line facets face away from the viewer
   if (kHasDirect) {
     lines.end[1] = facing;
     lines.arcs = 2;
   }
   if (kMasking == DOLP_MASKING_INTEGRAL) {
-    // The limit b of eq. (11) reaches pi/2 at theta_r = pi/4 + alpha/2, where cos^2(theta_r) = (1 - sin(alpha)) / 2.
-    // Without cancellation, 1 - sin(alpha) = cos^2(alpha) / (1 + sin(alpha)).
+    // The limit b of eq. (11) (README.md beside this file, section 2) reaches pi/2 at theta_r = pi/4 + alpha/2, where
+    // cos^2(theta_r) = (1 - sin(alpha)) / 2. Without cancellation, 1 - sin(alpha) = cos^2(alpha) / (1 + sin(alpha)).
     real sec = sqrt(sec2);
     real cos_limit = sqrt(real(0.5) / (sec * (sec + t)));
     bool is_beyond = cos_limit < c;
@@ -170,9 +170,9 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
   return lines;
 }
 
-// The lines of a groove: azimuths at which the number of bounces changes, or the formula for the width of the beam.
-// With gamma = pi/2 - alpha, let psi be the zenith of theta in the plane across the groove, tan(psi) = tan(theta)
-// cos(phi). The lines, in ascending order of phi, are
+// The split lines of a groove: azimuths at which the number of bounces, or the formula for the width of the beam,
+// changes. With gamma = pi/2 - alpha, let psi be the zenith of the direction theta, projected into the plane across the
+// groove, tan(psi) = tan(theta) cos(phi). The lines, in ascending order of phi, are
 //   psi = pi/2 - j gamma for j = 1, 2, ... as long as psi >= gamma, but only up to j = RuleNode::split_bounces;
 //   psi = gamma;
 //   psi = pi/2 - j gamma, pi - (2j + 1) gamma and pi/2 - (j + 1) gamma with the next j, unless split_bounces ended
@@ -182,8 +182,8 @@ real2 groove_line(ThetaNode theta, real cos_psi, real sin_psi) {
   return line_at(theta.c * sin_psi / max(cos_psi, real(1e-30)), max(theta.s, real(1e-30)));
 }
 
-// If this many digits suffice for a slope, it is split only at psi = -gamma, where facets turn away from the ray. So
-// are slopes above DOLP_STEEPEST_SPLIT, because their number of bounces changes too often.
+// If a slope needs no more digits than this, its azimuths are split only at psi = -gamma, where facets turn away from
+// the ray. Above DOLP_STEEPEST_SPLIT they are split only at psi = +-gamma, or there would be too many splits.
 CONST real kDigitsOfLines = real(3.0);
 
 SplitLines groove_lines(RuleNode rule, ThetaNode theta, real t, real digits, SplitLines lines) {

@@ -1,4 +1,4 @@
-// The data that the kernel source reads in GLSL. In C++ the class that includes it has members instead.
+// The data that the kernel source reads in GLSL. In C++ they are members of the class that includes the kernel source.
 layout(local_size_x_id = DOLP_SPEC_LOCAL_SIZE) in;
 layout(constant_id = DOLP_SPEC_DISTRIBUTION) const uint kDistribution = DOLP_CAUCHY;
 layout(constant_id = DOLP_SPEC_MASKING) const uint kMasking = DOLP_MASKING_NONE;
@@ -13,7 +13,7 @@ layout(constant_id = DOLP_SPEC_CURVES) const bool kHasCurves = false;
 #if DOLP_MOST_COLUMNS > 0
 layout(constant_id = DOLP_SPEC_COLUMN_COUNT) const uint kColumnCount = 0u;
 layout(constant_id = DOLP_SPEC_COLUMNS) const uint kColumns = DOLP_COLUMNS_SKY;
-// With responses a sky has only one function.
+// If the columns are responses, the kernel uses only one function of the sky.
 int sky_functions() { return kColumns == DOLP_COLUMNS_SKY ? int(kColumnCount) : 1; }
 #else
 const uint kColumns = DOLP_COLUMNS_SKY;
@@ -24,8 +24,8 @@ layout(push_constant) uniform PushConstants { DOLP_PUSH_CONSTANTS } push;
 layout(std430, binding = DOLP_BINDING_SHAPES) readonly buffer Shapes { ShapeNode shapes[]; };
 layout(std430, binding = DOLP_BINDING_MASKING_TABLE) writeonly buffer MaskingTable { real4 masking_table[]; };
 
-// Data that each invocation reads at different positions are in texel buffers: to read them from a storage buffer,
-// processors without AVX-512 loop over the lanes and wait for a store to the stack in each turn.
+// Data that neighbouring invocations read at different positions are in texel buffers. Reads from a storage buffer are
+// slow on processors without AVX-512: they loop over the lanes and wait for a store to the stack in each turn.
 #ifdef DOLP_DOUBLE
 layout(binding = DOLP_BINDING_RULE_NODES) uniform usamplerBuffer rule_nodes;
 layout(binding = DOLP_BINDING_MASKING_NODES) uniform usamplerBuffer masking_nodes;

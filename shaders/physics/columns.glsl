@@ -2,18 +2,18 @@
 //   sky: the moments with functions g of the zenith of the reflected ray as factors, |g| <= 1. They give what a sky
 //     that changes with the zenith adds to a uniform sky (README.md beside this file, section 11).
 //   responses: the moments with Chebyshev polynomials of the local angle of incidence instead of the reflectances.
-//     The moments of every index are weighted sums of responses (section 8). Responses are of the reflected light, of
-//     the reflected light times the first function of a sky, or of the direct emission.
+//     The moments of every index are weighted sums of responses (section 8). There are responses of the reflected
+//     light, of the reflected light times the first function of a sky, and of the direct emission.
 //
-// A function g is stored as straight lines over u = sqrt(1 - cos(theta_r)), in cells of equal width, each with the
+// A function g is stored as straight lines over u = sqrt(1 - cos(theta_r)), in cells of equal width. A cell stores the
 // value at its start and the change over the cell. A sky that has a slope at the zenith is smooth in u, but not in
-// cos(theta_r). The cells follow the nodes of the rules (host/compute/plan/sky_table.cpp).
+// cos(theta_r). The buffer has the cells behind the nodes of the rules (host/compute/plan/sky_table.cpp).
 
-// A kernel reads these once, because devices would read push constants again in each turn of a loop.
+// Copies of push constants about the tables of a sky: devices would read push constants again in each turn of a loop.
 struct SkyPlace {
-  int cells;  // number of cells of a function
-  int start;  // position of the first cell
-  int corners;
+  int cells;    // number of cells of each function's table
+  int start;    // position of the first cell
+  int corners;  // number of corners (kinks over the zenith) of the sky
 };
 
 #if DOLP_MOST_COLUMNS > 0
@@ -53,7 +53,7 @@ ColumnValues sky_at(SkyPlace table, real cos_r) {
   return values;
 }
 
-// The Chebyshev polynomials T_k(2 asinh(c / c0) / asinh(1 / c0) - 1), k = 0, 1, ..., with c = cos(beta).
+// The polynomials T_k(2 asinh(c / c0) / asinh(1 / c0) - 1), k = 0, 1, ..., with c = cos(beta), c0 = 1 / response_scale.
 ColumnValues chebyshev_at(RuleNode rule, real cos_beta) {
   real x = asinh_real(cos_beta * rule.response_scale) * rule.response_norm - real(1.0);
   ColumnValues values;
@@ -100,7 +100,6 @@ void store_azimuth_columns(Columns sums) {
   }
 }
 
-// Stores the columns of one entry of a row, computed by one of the two rules of a piece.
 void store_columns(int member, bool is_coarse, Columns sums) {
   uint first = uint(member) * kColumnCount * DOLP_COLUMN_PARTS + (is_coarse ? 0u : 2u);
   for (int k = 0; k < DOLP_MOST_COLUMNS; ++k) {

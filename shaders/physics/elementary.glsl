@@ -3,12 +3,12 @@
 // Accuracy: a few units in the last place in the ranges stated here (tests/compute/kernel_source_test.cpp).
 
 CONST real kPi = real(3.14159265358979323846);
-CONST real kLn2High = real(0.693145751953125);             // few bits: its products with exponents are exact in a float
+CONST real kLn2High = real(0.693145751953125);             // few bits, so products with exponents are exact in float
 CONST real kLn2Low = real(1.42860682030941723212e-6);      // ln 2 - kLn2High
 CONST real kInverseLn2 = real(1.44269504088896340736);
 CONST real kSqrtHalf = real(0.70710678118654752440);
 
-// `c ? a : b` of expressions is a branch, which in a loop doubles the time that some drivers need to analyse it.
+// Not a branch, unlike `c ? f(a) : g(b)`: each branch in a loop doubles the time that some drivers need to analyse it.
 real choose(bool condition, real yes, real no) { return condition ? yes : no; }
 real2 choose(bool condition, real2 yes, real2 no) { return condition ? yes : no; }
 

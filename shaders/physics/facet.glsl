@@ -3,7 +3,8 @@
 // A facet has the slope t and the azimuth phi, measured from the plane of incidence. Let c = cos(theta),
 // s = sin(theta), x = cos(phi), r = cos(alpha) = 1 / sqrt(1 + t^2), r2 = r^2 and e = c + s t x. Facets from phi = 0 to
 // phi_m have reflected rays that leave the surface. Then
-//   rho c = integral P(t) t dt * 2 integral_0^phi_m e G M dphi,     cos(beta) = r e,     cos(theta_r) = 2 r2 e - c,
+//   rho_I c = integral P(t) t dt * 2 integral_0^phi_m e G M00 dphi,  rho_Q c with M01,
+//   cos(beta) = r e,   cos(theta_r) = 2 r2 e - c,
 //   sin^2(beta)             = r2 [(c t x - s)^2 + t^2 (1 - x^2)],
 //   sin^2(beta) cos(2 eta)  = r2 [(c t x - s)^2 - t^2 (1 - x^2)],
 //   M00 = R_s - D sin^2(beta) / 2,   M01 = D sin^2(beta) cos(2 eta) / 2,   D = (R_s - R_p) / sin^2(beta).
@@ -46,7 +47,7 @@ Facet facet(ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   return result;
 }
 
-// e G is visible, e (1 - G) is hidden by masking. Each is computed directly: a difference from e would lose digits.
+// The visible part e G of the projection e, and the hidden part e (1 - G): e minus one part would lose digits.
 struct Projection {
   real visible;
   real hidden;
@@ -57,13 +58,13 @@ real4 reflected(Facet f, Projection part) {
   return real4(part.visible * f.m00, part.visible * f.m01, part.visible, part.hidden + part.visible * f.absorbed);
 }
 
-// The part of e that the viewer sees by direct emission, with v-cavity masking of theta if there is any.
+// The part of the projection e whose emission reaches the viewer directly; v-cavity masking toward theta is included.
 real seen_directly(ThetaNode theta, Facet f) {
   return (kMasking == DOLP_MASKING_V_CAVITY) ? min(f.e, real(2.0) * theta.c) : f.e;
 }
 
-// (I, Q) per radian of azimuth: e G1 (1 - M00) and -e G1 M01, where G1 masks only toward the viewer, theta. The G1 of
-// smith masking is equal for all facets, and moments.glsl applies it later.
+// Direct emission (I, Q) per radian of azimuth: e G1 (1 - M00) and -e G1 M01, with the masking G1 toward the viewer at
+// theta. G1 of smith is equal for all facets, and moments.glsl applies it later.
 real2 emitted(ThetaNode theta, Facet f) {
   real visible = seen_directly(theta, f);
   return real2(visible * f.absorbed, -visible * f.m01);

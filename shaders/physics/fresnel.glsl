@@ -43,8 +43,8 @@ Fresnel fresnel(IndexNode index, real cos_beta) {
   return fresnel_of_sums(real2(index.n2m1_re, index.n2m1_im), cos_beta, w, s_sum, p_sum);
 }
 
-// The table (host/compute/plan/reflectance_curve.cpp) has cubics over sqrt(cos(beta)), in cells of equal width, for
-// R_s, for 1 - R_s and for (R_s - R_p) / sin^2(beta).
+// Reads R_s, 1 - R_s and (R_s - R_p) / sin^2(beta) of films or of measured reflectances from their table: cubics over
+// sqrt(cos(beta)) in cells of equal width (host/compute/plan/reflectance_curve.cpp).
 Fresnel reflectance_at(IndexNode index, real cos_beta) {
   int cells = int(index.curve_cells);
   real position = sqrt(cos_beta) * real(cells);

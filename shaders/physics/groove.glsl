@@ -12,14 +12,14 @@
 // goes on to bounce k, with X_0 = max(a sin(psi - gamma), 0).
 
 // A ray on its way through the fan. Groups of 2, 4, 8 ... bounces in the middle of its path count as one bounce; near
-// the first and last bounce, which may be grazing, groups are smaller. error_bounds.cpp of host/ bounds the error.
+// the first and last bounce, which may be grazing, groups are smaller (error: host/compute/plan/error_bounds.cpp).
 struct Fan {
   real2 turn;    // (cos, sin) of gamma times `taken`
-  real gamma;    // like the next members, set only for steep grooves, see fan()
-  real left;     // bounces ahead; (pi/2 - psi) / gamma at first
-  real done;
+  real gamma;    // pi/2 - alpha; gamma, left and slant are set only for steep grooves, see fan()
+  real left;     // number of bounces ahead; (pi/2 - psi) / gamma at first
+  real done;     // number of bounces behind
   real slant;    // psi / gamma, at most 1
-  real taken;    // bounces in the next group, 2^doublings
+  real taken;    // number of bounces in the next group, 2^doublings
   int doublings;
   bool is_steep;
   bool is_black;  // true if the ray has so many bounces that no light is left
@@ -38,7 +38,7 @@ Fan fan(real t, real c, real u) {
   f.doublings = 0;
   f.is_steep = false;
   f.is_black = false;
-  // A ray has at most pi/gamma < pi t + 2 bounces. A loop of one turn replaces the `if`: devices skip it if not needed.
+  // At most pi/gamma < pi t + 2 bounces. The loop of one turn is an `if` that devices skip if no ray needs it.
   for (bool may_be = t > real(DOLP_MOST_BOUNCES) / kPi; may_be; may_be = false) {
     real to_horizon = arc_tangent(c / max(abs(u), real(1e-30)));
     f.gamma = arc_tangent(real(1.0) / t);
@@ -51,7 +51,7 @@ Fan fan(real t, real c, real u) {
   return f;
 }
 
-// Share of the beam that goes on to one more bounce after many. The sines of small angles are replaced by the angles.
+// Share of the beam that goes on to the next bounce in a steep groove. Small angles replace their sines.
 real last_share(Fan f) {
   real sum = max(real(1.0) + f.slant, real(1e-30));
   return (real(2.0) * f.left + f.slant - real(1.0)) / sum;
@@ -110,7 +110,7 @@ Bounce bounce(IndexNode index, real cos_beta, real sin2_beta, int doublings) {
   return combined;
 }
 
-// The plane of incidence is turned by eta. `twice` is (cos, sin) of 2 eta.
+// Reflects the Stokes vector `stokes`. The plane of incidence is turned by eta; `twice` is (cos, sin) of 2 eta.
 real4 bounced(Bounce by, real2 twice, real4 stokes) {
   real q = twice.x * stokes.y + twice.y * stokes.z;
   real u = twice.x * stokes.z - twice.y * stokes.y;
@@ -131,16 +131,16 @@ real2 further_on(real2 at, real2 step) {
   return real2(at.x * step.x + at.y * step.y, at.y * step.x - at.x * step.y);
 }
 
-// A part of the beam may leave one bounce earlier than the rest.
+// Light that leaves a groove. A part of the beam may leave one bounce earlier than the rest.
 struct GrooveLight {
   real4 moments;    // (r_i, r_q, albedo, deficit), as in facet.glsl
   real2 before;     // r_i and r_q of the part that leaves earlier
   real cos_before;  // cos(theta_r) of that part
-  real2 last;
+  real2 last;       // r_i and r_q of the rest, which leaves after the last bounce
   real cos_last;
 };
 
-// Moments per radian for rays that meet the facet first. After k bounces cos(theta_r) is -a cos(psi + 2 k gamma).
+// Moments per radian for rays that meet the facet at phi first. After k bounces cos(theta_r) = -a cos(psi + 2 k gamma).
 GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   real c = theta.c;
   real u = theta.s * x;
@@ -156,7 +156,7 @@ GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index,
   real2 between = real2(u, c);  // a (sin, cos) of psi + 2 k gamma
   real share = f.is_black ? real(0.0) : real(1.0);  // share of the beam that continues
   real absorbed = real(1.0) - share;
-  // Stokes vectors in the frame of the surface: one has I = 1 and is unpolarised, the other has only Q = 1.
+  // Stokes vectors in the frame of the surface: `natural` has I = 1 and is unpolarised, `polarised` has only Q = 1.
   real4 natural = real4(share, real(0.0), real(0.0), real(0.0));
   real2 seen = doubled_angle(-x, c * sin_phi);
   real4 polarised = real4(real(0.0), share * seen.x, share * seen.y, real(0.0));

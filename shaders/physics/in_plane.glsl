@@ -1,6 +1,6 @@
 // G of `integral` and smith masking at one geometry, by Gauss rules over the in-plane slopes tau. It uses no table,
 // because a pBRDF needs G only once or twice. With mu = cot(theta):
-//   smith, height-correlated:  L(theta) = (1 / mu) int_mu^inf p(tau) (tau - mu) dtau.
+//   smith, height-correlated:  Lambda(theta) = (1 / mu) int_mu^inf p(tau) (tau - mu) dtau.
 //   `integral`:  1 - G1 = int_mu^inf p(tau) min(1, kappa (tau - mu) / sqrt(1 + tau^2)) dtau, eqs. (9)-(12)
 //   of the paper with tau = tan(gamma). masking.glsl defines kappa and the slope tb at which the minimum switches.
 // The rules run over X = asinh(tau / scale), with scale = min(m / sqrt(q), 1), for the gaussian min(m, 1). Then all
@@ -8,7 +8,7 @@
 // the integral has a closed form. All terms are positive.
 
 #ifdef DOLP_DOUBLE
-CONST int kInPlaneOrder = 16;  // order on a panel whose length in X is at most 1
+CONST int kInPlaneOrder = 16;  // order of the Gauss rule on a panel, whose length in X is at most 1
 CONST real kPowerLawSlope = real(1e7);
 #else
 CONST int kInPlaneOrder = 8;
@@ -16,14 +16,14 @@ CONST real kPowerLawSlope = real(1e4);
 #endif
 
 CONST real kSmallestSine = real(1e-18);
-CONST real kLargestSwitch = real(1e20);  // upper limit of tb; beyond it the minimum hardly switches
+CONST real kLargestSwitch = real(1e20);  // upper limit of tb; hardly any slope lies beyond it
 
 CONST uint kWeightOne = 0u;
 CONST uint kWeightVisible = 1u;  // tau - mu; for `integral` divided by sqrt(1 + tau^2)
 
 real in_plane_end(ShapeNode shape) { return min(shape.cut, kPowerLawSlope * max(shape.m, real(1.0))); }
 
-// The sum is 0 if to <= from.
+// Integral of p times `weight` over the slopes from `from` to `to`; 0 if to <= from.
 real in_plane_sum(ShapeNode shape, uint weight, real mu, real from, real to) {
   if (to <= from) return real(0.0);
   real start = asinh_real(from / shape.scale);
@@ -44,7 +44,7 @@ real in_plane_sum(ShapeNode shape, uint weight, real mu, real from, real to) {
   return sum * length * shape.scale;
 }
 
-// Integral over all slopes above `from`, where p ~ tau^(1 - 2q). For the Gaussian it counts as 0.
+// Integral over all slopes above `from`, where p ~ tau^(1 - 2q). For the Gaussian the integral counts as 0.
 real power_law_sum(ShapeNode shape, uint weight, real mu, real from) {
   if (kDistribution == DOLP_GAUSSIAN) return real(0.0);
   real a = real(2.0) * shape.q_minus_1;
@@ -59,7 +59,7 @@ real in_plane_beyond(ShapeNode shape, uint weight, real mu, real from) {
   return in_plane_sum(shape, weight, mu, from, end) + power_law_sum(shape, weight, mu, max(from, end));
 }
 
-// Smith's L of a direction. At 90 degrees it is so large that G is 0.
+// Smith's Lambda of a direction. At 90 degrees Lambda is so large that G is 0.
 real in_plane_lambda(ShapeNode shape, real cos_theta, real sin_theta) {
   real mu = max(cos_theta / max(sin_theta, kSmallestSine), real(1e-30));
   return in_plane_beyond(shape, kWeightVisible, mu, mu) / mu;

@@ -4,8 +4,8 @@
 // The integrals are Pt(x) = int_x^inf p, C(x) = int_x^inf g p and l(x) = int_x^inf g(tau) p(tau) (tau - x) dtau, where
 // g = 1 for smith and 1 / sqrt(1 + tau^2) for `integral`. Their derivatives are l' = -C, C' = -g p and Pt' = -p. With
 // mu = cot(theta):
-//   smith, height-correlated:  G = 1 / (1 + L(theta) + L(theta_r)),  L = l(mu) / mu.
-//   `integral`, eqs. (9)-(12), for kappa = sqrt(1 + t^2) / (mu + t) and d = (1 - mu^2) - 2 mu t:
+//   smith, height-correlated:  G = 1 / (1 + Lambda(theta) + Lambda(theta_r)),  Lambda = l(mu) / mu.
+//   `integral`, eqs. (9)-(12) of the paper, for kappa = sqrt(1 + t^2) / (mu + t) and d = (1 - mu^2) - 2 mu t:
 //     d <= 0:  1 - G1 = kappa l(mu)                                 (the limit b of the second integral is pi/2)
 //     d > 0:   1 - G1 = kappa [l(mu) - l(tb) - (tb - mu) C(tb)] + Pt(tb),   tb = (t (1 - mu^2) + 2 mu) / d.
 // A table holds (l, C, Pt, p) at the nodes v = 1 + tau / table_scale = 2^octave (1 + cell / 2^kCellBits).
@@ -29,7 +29,7 @@ real masking_weight(real tau) {
   return (kMasking == DOLP_MASKING_SMITH) ? real(1.0) : real(1.0) / sqrt(real(1.0) + tau * tau);
 }
 
-// -p'/p is marginal_decay times marginal_decay_factor, which depends only on the shape. -g'/g is weight_decay.
+// -p'/p is marginal_decay times marginal_decay_factor; the factor depends only on the shape. -g'/g is weight_decay.
 real marginal_decay(ShapeNode shape, real tau) {
   real u = tau / shape.m;
   if (kDistribution == DOLP_GAUSSIAN) return real(2.0) * u / shape.m;
@@ -42,9 +42,9 @@ real weight_decay(real tau) {
   return (kMasking == DOLP_MASKING_SMITH) ? real(0.0) : tau / (real(1.0) + tau * tau);
 }
 
-// The cell that contains tau, in all tables of one table_scale, with the weights of quintic Hermite interpolation at
-// both ends: f for the values, d and e for the first and second derivatives. Beyond its end a table continues with its
-// last value, which matters only within 1e-5 of the line d = 0 and 2e-5 of the normal.
+// The cell that contains tau, at the same place in all tables with one table_scale. The weights of quintic Hermite
+// interpolation at both ends are f for the values, d and e for the first and second derivatives. Beyond its end a table
+// continues with its last value, which matters only within 1e-5 of the line d = 0 and 2e-5 of the normal.
 struct TableCell {
   uint node;  // the last node at or before tau
   real f0;
@@ -81,7 +81,7 @@ TableCell table_cell(ShapeNode shape, real tau) {
   return cell;
 }
 
-// l(tau), with l' = -C and l'' = g p. `table` is the first node of the table.
+// l at the tau of `cell`, from l, l' = -C and l'' = g p at both ends. `table` is the first node of the table.
 real masking_height(TableCell cell, uint table) {
   real4 n0 = masking_node(table + cell.node);
   real4 n1 = masking_node(table + cell.node + 1u);
@@ -89,7 +89,7 @@ real masking_height(TableCell cell, uint table) {
          (cell.e0 * cell.g0 * n0.w + cell.e1 * cell.g1 * n1.w);
 }
 
-// The arguments at which tables are read for 1 - G1(theta, alpha), equal for all tables of one table_scale.
+// The arguments at which tables are read for 1 - G1(theta, alpha). They are equal for all tables with one table_scale.
 struct ShadowRange {
   real kappa;
   bool is_limited;  // true if d > 0, so that tb limits the integral
@@ -97,7 +97,6 @@ struct ShadowRange {
   real gap;         // tb - mu
 };
 
-// cot(theta), the argument of l.
 real shadow_cot(real cos_theta, real sin_theta) { return cos_theta / max(sin_theta, real(1e-10)); }
 
 ShadowRange shadow_range(ShapeNode shape, real cos_theta, real sin_theta, real t) {
@@ -116,9 +115,9 @@ ShadowRange shadow_range(ShapeNode shape, real cos_theta, real sin_theta, real t
   return range;
 }
 
-// 1 - G1 is kappa l(mu) plus, if b < pi/2, the term Pt(tb) - kappa [l(tb) + (tb - mu) C(tb)]. The term is a sum of
-// these factors times the table's values at both ends of the cell of tb. The factors use C'' = g p (-p'/p - g'/g) and
-// Pt'' = p (-p'/p), in which only p and -p'/p depend on the shape.
+// 1 - G1 is kappa l(mu) plus, if d > 0, the term Pt(tb) - kappa [l(tb) + (tb - mu) C(tb)]. The term is a sum of these
+// factors times the table's values at both ends of the cell of tb. The factors use C'' = g p (-p'/p - g'/g) and Pt'' =
+// p (-p'/p), in which only p and -p'/p depend on the shape.
 struct LimitTerms {
   real l0;
   real l1;

@@ -1,8 +1,8 @@
 // Builds the table of one shape from its far end inwards. All terms are positive, so no digits are lost.
 
-CONST int kTableOrder = 4;  // Gauss order on one cell, in which v grows by at most an eighth
+CONST int kTableOrder = 4;  // Gauss order; across a cell v = 1 + tau / table_scale grows by a factor of at most 9/8
 
-// The cell's contributions to l, C and Pt, whose values at tau1 are `beyond`; the last component is p(tau0).
+// The contributions of the cell to l, C and Pt; the last component is p(tau0). `beyond` is (l, C, Pt, p) at tau1.
 real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
   real h = tau1 - tau0;
   real height = real(0.0);
@@ -21,8 +21,8 @@ real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
   return real4(h * beyond.y + height, first, probability, marginal_density(shape, tau0));
 }
 
-// (l, C, Pt, p) at the end of the table, with the power law p ~ tau^(1-2q) of the cauchy. If the end is below slope 1,
-// almost no facets are left beyond it. The integrals of the Gaussian are negligible.
+// (l, C, Pt, p) at the end of the table, by the power law p ~ tau^(1-2q) of the cauchy; for `integral` g ~ 1 / tau. If
+// the end is below slope 1, almost no facets are left beyond it. The integrals of the Gaussian are negligible.
 real4 masking_table_end(ShapeNode shape, real tau) {
   real p = marginal_density(shape, tau);
   if (kDistribution == DOLP_GAUSSIAN) return real4(real(0.0), real(0.0), real(0.0), p);
@@ -33,7 +33,7 @@ real4 masking_table_end(ShapeNode shape, real tau) {
   return real4(tail * tau * weight / (a + real(1.0)), tail * a * weight / (a + real(1.0)), tail, p);
 }
 
-// `table` is the first node. The sums are compensated (Kahan 1965): a heavy tail adds hundreds of nearly equal terms.
+// `table` is the first node. Heavy tails add hundreds of nearly equal terms, so sums are compensated (Kahan 1965).
 void build_masking_table(ShapeNode shape, uint table) {
   real tau1 = masking_node_tau(shape, kMaskingNodes - 1u);
   real4 tails = masking_table_end(shape, tau1);

@@ -1,6 +1,6 @@
-// The moments of a row of entries: for each piece of the slope axis a Gauss rule over the slopes, with sums over the
-// azimuths at each slope. Everything is summed by rules of two orders. The finer sum is the result; its difference from
-// the coarser sum bounds the error (host/compute/plan/error_bounds.cpp).
+// The moments of a row of entries. Each piece of the slope axis has a Gauss rule over the slopes, with sums over the
+// azimuths at each slope. Rules of two orders compute every sum. The finer sum is the result; its difference from the
+// coarser sum bounds the error (host/compute/plan/error_bounds.cpp).
 
 CONST real kNearRoot = real(0.2);
 
@@ -44,7 +44,7 @@ Piece make_piece(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task 
   return piece;
 }
 
-// Position y for the abscissa v of the piece's rule, and dy/dv. See Piece.
+// Position y on the piece for the abscissa v of the piece's rule, and dy/dv; struct Piece explains the map.
 real2 position_on_piece(Piece piece, real v) {
   bool has_both = piece.root_at_a && piece.root_at_b;
   real2 both = real2(v * v * (real(3.0) - real(2.0) * v), real(6.0) * v * (real(1.0) - v));
@@ -123,7 +123,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
     }
     sums.evaluations += azimuths.evaluations;
   }
-  // Normalising by the known share of the facets cancels the error of the density itself.
+  // The share of facets on the piece is known exactly. Scaling the sums to it cancels the rule's error in the density.
   for (int g = 0; g < DOLP_WIDTH; ++g) {
     real ratio = choose(mass[g] > real(0.0), piece.mass[g] / mass[g], real(1.0));
     sums.member[g] *= ratio;
@@ -138,7 +138,7 @@ struct RowMoments {
   MomentsNode member[DOLP_WIDTH];
 };
 
-// The first piece also adds the facets beyond the last slope to the deficit.
+// The deficit of the first piece also contains the facets that are steeper than the last slope.
 RowMoments piece_moments(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task task) {
   real cut = row.shape[0].cut;
   Piece piece = make_piece(rule, theta, row, index, task);

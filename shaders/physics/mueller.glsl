@@ -14,7 +14,7 @@ real attenuation(GeometryNode g, ShapeNode shape) {
   if (kMasking == DOLP_MASKING_SMITH) {
     return real(1.0) / (real(1.0) + in_plane_lambda(shape, g.c_i, g.s_i) + in_plane_lambda(shape, g.c_r, g.s_r));
   }
-  bool incident_is_lower = g.c_i * g.s_r < g.c_r * g.s_i;  // tangents: near the normal a float cosine is 1
+  bool incident_is_lower = g.c_i * g.s_r < g.c_r * g.s_i;  // compares tangents: a cosine near 1 loses digits
   real lower_cos = incident_is_lower ? g.c_i : g.c_r;
   real lower_sin = incident_is_lower ? g.s_i : g.s_r;
   if (kMasking == DOLP_MASKING_V_CAVITY) {

@@ -1,8 +1,9 @@
-// The only file that depends on the language.
+// The only file of the kernel source whose text depends on the language.
 //
-// GLSL: the build defines DOLP_DOUBLE for the modules in double.
-// C++:  the including class is in a namespace with `real`, its GLM types (real2, real4) and GLM's sqrt, abs, min, max,
-// clamp, floor, ldexp, floatBitsToUint. The functions that read data (masking_node, rule_node) are members.
+// GLSL: the build defines DOLP_DOUBLE when it compiles a module in double.
+// C++: the class that includes the kernel source lies in a namespace that defines `real`, its vectors real2 and real4
+// of GLM, and GLSL's functions (sqrt, clamp, ldexp ...). Functions that read data (masking_node, rule_node) are members
+// of the class.
 #ifdef __cplusplus
 #define CONST static constexpr
 #define precise

@@ -1,12 +1,12 @@
-// Entries that one invocation computes together. They differ only in the exponent q, so only the masking is not shared.
+// Entries that one invocation computes together. They differ only in q, so they share the facets and the reflection.
 
-// The entries are in ascending order of q. Scale, cut, table_scale and cusp_digits are those of the most demanding one.
+// In ascending order of q. All entries have the scale, cut, table_scale and cusp_digits of the most demanding one.
 struct Row {
   ShapeNode shape[DOLP_WIDTH];
   uint table[DOLP_WIDTH];  // first node of each shape's masking table
 };
 
-// A row for maskings that do not depend on the shape.
+// A dummy row, for maskings that do not depend on the slope distribution.
 Row no_row() {
   Row row;
   for (int g = 0; g < DOLP_WIDTH; ++g) {
@@ -17,7 +17,7 @@ Row no_row() {
   return row;
 }
 
-// Masking toward one direction, for each entry of a row: 1 - G1 of `integral` for facets of one slope t, or Smith's L.
+// Masking toward one direction, for each entry of a row: with smith Lambda, with `integral` 1 - G1 for a given slope t.
 struct MaskingTerms {
   real value[DOLP_WIDTH];
 };
@@ -28,7 +28,8 @@ MaskingTerms unmasked() {
   return masked;
 }
 
-// The part that does not depend on the slope: Smith's L (G is 0 at 90 degrees), or l of masking.glsl for `integral`.
+// The part of the masking that does not depend on the slope t. For smith it is Lambda, at 90 degrees so large that G is
+// 0. For `integral` it is l(cot(theta)) of masking.glsl.
 MaskingTerms masking_of_direction(Row row, real cos_theta, real sin_theta) {
   MaskingTerms heights = unmasked();
   if (kMasking == DOLP_MASKING_SMITH) {
@@ -44,7 +45,7 @@ MaskingTerms masking_of_direction(Row row, real cos_theta, real sin_theta) {
   return heights;
 }
 
-// 1 - G1 of `integral`. Every invocation computes it: one that does not need it would wait for its neighbours anyway.
+// 1 - G1 of `integral`. All invocations compute `limited`: one that does not need it would wait for its neighbours.
 MaskingTerms shadows(Row row, MaskingTerms heights, real cos_theta, real sin_theta, real t) {
   ShadowRange range = shadow_range(row.shape[0], cos_theta, sin_theta, t);
   TableCell cell = table_cell(row.shape[0], range.far);
@@ -57,7 +58,7 @@ MaskingTerms shadows(Row row, MaskingTerms heights, real cos_theta, real sin_the
   return masked;
 }
 
-// In zone 0 `integral` uses only the masking of theta, see project().
+// In zone 0 `integral` uses only the masking toward theta, see project().
 MaskingTerms masking_of_ray(Row row, real cos_r, real sin_r, real t, int zone) {
   if (kMasking == DOLP_MASKING_SMITH) return masking_of_direction(row, cos_r, sin_r);
   MaskingTerms masked = unmasked();
@@ -67,7 +68,7 @@ MaskingTerms masking_of_ray(Row row, real cos_r, real sin_r, real t, int zone) {
   return masked;
 }
 
-// The share of a facet's direct emission that masking leaves; 1 for other maskings. `masking_in` is L of theta.
+// Share of a facet's direct emission that smith masking leaves; 1 for other maskings. `masking_in` is Lambda(theta).
 real smith_g1(real masking_in) { return (kMasking == DOLP_MASKING_SMITH) ? real(1.0) / (real(1.0) + masking_in) : real(1.0); }
 
 // A facet's projection, masked toward theta and toward the reflected ray. `zone` counts the intervals between split

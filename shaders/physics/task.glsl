@@ -5,10 +5,10 @@ struct Task {
   bool root_at_start;
   bool root_at_end;
   bool root_before_start;  // square root at the start of the preceding piece
-  bool root_after_end;
+  bool root_after_end;     // square root at the end of the next piece
   bool has_split_line;
   int most_azimuths;
-  real before;  // slopes: start of the preceding piece, ends of the piece, end of the next, last end of all
+  real before;  // five slopes: start of the preceding piece, start, end, end of the next piece, last end of all
   real start;
   real end;
   real after;

@@ -20,8 +20,8 @@ TEST(FitSets, BentValley_IntervalsHoldATruthThatTheDataDoNotExclude) {
   }
 }
 
-// The data include multiple bounces. A fit by single scattering with its bracket has wide intervals, which contain the
-// truth. A fit by the model with all bounces has narrow ones.
+// The data include multiple bounces. A fit by single scattering that allows for the bracket of DOLP has wide intervals,
+// which contain the truth. A fit by the model with all bounces has narrow intervals.
 TEST(FitSets, AllBounces_IntervalsOfTheBracketHoldTheTruth) {
   constexpr std::size_t kFewPoints = 6;  // points per data set; the study uses 15
   CpuEvaluator evaluator;

@@ -1,4 +1,4 @@
-// The methods that bench compares with dolp are correct, converge as expected, and measure times as documented.
+// The methods that dolp-bench compares with dolp are correct, converge as expected, and measure times as documented.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -109,7 +109,7 @@ std::string test_name(const testing::TestParamInfo<std::string>& tested) {
 }
 INSTANTIATE_TEST_SUITE_P(Registry, BenchMethod, testing::ValuesIn(method_names()), test_name);
 
-// A tight tolerance tests the tables of integral and smith masking, and the horizon as the end of the integration.
+// A tight tolerance shows errors of the masking tables (integral, smith) and of the integral's end at the horizon.
 TEST(BenchFormulas, AdaptiveCubature_TightTolerance_AgreesWithReferenceForBothDistributions) {
   const std::unique_ptr<Solver> hcubature = solver_of("hcubature");
   for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
@@ -180,7 +180,7 @@ TEST(BenchTiming, MedianAndSpread_OddAndEven_AreThoseOfTheList) {
   EXPECT_DOUBLE_EQ(spread({1.0, 1.5, 9.0}), 0.5);
 }
 
-/// A study with one result, on an idle machine with a release build. No condition gives a warning.
+/// A study with one result, on an idle machine with a release build. Nothing in it is a reason for a warning.
 nlohmann::ordered_json quiet_study() {
   return {
       {"study", "test"},

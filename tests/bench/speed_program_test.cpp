@@ -48,8 +48,8 @@ TEST_F(BenchThroughput, Json_GridsAndArithmetic_HaveTheirRows) {
   }
 }
 
-/// Checks the part of the study that runs the kernels in several processes at once. It exists only for lavapipe. For
-/// other devices the result must have the reason.
+/// Checks the part of the study that runs the kernels in several processes at once. This part exists only for lavapipe.
+/// For other devices the result must state why the part is missing.
 void expect_processes(const json& result) {
   constexpr std::size_t kMaskings = 2;  // the quick study has two maskings
   const json& rows = result["results"];
@@ -85,7 +85,7 @@ TEST_F(BenchProgram, Json_Rows_ReachTheToleranceAndCompareWithTheKernels) {
     expect_keys(row, {"method", "case", "tolerance"});
     EXPECT_EQ(row["case"], "integral");
     if (row["method"] == "monte-carlo") {
-      // the largest allowed number of samples gives only three digits
+      // this tolerance needs more samples than the largest allowed number, which gives three digits
       EXPECT_TRUE(row.contains("not_run")) << row.dump();
       continue;
     }

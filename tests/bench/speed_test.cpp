@@ -38,8 +38,8 @@ double largest_difference(const std::vector<Answer>& a, const std::vector<Answer
   return largest;
 }
 
-// The native build computes neighbouring directions together, with the largest of their orders. On this coarse grid
-// these orders differ much, so it uses up to four times as many evaluations as the device.
+// The native build computes neighbouring directions together, with the largest quadrature order that one of them needs.
+// On this coarse grid the orders differ much, so it uses up to four times as many evaluations as the device.
 TEST(BenchNative, Grid_HasTheDevicesNodesOrMoreAndItsMoments) {
   constexpr double kTolerance = 1e-4;
   const std::unique_ptr<Solver> native = solver_of("native-float");
@@ -76,7 +76,7 @@ TEST(BenchOperations, WholeRequest_CountsWhatTheKernelDoes) {
   const KernelWork work = count_operations(request, 1'000'000, 8);
   const Solution solution = solver_of("vulkan-float")->solve(request, request.tolerance);
   EXPECT_NEAR(work.evaluations / *solution.evaluations, 1.0, 1e-3);
-  // Each evaluation has three square roots and, in Fresnel's formulas, about 40 products. Limits of pieces need more.
+  // Each evaluation has three square roots and, in Fresnel's formulas, about 40 products. Integration limits need more.
   EXPECT_GT(static_cast<double>(work.counts.square_root), 3.0 * work.evaluations);
   EXPECT_GT(static_cast<double>(work.counts.multiply), 40.0 * work.evaluations);
   EXPECT_LT(static_cast<double>(work.counts.flops()), 5000.0 * work.evaluations);

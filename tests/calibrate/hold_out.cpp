@@ -15,11 +15,11 @@ namespace {
 constexpr double kFinerBy = 1e-5;
 constexpr double kFinest = 1e-13;
 constexpr double kReferenceTolerance = 1e-9;
-constexpr std::size_t kAtOnce = 2000;  // entries per call of an evaluator, which holds their masking tables in memory
+constexpr std::size_t kAtOnce = 2000;  // entries per call of an evaluator, which keeps all their masking tables
 constexpr std::size_t kClimbSteps = 40;
 constexpr std::size_t kNeighbours = 16;
 
-/// Moments of some entries: by the rule under test with its stated errors, and by a far more accurate computation.
+/// Moments of some entries, by the rule under test with its stated errors and by a far more accurate computation.
 struct Answers {
   std::vector<Moments> stated;
   std::vector<Moments> exact;
@@ -97,7 +97,7 @@ MomentsPoint neighbour(Draw& draw, const MomentsPoint& entry, Domain domain, dou
   return next;
 }
 
-/// True if the entry lies in the domain of random_entry. Climbs must not leave it.
+/// True if the entry lies in the domain of random_entry. A search for worse entries (a climb) must not leave it.
 bool is_in(Domain domain, const MomentsPoint& entry, double q_end) {
   if (domain == Domain::kCorners) return entry.shape.sigma <= 10.0 && entry.shape.q <= q_end + 20.0;
   return entry.shape.sigma >= 0.01 && entry.shape.sigma <= 2.0 && entry.shape.q >= q_end + 0.1 &&

@@ -1,4 +1,4 @@
-// dolp-calibrate: fits the constants of the rules in plan/rule.cpp, and tests the error bounds.
+// dolp-calibrate: fits the constants of the quadrature rules in plan/rule.cpp, and tests the error bounds.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -25,7 +25,7 @@ dolp::MomentsRequest integrand(dolp::Masking masking, dolp::Scattering scatterin
   return request;
 }
 
-/// The integrands with constants in plan/rule.cpp: one for each masking, and one for all bounces in V-grooves.
+/// The integrands for which plan/rule.cpp has constants: one for each masking, one for all bounces in V-grooves.
 const std::map<std::string, dolp::MomentsRequest> kIntegrands = {
     {"none", integrand(dolp::Masking::kNone)},
     {"v-cavity", integrand(dolp::Masking::kVCavity)},

@@ -21,8 +21,9 @@ namespace {
 
 constexpr std::array kTolerances = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8};
 constexpr double kCornerShare = 0.25;
-// Relative cost of an evaluation in a second computation of an entry. A scattered point costs 1. In a dense grid it
-// costs 30: interpolation computes one entry of 30, but every entry that is computed again. This value lies between.
+// Cost of an evaluation when an entry is computed again, relative to an evaluation in its first computation. It would
+// be 1 for scattered points, and 30 for a dense grid: interpolation first computes one entry of 30, but every entry
+// that misses its tolerance is computed again. The value lies between both costs.
 constexpr double kAgainWeight = 8.0;
 // The relative error of r_q / r_i, the DOLP of reflected light, is at most the sum of the errors of r_q and r_i.
 constexpr double kErrorsOfDolp = 2.0;

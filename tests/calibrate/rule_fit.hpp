@@ -1,4 +1,4 @@
-// Search for the constants of plan/rule.hpp that minimise the evaluations for random entries.
+// Search for the constants of quadrature rules (plan/rule.hpp) that minimise the evaluations for random entries.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
-// Error estimates are honest over the whole range of scenes, and beside the values at which a rule changes: the stated
-// error of a coarse rule must cover its distance from a rule with four more digits. The environment variable
-// DOLP_PROPERTY_DRAWS sets the number of points per kernel and model.
+// Error estimates are honest over the whole range of scenes, and beside values at which a rule changes. The stated
+// error of a coarse rule must cover the difference of its result from the result of a rule with four more digits. The
+// environment variable DOLP_PROPERTY_DRAWS sets the number of points per kernel and model.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace dolp {
 namespace {
 
-// Smith's moments vanish at exactly 90 degrees. Scenes use the limit just below.
+// With smith masking all moments vanish at exactly 90 degrees. Scenes use the limit just below 90 degrees.
 constexpr double kNothing = 1e-28;
 constexpr std::uint64_t kSeed = 20260402;
 constexpr std::size_t kDraws = 60;
@@ -29,14 +29,14 @@ std::uint64_t seed_of(const Model& model) {
   return kSeed + 2 * static_cast<std::uint64_t>(model.masking) + static_cast<std::uint64_t>(model.distribution);
 }
 
-/// Draws with one or two parameters slightly below or above a value at which the plan, the kernel or the model changes.
+/// Random points with one or two parameters slightly beside values at which the plan, the kernel or the model changes.
 class Switches {
  public:
   Switches(const Model& model, std::uint64_t seed) : model_(model), random_(seed) {}
 
   std::vector<Point> points() {
-    // At 30, 45 and 18 degrees split lines meet; at 12.857 = 90/7 the lines of `integral`; at 12.9, 18.05 and 30.2 they
-    // nearly meet. At 65, 80, 88 and 89 the orders change.
+    // At 18, 30 and 45 degrees lines that split the integral meet, with `integral` masking also at 90/7 = 12.857. At
+    // 12.9, 18.05 and 30.2 degrees lines nearly meet. At 65, 80, 88 and 89 the quadrature orders change.
     for (const double theta_deg :
          {12.857142857142858, 12.9, 18.0, 18.05, 22.5, 30.0, 30.2, 36.0, 44.9, 45.0, 60.0, 65.0, 80.0, 88.0, 89.0}) {
       add([&](Point& p) { p.theta_deg = beside(theta_deg); });
@@ -65,9 +65,9 @@ class Switches {
   double least_q() const {
     return model_.masking == Masking::kSmith && model_.distribution == Distribution::kCauchy ? 1.501 : 1.001;
   }
-  // Total reflection begins at sin(beta) = n. Its line meets phi = 0, the horizon and theta_r = theta if theta is the
-  // critical angle, its complement, or twice the critical angle minus 90 degrees. Total reflection ends if n reaches 1,
-  // and with growing 2 n k.
+  // Total reflection begins at the line sin(beta) = n. This line meets the lines phi = 0, horizon and theta_r = theta
+  // if theta is the critical angle, its complement, or twice the critical angle minus 90 degrees. Total reflection ends
+  // when n reaches 1, and when 2 n k grows.
   void add_total_reflection(double n) {
     constexpr double kSoftCriticalLine = 0.3;  // 2 n k above which the plan treats total reflection as smooth
     const double critical_deg = std::asin(n) * 180.0 / std::numbers::pi;
@@ -104,8 +104,8 @@ TEST_P(CoarseRule, CoarseAndFineRule_DifferByNoMoreThanTheyState) {
 INSTANTIATE_TEST_SUITE_P(Kernels, CoarseRule, testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kModels)),
                          kernel_and_model_name);
 
-// Entries for which both rules of a pair once agreed by chance, or made equal errors. They justify the least share of
-// the tolerance for bounds, and the pairs' factor.
+// Entries for which the two rules of an error estimate once agreed by chance or made equal errors. Because of them a
+// bound is at least a share of the tolerance, and a multiple of the difference of the rules.
 struct HardEntry {
   Model model;
   double tolerance;
@@ -114,7 +114,7 @@ struct HardEntry {
 
 constexpr Model kCauchySmith{Distribution::kCauchy, Masking::kSmith};
 constexpr std::array<HardEntry, 9> kHardEntries{{
-    // Smith's mean slope is about to diverge.
+    // Here q is just above 3/2, where the mean slope of Smith's masking diverges.
     {kCauchySmith, 1e-4, {0.0, {4.4985874, 1.505362511}, {4.483711324, 9.059458356}}},
     {kCauchySmith, 1e-4, {0.0, {6.854371606, 1.507915401}, {1.035031297, 0.01023949105}}},
     {kCauchySmith, 1e-4, {0.0130314, {7.418917168, 1.508037519}, {3.801393770, 0.0}}},
@@ -145,7 +145,7 @@ TEST(HardEntries, Moments_AreWithinTheirBoundsOfFinerRulesAndOfTheReference) {
       const Moments fine = FixedPrecision(Precision::kDouble).evaluate(finest, {}).at(0);
       expect_within_bounds(stated, fine, where);
       expect_within_bounds(stated, ReferenceEvaluator().evaluate(finest, {}).at(0), where);
-      // A run computes an entry again if it does not claim its tolerance. An entry that claims it must meet it.
+      // An entry whose stated error meets the tolerance is not computed again. So its true error must meet it, too.
       const double asked = entry.tolerance * fine.r_i;
       const bool claims = std::max(stated.r_i_error, stated.r_q_error) <= asked;
       const double error = std::max(std::abs(stated.r_i - fine.r_i), std::abs(stated.r_q - fine.r_q));
@@ -154,7 +154,7 @@ TEST(HardEntries, Moments_AreWithinTheirBoundsOfFinerRulesAndOfTheReference) {
   }
 }
 
-// Smith's mean slope is about to diverge; L rises from 0 to thousands within a fraction of a degree.
+// Points with q just above 3/2. Near the zenith, Lambda of Smith's masking rises from 0 to thousands within 1 degree.
 constexpr std::size_t kDivergingDraws = 150;
 
 std::vector<Point> diverging_points(std::size_t count) {
@@ -186,7 +186,7 @@ TEST(DivergingSlope, Moments_AreWithinTheirBoundsOfTheReference) {
   }
 }
 
-// The DOLP needs the most accurate rho if hardly anything is emitted: near the horizon.
+// Near the horizon hardly anything is emitted. There DOLP needs the most accurate rho.
 class NextToTheHorizon : public testing::TestWithParam<Masking> {
  protected:
   static constexpr std::size_t kPoints = 300;

@@ -1,5 +1,5 @@
-// All bounces in V-grooves and direct emission, with every kernel: compared with stored values and with the reference,
-// and properties that hold for all inputs. Random numbers have fixed seeds.
+// All bounces in V-grooves and direct emission, with every kernel. Results are compared with stored values and with the
+// reference. Other tests check properties that hold for all inputs. Random numbers have fixed seeds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -170,7 +170,7 @@ const std::vector<ScatteringPoint> kBeams = {
     {{0.0, 50.0, 30.0}, {0.5, 2.0}, {10.0, 60.0}},  {{80.0, 75.0, 170.0}, {0.2, 1.5}, {1.33, 0.02}},
     {{50.0, 50.0, 0.0}, {0.5, 3.0}, {3.0, 4.0}}};
 
-/// `rounding` is relative to the first element. Matrices that are NaN in the reference are left out.
+/// Compares Mueller matrices with the reference, except where it gives NaN. `rounding` is relative to the element m00.
 void expect_like_reference(ModelEvaluator& evaluator, const std::vector<ScatteringPoint>& points, double rounding) {
   const std::vector<ScatteringMatrix> computed = evaluator.scatter(bounces_of(points), {});
   const std::vector<ScatteringMatrix> exact = ReferenceEvaluator().scatter(bounces_of(points), {});
@@ -197,7 +197,7 @@ TEST_P(Grooves, TowardTheMirrorDirection_NoMatrixIsDefined) {
 INSTANTIATE_TEST_SUITE_P(EveryKernel, Grooves, testing::ValuesIn(kKernels),
                          [](const auto& test) { return name_of(test.param); });
 
-/// Beams from 40 degrees that leave 1e-6 to 1 degree beside the mirror direction, on several sides.
+/// Beams that arrive at 40 degrees and leave 1e-6 to 1 degree beside the mirror direction, on several sides.
 std::vector<BeamAngles> toward_the_mirror() {
   std::vector<BeamAngles> angles;
   for (const double away_deg : {1.0, 1e-2, 1e-6}) {
@@ -219,8 +219,8 @@ int most_bounces_toward_the_mirror(Distribution distribution, const OpticalConst
   return most;
 }
 
-// A bounce takes about 50 ns. A metal needs two beams for each number of bounces up to 1,000. Each beam is followed
-// from its first bounce, which makes 1e6 bounces.
+// A metal needs two beams for each number of bounces up to 1,000. The kernel follows each beam from its first bounce,
+// which makes 1e6 bounces. A bounce takes about 50 ns.
 TEST(GroovesMueller, TowardTheMirrorDirection_WorkIsBounded) {
   for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
     const int paint = most_bounces_toward_the_mirror(distribution, {1.5, 0.1});
@@ -289,7 +289,7 @@ TEST(GrooveScenes, RandomEntriesUpToTheHorizon_ArePhysical) {
   }
 }
 
-// README.md states these values. With single scattering they would be 0.114 and 3.8 %.
+// README.md states this emissivity and DOLP. With single scattering they would be 0.114 and 3.8 %.
 TEST(GrooveScenes, RoughMetal_HasTheEmissivityAndDolpOfTheManual) {
   const PointResult r = result_at(multiple(Distribution::kGaussian), {60.0, {0.3, 2.0}, {10.0, 60.0}});
   EXPECT_NEAR(mean_emissivity(r), 0.01635, 1e-5);
@@ -320,7 +320,7 @@ TEST(GrooveScenes, SmoothSurface_IsThatOfSingleScattering) {
   }
 }
 
-// Direct emission and single scattering determine the bracket (physics/README.md, section 4). All bounces lie in it.
+// The bracket is a range of DOLP (shaders/physics/README.md, section 4). DOLP with all bounces must lie in it.
 TEST(GrooveScenes, Bracket_IsWhatItsEndsSayAndHoldsAllBounces) {
   const std::vector<std::string> grid = {"grid.theta_deg=[0, 30, 60, 80]", "surroundings.temperature_K=250"};
   const auto with = [&](std::vector<std::string> more) {
@@ -342,7 +342,7 @@ TEST(GrooveScenes, Bracket_IsWhatItsEndsSayAndHoldsAllBounces) {
     if (i == 0) continue;  // at theta = 0 nothing is polarised
     const double direct_q = 0.5 * std::abs(direct[i][Quantity::kEmissivityS] - direct[i][Quantity::kEmissivityP]);
     const double slack = mean_emissivity(single[i]) - mean_emissivity(direct[i]);
-    // |N| of Q = N eps_Q. It is the same in all cases; single scattering gives it as |Q / rho_Q|.
+    // |N| in Q = N eps_Q, which all models have in common. Single scattering gives it as |Q / rho_Q|.
     const double net = std::abs(single[i][Quantity::kStokesQ] / single[i][Quantity::kRhoQ]);
     EXPECT_NEAR(high, net * (direct_q + slack) / single[i][Quantity::kStokesI], kAccuracy);
     EXPECT_NEAR(low, net * std::max(direct_q - slack, 0.0) / single[i][Quantity::kStokesI], kAccuracy);

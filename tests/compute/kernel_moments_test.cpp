@@ -1,5 +1,5 @@
-// Properties that hold for all inputs, on random draws with fixed seeds from the whole range of scenes: conservation of
-// energy, and results that do not depend on the layout of a request.
+// Properties that hold for all scenes: energy is conserved, and a result does not depend on how a request orders and
+// groups its entries. The scenes are drawn at random from the whole range, with fixed seeds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -63,7 +63,7 @@ TEST_P(KernelProperties, RandomPoints_KeepTheEnergy) {
 
 // ---- Layout of a request -------------------------------------------------------------------------------------------
 
-/// A grid of random axes; a third of its entries is wanted.
+/// A request for a grid of random axes. It wants the moments of only a third of the entries.
 MomentsRequest random_grid(const Model& model, Random& random) {
   MomentsRequest request = request_of(model, {}, 1e-3);
   for (int i = 0; i < 6; ++i) request.theta_deg.push_back(random.theta_deg());
@@ -93,7 +93,7 @@ std::vector<Value> permuted(const std::vector<Value>& values, const std::vector<
   return result;
 }
 
-/// Axes in another order, and the new position of each entry of the request.
+/// A request with reordered axes, and the new position of each entry of the original request.
 struct Reordered {
   MomentsRequest request;
   std::vector<std::size_t> place_of;
@@ -132,7 +132,7 @@ TEST_P(KernelProperties, OrderOfAxes_TilesAndBlocks_ChangeNoBit) {
     const Reordered other = reordered(request, random);
     VulkanOptions options;
     options.max_tile_invocations = static_cast<std::uint32_t>(random.uniform(1.0, 20.0));
-    // 1: less than a row
+    // a block of one shape is smaller than a kernel row
     options.max_block_shapes = round == 0 ? 1 : static_cast<std::uint32_t>(random.uniform(1.0, 6.0));
     options.staged_uploads = random.chance(0.5);
     const std::vector<Moments> actual = make_evaluator(kernel, options)->evaluate(other.request, {});

@@ -127,9 +127,9 @@ class Elementary : public ::testing::Test {};
 TYPED_TEST_SUITE(Elementary, Sources, SourceNames);
 
 // Half an ulp for each of the last two or three roundings, and the error of the argument after its reduction. The
-// kernel source promises "a few units in the last place".
+// comments of the kernel source promise "a few units in the last place".
 constexpr double kFewUlps = 3.0;
-// up to three roots and quotients, each with a rounding error, come before the series
+// before the series, these functions have up to three roots and quotients, each with a rounding error
 constexpr double kRootUlps = 6.0;
 
 TYPED_TEST(Elementary, Functions_OverTheirDomain_AreAFewUlpsFromExact) {
@@ -219,7 +219,7 @@ TYPED_TEST(Elementary, EndsOfTheDomains_AreExact) {
 using Wide = boost::multiprecision::cpp_bin_float_50;
 using WideComplex = boost::multiprecision::cpp_complex_50;
 
-// Fresnel's equations in textbook form. Cancellation costs at most 27 of 50 digits, so a double is less accurate.
+// Fresnel's equations in textbook form. Cancellation costs at most 27 of the 50 digits, so 23 remain.
 struct ExactFresnel {
   Wide r_s;
   Wide r_p;
@@ -303,7 +303,7 @@ TYPED_TEST(FresnelSource, NormalIncidence_HasTheLimitOfTheQuotient) {
   for (const OpticalConstants& optical : {OpticalConstants{1.508, 0.0}, OpticalConstants{27.0, 90.0}}) {
     const kernel::IndexNode index = rounded_index<TypeParam>(optical);
     const auto f = source.fresnel(index_in<TypeParam>(index), Real(1));
-    // Beside normal incidence by 1e-20 the quotient differs from its limit by about 1e-20. Of 50 digits 30 remain.
+    // (R_s - R_p)/sin^2(beta) at cos(beta) = 1 - 1e-20 is within about 1e-20 of its limit. Of 50 digits 30 remain.
     const Wide c = 1 - Wide(1e-20);
     const Wide sin2 = 1 - c * c;
     const WideComplex n2(Wide(index.n2m1_re) + 1, Wide(index.n2m1_im));

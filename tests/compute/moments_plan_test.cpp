@@ -1,6 +1,6 @@
-// Entries of a grid share work: slope samples, rows along q, interpolation between slope distributions, a few indices
-// for many. The stated error of an entry must cover its distance from the entry computed separately. The environment
-// variable DOLP_PROPERTY_DRAWS sets the number of grids per model.
+// Entries of a grid share work: slope samples, kernel rows along q, interpolation between slope distributions, and the
+// moments of a few indices. The stated error of an entry must cover its difference from a separate computation of the
+// entry. The environment variable DOLP_PROPERTY_DRAWS sets the number of grids per model.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ std::vector<FacetOptics> many_indices(Random& random) {
   return indices;
 }
 
-/// Ranges of sigma and q with any ratio up to 60 and 30, directions and indices from Random.
+/// Random directions and indices; random ranges with ratios up to 60 for sigma, up to 30 for q minus its lower limit.
 MomentsRequest random_grid(Random& random, const Model& model, Scattering scattering, Sharing sharing) {
   MomentsRequest request;
   request.distribution = model.distribution;
@@ -74,7 +74,7 @@ MomentsRequest random_grid(Random& random, const Model& model, Scattering scatte
 
 class Grids : public testing::TestWithParam<std::tuple<Kernel, Sharing>> {
  protected:
-  /// Compares entries with a separate computation at a hundredth of the tolerance, in double.
+  /// Compares entries of the grid with separate computations in double, at a hundredth of the tolerance.
   void expect_like_alone(const MomentsRequest& request, const std::vector<Moments>& moments, Random& random) {
     MomentsRequest alone;
     alone.distribution = request.distribution;
@@ -107,7 +107,7 @@ TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
   for (const Scattering scattering : {Scattering::kSingle, Scattering::kMultiple}) {
     for (const Model& model : kModels) {
       const bool is_multiple = scattering == Scattering::kMultiple;
-      // The moments of several bounces are not sums of responses.
+      // With several bounces, moments of many indices do not follow from a few responses. So indices share nothing.
       if (is_multiple && (model.masking != Masking::kVCavity || sharing == Sharing::kIndices)) continue;
       Random random(kSeed + 10 * static_cast<std::uint64_t>(kernel) + static_cast<std::uint64_t>(sharing));
       for (std::size_t grid = 0; grid < grids; ++grid) {
@@ -120,7 +120,7 @@ TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
       }
     }
   }
-  // The draw decides whether many indices have a basis.
+  // kIndices is not checked: there the random indices decide whether the program interpolates.
   if (sharing == Sharing::kShapes) {
     EXPECT_GT(2 * work.interpolated, entries);
   } else if (sharing != Sharing::kIndices) {
@@ -136,7 +136,7 @@ std::string case_name(const testing::TestParamInfo<std::tuple<Kernel, Sharing>>&
 INSTANTIATE_TEST_SUITE_P(Kernels, Grids, testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kSharings)),
                          case_name);
 
-// Imitates a second pass over some entries of a grid: one heavy tail among light ones, with a width between theirs.
+// Like a second computation of some grid entries: the heavy tail (q = 1.2) has the middle one of three widths.
 TEST(SecondPass, SomeShapesOfAGrid_HeaviestTailIsNotLost) {
   for (const Masking masking : {Masking::kNone, Masking::kVCavity}) {
     MomentsRequest request;

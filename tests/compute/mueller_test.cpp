@@ -1,5 +1,5 @@
 // The Mueller pBRDF of the device and the CPU in float and double, compared with explicit vectors in quadruple
-// precision. (tests/reference tests that these are reciprocal and realisable.) The environment variable
+// precision. (tests/reference shows that the latter matrices are reciprocal and realisable.) The environment variable
 // DOLP_PROPERTY_DRAWS sets the number of points per model.
 #include <gtest/gtest.h>
 
@@ -26,8 +26,8 @@ constexpr std::uint64_t kSeed = 20260110;
 
 const std::size_t kPoints = draws_wanted(400);
 
-// Smaller m00 are not compared. The density in the reference may be 1e22 times smaller than m00, and below the normal
-// numbers of a double it would lose its relative accuracy.
+// Matrices with a smaller m00 are not compared. The slope density in the reference may be 1e22 times smaller than m00.
+// Below the normal numbers of a double it would lose its relative accuracy.
 constexpr double kSmallest = 1e-280;
 
 class MuellerKernel : public testing::TestWithParam<KernelAndModel> {
@@ -70,7 +70,7 @@ TEST_P(MuellerKernel, AllElements_AgreeWithExplicitVectors) {
   EXPECT_LE(worst, tolerance()) << text_of(points[where]);
 }
 
-// By mirror symmetry f(-dphi) = T f(dphi) T with T = diag(1, 1, -1, -1). The kernels give this bit for bit.
+// By mirror symmetry the pBRDF obeys f(-dphi) = T f(dphi) T, T = diag(1, 1, -1, -1). Kernels give this bit for bit.
 TEST_P(MuellerKernel, OppositeAzimuth_TurnsTheSignsOfUAndV) {
   const Matrix mirror = Eigen::Vector4d(1.0, 1.0, -1.0, -1.0).asDiagonal();
   std::vector<ScatteringPoint> points = random().draw(kPoints);
@@ -116,7 +116,7 @@ TEST(MuellerLimits, Retro_IsTheSameFromEverySide) {
   EXPECT_EQ(plain_mueller({40.0, 40.0, 360.0}), at);
 }
 
-// At the critical angle w is the square root of almost 0, which amplifies the rounding of the angles.
+// At the critical angle a square root in Fresnel's formulas is almost 0, which amplifies the rounding of the angles.
 TEST(MuellerLimits, CriticalAngle_AgreesWithExplicitVectors) {
   std::vector<ScatteringPoint> points;
   for (double n = 0.1; n < 0.96; n += 0.05) {
@@ -171,7 +171,7 @@ TEST(MuellerLimits, CornersOfTheDomain_AreFiniteAndTheSameInBothPrecisions) {
   }
 }
 
-// The moments are integrals of the first row of f. The test shows that both use the same model.
+// The moments are integrals of the first row of the Mueller pBRDF. The kernels of both must use the same model.
 TEST(Mueller, HemisphericalSum_GivesTheMoments) {
   constexpr int kZeniths = 400;
   constexpr int kAzimuths = 400;

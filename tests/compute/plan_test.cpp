@@ -1,4 +1,4 @@
-// Exact directions, loops below the limits of drivers, and the planners one by one.
+// Exact directions, loops with fewer iterations than drivers allow, and each planner separately.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -98,14 +98,14 @@ TEST(GaussLegendre, Orders_IntegratePolynomialsOfDegree2nMinus1AndNoMore) {
 
 double tan_deg(double angle_deg) { return std::tan(angle_deg * std::numbers::pi / 180.0); }
 
-// By the list above breakpoints(), with c / (1 + s) = tan(45 - theta/2) and (1 + s) / c = tan(45 + theta/2).
+// The expected slopes are those listed above breakpoints(), where c / (1 + s) = tan(45 - theta/2).
 TEST(Breakpoints, Directions_AreAtTheAnglesWhereLinesMeet) {
   constexpr unsigned kBoth = kRootAbove | kRootBelow;
   struct Case {
     double theta_deg;
     Masking masking;
     DirectionVariant variant;
-    std::vector<std::pair<double, unsigned>> expected;  // angle of the slope in degrees, roots
+    std::vector<std::pair<double, unsigned>> expected;  // slope angle in degrees; sides with a square root
   };
   const std::vector<Case> cases = {
       {0.0, Masking::kNone, {}, {{0, 0}, {45, kBoth}}},
@@ -171,7 +171,7 @@ TEST(Rows, WantedEntriesOfAGrid_AreEachInOneRowOfShapesAlike) {
 // ---- Orders and levels ---------------------------------------------------------------------------------------------
 
 TEST(Rule, DigitsAndShapes_DecideOrdersAndLines) {
-  EXPECT_DOUBLE_EQ(rule_digits({.margin_digits = 2.0}, 1e-3), 6.25);  // the coarser rule has 0.8 of the nodes
+  EXPECT_DOUBLE_EQ(rule_digits({.margin_digits = 2.0}, 1e-3), 6.25);  // (3 + 2)/0.8; the coarser rule has 80 % of nodes
   EXPECT_EQ(largest_order(4.0), 64);
   EXPECT_EQ(largest_order(10.0), 80);
   EXPECT_EQ(largest_order(99.0), DOLP_MAX_ORDER);
@@ -184,7 +184,7 @@ TEST(Rule, DigitsAndShapes_DecideOrdersAndLines) {
   EXPECT_TRUE(gaussian_line(0.61, 7.0) && !gaussian_line(0.59, 7.0));
   EXPECT_TRUE(gaussian_line(0.31, 9.0) && !gaussian_line(0.29, 9.0));
   EXPECT_FALSE(needs_line(Distribution::kCauchy, Masking::kNone, {1.0, 1.6}, 7.0, 1e-4));
-  // L of smith is smooth for integer q.
+  // With integer q the mean slope L(theta) of Smith's masking is smooth, so it has no cusp.
   EXPECT_LT(cusp_digits(Distribution::kCauchy, Masking::kSmith, {0.3, 3.0}, 7.0), -100.0);
   EXPECT_GT(cusp_digits(Distribution::kCauchy, Masking::kSmith, {0.3, 2.5}, 7.0), -10.0);
 }
@@ -199,7 +199,7 @@ TEST(Refinement, Levels_TightenByHalfDecadesAndTurnToDouble) {
   EXPECT_DOUBLE_EQ(check_level({.tolerance = 1e-4}).tolerance, kLeastFloatTolerance);
   struct Case {
     RefinementLevel last;
-    double missed_by;  // error over the tolerance 1e-3
+    double missed_by;  // error divided by the tolerance 1e-3
     bool has_double;
     std::optional<RefinementLevel> expected;
   };
@@ -238,7 +238,7 @@ TEST(ShapePlan, Nodes_SpanTheAxesAndTheirWeightsSumToOne) {
     EXPECT_LT((axis->cardinal.rowwise().sum().array() - 1.0).abs().maxCoeff(), 1e-13);
   }
   request.wanted.assign(request.size(), 1);
-  request.wanted.back() = 0;  // not a whole direction
+  request.wanted.back() = 0;  // now the last direction lacks an entry
   EXPECT_FALSE(shape_plan(request));
 }
 

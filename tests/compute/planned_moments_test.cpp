@@ -56,7 +56,7 @@ MomentsRequest dense_request() {
   return request;
 }
 
-// A test function with the features of real moments: a peak that moves with sigma, a power that q sets.
+// A test function with the features of real moments: a peak that moves with sigma, and a power with exponent q - 1.
 double smooth(const SlopeShape& shape) {
   const double m2 = 2.0 * shape.sigma * shape.sigma;
   return 0.05 + 1.0 - std::pow(m2 / (0.3 + m2), shape.q - 1.0);

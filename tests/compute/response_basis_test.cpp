@@ -52,7 +52,7 @@ double sum_at(const ResponseBasis& basis, const Eigen::VectorXd& coefficients, d
   return sum;
 }
 
-// Compares at far more angles than the basis uses, for indices of the run and for other indices.
+// Compares reflectances at far more angles than the basis uses, for indices of the run and for other indices.
 TEST(ResponseBasis, CombinedReflectances_StayWithinTheirBounds) {
   constexpr int kAngles = 4000;
   Random random(1);
@@ -96,7 +96,7 @@ TEST(ResponseBasis, CombinedReflectances_StayWithinTheirBounds) {
 TEST(ResponseBasis, FewIndices_HaveNone) {
   EXPECT_FALSE(ResponseBasis::of({}, 1e-4, 1));
   EXPECT_FALSE(ResponseBasis::of({{1.5, 0.1}}, 1e-4, 1));
-  // With one kernel pass a basis saves work from three indices, with three passes from seven.
+  // If responses take one kernel pass, a basis saves work from three indices; with three passes from seven.
   const std::vector<FacetOptics> three = {{1.5, 0.1}, {1.6, 0.1}, {1.7, 0.2}};
   EXPECT_TRUE(ResponseBasis::of(three, 1e-4, 1));
   EXPECT_FALSE(ResponseBasis::of(three, 1e-4, 3));

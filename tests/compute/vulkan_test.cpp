@@ -164,7 +164,7 @@ TEST(VulkanEvaluator, PointsAndMasks_SayTheSameAsTheGrid) {
   }
 }
 
-// One evaluator computes requests in float and in double. They must not affect each other.
+// One evaluator computes requests in float and in double. These requests must not affect each other.
 TEST(VulkanEvaluator, RequestsInBothPrecisions_AreThoseOfEvaluatorsOfTheirOwn) {
   for (const Masking masking : {Masking::kVCavity, Masking::kIntegral}) {
     MomentsRequest request = small_request(Distribution::kCauchy, masking);
@@ -269,7 +269,7 @@ constexpr double kSentinel = -12'345.0;
 constexpr std::uint32_t kFirst = 3;   // first entry that run.run computes
 constexpr std::uint32_t kCount = 70;  // number of entries: more than a workgroup, but no multiple of it
 
-// Buffers of a request. After the results each output buffer has a workgroup of sentinels, which must stay.
+// Buffers of a request. After the results each output buffer has a workgroup of sentinels, which must not change.
 class SentinelRun {
  public:
   SentinelRun(Session& session, const MomentsRequest& request) : session_(session), data_(kernel_data(request)) {

@@ -1,4 +1,4 @@
-// Lookups in artificial tables whose values between the entries are known, and the stated errors.
+// Lookups in artificial tables whose values between the entries are known, and the errors that lookups state.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -215,7 +215,7 @@ TEST(TableLookup, AValueTwice_IsRefused) {
   EXPECT_THROW(TableLookup(table, with_tolerance(1e-4), "t.nc"), InputError);
 }
 
-// dolp_low is zero in many whole tables.
+// In many tables dolp_low is 0 at every entry.
 TEST(TableLookup, QuantityThatIs0Everywhere_Is0) {
   TableValues table = made_up(spaced(0.0, 60.0, 8), spaced(0.1, 0.5, 6), spaced(1.5, 4.0, 6));
   table[Quantity::kDolpLow].assign(table[Quantity::kDolp].size(), 0.0);
@@ -238,7 +238,7 @@ TEST(MaskingKinks, BistaticBeams_LieWhereTheLowerDirectionChanges_AndWhereNothin
       {Mode::kBistatic, Masking::kNone, 33.0, 120.0, {}},
       {Mode::kHemispherical, Masking::kIntegral, 33.0, 120.0, {}},
       // For v-cavity masking G has a kink where 2 cos(alpha) cos(theta') = cos(beta); theta' is the larger of theta and
-      // the view zenith. On the specular side this is at theta = 60 + view / 3 and at theta = 3 view - 180 degrees.
+      // the view zenith `view`. On the specular side the kink is at theta = 60 + view / 3 and at 3 view - 180 degrees.
       {Mode::kBistatic, Masking::kVCavity, 70.0, 180.0, {30.0, 60.0 + 70.0 / 3.0}},
       {Mode::kBistatic, Masking::kVCavity, 30.0, 180.0, {70.0}},
       {Mode::kBistatic, Masking::kVCavity, 65.0, 0.0, {65.0}},

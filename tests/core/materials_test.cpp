@@ -69,7 +69,7 @@ TEST(Material_BuiltIn, IsLinearBetweenTheRowsOfTheFile) {
 }
 
 TEST(Material_BuiltIn, IsWithinTheThinningOfTheWholeRecord) {
-  constexpr double kThinning = 1e-3;  // largest error relative to |N|, as documented in host/data/materials.csv
+  constexpr double kThinning = 1e-3;  // largest error of the thinned tables over |N|; see host/data/materials.csv
   struct Case {
     const char* name;
     double n, k;
@@ -198,7 +198,7 @@ std::string formula(const std::string& range, const std::string& coefficients, i
          "\n    coefficients: " + coefficients + "\n";
 }
 
-// Published coefficients. The last column is the index by the formula; comments name well-known values of it.
+// Published coefficients. The last column is the index by the formula; comments state known values of this index.
 TEST(Dispersion_Formulas, HaveThePublishedValues) {
   struct Case {
     int number;
@@ -318,7 +318,7 @@ TEST(MaterialFile_Wrong, NamesFileAndLine) {
   }
 }
 
-// Records in the database may differ from two tidy columns in these ways. They must give the same material.
+// Ways in which database records may differ from two tidy columns. All these records must give the same material.
 TEST(MaterialFile_UntidyRecord, IsTheTidyOne) {
   const OpticalConstants half_way{1.75, 0.2};
   const std::string nk = "DATA:\n  - type: tabulated nk\n    data: |\n";
@@ -347,7 +347,7 @@ TEST(MaterialFile_KBelowZeroByNoise, CountsAsZero) {
   EXPECT_EQ(material.least_k, -2e-7);
 }
 
-// n^2 = 1 + 0.5 um^2 / (um^2 - 11^2) has a pole at 11 um. n is not real between 8.98 um and the pole.
+// At a wavelength of L um, n^2 = 1 + 0.5 L^2 / (L^2 - 11^2), with a pole at 11 um. From 8.98 um to 11 um n is not real.
 TEST(MaterialFile_FormulaWithAPole, HoldsWhereTheSpectrumHasNone) {
   const TemporaryFile file("f.yml", formula("20 0.05", "0 0.5 11"));
   const std::string set = "surface.material_file=" + file.path();

@@ -55,8 +55,8 @@ TEST(Radiometry, ErrorOfTheDeficit_CancelsInIsothermalIntensityWhereItCannotMatt
   const PointResult cold = evaluate(scene, direction, moments);
   scene.surroundings->temperature_K = 289.0;
   const PointResult warm = evaluate(scene, direction, moments);
-  // I = pi B + (X - pi B) rho. With a difference of 1 K instead of 50 K between the temperatures, X - pi B is much
-  // smaller, and so is the effect of an error of rho.
+  // I = pi B + (X - pi B) rho, where X comes from the surroundings. With 1 K instead of 50 K between both temperatures,
+  // X - pi B is much smaller, and so is the effect of an error of rho.
   EXPECT_LT(warm[Quantity::kErrorEstimate], 1e-3 * cold[Quantity::kErrorEstimate]);
 }
 
@@ -160,7 +160,7 @@ TEST(Radiometry, GrazingWithDivergingReflectance_GivesTheLimitOfDolp) {
   EXPECT_TRUE(std::isnan(limit[Quantity::kRhoI]) && std::isnan(limit[Quantity::kStokesI]) &&
               std::isnan(limit[Quantity::kStokesU]));
   const PointResult near_limit = evaluate(scene, {89.9999, 1e-14}, grazing_moments());
-  // The difference is due to the diffuse part, which grows as cos^-0.3; the specular part grows as 1/cos.
+  // The tolerance is for the diffuse part, which grows as cos^-0.3, while the specular part grows as 1/cos.
   EXPECT_NEAR(std::abs(near_limit[Quantity::kDolp]), limit[Quantity::kDolp], 1e-8);
 }
 

@@ -1,4 +1,4 @@
-// Stokes parameters, rho and DOLP of the radiometry, compared with the printed formulas, and their exact properties.
+// Stokes parameters, rho and DOLP of the radiometry agree with the paper's printed formulas and obey exact relations.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -46,7 +46,7 @@ TEST(Radiometry, RandomScenes_AgreeWithPrintedFormulas) {
       continue;
     }
     const auto expected_dolp = static_cast<double>(std::abs(expected.q) / expected.i);
-    // With total reflection the emission is 0. The program finds exactly 0; the printed 1 - R has a rounding error.
+    // With total reflection the emission is 0. The program finds exactly 0; the printed formula 1 - R rounds.
     const double printed_rounding = 16.0 * static_cast<double>(std::numeric_limits<Real>::epsilon()) *
                                     Radiometry(scene).rule().samples[0].emitted / std::abs(actual[Quantity::kStokesI]);
     const double bound =

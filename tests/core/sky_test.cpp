@@ -94,7 +94,7 @@ TEST(SkyProfile, BetweenRows_IsAStraightLine) {
   EXPECT_DOUBLE_EQ(sky_radiance(sky, 10.0, 90.0), 8.0);
 }
 
-// Plane-parallel air with the transmittance t at the zenith: L = B(air) (1 - t^(1 / cos)). Clouds are black bodies.
+// Plane-parallel air with zenith transmittance t has L = B(air) (1 - t^(1 / cos(zenith))). Clouds are black bodies.
 TEST(SkyProfile, BuiltInSkies_FollowTheirFormulas) {
   const double emissivity = 0.24 + 2.98e-8 * 7.85 * 7.85 * std::exp(3000.0 / 288.15);
   const SkyProfile clear = *built_in_sky("clear-sky");
@@ -181,7 +181,7 @@ TEST(SceneReader, Profile_TakesThePlaceOfATemperature) {
   EXPECT_TRUE(contains(error_of(sky + "profile = \"cloudy\"\n"), "s.toml:9: surroundings.profile = \"cloudy\""));
 }
 
-// With horizon_K = 250 the profile has one temperature and could be simplified. The reader must refuse it, too.
+// Even a profile with one temperature (horizon_K = 250) must be refused, because it lacks the scene's 10.6 um.
 TEST(SceneReader, ProfileKnownAtOtherWavelengths_IsRefused) {
   for (const std::string horizon_K : {"250", "260"}) {
     std::string rows = "wavelength_um,zenith_deg,temperature_K\n";

@@ -235,7 +235,7 @@ TEST_F(TableFiles, PartialFile_NoMemoryForItsWriter_IsNotLeft) {
       const TableOutput output(std::move(own));
       has_failed = failing.has_failed();
     } catch (const std::bad_alloc&) {
-      // Not every failed allocation comes here: some calls manage without the memory.
+      // Not every failed allocation reaches this handler, because some calls succeed without the memory.
     }
     ASSERT_EQ(names(), std::vector<std::string>{}) << before;
   }

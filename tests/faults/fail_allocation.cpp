@@ -1,4 +1,4 @@
-// Preloaded into a program, makes one of its allocations fail, or all from one onwards. Environment:
+// A preloaded library that makes one allocation of a program fail, or one and all later ones. Environment:
 //   DOLP_FAIL_ALLOCATION   number of the allocation, counted from 1 at the program's start, for example 17; 17+ also
 //                          fails all later ones
 //   DOLP_COUNT_ALLOCATIONS a file that receives the number of allocations when the program ends

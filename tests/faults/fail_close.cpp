@@ -1,4 +1,4 @@
-// Preloaded into a program, makes each close of a table that was read fail, as if a file server were lost.
+// A preloaded library. Each close of a table that the program has read fails, as if a file server were lost.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// Preloaded into a program, limits the number of its threads, as `ulimit -u` does. Environment:
+// A library that is preloaded into a program and limits its threads, as `ulimit -u` does. Environment:
 //   DOLP_MOST_THREADS allowed threads in addition to the first, for example 3; more fail with EAGAIN
 #include <dlfcn.h>
 #include <pthread.h>

@@ -1,4 +1,4 @@
-// Preloaded into a program, makes Vulkan calls fail. Environment:
+// A library that is preloaded into a program and makes Vulkan calls fail. Environment:
 //   DOLP_FAIL_VULKAN     FUNCTION:N:RESULT fails the N-th call, FUNCTION:N+:RESULT also all later ones. For example
 //                        vkQueueSubmit:3:-4 loses the device at the third submission. With RESULT never the call does
 //                        not return.

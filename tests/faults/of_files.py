@@ -22,7 +22,7 @@ def file_limit(driver):
 
 
 def in_small_file_system(driver, options, fill):
-    """Runs each command in a new tmpfs with mount options, after `fill`, a shell command that fills it."""
+    """Runs each command in a new tmpfs with these mount options, after the shell command `fill` has filled it."""
     for command in COMMANDS:
         driver.expect(command, CPU if command != "lookup" else ())
         with driver.attempt(command, CPU if command != "lookup" else ()) as attempt:

@@ -1,4 +1,4 @@
-// Coverage counters for libFuzzer, which reads this section. GCC calls the function below at each basic block.
+// Coverage counters in the section in which libFuzzer looks for them. GCC calls the function below at each basic block.
 #include <array>
 #include <cstddef>
 #include <cstdint>

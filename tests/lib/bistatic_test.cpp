@@ -1,5 +1,5 @@
-// Bistatic mode, compared with a second implementation of shaders/physics/README.md, section 4. This one takes f from
-// explicit vectors and the moments from the reference.
+// Bistatic mode, compared with a second implementation of shaders/physics/README.md, section 4. This implementation
+// takes the pBRDF f from explicit vectors, and the moments from the reference.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -142,7 +142,7 @@ class BiasedBeams final : public ModelEvaluator {
   CpuEvaluator own_;
 };
 
-// The error of the beam is part of the stated error. So the run computes the entry again in double, with its beam.
+// The stated error of the entry includes the error of its beam. So the run computes entry and beam again in double.
 TEST(Bistatic, BeamWithALargeError_IsTriedAgainInDouble) {
   RandomScenes random;
   SceneValues scene = random.scene();
@@ -214,7 +214,7 @@ TEST(Bistatic, SourceAngles_ShareTheMomentsOfTheView) {
   const double three = evaluator.report().evaluations;
   evaluate_scene(scene, {{10.0, shape, {}}}, evaluator, {});
   EXPECT_GT(three, 0.0);
-  // each call needs the moments only of the view; the report adds both calls
+  // each call computes moments only for the view direction; the report adds the evaluations of both calls
   EXPECT_EQ(2.0 * three, evaluator.report().evaluations);
   EXPECT_EQ(results[0][Quantity::kRhoI], results[2][Quantity::kRhoI]);
   EXPECT_EQ(results[2].status, 0U);  // at 90 degrees the source adds nothing

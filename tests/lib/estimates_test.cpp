@@ -1,4 +1,4 @@
-// Estimates that a run makes from a few entries: the effect of single scattering, and the effects of a scene.
+// Estimates that a run makes from a few entries: the error of single scattering, and the effects of parts of a scene.
 #include "run/estimates.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The quotient of diverging moments at 90 degrees, compared with an integral and with the kernel just below 90 degrees.
+// The quotient r_q / r_i at 90 degrees, where both diverge, compared with an integral and the kernel just below 90.
 #include "run/closed_forms.hpp"
 
 #include <gtest/gtest.h>
@@ -27,8 +27,8 @@ constexpr std::array kAllIndices = {
 // Accuracy that run/closed_forms.hpp states.
 constexpr double kRelativeAccuracy = 1e-12;
 constexpr double kAlbedoAccuracy = 2e-15;
-// Just below 90 degrees the quotient minus its limit is a power series in cos(theta)^(3 - 2q). Extrapolation removes
-// the first term, which is at most 2 % of the quotient at q = 1.3. The second term is about the square of the first.
+// Just below 90 degrees, r_q / r_i minus its limit is a power series in cos(theta)^(3 - 2q). Extrapolation removes the
+// first term, which is at most 2 % of r_q / r_i at q = 1.3. The second term is about the square of the first.
 constexpr double kExtrapolationAccuracy = 4e-4;
 
 /// Ends of integration panels, whose widths halve toward both ends of [from, to].
@@ -43,7 +43,7 @@ std::vector<Real> graded_panels(Real from, Real to) {
   return ends;
 }
 
-/// Integral of `part` times cos(phi)^(4 - 2q) over a quarter turn. Panels shrink toward grazing and critical angle.
+/// Integral of `part` times cos(phi)^(4 - 2q) over a quarter turn. Panels shrink toward grazing and critical angles.
 Real integral(double q, const OpticalConstants& index, const std::function<Real(const SmoothReflectance&)>& part) {
   const Real quarter = 0.5L * std::numbers::pi_v<Real>;
   const Real squared = 1.0L - (Real(index.n) * index.n - Real(index.k) * index.k);

@@ -50,7 +50,7 @@ Moments recomputed(const StoredCase& c, const ReferenceOptions& options) {
   return ReferenceEvaluator(options).evaluate(request, {}).at(0);
 }
 
-// All cases, except that integral masking, which is slow, has only every tenth.
+// All cases, but only every tenth case with integral masking, which is slow.
 TEST(HardCases, AnotherRefinement_StaysWithinTheErrors) {
   std::size_t slow = 0;
   for (const StoredCase& c : hard_cases()) {
@@ -163,8 +163,8 @@ TEST(Qualify, OrdinaryCases_MeetTheToleranceInDouble) {
   }
 }
 
-// With v-cavity and smith masking rho has a limit at 90 degrees. 1e-9 degrees below, where values are stored, it
-// differs from the limit by about the cosine, 2e-11, times a logarithm.
+// With v-cavity and smith masking rho has a limit at 90 degrees. The stored values are for 1e-9 degrees less. There rho
+// differs from its limit by about the cosine, 2e-11, times a logarithm.
 TEST(HardCases, RightAngle_IsTheLimitOfTheStoredValue) {
   constexpr double kApproach = 1e-8;
   for (const StoredCase& c : hard_cases()) {

@@ -1,4 +1,4 @@
-// A run computes an entry at several levels and keeps the best. A check with another rule finds wrong bounds.
+// A run keeps an entry's best result of several levels of accuracy. A check by another rule finds wrong bounds.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -45,7 +45,7 @@ TEST(EvaluateScene_Levels, ThatWorsen_LeaveTheFirst) {
   EXPECT_EQ(result[Quantity::kRhoQ], 0.1);
 }
 
-/// Moments that the check contradicts: its r_q differs by `bounds` times the sum of both stated errors.
+/// Moments that the check contradicts: r_q of the check differs by `bounds` times the sum of both stated errors.
 class Contradicts final : public MomentsOnly {
  public:
   explicit Contradicts(double bounds) : bounds_(bounds) {}

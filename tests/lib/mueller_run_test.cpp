@@ -65,7 +65,7 @@ TEST(MuellerRun, NinetyDegrees_IsTheLimitWhereThereIsOneAndNanElsewhere) {
       (at.theta_i_deg == 90.0 ? near.theta_i_deg : near.theta_r_deg) = 90.0 - 1e-6;
       const MuellerMatrix g = elements(scene_with(masking), near);
       EXPECT_GT(f[0], 0.0);
-      for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(f[i], g[i], 1e-6 * f[0]);  // a step of 2e-8 rad
+      for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(f[i], g[i], 1e-6 * f[0]);  // `near` is 2e-8 rad away
       SceneValues diffuse = scene_with(masking);
       diffuse.surface.diffuse = 0.1;
       EXPECT_TRUE(is_all_nan(elements(diffuse, at)));

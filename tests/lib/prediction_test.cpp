@@ -14,7 +14,7 @@ namespace {
 using namespace dolp;
 using namespace scene_run_support;
 
-/// Counts the requests of the first level. The level is over when the check of some entries begins.
+/// Counts the requests of the first level. This level ends when the run begins to check some entries.
 class FirstRequests final : public ModelEvaluator {
  public:
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {

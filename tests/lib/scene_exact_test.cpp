@@ -1,4 +1,4 @@
-// Exact results of shaders/physics/README.md, section 6, in whole runs.
+// Whole runs give the exact results that shaders/physics/README.md lists in section 6.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,9 +14,9 @@ namespace {
 
 using namespace scene_run_support;
 
-// A dozen roundings, and near grazing incidence the rounding of the cosine.
+// Tolerance for a dozen roundings and, near grazing incidence, for the rounding of the cosine.
 constexpr double kFresnelRounding = 4e-15;
-// Larger than the error of the independent integral, which has 180 x 180 Gauss points, for sigma from 0.3.
+// This tolerance exceeds the error of the independent integral (180 x 180 Gauss points) if sigma is 0.3 or more.
 constexpr double kGgxAccuracy = 1e-9;
 
 double radians(double angle_deg) { return angle_deg * std::numbers::pi / 180.0; }

@@ -59,7 +59,7 @@ TEST(Limits_RightAngle, DivergingReflectanceLeavesOnlyTheDolp) {
 }
 
 TEST(Limits_RightAngle, DivergingSpecularDolpIsTheQuotientJustBefore) {
-  // The quotient changes over the last 1e-6 degrees by about their cosine, 2e-8, divided by the moments.
+  // Over the last 1e-6 degrees the quotient changes by about cos(theta), here 2e-8, divided by the moments.
   constexpr double kChange = 1e-4;
   for (const Masking masking : {Masking::kNone, Masking::kIntegral}) {
     for (const Distribution distribution : kDistributions) {

@@ -44,7 +44,7 @@ TEST(ChosenEntries, OfAGrid_HaveTheWavelengthsAmongThemAlone) {
   const SceneEntries grid = SceneEntries::of_grid(axes, {});
   const std::vector<std::size_t> positions = {2, 3, 7};
   const SceneEntries chosen = grid.chosen(positions);
-  EXPECT_EQ(chosen.variants().size(), 2U);  // the three entries have two variants
+  EXPECT_EQ(chosen.variants().size(), 2U);  // the three entries have two wavelengths
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const SceneEntry whole = grid[positions[i]];
     EXPECT_EQ(chosen[i].theta_deg, whole.theta_deg);
@@ -75,7 +75,7 @@ class PartsOfModel : public testing::TestWithParam<std::tuple<Distribution, Mask
   double least_q() const { return scene().surface.needs_mean_slope() ? 1.51 : 1.2; }
 };
 
-// Directions near 90 degrees need other nodes, and many entries with heavy tails are computed again.
+// Directions near 90 degrees need other quadrature nodes. Many entries with heavy tails are computed again.
 TEST_P(PartsOfModel, InterpolatedGrid_KeepsItsBitsInParts) {
   SceneValues dense = scene();
   dense.grid =
@@ -100,7 +100,7 @@ TEST_P(PartsOfModel, AxesOfIndexAndWavelength_KeepTheirBitsInParts) {
 INSTANTIATE_TEST_SUITE_P(SceneParts, PartsOfModel,
                          testing::Combine(testing::ValuesIn(kDistributions), testing::ValuesIn(kMaskings)));
 
-// The moments of many indices are combined from a few indices. Each part must use those that the whole grid uses.
+// The moments of many indices are combined from a few indices. Each part must use the few that the whole grid uses.
 TEST(SceneParts, CombinedIndices_KeepTheirBitsInParts) {
   for (const Masking masking : {Masking::kVCavity, Masking::kIntegral}) {
     SceneValues scene = make_scene(Distribution::kCauchy, masking, kAbsorbing);

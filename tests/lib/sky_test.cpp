@@ -69,7 +69,7 @@ Reflected reflected_of(const SceneValues& scene, const PointResult& result) {
   return {result[kStokesI] / pi - emitted * (1.0 - result[kRhoI]), result[kStokesQ] / pi + emitted * result[kRhoQ]};
 }
 
-// The manual has five digits, and the temperature is linear between 361 zeniths.
+// Tolerance: the manual has five digits, and the temperature of this sky is linear between 361 zeniths.
 constexpr double kDigits = 6e-6;
 
 TEST(Sky, QuadraticProfile_GivesTheValuesOfTheModel) {
@@ -142,8 +142,8 @@ SceneValues random_scene(Draws& random) {
 // The environment variable DOLP_PROPERTY_DRAWS sets the number of scenes.
 TEST(Sky, RandomScenes_AgreeWithTheReferenceWithinTheirBounds) {
   const int scenes = static_cast<int>(draws_wanted(250));
-  // Largest share of scenes that miss their tolerance. In 1,000 scenes it was 0.129: scenes with grooves, with jumps of
-  // the sky at which not all integrals are split, or with directions near the horizon.
+  // Largest share of scenes that miss their tolerance. In 1,000 scenes the share was 0.129. These scenes had grooves,
+  // jumps of the sky at which not all integrals are split, or directions near the horizon.
   constexpr double kMostMissed = 0.2;
   Draws random(20261124);
   CpuEvaluator evaluator;
@@ -290,7 +290,7 @@ TEST(Sky, DiffuseSurface_ReflectsTheMeanThatItsExponentWeights) {
     scene.emission.reset();
     CpuEvaluator cpu;
     const PointResult result = result_of(scene, 40.0, cpu);
-    // With f_d = (k_d / pi) (cos cos)^c the exitance is pi S = 2 pi k_d cos^c(theta) int L mu^(c + 1) dmu. The
+    // With f_d = (k_d / pi) (mu cos(theta))^c the exitance is pi S = 2 pi k_d cos^c(theta) int L mu^(c + 1) dmu. The
     // substitution mu = v^(1 / (c + 2)) makes the weight constant.
     constexpr int kSteps = 20000;
     double sum = 0.0;

@@ -1,4 +1,4 @@
-// The two parts of dolp-calibrate: the fit of the constants of the rules, and the test of the error bounds.
+// The two parts of dolp-calibrate: the fit of the quadrature rules' constants, and the test of the error bounds.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -268,7 +268,7 @@ TEST_F(CommandLine, Summary_MaskingWithADirectEmission_SaysWhatSingleScatteringL
     EXPECT_NE(text.out.find("direct emission differs by up to "), std::string::npos) << text.out;
     options.push_back("--json");
     EXPECT_GT(json::parse(with(options).out)["scattering_gap"], 0.01);
-    // integral masking has no direct emission
+    // the masking of scene.toml, `integral`, has no direct emission
     EXPECT_TRUE(json::parse(with({"--json"}).out)["scattering_gap"].is_null());
     EXPECT_EQ(with({}).out.find("  scattering "), std::string::npos);
   }

@@ -30,7 +30,7 @@ NOT_RUN = {
     "export PATH": "has no effect beyond its own shell; the test sets PATH likewise",
 }
 
-# Prints a line with rho_i and rho_q of all entries, then a line for each entry with the input of the GLSL function.
+# Prints a line with rho_i and rho_q of all entries, then for each entry a line of input for README's GLSL function.
 PRINT_RHO = """
 print(*np.stack([rho_i, rho_q], axis=-1).ravel())
 for w, v in zip(table.response_i.values.reshape(-1, 24), table.response_q.values.reshape(-1, 24)):

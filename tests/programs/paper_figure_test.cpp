@@ -239,7 +239,7 @@ TEST_F(PaperFigure, ProgramThatFails_OneLineAndNotZero) {
 struct Values {
   std::string masking, distribution;
   double theta_i_deg;
-  std::vector<double> g;  ///< G at theta_r = 30, 60, 75 and 90 degrees
+  std::vector<double> g;  ///< masking G at theta_r = 30, 60, 75 and 90 degrees
   double corner_deg, jump_per_rad;
 };
 

@@ -45,7 +45,7 @@ class Plan : public CommandLine {
   }
 };
 
-// As a check a run computes a few entries again. Only these few may get masking tables, or memory runs out.
+// As a check a run computes a few entries again. Only these entries may get masking tables, or memory runs out.
 TEST_F(Plan, MillionValuesOfAnAxis_FitIntoTwoGigabytes) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "AddressSanitizer takes terabytes of addresses";

@@ -222,7 +222,7 @@ TEST_F(Inputs, OtherEvaluatorOrOptions_AreNamed_AndAShardOfThemIsNotKept) {
   }
 }
 
-/// Changes the file of a shard as another program might. `text` is Python code; `table` in it is the open file.
+/// Changes the file of a shard as another program might. `text` is Python code, in which `table` is the open file.
 class Edited : public Inputs {
  protected:
   void edit(const std::string& name, const std::string& text) {

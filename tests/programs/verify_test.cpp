@@ -134,7 +134,7 @@ TEST_F(Verify, ValueOfAnyQuantityThatIsOff_IsFound) {
   const TableValues table = make_table({"--set", "grid.theta_deg=[0.001, 40, 60, 80]"});
   for (const Quantity quantity : quantities) {
     const double right = table[quantity][0];
-    // Entry 0 is near theta = 0, where DOLP is so small that its error estimate is no bound for the error of I.
+    // Entry 0 is near theta = 0. Its DOLP is so small that the error estimate of DOLP is no bound for the error of I.
     put_value(at("t.nc"), quantity, 0, right + 0.05 * std::max(1.0, std::abs(right)));
     const nlohmann::json json = verify_json(kAccuracy);
     EXPECT_EQ(json["failures"].size(), 1U) << description_of(quantity).name;
@@ -199,7 +199,7 @@ TEST_F(Verify, OneCorruptedValue_Exit1AndIsNamed) {
                                       : table[Quantity::kRhoErrorEstimate][at_entry] * table[Quantity::kRhoI][at_entry];
     if (name.starts_with("stokes")) bound *= table[Quantity::kStokesI][at_entry];
     if (corruption.quantity == Quantity::kStokesI) bound /= table[Quantity::kDolp][at_entry];
-    // The true error is at most one bound, so after this change the error is at least two.
+    // The stored error is at most one bound. So after this change of three bounds the error is at least two bounds.
     put_value(at("t.nc"), corruption.quantity, at_entry, table[corruption.quantity][at_entry] + 3.0 * bound);
     const nlohmann::json json = verify_json(kAccuracy);
     EXPECT_EQ(json["passed"], false);

@@ -536,7 +536,7 @@ theta_deg = {from = 0, to = 80, count = 5}
             if table.bracket:
                 self.assertLess(np.nanmax(table.bracket), drawn[0].get_ylim()[1])
             plot_table.plt.close(figure)
-        # By default a picture is drawn for the q, n and k of the scene, and one of its curves for the scene's sigma.
+        # By default a picture has the scene's q, n and k, and one of its curves has the scene's sigma.
         own = self.scene.with_({"surface.n": 1.4, "surface.k": 0.2, "surface.q": 5, "surface.sigma": 0.24})
         dolp.write_table(own, self.folder / "t.nc", evaluator="cpu", theta_deg=[0, 60], n=[1.4, 1.5, 1.6], k=[0.2],
                          sigma=np.linspace(0.1, 0.5, 41), q=[2, 3, 5])

@@ -140,8 +140,8 @@ TEST(ReferenceBounces, ScatterOfTheEvaluator_IsTheSum) {
   for (std::size_t e = 0; e < 16; ++e) EXPECT_EQ(matrix.m[e], f[e / 4][e % 4]);
 }
 
-// Integrates f_00 and f_01 over x and y, the horizontal components of omega_r: d Omega cos(theta_r) = dx dy. Polar
-// coordinates around the mirror direction remove the divergence there.
+// Integrates the pBRDF elements f_00 and f_01 over x and y, the horizontal components of omega_r: d Omega cos(theta_r)
+// = dx dy. Polar coordinates around the mirror direction remove the divergence there.
 std::complex<double> hemispherical(const Surface& surface, const OpticalConstants& index, double theta_deg) {
   constexpr int kSectors = 12, kRings = 3;
   const double centre = -std::sin(theta_deg * kRadPerDeg);

@@ -185,7 +185,7 @@ TEST(ReferenceGrooves, LimitsOfTheMaterial) {
 
 TEST(ReferenceGrooves, SmoothSurface_IsFresnels) {
   constexpr double kSigma = 1e-3;
-  constexpr double kTolerance = 2e-4;  // slopes have the variance 2 sigma^2, times a logarithm for q = 2
+  constexpr double kTolerance = 2e-4;  // the variance of the slopes, 2 sigma^2, times a logarithm for q = 2
   for (const OpticalConstants index : {kPaint, kMetal}) {
     for (const double theta_deg : {0.0, 60.0}) {
       const Moments mirror = all_bounces({kCauchy, theta_deg, {0.0, 2.0}, index});
@@ -236,7 +236,7 @@ TEST(ReferenceDirect, BracketsTheEmission) {
     EXPECT_LT(0.0, multiple.direct_i);
     EXPECT_LT(multiple.direct_i, multiple.deficit);
     EXPECT_LT(multiple.deficit, single.deficit);
-    // Bounces after the first cannot add more polarised light than light.
+    // Bounces after the first cannot add more polarised light than light in total.
     EXPECT_LE(std::abs(-multiple.r_q - multiple.direct_q), multiple.deficit - multiple.direct_i);
   }
 }

@@ -39,7 +39,7 @@ double in_plane_density(Distribution distribution, double sigma, double q, doubl
          std::pow(std::hypot(1.0, t / std::sqrt(m2)), 1.0 - 2.0 * q);
 }
 
-// G_1 as an integral over the tilt gamma. For q well above 3/2 the density is finite at both ends.
+// G_1 as an integral over the tilt gamma. For q well above 3/2 the integrand is finite at both ends.
 double plain_g1(Distribution distribution, double sigma, double q, double theta, double alpha) {
   boost::math::quadrature::tanh_sinh<double> rule;
   const auto density = [&](double gamma) {
@@ -51,7 +51,7 @@ double plain_g1(Distribution distribution, double sigma, double q, double theta,
   const auto weighted = [&](double gamma) {
     return density(gamma) * (1.0 + std::cos(theta + gamma) / std::cos(theta - alpha));
   };
-  // The density has its peak at 0.
+  // The slope density has its peak at 0.
   const double left = rule.integrate(density, -0.5 * pi, 0.0) + rule.integrate(density, 0.0, a);
   return left + rule.integrate(weighted, a, b);
 }
@@ -84,7 +84,7 @@ TEST(ReferenceMasking, G1_HeavyTails_KeepTheWholeDensity) {
 
 TEST(ReferenceMasking, G1_SingularDensity_MatchesIntegrationOverTheSlope) {
   constexpr double kTolerance = 1e-10;                        // error of the exp-sinh rule for t^(1 - 2q)
-  constexpr double kSigma = 0.3, kTheta = 0.9, kAlpha = 0.4;  // for these values b = pi/2
+  constexpr double kSigma = 0.3, kTheta = 0.9, kAlpha = 0.4;  // then the tilt's upper limit b is pi/2
   const double sin_theta = std::sin(kTheta), cos_theta = std::cos(kTheta);
   boost::math::quadrature::exp_sinh<double> to_infinity;
   boost::math::quadrature::tanh_sinh<double> finite;

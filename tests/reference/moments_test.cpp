@@ -122,8 +122,8 @@ TEST(ReferenceMoments, GrazingWithHeavyTails_DivergesBelowThreeHalves) {
     const Moments heavy = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5}, kSteel);
     EXPECT_EQ(heavy.r_i, std::numeric_limits<double>::infinity());
     EXPECT_EQ(heavy.r_q, -std::numeric_limits<double>::infinity());
-    // For q just above 3/2, r_i grows as 1/(2q - 3). At twice the distance from 3/2 it is half as large. The relative
-    // error of this is the distance times a factor below 100.
+    // For q just above 3/2, r_i grows as 1/(2q - 3). At twice the distance from 3/2 it is half as large. The ratio of
+    // both has a relative error of the distance times a factor below 100.
     constexpr double kDistance = 1e-5;
     const double near = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5 + kDistance}, kSteel).r_i;
     const double far = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5 + 2.0 * kDistance}, kSteel).r_i;

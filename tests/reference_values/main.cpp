@@ -29,7 +29,7 @@ using dolp::name_of;
 using dolp::reference::Case;
 using dolp::reference::Group;
 
-// Smaller shares of the albedo are rounding errors of a reflection that is 0, with n = 1 and k = 0.
+// A reflection below this share of the albedo is the rounding error of 0, which n = 1 and k = 0 give.
 constexpr double kNegligible = 1e-12;
 // Relative rounding error of a closed form, which has fewer than 16 operations.
 constexpr double kClosedFormRounding = 16.0 * std::numeric_limits<double>::epsilon();
@@ -65,7 +65,7 @@ dolp::MomentsRequest request_of(const Group& group, const std::vector<Case>& cas
   return request;
 }
 
-/// The finer result. Its errors are raised to its distance from the coarser result.
+/// The finer result, with errors of at least its distance from the coarser result.
 Moments compared(const Moments& coarse, const Moments& fine) {
   Moments result = fine;
   result.r_i_error = std::max(fine.r_i_error, std::abs(coarse.r_i - fine.r_i));
@@ -96,7 +96,7 @@ bool put_normal_albedo(const Row& row, Moments& moments) {
   return is_ln2;
 }
 
-/// Replaces moments by closed forms where these exist. Row::origin tells which.
+/// Replaces moments by closed forms where these exist. Row::origin records the origin of the values.
 void put_closed_forms(Row& row) {
   Moments& moments = row.moments;
   if (row.input.shape.sigma == 0.0) {

@@ -9,7 +9,7 @@ namespace {
 
 // Random cases of smith masking with the Cauchy distribution have a larger q than this. The moments exist for q > 1.5.
 constexpr double kSmallestSmithQ = 1.53;
-// Distance from a special angle: much more than rounding, much less than the distance of nodes of a rule.
+// Distance from a special angle: much more than rounding, much less than the distance between quadrature nodes.
 constexpr double kBeside_deg = 1e-7;
 
 constexpr OpticalConstants kMetal{27.0, 90.0};

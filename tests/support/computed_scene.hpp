@@ -13,7 +13,6 @@ inline std::vector<PointResult> results_of(const SceneValues& scene, const Scene
 }
 inline std::vector<PointResult> results_of(const SceneValues& scene) { return results_of(scene, grid_entries(scene)); }
 
-/// The table over the scene's grid.
 inline TableValues table_of(const SceneValues& scene) {
   const SceneEntries entries = grid_entries(scene);
   const TableLayout layout = table_layout(scene, plan_effects(scene, entries, false), scene.grid);

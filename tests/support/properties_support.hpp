@@ -142,7 +142,7 @@ inline std::string kernel_and_model_name(const testing::TestParamInfo<KernelAndM
   return name_of(std::get<0>(test.param)) + name_of(std::get<1>(test.param));
 }
 
-/// The four moments of the hemisphere, without the direct emission.
+/// The four moments that are integrals over the hemisphere, without those of the direct emission.
 inline constexpr std::span<const MomentMember> kHemisphereMembers(kMomentMembers.data(), 4);
 
 inline bool are_same(const Moments& a, const Moments& b) {
@@ -150,7 +150,7 @@ inline bool are_same(const Moments& a, const Moments& b) {
   return a.evaluations == b.evaluations && std::ranges::all_of(kHemisphereMembers, is_same);
 }
 
-/// Expects that all moments agree within both stated errors. Returns the largest ratio of difference to their sum.
+/// Expects that all moments agree within both stated errors. Returns the largest ratio of difference to sum of errors.
 inline double expect_within_bounds(const Moments& a, const Moments& b, const std::string& where, double slack = 0.0) {
   double worst = 0.0;
   for (const auto& [value, error] : kMomentMembers) {

@@ -1,4 +1,4 @@
-// The radiometry of shaders/physics/README.md, section 4, once more in long double, with scenes and moments to test.
+// The radiometry of shaders/physics/README.md, section 4, programmed again in long double; scenes and moments to test.
 #pragma once
 
 #include <algorithm>
@@ -56,7 +56,7 @@ struct PrintedStokes {
   Real q = 0.0L;
 };
 
-/// Hemispherical mode, eq. (18), at one wavelength. `specular` has rho_s and rho_p of the specular part, without k_s.
+/// Hemispherical mode at one wavelength, eq. (18) of the model's paper. `specular` has rho_s and rho_p without k_s.
 inline PrintedStokes printed_stokes(const SceneValues& scene, Real wavelength_um, Real c,
                                     const PrintedReflectance& specular) {
   const Real pi = std::numbers::pi_v<Real>;
@@ -92,7 +92,7 @@ inline PrintedStokes printed_stokes(const SceneValues& scene, Real wavelength_um
   return stokes;
 }
 
-/// Integral of `f` from the first to the last point. `f` may have corners only at the points, which ascend.
+/// Integral of `f` from the first to the last point. The slope of `f` may jump only at the points, which ascend.
 inline Real integral(const std::vector<double>& points, const std::function<Real(Real)>& f) {
   boost::math::quadrature::tanh_sinh<Real> rule;
   Real sum = 0.0L;
@@ -175,7 +175,7 @@ class RandomScenes {
   std::mt19937_64 generator_;
 };
 
-/// A material whose index varies as at a resonance. n and k have different, uneven wavelengths.
+/// A material whose index varies as at a resonance. n and k are given at different wavelengths with unequal steps.
 inline Material tabulated_material() {
   Material material;
   material.name = "test glass";
@@ -186,7 +186,7 @@ inline Material tabulated_material() {
   return material;
 }
 
-/// The ends of the band, and all wavelengths inside it at which n, k or the irradiance has a corner.
+/// The ends of the band, and all wavelengths inside it at which the slope of n, k or the irradiance jumps.
 inline std::vector<double> corners(const SceneValues& scene) {
   std::vector<double> points = {scene.spectrum.min_um, scene.spectrum.max_um};
   const auto add = [&](const SpectralTable& table) {

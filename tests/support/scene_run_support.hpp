@@ -57,7 +57,6 @@ inline std::vector<PointResult> run(const SceneValues& scene, const SceneEntries
   return evaluate_scene(own, entries, *make_evaluator(evaluator), {});
 }
 
-/// The entries of a grid as a list.
 inline std::vector<SceneEntry> list_of(const SceneEntries& entries) {
   std::vector<SceneEntry> list;
   for (const SceneEntry& entry : entries.all()) list.push_back(entry);

@@ -14,7 +14,7 @@
 
 namespace dolp {
 
-/// Has the cases of one distribution and masking. A request for an entry that is not stored fails the test.
+/// Knows the stored cases of one distribution and masking. A request for any other entry fails the test.
 class StoredEvaluator final : public MomentsOnly {
  public:
   explicit StoredEvaluator(const std::vector<StoredCase>& cases) {

@@ -26,7 +26,7 @@ inline constexpr int kFrames = 4;
 // Tolerance of a dragged value, as a share of the slider's range. The handle may cover this share of the slider.
 inline constexpr double kGrab = 0.2;
 
-// Cheap to compute, because most tests wait for the whole map.
+// A scene that is cheap to compute, because most tests wait for the whole map.
 inline const std::string kEdited = R"(title = "Painted"
 [surface]
 n = 1.5

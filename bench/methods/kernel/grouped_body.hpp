@@ -1,6 +1,6 @@
-// Body of native_kernel.cpp and counted_kernel.cpp, which first define DOLP_KERNEL_NAMESPACE and in it real, real2,
-// real4 and as_data. The masking and the width of a row are template arguments, because the compiler of a device knows
-// them too.
+// Common body of native_kernel.cpp and counted_kernel.cpp. Before they include it, both define DOLP_KERNEL_NAMESPACE,
+// and in this namespace real, real2, real4 and as_data. The masking and the width of a kernel row are template
+// arguments, because the compiler of a device knows them as constants, too.
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-// The kernel source as C++ in float. It gets the same rows and pieces as a Vulkan device.
+// The kernel source compiled as C++ in float. It computes the same kernel rows as a Vulkan device, in the same pieces.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ struct GroupedWork {
 
   KernelData data;
   Rows rows;
-  std::vector<RowPiece> pieces;  ///< one per invocation, in the order of a Vulkan device
+  std::vector<RowPiece> pieces;  ///< one piece of a kernel row per invocation, in the order of a Vulkan device
 };
 
 /// The kernels of shaders/ for one GroupedWork, which must outlive the object. Several threads may call the functions
@@ -30,11 +30,11 @@ class GroupedKernel {
   /// Fills the masking table of a shape. If the data needs tables, call this before run_pieces.
   virtual void build_masking_table(std::size_t shape) = 0;
 
-  /// Runs invocations from `first` until `members` is full. Each writes one node for each member of its row.
+  /// Runs invocations from `first` until `members` is full. Each writes one node for each entry of its kernel row.
   virtual void run_pieces(std::size_t first, std::span<kernel::MomentsNode> members) = 0;
 };
 
-/// Adds the results of the pieces of each row. Returns moments in the order of the request.
+/// Adds the results of all pieces of each kernel row. Returns moments in the order of the request.
 std::vector<Moments> moments_of(const GroupedWork& work, const std::vector<kernel::MomentsNode>& nodes);
 
 /// True if the two kernels below support these data: the Cauchy distribution, no total reflection, and `integral` or

@@ -1,4 +1,4 @@
-// Compiled with special flags; see bench/CMakeLists.txt.
+// This file is compiled with special flags; see bench/CMakeLists.txt.
 #define DOLP_KERNEL_NAMESPACE native_kernel
 
 #include "methods/kernel/lanes.hpp"

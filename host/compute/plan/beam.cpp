@@ -23,10 +23,10 @@ using std::numbers::pi;
 
 constexpr int kLargestOrder = 16;  // must equal kInPlaneOrder of physics/in_plane.glsl
 
-// G leaves out the share exp(-kCutExponent) of the in-plane slopes, far below the rounding of a double.
+// The integral for G leaves out the share exp(-kCutExponent) of the in-plane slopes, far below a double's rounding.
 constexpr double kCutExponent = 45.0;
 
-// Smoother surfaces use this sigma for G, or squares of slopes over m would overflow. G differs only for q < 1.1.
+// For G, smoother surfaces get this sigma, because squares of slope / m would overflow. This matters only for q < 1.1.
 constexpr double kSmallestMaskingSigma = 1e-15;
 
 // If N^2 - sin^2(beta) is below this share of its terms, the difference has lost digits that its square root needs.
@@ -108,7 +108,7 @@ CosSin double_angle(double x, double y) {
   return {(u - v) * (u + v) / (u * u + v * v), 2.0 * u * v / (u * u + v * v)};
 }
 
-// Near the horizon it takes the mean of the elevations, because a sum of zeniths would lose their digits.
+// (cos, sin) of the mean zenith. Near the horizon it is computed from elevations: a sum of zeniths would lose digits.
 CosSin mean_zenith(double theta_i_deg, double theta_r_deg) {
   if (theta_i_deg + theta_r_deg <= 90.0) return cos_sin_deg(0.5 * (theta_i_deg + theta_r_deg));
   const CosSin elevation = cos_sin_deg(0.5 * ((90.0 - theta_i_deg) + (90.0 - theta_r_deg)));

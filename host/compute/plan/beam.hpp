@@ -12,14 +12,14 @@ struct BeamGeometry {
   double sin2_beta = 0.0;
 };
 
-/// The facet between two beams, and the rotation angles eta of eq. (4), in double and without cancellation.
+/// The facet between two beams, and the angles eta of eq. (4) of the paper, in double and without cancellation.
 ///
-/// Equation: eqs. (2)-(6) in the form |w_i + w_r|^2 = 4 cos^2(beta), |w_i - w_r|^2 = 4 sin^2(beta). With i = theta_i
-/// and r = theta_r, eta_i is the angle of the vector (sin i cos r - cos i sin r cos(dphi), sin r sin(dphi)), and eta_r
-/// the angle of (sin r cos i - cos r sin i cos(dphi), sin i sin(dphi)). Conventions: delta_phi = 180 degrees is the
-/// specular side; eta turns s toward p and has the sign of sin(delta_phi). Domain: zeniths in [0, 90] degrees, but not
-/// both 90. In the retro direction eta is undefined; the result is the limit eta_i = eta_r = 0. At theta_i = 0 the
-/// plane of incidence has azimuth 0; at theta_r = 0 it has azimuth delta_phi.
+/// Equation: eqs. (2)-(6) in the form |omega_i + omega_r|^2 = 4 cos^2(beta), |omega_i - omega_r|^2 = 4 sin^2(beta).
+/// With i = theta_i and r = theta_r, eta_i is the angle of the vector (sin i cos r - cos i sin r cos(dphi), sin r
+/// sin(dphi)), and eta_r the angle of (sin r cos i - cos r sin i cos(dphi), sin i sin(dphi)). Conventions: delta_phi =
+/// 180 degrees is the specular side; eta turns s toward p and has the sign of sin(delta_phi). Domain: zeniths from 0 to
+/// 90 degrees, but not both 90. In the retro direction eta is undefined; the result is the limit eta_i = eta_r = 0. At
+/// theta_i = 0 the plane of incidence has azimuth 0; at theta_r = 0 it has azimuth delta_phi.
 BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_phi_deg);
 
 /// Inputs of the kernel for one entry. The pBRDF is the kernel's result times 2^power.
@@ -38,7 +38,7 @@ class BeamPlan {
   explicit BeamPlan(const ScatteringRequest& request);
   Beam operator()(const ScatteringEntry& entry) const;
 
-  /// The pBRDF with its error bound and all its bounces. `unit_roundoff` is that of the kernel's precision.
+  /// The pBRDF of all bounces, with its error bound. `unit_roundoff` is the roundoff of the kernel's precision.
   ScatteringMatrix matrix(const kernel::MuellerNode& node, const Beam& beam, const ScatteringEntry& entry,
                           double unit_roundoff) const;
 
@@ -66,7 +66,7 @@ class BeamPlan {
 int add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, const ScatteringEntry& entry,
                         double accuracy);
 
-/// ln(D / 4) at a slope.
+/// ln(D / 4), with the density D of the facet normals, at a slope.
 double log_density(Distribution distribution, const SlopeShape& shape, double slope);
 
 }  // namespace dolp

@@ -18,12 +18,12 @@ using std::numbers::pi;
 constexpr unsigned kRoots = kRootAbove | kRootBelow;
 constexpr double kNoEnd = 1e30;  // a finite slope beyond every cut
 
-constexpr double kCoincident = 1e-9;  // relative distance of breakpoints that differ only by rounding
+constexpr double kCoincident = 1e-9;  // breakpoints within this relative distance differ only by rounding
 
 constexpr std::size_t kMostSkyBreakpoints = 60;  // most breakpoints of a direction with a sky
 
 // In grazing directions, slopes reach far beyond 1 before they meet the horizon. These breakpoints divide a heavy tail
-// into pieces of about ten units of X = asinh(t/w).
+// into pieces of about ten units of X = asinh(t / ShapeNode::scale).
 constexpr std::array kPlainBreakpoints = {30.0, 3e5};
 constexpr std::array kSteepBreakpoints = {1e5, 3e8, 1e12};  // for grooves, which have no horizon
 
@@ -51,7 +51,7 @@ void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   add(critical / (std::hypot(a.cos, 2.0 * critical) - a.cos), at_slope_1);
 }
 
-// Slopes at which the line b = pi/2 of `integral` meets phi = 0, pi or theta_r = theta. For smith: slope of its cusp.
+// With `integral`, slopes where the line b = pi/2 (eq. 11) meets phi = 0, pi or theta_r = theta. With smith, the cusp.
 void add_line_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, Masking masking) {
   if (masking == Masking::kSmith) {
     points.push_back({tan_deg(0.5 * theta_deg), kRoots});
@@ -85,8 +85,8 @@ void add_v_cavity_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   }
 }
 
-// Slopes at which a bounce after the first meets the critical line at phi = 0 or pi; at theta = 0, at all phi. There
-// cos(beta) of a bounce is the sine of its angle in the unfolded groove (groove.glsl).
+// Slopes at which total reflection begins, at phi = 0 or pi, for a bounce after the first (if theta = 0, at all phi).
+// At these phi, cos(beta) of a bounce is the sine of the bounce's angle in the unfolded groove (groove.glsl).
 void add_critical_bounces(std::vector<Breakpoint>& points, double theta_deg, double critical) {
   const double critical_deg = std::asin(critical) * 180.0 / pi;
   for (int k = 2; k <= kCriticalBounces; ++k) {
@@ -133,8 +133,8 @@ std::vector<Breakpoint> without_coincident(const std::vector<Breakpoint>& points
   return distinct;
 }
 
-// Slopes at which a corner of the sky meets phi = 0 or pi. A sky that is linear in the zenith near 0 has a cusp there.
-// Next to these slopes, the sum over the azimuths has a term with the distance to the power 3/2.
+// Slopes at which a corner (kink) of the sky meets phi = 0 or pi. A sky that is linear in the zenith near 0 has a cusp
+// there. Beside such a slope, the sum over the azimuths has a term (distance from the slope)^(3/2).
 void add_sky_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const SkyTable& sky) {
   if (sky.has_cusp) points.push_back({tan_deg(0.5 * theta_deg), kRoots});
   for (const double corner_deg : sky.corners_deg) {

@@ -18,7 +18,7 @@ struct Breakpoint {
 /// The split lines of a direction that depend on the index or on the slope distribution.
 struct DirectionVariant {
   double critical_cos = 0.0;  ///< cos(beta) at which total reflection begins; 0 without it
-  bool has_line = false;      ///< the line b = pi/2 of `integral`, or smith's cusp
+  bool has_line = false;      ///< true if the line b = pi/2 (eq. 11) of `integral` or smith's cusp splits pieces
 };
 
 /// Ascending slopes, starting with 0, that divide the slope axis into pieces with a smooth integrand. With all bounces,

@@ -28,8 +28,8 @@ bool KeptEffects::*flag(Part part) { return kFlags[static_cast<std::size_t>(part
 
 double or_infinite(double bound) { return std::isnan(bound) ? kInfinity : bound; }
 
-/// Upper bound E|t_x| / (2 mu) of Smith's E[max(t_x - mu, 0)] / mu, with mu = cot(theta), in-plane slope t_x and mean
-/// E.
+/// Upper bound of Smith's Lambda = E[max(t_x - mu, 0)] / mu, with mu = cot(theta), the in-plane slope t_x and the mean
+/// E. This bound is E|t_x| / (2 mu).
 double most_lambda(Distribution distribution, const SlopeShape& shape, const CosSin& a) {
   if (shape.sigma == 0.0 || a.sin == 0.0) return 0.0;
   double mean = slope_width(shape) / kRootPi;
@@ -79,8 +79,9 @@ Range slope_density(Distribution distribution, const EntriesExtent& extent, doub
           (is_gaussian ? 1.0 : q_high - 1.0) * density(std::clamp(peak, m2_low, m2_high), q_low)};
 }
 
-/// Range of f_00 cos(theta_i) cos(theta_r) = P (1 + t^2)^2 G M00 / 4 for k_s = 1, in 1/sr. G is exact for `none` and
-/// `v-cavity`, in [1/2, 1] for `integral`, and in [1 / (1 + L_i + L_r), 1] for `smith`, where L_i and L_r bound Lambda.
+/// Range of f_00 cos(theta_i) cos(theta_r) = P (1 + t^2)^2 G M00 / 4 for k_s = 1, in 1/sr, with the slope density P and
+/// M00 = (R_s + R_p) / 2. The masking G is known for `none` and `v-cavity`; it is in [1/2, 1] for `integral`; for
+/// `smith` in [1 / (1 + L_i + L_r), 1], where L_i and L_r are upper bounds of Lambda.
 Range beam_range(const Surface& surface, const BeamAngles& angles, const EntriesExtent& extent,
                  const std::vector<FacetOptics>& indices) {
   if (!has_facet(angles)) return {};
@@ -114,7 +115,7 @@ EntriesExtent extent_of_grid(const SceneEntries& entries) {
   return extent;
 }
 
-/// The indices of the wavelengths, and those of the entries under the films of each wavelength.
+/// The indices of the wavelengths, and the indices of the entries, each under the films of each wavelength.
 std::vector<FacetOptics> indices_of(const SpectralRule& rule, const EntriesExtent& extent) {
   std::vector<FacetOptics> indices = rule.indices();
   const std::vector<FacetOptics> samples = indices;
@@ -209,7 +210,7 @@ bool EffectBounds::emits(const KeptEffects& kept, EmissionModel model) const {
   return kept.emission && scene_.emission && scene_.emission->model == model;
 }
 
-/// Upper bound of the exitance that multiplies rho.
+/// Upper bound of the exitance that multiplies the reflectance rho.
 double EffectBounds::weight(const KeptEffects& kept) const {
   const double emitted = emits(kept, EmissionModel::kMoments) ? total_.emitted : 0.0;
   const double source = is_bistatic_ || !kept.source ? 0.0 : total_.irradiance;

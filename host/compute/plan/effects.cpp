@@ -29,8 +29,8 @@ bool add_nothing(const std::vector<EffectBounds>& bounds, Part part, const KeptE
       bounds, [&](const EffectBounds& variant_bounds) { return variant_bounds.adds_nothing(part, kept); });
 }
 
-/// The largest bound over all variants. Moments and a profile are dropped only if they add exactly nothing. Other parts
-/// that matter in the whole scene are kept, even if the parts that they multiply have been dropped.
+/// The largest bound of `part` over all variants. Except for moments and profile, it is at least the bound in the whole
+/// scene. So a part that matters there is kept, even if the parts that it multiplies have been dropped.
 double worst_bound(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
   double worst = 0.0;
   for (const EffectBounds& variant_bounds : bounds) {
@@ -84,7 +84,7 @@ void set_needs(EffectPlan& plan, const SceneValues& scene, const std::vector<Eff
   plan.gives_rho = plan.kept.moments || scene.surface.specular == 0.0;
 }
 
-/// A text for plans without moments whose results are exact nevertheless.
+/// The reason why a plan without moments gives exact results.
 std::string why_no_moments(const SceneValues& scene, const KeptEffects& kept) {
   const bool has_emission = scene.emission && kept.emission;
   const bool has_surroundings = scene.surroundings && kept.surroundings;
@@ -97,7 +97,7 @@ std::string why_no_moments(const SceneValues& scene, const KeptEffects& kept) {
 
 Effect absent(const char* name, std::string why) { return {name, EffectState::kAbsent, std::move(why)}; }
 
-/// `row` describes the part as a kept one. If the plan drops it, its state, bound and reason replace those of `row`.
+/// `row` describes the part as if it were kept. If the plan drops the part, state, bound and reason of `row` change.
 Effect part_row(const SceneValues& scene, const EffectPlan& plan, Part part, Effect row) {
   row.part = part;
   const auto dropped = plan.dropped.find(part);
@@ -136,7 +136,7 @@ Effect specular_row(const SceneValues& scene, const EffectPlan& plan) {
   return row;
 }
 
-/// The row of a choice of the model. `reason` follows the text of a choice that is kept.
+/// The row of a choice of the model. If the choice is kept, `reason` is appended to the text `choice`.
 Effect model_row(const SceneValues& scene, const EffectPlan& plan, const char* name, const std::string& choice,
                  const SceneEntries& entries, const char* reason = ", a choice of the model: never swapped") {
   const auto is_flat = [](const SceneEntry& entry) { return entry.shape.sigma == 0.0; };

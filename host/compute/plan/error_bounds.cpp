@@ -40,8 +40,8 @@ double mean_slope(Distribution distribution, const kernel::ShapeNode& shape) {
   return distribution == Distribution::kGaussian ? gaussian : 2.0 * gaussian / shape.two_q_minus_3;
 }
 
-// Upper bound of G; v-cavity needs none, because it has e G <= 2 c. With smith masking the projections e of the visible
-// facets sum to c. So G <= G1(theta) = c / (integral of e over e > 0), which is at least half of c + s mean|t_x|.
+// Upper bound of G; v-cavity needs none (e G <= 2 c). With smith masking the projections e of the visible facets sum to
+// c, so G <= G1(theta) = c / (integral of e over e > 0). This integral is at least half of c + s mean|t_x|.
 double masking_bound(Distribution distribution, Masking masking, const kernel::ThetaNode& theta,
                      const kernel::ShapeNode& shape) {
   if (masking != Masking::kSmith) return 1.0;
@@ -52,8 +52,8 @@ double share_beyond(Distribution distribution, const kernel::ShapeNode& shape, d
   return steeper_share(distribution, {shape.m / std::numbers::sqrt2, shape.q_minus_1 + 1.0}, slope);
 }
 
-// Upper bound of the albedo times cos(theta) from the slopes beyond the cut T, which the kernel leaves out. Because e
-// <= c + s t, it is without masking at most c * (share of facets beyond T) + 2 s * (integral of P t^2 over t > T).
+// Upper bound of the albedo times cos(theta) from the slopes beyond the cut T, which the kernel leaves out. Without
+// masking, e <= c + s t gives the bound c * (share of facets beyond T) + 2 s * (integral of P t^2 over t > T).
 double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::ShapeNode& shape) {
   const double reached = std::min(shape.cut, theta.end[DOLP_MAX_PIECES]);
   const double tail = share_beyond(data.distribution, shape, reached);
@@ -70,7 +70,7 @@ double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const k
   return masking_bound(data.distribution, data.masking, theta, shape) * (theta.c * tail + theta.s * slopes);
 }
 
-// Error relative to the albedo. With smith masking and Cauchy slopes it grows like the mean slope, infinite at q = 3/2.
+// Error of G relative to the albedo. With smith and Cauchy slopes it grows like the mean slope, infinite at q = 3/2.
 double masking_error(const KernelData& data, const MomentsEntry& entry, double unit_roundoff) {
   if (!data.needs_masking_table()) return 0.0;
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
@@ -81,7 +81,7 @@ double masking_error(const KernelData& data, const MomentsEntry& entry, double u
   return table * (may_diverge ? 1.0 + kDivergingSlope / shape.two_q_minus_3 : 1.0);
 }
 
-// An upper bound of M00, which falls as cos(beta) grows.
+// R_s, an upper bound of M00 = (R_s + R_p) / 2. The bound falls as cos(beta) grows.
 double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
   if (index.curve_cells > 0.0) return 1.0;  // with films R_s may grow with cos(beta)
   const std::complex<double> w =
@@ -89,8 +89,8 @@ double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
   return std::min(1.0, std::norm((cos_beta - w) / (cos_beta + w)));
 }
 
-// Upper bound, at most `most`, of the share of light that is left after `bounces` bounces with cos(beta) >= a/2; a is
-// the length of the ray's direction projected across the groove. It is at least `level`, except at azimuths with
+// Upper bound, at most `most`, of the share of light that is left after `bounces` bounces with cos(beta) >= a/2, where
+// a is the length of the ray's direction projected across the groove. a is at least `level`, except at azimuths with
 // sin(theta) |cos(phi)| < sqrt(level^2 - c^2). The share of light there is at most twice the share of azimuths.
 double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double bounces, double most) {
   double least = most;
@@ -104,10 +104,10 @@ double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index
   return least;
 }
 
-// Upper bound of the share of their light that the facets beyond the cut reflect. A ray that leaves after one bounce
-// has cos(theta_r) > 0, so cos(beta) > c sqrt(1 + t^2) / 2, and M00 is at most R_s at this cosine. In grooves of
-// half-angle gamma, with cot(gamma) = slope, the bounces of a ray are at the angles psi + gamma, psi + 3 gamma ... of
-// the unfolded groove. At least slope * min(pi/3, pi/2 - theta) - 1 of them have cos(beta) >= a/2.
+// Upper bound of the share of incident light that the facets steeper than the cut (ShapeNode::cut) reflect. A ray that
+// leaves after one bounce has cos(theta_r) > 0, so cos(beta) > c sqrt(1 + t^2) / 2, and M00 is at most R_s at this
+// cosine. In grooves of half-angle gamma, with cot(gamma) = slope, the bounces of a ray are at the angles psi + gamma,
+// psi + 3 gamma ... of the unfolded groove. At least slope * min(pi/3, pi/2 - theta) - 1 of them have cos(beta) >= a/2.
 double steep_reflectance(const KernelData& data, const kernel::IndexNode& index, const kernel::ThetaNode& theta,
                          const kernel::ShapeNode& shape) {
   if (data.scattering == Scattering::kSingle) {
@@ -144,25 +144,26 @@ double pair_factor(const KernelData& data, const kernel::IndexNode& index) {
   return index.critical_cos > 0.0 ? kCriticalFactor * smooth : smooth;
 }
 
-// Errors of the table, of corners that do not split pieces, and of rounding: near the zenith 1 - cos loses digits.
+// Error of a function of a sky: from its table, from its corners (kinks) at which pieces are not split, and from
+// rounding. Rounding is large near the zenith, where 1 - cos(theta_r) loses digits.
 double sky_error(const KernelData& data, std::size_t function, double unit_roundoff) {
   return data.sky.error[function] + kUnsplitBends * data.sky.bends[function] + kSkyRoundings * unit_roundoff +
          data.sky.steepness[function] * std::sqrt(kSkyCosineRoundings * unit_roundoff);
 }
 
-// Rounding of the abscissa times the largest slope of the polynomial, degree^2, plus rounding of the recurrence.
+// Rounding error of T_degree(x): the error of x times the largest slope, degree^2, plus the error of the recurrence.
 double response_rounding(std::size_t degree, double unit_roundoff) {
   return kResponseRoundings * unit_roundoff * static_cast<double>(1 + degree * degree);
 }
 
 struct Shares {
-  double cut = 0.0;            ///< bound of the albedo beyond the cut
-  double reflected_cut = 0.0;  ///< light that the facets beyond the cut reflect
+  double cut = 0.0;            ///< bound of the albedo of facets steeper than ShapeNode::cut
+  double reflected_cut = 0.0;  ///< bound of the light that these facets reflect
   double grooves = 0.0;        ///< error of bounces in grooves
   double masking = 0.0;        ///< relative error of G
   double rounding = 0.0;       ///< relative rounding error
-  double least = 0.0;          ///< least relative error bound of a sum
-  double pair = 1.0;
+  double least = 0.0;          ///< least error bound of a sum, relative to the sum
+  double pair = 1.0;           ///< factor from the difference of two rules to the bound
   // Two rules with few nodes may agree by chance, so the bound of a sum is at least a share of the tolerance.
   double of_rule() const { return least + rounding; }
   double of_masked() const { return of_rule() + masking; }

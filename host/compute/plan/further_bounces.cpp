@@ -18,11 +18,11 @@ using Complex = std::complex<double>;
 
 /// Two beams in the frame of a groove.
 struct Across {
-  double a = 0.0;      ///< length of omega_i projected into the plane across the groove
-  double psi_i = 0.0;  ///< zenith of the beam in this plane, positive toward u
-  double psi_r = 0.0;
+  double a = 0.0;                                  ///< length of omega_i projected into the plane across the groove
+  double psi_i = 0.0;                              ///< zenith of omega_i in this plane, positive toward u
+  double psi_r = 0.0;                              ///< zenith of omega_r in this plane
   double along = 0.0;                              ///< component of omega_i along the groove
-  Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< unit vectors of the beams' azimuths: across, along
+  Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< unit vectors of the azimuths: across and along the groove
   Eigen::Vector2d to = Eigen::Vector2d::Zero();
   double cos_i = 1.0;
   double cos_r = 1.0;
@@ -40,7 +40,7 @@ Eigen::Matrix2d turned(double x, double y) {
 }
 
 /// The Jones matrix of a bounce at cos(beta) = c, if the facet's frame is rotated by the angle of the vector (x, y). In
-/// the unfolded groove r_p equals r_s at normal incidence. Complex roots and quotients would be slow.
+/// the unfolded groove r_p equals r_s at normal incidence. Roots and quotients of std::complex would be slow.
 class Facet {
  public:
   explicit Facet(const OpticalConstants& index)
@@ -85,8 +85,8 @@ Eigen::Matrix4d mueller(const Jones& j) {
       {(of_s + of_p).imag(), (of_s - of_p).imag(), (straight + crossed).imag(), (straight - crossed).real()}};
 }
 
-/// Mueller matrix of a beam with `bounces` bounces. The fields go from facet to facet of the unfolded groove. After an
-/// odd number of bounces it is a mirror image, which reverses one axis of the frame.
+/// Mueller matrix of a beam with `bounces` bounces. The fields go from facet to facet of the unfolded groove. An odd
+/// number of bounces makes the unfolded groove a mirror image, which reverses one axis of the frame.
 Eigen::Matrix4d chain(const Across& at, const Facet& facet, double gamma, int bounces) {
   Jones fields = turned(-at.from.x(), at.from.y() * at.cos_i).transpose().cast<Complex>();
   const Complex turn = std::polar(1.0, 2.0 * gamma);
@@ -117,7 +117,7 @@ struct FurtherBeams {
   int bounces = 0;          ///< bounces computed so far, over all beams
 };
 
-/// Bound of the light after more than `bounces` bounces, over the light after `bounces`: light falls like k^(2 - 2q).
+/// Bound of the light after more than k = `bounces` bounces, divided by the light after k, which falls like k^(2 - 2q).
 double beyond_last(const ScatteringRequest& request, const SlopeShape& shape, int bounces) {
   const bool is_cauchy = request.distribution == Distribution::kCauchy;
   return is_cauchy ? bounces / std::clamp(2.0 * shape.q - 3.0, kSlowestFall, 1.0) : bounces;
@@ -130,7 +130,7 @@ FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, c
   const Facet facet(request.optics[entry.index].index);
   const double least_gamma = 0.49 * std::abs(std::abs(at.psi_i) - std::abs(at.psi_r));
   FurtherBeams beams;
-  // Bounds for all further even, and all further odd, numbers of bounces, which follow different laws.
+  // Two bounds: for all further even numbers of bounces, and for all further odd ones. The two follow different laws.
   std::array<double, 2> beyond = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (int k = 2; k <= kMostBouncesOfBeam; ++k) {
     const double gamma = (pi - at.psi_i + (k % 2 == 1 ? -at.psi_r : at.psi_r)) / (2.0 * k);
@@ -161,7 +161,7 @@ int add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, c
   const double azimuth_deg = std::remainder(angles.delta_phi_deg, 360.0);
   const CosSin half = cos_sin_deg(0.5 * std::abs(azimuth_deg));  // keeps all digits near 180 degrees
   const CosSin azimuth{cos_sin_deg(azimuth_deg).cos, std::copysign(2.0, azimuth_deg) * half.sin * half.cos};
-  // h, without cancellation near the mirror direction.
+  // The horizontal part h of omega_i + omega_r, without cancellation near the mirror direction.
   const double h_x = 2.0 * cos_sin_deg(0.5 * (angles.theta_i_deg + angles.theta_r_deg)).cos *
                          cos_sin_deg(0.5 * (angles.theta_i_deg - angles.theta_r_deg)).sin +
                      2.0 * r.sin * half.cos * half.cos;

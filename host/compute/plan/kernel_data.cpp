@@ -49,7 +49,7 @@ double turns_of(double bounces) {
   return turns;
 }
 
-// A vertical ray bounces pi / (2 gamma) times, cot(gamma) = slope. Steep grooves have no splits below psi = gamma.
+// With cot(gamma) = slope a vertical ray bounces pi / (2 gamma) times. Steep grooves have no lines in |psi| < gamma.
 Loops groove_loops(const KernelData& data, double start, double end) {
   const double most = pi / (2.0 * std::atan(1.0 / end));
   const double splits = data.rule.split_bounces;
@@ -79,8 +79,8 @@ constexpr double kMostIterations = 64'000.0;
 constexpr double kMostArcs = 2.0 * DOLP_MAX_ARCS;
 constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // iterations that search for the lines of a groove
 
-// Upper bound of the loop iterations of one invocation: over two rules, slopes, arcs and azimuths, or for a slope
-// sample over arcs, azimuths and bounces. Because of lockstep it covers the entry with the most work.
+// Upper bound of the loop iterations of one invocation: loops over two rules, slopes, arcs and azimuths, or for a slope
+// sample over arcs, azimuths and bounces. In lockstep every invocation takes as long as the one with the most work.
 double iterations(const KernelData& data, const Loops& loops, double most_nodes) {
   const double arcs = loops.arcs + loops.corners;
   const double idle = data.sky.count == 0 ? 0.0 : 2.0 * loops.arcs * (1.0 + loops.corners);  // corners outside an arc
@@ -91,7 +91,7 @@ double iterations(const KernelData& data, const Loops& loops, double most_nodes)
   return of_rule(1.0) + of_rule(kCoarseShare + 1.0 / data.rule_order);
 }
 
-// Most nodes of an arc that keep an invocation below kMostIterations. If they are too few, the error bound shows it.
+// Most nodes of an arc for an invocation below kMostIterations loop turns. If too few, the error bound shows it.
 std::uint8_t most_nodes(const KernelData& data, const Loops& loops) {
   int most = data.rule_order;
   while (iterations(data, loops, most) > kMostIterations) --most;
@@ -148,8 +148,8 @@ kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& sh
   return node;
 }
 
-// The node has the pole of R_p in cos(beta) and the branch point of the amplitudes, with real and imaginary parts >= 0.
-// Films add no branch points: their amplitudes are even functions of the wave number in each film.
+// The pole of R_p in cos(beta) gets an imaginary part >= 0, the branch point of the amplitudes two parts >= 0. Films
+// add no branch points: their amplitudes are even functions of the wave number in each film.
 kernel::IndexNode index_node(const FacetOptics& optics) {
   const auto [n, k] = optics.index;
   const std::complex<double> n_complex(n, k);
@@ -189,8 +189,8 @@ void add_curves(KernelData& data, const MomentsRequest& request) {
   data.rule.phi_nodes += kNodesOfFringe * fringes;
 }
 
-// Adds all directions of the grid; then, for each index with total reflection, all directions with its critical line.
-// If a shape needs a line of the masking, adds each set of directions also with this line.
+// Adds the directions of the grid: once without total reflection, and once for each critical line of an index. If a
+// shape needs a split at a line or cusp of the masking, adds all of these directions also with this split.
 void add_grid_directions(KernelData& data, const MomentsRequest& request) {
   const bool any_line = std::ranges::find(data.needs_line, 1) != data.needs_line.end();
   const std::uint32_t lines = any_line ? 2 : 1;
@@ -217,7 +217,7 @@ void add_shape(KernelData& data, const MomentsRequest& request, const SlopeShape
 
 static_assert(kMostResponses == DOLP_COLUMNS);
 
-/// Plans the rules as if the integrand had a pole at cos(beta) = i * bend, unless an index has a nearer pole.
+/// Plans the rules as if the integrand had a pole at cos(beta) = i * bend, unless an index has a pole nearer to 0.
 void take_responses(KernelData& data, const Response& response) {
   data.response = response;
   data.rule.response_scale = 1.0 / response.c0;

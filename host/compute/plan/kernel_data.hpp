@@ -42,10 +42,10 @@ inline constexpr unsigned kRootBelow = 2;  ///< the integrand has a square root 
 struct Pieces {
   std::uint32_t count = 0;
   std::array<std::uint8_t, DOLP_MAX_PIECES + 3> roots{};       ///< bits kRootAbove, kRootBelow of each end
-  std::array<std::uint8_t, DOLP_MAX_PIECES + 1> most_nodes{};  ///< most nodes of an arc, for each piece
+  std::array<std::uint8_t, DOLP_MAX_PIECES + 1> most_nodes{};  ///< largest number of nodes of an arc, per piece
   /// One number per piece. Pieces with equal numbers have equal loop bounds, so they may run in lockstep.
   std::array<std::uint16_t, DOLP_MAX_PIECES> lockstep{};
-  bool has_split_line = false;  ///< split at the line b = pi/2 of `integral`, or at smith's cusp
+  bool has_split_line = false;  ///< pieces end at the line b = pi/2 (eq. 11) of `integral`, or at smith's cusp
 };
 
 /// Positions of one entry in three lists of KernelData.
@@ -55,16 +55,16 @@ struct MomentsEntry {
   std::uint32_t index = 0;
 };
 
-/// Bounds for each quantity in the reflectance table of an index.
+/// Error bounds that hold for each quantity in the reflectance table of an index.
 struct CurveError {
   double absolute = 0.0;
   double per_roundoff = 0.0;  ///< error divided by the unit roundoff of the kernel's precision
 };
 
-/// Inputs of one run of the kernel. For a grid, `indices` and `shapes` (sigma x q, q fastest) follow its axes. `thetas`
-/// has all directions of the grid once per variant (DirectionVariant). Variants differ in split lines: total reflection
-/// has lines that depend on the index, and some shapes need one more line. For points, each point has a direction and
-/// an index; neighbouring points with equal shapes share one shape.
+/// Inputs of one run of the kernel. For a grid, `indices` and `shapes` (sigma x q, q fastest) follow the axes of the
+/// grid. `thetas` has all directions of the grid once per variant (DirectionVariant). Variants differ in split lines:
+/// total reflection has lines that depend on the index, and some shapes need one more line. For points, each point has
+/// a direction and an index; neighbouring points with equal shapes share one shape.
 struct KernelData {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
@@ -73,7 +73,7 @@ struct KernelData {
   double tolerance = 1e-4;
   kernel::RuleNode rule{};
   int rule_order = 1;
-  bool has_total_reflection = false;  ///< an index reflects totally, sharply or nearly so
+  bool has_total_reflection = false;  ///< true if an index has total reflection, with k = 0 or small
   bool has_curves = false;            ///< the kernel reads reflectances from tables
   /// Errors of the reflectance tables, per index; empty without tables.
   std::vector<CurveError> curve_errors;
@@ -82,14 +82,14 @@ struct KernelData {
   std::vector<kernel::ThetaNode> thetas;
   std::vector<Pieces> pieces;  ///< one for each of `thetas`
   std::vector<kernel::ShapeNode> shapes;
-  std::vector<char> needs_line;  ///< for each shape: 1 if it needs the line of its masking
+  std::vector<char> needs_line;  ///< for each shape: 1 if it needs splits at a line or cusp of the masking
   std::vector<kernel::IndexNode> indices;
-  std::vector<std::uint32_t> index_variant;  ///< for each index of a grid: position of its first variant
+  std::vector<std::uint32_t> index_variant;  ///< for each index of a grid: number of its first DirectionVariant
   std::vector<std::uint32_t> shape_of;
   /// Nodes of the rules, then cells of the sky and of reflectance tables.
   std::vector<std::array<double, 2>> rule_nodes;
   SkyTable sky;
-  std::optional<Response> response;  ///< kind of the columns; null if they are functions of the sky
+  std::optional<Response> response;  ///< set if the columns are responses; null if they belong to functions of a sky
 
   std::size_t column_count() const { return response ? response->count : sky.count; }
   bool needs_masking_table() const { return masking == Masking::kIntegral || masking == Masking::kSmith; }
@@ -108,15 +108,15 @@ struct KernelData {
 
 struct RuleModel;
 
-/// Without `model`, uses the fitted numbers of the request's masking. Pure function.
+/// The data of a request. Without `model`, they use the fitted numbers (RuleModel) of its masking. Pure function.
 KernelData kernel_data(const MomentsRequest& request);
 KernelData kernel_data(const MomentsRequest& request, const RuleModel& model);
 
-/// Counts of the numbers for the columns, which follow each MomentsNode and each AzimuthNode.
+/// How many numbers for columns follow each MomentsNode and each AzimuthNode.
 inline std::size_t column_sums(const KernelData& data) { return DOLP_COLUMN_PARTS * data.column_count(); }
 inline std::size_t column_azimuths(const KernelData& data) { return 2 * data.column_count(); }
-/// Adds a piece to `sums`. There are DOLP_COLUMN_PARTS numbers per column: i and q of the finer rule, and their
-/// differences from the coarser rule. Functions of a sky have only the larger of the two differences.
+/// Adds the columns of a piece to `sums`, which has DOLP_COLUMN_PARTS numbers per column: i and q of the finer rule,
+/// and their differences from the coarser rule. Functions of a sky have only the larger of the two differences.
 template <class Real>
 void add_columns(const KernelData& data, std::span<const Real> piece, std::span<double> sums) {
   for (std::size_t first = 0; first < piece.size(); first += DOLP_COLUMN_PARTS) {
@@ -130,7 +130,6 @@ void add_columns(const KernelData& data, std::span<const Real> piece, std::span<
     sums[first + 3] += data.response ? q_apart : 0.0;
   }
 }
-/// The kind of the columns, one of DOLP_COLUMNS_*.
 inline std::uint32_t column_kind(const KernelData& data) {
   return data.response ? DOLP_COLUMNS_RESPONSE + static_cast<std::uint32_t>(data.response->of) : DOLP_COLUMNS_SKY;
 }
@@ -138,7 +137,7 @@ inline std::uint32_t column_kind(const KernelData& data) {
 /// The task word of interface.glsl for one piece of a row of `members` entries.
 std::uint32_t task_word(const Pieces& pieces, std::uint32_t piece, std::uint32_t members);
 
-/// Pieces of the slope axis up to the cut, which the kernel has to compute; at least one.
+/// Pieces of the slope axis up to the slope cut of `shape`, which the kernel has to compute; at least one.
 std::uint32_t piece_count(const KernelData& data, std::uint32_t theta, const kernel::ShapeNode& shape);
 
 /// The slope of V-grooves in which a vertical ray bounces `bounces` times.
@@ -146,18 +145,18 @@ double slope_with_bounces(double bounces);
 
 void add_piece(kernel::MomentsNode& sum, const kernel::MomentsNode& piece);
 
-/// r_i + deficit = cos(theta): computes the less accurate of the two from the other.
+/// Uses r_i + deficit = cos(theta) to compute the less accurate of r_i and deficit from the other.
 void take_complement(Moments& moments, double cosine);
 
 /// Moments with error bounds from the kernel's result, and from DOLP_COLUMN_PARTS sums for each column of the data.
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
                             double unit_roundoff, std::span<const double> columns = {});
 
-/// False if the table is too coarse to resolve G: coarser than the slope distribution, and cot(theta) below
-/// table_scale.
+/// False if the masking table is too coarse to resolve G: table_scale exceeds the width m of the slope distribution,
+/// and cot(theta) is below table_scale.
 bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin_theta);
 
-/// Upper bound for one invocation. Drivers may stop it after 65,535 iterations, without an error and with wrong sums.
+/// Most loop iterations of one invocation. Drivers may stop it after 65,535, without an error and with wrong sums.
 double worst_iterations(const KernelData& data);
 
 }  // namespace dolp

@@ -19,12 +19,12 @@ struct MomentsStep {
   std::optional<ResponsePlan> responses;
 
   const MomentsRequest& nodes() const { return shapes ? shapes->nodes : request; }
-  /// True if the step computes fewer moments than it gives.
+  /// True if the kernels compute fewer moments than the step returns.
   bool saves_work() const { return shapes || responses; }
   std::vector<const MomentsRequest*> kernel_requests() const;
 };
 
-/// Depends only on the request. An entry's moments do not depend on the other directions of the request.
+/// The plan depends only on the request. The moments of an entry do not depend on other directions of the request.
 class MomentsPlan {
  public:
   explicit MomentsPlan(const MomentsRequest& request);
@@ -32,16 +32,16 @@ class MomentsPlan {
   std::size_t size() const { return size_; }              ///< entries of the request
   std::size_t directions() const { return directions_; }  ///< directions of a grid; 0 for points
   std::span<const MomentsStep> steps() const { return steps_; }
-  /// Wanted entries that are interpolated or combined instead of computed.
+  /// Wanted entries that are interpolated, or combined from responses, instead of computed by a kernel.
   std::size_t saved_entries() const;
   /// Moments that the kernels compute for the saved entries.
   std::size_t nodes_of_saved() const;
   std::size_t kernel_moments() const;
-  /// For each direction of a grid: 1 if its entries are interpolated or combined. Empty for points.
+  /// For each direction of a grid: 1 if the entries are interpolated or combined from responses. Empty for points.
   std::vector<char> saving_directions() const;
 
  private:
-  /// Adds a step, or several steps if its responses would take too much memory.
+  /// Adds a step, or several steps if the responses of the step would take too much memory.
   void add(MomentsStep step);
 
   std::size_t size_ = 0;

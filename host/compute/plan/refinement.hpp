@@ -14,7 +14,7 @@ struct RefinementLevel {
   Precision precision = Precision::kFloat;
   double tolerance = 1e-4;                          ///< MomentsRequest::tolerance
   bool may_interpolate = false;                     ///< interpolation over slope distributions is allowed
-  bool is_check = false;                            ///< a level of check_level, which splits the slopes differently
+  bool is_check = false;                            ///< comes from check_level(), which splits the slopes differently
   std::shared_ptr<const ResponseBasis> basis = {};  ///< MomentsRequest::basis
   /// Orders by cost: float before double, then wide tolerances before tight ones.
   friend bool operator<(const RefinementLevel& a, const RefinementLevel& b) {
@@ -23,14 +23,14 @@ struct RefinementLevel {
   }
 };
 
-/// Float if the tolerance is well above its rounding, unless the scene sets the precision.
+/// Uses float if the tolerance is well above the rounding of float, unless the scene sets the precision.
 RefinementLevel first_level(const Accuracy& accuracy, bool has_double);
 
 /// The level that checks results: with other splits than `first`, and a hundredth of its tolerance.
 RefinementLevel check_level(const RefinementLevel& first);
 
-/// Tighter by the factor by which the result misses the tolerance, in steps of half a decade, and in double if float
-/// cannot be so accurate. Empty if the result meets the tolerance or no tighter level exists. Pure function.
+/// A level tighter than `last` by the factor by which `result` misses the tolerance, in steps of half a decade, and in
+/// double if float cannot be so accurate. Empty if `result` meets the tolerance or no tighter level exists.
 std::optional<RefinementLevel> next_level(const RefinementLevel& last, const PointResult& result,
                                           const Accuracy& accuracy, bool has_double);
 

@@ -14,10 +14,10 @@ namespace {
 constexpr std::size_t kFewestCells = 64;
 constexpr std::size_t kMostCells = 4096;
 constexpr double kShareOfTolerance = 0.02;
-constexpr double kLeastLevel = 1e-3;  // the error is relative to the reflectance level, or to this if it is larger
+constexpr double kLeastLevel = 1e-3;  // errors are relative to reflectance_level(), or to this if it is larger
 constexpr double kSafety = 2.0;       // factor from the errors at some positions in the cells to the bound
 
-/// R_s, 1 - R_s and (R_s - R_p) / sin^2 at v = sqrt(cos(beta)).
+/// R_s, 1 - R_s and the split (R_s - R_p) / sin^2(beta) at v = sqrt(cos(beta)).
 using Values = std::array<double, 3>;
 constexpr std::size_t kSplit = 2;
 
@@ -46,7 +46,7 @@ void add_cell(ReflectanceCurve& curve, const FacetOptics& optics, double start, 
         cubic_through(values[0][part], values[2][part], values[4][part], values[6][part]);
     curve.nodes.push_back({cubic[0], cubic[1]});
     curve.nodes.push_back({cubic[2], cubic[3]});
-    // Moments contain the split times sin^2(beta) = 1 - v^4, so its error has this weight.
+    // Moments contain the split times sin^2(beta) = 1 - v^4, so the error of the split has this weight.
     const double weight = part == kSplit ? 1.0 - std::pow(start, 4.0) : 1.0;
     for (const std::size_t i : {1U, 3U, 5U}) {
       const double off = std::abs(at(cubic, static_cast<double>(i) / 6.0) - values[i][part]);
@@ -57,7 +57,7 @@ void add_cell(ReflectanceCurve& curve, const FacetOptics& optics, double start, 
   }
 }
 
-/// The pole c + i b in cos(beta) that explains the steepest slope: it changes R by its whole range over the width 2 b.
+/// The pole c + i b in cos(beta) that explains the steepest slope, where R would change by its whole range over 2 b.
 std::complex<double> steepest_pole(const FacetOptics& optics, std::size_t cells) {
   std::complex<double> pole(0.0, 1.0);
   for (const double SmoothAbsorptance::*part : {&SmoothAbsorptance::s, &SmoothAbsorptance::p}) {

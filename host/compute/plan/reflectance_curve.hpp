@@ -13,7 +13,7 @@ struct ReflectanceCurve {
   std::vector<std::array<double, 2>> nodes;
   std::size_t cells = 0;
   double error = 0.0;      ///< bound of the distance of R_s, 1 - R_s and (R_s - R_p) / 2 from the cubics
-  double steepness = 0.0;  ///< largest derivative of these with respect to ln sqrt(cos(beta))
+  double steepness = 0.0;  ///< largest derivative of these three with respect to ln sqrt(cos(beta))
   /// The pole in cos(beta) that gives R_s or R_p its largest steepness.
   std::complex<double> pole;
 };

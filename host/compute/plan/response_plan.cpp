@@ -18,7 +18,7 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Flags for a grid of some of the request's indices. `needed_by` lists, for each of them, the indices that need it.
+/// MomentsRequest::wanted for a grid of other indices: `needed_by` lists the request's indices that need each of them.
 std::vector<char> wanted_of(const MomentsRequest& request, const std::vector<std::vector<std::size_t>>& needed_by) {
   const std::size_t of_index = request.theta_deg.size() * request.shapes();
   std::vector<char> wanted;
@@ -50,11 +50,11 @@ struct Responses {
     }
   }
   enum Part : std::uint8_t { kI, kQ, kIApart, kQApart, kError, kParts };
-  std::vector<RowMajor> all;           // one matrix per part, responses x shapes, for one direction
+  std::vector<RowMajor> all;           // one matrix (responses x shapes) per Part, for one direction
   std::vector<double> relative_error;  ///< one value for each shape
 };
 
-/// Always sums in the same order. Eigen's order depends on the sizes, so a grid's division would change the last bits.
+/// Matrix product with a fixed order of sums. Eigen's order depends on the sizes, and so on the division of a grid.
 RowMajor product(const RowMajor& weights, const RowMajor& part) {
   RowMajor sums = RowMajor::Zero(weights.rows(), part.cols());
   for (Eigen::Index i = 0; i < weights.rows(); ++i) {
@@ -66,7 +66,7 @@ RowMajor product(const RowMajor& weights, const RowMajor& part) {
   return sums;
 }
 
-/// Sums of weights times responses. Shape: indices that have weights x shapes. The error bounds do not cover the part
+/// Sums of weights times responses. Shape: (indices that have weights) x shapes. The error bounds do not cover the part
 /// of a reflectance curve that the weights leave out.
 struct Sums {
   Sums(const Responses& responses, Responses::Part of, Responses::Part apart, const RowMajor& weights)
@@ -76,7 +76,7 @@ struct Sums {
     for (Eigen::Index shape = 0; shape < error.cols(); ++shape)
       error.col(shape) += responses.relative_error[static_cast<std::size_t>(shape)] * value.col(shape).cwiseAbs();
   }
-  /// Sums for the difference of two curves, which may change its sign: relative errors refer to its largest magnitude.
+  /// Sums for the difference of two curves, which may change its sign: relative errors refer to the largest magnitude.
   static Sums of_difference(const Responses& responses, Responses::Part of, Responses::Part apart,
                             const RowMajor& weights) {
     Sums sums(responses, of, apart, weights);
@@ -112,7 +112,7 @@ class Combination {
     if (rows > 0) reflected_.col(0).array() += 1.0;
   }
 
-  /// `passes` has the moments of all shapes at one direction; `moments` receives them for all indices and shapes.
+  /// `passes` has, for each pass, the moments of all shapes at one direction; `moments` gets those of all indices.
   void operator()(double cosine, std::span<const std::span<const Moments>> passes, std::span<Moments> moments) const {
     add_reflected(cosine, passes.front(), moments);
     std::size_t pass = 1;
@@ -159,8 +159,8 @@ class Combination {
         sum.r_q_error = from.r_q_error + more_split.error(index, shape) + more_absorbed.error(index, shape) +
                         (own.split_error + of_reference.split_error) * albedo;
       }
-      // In a sum the differences of the two rules may cancel by chance. The bound of the reference index adds their
-      // magnitudes, so it is the least relative bound.
+      // In a sum the differences of the two rules may cancel by chance. The bound of the reference index adds the
+      // magnitudes of the differences. So no bound may be smaller than this one, relative to r_i.
       const double whole_error = from.r_i_error * std::max(sum.r_i / from.r_i, 0.0);
       sum.r_i_error = std::max(sum.r_i_error, whole_error);
       sum.r_q_error = std::max(sum.r_q_error, whole_error);
@@ -193,7 +193,7 @@ class Combination {
     const Sums q(all, Responses::kQ, Responses::kQApart, split_);
     for_all(pass.size(), moments, [&](Moments& sum, const ResponseWeights& own, auto index, auto shape) {
       const Moments& from = pass[static_cast<std::size_t>(shape)];
-      // The function of the sky changes its sign, so relative errors refer to r_i, which does not contain it.
+      // The function of the sky changes its sign, so relative errors refer to r_i, which does not contain the function.
       const double relative = all.relative_error[static_cast<std::size_t>(shape)] * std::abs(sum.r_i);
       sum.columns.resize(function + 1);
       sum.columns[function] = {i.value(index, shape), q.value(index, shape),
@@ -232,7 +232,7 @@ std::vector<ResponsePlan::Source> sources_of(const ResponseBasis& basis, std::sp
   return sources;
 }
 
-/// Adds the passes. `reference` has their entries, at the reference index.
+/// Adds the passes, the requests for responses. `reference` has the entries of a pass, at the reference index.
 void add_passes(ResponsePlan& plan, const MomentsRequest& request, MomentsRequest reference) {
   const ResponseBasis& basis = *request.basis;
   reference.basis = nullptr;

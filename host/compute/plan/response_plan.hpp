@@ -25,8 +25,8 @@ struct ResponsePlan {
     std::uint32_t source = 0;
     std::uint32_t other = 0;
   };
-  /// The request's directions and slope distributions at the reference index: for responses of the reflected light and,
-  /// if wanted, of the direct emission, and of the reflected light times each function of the sky.
+  /// Requests for the directions and slope distributions at the reference index: one for responses of the reflected
+  /// light and, if wanted, one for the direct emission, and one for the reflected light times each function of the sky.
   std::vector<MomentsRequest> passes;
   std::optional<MomentsRequest> others;                ///< the indices, or points, that have no weights
   std::shared_ptr<const std::vector<Source>> sources;  ///< one per index of a grid, or per distinct index of points

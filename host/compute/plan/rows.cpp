@@ -44,7 +44,7 @@ void add_chunk(Rows& rows, const KernelData& data, std::span<const std::uint32_t
   unite(std::span(rows.shapes).subspan(first));
 }
 
-// Adds chunks in ascending order of q. All entries count, wanted or not, so an entry always has the same neighbours.
+// Adds chunks in ascending order of q. Unwanted entries count too, so an entry always has the same neighbours.
 void add_grid_chunks(Rows& rows, const MomentsRequest& request, const KernelData& data) {
   std::vector<std::uint32_t> ascending(request.q.size());
   std::iota(ascending.begin(), ascending.end(), 0U);

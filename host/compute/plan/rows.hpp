@@ -13,7 +13,7 @@ namespace dolp {
 /// Largest number of members of a row. The kernel is compiled for rows of one member and of this many.
 inline constexpr std::uint32_t kRowWidth = DOLP_ROW_WIDTH;
 
-/// Consecutive shapes with one sigma, in ascending order of q, which share their nodes. For points, a single shape.
+/// Consecutive shapes with one sigma, in ascending order of q, which share Gauss nodes. For points, a single shape.
 struct Chunk {
   std::uint32_t first = 0;  ///< position in Rows::shapes
   std::uint32_t count = 1;  ///< at most the width of a row
@@ -34,7 +34,7 @@ struct RowPiece {
 
 struct Rows {
   std::uint32_t width = 1;                ///< 1 or kRowWidth
-  std::vector<kernel::ShapeNode> shapes;  ///< ordered by chunk; the shapes of a chunk share scale, cut and cusp
+  std::vector<kernel::ShapeNode> shapes;  ///< ordered by chunk; a chunk has one scale, cut, table_scale, cusp_digits
   std::vector<std::uint32_t> shape_of;    ///< position of each of `shapes` in KernelData::shapes
   std::vector<Chunk> chunks;
   std::vector<Row> rows;  ///< ordered by chunk, index and direction
@@ -49,7 +49,7 @@ struct Rows {
 /// only on the shapes, not on directions, indices and wanted entries.
 Rows rows_of(const MomentsRequest& request, const KernelData& data);
 
-/// Invocations of `count` rows from row `first`. Neighbours take equal time, because mostly only the direction differs.
+/// Invocations of `count` rows from row `first`. Neighbouring ones take equal time: mostly only the direction differs.
 std::vector<RowPiece> pieces_of(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count);
 
 }  // namespace dolp

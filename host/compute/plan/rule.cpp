@@ -44,18 +44,18 @@ constexpr std::array<RuleModel, 5> kModels = {{
 
 constexpr double kNone = -1000.0;
 
-// log10 of the nodes within a distance of 1/m from a line or cusp, where the share of steep facets varies.
+// log10 of the number of nodes within 1/m of a line or cusp, the distance over which the share of steep facets varies.
 double decades_per_node(const SlopeShape& shape, double digits) {
   const double width = std::max(1.0, slope_width(shape));
   return std::log10(std::max(kNodesPerDigit * digits / width, 1.5));
 }
 
-// log10 of the error of smith's cusp at theta_r = 0 in rules that do not split there. Near it Smith's Lambda is L = C
+// log10 of the error of smith's cusp at theta_r = 0 in rules that do not split there. Near the cusp Smith's Lambda is C
 // (m tan(theta_r))^(2q-2). The cusp is a point of the slope plane, so n nodes per dimension leave an error of n^-2q.
 double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double digits) {
   const double per_node = decades_per_node(shape, digits);
   if (distribution == Distribution::kGaussian) {
-    // All derivatives vanish at theta_r = 0; at 45 degrees L is about exp(-1/m^2).
+    // All derivatives vanish at theta_r = 0; at 45 degrees Lambda is about exp(-1/m^2).
     return -0.5 / (shape.sigma * shape.sigma * std::numbers::ln10) - kGaussianCuspPower * per_node;
   }
   const double from_integer = std::abs(shape.q - std::round(shape.q));
@@ -66,7 +66,7 @@ double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double d
   return size - 2.0 * shape.q * per_node;
 }
 
-// log10 of the error of the line b = pi/2 of `integral` without a split. Steep facets at a distance x add |x|^(2q-1).
+// log10 of the error of the line b = pi/2 of `integral` (eq. 11) without a split: G has a part (distance)^(2q-1).
 double unsplit_line(Distribution distribution, const SlopeShape& shape, double digits) {
   if (distribution == Distribution::kGaussian) {
     return shape.sigma > (digits > kTightDigits ? kTightLineSigma : kLineSigma) ? 0.0 : kNone;

@@ -7,8 +7,8 @@
 
 namespace dolp {
 
-/// Numbers that `dolp-calibrate fit` has fitted to minimise the work for random entries, including repetitions. All
-/// others follow from the positions of the integrand's singularities (shaders/physics/orders.glsl).
+/// Numbers that `dolp-calibrate fit` has fitted to minimise the work for random entries, including repetitions. The
+/// rest of a rule follows from the positions of the integrand's singularities (shaders/physics/orders.glsl).
 struct RuleModel {
   double margin_digits = 0.0;  ///< digits of the coarser rule in addition to the tolerance's digits
   double t_nodes = 0.0;        ///< t_nodes to phi_digits: see kernel::RuleNode
@@ -19,10 +19,10 @@ struct RuleModel {
   double cluster_stretch = 1.0;  ///< smith: nodes per digit from which a cluster at the cusp pays
 };
 
-/// The numbers of a masking or, for kMultiple, of its grooves with all bounces.
+/// The fitted numbers of a masking or, for kMultiple, of grooves with all bounces.
 const RuleModel& rule_model(Masking masking, Scattering scattering = Scattering::kSingle);
 
-/// Digits that the finer rule needs. The coarser rule must meet the tolerance, because its error is nearly the bound.
+/// Digits that the finer rule needs. The coarser rule must meet the tolerance: its error is nearly the error bound.
 double rule_digits(const RuleModel& model, double tolerance);
 
 kernel::RuleNode rule_node(const RuleModel& model, double tolerance);
@@ -32,8 +32,8 @@ int split_bounces(double digits);
 
 int largest_order(double digits);
 
-/// True if the error without a split at the line b = pi/2 of `integral` or smith's cusp exceeds kLineShare of
-/// `tolerance`.
+/// True if the error without a split at the line b = pi/2 (eq. 11) of `integral` or at smith's cusp exceeds kLineShare
+/// of `tolerance`.
 bool needs_line(Distribution distribution, Masking masking, const SlopeShape& shape, double digits, double tolerance);
 
 /// log10 of the error without a split at smith's cusp, relative to Smith's Lambda. Below -100 without a cusp.
@@ -44,7 +44,7 @@ using RuleNodes = std::vector<std::array<double, 2>>;  // (abscissa, weight) of 
 /// Ascending nodes on [-1, 1]. Accuracy: 1e-15 (tests/compute/plan_test.cpp, polynomials of degree 2 * order - 1).
 RuleNodes gauss_legendre(int order);
 
-/// The sections of physics/quadrature.glsl, each with the orders 1 to `largest_order`. The reference stays valid.
+/// The sections of physics/quadrature.glsl, each with the orders 1 to `largest_order`. The result stays valid.
 const RuleNodes& rule_nodes(int largest_order);
 
 }  // namespace dolp

@@ -21,7 +21,7 @@ Values at_nodes(const ShapePlan& plan, std::span<const Moments> nodes, const Val
   return values;
 }
 
-/// Interpolation error of each column of `values`: the omitted coefficients, if they fall like the last ones.
+/// Interpolation error of each column of `values`: the omitted Chebyshev coefficients, if they fall like the last ones.
 Eigen::RowVectorXd tails(const ShapeAxis& axis, const Values& values) {
   if (!axis.is_interpolated()) return Eigen::RowVectorXd::Zero(values.cols());
   const Eigen::MatrixXd sizes = (axis.coefficients.bottomRows(2 * kLastShapeCoefficients) * values).cwiseAbs();
@@ -55,7 +55,7 @@ class Interpolation {
   Values q_;
 };
 
-/// Interpolates column `k`. The result has all its error in ColumnMoments::error.
+/// Interpolates column `k` of the moments. The whole error bound of the result is in ColumnMoments::error.
 void interpolate_column(const ShapePlan& plan, const Interpolation& interpolated, std::span<const Moments> nodes,
                         std::size_t k, std::span<Moments> moments) {
   for (Moments& of_entry : moments) of_entry.columns.resize(k + 1);
@@ -74,7 +74,7 @@ void interpolate_column(const ShapePlan& plan, const Interpolation& interpolated
   }
 }
 
-/// True if, for each direction and index, all entries are wanted or none.
+/// True if the request wants, for each pair of direction and index, either all entries or no entry.
 bool wants_whole_directions(const MomentsRequest& request) {
   if (request.layout != MomentsRequest::Layout::kGrid) return false;
   const std::size_t shapes = request.shapes();
@@ -124,7 +124,7 @@ ShapeParameter q_parameter(const MomentsRequest& request) {
   return {needs_mean_slope && has_mean_slope ? 1.5 : 1.0, 1.45};
 }
 
-/// Different nodes for `values` with which the interpolation keeps `digits` decimal digits.
+/// Nodes from which interpolation to `values` keeps `digits` decimal digits; `values` themselves if that saves little.
 ShapeAxis shape_axis(const ShapeParameter& parameter, const std::vector<double>& values, double digits) {
   const auto [least, largest] = std::minmax_element(values.begin(), values.end());
   const double start = std::log(*least - parameter.origin);

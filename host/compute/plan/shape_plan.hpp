@@ -19,7 +19,7 @@ std::vector<std::vector<std::size_t>> split_grazing_directions(const MomentsRequ
 struct ShapeAxis {
   std::vector<double> nodes;     ///< equal to the values if interpolation gains nothing
   Eigen::MatrixXd cardinal;      ///< values x nodes: weights of the moments at the nodes
-  Eigen::MatrixXd coefficients;  ///< nodes x nodes: values at the nodes to Chebyshev coefficients; else empty
+  Eigen::MatrixXd coefficients;  ///< nodes x nodes: makes Chebyshev coefficients from node values; else empty
   bool is_interpolated() const { return coefficients.size() > 0; }
 };
 
@@ -35,8 +35,8 @@ struct ShapePlan {
 /// only some entries of a direction and index are wanted.
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request);
 
-/// Interpolates the moments of one direction and index at the request's sigma x q. Bounds are the nodes' bounds,
-/// weighted by the interpolant's weights, plus an interpolation error estimated from the last Chebyshev coefficients.
+/// Interpolates the moments of one direction and index at the request's sigma x q. An error bound is the sum of the
+/// nodes' bounds times |weight|, plus an interpolation error estimated from the last Chebyshev coefficients.
 void interpolate(const ShapePlan& plan, std::span<const Moments> nodes, std::span<Moments> moments);
 
 }  // namespace dolp

@@ -61,7 +61,7 @@ struct Corner {
   Eigen::RowVectorXd bend;  // change of the slope of each function in u
 };
 
-/// The sharpest corners come first.
+/// The corners (kinks) of the functions; the sharpest come first.
 std::vector<Corner> corners_of(const SkyBasis& basis) {
   constexpr double kStep = 1e-4;
   std::vector<Corner> corners;

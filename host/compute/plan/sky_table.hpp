@@ -25,8 +25,8 @@ struct SkyTable {
   std::uint32_t word() const;
 };
 
-/// Appends as many cells as the tolerance needs, up to 2^15, for tight tolerances up to 2^18. If `splits`, also appends
-/// the cosines of the sharpest corners. Cells round off the corners inside them.
+/// Appends as many cells to `nodes` as the tolerance needs, up to 2^15, for tight tolerances up to 2^18. If `splits`,
+/// also appends the cosines of the sharpest corners (kinks). A cell rounds off a corner inside it.
 SkyTable append_sky(const SkyBasis& basis, double tolerance, bool splits, std::vector<std::array<double, 2>>& nodes);
 
 }  // namespace dolp

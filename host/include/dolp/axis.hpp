@@ -22,13 +22,13 @@ using AxisArray = EnumArray<Axis, Value, kAxisCount>;
 inline constexpr std::array<Axis, kAxisCount> kAllAxes = enumerators<Axis, kAxisCount>();
 
 struct AxisDescription {
-  const char* name;    ///< name of the coordinate in table files and Datasets
-  const char* column;  ///< name of the column in points, .csv and .npy, of the [grid] key, and of the Python keyword
+  const char* name;    ///< name of the coordinate in table files and in xarray Datasets
+  const char* column;  ///< name in points, in .csv and .npy files, as a key of [grid], and as a Python keyword
   const char* units;
   const char* long_name;
   NumberRange range;
-  bool is_required;         ///< every table has this axis; a table without an optional axis has the scene's value
-  bool has_labels = false;  ///< the values of the axis are positions, from 0, in its list of labels
+  bool is_required;         ///< true: every table has the axis; false: a table may lack it and hold for one value
+  bool has_labels = false;  ///< the values are positions (from 0) in a list of labels: names of materials or bands
 };
 
 inline constexpr std::array<AxisDescription, kAxisCount> kAxes = {{
@@ -47,21 +47,21 @@ static_assert(kAxes.back().name != nullptr, "each axis has a row");
 
 constexpr const AxisDescription& description_of(Axis axis) { return kAxes[static_cast<std::size_t>(axis)]; }
 
-/// Describes wind speeds, which are no axis of their own. In [grid] and in points, wind speeds replace values of sigma.
-/// Tables have them as a second coordinate along sigma.
+/// Description of wind speeds, which are not an axis. In [grid] and in points, wind speeds can replace values of sigma.
+/// A table then has its wind speeds as a second coordinate along the axis sigma.
 inline constexpr AxisDescription kWind = {
     "wind_m_s", "wind_m_s", "m s-1", "wind speed that gives sigma (Cox and Munk 1954)", kWindRange, false};
 
-/// The axes in the order in which messages list the columns of points.
+/// The axes in the order in which error messages list the columns that points can have.
 inline constexpr std::array<Axis, kAxisCount> kColumnOrder = {Axis::kTheta,    Axis::kSigma,       Axis::kQ,
                                                               Axis::kN,        Axis::kK,           Axis::kWavelength,
                                                               Axis::kMaterial, Axis::kTemperature, Axis::kBand};
 
 /// The values of each axis, in any order and without repetition. A grid has at least one value of each required axis.
 using Axes = AxisArray<std::vector<double>>;
-/// The names of the values of axes with labels: materials by name, bands as "8-14". Empty for other axes.
+/// The labels of axes with labels: names of materials, and bands such as "8-14". Empty for other axes.
 using AxisLabels = AxisArray<std::vector<std::string>>;
-/// One number per axis, such as a position along it or its number of values.
+/// One integer per axis, such as a position along the axis or its number of values.
 using PerAxis = AxisArray<std::size_t>;
 
 }  // namespace dolp

@@ -9,8 +9,8 @@ namespace dolp {
 enum class EffectState : std::uint8_t {
   kAbsent,     ///< the scene does not have the effect
   kKept,       ///< computed
-  kDropped,    ///< left out, because a bound shows that it changes the result negligibly
-  kNotNeeded,  ///< a choice of the model that changes nothing in the kept effects
+  kDropped,    ///< the run leaves the effect out, because a bound shows that the result hardly changes
+  kNotNeeded,  ///< a choice of the model on which no kept effect depends
 };
 
 constexpr const char* name_of(EffectState state) {
@@ -27,19 +27,19 @@ enum class Part : std::uint8_t {
   kEmission,
   kPathRadiance,
   kDiffuse,
-  kProfile  ///< variation of the surroundings around their mean
+  kProfile  ///< difference of the radiance of the surroundings from its mean over directions
 };
 
-/// An effect that a scene can have, and how a run at some points treats it.
+/// An effect that a scene can have, and what a run over given entries does with it.
 struct Effect {
   std::string name;
   EffectState state = EffectState::kKept;
   std::string reason = {};
-  std::string needs = {};         ///< quantities that the effect needs; empty if it is not kept
+  std::string needs = {};         ///< what must be computed for the effect, in words; empty if the effect is not kept
   std::optional<Part> part = {};  ///< contribution that the effect adds; empty for choices of the model
-  /// For a dropped effect: bound of the change of (Q/I, U/I) by dropping it, at the worst point.
+  /// For a dropped effect: bound of the change of (Q/I, U/I) because the effect is dropped, at the worst entry.
   std::optional<double> bound = {};
-  /// For a kept effect: estimate of the change of (Q/I, U/I) if it were dropped, the largest at a few points.
+  /// For a kept effect: the largest change of (Q/I, U/I) at a few entries if the effect were dropped.
   std::optional<double> influence = {};
 };
 

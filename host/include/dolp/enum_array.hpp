@@ -5,7 +5,7 @@
 
 namespace dolp {
 
-/// An array with one value per enumerator. The values of the enumerators count up from 0.
+/// An array with one value per enumerator. The enumerators must have the values 0, 1, 2, ...
 template <class Key, class Value, std::size_t kCount>
 struct EnumArray : std::array<Value, kCount> {
   using std::array<Value, kCount>::operator[];

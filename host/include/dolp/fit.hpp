@@ -14,7 +14,7 @@
 
 namespace dolp {
 
-/// A quantity that is measured (a column of the data) and that the model computes.
+/// A quantity that the data can contain (a column of the CSV) and that the model computes.
 enum class Observable { kDolp, kQOverI, kEmissivityS, kEmissivityP };
 
 /// "dolp", "q_over_i" (signed), "emissivity_s", "emissivity_p".
@@ -22,7 +22,7 @@ DOLP_EXPORT const char* name_of(Observable observable);
 
 struct Measurement {
   Observable observable = Observable::kDolp;
-  double theta_deg = 0.0;  ///< in bistatic mode: zenith of the source
+  double theta_deg = 0.0;  ///< zenith angle of the view or, in bistatic mode, of the source
   double value = 0.0;
   std::optional<double> uncertainty;    ///< one standard deviation
   std::optional<double> wavelength_um;  ///< empty means the scene's wavelength
@@ -30,25 +30,24 @@ struct Measurement {
 
 /// A set of measured data, with settings that change the scene for these data.
 struct DOLP_EXPORT MeasuredData {
-  std::string name = "data";  ///< name of its file, for messages
+  std::string name = "data";  ///< name of the CSV file, for messages
   std::vector<Setting> settings = {};
-  std::string zenith_column = "theta_deg";  ///< theta_deg, or theta_i_deg, which needs the bistatic mode
+  std::string zenith_column = "theta_deg";  ///< zenith column of the CSV: theta_deg, or theta_i_deg (if bistatic)
   bool has_uncertainties = false;           ///< true if all measurements have an uncertainty
   std::vector<Measurement> measurements = {};
   std::vector<std::string> remarks = {};  ///< one line for each unit that was probably meant differently
 
-  /// Reads a CSV with the columns theta_deg or theta_i_deg; dolp (not negative), q_over_i (signed), or one or both of
-  /// emissivity_s and emissivity_p; and, if wanted, uncertainty and wavelength_um. Values are fractions, not percent.
-  /// Lines that begin with # are comments. Errors: InputError with file, line, column, value and what is allowed.
+  /// Reads a CSV. The columns are: theta_deg or theta_i_deg; the measured dolp (not negative), q_over_i (signed), or
+  /// one or both of emissivity_s and emissivity_p; if wanted, uncertainty and wavelength_um. Values are fractions, not
+  /// percent. Lines that begin with # are comments. Errors: InputError with file, line, column, value, range.
   static MeasuredData from_csv(const std::string& csv, const std::string& name = "data",
                                std::vector<Setting> settings = {});
   /// Reads the CSV and the settings of "FILE" or "FILE:KEY=VALUE,KEY=VALUE". FILE "-" is stdin. Errors: InputError.
   static MeasuredData read(const std::string& argument);
 };
 
-/// A number of the scene, and the range in which a fit searches for it. The fit searches along a coordinate, from 0 at
-/// `low` to 1 at `high`. It is logarithmic in the number if the range is positive and spans a decade or more, otherwise
-/// linear.
+/// A number of the scene that a fit varies from `low` to `high`. The fit searches along a coordinate from 0 at `low` to
+/// 1 at `high`. The coordinate is linear in the number or, if is_logarithmic(), in its logarithm.
 struct DOLP_EXPORT FitRange {
   std::string key;
   double low = 0.0;
@@ -64,7 +63,7 @@ struct DOLP_EXPORT FitRange {
   static FitRange from_text(const std::string& argument);
 };
 
-/// Alternative words for a key of the scene. Each word gets a fit of its own; the fits are then ranked.
+/// Alternative words for a key of the scene. The program fits the data with each word and ranks the fits.
 struct DOLP_EXPORT Comparison {
   std::string key;
   std::vector<std::string> words;
@@ -73,18 +72,19 @@ struct DOLP_EXPORT Comparison {
   static Comparison from_text(const std::string& argument);
 };
 
-/// The contribution of a residual r to the objective. It is r^2 or, mainly for residuals above one uncertainty, less.
+/// What a residual r adds to the objective, which a fit minimises: r^2 for kSquares. The other losses add less than
+/// r^2, mainly if |r| exceeds one uncertainty, so that outliers count less.
 enum class Loss { kSquares, kHuber, kSoftL1, kCauchy, kTukey };
 
 /// "squares", "huber", "soft-l1", "cauchy", "tukey", in the order of Loss.
 DOLP_EXPORT const std::vector<std::string>& loss_names();
 
-/// A systematic error of the model that a fit allows for.
+/// The systematic error that a fit assumes in the model.
 enum class ModelError {
   kNone,
-  /// The truth may lie anywhere in the model's bracket (emission.bracket), independently at each point. A residual is
-  /// the distance to the bracket. An interval contains the values at which chi^2 itself is below its quantile, with as
-  /// many degrees of freedom as there are points.
+  /// At each point the truth may lie anywhere between the two ends of the model's bracket (emission.bracket). A
+  /// residual is the distance of the measured value to the bracket. An interval contains the values of a parameter for
+  /// which chi^2, not its growth, is below its quantile with as many degrees of freedom as there are points.
   kBracket,
 };
 
@@ -99,19 +99,19 @@ struct FitOptions {
   std::uint64_t seed = 1;                              ///< seed of the starting points
   Progress progress = {};                              ///< counts the items of each phase; may be empty
   std::function<void(const std::string&)> phase = {};  ///< gets the name of each phase before it begins; may be empty
-  Loss loss = Loss::kSquares;                          ///< all losses except squares need uncertainties
-  ModelError model_error = ModelError::kNone;          ///< kBracket needs uncertainties
+  Loss loss = Loss::kSquares;                          ///< kHuber to kTukey need data with uncertainties
+  ModelError model_error = ModelError::kNone;          ///< kBracket needs data with uncertainties
   std::vector<Comparison> compare = {};                ///< each combination of the compared words gets a fit
   std::filesystem::path output = {};  ///< file for the scene with the fitted values; "-" is stdout; empty: no file
   /// File (.png, .pdf or .svg) for a picture with data, model and residuals, which Matplotlib draws. Empty: no picture.
   std::filesystem::path plot = {};
 };
 
-/// A profile-likelihood interval. It reaches from the smallest to the largest value that the data do not exclude, over
-/// all minima. An end is empty if the data do not exclude the values up to that end of the parameter's range.
+/// A profile-likelihood interval of a parameter. It reaches from the smallest to the largest value that the data do not
+/// exclude. `low` or `high` is empty if the data do not exclude the values up to that end of the parameter's range.
 struct FitInterval {
   std::optional<double> low, high;
-  /// The pieces of the interval in ascending order. There are several if the data exclude values between minima.
+  /// The pieces of the interval in ascending order: several if the data exclude values in its middle.
   std::vector<std::pair<std::optional<double>, std::optional<double>>> pieces = {};
   bool is_empty = false;  ///< the data exclude all values, even with the model's bracket
 };
@@ -119,13 +119,13 @@ struct FitInterval {
 struct FitParameter {
   std::string key;
   double value = 0.0;
-  std::optional<double> standard_error;  ///< from the covariance, in which the parameters at a bound are fixed
-  /// Intervals at 68.27 % and 95 %. Both ends are empty if the data give no scale for the residuals.
+  std::optional<double> standard_error;  ///< from the covariance with the parameters at a bound held fixed
+  /// Intervals at 68.27 % and 95 %. Their ends are empty if the data have no uncertainties and no degrees of freedom.
   FitInterval interval_68, interval_95;
   /// Only if the fit is doubtful or bad: the intervals with all uncertainties multiplied by sqrt(reduced chi^2).
   std::optional<FitInterval> scaled_68 = {}, scaled_95 = {};
   bool is_at_bound = false;
-  std::string why_no_error = {};  ///< in words; empty if there is a standard error
+  std::string why_no_error = {};  ///< why there is no standard error; empty if there is one
 };
 
 struct FitMinimum {
@@ -139,7 +139,7 @@ struct FitNumbers {
   std::size_t degrees_of_freedom = 0;         ///< points minus parameters; with a model error, number of points
   std::optional<double> p_value = {};         ///< only with uncertainties and the loss "squares"
   std::string fit_quality = {};         ///< "good", "doubtful" (p < 0.05), "bad" (p < 0.001); empty without p_value
-  std::vector<FitMinimum> minima = {};  ///< all minima found, the best first
+  std::vector<FitMinimum> minima = {};  ///< all minima that the fit found, the best first
   std::vector<std::string> degeneracies = {};  ///< combinations of parameters that the data do not determine, in words
 };
 

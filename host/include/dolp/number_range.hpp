@@ -29,9 +29,10 @@ inline constexpr double kLikelyNanometres = 1000.0;
 inline constexpr double kLikelyCelsius_K = 60.0;
 inline constexpr NumberRange kToleranceRange{1e-10, 1e-2};
 inline constexpr NumberRange kAxisCountRange{1.0, 1e6};
-inline constexpr NumberRange kLabelRange{0.0, 1e6};  ///< positions on an axis with labels
+inline constexpr NumberRange kLabelRange{0.0, 1e6};  ///< positions in the list of labels (names) of an axis
 
-/// With the Cauchy distribution, smith masking needs a finite mean slope (shaders/physics/README.md, section 2).
+/// Range of q for smith masking with the cauchy distribution. Above 3/2 the mean slope, which smith masking uses, is
+/// finite (shaders/physics/README.md, section 2).
 inline constexpr NumberRange kSmithCauchyQRange{1.5, 1e4, NumberRange::Ends::kOpenBelow};
 
 }  // namespace dolp

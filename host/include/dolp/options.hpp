@@ -10,34 +10,34 @@
 
 namespace dolp {
 
-/// A column of points. Its name is the name of the column in CSV files: theta_deg, sigma, q, n, k, wavelength_um, and
-/// so on; for Mueller matrices also theta_i_deg, theta_r_deg, delta_phi_deg.
+/// Values of one variable at scattered points. `name` is the name of the column in CSV files of points: theta_deg,
+/// sigma, q, n, k, wavelength_um, and so on; for Mueller matrices also theta_i_deg, theta_r_deg, delta_phi_deg.
 struct Column {
   std::string name;
   std::span<const double> values;  ///< one value per point, or one value for all points
 };
 
-/// The 4 x 4 Mueller pBRDF of a pair of directions, row by row. Units: 1/sr.
+/// The 4 x 4 Mueller matrix of the pBRDF for a pair of directions, row by row. Units: 1/sr.
 using MuellerMatrix = std::array<double, 16>;
 
 struct EvaluatorOptions {
   std::string evaluator = "vulkan";  ///< vulkan, cpu (kernel source compiled as C++) or reference (adaptive quadrature)
   /// For the evaluator "vulkan": position in devices(), or a part of the name of a device. Empty means the best device.
   std::string device = {};
-  /// Makes dispatches short: calls end soon after Progress returns false, and a window on the device goes on drawing.
+  /// Makes dispatches short. So a call ends soon after Progress returns false, and other programs can draw meanwhile.
   bool is_interactive = false;
 };
 
 struct RunOptions {
   bool keep_all = false;     ///< compute all effects, even negligible ones
   Progress progress = {};    ///< may be empty
-  std::string history = {};  ///< text after the time in the attribute "history" of a table
+  std::string history = {};  ///< text that follows the time in the attribute "history" of a table
   bool resume = false;       ///< for write_table: continue a cancelled or killed call for the same scene
 };
 
-/// One of `count` parts of a table, of about equal size, which several processes can compute. Default: the whole table.
+/// One of `count` parts of a table, of about equal size. Several processes can compute a part each. Default: no parts.
 struct Shard {
-  std::size_t number = 0;  ///< from 1 to count
+  std::size_t number = 0;  ///< number of this part, from 1 to count
   std::size_t count = 0;
   bool is_none() const { return number == 0 && count == 0; }
 };
@@ -53,7 +53,7 @@ struct DeviceCheckOptions {
   std::string evaluator = "vulkan";  ///< vulkan; cpu: the kernel source compiled as C++
   std::string device = {};           ///< same meaning as in EvaluatorOptions
   std::string precision = "auto";    ///< float, double, or auto, which checks both
-  double tolerance = 1e-4;           ///< requested tolerance
+  double tolerance = 1e-4;           ///< tolerance for DOLP and rho of the computed cases
   bool all = false;                  ///< report every case, not only the cases that fail
   Progress progress = {};            ///< may be empty
 };

@@ -12,25 +12,25 @@
 
 namespace dolp {
 
-/// A quantity of results: one number per entry or point. The order is the order in table files, in which the status
-/// follows the last quantity.
+/// A quantity of results, with one number per entry or point. Table files have the quantities in this order, and the
+/// status after the last one.
 /// Units: Stokes parameters are exitances, in W m-2 um-1 at one wavelength and W m-2 over a band; in bistatic mode they
 /// are radiances, in W m-2 sr-1 um-1 and W m-2 sr-1. The other quantities have unit 1.
-/// Conventions: Q = I_s - I_p keeps its sign; U = V = 0 in hemispherical mode. Over a band, rho is a weighted mean. The
-/// weight is the emission pi B(T), or the incident radiation if there is no emission; without both it is constant.
+/// Conventions: Q = I_s - I_p keeps its sign; U = V = 0 in hemispherical mode. Over a band, rho is a mean. Its weight
+/// is the emission pi B(T) or, without emission, the incident radiation; without either it is constant.
 enum class Quantity : std::uint8_t {
-  kDolp,    ///< sqrt(Q^2 + U^2) / I; negative with a negative I, NaN with I = 0
+  kDolp,    ///< sqrt(Q^2 + U^2) / I; negative if I is negative, NaN if I is 0
   kQOverI,  ///< Q / I, signed: it crosses zero where contributions cancel
   kStokesI,
   kStokesQ,
   kStokesU,
   kStokesV,
-  kRhoI,         ///< includes k_s and the diffuse part
-  kRhoQ,         ///< includes k_s and the polarisation of the diffuse part
-  kAlbedo,       ///< A(theta): reflectance with R = 1, without k_s and the diffuse part
-  kEmissivityS,  ///< emissivity that the emission uses; over a band a mean weighted by pi B(T)
+  kRhoI,         ///< reflectance, with the specular weight k_s and the diffuse part
+  kRhoQ,         ///< polarised part of the reflectance, with k_s and the diffuse part
+  kAlbedo,       ///< A(theta): specular reflectance if all facets reflect perfectly, without the weight k_s
+  kEmissivityS,  ///< emissivity in the computed emission; over a band a mean weighted by pi B(T)
   kEmissivityP,
-  kDolpLow,  ///< dolp_low and dolp_high: bounds of the DOLP of the surface with all bounces
+  kDolpLow,  ///< kDolpLow and kDolpHigh bound the DOLP that all bounces of light would give
   kDolpHigh,
   kErrorEstimate,     ///< bound of the error of dolp, q_over_i, dolp_low and dolp_high; infinite if unknown
   kRhoErrorEstimate,  ///< bound of the errors of rho_i and rho_q, relative to rho_i; infinite if unknown
@@ -45,17 +45,17 @@ inline constexpr std::array<Quantity, kQuantityCount> kAllQuantities = enumerato
 /// Some of the quantities, in the order of the enumeration.
 using Quantities = std::vector<Quantity>;
 
-/// The condition that a scene must meet so that its results have a quantity.
+/// What a scene must have so that its results contain a quantity.
 enum class QuantityNeeds : std::uint8_t { kNothing, kReflectance, kMoments, kEmission, kBracket };
 
 struct QuantityDescription {
   const char* name;
   const char* long_name;
   bool has_stokes_units;  ///< false: the unit is 1
-  const char* ancillary;  ///< names of the variables with its error bound and status; "" if none
+  const char* ancillary;  ///< names of the variables with the quantity's error bound and status; "" if none
   QuantityNeeds needs;
 
-  /// True if results at points lack the column when the scene does not meet the condition.
+  /// True if results at points lack this column when the scene does not meet `needs`.
   constexpr bool is_optional() const { return needs == QuantityNeeds::kEmission || needs == QuantityNeeds::kBracket; }
 };
 

@@ -1,5 +1,5 @@
-// Response tables: the contribution of facets at each local angle of incidence to the reflectance of a rough surface,
-// for any material. Only this file names and orders their variables.
+// A response table tells how much the facets at each local angle of incidence contribute to the reflectance of a rough
+// surface of any material. Only this file names and orders the variables of response tables.
 #pragma once
 
 #include <array>
@@ -15,11 +15,10 @@ namespace dolp {
 /// k_s = 1 without a diffuse part.
 /// Accuracy: let x = 2 asinh(cos(beta) / c0) / asinh(1 / c0) - 1, where c0 is an attribute of the table. Interpolate R
 /// (for emission 1 - R) at the angles beta by a sum of Chebyshev polynomials T_m(x), m < beta.size(), with the
-/// coefficients a_m. Interpolate D / sin^2(beta) in the same way, with the coefficients b_m. The error of a sum is at
-/// most response_error times the largest of all 2^m |a_m| and 2^m |b_m|, whatever R and D are. This largest value is
-/// 0.7 to 1.3 for bare materials, and more if total reflection begins at some beta. Between the angles beta, R differs
-/// from its polynomial, and D from its polynomial times sin^2(beta). The largest of these differences, times the albedo
-/// (for emission times 1), adds to the error.
+/// coefficients a_m. Interpolate D / sin^2(beta) in the same way, with the coefficients b_m. Let h be the largest of
+/// all 2^m |a_m| and 2^m |b_m|. For bare materials h is 0.7 to 1.3, and more if total reflection begins at some beta.
+/// The error of a sum is at most response_error times h. To this adds an error because R and D differ from their
+/// interpolation between the angles beta: at most the largest difference times the albedo (for emission times 1).
 enum class ResponseVariable : std::uint8_t { kResponseI, kResponseQ, kEmissionI, kEmissionQ, kResponseError };
 inline constexpr std::size_t kResponseVariableCount = static_cast<std::size_t>(ResponseVariable::kResponseError) + 1;
 
@@ -31,7 +30,7 @@ inline constexpr auto kAllResponseVariables = enumerators<ResponseVariable, kRes
 struct ResponseDescription {
   const char* name;
   const char* long_name;
-  bool has_beta;  ///< false: it has one value per entry
+  bool has_beta;  ///< true: one value per entry and angle beta; false: one value per entry
 };
 
 inline constexpr const char* kResponseQualifier = "response_error";
@@ -50,7 +49,6 @@ constexpr const ResponseDescription& description_of(ResponseVariable variable) {
   return kResponseVariables[static_cast<std::size_t>(variable)];
 }
 
-/// The coordinate beta of table files.
 struct BetaDescription {
   const char* name;
   const char* long_name;

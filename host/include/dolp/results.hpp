@@ -11,10 +11,10 @@ namespace dolp {
 
 /// Results of one entry of a grid or one scattered point.
 struct PointResult {
-  QuantityArray<double> values;  ///< NaN for a quantity without a value
+  QuantityArray<double> values;  ///< one value per quantity; NaN if the quantity has no value
   std::uint32_t status = 0;      ///< bits of the enumeration Status
-  /// Estimated change of I, as a fraction of I, by light that the model loses or creates. Above kLargestModelChange the
-  /// status has kModelInaccurate. Not stored in files.
+  /// Estimated change of I, as a fraction of I, because the model loses or creates light. If it is above
+  /// kLargestModelChange, the status has kModelInaccurate. Files do not contain this number.
   double model_change = 0.0;
 
   PointResult() { values.fill(std::numeric_limits<double>::quiet_NaN()); }
@@ -24,7 +24,7 @@ struct PointResult {
 
 /// Results of many entries: one column per quantity, and the status.
 struct ResultColumns {
-  QuantityArray<std::vector<double>> columns;  ///< empty if a quantity was not computed
+  QuantityArray<std::vector<double>> columns;  ///< one column per quantity; empty if the quantity was not computed
   std::vector<std::uint32_t> status;           ///< empty if the status was not computed
 
   std::vector<double>& operator[](Quantity quantity) { return columns[quantity]; }

@@ -29,12 +29,13 @@ struct TomlText {
   friend bool operator==(const TomlText&, const TomlText&) = default;
 };
 
-/// A value of a key, or no value. A setting without a value removes its key, or the whole table of an effect.
+/// The value of a key, or no value. A setting without a value removes its key from the scene or, if the key is the name
+/// of a TOML table ("surroundings"), the whole table.
 class DOLP_EXPORT Value {
  public:
   using Content = std::variant<std::monostate, bool, double, std::string, std::vector<double>, AxisRange, TomlText>;
 
-  // NOLINTBEGIN(google-explicit-constructor): a value is written as itself
+  // NOLINTBEGIN(google-explicit-constructor): numbers, texts and lists convert to a Value implicitly
   Value() = default;
   template <class Number>
   requires std::is_arithmetic_v<Number> Value(Number number) {
@@ -62,16 +63,16 @@ class DOLP_EXPORT Value {
   Content content_;
 };
 
-/// A dotted key of a scene ("surface.sigma") and its value. A setting creates the table of its key if the scene lacks
-/// it, and removes alternatives to its key: surface.n, .material, .material_file; source.irradiance,
+/// A dotted key of a scene ("surface.sigma") and its value. A setting adds the TOML table of its key if the scene lacks
+/// it, and removes alternative keys. The alternatives are: surface.n, .material, .material_file; source.irradiance,
 /// .relative_irradiance, .preset, .file; path.temperature_K, .radiance; spectrum.wavelength_um, .band_um.
 struct DOLP_EXPORT Setting {
   std::string key;
   Value value;
-  std::string origin = {};  ///< beginning of error messages; if empty, they begin with the key and the value
+  std::string origin = {};  ///< beginning of error messages; if empty, messages begin with the key and the value
 
-  /// Reads "KEY=VALUE". VALUE is written as in TomlText. Error messages begin with `option`, the command-line option to
-  /// which the argument belongs. Errors: InputError for anything else.
+  /// Reads "KEY=VALUE". VALUE has the syntax of TomlText. `option` is the command-line option to which the argument
+  /// belongs; error messages begin with it. Errors: InputError if `argument` has another form.
   static Setting from_text(const std::string& argument, const std::string& option = {});
 
   std::string text() const;  ///< "KEY=VALUE"

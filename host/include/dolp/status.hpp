@@ -9,15 +9,15 @@ namespace dolp {
 enum Status : std::uint32_t {
   kReflectanceOutsideZeroToOne = 1,  ///< rho_s or rho_p is outside [0, 1] by more than its error bound
   kToleranceNotMet = 2,              ///< DOLP misses the scene's tolerance
-  kOutsideModelDomain = 4,           ///< outside the model's domain; undefined quantities are NaN
+  kOutsideModelDomain = 4,           ///< the entry is outside the model's domain; undefined quantities are NaN
   kIntensityNotPositive = 8,         ///< I <= 0: such radiation does not exist
-  kRhoToleranceNotMet = 16,          ///< rho misses the scene's tolerance; DOLP may be right
-  /// By an estimate, light that single scattering loses or that a masking creates changes I by more than 5 %. If this
-  /// is the only bit, the numbers are right for the model, but the model is wrong for the surface.
+  kRhoToleranceNotMet = 16,          ///< rho misses the scene's tolerance; DOLP may still meet it
+  /// Estimate: I changes by more than 5 %, because single scattering loses light or a masking function creates light.
+  /// If this is the only bit, the numbers are right for the model, but the model is wrong for the surface.
   kModelInaccurate = 32,
 };
 
-/// Largest change of I, as a fraction of I, that does not set kModelInaccurate.
+/// Largest change of I, as a fraction of I, for which the status does not get the bit kModelInaccurate.
 inline constexpr double kLargestModelChange = 0.05;
 
 struct StatusBit {
@@ -25,7 +25,7 @@ struct StatusBit {
   const char* meaning;
 };
 
-/// The bits in the order in which table files describe them.
+/// The status bits in the order in which table files describe them.
 inline constexpr std::array<StatusBit, 6> kStatusBits = {{
     {kReflectanceOutsideZeroToOne, "reflectance_outside_zero_to_one"},
     {kToleranceNotMet, "tolerance_not_met"},
@@ -37,11 +37,11 @@ inline constexpr std::array<StatusBit, 6> kStatusBits = {{
 
 inline constexpr std::uint32_t kAnyToleranceNotMet = kToleranceNotMet | kRhoToleranceNotMet;
 
-/// With any of these bits the DOLP has no guaranteed accuracy.
+/// If the status has any of these bits, the accuracy of the DOLP is unknown.
 inline constexpr std::uint32_t kNoDolpPromised =
     kReflectanceOutsideZeroToOne | kOutsideModelDomain | kIntensityNotPositive;
 
-/// True if the DOLP either meets the tolerance or carries kToleranceNotMet.
+/// True if the accuracy of the DOLP is known: it meets the tolerance, or the status has the bit kToleranceNotMet.
 inline bool promises_dolp(std::uint32_t status) { return (status & kNoDolpPromised) == 0; }
 
 }  // namespace dolp

@@ -18,29 +18,30 @@ struct Attribute {
   friend bool operator==(const Attribute&, const Attribute&) = default;
 };
 
-/// Longer text attributes become variables in files, because netCDF limits attributes to less than 64 KiB.
+/// Largest size of a text attribute in a file. Longer texts become variables: netCDF limits attributes to 64 KiB.
 inline constexpr std::size_t kMostAttributeBytes = 64'000;
 
-/// A quantity of the scene as a function of the wavelength. A constant has one row.
+/// n, k or E0 of a scene as a function of the wavelength. A constant has one element.
 struct Curve {
   std::vector<double> wavelength_um;
   std::vector<double> values;
-  /// Values at the table's wavelengths, or one without a wavelength axis. Empty if the quantity varies over a band.
+  /// The quantity at the wavelengths of the table; one value if the table has no axis of wavelengths. Empty if the
+  /// table is of a band over which the quantity varies.
   std::vector<double> used;
   friend bool operator==(const Curve&, const Curve&) = default;
 };
 
-/// All data of a table except its values.
+/// Everything in a table except its results.
 struct TableHead {
   Axes axes;                     ///< values in the user's order; empty for an axis that the table lacks
-  AxisLabels labels;             ///< all labels of the scene's axes, also in a part of a table
+  AxisLabels labels;             ///< names of materials and bands in the scene; a part of a table has all of them too
   std::vector<double> wind_m_s;  ///< wind speeds from which sigma follows; empty if the scene gives sigma
   std::vector<double> beta_deg;  ///< local angles of incidence of a response table, ascending
-  Curve index_n;                 ///< n, k and E0 of the computation; each is empty if the table has none
+  Curve index_n;                 ///< n, k and E0 with which the table was computed; empty curves if the table has none
   Curve index_k;
-  Curve irradiance;                         ///< before multiplication by source.scale
-  std::string stokes_units = "W m-2 um-1";  ///< UDUNITS; "W m-2" over a band
-  /// Attributes in the order of the file, without the additional ones that Table::file_attributes() returns.
+  Curve irradiance;                         ///< E0 before multiplication by source.scale
+  std::string stokes_units = "W m-2 um-1";  ///< for UDUNITS; "W m-2" over a band, with " sr-1" if bistatic
+  /// Attributes in the order of the file. A file has further ones, which only Table::file_attributes() returns.
   std::vector<Attribute> attributes;
 
   /// Number of values of each axis, 1 for an axis that the table lacks.
@@ -58,7 +59,7 @@ struct TableHead {
   std::size_t width_of(ResponseVariable variable) const {
     return description_of(variable).has_beta ? beta_deg.size() : 1;
   }
-  /// Position in the columns of an entry at the first wavelength, n and k.
+  /// Position in each column of the entry at these indices of theta, sigma and q, and at the first value of other axes.
   std::size_t position(std::size_t theta, std::size_t sigma_index, std::size_t q_index) const {
     return (theta * axes[Axis::kSigma].size() + sigma_index) * axes[Axis::kQ].size() + q_index;
   }
@@ -67,11 +68,11 @@ struct TableHead {
 /// A lookup table in memory, or a part of one. Shape: each column is an array over all axes, flattened in C order (the
 /// last axis varies fastest).
 struct TableValues : TableHead, ResultColumns {
-  /// Empty except in response tables. For each entry, width_of() consecutive values of a variable.
+  /// Variables of a response table; empty in other tables. Each entry has width_of() consecutive values of a variable.
   ResponseArray<std::vector<double>> responses;
 };
 
-/// A curve of a table: its description in files, and the member of TableHead that holds it.
+/// The description of a curve in files, and the member of TableHead that contains the curve.
 struct TableCurve {
   const char* name;
   const char* long_name;

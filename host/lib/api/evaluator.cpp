@@ -45,7 +45,7 @@ ReportBuilder response_report(const SceneValues& scene, const TableHead& head, c
   return report;
 }
 
-/// Applies surface_settings() to a scene, unless the scene has them already.
+/// Applies surface_settings() to a scene, unless they are already the last settings of the scene.
 SceneValues surface_of(const SceneValues& scene) {
   const std::vector<Setting> settings = surface_settings();
   const auto last = std::span(scene.settings).last(std::min(scene.settings.size(), settings.size()));
@@ -67,7 +67,7 @@ std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, b
   VulkanOptions options;
   options.device = wanted.device;
   options.needs_double = needs_double;
-  if (wanted.is_interactive) options.max_tile_invocations = 2'048;  // a dispatch takes a few ms on two cores
+  if (wanted.is_interactive) options.max_tile_invocations = 2'048;  // then a dispatch takes a few ms on two CPU cores
   return std::make_unique<VulkanEvaluator>(options);
 }
 
@@ -88,7 +88,7 @@ Evaluator::Evaluator(Evaluator&&) noexcept = default;
 Evaluator& Evaluator::operator=(Evaluator&&) noexcept = default;
 
 Evaluator::~Evaluator() {
-  // In a forked process the driver's threads do not exist, and the destructor would wait for them without end.
+  // A forked process lacks the threads of the Vulkan driver, and the device's destructor would wait for them forever.
   if (impl_ && impl_->owner != getpid()) static_cast<void>(impl_.release());
 }
 

@@ -27,7 +27,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The points of a file, without columns of results. Refuses an `output` that is this file or another input.
+/// Reads the points of a file, without columns of results. Refuses an `output` that would overwrite any of the inputs.
 Points load_points(const std::filesystem::path& path, PointsKind kind, std::vector<std::string> inputs,
                    const std::filesystem::path& output) {
   inputs.push_back(path.string());
@@ -52,7 +52,7 @@ void add_left_out(ReportBuilder& report, const Points& points) {
   report.value("left_out", points.left_out);
 }
 
-/// A CSV for results. Each line begins with the cells of a point, as the file of the points has them.
+/// A CSV for results. Each line begins with the cells of a point as they stand in the file of the points.
 ResultCsv csv_of(const std::filesystem::path& path, const Points& points, const Quantities& quantities) {
   return {path, points.header, quantities,
           [&points](std::string& text, std::size_t row) { (text += points.rows[row]) += ','; }};
@@ -86,7 +86,7 @@ std::vector<std::string> files_of(const SceneValues& scene) {
 
 void check_output_is_no_input(const std::filesystem::path& output, const std::vector<std::string>& inputs) {
   for (const std::string& input : inputs) {
-    std::error_code missing;  // set if a file does not exist; then the files differ
+    std::error_code missing;  // set if a file does not exist; the files are then different
     if (std::filesystem::equivalent(output, input, missing)) {
       throw InputError(output.string() + ": the output would overwrite an input");
     }

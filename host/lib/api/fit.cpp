@@ -60,7 +60,7 @@ void check_comparison(const Comparison& comparison, const FitOptions& options) {
   }
 }
 
-/// All combinations of the compared settings, one list per combination. One empty list if nothing is compared.
+/// All combinations of the words in FitOptions::compare, each as a list of settings. If it is empty, one empty list.
 std::vector<Settings> combinations(const FitOptions& options) {
   std::vector<Settings> all = {{}};
   for (const Comparison& comparison : options.compare) {
@@ -77,12 +77,11 @@ std::vector<Settings> combinations(const FitOptions& options) {
   return all;
 }
 
-/// The best of the compared models, with its fit.
 struct Best {
   std::unique_ptr<fit::Model> model;
   std::optional<fit::FitResult> result;
   Settings compared;
-  SceneValues scene;  ///< scene with the compared settings
+  SceneValues scene;  ///< scene with the settings in `compared`
 
   Eigen::VectorXd values() const {
     return Eigen::Map<const Eigen::VectorXd>(result.value().minima.front().values.data(),
@@ -116,7 +115,7 @@ void check_outputs(const FitOptions& options, const SceneValues& scene, const st
   }
 }
 
-/// The zeniths at which the curves of a picture are computed: from the smallest to the largest zenith of the data.
+/// The zenith angles for the model's curves in a picture: from the smallest to the largest one of the data.
 std::vector<double> fine_zeniths(const MeasuredData& data) {
   constexpr int kSteps = 120;
   const auto [least, largest] = std::ranges::minmax(data.measurements, {}, &Measurement::theta_deg);
@@ -127,12 +126,12 @@ std::vector<double> fine_zeniths(const MeasuredData& data) {
   return zeniths;
 }
 
-/// The fitted model at the measurements; with the bracket as `error`, the values in it that are nearest to them. Empty
-/// if the scene has no bracket, or if the scene of this data set refuses an end of a range.
+/// The values of the fitted model at the measurements. With `error` kBracket: the values in the bracket that are
+/// nearest to the measured ones. Empty if the scene has no bracket or, for this data set, refuses an end of a range.
 std::vector<double> model_values(const Best& best, MeasuredData data, const FitOptions& options, ModelError error,
                                  ModelEvaluator& evaluator) {
   const std::size_t count = data.measurements.size();
-  // A Model refuses fewer measurements than parameters.
+  // A Model needs at least as many measurements as parameters, so the first measurement may be repeated.
   data.measurements.resize(std::max(count, options.vary.size()), data.measurements.front());
   try {
     const fit::Model model(best.scene, {data}, options.vary, error);
@@ -145,13 +144,12 @@ std::vector<double> model_values(const Best& best, MeasuredData data, const FitO
   }
 }
 
-/// DOLP or Q/I at a zenith, and its bracket.
 struct Bracketed {
   double model, low, high;
 };
 
-/// The measured quantity of one data set at given zeniths, with its bracket. Empty if the scene has no bracket, if
-/// emissivities were measured, or if the measurements have wavelengths.
+/// The quantity of one data set at these zenith angles, with its bracket. Empty if the scene has no bracket, if the
+/// data are emissivities, or if the measurements have their own wavelengths.
 std::vector<Bracketed> bracketed(const Best& best, MeasuredData data, const std::vector<double>& theta_deg,
                                  const FitOptions& options, ModelEvaluator& evaluator) {
   const Measurement first = data.measurements.front();
@@ -186,7 +184,7 @@ Json brackets(const Best& best, const FitOptions& options, ModelEvaluator& evalu
   return all;
 }
 
-/// The model over zenith, one curve for each data set, quantity and wavelength.
+/// The model against the zenith angle: a curve for each data set, quantity and wavelength.
 Json curves(const Best& best, const FitOptions& options, ModelEvaluator& evaluator) {
   Json all = Json::array();
   for (const MeasuredData& data : best.model->data()) {
@@ -210,7 +208,7 @@ Json curves(const Best& best, const FitOptions& options, ModelEvaluator& evaluat
   return all;
 }
 
-/// Adds how wrong the model itself may be: the largest distance of the fit from an end of its bracket.
+/// Adds to the report how wrong the model itself may be: the largest distance from the fit to an end of its bracket.
 void add_model_gap(ReportBuilder& report, const Best& best, const FitOptions& options, ModelEvaluator& evaluator) {
   std::optional<double> gap, share;
   for (const MeasuredData& data : best.model->data()) {
@@ -232,8 +230,8 @@ void add_model_gap(ReportBuilder& report, const Best& best, const FitOptions& op
   report.value("model_gap_in_uncertainties", share);
 }
 
-/// Fits all combinations of the compared settings that the scene accepts. `models` gets all combinations, the best
-/// first. `begin` gets the first scene and returns the evaluator. Errors: InputError if the scene accepts none.
+/// Fits the scene with each combination of compared settings that it accepts. Adds all combinations to `models`, the
+/// best first. `begin` makes the evaluator for the first scene. Errors: InputError if the scene accepts no combination.
 Best best_of(std::vector<ComparedModel>& models, const SceneValues& scene, const std::vector<MeasuredData>& data,
              const FitOptions& options, const std::function<ModelEvaluator*(const SceneValues&)>& begin) {
   ModelEvaluator* evaluator = nullptr;

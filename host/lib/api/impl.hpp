@@ -30,14 +30,14 @@ struct Scene::Impl {
 
 struct Table::Impl {
   Impl(TableValues values, std::string of_messages) : table(std::move(values)), name(std::move(of_messages)) {}
-  /// The lookup in the table. The first call makes it. Errors: errors of table_scene and TableLookup.
+  /// The object that looks up points in the table; the first call makes it. Errors: of table_scene and TableLookup.
   const TableLookup& lookup() const;
 
   const TableValues table;
   const std::string name;  ///< beginning of error messages
 
   mutable std::once_flag is_made;
-  mutable std::optional<SceneValues> scene;  ///< scene of the table; empty, like `between`, before the first lookup
+  mutable std::optional<SceneValues> scene;  ///< scene of the table; empty before the first lookup, like `between`
   mutable std::optional<TableLookup> between;
 };
 
@@ -45,28 +45,28 @@ Report public_report(const ReportBuilder& report, bool is_good = true, const std
 
 std::vector<std::string> files_of(const SceneValues& scene);
 
-/// Refuses an output that would overwrite an input. "-" is stdin and stdout. Errors: InputError.
+/// Refuses an output file that would overwrite an input file; "-" (stdin, stdout) is no file. Errors: InputError.
 void check_output_is_no_input(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
-/// `head`: head of the table of a run over the points, or of the table in which the points were looked up.
+/// Results at points. `head`: head of the table of a run over the points, or of the table where they were looked up.
 Results results_of(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head);
 
-/// Makes points from columns. A column with one value holds for all points. Errors: InputError for a column that is
-/// unknown, has another length, or has a value out of range.
+/// Makes points from columns. A column with one value has this value at all points. Errors: InputError for a column
+/// with an unknown name, another number of values, or a value out of range.
 Points points_of_columns(const std::vector<Column>& columns, PointsKind kind);
 
-/// Refuses Vulkan in a process that was forked from one that has used it. A fork does not copy the driver's threads and
-/// locks, so calls would wait without end.
+/// Refuses Vulkan in a process that was forked from one that has used Vulkan. A fork does not copy the threads of the
+/// driver, so calls of Vulkan would wait forever.
 void check_no_fork();
 
-/// `needs_double`: the device must support double precision. Errors: InputError for an unknown name, and for a device
-/// with cpu or reference; DeviceError for vulkan if no device is usable.
+/// Makes an evaluator. `needs_double`: its device must support double precision. Errors: InputError for an unknown
+/// name, or for a device with the evaluator cpu or reference; DeviceError for vulkan if no device is usable.
 std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, bool needs_double);
 
 struct Evaluator::Impl {
   explicit Impl(EvaluatorOptions given) : options(std::move(given)) {}
 
-  /// The evaluator for a run, with an empty report. It supports double precision if the scene needs it.
+  /// The evaluator for a run, with an empty report. It has double precision if the scene needs it.
   ModelEvaluator* begin(const SceneValues& scene) {
     const bool needs_double = scene.accuracy.precision == Precision::kDouble;
     if (evaluator && (evaluator->has_double() || !needs_double)) {
@@ -81,7 +81,7 @@ struct Evaluator::Impl {
   }
 
   /// Calls `body` with the scene and the options of the call, while no other thread uses this object. After a
-  /// DeviceError the evaluator is not used again. Errors: InputError if a callback of this object makes the call.
+  /// DeviceError the evaluator is not used again. Errors: InputError if the call comes from a callback of this object.
   template <class Options, class Body>
   auto exclusively(const Scene& scene, Options of_call, const Body& body) {
     if (in_callback == std::this_thread::get_id())
@@ -98,7 +98,7 @@ struct Evaluator::Impl {
     }
   }
 
-  /// Wraps a callback so that exclusively() can refuse calls from inside it. Such a call would wait without end.
+  /// Wraps a callback so that exclusively() refuses calls from inside the callback, which would wait forever.
   template <class Result, class... Arguments>
   std::function<Result(Arguments...)> guard_reentry(const std::function<Result(Arguments...)>& callback) {
     if (!callback) return callback;
@@ -112,7 +112,7 @@ struct Evaluator::Impl {
 
   EvaluatorOptions options;
   std::mutex mutex;
-  std::atomic<std::thread::id> in_callback;  ///< the thread that runs a callback of this object
+  std::atomic<std::thread::id> in_callback;  ///< thread that is inside a callback of this object
   std::unique_ptr<ModelEvaluator> evaluator;
   pid_t owner = getpid();
 };

@@ -40,7 +40,7 @@ bool is_variable(std::string_view name) {
          std::ranges::any_of(kAllAxes, is_described) || std::ranges::any_of(kAllQuantities, is_described);
 }
 
-/// Refuses attributes that a file cannot have. A long text becomes a variable and must not have the name of another.
+/// Refuses attributes that a file cannot have. A long text becomes a variable, so its name must be no other variable's.
 void check_attributes(const std::vector<Attribute>& attributes, const std::string& name) {
   std::set<std::string_view> names;
   for (const Attribute& attribute : attributes) {
@@ -72,10 +72,10 @@ void check_values(const TableValues& table, const std::string& name) {
   }
 }
 
-/// Refuses lookups in a table that lacks an axis of its scene, because they would take the scene's value. Also refuses
-/// values of an axis that were not computed: the error of entries that another program inserted is not known.
+/// Refuses a table that lacks an axis of its scene, because a lookup would use the scene's value instead. Also refuses
+/// values on an axis that were not computed, because the errors of entries from another program are unknown.
 void check_computed(const TableHead& table, const SceneValues& scene, const std::string& name) {
-  constexpr double kFloatRounding = 0x1p-23;  // rounding of an axis in single precision
+  constexpr double kFloatRounding = 0x1p-23;  // relative rounding of axis values in single precision
   for (const Axis axis : kAllAxes) {
     const char* const axis_name = description_of(axis).name;
     std::vector<double> computed = scene.grid[axis];

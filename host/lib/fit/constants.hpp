@@ -1,95 +1,96 @@
-// Constants that steer the cost or the accuracy of fits. They are chosen, except one that is marked "Proved". Three
-// numbers beside a constant are costs: the parameter sets that a fit evaluates with half the constant, with the
-// constant, and with twice the constant. They are means over the sets 900 to 919 of the study (`dolp-bench fit
-// --first-set 900 --entries 20`). With all these values the fits find all global minima. Constants without numbers
-// change no result when they are halved or doubled. The scale is the change of the objective by one standard deviation.
+// Constants that control the cost or the accuracy of fits. All except one, which is marked "Proved", are chosen by
+// tests. Three numbers beside a constant are costs: how many parameter sets a fit evaluates at half the constant, at
+// the constant and at twice the constant. They are means over the test problems 900 to 919 of `dolp-bench fit
+// --first-set 900 --entries 20`. With all these values the fits find all global minima. If a constant has no numbers,
+// half and double change no result. "The scale" is how much the objective (chi^2 or another loss) rises one standard
+// deviation from a minimum. "Growth" is how much the objective exceeds its minimum, divided by the scale.
 #pragma once
 
 #include <cstddef>
 
 namespace dolp::fit {
 
-/// Tolerance of the model's values, divided by the smallest uncertainty: kFineShare for the final values, kCoarseShare
-/// during the search. kMostTolerance is the largest tolerance of the search.
+/// Tolerance of the model's values, as a share of the smallest uncertainty of the data: kFineShare for the final
+/// values, kCoarseShare during the search. The tolerance of the search is at most kMostTolerance.
 inline constexpr double kFineShare = 1e-2;      // 1412, 1421, 1448
 inline constexpr double kCoarseShare = 0.25;    // 1410, 1421, 1420
 inline constexpr double kMostTolerance = 1e-3;  // 1350, 1421, 1425
-/// Uncertainty from which the tolerances follow if the data have no uncertainties.
+/// Uncertainty from which the tolerances are computed if the data have no uncertainties.
 inline constexpr double kAssumedUncertainty = 1e-3;
 
-/// A parameter counts as at its bound if its coordinate is closer than this to an end of its range.
+/// A parameter counts as at its bound if its coordinate (0 to 1 over its range) is closer than this to 0 or 1.
 inline constexpr double kAtBound = 1e-6;
-/// The description of a direction names the parameters whose component exceeds this share of the largest one.
+/// A report names those parameters of an undetermined direction whose component exceeds this share of the largest.
 inline constexpr double kInDirection = 0.1;
 inline constexpr double kDoubtfulBelow = 0.05;  ///< a fit is doubtful if its p-value is below this
 inline constexpr double kBadBelow = 0.001;      ///< a fit is bad if its p-value is below this
 
-/// Steps of finite differences, in coordinates (0 to 1): the first step, the smallest and the largest.
+/// The first, the smallest and the largest step of finite differences, in coordinates (0 to 1 over the range).
 inline constexpr double kFirstStep = 0.01;  // 1354, 1421, 1425
 inline constexpr double kLeastStep = 1e-6;
 inline constexpr double kMostStep = 0.05;  // 1363, 1421, 1354
-/// A step should change the model's values by at most this share of an uncertainty or, if that is more, by this
-/// multiple of the numerical error of the values.
+/// A step of finite differences should change the model's values by at most this share of an uncertainty or, if that is
+/// more, by this multiple of the numerical error of the values.
 inline constexpr double kSeenShare = 0.2;          // 1398, 1421, 1425
 inline constexpr double kErrorsOfAChange = 100.0;  // 1416, 1421, 1379
-/// Largest factor by which a step changes from one linearisation to the next.
+/// Largest factor between the steps of finite differences in one linearisation and in the next.
 inline constexpr double kMostChangeOfStep = 10.0;  // 1414, 1421, 1415
 
-/// Ratios of the decrease of the objective to the decrease that derivatives promise. A step is taken if its ratio is
-/// above kLeastRatio. Above kPredictedRatio, derivatives may be updated from the step.
+/// A descent takes a step if the true decrease of the objective, divided by the decrease that derivatives promise, is
+/// above kLeastRatio. Above kPredictedRatio it may update derivatives from the step.
 inline constexpr double kLeastRatio = 1e-3;         // 1421, 1421, 1421
 inline constexpr double kPredictedRatio = 0.5;      // 1402, 1421, 1505
 inline constexpr double kRadiusOfNeighbours = 1.0;  // 1400, 1421, 1412
-/// A path is straight if the squared error of its predicted residuals is below this share of their squared change.
+/// A path is straight if the squared error of predictions of residuals is below this share of their squared change.
 inline constexpr double kBent = 0.05;  // 1458, 1421, 1381
 
-/// Number of points of the Sobol sequence per start.
+/// Number of points of the Sobol sequence for each start of a descent.
 inline constexpr std::size_t kPointsOfAStart = 8;  // 1324, 1421, 1593
 inline constexpr int kStepsOfARound = 3;           // 1334, 1421, 1573
 inline constexpr int kMostRounds = 15;             // 1417, 1421, 1421
-/// A descent of the search ends when derivatives promise a decrease of the objective below this times the scale.
+/// A descent of the search ends when derivatives promise that the objective falls by less than this times the scale.
 inline constexpr double kCoarseGain = 0.1;  // 1358, 1421, 1416
-/// Minima higher than the lowest one by more than this times the scale are left as the search found them.
+/// The search does not refine minima that are higher than the lowest one by more than this times the scale.
 inline constexpr double kFarAbove = 30.0;  // 1413, 1421, 1428
-/// The line between two minima is divided into so many parts.
+/// Number of parts into which the line between two minima is divided.
 inline constexpr int kPointsOfALine = 8;  // 1386, 1421, 1489
 
-/// Largest relative error that the square root of the growth of the objective has at an end of an interval.
+/// Largest relative error of the square root of the growth of the objective at an end of an interval.
 inline constexpr double kRootTolerance = 5e-3;  // 1435, 1421, 1404
-/// A descent of a profile ends when derivatives promise a decrease of the objective below this times the scale.
+/// A descent of a profile ends when derivatives promise that the objective falls by less than this times the scale.
 inline constexpr double kProfileGain = 1e-3;  // 1442, 1421, 1401
-/// Largest number of points that a side of a profile tries for each rise. After kProfileSecants secants it halves the
-/// distances, which a profile that jumps needs.
+/// Largest number of points that one side of a profile tries to find an end of an interval. It takes kProfileSecants
+/// secants first. After these it halves the distance between points, because secants fail where a profile jumps.
 inline constexpr int kMostProfilePoints = 25;  // 1415, 1421, 1421
 inline constexpr int kProfileSecants = 8;      // 1415, 1421, 1416
-/// A profile jumps between two points if their distances from the minimum differ by less than this share.
+/// A profile jumps between two points that differ by less than this share in their distance from the minimum.
 inline constexpr double kLeastGap = 1e-3;  // 1422, 1421, 1418
-/// Largest factor between the distances of two consecutive points from the minimum.
+/// Largest factor from the distance of one point of a profile from the minimum to the distance of the next point.
 inline constexpr double kMostGrowth = 3.0;  // 1414, 1421, 1427
-/// Below this share of the first rise, derivatives may be updated from steps.
+/// Where the growth is below this share of the first of ProfileOptions::rises, derivatives may be updated from steps.
 inline constexpr double kTrustedShare = 0.8;  // 1424, 1421, 1329
 inline constexpr double kFirstProbe = 0.01;   // 1411, 1421, 1415
-/// Other branches are searched at this distance beyond an end, as a multiple of the width of the interval.
+/// Other branches of a valley are searched at this distance beyond an end, divided by the width of the interval.
 inline constexpr double kBeyond = 0.02;  // 1425, 1421, 1410
-/// A point beyond an end lies on another branch if its growth is below this share of the rise. Proved: at the end
-/// itself the growth is at most the share 2 kRootTolerance, or 0.01, below the rise.
+/// A point beyond an end of an interval lies on another branch if its growth is below this share of the growth at the
+/// end. Proved: by kRootTolerance, the growth at the end can be too small only by the share 0.01.
 inline constexpr double kClearlyLower = 0.97;  // 1421, 1421, 1793
 
-// The study draws no contours, so it does not cover the constants below.
+// The costs above were measured without contours, so the constants for contours below have none.
 
-/// A descent of a node ends when derivatives promise a decrease of the objective below this times the scale.
+/// A descent for a node ends when derivatives promise that the objective falls by less than this times the scale.
 inline constexpr double kNodeGain = 1e-2;
-/// Step of the first grid along each axis, in standard deviations. A standard deviation counts as at least
-/// kLeastDeviation and at most kMostDeviation of the range.
+/// Step of the first grid of contours along each axis, in standard deviations. For this, a standard deviation counts as
+/// at least kLeastDeviation and at most kMostDeviation of the range.
 inline constexpr double kStepOfDeviation = 0.5;
 inline constexpr double kLeastDeviation = 1e-4;
 inline constexpr double kMostDeviation = 1.0 / 12.0;
-/// The neighbours of a node are computed if its growth is below this. It is above the higher level, because the line of
-/// that level may cross a cell whose corners all lie above it.
+/// The neighbours of a node are computed too if the growth at the node is below this. This limit is above the higher
+/// contour level, because its contour may cross a cell whose corners all lie above the level.
 inline constexpr double kSpreadGrowth = 9.0;
-/// Largest number of grids that are tried. Each has twice the step of the one before.
+/// Largest number of grids of contours that are tried. The step of each grid is twice that of the grid before.
 inline constexpr std::size_t kMostGrids = 3;
-/// Number of points of the drawn grid per step of the computed grid.
+/// Number of points of the drawn grid of contours for one step of the computed grid.
 inline constexpr int kPartsOfACell = 4;
 
 }  // namespace dolp::fit

@@ -43,23 +43,23 @@ double coarse_tolerance(const Model& model) {
 
 bool is_at_bound(double coordinate) { return coordinate < kAtBound || coordinate > 1.0 - kAtBound; }
 
-/// A direction of the coordinates that the data do not constrain. The absolute value of its largest component is 1.
+/// A direction in the space of the coordinates that the data do not determine. Its largest component is 1 or -1.
 struct Direction {
   Eigen::VectorXd along;
-  /// True if no residual changes along it; otherwise its whole range changes them by less than one standard deviation.
+  /// True if no residual changes along it; otherwise residuals change, but by less than one standard deviation.
   bool is_null = false;
 };
 
 struct Covariance {
-  /// A parameter in a null direction has an infinite variance, a parameter at its bound NaN.
+  /// Covariance matrix. Variances are infinite for parameters in a null direction, and NaN for parameters at a bound.
   Eigen::MatrixXd of_coordinates;
   std::vector<Direction> unconstrained;
   std::size_t rank = 0;
 };
 
 Covariance covariance_of(const Minimum& minimum, Loss loss, double scale) {
-  constexpr double kNullShare = 1e-4;  // a direction is null if its singular value is below this share of the largest
-  // A parameter is ignored if its whole range changes the residuals by less than so many standard deviations.
+  constexpr double kNullShare = 1e-4;  // a direction with a singular value below this share of the largest is null
+  // A parameter is ignored if a move through its range changes the residuals by less than so many standard deviations.
   constexpr double kLeastDeviations = 1e-3;
   Eigen::MatrixXd jacobian =
       loss_weights(minimum.where.residuals, loss).cwiseSqrt().asDiagonal() * minimum.where.jacobian;
@@ -99,7 +99,7 @@ Covariance covariance_of(const Minimum& minimum, Loss loss, double scale) {
   return result;
 }
 
-/// The correlation matrix; NaN for parameters whose variance is not finite.
+/// The correlation matrix of a covariance matrix; NaN for parameters whose variance is not finite.
 Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance) {
   const auto known = [](double variance) { return variance > 0.0 && std::isfinite(variance) ? variance : kNaN; };
   const Eigen::VectorXd inverses = covariance.diagonal().unaryExpr(known).cwiseSqrt().cwiseInverse();
@@ -167,7 +167,7 @@ class Fit {
         profile_(model, fine_tolerance(model), Differences::kForward, evaluator, poll_) {}
 
   std::optional<FitResult> run(double most_aic) {
-    constexpr int kMostRestarts = 4;  // the fit restarts at most so often from a lower minimum that a profile found
+    constexpr int kMostRestarts = 4;  // largest number of restarts from lower minima that profiles find
     SearchOptions search{options_.starts, options_.seed, options_.loss, model_.has_uncertainties(), guess_scale()};
     search.count = [this](std::size_t done, std::size_t total) { count(done, total); };
     if (options_.phase) options_.phase("descents of the search");
@@ -191,15 +191,16 @@ class Fit {
     total_ = total;
   }
 
-  /// Degrees of freedom. With a model error each point is a condition; the parameters only choose the bracket.
+  /// Degrees of freedom. With a model error every point counts, because the parameters only choose the bracket.
   std::size_t freedom() const {
     return model_.observation_count() - (model_.has_model_error() ? 0 : model_.parameters().size());
   }
 
-  /// True if the change of the objective by one standard deviation is known or follows from the residuals.
+  /// True if a scale is known from uncertainties or follows from the residuals.
   bool has_scale() const { return model_.has_uncertainties() || freedom() > 0; }
 
-  /// The scale before the search: 1 with uncertainties, else the square of a hundredth of the largest measured value.
+  /// The scale (rise of the objective one standard deviation from a minimum) before the search: 1 with uncertainties,
+  /// otherwise the square of a hundredth of the largest measured value.
   double guess_scale() const {
     if (model_.has_uncertainties()) return 1.0;
     double largest = 0.0;
@@ -209,14 +210,14 @@ class Fit {
     return std::pow(std::max(0.01 * largest, fine_.tolerance()), 2);
   }
 
-  /// 1 with uncertainties, else the mean square of the residuals, but at least the square of the model's tolerance.
+  /// The scale at a minimum: 1 with uncertainties, else the mean squared residual, but at least the squared tolerance.
   double find_scale(const Minimum& minimum) const {
     if (model_.has_uncertainties()) return 1.0;
     const double mean = freedom() > 0 ? minimum.objective / static_cast<double>(freedom()) : 0.0;
     return std::max(mean, fine_.tolerance() * fine_.tolerance());
   }
 
-  /// The growth of the objective at the ends of an interval of this level, divided by the scale.
+  /// The growth of the objective at the ends of an interval with the probability `level`, divided by the scale.
   double rise_at(double level) const {
     if (model_.has_uncertainties()) {
       const double freedoms = model_.has_model_error() ? static_cast<double>(freedom()) : 1.0;
@@ -226,7 +227,7 @@ class Fit {
     return std::pow(boost::math::quantile(t, 0.5 * (1.0 + level)), 2);
   }
 
-  /// With a model error all elements are NaN, because inside a bracket no derivative distinguishes the parameters.
+  /// The covariance matrix. With a model error it is NaN, because the residuals are constant (0) inside a bracket.
   Covariance find_covariance() const {
     if (!model_.has_model_error()) return covariance_of(minima_.front(), options_.loss, result_.scale);
     const Eigen::Index count = minima_.front().where.at.size();
@@ -252,7 +253,7 @@ class Fit {
     result_.valley_points = {best};
   }
 
-  /// False if a profile led to a lower minimum, which then is the best one.
+  /// Sets the intervals. False if a profile led to a lower minimum; this is then the first of minima_.
   bool find_intervals(double scale, bool may_restart, bool is_scaled) {
     const std::optional<Profiles> profiles = find_profiles(scale, may_restart);
     if (!profiles) return false;
@@ -267,7 +268,7 @@ class Fit {
     return true;
   }
 
-  /// Empty if a profile led to a lower minimum, which then is the best one.
+  /// The profiles of all parameters. Empty if a profile led to a lower minimum; this is then the first of minima_.
   std::optional<Profiles> find_profiles(double scale, bool may_restart) {
     ProfileOptions options{{rise_at(kLevel68), rise_at(kLevel95)}, 0.0, scale, options_.loss, {}};
     if (!model_.has_model_error()) options.from = minima_.front().objective;
@@ -283,14 +284,14 @@ class Fit {
     return profiles;
   }
 
-  /// Descends from a point. True if this gives a new best minimum.
+  /// Descends from a point that a profile found. True if this gives a new best minimum.
   bool take(const Minimum& lower) {
     std::vector<Minimum> bottoms(1);
     bottoms.front().where.at = lower.where.at;
     descend(fine_, bottoms, {options_.loss, result_.scale});
     Minimum& bottom = bottoms.front();
     if (!bottom.has_converged || bottom.objective >= minima_.front().objective) return false;
-    // A bottom that is lower by less than one standard deviation is the same minimum.
+    // A bottom that is lower by less than one standard deviation is the same minimum as the best one, and replaces it.
     if (bottom.objective > minima_.front().objective - result_.scale) minima_.erase(minima_.begin());
     minima_.insert(minima_.begin(), std::move(bottom));
     return true;
@@ -323,7 +324,8 @@ class Fit {
     add_criteria();
   }
 
-  /// A weakly constrained direction counts only if the interval of one of its parameters is open at both ends.
+  /// Names parameters that the data do not determine. A direction that is not null counts only if the interval of one
+  /// of its parameters is open at both ends.
   void name_degeneracies() {
     result_.determined = covariance_.rank;
     for (const Direction& direction : covariance_.unconstrained) {
@@ -345,7 +347,7 @@ class Fit {
     double misfit = result_.chi_square;
     if (!model_.has_uncertainties()) {
       misfit = points * std::log(std::max(result_.chi_square, std::numeric_limits<double>::min()) / points);
-      parameters += 1.0;  // the scale is a parameter too
+      parameters += 1.0;  // without uncertainties, the scale is a parameter too
     }
     result_.aic = misfit + 2.0 * parameters;
     result_.bic = misfit + std::log(points) * parameters;

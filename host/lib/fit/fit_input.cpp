@@ -20,8 +20,8 @@ constexpr std::array kObservables = {Observable::kDolp, Observable::kQOverI, Obs
                                      Observable::kEmissivityP};
 constexpr NumberRange kFractionOfOneRange{-1.0, 1.0};
 constexpr NumberRange kUncertaintyRange{0.0, std::numeric_limits<double>::infinity(), NumberRange::Ends::kOpenBelow};
-constexpr double kLikelyRadians = 1.6;  // zeniths that are all below this are probably in radians
-constexpr double kLikelyPercent = 0.9;  // DOLP of at least this is probably in percent; no surface has so much
+constexpr double kLikelyRadians = 1.6;  // zenith angles are probably in radians if all are below this
+constexpr double kLikelyPercent = 0.9;  // a DOLP of at least this is probably in percent; no surface has so much
 
 const std::vector<CsvColumn>& known_columns() {
   static const std::vector<CsvColumn> columns = {{"theta_deg", kZenithDegRange},
@@ -91,7 +91,7 @@ std::vector<std::string> remarks_on(const MeasuredData& data) {
   return remarks;
 }
 
-/// Position of the colon in "FILE:KEY=VALUE". An equals sign follows it, with no slash, space or colon between them.
+/// Position of the colon in "FILE:KEY=VALUE". Between this colon and the next equals sign is no slash, space or colon.
 std::size_t keys_begin(const std::string& argument) {
   for (std::size_t colon = argument.find(':'); colon != std::string::npos; colon = argument.find(':', colon + 1)) {
     const std::string_view rest = std::string_view(argument).substr(colon + 1);
@@ -121,7 +121,7 @@ std::vector<std::string> pieces_of(std::string_view text) {
 
 constexpr const char* kForm = "must be KEY=LOW:HIGH or KEY=LOW:HIGH:START";
 
-/// The numeric keys of a scene that a fit may vary: all except those of [accuracy], which are not part of the model.
+/// The keys of a scene that a fit may vary: keys of numbers, except those of [accuracy], which do not change the model.
 std::vector<std::string> number_keys() {
   std::vector<std::string> keys;
   for (const Key& description : dolp::keys()) {

@@ -13,25 +13,24 @@
 
 namespace dolp::fit {
 
-/// Errors: InputError that begins with `origin` if the key is unknown or no number, if low >= high, if the start lies
-/// outside of the range, or if the key does not allow one of these values.
+/// Checks a range. Errors: InputError that begins with `origin` if the key is unknown or no number, if low >= high, if
+/// the start lies outside the range, or if the scene does not allow the key to have one of these values.
 void check_range(const FitRange& range, const std::string& origin);
 
-/// The model's predictions of all measurements, in the order of the data.
+/// What the model predicts for all measurements, in the order of the data.
 struct Prediction {
-  /// One row per measurement. The observable is in the first column, except DOLP: its row is the signed Q/I and U/I,
-  /// and DOLP is the length of the row. With the bracket as model error, the row is the value between both ends that is
-  /// nearest to the measured one, and 0.
+  /// One row per measurement: the predicted observable and 0. For DOLP, the row is the signed Q/I and U/I, and DOLP is
+  /// its length. With the bracket as model error: the value in the bracket nearest to the measured one, and 0.
   Eigen::MatrixX2d components;
-  Eigen::VectorXd error;     ///< bound of the numerical error of the observable
-  std::uint32_t status = 0;  ///< status bits of all points together
+  Eigen::VectorXd error;     ///< bound of the numerical error of each predicted observable
+  std::uint32_t status = 0;  ///< status bits of all points, combined by OR
 };
 
-/// The model at the measurements of several data sets, as a function of the varied keys.
+/// The model at the measurements of several data sets, as a function of the parameters (the varied keys).
 class Model {
  public:
-  /// Errors: InputError in one line if scene, data and parameters do not fit together, for example if a key varies
-  /// twice, if only some data sets have uncertainties, or if the scene refuses an end of a range.
+  /// Errors: InputError if scene, data and parameters do not fit together, for example if a parameter occurs twice, if
+  /// only some data sets have uncertainties, or if the scene refuses an end of a range.
   Model(const SceneValues& scene, std::vector<MeasuredData> data, std::vector<FitRange> parameters,
         ModelError error = ModelError::kNone);
 
@@ -40,14 +39,14 @@ class Model {
 
   const std::vector<MeasuredData>& data() const { return data_; }
   const std::vector<FitRange>& parameters() const { return parameters_; }
-  /// The scene of the first data set, with the start values of the parameters.
+  /// The scene of the first data set, in which the parameters have their start values.
   const SceneValues& scene() const { return groups_.front().scene; }
   std::size_t observation_count() const { return count_; }
   bool has_model_error() const { return error_ != ModelError::kNone; }
   bool has_uncertainties() const { return data_.front().has_uncertainties; }
 
-  /// The predictions for each set of values. Sets that differ only in n, k, sigma (or wind) and q are evaluated
-  /// together, with all angles and wavelengths of a data set.
+  /// The predictions for each set of parameter values. One call of the evaluator serves all sets that differ only in n,
+  /// k, sigma (or wind speed) and q, with all angles and wavelengths of a data set.
   std::vector<Prediction> predict(const std::vector<Eigen::VectorXd>& values, double tolerance,
                                   ModelEvaluator& evaluator, const Progress& progress) const;
 
@@ -56,11 +55,11 @@ class Model {
  private:
   struct Group {
     const MeasuredData* data = nullptr;
-    Eigen::Index first_row = 0;  ///< row of its first measurement in the predictions
-    SceneValues scene;           ///< scene of the data set, at the shortest wavelength of its data if they have any
-    std::optional<EmissionModel> other_end;  ///< emission model of the bracket's other end; empty without model error
-    std::vector<double> wavelength_um;       ///< wavelengths of the data, ascending; empty if they have none
-    std::vector<OpticalConstants> indices;   ///< n and k of a tabulated material at each wavelength
+    Eigen::Index first_row = 0;  ///< row of the first measurement of the data set in Prediction::components
+    SceneValues scene;           ///< scene of the data set, at the shortest wavelength of the data if they have any
+    std::optional<EmissionModel> other_end;  ///< emission model at the bracket's other end; empty without model error
+    std::vector<double> wavelength_um;       ///< wavelengths in the data, ascending; empty if the data have none
+    std::vector<OpticalConstants> indices;   ///< n and k of a tabulated material at these wavelengths
   };
 
   void check() const;
@@ -68,7 +67,7 @@ class Model {
   Group group_of(const SceneValues& scene, const MeasuredData& data, Eigen::Index first_row) const;
   void check_group(const Group& group) const;
   void add_points(std::vector<SceneEntry>& points, const Group& group, const SceneValues& scene) const;
-  /// The scene with settings of the data, `extra` and the parameters. Errors: InputError that names a refused setting.
+  /// The scene with settings of the data, `extra` and parameters. Errors: InputError that names the refused setting.
   SceneValues scene_of(const SceneValues& scene, const MeasuredData& data, const std::vector<Setting>& extra,
                        const Eigen::VectorXd& values) const;
   SceneValues with(const SceneValues& scene, const Eigen::VectorXd& values) const;

@@ -19,7 +19,7 @@ struct ProfilePoint {
   Minimum found;
 };
 
-/// One side of a profile: from its start in one direction of the parameter.
+/// One side of a profile likelihood: from a minimum in one direction of the parameter.
 class Side {
  public:
   Side(Minimum start, Eigen::Index parameter, int direction, double most, double least, const ProfileOptions& options)
@@ -33,7 +33,7 @@ class Side {
   std::size_t parameter() const { return static_cast<std::size_t>(parameter_); }
   const std::vector<ProfilePoint>& points() const { return points_; }
   const std::optional<Minimum>& lower() const { return lower_; }
-  /// The coordinate at which a rise is met, or the last one if it is not met. Empty if the start lies above the rise.
+  /// The coordinate where the growth meets a rise, or the last coordinate. Empty if the start lies above the rise.
   const std::optional<double>& end(std::size_t rise) const { return ends_[rise]; }
   const Minimum* last_below(std::size_t rise) const {
     const double most = (1.0 + kRootTolerance) * std::sqrt(options_->rises[rise]);
@@ -42,7 +42,7 @@ class Side {
     return last == points_.rend() ? nullptr : &last->found;
   }
 
-  /// The next point of the profile to compute, as a neighbour of the nearest known point.
+  /// The next point of the profile to compute: a neighbour of the nearest known point.
   Neighbour next() {
     ++tries_;
     distance_ = std::clamp(next_distance(), 0.0, most_);
@@ -56,7 +56,7 @@ class Side {
   }
 
   void add(Minimum found) {
-    // A point that is lower than the best minimum by more than this, times the scale, belongs to another minimum.
+    // A point that is lower than the best minimum by more than this times the scale belongs to another minimum.
     constexpr double kLowerMinimum = 0.01;
     if (found.objective < least_ - kLowerMinimum * options_->scale) {
       lower_ = std::move(found);
@@ -86,12 +86,12 @@ class Side {
     return std::ranges::find_if(points_, [&](const ProfilePoint& point) { return point.root >= wanted(); });
   }
 
-  /// Sets the ends of the rises that are met or cannot be met.
+  /// Sets ends_ for each rise that the growth meets or cannot meet.
   void settle() {
     for (; !is_done(); ++rise_, tries_ = 0) {
       const PointPosition above = first_above();
       if (above == points_.cbegin()) continue;
-      // A start just below a rise does not meet it. So only points that are clearly higher than the start can meet it.
+      // A start just below a rise is no end. So only points that are clearly higher than the start can meet the rise.
       const double least = std::min(wanted(), points_.front().root + kRootTolerance * wanted());
       const auto met = std::find_if(points_.cbegin() + 1, points_.cend(), [&](const ProfilePoint& p) {
         return p.root >= least && std::abs(p.root - wanted()) <= kRootTolerance * wanted();
@@ -110,12 +110,12 @@ class Side {
     }
   }
 
-  /// Ends all remaining rises at this distance.
+  /// Sets ends_ for all remaining rises to this distance.
   void finish(double distance) {
     for (; !is_done(); ++rise_) ends_[rise_] = coordinate(distance);
   }
 
-  /// Where a line through two points meets the wanted root: the points beside it or, if all are lower, the last two.
+  /// Where a line through two points meets the wanted root: the points around it or, if all are lower, the last two.
   double next_distance() const {
     if (points_.size() == 1) return first_distance();
     const PointPosition above = first_above();
@@ -132,7 +132,7 @@ class Side {
                        : farthest;
   }
 
-  /// The distance at which the derivatives at the start predict the rise.
+  /// The distance at which the growth meets the rise, according to the derivatives at the start.
   double first_distance() const {
     const ProfilePoint& first = points_.front();
     Neighbour probe{&first.found, {parameter_}, first.found.where.at};
@@ -145,7 +145,7 @@ class Side {
 
   Eigen::Index parameter_;
   int direction_;
-  double most_;   ///< largest distance
+  double most_;   ///< largest distance that stays in the range of the parameter
   double least_;  ///< objective of the best minimum
   const ProfileOptions* options_;
   std::vector<ProfilePoint> points_;  ///< points in the order of their distances
@@ -156,7 +156,7 @@ class Side {
   std::optional<Minimum> lower_;
 };
 
-/// Adds a stretch to a sorted list. Stretches that meet become one.
+/// Adds a stretch to a sorted list. Stretches that touch or overlap become one.
 void merge(std::vector<Stretch>& all, Stretch stretch) {
   std::erase_if(all, [&](const Stretch& other) {
     if (other.high < stretch.low || stretch.high < other.low) return false;
@@ -166,7 +166,7 @@ void merge(std::vector<Stretch>& all, Stretch stretch) {
   all.insert(std::ranges::find_if(all, [&](const Stretch& other) { return other.low > stretch.low; }), stretch);
 }
 
-/// An end of the known part of a profile.
+/// An end of the known part of the profile of a parameter.
 struct ProfileEnd {
   Eigen::Index parameter;
   std::size_t rise;
@@ -193,7 +193,7 @@ class Profiler {
 
   Profiles run() {
     constexpr int kMostSearches = 4;
-    // Points up to this multiple of the second rise are returned, because contours have a higher level than intervals.
+    // Points with a growth up to this times the second rise are returned, for contours, whose higher level is above it.
     constexpr double kKeptRise = 1.6;
     complete(0);
     for (int i = 0; i < kMostSearches && !result_.lower && search_other_branches(); ++i) {
@@ -207,7 +207,7 @@ class Profiler {
   }
 
  private:
-  /// Computes points until all sides from position `first` of sides_ are done. Sides come in pairs with a common start.
+  /// Computes points until all sides from sides_[first] are done. Sides come in pairs that begin at the same minimum.
   void complete(std::size_t first) {
     const auto is_done = [](const Side& side) { return side.is_done(); };
     for (;;) {
@@ -236,14 +236,14 @@ class Profiler {
     }
   }
 
-  /// The ends inside of the ranges beyond which other branches were not searched yet.
+  /// The ends inside of the parameters' ranges beyond which no search for other branches was made yet.
   std::vector<ProfileEnd> new_ends() {
     std::vector<ProfileEnd> ends;
     for (std::size_t j = 0; j < result_.stretches.size(); ++j) {
       for (std::size_t rise = 0; rise < options_.rises.size(); ++rise) {
         const std::vector<Stretch>& all = result_.stretches[j][rise];
         const auto parameter = static_cast<Eigen::Index>(j);
-        if (all.empty()) continue;  // all minima lie above the rise
+        if (all.empty()) continue;  // the interval is empty: all minima lie above the rise
         for (const ProfileEnd& end :
              {ProfileEnd{parameter, rise, -1, all.front().low}, {parameter, rise, 1, all.back().high}}) {
           if (end.at >= kAtBound && end.at <= 1.0 - kAtBound && searched_.insert(end).second) ends.push_back(end);
@@ -255,7 +255,7 @@ class Profiler {
 
   double objective_at(double rise) const { return options_.from + rise * options_.scale; }
 
-  /// Searches for other branches of the valley beyond new ends. True if there are some.
+  /// Searches for other branches of the valley beyond new_ends(). True if it finds any.
   bool search_other_branches() {
     std::vector<Neighbour> ways;
     std::vector<ProfileEnd> end_of_way;
@@ -284,8 +284,8 @@ class Profiler {
     return first < sides_.size();
   }
 
-  /// The paths of the search beyond an end: from the ends of other sides, unless a straight path joins both ends, and
-  /// from points of other sides beyond this end that lie clearly below the rise.
+  /// Where to search beyond an end: from the ends of other sides, unless a straight path joins both ends, and from
+  /// points of other sides that lie beyond this end and clearly below the rise.
   std::vector<Neighbour> ways_beyond(const ProfileEnd& end) const {
     if (result_.stretches.size() == 1) return {};  // the profile of a single parameter has no other branch
     const std::vector<Stretch>& all = result_.stretches[static_cast<std::size_t>(end.parameter)][end.rise];

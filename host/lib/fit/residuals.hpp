@@ -8,39 +8,39 @@
 
 namespace dolp::fit {
 
-/// The residuals at a point in the space of the coordinates, and their derivatives.
+/// The residuals at a point, and their derivatives with respect to its coordinates.
 struct Linearisation {
-  Eigen::VectorXd at;  ///< coordinates in [0, 1]
-  /// (model - measured) / uncertainty, or model - measured. Empty if not known yet; NaN where the model has no value.
+  Eigen::VectorXd at;  ///< coordinates of the point: 0 to 1 over the range of each parameter
+  /// (model - measured) / uncertainty; model - measured without uncertainties. Empty before at(); NaN without a value.
   Eigen::VectorXd residuals = {};
-  Eigen::MatrixXd jacobian = {};     ///< measurements x parameters; empty if not known yet
+  Eigen::MatrixXd jacobian = {};     ///< measurements x parameters; empty before it is computed
   Eigen::MatrixX2d components = {};  ///< Prediction::components at the point
-  Eigen::VectorXd steps = {};        ///< steps of the next differences; empty before the first
+  Eigen::VectorXd steps = {};        ///< steps for the next finite differences; empty before the first ones
 };
 
 enum class Differences {
-  kForward,  ///< one neighbour per parameter, which is enough to find the way
+  kForward,  ///< one neighbour per parameter: less accurate, but enough for a descent
   kCentral,  ///< two neighbours per parameter, on both sides if the range allows it
 };
 
-/// The residuals as a function of the parameters' coordinates.
+/// The residuals of a model as a function of the coordinates of its parameters.
 class Residuals {
  public:
-  /// The model and the evaluator must outlive the object. `tolerance`: tolerance of the model's values.
+  /// The model and the evaluator must outlive the object. `tolerance`: tolerance of the values that the model computes.
   Residuals(const Model& model, double tolerance, Differences differences, ModelEvaluator& evaluator,
             Progress progress);
 
   const Model& model() const { return model_; }
   double tolerance() const { return tolerance_; }
-  std::size_t evaluations() const { return evaluations_; }  ///< parameter sets computed so far
+  std::size_t evaluations() const { return evaluations_; }  ///< number of parameter sets computed so far
 
-  /// at() computes residuals in one batch, linearise() their derivatives by differences in another batch.
+  /// at() computes residuals at all points in one call of the evaluator; linearise() adds derivatives in another call.
   std::vector<Linearisation> at(const std::vector<Eigen::VectorXd>& points);
   void linearise(const std::vector<Linearisation*>& points);
 
   Eigen::VectorXd values(const Eigen::VectorXd& point) const;
   std::vector<Prediction> predict(const std::vector<Eigen::VectorXd>& points);
-  /// The values of the observables from Prediction::components.
+  /// The values of the observables in the rows of Prediction::components.
   Eigen::VectorXd observed(const Eigen::MatrixX2d& components) const;
   const Eigen::VectorXd& weights() const { return weights_; }  ///< 1 / uncertainty, or 1 without uncertainties
 
@@ -54,7 +54,7 @@ class Residuals {
   ModelEvaluator& evaluator_;
   Progress progress_;
   Eigen::VectorXd measured_, weights_;
-  std::vector<bool> is_length_;  ///< per measurement: true for DOLP, which is the length of its components
+  std::vector<bool> is_length_;  ///< true for each measurement of DOLP, which is the length of a row of components
   std::size_t evaluations_ = 0;
 };
 

@@ -12,7 +12,7 @@
 namespace dolp::fit {
 namespace {
 
-/// Points of the Sobol sequence, all shifted by one random vector modulo 1 unless the seed is 1.
+/// Points of the Sobol sequence. A random vector shifts all of them modulo 1, unless the seed is 1.
 std::vector<Eigen::VectorXd> sobol_points(std::size_t count, Eigen::Index dimensions, std::uint64_t seed) {
   boost::random::sobol sequence(static_cast<std::size_t>(dimensions));
   std::mt19937_64 engine(seed);
@@ -31,7 +31,7 @@ std::vector<Eigen::VectorXd> sobol_points(std::size_t count, Eigen::Index dimens
   return points;
 }
 
-/// The starting points of the descents: the lowest points, but no two that are close together.
+/// The starting points of the descents: the given start, then points with the lowest objective, none close to another.
 std::vector<Minimum> choose_starts(Residuals& residuals, const SearchOptions& options) {
   const std::vector<FitRange>& parameters = residuals.model().parameters();
   const auto dimensions = static_cast<Eigen::Index>(parameters.size());
@@ -70,19 +70,19 @@ double scale_of(const SearchOptions& options, const Minimum& minimum) {
   return minimum.objective / std::max(1.0, freedom);
 }
 
-/// Moves a point perpendicular to a line, to where the residuals are least according to their derivatives.
+/// Moves a point perpendicular to a line, to where its residuals become smallest according to the derivatives.
 Eigen::VectorXd on_floor(const Eigen::VectorXd& point, const Eigen::VectorXd& residuals,
                          const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& line) {
   const Eigen::VectorXd along = line.normalized();
   const Eigen::MatrixXd across = jacobian - jacobian * along * along.transpose();
-  // Along axes below this share, residuals count as constant. It is far above the rounding of a normal matrix.
+  // Principal axes with an eigenvalue below this share count as flat. The rounding of a normal matrix is far smaller.
   constexpr double kFlatShare = 1e-12;
   const PrincipalAxes axes = principal_axes(across.transpose() * across);
   const Eigen::VectorXd moved = point - axes.inverse(kFlatShare) * across.transpose() * residuals;
   return moved.cwiseMax(0.0).cwiseMin(1.0);
 }
 
-/// True if the objective falls from point to point. Rises by at most `scale` above the lowest point so far are allowed.
+/// True if the objective falls from point to point. It may rise by at most `scale` above its lowest value so far.
 bool falls(double from, std::span<const Linearisation> points, Loss loss, double scale) {
   double least = from;
   return std::ranges::all_of(points, [&](const Linearisation& point) {
@@ -93,7 +93,7 @@ bool falls(double from, std::span<const Linearisation> points, Loss loss, double
   });
 }
 
-/// True if the objective falls along the straight line to a minimum, or along the floor of the valley beside it.
+/// True if the objective falls from one minimum to another along a line, or along the floor of the valley beside it.
 bool leads_down(Residuals& residuals, const Minimum& from, const Minimum& to, const SearchOptions& options) {
   const double scale = scale_of(options, to);
   const Eigen::VectorXd line = to.where.at - from.where.at;
@@ -112,7 +112,7 @@ bool leads_down(Residuals& residuals, const Minimum& from, const Minimum& to, co
   return falls(from.objective, residuals.at(points), options.loss, scale);
 }
 
-/// The minima in ascending order, without those from which a path leads down to a lower one.
+/// The minima in ascending order, without any minimum from which a path leads down to a lower one.
 std::vector<Minimum> distinct(std::vector<Minimum> all, Residuals& residuals, const SearchOptions& options) {
   std::erase_if(all, [](const Minimum& minimum) { return !std::isfinite(minimum.objective); });
   std::ranges::stable_sort(all, {}, &Minimum::objective);
@@ -128,8 +128,8 @@ std::vector<Minimum> distinct(std::vector<Minimum> all, Residuals& residuals, co
   return kept;
 }
 
-/// Descends from several points, in rounds of a few steps, and returns the ends that remain. After a round a descent
-/// ends if derivatives lead it to a point of a lower descent, because it would take the same path.
+/// Descends from several points, in rounds of a few steps, and returns where the descents end. After a round, a descent
+/// is dropped if derivatives lead from it to a point of a lower descent, because it would take the same path.
 std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> starts, const SearchOptions& options,
                                    const DescentOptions& descent) {
   std::vector<Minimum> arrived, passed;

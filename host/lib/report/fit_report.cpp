@@ -17,9 +17,9 @@ using fit::FitResult;
 using Json = ReportBuilder::Json;
 
 constexpr double kStrongCorrelation = 0.9;
-constexpr double kTooGood = 0.999;  // at a higher p-value the uncertainties look too large
-// Akaike's criterion of a model minus the smallest one. Models up to kAlike cannot be distinguished; models up to
-// kPossible may be true.
+constexpr double kTooGood = 0.999;  // above this p-value, the uncertainties look too large
+// Limits for Akaike's criterion of a model minus that of the best model. The data cannot distinguish models up to
+// kAlike from the best; models up to kPossible may be true.
 constexpr double kAlike = 1.3;
 constexpr double kPossible = 4.0;
 
@@ -69,7 +69,7 @@ Json parameter_json(const FitParameter& parameter) {
   return json;
 }
 
-/// Adds lines about a parameter for which its row of the table has no room.
+/// Adds lines about a parameter that do not fit in its row of the table of parameters.
 void add_remarks(ReportBuilder& report, const FitParameter& parameter, const FitResult& result) {
   report.row_if(!parameter.standard_error, "no error", "{}: {}", parameter.key, parameter.why_no_error);
   for (const auto& [key, name, interval] : intervals_of(parameter)) {
@@ -146,7 +146,7 @@ void add_misfit(ReportBuilder& report, const fit::Model& model, const FitResult&
                 "as many parameters as points: no interval can be given");
 }
 
-/// With a model error, adds the share of each range that the intervals leave, and names the model that leaves less.
+/// With a model error, adds how much of each parameter's range the 95 % interval covers, and a model that narrows it.
 void add_model_error(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   if (!model.has_model_error()) return;
   const auto is_empty_95 = [](const auto& parameter) { return parameter.interval_95.is_empty; };
@@ -226,7 +226,7 @@ std::string why_no_contours(const FitResult& result, const std::optional<fit::Co
                      fmt::join(reasons, "; "));
 }
 
-/// The smallest interval that contains the intervals of all models. An end is open if it is open for one of the models.
+/// The smallest interval that contains the intervals of all models. An end is open (empty) if it is open for a model.
 FitInterval hull(const std::vector<const FitResult*>& results, std::size_t j, FitInterval FitParameter::*interval) {
   std::optional<FitInterval> hull;
   for (const FitResult* const result : results) {
@@ -239,7 +239,8 @@ FitInterval hull(const std::vector<const FitResult*>& results, std::size_t j, Fi
   return hull.value_or(FitInterval{.is_empty = true});
 }
 
-/// Adds the models that the data cannot distinguish, and intervals of the parameters over all models that may be true.
+/// Adds the models that the data cannot distinguish from the best, and for each parameter the smallest interval that
+/// contains its intervals of all models that may be true.
 void add_alike(ReportBuilder& report, const std::vector<ComparedModel>& models, double least_aic) {
   std::vector<const FitResult*> possible;
   Json alike = Json::array(), ranges = Json::array();

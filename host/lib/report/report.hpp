@@ -14,7 +14,7 @@
 namespace dolp {
 
 inline constexpr double kMebibyte = 1048576.0;
-inline constexpr double kPoints = 100.0;  ///< one point of DOLP is 0.01
+inline constexpr double kPoints = 100.0;  ///< converts DOLP to points: one point is 0.01
 inline constexpr double kPercent = 100.0;
 
 /// A value with its position in the JSON: a path of keys, separated by slashes.
@@ -29,12 +29,12 @@ Keyed<T> key(const char* path, const T& value) {
   return {path, value};
 }
 
-/// Builds a report from lines of text. The arguments of a line that are Keyed also become values of the JSON.
+/// Builds a report as text and JSON from lines. A Keyed argument of a line is also stored in the JSON.
 class ReportBuilder {
  public:
   using Json = nlohmann::ordered_json;
 
-  /// Labels fill a column of `label_width` characters; the text of a row follows it.
+  /// Rows begin with a label in a column of `label_width` characters.
   explicit ReportBuilder(int label_width = 10) : label_width_(label_width) {}
 
   template <class... Args>
@@ -49,7 +49,7 @@ class ReportBuilder {
     row_if(true, label, text, args...);
   }
 
-  /// Adds a row to the text if `is_shown`. The JSON gets its values in any case.
+  /// Adds a row to the text if `is_shown`. The JSON gets the Keyed arguments of the row in any case.
   template <class... Args>
   void row_if(bool is_shown, std::string_view label, fmt::format_string<const Args&...> text, const Args&... args) {
     if (is_shown) {
@@ -71,19 +71,19 @@ class ReportBuilder {
 
   void values(const Json& object) { json_.update(object); }
 
-  /// Adds the lines of another report, without its values.
+  /// Adds the lines of another report, but not its JSON.
   void show(const ReportBuilder& part) {
     text_ += part.text_;
     rows_.insert(rows_.end(), part.rows_.begin(), part.rows_.end());
   }
 
-  /// Adds another report: its lines, and its values under the path.
+  /// Adds the lines of another report, and its JSON under `path`.
   void add(const char* path, const ReportBuilder& part) {
     show(part);
     value(path, part.json_);
   }
 
-  /// Adds a list of reports, which may be empty: their lines, and an array of their values under the path.
+  /// Adds the lines of several reports (or none), and an array of their JSON under `path`.
   void add(const char* path, const std::vector<ReportBuilder>& parts) {
     Json list = Json::array();
     for (const ReportBuilder& part : parts) {
@@ -94,7 +94,7 @@ class ReportBuilder {
   }
 
   const Json& json() const { return json_; }
-  /// The JSON in ASCII, so that a terminal shows it safely. Bytes of file names that are not UTF-8 are replaced.
+  /// The JSON in ASCII, which is safe on any terminal. Bytes of file names that are not UTF-8 are replaced.
   std::string json_text() const { return json_.dump(2, ' ', true, Json::error_handler_t::replace); }
   const std::string& text() const { return text_; }
   const std::vector<std::pair<std::string, std::string>>& rows() const { return rows_; }

@@ -8,7 +8,7 @@
 namespace dolp {
 namespace {
 
-constexpr double kFewEvaluations = 1e6;  // about what one core computes in a tenth of a second
+constexpr double kFewEvaluations = 1e6;  // number of evaluations that one core computes in about 0.1 s
 
 ReportBuilder range_report(const char* what, double limit, const EnergyRange& range) {
   ReportBuilder report;
@@ -19,7 +19,7 @@ ReportBuilder range_report(const char* what, double limit, const EnergyRange& ra
   return report;
 }
 
-/// Adds the range of the albedo, and the parts of the grid in which the surface model itself loses or gains energy.
+/// Adds the range of the albedo, and the ranges of theta and sigma in which the surface model loses or gains energy.
 void add_energy(ReportBuilder& report, const RunSummary& summary, bool is_computed) {
   if (summary.albedos == 0) {
     report.row("albedo", "{}", is_computed ? "not given for any entry" : "not computed: nothing kept depends on it");

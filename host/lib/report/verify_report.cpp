@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kMostFailureLines = 20;
 
-/// The position of a value, for example "theta 60, sigma 0.1, q 3.5".
+/// The position of a value in a table, for example "theta 60, sigma 0.1, q 3.5".
 std::string position_text(const CheckedValue& value) {
   std::vector<std::string> texts;
   for (const auto& [axis, number, label] : value.position)
@@ -137,10 +137,10 @@ std::string hard_case_verdict(const HardCaseReport& report) {
                                 : fmt::format("failed: {} cases are wrong", report.failures());
 }
 
-/// The tolerance that ordinary cases are computed with. It is near the best that the arithmetic can reach.
+/// The tolerance with which ordinary cases are computed: near the best accuracy that float or double can reach.
 double tolerance_in(Precision precision) { return precision == Precision::kDouble ? 1e-9 : 1e-6; }
 
-/// The results of ordinary cases in one precision, or the reason why there are none.
+/// The results of ordinary cases in one precision, or the reason why they were not computed.
 struct Quality {
   Precision precision;
   std::string why_not;
@@ -192,7 +192,7 @@ ReportBuilder quality_report(const Quality& quality) {
 
 ReportBuilder device_report(const Device& device, std::size_t position) {
   const Quality in_float = quality_in(device, position, Precision::kFloat);
-  Device examined = device;  // its kernels may not compile or run, though the driver calls it usable
+  Device examined = device;  // kernels may fail even if the driver calls the device usable
   if (device.usable) examined.why_not = in_float.why_not;
   examined.usable = examined.why_not.empty();
   const Quality in_double = quality_in(examined, position, Precision::kDouble);

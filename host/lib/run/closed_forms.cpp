@@ -11,7 +11,7 @@
 namespace dolp {
 namespace {
 
-// A surface that counts as a mirror may have facets with slopes above this. The error estimate includes their share.
+// Slope above which a facet does not count as a mirror's. The error estimate includes the share of steeper facets.
 constexpr double kMirrorSlope = 1e-6;
 
 double steep_share(const Surface& surface, const SlopeShape& shape) {
@@ -21,15 +21,15 @@ double steep_share(const Surface& surface, const SlopeShape& shape) {
 }
 
 constexpr double kRelativeError = 1e-12;
-// The quadrature stops when two levels agree to this relative difference. Their error is then far below kRelativeError.
+// The quadrature stops at this relative difference of its levels. The error is then far below kRelativeError.
 constexpr double kAgreement = 1e-13;
-// Bound of the rounding error of 1 - absorptance: a few operations with numbers up to 1.
+// Bound of the rounding error of the reflectance 1 - absorptance: a few operations with numbers up to 1.
 constexpr double kReflectanceRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
-// Below this cosine, whose square may underflow, the integrand is taken as 0: it falls at least as fast as the cosine.
+// Below this cosine the integrand counts as 0. It falls at least as fast as the cosine, whose square may underflow.
 constexpr double kSmallestCosine = 1e-100;
 
-/// Angle in rad from grazing incidence at which total reflection begins, suddenly (k = 0) or nearly so. Otherwise 0.
+/// Angle between ray and surface, in rad, at which total reflection begins suddenly (k = 0) or nearly so; otherwise 0.
 double critical_angle(const FacetOptics& optics) {
   if (optics.measured) return 0.0;
   const OpticalConstants& index = optics.index;
@@ -42,7 +42,7 @@ double critical_angle(const FacetOptics& optics) {
 constexpr double kHorizon_deg = 90.0;
 constexpr double kMirrorSpread_deg = 2.0 * kMirrorSlope * 180.0 / std::numbers::pi;  // spread of the reflected rays
 
-/// Adds the moments with the functions of a sky. All rays leave within `spread_deg` of the zenith `zenith_deg`.
+/// Adds the moments with the functions in `sky`, for rays that leave within `spread_deg` of the zenith `zenith_deg`.
 void add_sky(Moments& moments, const SkyBasis& sky, double zenith_deg, double spread_deg) {
   const Eigen::RowVectorXd at = sky.at(zenith_deg);
   const Eigen::RowVectorXd above = sky.at(std::max(zenith_deg - spread_deg, 0.0));
@@ -60,7 +60,7 @@ Moments closed_form(const Surface& surface, const Direction& direction, const Sl
                     const FacetOptics& index, const SkyBasis* sky) {
   if (direction.treatment == Treatment::kDivergentLimit) {
     Moments moments = grazing_limit_moments(index, shape.q);
-    if (sky) add_sky(moments, *sky, kHorizon_deg, 0.0);  // vertical facets reflect the horizon
+    if (sky) add_sky(moments, *sky, kHorizon_deg, 0.0);  // at 90 degrees vertical facets reflect light from the horizon
     return moments;
   }
   const double steep = steep_share(surface, shape) * direction.cos_theta;
@@ -73,9 +73,9 @@ Moments closed_form(const Surface& surface, const Direction& direction, const Sl
 Moments grazing_limit_moments(const FacetOptics& index, double q) {
   boost::math::quadrature::tanh_sinh<double> integrator;
   const double critical = critical_angle(index);
-  // The variable is psi = pi/2 - phi, because x = sin(psi) keeps its digits near x = 0, where its power is not smooth.
+  // Integrates over psi = pi/2 - phi. So x = sin(psi) keeps its digits near x = 0, where powers of x are not smooth.
   const auto integral = [&](auto&& of_cosine) {
-    // With the second parameter, the distance to the nearer end, Boost allows nodes that round to the ends.
+    // The unused parameter is the distance to the nearer end. With it, Boost allows nodes that round to an end.
     const auto integrand = [&](double psi, double) {
       const double x = std::sin(psi);
       return x > kSmallestCosine ? std::pow(x, 4.0 - 2.0 * q) * of_cosine(x) : 0.0;

@@ -17,7 +17,7 @@
 namespace dolp {
 namespace {
 
-constexpr std::size_t kGeometriesAtOnce = 1U << 20U;  // bounds the memory of the requests
+constexpr std::size_t kGeometriesAtOnce = 1U << 20U;  // number of geometries in a request, which limits its memory
 
 bool is_grazing(const BeamAngles& angles) { return angles.theta_i_deg == 90.0 || angles.theta_r_deg == 90.0; }
 
@@ -70,14 +70,14 @@ void add_diffuse(MuellerMatrix& f, const Surface& surface, const MuellerPoint& p
   f[5] += scale * out.q * in.q;
 }
 
-/// True if the error exceeds the usual error of a pBRDF, because bounces that are not computed contribute.
+/// True if the error exceeds the usual error of a pBRDF, because some bounces that contribute are not computed.
 bool is_inaccurate(const ScatteringMatrix& specular, Precision precision) {
   constexpr double kRounding = 1e-3;  // relative rounding error of the sum of errors
   const double accuracy = precision == Precision::kFloat ? kScatteringErrorFloat : kScatteringErrorDouble;
   return specular.error > (1.0 + kRounding) * accuracy * specular.m[0];
 }
 
-/// `specular` is null for a point that needs no evaluator.
+/// The Mueller matrix of a point. `specular` is null if the point needs no evaluator.
 MuellerMatrix elements(const Surface& surface, const MuellerPoint& point, const ScatteringMatrix* specular,
                        Precision precision) {
   MuellerMatrix f{};

@@ -28,7 +28,7 @@ Treatment treatment(const SceneValues& scene, const SceneEntry& entry) {
                       entry.shape);
 }
 
-/// Appends the used values to `axis`, in their order. Returns the position in `axis` of each used value.
+/// Appends the used values to `axis`, in their order. Returns for each used value its position in `axis`.
 std::vector<std::uint32_t> compact_used_values(const std::vector<double>& values, const std::vector<char>& is_used,
                                                std::vector<double>& axis) {
   std::vector<std::uint32_t> positions(values.size(), 0);
@@ -39,10 +39,10 @@ std::vector<std::uint32_t> compact_used_values(const std::vector<double>& values
   return positions;
 }
 
-// Chosen. Responses need so many entries per index, because the weights of an index take as long as some entries.
+// Chosen. Fewest entries per index for which responses are used: the sums for an index cost as much as some entries.
 constexpr std::size_t kLeastEntries = 24;
-// Responses give the moments of every index at every direction and slope distribution. For points they are used if
-// these are at most so many times as many as the moments that the points need.
+// Responses give the moments of every index for every direction and slope distribution. Points need only some of these
+// combinations. The run uses responses if there are at most so many times more combinations than moments to compute.
 constexpr std::size_t kMostOfPoints = 2;
 
 std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const SceneEntries& entries) {
@@ -208,7 +208,7 @@ void PartRequests::request_grid(const Selection& selection) {
   if (!is_whole) mark_wanted(selection);
 }
 
-/// Consecutive sets that are equal share their indices in the request.
+/// Adds the indices of the used sets to the request. Equal consecutive sets share their indices.
 void PartRequests::request_indices(const SceneEntries& grid, const std::vector<char>& is_used) {
   index_set_offset_.assign(is_used.size(), 0);
   std::vector<FacetOptics> last;
@@ -266,7 +266,7 @@ void PartRequests::request_points(const Selection& selection) {
     const double zenith_deg =
         zenith_before_limit_deg(scene_.surface.masking, moment_zenith_deg(scene_, entry.theta_deg));
     const SlopeShape shape = normalised(scene_, entry.shape);
-    // The key of an entry without an index is its variant, marked by k = -1, because no k is negative.
+    // An entry without its own index gets its variant as key, with k = -1, which no index has.
     const OpticalConstants key = entry.index.value_or(OpticalConstants{static_cast<double>(entry.variant), -1.0});
     const double films_at = has_films() ? entry.variant : -1.0;
     const auto [known_span, is_new] =

@@ -18,41 +18,41 @@
 
 namespace dolp {
 
-/// Some entries of a part of a run, or all of them.
+/// Some or all entries of a part of a run: the members of the selection.
 struct Selection {
   const SceneEntries& part;
-  std::span<const std::size_t> chosen = {};  ///< positions in the part; empty: all
+  std::span<const std::size_t> chosen = {};  ///< positions of the members in the part; empty: all entries
 
   std::size_t size() const { return chosen.empty() ? part.size() : chosen.size(); }
   std::size_t position(std::size_t member) const { return chosen.empty() ? member : chosen[member]; }
   SceneEntry operator[](std::size_t member) const { return part[position(member)]; }
 };
 
-/// The zenith of the moments of an entry: in bistatic mode the zenith of the view, otherwise its theta.
+/// The zenith for which the moments of an entry are computed: in bistatic mode the view, otherwise theta of the entry.
 double moment_zenith_deg(const SceneValues& scene, double theta_deg);
 
 bool wants_moments(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
-/// True if the evaluator must compute the beam: not for a mirror, nor with source and view both at 90 degrees.
+/// True if an evaluator must compute the beam of an entry: not for a mirror or with source and view both at 90 degrees.
 bool wants_beam(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
-/// The beam of an entry that needs no evaluator. It is undefined (NaN) in the specular direction of a mirror, and with
-/// source and view both at 90 degrees; otherwise it is 0.
+/// The pBRDF of an entry whose beam the evaluator need not compute. It is undefined (NaN) in the specular direction of
+/// a mirror, and with source and view both at 90 degrees; otherwise it is 0.
 Scattered beam_without_evaluator(const SceneValues& scene, double theta_deg);
 
-/// For each variant of the entries, the indices at its spectral samples.
+/// For each variant (material, band, wavelength or temperature) of the entries: n and k at each spectral sample.
 using SpectralIndices = std::vector<std::vector<FacetOptics>>;
 SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& entries);
 
-/// The samples with `index` as the medium under their films. Without films all samples become equal, so one is
-/// returned. Without `index` the samples are returned as they are.
+/// The samples, with `index` as the medium under their films. Without films all samples are then equal, so the result
+/// has one. If `index` is empty, the result is `samples`.
 std::vector<FacetOptics> with_index(const std::vector<FacetOptics>& samples,
                                     const std::optional<OpticalConstants>& index);
 
-/// The requests of one level of refinement for a selection. For a grid, the request for moments is a grid too. It has
-/// the directions (in bistatic mode the view) and the indices of the selection, and all slope distributions of the
-/// part. So the result of an entry does not depend on which entries are selected in other directions. Points share
-/// moments if they differ only in values on which moments do not depend.
+/// What an evaluator must compute for a selection at one level of refinement. For a grid, the request for moments is a
+/// grid too: the directions (in bistatic mode the view) and the indices of the selection, with all slope distributions
+/// of the part. So the result of an entry does not depend on which entries of other directions are selected. For
+/// points, one request serves all points that differ only in values on which moments do not depend.
 class PartRequests {
  public:
   PartRequests(const SceneValues& scene, const SpectralIndices& samples, const EffectPlan& plan,
@@ -61,15 +61,15 @@ class PartRequests {
   const MomentsRequest& moments() const { return moments_; }
   const ScatteringRequest& beams() const { return beams_; }
 
-  /// The position of the moments of a member in the answer: `first + j * stride` for spectral sample j.
+  /// Where the answer to moments() has the moments of a member: for spectral sample j at `first + j * stride`.
   struct MomentsSpan {
     std::size_t first = 0;
     std::size_t stride = 0;
   };
   MomentsSpan moments_of(std::size_t member) const;
-  /// The position, in a request for a grid, of the direction whose moments a member uses.
+  /// The position in moments(), for a grid, of the direction whose moments a member uses.
   std::size_t direction_of(std::size_t member) const;
-  /// The position of the first beam of a member, which has one beam per spectral sample.
+  /// The position in beams() of the first beam of a member. A member has one beam for each spectral sample.
   std::size_t beams_of(std::size_t member) const { return first_beam_[member]; }
 
  private:
@@ -88,17 +88,17 @@ class PartRequests {
   const Selection selection_;
   MomentsRequest moments_;
   ScatteringRequest beams_;
-  // For a grid, positions in the request: of each theta, sigma and q of the part, and of the first index of each set. A
-  // set is the indices of a variant, or one index from the axes n and k.
+  // For a grid: the positions in moments_ of each theta, sigma and q of the part, and of the first index of each index
+  // set. An index set has the indices of one variant, or one index from the axes n and k.
   std::vector<std::uint32_t> theta_at_, sigma_at_, q_at_, index_set_offset_;
-  std::vector<MomentsSpan> spans_of_points_;  ///< positions of the moments of each point of a list
+  std::vector<MomentsSpan> spans_of_points_;  ///< for points: where the answer has the moments of each point
   std::vector<std::size_t> first_beam_;
 };
 
-/// The responses from which a run combines the moments of its many indices. Their error meets the tolerance of the
-/// scene; tighter levels refine only the quadrature. Their choice follows from the whole grid, even for a part of it.
-/// Null if responses save nothing: for a grid with few entries per index, for points that mostly differ in direction or
-/// slope distribution, for few indices, with several bounces, and for a scene without interpolation.
+/// The responses (moments with polynomials instead of reflectances) from which a run combines the moments of many
+/// indices. Their error meets the tolerance of the scene, so finer levels refine only the quadrature. They are chosen
+/// for the whole grid, even in a run of a part of it. Null if they save nothing: for a grid with few entries per index,
+/// points that mostly differ in direction or slope distribution, few indices, several bounces, or no interpolation.
 std::shared_ptr<const ResponseBasis> run_basis(const SceneValues& scene, const SceneEntries& entries,
                                                const EffectPlan& plan);
 

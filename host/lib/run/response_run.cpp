@@ -25,20 +25,20 @@ namespace dolp {
 namespace {
 
 constexpr std::size_t kBetaAngles = kMostResponses;
-constexpr double kResponseC0 = 0.01;                // cosine near which the abscissa bends from linear to logarithmic
-constexpr OpticalConstants kUnusedIndex{1.5, 0.0};  // a request needs an index; moments of this one are not used
-// Ratio of the first tolerance of the rules to the tolerance of the table. Tuned for 64 x 16 x 16 entries at 1e-4.
-// Million evaluations at half, this and double: with smith 21.0, 22.5, 24.1; with integral 3.24, 3.00, 2.90.
+constexpr double kResponseC0 = 0.01;                // cosine near which abscissa() changes from linear to logarithmic
+constexpr OpticalConstants kUnusedIndex{1.5, 0.0};  // a request needs an index; its moments are not used
+// Ratio of the first tolerance of the quadrature to the tolerance of the table. Tuned for 64 x 16 x 16 entries at 1e-4.
+// Million evaluations at half, this and double: with smith masking 21.0, 22.5, 24.1; with integral 3.24, 3.00, 2.90.
 constexpr double kFirstShare = 0.1;
-// Ratio of the tolerance of a level to the tolerance of the level before. Chosen: half and double make no difference.
+// Ratio of the tolerance of a refinement level to that of the level before. Chosen: half and double change nothing.
 constexpr double kFinerBy = 0.03;
 constexpr int kMostLevels = 6;
-constexpr std::size_t kColumnsAtOnce = std::size_t{1} << 20U;  // limits the memory for the columns of a part
+constexpr std::size_t kColumnsAtOnce = std::size_t{1} << 20U;  // number of columns in a part, which limits its memory
 
-/// The variable x of the polynomials, from -1 at cosine 0 to 1 at cosine 1.
+/// The variable x of the Chebyshev polynomials: -1 at cos(beta) = 0, 1 at cos(beta) = 1.
 double abscissa(double cosine) { return 2.0 * std::asinh(cosine / kResponseC0) / std::asinh(1.0 / kResponseC0) - 1.0; }
 
-/// The Chebyshev polynomials T_m(x), m < kBetaAngles. Domain: x in [-1, 1].
+/// The values T_m(x) of the Chebyshev polynomials with m < kBetaAngles. Domain: x in [-1, 1].
 Eigen::VectorXd chebyshev_at(double x) {
   const double angle = std::acos(std::clamp(x, -1.0, 1.0));
   return Eigen::VectorXd::LinSpaced(kBetaAngles, 0.0, kBetaAngles - 1.0).unaryExpr([=](double m) {
@@ -46,7 +46,7 @@ Eigen::VectorXd chebyshev_at(double x) {
   });
 }
 
-/// The angles beta of a table, at which x is a zero of T_24, and functions of these angles.
+/// The angles beta of a response table, at which x is a zero of T_24, and functions of these angles.
 struct Nodes {
   Eigen::MatrixXd polynomials;  ///< T_m(x_j), one row per polynomial, one column per angle
   Eigen::ArrayXd sin2;          ///< sin^2 of beta
@@ -68,15 +68,15 @@ const Nodes& nodes() {
   return known;
 }
 
-/// Weights times cos(theta). `error` bounds their sums for curves with Chebyshev coefficients of at most 2^-m.
+/// Weights of an entry, times cos(theta). `error` bounds errors of sums with curves of Chebyshev coefficients <= 2^-m.
 struct Weights {
   Eigen::ArrayXd i, q;
   double error = 0.0;
 };
 
 /// `whole_error`: error bound of the moment with 1 instead of a polynomial. It adds up absolute differences between
-/// both quadrature rules; in the columns these may cancel by chance. It also holds for each polynomial, because
-/// polynomials are at most 1.
+/// both quadrature rules, while differences in `columns` may cancel by chance. It also bounds the error for each
+/// polynomial, because the absolute value of a polynomial is at most 1.
 Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error) {
   Weights own{Eigen::ArrayXd::Zero(kBetaAngles), Eigen::ArrayXd::Zero(kBetaAngles)};
   for (std::size_t m = 0; m < columns.size(); ++m) {
@@ -85,7 +85,7 @@ Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error
         (m == 0 ? 1.0 : 2.0) / kBetaAngles * nodes().polynomials.row(static_cast<Eigen::Index>(m));
     own.i += sum.i * share;
     own.q += sum.q * share / nodes().sin2;
-    // Both quadrature rules may agree by chance for q too. So the bound of i is added to the bound of q.
+    // The difference for q may cancel by chance too. So the bound of i is added to the bound of q.
     const double of_i = std::abs(sum.i_apart) + sum.relative_error * std::abs(sum.i) + sum.error;
     const double of_q = std::abs(sum.q_apart) + sum.relative_error * std::abs(sum.q) + sum.error;
     own.error += std::ldexp(std::max(of_i, whole_error) + of_q, -static_cast<int>(m));
@@ -93,7 +93,7 @@ Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error
   return own;
 }
 
-/// The moments of a mirror. The columns need no integral: they are the polynomials at beta = theta.
+/// The moments of a mirror. Its columns need no integral: they contain the values of the polynomials at beta = theta.
 Moments mirror_of(const MomentsRequest& request, const Direction& direction, const SlopeShape& shape) {
   Surface surface;
   surface.distribution = request.distribution;
@@ -108,7 +108,7 @@ Moments mirror_of(const MomentsRequest& request, const Direction& direction, con
 
 bool has_emission(Masking masking) { return keeps_projected_area(masking); }
 
-/// Stores the weights of an entry if their error bound is below the bound stored before.
+/// Stores the weights of an entry in `to` if their error bound is below the one that `to` has for this entry.
 void take_better(const Moments& reflected, const Moments* direct, double cosine, std::size_t entry,
                  EntryResponses& to) {
   const Weights weights = weights_of(reflected.columns, reflected.albedo_error);
@@ -141,7 +141,7 @@ EntryResponses nothing_of(const MomentsRequest& request) {
   return none;
 }
 
-/// Sets mirrors, and directions where rho has no value. Returns 1 for each entry that needs the evaluator, else 0.
+/// Sets the weights of mirrors; without a value of rho they stay NaN. Returns 1 for entries that need the evaluator.
 std::vector<char> set_closed_forms(const MomentsRequest& request, EntryResponses& to) {
   std::vector<char> wanted(request.size(), 1);
   for (std::size_t i = 0; i < wanted.size(); ++i) {

@@ -14,27 +14,26 @@ namespace dolp {
 /// The layout of the response table over the scene's grid. Errors: InputError if the scene has no response table.
 TableLayout response_layout(const SceneValues& scene);
 
-/// The responses of the entries of a request. Shape: each vector has the order of a table with these entries.
+/// The weights of the entries of a request. Shape: each vector has the order of a table with these entries.
 struct EntryResponses {
   ResponseArray<std::vector<double>> responses;
   std::vector<double> albedo;
 };
 
-/// The weights of the entries of a request, and their error bounds; NaN where rho has no value. Uses only the surface,
-/// layout, directions and shapes of the request. Entries whose response_error exceeds the tolerance times the albedo
-/// are computed again with finer rules.
+/// Computes the weights of the entries of a request and their error bounds; NaN where rho has no value (tests
+/// Responses_*). Uses only the surface, layout, directions and shapes of the request. Entries whose response_error
+/// exceeds the tolerance times the albedo are computed again with more nodes.
 /// Equation: w_j = (2 / K) (C_0 / 2 + sum over 0 < m < K of C_m T_m(x_j)) / cos(theta). C_m is the moment with the
 /// Chebyshev polynomial T_m(x) instead of reflectances, x = 2 asinh(cos(beta) / c0) / asinh(1 / c0) - 1. The x_j are
 /// the zeros of T_K, K = 24, c0 = 0.01.
-/// Accuracy: tests Responses_*.
 EntryResponses responses_of(MomentsRequest request, const Accuracy& accuracy, ModelEvaluator& evaluator,
                             const Progress& progress);
 
-/// A request for the responses of a surface, without directions and shapes.
+/// A request for responses_of() with a surface, still without directions and shapes.
 MomentsRequest response_request(const Surface& surface);
 
-/// Sum over m of 2^-m |sum over j of T_m(x_j) (a_j - b_j)|, for weights of an entry: response_i, or (is_of_q)
-/// response_q times sin^2(beta_j). response_error bounds this distance to the exact weights.
+/// Sum over m of 2^-m |sum over j of T_m(x_j) (a_j - b_j)|: a distance of weights a and b of an entry, which are
+/// response_i or (is_of_q) response_q times sin^2(beta_j). response_error bounds the distance to the exact weights.
 double response_distance(std::span<const double> a, std::span<const double> b, bool is_of_q);
 
 struct ResponseOutcome {

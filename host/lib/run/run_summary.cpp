@@ -14,15 +14,15 @@ namespace dolp {
 namespace {
 
 constexpr std::size_t kMostChecked = 64;
-// For each kManyMoments moments of a table, kMostChecked more are checked.
+// The check recomputes kMostChecked more moments for each kManyMoments moments of a table.
 constexpr std::size_t kManyMoments = std::size_t{1} << 22U;
-// The check costs at most 1 / kShare of the run. An entry that is computed again takes about kCostOfOne times as long
-// as before: it has two digits more and shares work with no neighbour.
+// The check costs at most 1 / kShare of the run. The second computation of an entry takes about kCostOfOne times as
+// long as the first: it is a hundred times more accurate and shares no work with neighbours.
 constexpr std::size_t kShare = 50;
 constexpr std::size_t kCostOfOne = 4;
 
 double ratio(double difference, double bounds) {
-  if (!(std::abs(difference) > 0.0)) return 0.0;  // equal, or NaN in both
+  if (!(std::abs(difference) > 0.0)) return 0.0;  // equal values, or NaN
   return std::abs(difference) / bounds;
 }
 
@@ -30,7 +30,7 @@ double rho_bound(const PointResult& result) {
   return result[Quantity::kRhoErrorEstimate] * std::abs(result[Quantity::kRhoI]);
 }
 
-constexpr std::size_t kSummaryEntriesAtOnce = 65536;  // entries that a thread takes at a time
+constexpr std::size_t kSummaryEntriesAtOnce = 65536;  // number of entries that a thread takes at a time
 
 using Range = std::pair<double, double>;
 
@@ -46,7 +46,7 @@ void add_range(EnergyRange& range, const EnergyRange& other) {
   range.entries += other.entries;
 }
 
-/// Calls use(number) for each number, in the order of the summary's text.
+/// Calls use(number) for each number of a summary, in the order in which text() writes the numbers.
 template <class Summary, class Use>
 void for_each_number(Summary& s, const Use& use) {
   use(s.entries);
@@ -169,7 +169,7 @@ std::optional<RunSummary> RunSummary::from_text(const std::string& text) {
       words >> number;
     } else {
       words >> word;
-      const double value = std::strtod(word.c_str(), nullptr);  // strtod reads inf too
+      const double value = std::strtod(word.c_str(), nullptr);  // strtod also reads "inf"
       const bool is_none = std::is_same_v<decltype(number), std::optional<double>&> && !(value >= 0.0);
       if (!is_none) number = value;
     }

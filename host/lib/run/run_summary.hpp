@@ -17,17 +17,17 @@
 
 namespace dolp {
 
-/// A check of the error bounds: some entries are computed a second time in another way.
+/// A check of the error bounds: a run computes some entries a second time in another way.
 struct SelfCheck {
   std::size_t entries = 0;
-  /// Largest ratio of the difference of both results to the sum of their bounds. Above 1, a bound was wrong.
+  /// Largest ratio of the difference of an entry's two results to the sum of their bounds. Above 1, a bound was wrong.
   double worst_ratio = 0.0;
 
   void add(const PointResult& result, const PointResult& again);
   void add(const SelfCheck& other);
 };
 
-/// Number of moments of a table that are computed again. They cost at most a fiftieth of the run.
+/// Number of moments of a table that the check computes again. They cost at most a fiftieth of the run.
 std::size_t checked_count(std::size_t moments);
 
 /// `count` random positions below `size`, in ascending order. They depend only on the seed.
@@ -36,22 +36,22 @@ std::vector<std::size_t> checked_positions(std::size_t size, std::size_t count, 
 inline constexpr double kAlbedoMin = 0.95;
 inline constexpr double kAlbedoMax = 1.05;
 
-/// The entries whose albedo is out of range, and the smallest range of theta and sigma that contains them.
+/// The entries with an albedo below kAlbedoMin (or above kAlbedoMax), and the ranges of theta and sigma around them.
 struct EnergyRange {
   std::size_t entries = 0;
-  std::pair<double, double> theta_deg;  ///< in bistatic mode: zenith of the view
+  std::pair<double, double> theta_deg;  ///< zenith angle of the view in bistatic mode, otherwise theta
   std::pair<double, double> sigma;
 };
 
 struct RunSummary {
   std::size_t entries = 0;
   std::array<std::size_t, kStatusBits.size()> status{};
-  std::optional<double> worst_error;      ///< largest error bound of DOLP, of the entries that promise a DOLP
-  std::optional<double> worst_rho_error;  ///< largest error bound of rho, of the entries in the model's domain
+  std::optional<double> worst_error;      ///< largest error bound of DOLP among entries for which promises_dolp() holds
+  std::optional<double> worst_rho_error;  ///< largest error bound of rho among entries in the model's domain
   std::size_t albedos = 0;
   std::pair<double, double> albedo;
   EnergyRange loses, gains;
-  double model_change = 0.0;  ///< largest PointResult::model_change of the entries that promise their DOLP
+  double model_change = 0.0;  ///< largest PointResult::model_change of entries for which promises_dolp() holds
   SelfCheck check;
   double radiometry_s = 0.0;
   Work work;
@@ -62,7 +62,7 @@ struct RunSummary {
   std::size_t count(std::uint32_t bit) const;
   bool meets_tolerance() const { return count(kToleranceNotMet) + count(kRhoToleranceNotMet) == 0; }
 
-  /// text() writes the summary in one line, from_text() reads it. For other lines from_text() returns nothing.
+  /// text() writes the summary as one line; from_text() reads that line, and returns nothing for any other line.
   std::string text() const;
   static std::optional<RunSummary> from_text(const std::string& text);
 };

@@ -16,19 +16,19 @@ namespace dolp {
 namespace {
 
 constexpr double kLikelyNanometresOfFilm = 100.0;
-constexpr double kHotSky = 2.0;  // a sky above this multiple of the surface's temperature gets a remark
-// Rows leave a gap if the ratio of their wavelengths exceeds a limit: ten times the file's median spacing on a
-// logarithmic scale, but at least kNoGapRatio and at most kGapRatio.
+constexpr double kHotSky = 2.0;  // a sky hotter than this times the surface temperature gets a remark
+// Two neighbouring rows of a file leave a gap if the ratio of their wavelengths exceeds a limit: ten times the median
+// spacing of the file on a logarithmic scale, but at least kNoGapRatio and at most kGapRatio.
 constexpr double kGapRatio = 2.0;
 constexpr double kNoGapRatio = 1.5;
 constexpr double kUsualSpacings = 10.0;
-// Rows are coarse from this change on. A smaller reflectance counts as kLeastPart.
+// Rows are coarse if CoarseRows::change is at least kCoarseChange. A reflectance below kLeastPart counts as kLeastPart.
 constexpr double kCoarseChange = 0.05;
 constexpr double kLeastPart = 0.01;
 
 using Interval = std::pair<double, double>;
 
-/// The wavelengths that a scene uses: single ones, or a band.
+/// The wavelengths that a scene uses, as intervals: single wavelengths (of length 0), or bands.
 std::vector<Interval> used_um(const SceneValues& scene) {
   const std::vector<double>& grid = scene.grid[Axis::kWavelength];
   std::vector<Interval> used;
@@ -47,7 +47,7 @@ double least_gap_ratio(const std::vector<double>& wavelength_um) {
   return std::clamp(std::exp(kUsualSpacings * *median), kNoGapRatio, kGapRatio);
 }
 
-/// The widest gap between rows in the used wavelengths, which a straight line bridges.
+/// The widest gap between rows of a file that contains used wavelengths. The program bridges it by a straight line.
 std::optional<Interval> bridged_gap(const SpectralTable& table, const std::vector<Interval>& used) {
   const std::vector<double>& um = table.wavelength_um;
   if (um.size() < 2 || table.formula.number != 0) return std::nullopt;
@@ -63,7 +63,7 @@ std::optional<Interval> bridged_gap(const SpectralTable& table, const std::vecto
   return widest;
 }
 
-/// Error of the reflectance R at normal incidence that lines between rows may cause, over the smaller of R and 1 - R.
+/// Where lines between rows are worst. `change`: error of the reflectance R at normal incidence over min(R, 1 - R).
 struct CoarseRows {
   double at_um = 0.0;
   double change = 0.0;
@@ -73,8 +73,8 @@ double normal_reflectance(const OpticalConstants& index) {
   return (std::pow(index.n - 1.0, 2) + std::pow(index.k, 2)) / (std::pow(index.n + 1.0, 2) + std::pow(index.k, 2));
 }
 
-/// The rows where the change is largest. A line between two rows is off by about a quarter of the distance between the
-/// row in the middle and the line that leaves it out.
+/// The rows with the largest `change`. A line between two rows is wrong by about a quarter of this distance: from a row
+/// to the line that joins the rows before and after it.
 CoarseRows coarsest_rows(const Material& material, const std::vector<Interval>& used) {
   CoarseRows worst;
   const std::vector<double>& um = material.n.wavelength_um;
@@ -187,7 +187,7 @@ class Remarks {
 
   void add_hot_sky(const SkyProfile* profile) {
     const double surface_K = scene_.emission ? scene_.emission->temperature_K : 0.0;
-    if (surface_K < kLikelyCelsius_K) return;  // no emission, or its temperature gets a remark itself
+    if (surface_K < kLikelyCelsius_K) return;  // there is no emission, or another remark is about its temperature
     bool is_hot = !profile && scene_.surroundings->temperature_K > kHotSky * surface_K;
     const std::vector<Interval> used = used_um(scene_);
     for (const double um : {used.front().first, used.back().second}) {

@@ -21,13 +21,13 @@
 namespace dolp {
 namespace {
 
-// Largest number of moments of a part, to limit its memory. Points take more per moment, because they share nothing.
+// Largest number of moments in a part of a grid or of points, to limit the memory. Points share nothing and need more.
 constexpr std::size_t kMomentsAtOnce = 1U << 20U;
 constexpr std::size_t kPointsAtOnce = 1U << 17U;
-// A direction is refined as a whole if more than one of so many entries misses the tolerance. Tuned. Evaluations per
-// entry with smith at half, this and double: 1.71, 1.81, 1.99 (see plan/constants.hpp).
+// A direction is computed again as a whole if more than one in so many of its entries misses the tolerance. Tuned.
+// Evaluations per entry with smith masking at half, this and double: 1.71, 1.81, 1.99 (see plan/constants.hpp).
 constexpr std::size_t kWholeDirectionMissRatio = 8;
-constexpr std::size_t kEntriesAtOnce = 4096;  // entries of a thread, enough to outweigh the start of the thread
+constexpr std::size_t kEntriesAtOnce = 4096;  // number of entries per thread that outweighs the start of the thread
 
 struct Spectra {
   Spectra(const SceneValues& scene, const EffectPlan& plan, const std::vector<SceneVariant>& variants) {
@@ -45,7 +45,7 @@ struct RunContext {
   const Spectra& spectra;
   ModelEvaluator* evaluator;
   std::shared_ptr<const ResponseBasis> basis;
-  RunSummary& summary;  ///< summary of the run so far; the steps add the work of the host to it
+  RunSummary& summary;  ///< summary of the run so far; each step adds its work on the host
 };
 
 struct EvaluatorResults {
@@ -53,10 +53,10 @@ struct EvaluatorResults {
   std::vector<ScatteringMatrix> beams;
 };
 
-/// The first column of a pBRDF: the Stokes parameters that it gives for unpolarised light.
+/// The first column of the Mueller matrix of a pBRDF: Stokes parameters of the reflection of unpolarised light.
 Scattered scattered(const ScatteringMatrix& f) { return {f.m[0], f.m[4], f.m[8], f.m[12], f.error}; }
 
-/// Computes the results of the members of a selection, one by one. The object keeps its memory from member to member.
+/// Computes results for members of a selection, one by one. The object keeps its buffers from member to member.
 class MemberResults {
  public:
   MemberResults(const RunContext& context, const Selection& selection, const PartRequests& requests,
@@ -87,7 +87,7 @@ class MemberResults {
   }
 
  private:
-  /// Keeps the direction for the next call, because neighbours in a grid mostly share their direction.
+  /// The direction of the moments of an entry. It is kept, because neighbouring entries mostly have the same direction.
   const Direction& view_direction(const SceneEntry& entry) {
     const Surface& surface = context_.scene.surface;
     const double theta_deg = moment_zenith_deg(context_.scene, entry.theta_deg);
@@ -102,7 +102,7 @@ class MemberResults {
   /// The moments of a member: from the evaluator, from closed forms, or zeros if the plan needs no moments.
   std::span<const Moments> moments_of(std::size_t member, const SceneEntry& entry, const Direction& direction,
                                       std::span<const FacetOptics> indices) {
-    if (!context_.plan.kept.moments) return moments_;  // still zero: nothing writes to it in this case
+    if (!context_.plan.kept.moments) return moments_;  // all zero: nothing else writes to moments_ in this case
     if (direction.treatment != Treatment::kIntegrated) {
       for (std::size_t j = 0; j < moments_.size(); ++j) {
         moments_[j] = closed_form(context_.scene.surface, direction, entry.shape, indices[j], context_.plan.sky.get());
@@ -133,19 +133,19 @@ class MemberResults {
   const EvaluatorResults& evaluated_;
   std::vector<Moments> moments_;
   std::vector<Scattered> beams_;
-  std::optional<OpticalConstants> index_;  ///< index of own_optics_, which are also for variant_
+  std::optional<OpticalConstants> index_;  ///< index for which own_optics_ was computed, together with variant_
   std::uint32_t variant_ = 0;
   Radiometry::Optics own_optics_;
   Direction direction_;
   bool has_direction_ = false;
 };
 
-/// Progress of one step of several: `before` of `total` items are done when the step starts.
+/// Progress of one step of a larger task. `before` of `total` items are done when the step starts.
 Progress part_of(const Progress& progress, std::size_t before, std::size_t total) {
   return [&progress, before, total](std::size_t done, std::size_t) { return progress(before + done, total); };
 }
 
-/// Computes the moments and beams of one level. All have the same precision.
+/// Computes the moments and beams of one refinement level, all in one precision.
 EvaluatorResults run_requests(const RunContext& context, const PartRequests& requests, const MomentsPlan& plan,
                               const Progress& progress) {
   const std::size_t moments = requests.moments().wanted_count();
@@ -186,18 +186,18 @@ bool is_better(const PointResult& a, const PointResult& b) {
                                       std::max(b[Quantity::kErrorEstimate], b[Quantity::kRhoErrorEstimate]);
 }
 
-/// True if `level` can improve an entry. The rule of a beam depends on the precision, not on the tolerance.
+/// True if `level` can improve an entry. A new tolerance does not improve a beam, but a new precision does.
 bool would_improve(const RunContext& context, const RefinementLevel& level, const RefinementLevel& last,
                    const SceneEntry& entry) {
   return wants_moments(context.scene, entry, context.plan) ||
          (wants_beam(context.scene, entry, context.plan) && level.precision != last.precision);
 }
 
-/// Members that wait for the next level, which is the key. Those with the same level are computed together.
+/// The members that must be computed again, by the refinement level. Those of one level are computed together.
 using EntriesByLevel = std::map<RefinementLevel, std::vector<std::size_t>>;
 
-/// The next level of a whole direction. With responses it is in double, because responses have more float noise than
-/// the moments of one index. Its tolerance is a whole decade, so that more indices share a pass of responses.
+/// The next refinement level of a whole direction. With responses it is in double: responses have more float noise than
+/// moments of one index. Its tolerance is lower by whole decades, so that more indices share responses.
 RefinementLevel level_of_direction(RefinementLevel next, const RunContext& context) {
   next.may_interpolate = true;
   if (!context.basis) return next;
@@ -208,8 +208,8 @@ RefinementLevel level_of_direction(RefinementLevel next, const RunContext& conte
   return next;
 }
 
-/// Queues the next level for one direction, whose `members` were computed at `last`. If many miss the tolerance, all
-/// are interpolated again. Otherwise the ones that miss it are computed without interpolation.
+/// Queues entries of one direction, `members`, which were computed at `last`. If many of them miss the tolerance, all
+/// are computed again, with interpolation. Otherwise only those that miss it are, without interpolation.
 void queue_refinement(const RunContext& context, const SceneEntries& part, const RefinementLevel& last,
                       std::span<const std::size_t> members, std::span<const PointResult> results,
                       EntriesByLevel& by_level) {
@@ -231,7 +231,7 @@ void queue_refinement(const RunContext& context, const SceneEntries& part, const
 struct FirstResults {
   RefinementLevel level;
   std::vector<PointResult> results;
-  std::vector<char> is_interpolated;  ///< one flag per direction, that is, per part.entries_per_direction() entries
+  std::vector<char> is_interpolated;  ///< one flag per direction, which has part.entries_per_direction() entries
 };
 
 FirstResults first_results(const RunContext& context, const SceneEntries& part, const Progress& progress) {
@@ -248,13 +248,13 @@ FirstResults first_results(const RunContext& context, const SceneEntries& part, 
   return first;
 }
 
-/// Computes entries that miss the tolerance again. For `progress` the part is already done, but it can still cancel.
+/// Computes entries that miss the tolerance again. `progress` counts the part as done already, but can still cancel.
 void refine(const RunContext& context, const SceneEntries& part, FirstResults& first, const Progress& progress) {
   const Progress is_wanted = [&](std::size_t, std::size_t) { return progress(1, 1); };
   const std::size_t entries_per_direction = part.is_grid() ? part.entries_per_direction() : 1;
   std::vector<PointResult>& results = first.results;
   EntriesByLevel by_level;
-  // The members of one direction are consecutive.
+  // The entries of one direction are neighbours in `members`.
   const auto plan = [&](RefinementLevel last, std::span<const std::size_t> members, std::span<const PointResult> found,
                         std::span<const char> is_interpolated) {
     for (std::size_t i = 0, end = 0; i < members.size(); i = end) {
@@ -282,7 +282,7 @@ void refine(const RunContext& context, const SceneEntries& part, FirstResults& f
   }
 }
 
-/// Computes some entries of a grid again, by a rule of another kind than that of the first level.
+/// Computes some entries of a grid again, by another kind of quadrature than in the first refinement level.
 std::vector<PointResult> recompute_for_check(const RunContext& context, const SceneEntries& part,
                                              const RefinementLevel& first, std::span<const std::size_t> positions) {
   if (positions.empty()) return {};
@@ -290,7 +290,7 @@ std::vector<PointResult> recompute_for_check(const RunContext& context, const Sc
   return computed_at(context, {part, positions}, check_level(first), none);
 }
 
-/// Positions in this part of the entries to check that have moments. `checked` has positions in the whole table.
+/// Positions in this part of those entries in `checked` that have moments. `checked` has positions in the whole table.
 std::vector<std::size_t> positions_in(const RunContext& context, const SceneEntries& part,
                                       std::span<const std::size_t> checked) {
   std::vector<std::size_t> positions;
@@ -307,7 +307,7 @@ bool wants_evaluator(const SceneValues& scene, const SceneEntries& entries, cons
   });
 }
 
-/// `checked`: positions in the whole grid of the entries to check; empty for points.
+/// Computes the results of a part. `checked`: positions in the whole grid of the entries to check; empty for points.
 std::vector<PointResult> part_results(const RunContext& context, const SceneEntries& part,
                                       std::span<const std::size_t> checked, SelfCheck& check,
                                       const Progress& progress) {

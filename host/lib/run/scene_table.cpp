@@ -17,7 +17,7 @@
 namespace dolp {
 namespace {
 
-/// The material that the table records. With an axis of wavelengths, it has n and k at all wavelengths that are known.
+/// The material that a table records. With an axis of wavelengths, it has n and k at all wavelengths of its file.
 const Material& recorded_material(const Axes& axes, const SceneValues& scene) {
   const Material& material = scene.surface.material;
   return material.tabulated && !axes[Axis::kWavelength].empty() ? *material.tabulated : material;
@@ -43,7 +43,7 @@ void fill_curves(TableHead& head, const SceneValues& scene) {
   fill_used(head, scene);
 }
 
-/// The text of the scene's sky profile. Empty without a profile, and for a built-in sky, which its name describes.
+/// The text of the scene's sky profile. Empty without a profile, and for a built-in sky, which needs only its name.
 std::string profile_text(const SceneValues& scene) {
   if (scene.names.profile.empty() || built_in_sky(scene.names.profile)) return {};
   if (scene.surroundings->profile) return scene.surroundings->profile->text();
@@ -58,7 +58,7 @@ std::string stokes_units(const SceneValues& scene) {
   return units;
 }
 
-/// A hash of all data that the scene uses: n, k, E0, films, reflectances and the sky.
+/// A hash of all data behind the names in the scene: n, k, E0, films, reflectances and the sky.
 std::uint64_t data_hash(const SceneValues& scene) {
   std::uint64_t hash = kHashStart;
   const auto add = [&hash](const SpectralTable& table) {

@@ -13,25 +13,23 @@
 
 namespace dolp {
 
-inline constexpr const char* kModelChange = "model_change";  ///< attribute with the largest PointResult::model_change
+inline constexpr const char* kModelChange = "model_change";  ///< attribute: largest PointResult::model_change
 
-/// The quantities that results of a scene have or, with a plan, that a run computes; at points the others are NaN.
+/// The quantities that results of a scene have. With a plan: only those that a run computes; at points the rest is NaN.
 Quantities quantities_of(const SceneValues& scene, const EffectPlan* plan = nullptr);
 
-/// The layout of the table over `axes`, a grid or a part of it, with the attributes that are known before the run.
+/// The layout of the table over `axes` (a grid or a part of it), with all attributes that are known before the run.
 TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const Axes& axes);
 
-/// Sets Curve::used of the curves: their values at the wavelengths of the table.
+/// Sets Curve::used of each curve of `head` to the curve's values at the wavelengths of the table.
 void fill_used(TableHead& head, const SceneValues& scene);
 
-/// The attribute that names everything on which the values of a table depend, except the device. It is a text of names
-/// and values, which difference() compares.
+/// Attribute that lists all on which a table's values depend, except the device. difference() compares two such lists.
 inline constexpr const char* kIdentity = "identity";
 std::string identity_of(const SceneValues& scene, const std::string& evaluator, bool keep_all);
 
 TableValues table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results);
 
-/// Data about a run that the attributes of its table record.
 struct RunRecord {
   EvaluationReport evaluation;
   std::string effects, rule;
@@ -42,10 +40,10 @@ struct RunRecord {
   std::vector<Attribute> attributes(const std::string& command_line) const;
 };
 std::vector<Attribute> attributes_of(const SceneValues& scene, const RunOutcome& run, const std::string& command_line);
-/// The value of the attribute "history": time and command line.
+/// The value of the attribute "history": the time and the command line.
 std::string history_text(const std::string& command_line);
 
-/// The quadrature and the interpolation in words, for reports and table attributes.
+/// Describes the quadrature and the interpolation in words, for reports and the attribute "rule".
 std::string rule_text(double tolerance, const EvaluationReport& evaluation);
 
 }  // namespace dolp

@@ -24,12 +24,12 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMergedAtOnce = std::size_t{1} << 19U;  // entries
 constexpr const char* kShard = "shard";                       // attribute that marks a table as a shard
 
-// The axes that shards divide. Sigma and q are not divided, because entries share work along them.
+// The axes whose values shards divide among them. Entries share work along sigma and q, so these stay whole.
 constexpr std::array kCutAxes = {Axis::kTheta,       Axis::kMaterial, Axis::kBand, Axis::kWavelength,
                                  Axis::kTemperature, Axis::kN,        Axis::kK};
 using Cuts = std::array<std::size_t, kCutAxes.size()>;
 
-/// Cuts the axes into `count` parts in all, the first axes into as many as possible. False if this is impossible.
+/// Cuts the axes into `count` parts in all, first axes into as many parts as possible. False if this is impossible.
 bool find_cuts(const PerAxis& counts, std::size_t count, std::size_t number, Cuts& cuts) {
   if (number == kCutAxes.size()) return count == 1;
   for (std::size_t parts = std::min(count, counts[kCutAxes[number]]); parts > 0; --parts) {
@@ -40,7 +40,7 @@ bool find_cuts(const PerAxis& counts, std::size_t count, std::size_t number, Cut
   return false;
 }
 
-/// The axes of a table or of a part of one, with positions in the scene's labels.
+/// The axes of a table or of a part of one, with positions in the scene's lists of labels instead of the table's.
 Axes scene_axes(TableHead table, const SceneValues& scene, const std::string& name) {
   use_scene_labels(table, scene, name);
   return table.axes;
@@ -52,7 +52,7 @@ std::string identity_of(const SceneValues& scene, const TableJob& job) {
   return identity_of(scene, job.evaluator, job.options.keep_all);
 }
 
-/// The identity of a file, with its device: other shards may come from other devices, parts of the file may not.
+/// The identity of a file with its device: all parts of a file must come from one device, but shards may differ.
 std::string identity_of_file(const std::string& identity, const Shard& shard, const EvaluationReport& evaluation) {
   return fmt::format("{}; shard {}; device {}, {}", identity, shard_text(shard), one_line(evaluation.device),
                      one_line(evaluation.driver));
@@ -64,7 +64,7 @@ std::vector<TableBox> boxes_of(const SceneEntries& entries, const std::vector<Sc
   return boxes;
 }
 
-/// A sink that writes each part while the next one is computed.
+/// A sink that writes each part to the table file while the next part is computed.
 class TableSink final : public Sink {
  public:
   TableSink(const SceneEntries& entries, const TableLayout& layout, TableOutput& output)
@@ -88,7 +88,7 @@ class TableSink final : public Sink {
                            note = so_far.text()]() mutable { output_.write(std::move(values), first, note); });
   }
 
-  /// Waits until the last part is written. Errors: errors of writing it.
+  /// Waits until the last part is written. Errors: errors of the writing.
   void finish() {
     const auto start = std::chrono::steady_clock::now();
     if (pending_.valid()) pending_.get();
@@ -106,7 +106,7 @@ class TableSink final : public Sink {
   double waited_s_ = 0.0;
 };
 
-/// Runs `body`. Adds to its errors how much of the file is already on disk.
+/// Runs `body`. If it throws, adds to the error message how much of the file is already on disk.
 template <class Body>
 void with_rest(const TableOutput& output, const Body& body) {
   const auto more = [&] {
@@ -130,7 +130,7 @@ std::string text_of(const TableHead& head, const char* name) {
   return text ? *text : "";
 }
 
-/// A number attribute; 0 if there is none or if it is negative.
+/// The value of a numeric attribute; 0 if the table lacks the attribute or if it is negative.
 double number_of(const TableHead& head, const char* name) {
   const auto* number = find_attribute<double>(head, name);
   return number && *number >= 0.0 ? *number : 0.0;
@@ -163,7 +163,7 @@ void add_run(RunRecord& whole, const TableHead& shard) {
   if (devices.find(device) == std::string::npos) devices += (devices.empty() ? "" : "; ") + device;
 }
 
-/// The attributes of a shard without those that describe only the shard or its run.
+/// The attributes of a shard, except those that hold only for this shard or its run.
 std::vector<Attribute> without_run(std::vector<Attribute> attributes) {
   const std::vector<Attribute> run = RunRecord().attributes("");
   std::erase_if(attributes, [&](const Attribute& attribute) {
@@ -256,7 +256,7 @@ bool is_there(const SceneValues& scene, const TableJob& job) {
     const TableHead& head = reader.head();
     if (difference(text_of(head, kIdentity), identity_of(scene, job)) || text_of(head, kShard) != shard_text(job.shard))
       return false;
-    // Reads all values: this throws if they differ from the written ones.
+    // Reading all values throws if a value differs from the written one.
     static_cast<void>(reader.read_entries({}, job.options.progress));
     return scene_axes(head, scene, job.path.string()) == shard_entries(scene, job.shard).axes();
   } catch (const InputError&) {

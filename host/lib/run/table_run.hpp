@@ -14,45 +14,45 @@
 
 namespace dolp {
 
-/// The path of the file of a shard, such as "table.2-of-8.nc" for "table.nc". Without a shard the path itself.
+/// The path of the file of a shard: "table.2-of-8.nc" for "table.nc". Without a shard, `path` itself.
 std::filesystem::path shard_path(const std::filesystem::path& path, const Shard& shard);
 
-/// The entries of a shard: a part of the values of theta and, if these are too few, of the axes before theta. Sigma and
-/// q are never cut, so entries that share work stay together. Errors: InputError if the number is out of range or if
-/// the axes cannot be cut into so many parts.
+/// The entries of a shard: some of the values of theta or, if theta has too few values, also of the axes before theta.
+/// All values of sigma and q stay together, because their entries share work. Errors: InputError if the number of the
+/// shard is out of range or if the axes have too few values for so many shards.
 SceneEntries shard_entries(const SceneValues& scene, const Shard& shard);
 
 struct TableJob {
-  std::filesystem::path path;  ///< file to write; shard_path() is already applied
+  std::filesystem::path path;  ///< file to write: the result of shard_path() for a shard
   Shard shard;
   RunOptions options;
   std::string evaluator;  ///< name of the evaluator that the user chose
 };
 
-/// Computes the entries of the job and writes them. A part is written while the next one is computed.
-/// Errors: errors of Run and TableOutput; Cancelled. The messages tell which parts are already on disk.
+/// Computes the entries of the job and writes them to its file. Each part is written while the next one is computed.
+/// Errors: errors of Run and TableOutput; Cancelled. Their messages tell which parts are already on disk.
 RunOutcome write_table(const SceneValues& scene, const TableJob& job, const EvaluatorMaker& make_evaluator);
 
-/// True if the file of the job exists, is undamaged, and holds the table of its shard with the same identity.
+/// True if the file of the job exists, is undamaged, and holds the entries of the same shard with the same kIdentity.
 bool is_there(const SceneValues& scene, const TableJob& job);
 
-/// The complete set of the shards of a table. Only one shard is open at a time.
+/// All shards of a table. Only one shard file is open at a time.
 class ShardSet {
  public:
   /// Errors: InputError that names a missing shard, a duplicate, or a shard of another table; errors of TableReader.
   explicit ShardSet(const std::vector<std::string>& paths);
 
-  /// Joins the shards into one table. Returns the number of its entries.
-  /// Errors: errors of the constructor, because a shard may have been replaced since; errors of TableOutput.
+  /// Joins the shards into one table. Returns the number of its entries. Errors: errors of the constructor, because a
+  /// file may have been replaced since; errors of TableOutput.
   std::size_t merge(const std::filesystem::path& path, const std::string& command_line) const;
 
  private:
   void begin(const TableReader& first, const std::string& path);
-  /// The number of an open shard. Throws if the shard does not belong to the set.
+  /// The number of an open shard. Throws InputError if the shard does not belong to this table.
   std::size_t checked_number(const TableReader& reader, const std::string& path) const;
 
   SceneValues scene_;
-  TableLayout layout_;  ///< has the attributes of the first shard
+  TableLayout layout_;  ///< layout of the whole table, with the attributes of the first shard
   std::size_t count_ = 0;
   std::map<std::size_t, std::string> paths_;  ///< paths of the shards by their numbers
 };

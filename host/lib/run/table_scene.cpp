@@ -23,7 +23,7 @@ constexpr double kMostMaterials = 1e4;
 
 enum Column : std::size_t { kNumber, kQuantity, kWavelength, kValue, kColumns };
 
-/// True if the line begins a setting: it has an equals sign and, before it, a key or the name of a table of a scene.
+/// True if the line begins a setting: before an equals sign it has a key of a scene or the name of a TOML table.
 bool begins_setting(std::string_view line) {
   const std::string_view key = trim(line.substr(0, line.find('=')));
   if (line.find('=') == std::string_view::npos) return false;
@@ -32,7 +32,6 @@ bool begins_setting(std::string_view line) {
   });
 }
 
-/// The values of a curve, which are checked like those of a file.
 SpectralTable checked_table(const Curve& curve, const NamedValue& value, const std::string& where) {
   SpectralTable table;
   for (std::size_t i = 0; i < curve.values.size(); ++i) {
@@ -41,7 +40,7 @@ SpectralTable checked_table(const Curve& curve, const NamedValue& value, const s
   return table;
 }
 
-/// The data of the scene (n, k, E0, films, reflectances, sky) that the table holds.
+/// The data of the scene (n, k, E0, films, reflectances, sky) that are stored in its table.
 KnownData known_data(const TableHead& table, const std::string& name) {
   const std::string where = name + ": ";
   KnownData known;
@@ -134,7 +133,7 @@ std::string axis_materials_text(const SceneModel& scene, bool has_wavelength_axi
 std::vector<std::optional<Material>> parse_materials(const std::string& text, const std::string& name) {
   std::vector<std::optional<Material>> materials;
   CsvReader row(text, name);
-  row.next();  // the row of the column names
+  row.next();  // skips the row with the column names
   while (row.next()) {
     if (row.cells().size() != kColumns) row.fail("4 columns are expected");
     const double number = row.number(kNumber, "number");

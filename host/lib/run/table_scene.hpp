@@ -1,4 +1,4 @@
-// The attributes of a table that hold its scene and its optical data, and how to get the scene back from them.
+// The attributes of a table that store its scene and the scene's optical data, and functions that restore the scene.
 #pragma once
 
 #include <optional>
@@ -10,55 +10,55 @@
 
 namespace dolp {
 
-/// The attribute "scene_overrides" of a table: one setting KEY=VALUE per line. A value may contain line ends: a new
-/// setting begins only at a line that starts with a key of a scene.
+/// The text of the attribute "scene_overrides" of a table: one setting KEY=VALUE per line. A value may contain line
+/// ends, because a new setting begins only at a line that starts with a key of a scene.
 std::string settings_text(const std::vector<Setting>& settings);
 std::vector<Setting> settings_of(const std::string& text);
 
-/// The attribute "scene_hash" for comparisons of tables: the 64-bit FNV-1a hash of the scene's text and settings.
+/// The text of the attribute "scene_hash", by which tables are compared: 64-bit FNV-1a hash of scene text and settings.
 std::string scene_hash(const SceneValues& scene);
-std::uint64_t scene_seed(const SceneValues& scene);  ///< the hash as a number
+std::uint64_t scene_seed(const SceneValues& scene);  ///< the same hash as a number
 
-/// Refuses a file that does not exist or whose format does not hold the scene. Errors: InputError.
+/// Refuses a file that does not exist or whose format does not store the scene of the table. Errors: InputError.
 void check_may_hold_scene(const std::string& path);
 
-/// Reads a table file that holds its scene. Errors: errors of check_may_hold_scene and read_table.
+/// Reads a table file that stores its scene. Errors: errors of check_may_hold_scene and read_table.
 TableValues load_table(const std::string& path);
 
-/// Where table_scene() gets the data that a scene names, such as n, k and E0.
+/// Where table_scene() gets data that a scene refers to by name, such as n, k and E0.
 enum class NamedData {
   kOfTable,  ///< from the table; no file is opened
   kOfFiles,  ///< from the files that the scene names, relative to the folder of the attribute "scene_path"
 };
 
-/// The scene of a table, with its settings applied. Errors: InputError that begins with `name` if the table has no
-/// scene, if the scene was changed after the table was made, or if the reader refuses the scene.
+/// The scene from which a table was made, with its settings applied. Errors: InputError that begins with `name` if the
+/// table has no scene, if its scene was changed later, or if the reader of scenes refuses the scene.
 SceneValues table_scene(const TableHead& table, const std::string& name, NamedData named_data = NamedData::kOfTable);
 
-/// Converts a value of the table on an axis with labels to the position of its label in the scene.
-/// Errors: InputError that begins with `name` if the scene lacks the label.
+/// Converts a value on an axis with labels (materials, bands) to the position of the same label in the scene. Errors:
+/// InputError that begins with `name` if the scene lacks the label.
 double scene_position(const TableHead& table, Axis axis, double value, const SceneValues& scene,
                       const std::string& name);
 
-/// Converts the values of the table on axes with labels, which parts may number differently, to positions in the
-/// scene's labels. Errors: InputError that begins with `name` if the scene lacks a label.
+/// Converts the values of the table on axes with labels to positions in the scene's lists of labels. Parts of a table
+/// may number their labels differently. Errors: InputError that begins with `name` if the scene lacks a label.
 void use_scene_labels(TableHead& table, const SceneValues& scene, const std::string& name);
 
-/// The n and k of materials as CSV. Columns: number (from 1), quantity (name, n, k or formula), wavelength_um, value.
-/// Empty if there are no materials.
+/// The n and k of materials as CSV, with the columns number (from 1), quantity (name, n, k or formula), wavelength_um
+/// and value. Empty if there are no materials.
 std::string materials_text(const std::vector<const Material*>& materials, bool has_wavelength_axis);
 
-/// materials_text() of the films of a coating, and of the materials on the grid's axis.
+/// materials_text() for the films of a coating, or for the materials on the grid's axis.
 std::string coating_text(const Surface& surface, bool has_wavelength_axis);
 std::string axis_materials_text(const SceneModel& scene, bool has_wavelength_axis);
 
 /// Reads a text that materials_text() wrote. Errors: InputError that begins with `name`.
 std::vector<std::optional<Material>> parse_materials(const std::string& text, const std::string& name);
 
-/// The measured reflectances as CSV in the format of read_reflectance_file(). Empty if there are none.
+/// The measured reflectances of a surface as CSV for read_reflectance_file(). Empty if the surface has none.
 std::string reflectance_text(const Surface& surface);
 
-/// The number and the coefficients of a dispersion formula, separated by spaces.
+/// The number of a dispersion formula and its coefficients, separated by spaces.
 std::string formula_text(const Dispersion& formula);
 
 /// Reads a text that formula_text() wrote. Errors: InputError that begins with `where`.

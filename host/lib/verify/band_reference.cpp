@@ -17,14 +17,14 @@ using Kronrod = boost::math::quadrature::gauss_kronrod<double, 15>;
 using Gauss = boost::math::quadrature::gauss<double, 7>;
 
 constexpr std::size_t kFirstIntervals = 4;
-constexpr std::size_t kMostIntervals = 32;  // largest number of intervals of a point: 480 wavelengths
-constexpr double kQuadratureShare = 0.01;   // a quadrature ends at this share of the tolerance
+constexpr std::size_t kMostIntervals = 32;  // largest number of intervals per point, which gives 480 wavelengths
+constexpr double kQuadratureShare = 0.01;   // the quadrature stops at an error of this times the tolerance
 
-// Results that are integrated over wavelength, kMeans with the weight of the mean reflectance.
+// Quantities that are integrated over the wavelength, and quantities that are means with the weight of the reflectance.
 constexpr std::array kIntegrated = {kStokesI, kStokesQ, kStokesU, kStokesV};
 constexpr std::array kMeans = {kRhoI, kRhoQ, kEmissivityS, kEmissivityP};
 
-/// Positions in the array of integrals: of radiation, weight, means times weight, and the errors of DOLP and rho.
+/// Positions in an array of integrals. Its order: radiation, weight, means times weight, errors of DOLP and of rho.
 constexpr std::size_t kWeight = kIntegrated.size();
 constexpr std::size_t kDolpError = kWeight + 1 + kMeans.size();
 constexpr std::size_t kRhoError = kDolpError + 1;
@@ -37,14 +37,13 @@ struct BandPiece {
   Integrals error = Integrals::Zero();
 };
 
-/// The quadrature over the band at one point.
 struct PointIntegral {
   SceneEntry entry;
-  SceneVariant variant;        ///< variant of the entry, which has no wavelength
+  SceneVariant variant;        ///< variant of the entry; it has no wavelength
   std::vector<double> breaks;  ///< wavelengths in um at which the integrand is not smooth
   std::vector<BandPiece> intervals;
-  std::size_t first_new = 0;  ///< first interval without a value
-  PointResult last;           ///< result at one of the wavelengths
+  std::size_t first_new = 0;  ///< position of the first interval that is not integrated yet
+  PointResult last;           ///< result of the point at one of the wavelengths
 };
 
 std::vector<double> band_breaks_um(const SceneModel& scene) {
@@ -74,14 +73,14 @@ Integrals integrand(const PointResult& at, double weight) {
   for (const Quantity quantity : kIntegrated) value[i++] = at[quantity];
   value[i++] = weight;
   for (const Quantity quantity : kMeans) value[i++] = std::isnan(at[quantity]) ? 0.0 : weight * at[quantity];
-  // Where nothing is emitted, the error estimate is infinite. The error is then at most the radiation.
+  // The error estimate is infinite where nothing is emitted. The error of the radiation is then at most the radiation.
   const double error = std::abs(at[kStokesI]) * at[kErrorEstimate];
   value[i++] = std::isfinite(error) ? error : std::abs(at[kStokesI]);
   value[i] = std::abs(weight * at[kRhoI]) * at[kRhoErrorEstimate];
   return value;
 }
 
-/// A node of the quadrature: its position in the interval (-1 to 1), and its weights in the rules of Kronrod and Gauss.
+/// A node of the quadrature: its position in an interval (-1 to 1), and its weights in the Kronrod and the Gauss rule.
 struct KronrodNode {
   double offset;
   double kronrod;
@@ -103,13 +102,13 @@ Integrals total_of(const std::vector<BandPiece>& intervals, Integrals BandPiece:
   return sum;
 }
 
-/// The error that the quadrature adds to DOLP or to the means, whichever is larger.
+/// The larger of two errors from the quadrature: in DOLP, and in the means over the band.
 double quadrature_error(const Integrals& value, const Integrals& error) {
   const double of_means = error.segment(kWeight + 1, 2).sum() / std::abs(value[kWeight + 1]);
   return std::max(error.head(kWeight).sum() / std::abs(value[0]), of_means + error[kWeight] / value[kWeight]);
 }
 
-/// Splits the interval with the largest error: at a wavelength of `breaks` in it, or in the middle if it has none.
+/// Splits the interval with the largest error: at one of PointIntegral::breaks if one lies in it, else in the middle.
 void split_worst(PointIntegral& point) {
   const Integrals value = total_of(point.intervals, &BandPiece::value);
   const auto worst = std::ranges::max_element(
@@ -124,7 +123,7 @@ void split_worst(PointIntegral& point) {
   point.intervals.push_back({at_um, old.to_um});
 }
 
-/// Integrates the new intervals of several points in one batch.
+/// Integrates the new intervals of several points, with one call of the evaluator.
 void integrate_new(const SceneValues& scene, std::vector<PointIntegral*>& points, ModelEvaluator& evaluator,
                    const Progress& progress) {
   static const std::vector<KronrodNode> kNodes = kronrod_nodes();

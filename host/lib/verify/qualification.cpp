@@ -60,11 +60,11 @@ StoredCase parse_case(const CsvReader& row) {
 // Bound of the relative rounding error of r / cos(theta) and of other quotients of stored values.
 constexpr double kQuotientRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
-/// The rho and DOLP that follow from the stored moments of a case.
+/// rho and DOLP that follow from the reference moments of a case.
 struct Expected {
   double rho_i = 0.0;
   double rho_q = 0.0;
-  double rho_error = 0.0;  ///< bound of the errors of both, relative to rho_I
+  double rho_error = 0.0;  ///< bound of the errors of rho_i and rho_q, relative to rho_i
   double dolp = 0.0;
   double dolp_error = 0.0;
   bool has_rho = true;
@@ -75,7 +75,7 @@ double relative(double error, double value) {
   return value > 0.0 ? error / value : kInfinity;
 }
 
-/// Error bound of a quotient of two stored values that both have an error.
+/// Error bound of a quotient of two stored values, each with its own error.
 double quotient_error(double above_error, double quotient, double below, double below_error) {
   const double margin = std::abs(below) - below_error;
   return margin > 0.0
@@ -96,7 +96,7 @@ Expected expected_of(const StoredCase& stored) {
   }
   expected.rho_i = m.r_i / cosine;
   expected.rho_q = m.r_q / cosine;
-  // Q = -pi B rho_Q, I = pi B (1 - rho_I)
+  // For emission Q = -pi B rho_Q and I = pi B (1 - rho_I).
   expected.dolp = std::abs(m.r_q) / m.deficit;
   expected.dolp_error = quotient_error(m.r_q_error, expected.dolp, m.deficit, m.deficit_error);
   return expected;

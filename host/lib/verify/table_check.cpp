@@ -21,10 +21,10 @@
 namespace dolp {
 namespace {
 
-// The relative tolerance of the reference is a hundredth of the tolerance of the table, but not below this.
+// The reference gets a hundredth of the tolerance of the table, but at least this.
 constexpr double kReferenceTolerance = 1e-11;
 
-/// How a quantity's error bound follows from a table's error_estimate (which is for DOLP) and rho_error_estimate.
+/// How the error bound of a quantity follows from error_estimate (of DOLP) and rho_error_estimate of a table.
 enum class Bound { kDolp, kReflectance, kPolarisedRadiation, kRadiation, kEmissivity, kAlbedo };
 
 struct Compared {
@@ -47,13 +47,14 @@ constexpr std::array<Compared, 13> kCompared{{
     {Quantity::kEmissivityP, Bound::kEmissivity},
 }};
 
-/// An error that tables do not state may be this times the largest stated one, relative to the terms of the quantity.
+/// Tables state no error for some quantities. Relative to its terms, such an error may be this times the largest of
+/// both stated errors and the tolerance.
 constexpr double kUnstatedOverStated = 10.0;
 
-/// Properties of a variant on which bounds depend.
+/// Properties of the scene of a variant (one material, wavelength, ...) on which the error bounds depend.
 struct BoundTerms {
   double tolerance = 0.0;
-  double radiation = 0.0;  ///< emitted plus reflected radiation with rho = 1, in the units of Stokes I
+  double radiation = 0.0;  ///< emitted radiation, plus reflected radiation if rho were 1, in the unit of Stokes I
 };
 
 BoundTerms bound_terms(const SceneModel& scene) {
@@ -71,7 +72,7 @@ std::vector<BoundTerms> bound_terms(const SceneValues& scene, const std::vector<
   return terms;
 }
 
-/// The error bound of a quantity in its own unit. The estimates are those of the table or of the reference.
+/// The error bound of a quantity, in its unit. Both estimates are those of the table, or those of the reference.
 double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const PointResult& reference,
                 const BoundTerms& terms) {
   const double radiation = dolp_estimate * std::abs(reference[Quantity::kStokesI]);
@@ -85,7 +86,7 @@ double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const Po
     case Bound::kPolarisedRadiation:
       return radiation;
     case Bound::kRadiation:
-      // Near DOLP = 0, its estimate does not bound the error of I.
+      // If DOLP is nearly 0, dolp_estimate does not bound the error of I.
       return std::min(dolp > 0.0 ? radiation / dolp : kInfinity, unstated * terms.radiation);
     case Bound::kEmissivity:
       return unstated;
@@ -95,7 +96,7 @@ double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const Po
   return kInfinity;
 }
 
-/// What is wrong with a value. `allowed`: error that the tolerance allows; infinite if no tolerance is promised.
+/// Tells what is wrong with a value. `allowed`: largest error within the tolerance; infinite if no tolerance holds.
 std::string complaint_about(const CheckedValue& value, double allowed) {
   if (std::isnan(value.stored) && std::isnan(value.reference)) return {};
   if (std::isnan(value.stored)) return "is NaN in the table";
@@ -135,7 +136,7 @@ CheckedValue compare(const TableSample& sample, const Compared& compared, std::s
   value.stated = bound_of(compared.bound, dolp_estimate, rho_estimate, reference, terms);
   value.reference_error = bound_of(compared.bound, reference[Quantity::kErrorEstimate],
                                    reference[Quantity::kRhoErrorEstimate], reference, {0.0, terms.radiation});
-  // If neither side has an estimate, for example because an intensity overflows, no bound is stated.
+  // If neither the table nor the reference has an error estimate (an intensity may overflow), no bound is stated.
   if (std::isnan(value.stated) && !std::isfinite(value.reference_error))
     value.stated = value.reference_error = kInfinity;
   const std::uint32_t status = table.status.empty() ? kAnyToleranceNotMet : table.status[i];
@@ -268,7 +269,7 @@ TableCheck check_responses(const TableSample& sample, const SceneValues& scene, 
     QuantityCheck& of_variable = check.quantities.emplace_back();
     of_variable.name = described.name;
     for (std::size_t i = 0; i < request.size(); ++i) {
-      if (std::isnan(stated[i]) && std::isnan(reference_error[i])) continue;  // rho has no value here
+      if (std::isnan(stated[i]) && std::isnan(reference_error[i])) continue;  // rho has no value for this entry
       const auto of_entry = [&](const std::vector<double>& weights) {
         return std::span(weights).subspan(i * table.beta_deg.size(), table.beta_deg.size());
       };

@@ -59,7 +59,7 @@ constexpr CommandRow kCommands[] = {
 
 /// An option, a flag, or (without hyphens) a positional argument.
 struct OptionRow {
-  const char* commands;  ///< names separated by blanks; "!" marks commands that require the option
+  const char* commands;  ///< "table plan!": commands with this option; with "!" it is required
   const char* name;
   std::variant<bool Options::*, std::string Options::*, std::size_t Options::*, std::vector<std::string> Options::*>
       value;
@@ -69,7 +69,7 @@ struct OptionRow {
 
 CLI::Validator range_to(std::size_t most) { return CLI::Range(std::size_t{1}, most); }
 
-/// Refuses a minus sign. Otherwise a negative whole number would wrap around to a huge one.
+/// Refuses values with a minus sign. Conversion to an unsigned type would turn them into huge numbers.
 CLI::Validator not_negative() {
   return {[](const std::string& value) {
             return value.starts_with('-') ? "must be a whole number from 0, not " + value : "";
@@ -157,7 +157,7 @@ std::vector<OptionRow> option_rows() {
        "exit 1 if any entry misses its tolerance"}};
 }
 
-/// Refuses empty values, which would count as missing options.
+/// Refuses an empty value, because in Options an empty text means that the option is missing.
 std::string not_empty(const std::string& value) { return value.empty() ? "must not be empty" : ""; }
 
 CLI::Option* add_option(CLI::App& command, const OptionRow& row, Options& options) {

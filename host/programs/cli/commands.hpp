@@ -1,4 +1,4 @@
-// command_line.cpp describes each command and option.
+// The commands of dolp. command_line.cpp lists and describes the commands and their options.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -10,12 +10,12 @@
 
 namespace dolp::cli {
 
-/// The values of the command line. A missing option has an empty text.
+/// The values of all options of the command line. If a text is empty, the user has not given the option.
 struct Options {
   int (*run)(const Options&) = nullptr;  ///< function of the command; null if there is no command
-  std::string command_line;              ///< written into a table as its history
+  std::string command_line;              ///< as typed; tables contain it as their history
   std::string scene_path, points_path, table_path, output_path, measured_path, plot_path, screenshot_path;
-  std::vector<std::string> overrides;  ///< KEY=VALUE of --set
+  std::vector<std::string> overrides;  ///< the texts KEY=VALUE of --set
   std::string tolerance, precision, device;
   std::string evaluator = "vulkan";
   bool json = false, quiet = false, strict = false, keep_all = false;
@@ -27,44 +27,44 @@ struct Options {
   std::vector<std::string> data, vary, compare;
   std::size_t starts = 24;
   std::string loss = "squares", model_error = "none";
-  std::size_t frames = 0;  ///< 0: until the window is closed
+  std::size_t frames = 0;  ///< frames that the window draws; 0: until it is closed
   std::string panel;
   std::string key, material, wavelength_um;
   std::string completion;
   std::vector<std::string> words;
 };
 
-void check_one_stdin(const Options& options);  ///< Errors: InputError if two inputs are stdin
+void check_one_stdin(const Options& options);  ///< Errors: InputError if two inputs would read stdin
 
 /// All settings of the command line: those of --set first, then --tolerance and --precision. Errors: InputError.
 std::vector<Setting> all_settings(const Options& options);
 
-std::string allowed(const std::string& key);  ///< for example "a number in [0, 10]"
+std::string allowed(const std::string& key);  ///< values that a scene key allows: "a number in [0, 10]"
 
-/// Reads the scene, and applies all_settings() and then `more`. Prints each remark as a warning on stderr.
+/// Reads the scene, and applies all_settings() and then `more`. Prints Scene::remarks() as warnings on stderr.
 Scene load_scene(const Options& options, const std::vector<Setting>& more = {});
 
-/// The evaluator of --evaluator and --device. Errors: InputError if --device is given for an evaluator without devices.
+/// The evaluator that --evaluator and --device choose. Errors: InputError if this evaluator cannot choose a device.
 Evaluator evaluator_of(const Options& options);
 
 /// Prints a report according to --json and --quiet: to stdout, or to stderr if the results themselves go to stdout.
 void print(const Report& report, const Options& options);
 
-/// Prints a report and its remarks. Returns the exit status, which depends on --strict.
+/// Prints a report and its remarks. Returns kExitDone, or with --strict kExitAccuracy if Report::is_good is false.
 int finish(const Report& report, const Options& options);
 
 /// The parser of the command line. Parsing fills `options`, which must outlive the result.
 std::unique_ptr<CLI::App> command_line(Options& options);
 
-// Each command returns the exit status of a run without an error (terminal/exit_status.hpp).
+// Each command returns an exit status (terminal/exit_status.hpp), or throws an error, which guarded() converts.
 int run_table(const Options& options);
 int run_response(const Options& options);
 int run_merge(const Options& options);
 int run_eval(const Options& options);
 int run_mueller(const Options& options);
 int run_plan(const Options& options);
-/// Returns kExitAccuracy if a true error exceeds its stated bound, or if an entry misses its tolerance and its status
-/// does not tell so.
+/// Returns kExitAccuracy if a true error exceeds its stated bound, or if an entry misses its tolerance without a status
+/// bit that says so (kToleranceNotMet, kRhoToleranceNotMet).
 int run_verify(const Options& options);
 int run_lookup(const Options& options);
 int run_fit(const Options& options);  ///< kExitAccuracy if no minimum is found

@@ -19,18 +19,18 @@ using Words = std::vector<std::string>;
 
 bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
-Words names_of(const CLI::Option& option) {  // "--output", "-o"
+Words names_of(const CLI::Option& option) {  // for example "--output" and "-o"
   Words names;
   for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
   for (const std::string& name : option.get_snames()) names.push_back("-" + name);
   return names;
 }
 
-/// Completions of a setting: "KEY=WORD" for keys with words, "KEY=" for other keys.
+/// Completions of the argument of --set, --vary or --compare: "KEY=WORD" for a key with words, "KEY=" for other keys.
 Words settings_for(const std::string& option) {
   Words all;
   for (const Key& key : dolp::keys()) {
-    if (key.layer > 1) continue;  // further films have the keys of the first
+    if (key.layer > 1) continue;  // skips other films, because all films have the same keys
     if (option == "--vary" && key.type != Key::Type::kNumber) continue;
     if (option == "--compare" && key.words.empty()) continue;
     if (key.words.empty() || option == "--compare") {
@@ -46,7 +46,7 @@ Words settings_for(const std::string& option) {
 Words choices_of(const CLI::Option& option) {
   const std::string name = option.get_name();
   if (name == "--set" || name == "--vary" || name == "--compare") return settings_for(name);
-  const std::string type = option.get_type_name();  // "TEXT:{vulkan,cpu}"
+  const std::string type = option.get_type_name();  // for example "TEXT:{vulkan,cpu}"
   const std::size_t open = type.find('{');
   const std::size_t close = type.find('}');
   Words words;
@@ -59,7 +59,7 @@ Words choices_of(const CLI::Option& option) {
 }
 
 /// The words that may complete a command line, one per line, each with a tab and its description. `line` has the words
-/// after the program's name. The last word begins with a colon; it is what the user has typed of the incomplete word.
+/// after the program's name. Its last word is a colon with the part of the incomplete word that the user has typed.
 std::string completing_words(const CLI::App& app, const Words& line) {
   const std::string current = line.empty() ? "" : line.back().substr(1);
   std::string found;
@@ -90,7 +90,7 @@ std::string replaced(std::string text, std::string_view what, std::string_view b
   return text;
 }
 
-/// Escapes the characters of a text that roff would interpret.
+/// Escapes the characters that roff, the language of manual pages, would interpret.
 std::string roff(const std::string& text) {
   std::string safe = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
   if (safe.starts_with('.') || safe.starts_with('\'')) safe.insert(0, "\\&");

@@ -32,7 +32,7 @@ void add_key(Report& report, Json& list, const Key& key) {
                   {"default", key.fallback}});
 }
 
-/// The key that is most similar to `wanted`, with or without its table. Empty if more than half of the letters differ.
+/// The scene key that is nearest to `wanted`; "q" matches "surface.q". Empty if more than half of the letters differ.
 std::string near_key(const std::string& wanted, const std::vector<std::string>& names) {
   const auto distance = [&](const std::string& name) {
     return std::min(edit_distance(wanted, name), edit_distance(wanted, name.substr(name.find('.') + 1)));
@@ -46,7 +46,7 @@ int finish_list(Report report, const char* name, const Json& list, const Options
   return finish(report, options);
 }
 
-/// The wavelengths of "UM", "FROM:TO" or "FROM:TO:COUNT". Errors: InputError.
+/// The wavelengths in um that a text names: "UM", "FROM:TO" or "FROM:TO:COUNT". Errors: InputError.
 std::vector<double> wavelengths_of(const std::string& text) {
   constexpr double kDefaultCount = 11.0;
   constexpr double kMost = 1e6;
@@ -121,7 +121,7 @@ int run_keys(const Options& options) {
   std::vector<std::string> names;
   for (const Key& key : dolp::keys()) {
     names.push_back(key.key);
-    const bool is_further_layer = key.layer > 1;  // further films have the keys of the first
+    const bool is_further_layer = key.layer > 1;  // not listed, because all films have the same keys
     const bool is_wanted = (options.key.empty() && !is_further_layer) || key.key == options.key ||
                            (!options.key.empty() && key.key.starts_with(options.key + "."));
     if (is_wanted) add_key(report, list, key);

@@ -75,16 +75,16 @@ int parse_and_run(int argc, char** argv) {
   return status;
 }
 
-/// Ends the program with one line if C++ code, also in a driver, finds no memory. With little memory nothing else is
-/// safe. Nothing is lost, because an output has no name until it is complete.
+/// C++ calls this if `new` finds no memory, also in a driver. Prints one line and ends the program, because with little
+/// memory nothing else is safe. No incomplete output remains, because an output has no name until it is complete.
 [[noreturn]] void end_out_of_memory() {
   static std::atomic_flag is_ending;
   while (is_ending.test_and_set()) ::pause();  // another thread is printing the message
   ::_exit(fail_out_of_memory("dolp"));
 }
 
-/// Keeps freed memory for reuse. Otherwise large lists, and a driver's memory for a pipeline, would return to the
-/// system and be requested again page by page.
+/// Makes free() keep memory for later use. Otherwise free() would return the memory of large lists and of a driver's
+/// pipelines to the system, and the program would request it again page by page.
 void keep_freed_memory() {
   mallopt(M_MMAP_MAX, 0);
   mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
@@ -94,11 +94,11 @@ void keep_freed_memory() {
 }  // namespace dolp::cli
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // so that a too large file is an error of the write call
+  std::signal(SIGXFSZ, SIG_IGN);  // so that write() fails if a file is too large
   std::set_new_handler(dolp::cli::end_out_of_memory);
   dolp::cli::keep_freed_memory();
   const int status = dolp::guarded("dolp", [&] { return dolp::cli::parse_and_run(argc, argv); });
   if (status != dolp::kExitMemory && !dolp::vulkan::driver_is_busy()) return status;
   std::fflush(stdout);
-  ::_exit(status);  // no cleanup: libraries would need memory and the driver's threads
+  ::_exit(status);  // no cleanup, which would need memory or wait for the driver
 }

@@ -90,7 +90,7 @@ void Worker::run() {
     try {
       part = advance(task);
     } catch (const Cancelled&) {
-      // The job stopped because it was no longer wanted. It may be wanted again now.
+      // The job stopped because it was no longer wanted. If it is wanted again now, the loop starts it again.
     }
     lock.lock();
     is_running_ = false;

@@ -15,7 +15,7 @@
 
 namespace dolp::explore {
 
-/// Runs `work` on a new thread, which calls `on_end` afterwards. `result` gets the value or the exception of `work`.
+/// Starts a thread that calls `work` and then `on_end`. `result` gets the value or the exception of `work`.
 template <class Result, class Work>
 std::jthread run_in_background(Work work, std::future<Result>& result, const std::function<void()>& on_end) {
   std::packaged_task<Result()> task(std::move(work));
@@ -27,21 +27,21 @@ std::jthread run_in_background(Work work, std::future<Result>& result, const std
 }
 
 template <class Result>
-bool is_ended(const std::future<Result>& result) {  // true also if no work was started
+bool is_ended(const std::future<Result>& result) {  // true also for a future without work
   return !result.valid() || result.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
-/// One piece of work at a time, which the user starts, watches and may cancel. The work may call set_phase(); only the
-/// window's thread calls the other functions.
+/// Runs one piece of work at a time on a separate thread. The user starts, watches and may cancel it. The work may call
+/// set_phase(). Only the window's thread may call the other functions.
 class BackgroundTask {
  public:
-  /// The last step of the work, in the window's thread. Returns the message for the user. May throw the errors of Work.
+  /// A function that finish() calls after the work, in the window's thread. Returns a message for the user. May throw.
   using Ending = std::function<std::string()>;
-  /// Work for a separate thread. Throws Cancelled if its Progress returns false.
+  /// Work for a separate thread. It must throw Cancelled if the Progress function returns false.
   using Work = std::function<Ending(const Progress&)>;
   enum class State { kNone, kRunning, kDone, kFailed, kCancelled };
 
-  /// The thread calls `on_change` at each progress and at the end.
+  /// The thread of the work calls `on_change` at each progress and at the end.
   explicit BackgroundTask(std::function<void()> on_change) : on_change_(std::move(on_change)) {}
   ~BackgroundTask() { cancel(); }  ///< waits for the end of the work
 
@@ -51,8 +51,8 @@ class BackgroundTask {
 
   State state() const { return state_; }
   bool is_running() const { return state_ == State::kRunning; }
-  double progress() const { return progress_; }  ///< of the current phase, from 0 to 1
-  /// Empty if the work has only one phase. The work sets it; progress then restarts from 0.
+  double progress() const { return progress_; }  ///< done part of the current phase, from 0 to 1
+  /// Name of the current phase; empty if the work has only one. Call set_phase() at its beginning.
   std::string phase() const {
     const std::scoped_lock lock(mutex_);
     return phase_;
@@ -76,38 +76,38 @@ class BackgroundTask {
   std::jthread thread_;  ///< last member, so it ends before the members that it uses
 };
 
-/// Points of a scene that the window wants, computed as `dolp eval` computes them.
+/// A request of the window: points of a scene, to be computed as `dolp eval` computes them.
 struct Job {
   std::string key;  ///< jobs with the same key have the same content
   Scene scene;
-  std::vector<PointList> parts;  ///< computed one after the other; more urgent jobs may come in between
-  double tolerance = 0.0;        ///< replaces a lower tolerance of the scene
+  std::vector<PointList> parts;  ///< computed one by one; between two, a more urgent job may run
+  double tolerance = 0.0;        ///< used if the scene has a lower tolerance
   bool keep_all = false;
   bool wants_effects = false;
-  bool is_brief = false;  ///< once begun, it runs to its end even if it is no longer wanted
+  bool is_brief = false;  ///< once begun, the job runs to its end even if it is no longer wanted
 };
 
 struct JobPart {
   std::string key = {};
-  std::size_t part = 0;  ///< position among the job's parts
-  Scene scene;           ///< the job's scene with the tolerance that was used
+  std::size_t part = 0;  ///< position in Job::parts
+  Scene scene;           ///< Job::scene with the tolerance of the computation
   std::vector<Point> points = {};
   std::string csv = {};  ///< the points with the columns of `dolp eval`, if the job wants effects
   bool is_last = false;
-  // Totals of the whole job; only the last part has them.
+  // Effects and totals of the whole job. Only its last part has them.
   std::vector<Effect> effects = {};
   double wall_s = 0.0;
   double evaluations = 0.0;
 };
 
-/// The points of a job with one part. They stay on display until the points of a later job are complete.
+/// The points of a job with one part. After follow(), the points of the earlier job stay until the new ones are there.
 class Sweep {
  public:
   /// Switches to the points of `job`. `column` is the column in which these points differ.
   void follow(Job job, const std::string& column = "theta_deg");
   std::optional<Job> wanted() const { return is_finished() ? std::nullopt : job_; }
   bool take(const JobPart& news);
-  bool is_finished() const { return job_ && shown_key_ == job_->key; }  ///< shows the points of the last follow()
+  bool is_finished() const { return job_ && shown_key_ == job_->key; }  ///< points() are of the last follow()
   const std::vector<Point>& points() const { return points_; }
   const std::vector<double>& at() const { return at_; }  ///< values of `column`, one per point
 
@@ -118,11 +118,11 @@ class Sweep {
   std::vector<double> at_;
 };
 
-/// A function like explore::evaluate. Only the worker's thread calls it.
+/// A function that computes points, such as explore::evaluate(). Only the worker's thread calls it.
 using Evaluate = std::function<Results(const Scene& scene, const PointList& list, const RunOptions& options)>;
 
-/// Computes the wanted jobs in order. A job that is no longer wanted stops after the current tile of the device, unless
-/// is_brief is true.
+/// A thread that computes the wanted jobs in order. It stops a job that is no longer wanted when the evaluator reports
+/// progress, unless Job::is_brief is true.
 class Worker {
  public:
   /// The worker's thread calls `on_news` after each part and after a failure.
@@ -132,7 +132,7 @@ class Worker {
   /// Replaces the list of wanted jobs, the most urgent first. A running job continues if its key is in the new list.
   void want(std::vector<Job> jobs);
 
-  /// The results since the last call. Errors: the exception that ended the worker, for example a DeviceError.
+  /// The parts computed since the last call. Errors: the exception that ended the worker, for example a DeviceError.
   std::vector<JobPart> take_news() {
     if (end_.valid() && is_ended(end_)) end_.get();
     const std::scoped_lock lock(mutex_);
@@ -144,7 +144,7 @@ class Worker {
     arrived_.wait_for(lock, at_most, [this] { return !news_.empty() || is_ended(end_); });
   }
 
-  /// True if all wanted jobs are done. Some results may not have been taken yet.
+  /// True if all wanted jobs are computed. take_news() may still have results of them.
   bool is_idle() const {
     const std::scoped_lock lock(mutex_);
     return (!is_running_ && std::ranges::all_of(tasks_, &Task::is_done)) || is_ended(end_);
@@ -176,7 +176,7 @@ class Worker {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::condition_variable arrived_;
-  std::vector<Task> tasks_;  ///< the wanted jobs, in order of their rank
+  std::vector<Task> tasks_;  ///< the wanted jobs, the most urgent first
   bool is_running_ = false;
   std::vector<JobPart> news_;
   bool is_stopping_ = false;

@@ -20,8 +20,8 @@ double most_of(const Point& point) { return dolp_of(point) + point[Quantity::kEr
 struct Removal {
   const char* effect;
   bool radiates;
-  const char* key;  ///< tells whether the scene has the effect
-  Setting change;   ///< removes the effect
+  const char* key;  ///< is_in() looks at this key to tell whether a scene has the effect
+  Setting change;   ///< change of a scene that removes the effect
 
   bool is_in(const Scene& scene) const {
     const bool is_number = described(key).type == Key::Type::kNumber;
@@ -55,8 +55,8 @@ std::vector<WithoutEffect> without_each(const Scene& scene, const SceneEdits& ed
     try {
       without.push_back({removal.effect, removal.radiates, edits.scene().with({removal.change})});
     } catch (const InputError&) {
-      // The effect cannot be removed: nothing else radiates, the source is relative to the emission, or the emission
-      // needs the masking.
+      // The scene refuses the removal. Causes: nothing else radiates; the irradiance of the source is relative to the
+      // emission; or the emission model needs the masking.
     }
   }
   return without;

@@ -7,7 +7,7 @@
 
 namespace dolp::explore {
 
-/// Results of a scene over all zeniths, coarse at first.
+/// The results of a scene at zeniths from 0 to 90 degrees: first with few zeniths and a high tolerance, then fine.
 class Curve {
  public:
   enum class Stage { kCoarse, kFine };
@@ -20,24 +20,24 @@ class Curve {
   explicit Curve(const Scene& scene, std::string name = "curve")
       : name_(std::move(name)), scene_(scene), shown_{.scene = scene}, finished_{.scene = scene} {}
 
-  /// Switches to the curve of `scene`. `key` identifies its content. The curve on display stays, marked as outdated,
-  /// until newer points arrive.
+  /// Switches to the curve of `scene`. `key` is a content_key(). Until newer points arrive, points() still returns the
+  /// points of the earlier scene, and is_stale() is true.
   void follow(const std::string& key, const Scene& scene, bool keep_all);
 
   std::optional<Job> wanted(Stage stage) const;  ///< empty if the stage is done
-  bool take(const JobPart& news);                ///< false if these are not results of this curve
-  /// Takes a coarse curve of an earlier scene, unless the curve on display is current. Returns false for other results.
+  bool take(const JobPart& news);                ///< takes points of this curve; false for others
+  /// Takes coarse points of an earlier scene, unless points() are of the current one. Returns false for other results.
   bool take_earlier(const JobPart& news);
 
   const Scene& scene() const { return scene_; }
   const std::string& key() const { return key_; }
   bool is_finished() const { return shown_.key == key_of(Stage::kFine); }
-  bool is_stale() const { return !points().empty() && !is_current(); }  ///< shows points of an earlier scene
+  bool is_stale() const { return !points().empty() && !is_current(); }  ///< points() are of an earlier scene
   const Scene& shown_scene() const { return points().empty() ? scene_ : shown_.scene; }  ///< the scene of points()
   const std::vector<Point>& points() const { return shown_.points; }
-  std::vector<Point> drawn() const;  ///< points() and the maximum, which may lie between them
+  std::vector<Point> drawn() const;  ///< points() and, once it is known, the maximum
   void set_peak(const Point& peak) { peak_ = peak; }
-  const JobPart& finished() const { return finished_; }  ///< the last finished curve; at first without points
+  const JobPart& finished() const { return finished_; }  ///< last finished fine curve; first without points
 
   double worst_error() const {  // largest error bound of DOLP among good points
     double worst = 0.0;
@@ -61,21 +61,21 @@ class Curve {
   std::optional<Point> peak_;  ///< the maximum of the finished curve
 };
 
-/// Compares every tenth point of a finished curve with the reference, with all effects kept. Returns a sentence with
-/// the largest error of DOLP and its bound. Errors: Cancelled if `progress` returns false.
+/// Compares every tenth point of a finished curve with the evaluator "reference", which keeps all effects. Returns a
+/// text with the largest error of DOLP and the bound stated for it. Errors: Cancelled if `progress` returns false.
 std::string true_error(const Curve& curve, const Progress& progress);
 
-/// The largest DOLP of a curve among entries without a bad status.
+/// The peak of a curve: the largest DOLP of its good points (Point::is_good).
 struct PeakAnswer {
   Point at;
   // Zeniths between which the maximum lies, if every DOLP may be wrong by its error bound.
   double theta_low_deg = 0.0;
   double theta_high_deg = 0.0;
-  std::optional<double> rival_deg;  ///< a zenith away from the peak where DOLP may be larger, within the bounds
-  bool is_at_end = false;           ///< the next larger zenith has no good point, or is out of the range
+  std::optional<double> rival_deg;  ///< zenith of another peak that may be higher, within the error bounds
+  bool is_at_end = false;           ///< the next larger zenith has no good point, or is not searched
 };
 
-/// The point at the zenith of the peak, computed without one effect.
+/// The point at the zenith of the peak, computed for the scene without one effect.
 struct WithoutEffect {
   std::string effect;  ///< Effect::name, or "roughness"
   bool radiates;       ///< the effect is emission, source or surroundings, whose radiances add up
@@ -83,21 +83,21 @@ struct WithoutEffect {
   std::optional<Point> result = {};  ///< empty until it is computed
 };
 
-/// Searches the peak of a finished curve on a fine grid of zeniths. Then removes one effect after the other, and
-/// computes the point at the peak's zenith.
+/// Searches the peak of a finished curve on a fine grid of zeniths. Then, for each effect of the scene, computes the
+/// point at the peak's zenith without this effect.
 class Peak {
  public:
-  static constexpr double kStepDeg = 0.02;  ///< resolution in zenith
+  static constexpr double kStepDeg = 0.02;  ///< step of this grid
 
   explicit Peak(const Scene& scene) : scene_(scene) {}
 
-  /// Switches to the peak of a finished curve, up to a largest zenith. The scene of `edits` must be the curve's.
+  /// Switches to the peak of a finished curve at zeniths up to `theta_max_deg`. `edits` is the curve's scene.
   void follow(const Curve& curve, const SceneEdits& edits, double theta_max_deg);
 
   std::vector<Job> wanted() const;
   bool take(const JobPart& news);
 
-  const std::optional<PeakAnswer>& answer() const { return answer_; }     ///< empty until known, or if no entry is good
+  const std::optional<PeakAnswer>& answer() const { return answer_; }     ///< empty: not known yet, or no point is good
   const std::vector<WithoutEffect>& without() const { return without_; }  ///< one per effect of the scene
   bool is_complete() const {
     return answer_ &&
@@ -118,7 +118,7 @@ class Peak {
   std::string key_;
   Scene scene_;
   std::vector<Point> curve_;
-  std::vector<double> theta_deg_;  ///< zeniths near the peak of the curve; empty if no entry is good
+  std::vector<double> theta_deg_;  ///< the fine grid; empty if no point of the curve is good
   std::optional<PeakAnswer> answer_;
   std::vector<WithoutEffect> without_;
 };

@@ -30,7 +30,7 @@ constexpr std::array kFlags = {Flag{"log", &View::is_log}, Flag{"theta_log", &Vi
 
 using Node = toml::node_view<const toml::node>;
 
-/// Errors: InputError in one line, with file and line, for a file that cannot be read or is not TOML.
+/// Errors: InputError with one line that names file and line, if the file cannot be read or is not TOML.
 toml::table read_toml(const std::string& path) {
   const std::string text = read_named_file(path, path + ": ");
   try {
@@ -46,7 +46,7 @@ void write_toml(const fs::path& path, const toml::table& table) {
   write_text_atomically(path, text.str());
 }
 
-std::vector<std::string> texts_in(Node node) {  // empty if there is no array
+std::vector<std::string> texts_in(Node node) {  // empty if the node is no array
   std::vector<std::string> texts;
   const toml::array* const array = node.as_array();
   for (std::size_t i = 0; array && i < array->size(); ++i) {
@@ -81,8 +81,8 @@ FitMarks marks_in(const std::vector<std::string>& texts, const std::string& loca
   return marks;
 }
 
-/// The settings as texts that stay valid when the window has closed: copies sky files of the window to files beside the
-/// session's file.
+/// The settings as texts for the file `session`. The window deletes its sky files when it closes. So this function
+/// copies them to the folder of `session`, and the texts name the copies.
 toml::array lasting_texts(std::vector<Setting> settings, const SkyFiles& skies, const fs::path& scene,
                           const fs::path& session) {
   for (Setting& setting : settings) {
@@ -138,7 +138,7 @@ T need(Node node, const std::string& location) {
   return *value;
 }
 
-/// The position of a name among the allowed names. Errors: InputError.
+/// The position in `choices` of the choice whose name is the text of `node`. Errors: InputError if there is none.
 template <class Choices, class NameOf>
 std::size_t need_one_of(const Choices& choices, const NameOf& name_of, Node node, const std::string& location) {
   const auto name = need<std::string>(node, location);

@@ -7,21 +7,21 @@
 
 namespace dolp::explore {
 
-/// Writes scene, pins, snapshots, view, path of the measured points, and the parameters that vary in fits. Paths in the
-/// file are relative to its folder. Copies sky files of Session::skies() to NAME_sky_ZENITH_HORIZON.csv in this folder.
-/// Errors: IoError.
+/// Writes scene, pins, snapshots, view, path of the measured points, and the parameters that vary in fits. Paths are
+/// relative to the folder of `path`. Copies sky files of Session::skies() into this folder as
+/// NAME_sky_ZENITH_HORIZON.csv, where NAME is the stem of `path`. Errors: IoError.
 void save_session(const Session& session, const std::string& path);
 
-/// Writes the scene as TOML and declares it unchanged. If its sky is a file of Session::skies(), copies the sky to
-/// NAME_sky.csv beside the scene's file, and the scene then names this copy. Errors: IoError.
+/// Writes the scene as TOML and calls Session::note_saved(). If the scene's sky is a file of Session::skies(), copies
+/// this file to NAME_sky.csv beside `path`, and the scene then names the copy. Errors: IoError.
 void save_scene(Session& session, const std::string& path);
 
-/// Writes the finished curve as CSV with the columns of `dolp eval`. Errors: InputError if it is not finished; IoError.
+/// Writes the curve as CSV with the columns of `dolp eval`. Errors: InputError if the curve is not finished; IoError.
 void save_curve(const Session& session, const std::string& path);
 
 bool is_session_file(const std::string& path);  ///< false also if the file cannot be read
 
-/// Shows measured points (.csv), a scene or a session. Errors: InputError in one line; the session stays unchanged.
+/// Shows the measured points (.csv), scene or session in a file. Errors: InputError; `session` then stays unchanged.
 void open_file(Session& session, const std::string& path);
 
 class Preferences {
@@ -31,7 +31,7 @@ class Preferences {
   /// $XDG_CONFIG_HOME/dolp/window.toml, otherwise $HOME/.config/dolp/window.toml; empty if neither variable is set.
   static std::filesystem::path default_path();
 
-  /// Reads the file if it exists. If `path` is empty, save() does nothing. Errors: InputError for wrong content.
+  /// Reads `path` if this file exists. save() will write it, unless `path` is empty. Errors: InputError.
   void load(const std::filesystem::path& path);
   void save() const;                                 ///< Errors: IoError
   void remember(const std::filesystem::path& file);  ///< puts a file at the head of the recent files
@@ -44,7 +44,7 @@ class Preferences {
   }
   /// Enlarges text and controls by `steps` of 10 %; a negative number makes them smaller.
   void zoom_by(int steps) {
-    constexpr int kMostSteps = 8;  // about twice or half the size: text stays readable, and controls stay in the window
+    constexpr int kMostSteps = 8;  // about twice or half the size: the text is readable, and the controls fit
     zoom_steps_ = std::clamp(zoom_steps_ + std::clamp(steps, -2 * kMostSteps, 2 * kMostSteps), -kMostSteps, kMostSteps);
   }
   void zoom_to_default() { zoom_steps_ = 0; }

@@ -13,10 +13,10 @@ namespace {
 
 struct AxisOfNumber {
   std::string name, key;
-  std::optional<Scale> range = {};  ///< range of the axis; empty: the range of the slider
+  std::optional<Scale> range = {};  ///< range of the map's axis; empty: the range of the slider
 };
 
-/// All axes except the zenith. Sigma and the wind speed share a name; no scene has sliders of both.
+/// All axes except the zenith. Sigma and the wind speed have the same name, because no scene has sliders for both.
 const std::vector<AxisOfNumber>& axes_of_numbers() {
   static const std::vector<AxisOfNumber> all = [] {
     std::vector<AxisOfNumber> axes = {{"sigma", "surface.sigma"},
@@ -35,7 +35,7 @@ const std::vector<AxisOfNumber>& axes_of_numbers() {
   return all;
 }
 
-/// The range of the scene's grid, if it has one; otherwise the range of the axis.
+/// The range of the axis's values in the scene's grid; if the grid has no such range, the range of the axis.
 Scale grid_range(const Scene& scene, const MapAxis& axis) {
   const std::vector<double> grid = axis.is_of_tables() ? scene.numbers("grid." + axis.column()) : std::vector<double>();
   if (grid.empty()) return axis.scale;
@@ -47,7 +47,7 @@ Scale grid_range(const Scene& scene, const MapAxis& axis) {
 struct Corner {
   std::size_t x, y;
 };
-constexpr std::array<Corner, 4> kCorners = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};  // in the order around a square
+constexpr std::array<Corner, 4> kCorners = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};  // counterclockwise
 
 /// Adds the contour lines in the square whose lower left corner is (column, row).
 void add_lines(const MapField& field, double level, std::size_t column, std::size_t row, std::vector<Segment>& lines) {
@@ -68,7 +68,7 @@ void add_lines(const MapField& field, double level, std::size_t column, std::siz
     };
     crossings.emplace_back(between(column, &Corner::x), between(row, &Corner::y));
   }
-  // Two crossings of the border give one line. Four, around a saddle, give two lines.
+  // If a level crosses the border of the square twice, it gives one line. Four crossings, around a saddle, give two.
   for (std::size_t i = 0; i + 1 < crossings.size(); i += 2)
     lines.push_back({crossings[i].first, crossings[i].second, crossings[i + 1].first, crossings[i + 1].second});
 }
@@ -138,7 +138,7 @@ std::vector<Segment> contour(const MapField& field, double level) {
 void HeatMap::follow(const std::string& key, const Scene& scene, bool keep_all, const MapAxis& x, const MapAxis& y,
                      double theta_deg) {
   if (x != x_ || y != y_) {
-    points_ = {};  // they belong to the old axes
+    points_ = {};  // the old points belong to other axes
     shown_key_.clear();
     ++version_;
   }

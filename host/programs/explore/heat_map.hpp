@@ -8,37 +8,37 @@ namespace dolp::explore {
 struct MapAxis {
   std::string name = "theta";  ///< name in session files
   std::string label = "θ [°]";
-  std::string key = {};  ///< key of the scene; empty for the zenith
+  std::string key = {};  ///< scene key of the axis; empty for the zenith
   Scale scale = {0.0, 90.0};
 
-  /// Name of the column of points with the axis's values. Empty for the temperature, which is a change of the scene.
+  /// Name of the column of a PointList for this axis. Empty for the temperature: each value of it is a changed scene.
   std::string column() const {
     if (key.empty()) return "theta_deg";
     if (key == "emission.temperature_K") return {};
     return key.starts_with("surface.coating") ? key : key.substr(key.find('.') + 1);
   }
-  /// Rank of the axis; the axis with the smaller rank is the slower one. 0: temperature; 1: a number of a film; from 2:
-  /// the axes that tables can have, in their order.
+  /// In the list of a map's points, the axis with the smaller rank changes more slowly. 0: temperature; 1: number of a
+  /// film; from 2: the axes that tables can have, in the order of tables.
   std::size_t rank() const;
   bool is_of_tables() const { return rank() >= 2; }  ///< tables can have the axis
   friend bool operator==(const MapAxis&, const MapAxis&) = default;
 };
 
-/// The axes that maps of a scene can have. The range of an axis is the range of the scene's grid or of the slider,
-/// extended to the scene's value.
+/// The axes that maps of a scene can have. The range of an axis is the range of its values in the scene's grid, or else
+/// the range of its slider, extended so that it contains the scene's value.
 std::vector<MapAxis> map_axes(const Scene& scene, double theta_max_deg);
 
-/// A part of a wavelength axis in which the optical constants are known: all of it for a built-in material, maybe less
-/// for a material from a file. Both ends are equal if only one wavelength is known.
+/// The part of the wavelength axis `axis` in which n and k of the materials are known. For a material from a file, the
+/// result may be smaller than the known part. Both ends are equal if only one wavelength is known.
 Scale known_part(const Scene& scene, const MapAxis& axis);
 
-std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range);  ///< empty if the map is possible
+std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range);  ///< why a map cannot have `range`
 
 /// Values of one quantity on a map: `count` rows of `count` values. x grows along a row, y from row to row.
 struct MapField {
   std::size_t count = 0;
   std::vector<double> values;  ///< NaN where there is no value, and for entries with a bad status
-  double min = 0.0;            ///< the smallest and the largest value
+  double min = 0.0;            ///< smallest value; `max` is the largest value
   double max = 0.0;
 };
 
@@ -47,7 +47,7 @@ struct Segment {
   double x0, y0, x1, y1;
 };
 
-/// The contour lines of a field, by marching squares with linear interpolation. None lie in squares with a NaN.
+/// The contour lines of a field, by marching squares with linear interpolation. Squares with a NaN have no lines.
 std::vector<Segment> contour(const MapField& field, double level);
 
 /// A map over two numbers of a scene, or over the zenith and a number, computed from coarse to fine (kLevels).
@@ -55,16 +55,16 @@ class HeatMap {
  public:
   struct Level {
     std::size_t count;  ///< number of rows, and of columns
-    double tolerance;   ///< lower limit of the tolerance; 0: the scene's tolerance
-    std::size_t batch;  ///< number of values along the slower axis in one part of the job
+    double tolerance;   ///< used if the scene's tolerance is lower
+    std::size_t batch;  ///< number of values of the slower axis (see slower()) in one JobPart
   };
-  // A part of the first level has only two values of the slower axis, because it delays the curve during a drag.
+  // During a drag the curve waits for a part of the first level. So this part has only two values of the slower axis.
   static constexpr std::array<Level, 3> kLevels = {{{16, 1e-2, 2}, {64, 1e-2, 8}, {128, 0.0, 4}}};
 
   explicit HeatMap(const Scene& scene) : scene_(scene) {}
 
-  /// Switches to the map over the axes `x` and `y`. `key` identifies it, without the scene's values of these two
-  /// parameters. If neither axis is the zenith, the zenith is `theta_deg`.
+  /// Switches to the map over the axes `x` and `y`. `key` identifies the map. It must not depend on the scene's values
+  /// along these axes. If neither axis is the zenith, the map is for the zenith `theta_deg`.
   void follow(const std::string& key, const Scene& scene, bool keep_all, const MapAxis& x, const MapAxis& y,
               double theta_deg);
 
@@ -73,8 +73,8 @@ class HeatMap {
   bool take(const JobPart& news);
   bool is_finished() const { return is_current() && is_complete(kLevels.size() - 1); }
   bool is_coarse_done() const { return is_current() && !points_[0].empty(); }
-  bool is_arriving() const { return arriving_key_ == key_ && !arriving_.empty(); }  ///< the first level is incomplete
-  bool is_stale() const { return !shown_key_.empty() && !is_current(); }            ///< shows an earlier scene
+  bool is_arriving() const { return arriving_key_ == key_ && !arriving_.empty(); }  ///< first level has begun
+  bool is_stale() const { return !shown_key_.empty() && !is_current(); }            ///< the map on display is older
 
   const MapAxis& x() const { return x_; }
   const MapAxis& y() const { return y_; }
@@ -95,7 +95,7 @@ class HeatMap {
   }
   std::size_t version() const { return version_; }  ///< changes whenever the field changes
 
-  /// The finest level that has begun. A missing point has the value of the nearest point of a coarser level.
+  /// The values at the finest level with a point. Where this level has no point yet, the nearest coarser point counts.
   MapField field(Plotted quantity) const;
 
  private:
@@ -103,11 +103,11 @@ class HeatMap {
   bool is_current() const { return shown_key_ == key_; }
   bool is_complete(std::size_t level) const { return points_[level].size() == entries(level); }
   std::string key_of(std::size_t level) const { return "map " + std::to_string(kLevels[level].count) + ' ' + key_; }
-  bool is_turned() const { return x_.rank() < y_.rank(); }  ///< x is slower; points are stored by columns
+  bool is_turned() const { return x_.rank() < y_.rank(); }  ///< x is the slower axis
   const MapAxis& slower() const { return is_turned() ? x_ : y_; }
   const MapAxis& faster() const { return is_turned() ? y_ : x_; }
   std::size_t batch(std::size_t level) const { return slower().column().empty() ? 1 : kLevels[level].batch; }
-  PointList part(std::size_t level, std::size_t first) const;  ///< begins at `first` on the slower axis
+  PointList part(std::size_t level, std::size_t first) const;  ///< `first`: position on the slower axis
   /// The point at (row, column) of level `finest`. If it is missing, the nearest point of a coarser level.
   const Point& point_at(std::size_t finest, std::size_t row, std::size_t column) const;
 
@@ -117,7 +117,7 @@ class HeatMap {
   MapAxis x_, y_{.name = "sigma"};
   double theta_deg_ = 0.0;
   std::string shown_key_;                                  ///< key of the map on display
-  std::array<std::vector<Point>, kLevels.size()> points_;  ///< neighbours differ along the faster axis
+  std::array<std::vector<Point>, kLevels.size()> points_;  ///< by level; the faster axis changes first
   std::string arriving_key_;
   std::vector<Point> arriving_;  ///< points of the first level while it is incomplete
   std::size_t version_ = 0;

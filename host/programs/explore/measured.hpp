@@ -9,15 +9,15 @@ namespace dolp::explore {
 
 Plotted plotted(Observable observable);  ///< the quantity that a plot draws for this observable
 
-/// Reads measured points from a regular file, so that the window never waits for a pipe. Errors: InputError.
+/// Reads measured points. Accepts only a regular file, because the window must not wait for a pipe. Errors: InputError.
 MeasuredData read_measured(const std::string& path);
 
-/// Measured points, and the model at their zeniths and wavelengths.
+/// Measured points, and the results of the scene at the zeniths and wavelengths of these points.
 class Residuals {
  public:
   explicit Residuals(const Scene& scene) : scene_(scene), loaded_for_(scene) {}
 
-  /// Errors: InputError if the data come with settings KEY=VALUE, which only `dolp fit` accepts.
+  /// Errors: InputError if the data file contains settings KEY=VALUE, which only `dolp fit` accepts.
   void load(MeasuredData data);
   void clear() { data_.reset(); }
   void follow(const std::string& key, const Scene& scene);
@@ -29,7 +29,7 @@ class Residuals {
   const Scene& loaded_for() const { return loaded_for_; }
   bool is_known() const { return data_ && model_.is_finished(); }
   std::vector<Measurement> measured(Plotted quantity) const;
-  /// Measured minus model, without points where the model has no value. Empty until the model has been computed.
+  /// Measured values minus the scene's. Omits points at which the model gives no value. Empty before is_known().
   std::vector<Measurement> residuals(Plotted quantity) const;
 
  private:
@@ -39,13 +39,13 @@ class Residuals {
   Sweep model_;
 };
 
-std::optional<double> rms_of(const std::vector<Measurement>& residuals);  ///< root mean square; empty without values
+std::optional<double> rms_of(const std::vector<Measurement>& residuals);  ///< root mean square; empty without residuals
 
-/// Keys that vary in fits, with the ranges that the user typed.
+/// The scene keys that vary in fits, each with its range if the user typed one.
 using FitMarks = std::map<std::string, std::optional<FitRange>>;
 
-/// The range of a parameter in fits: the range that the user typed, or range_in() extended to `value`; for k this range
-/// begins at 0.001. The fit starts at the value of the range that is nearest to `value`.
+/// The range of a parameter in fits: the range that the user typed, or else range_in(), extended to include `value`.
+/// Without a typed range, k begins at 0.001. A fit starts in the range, as near as possible to `value`.
 FitRange fit_range(const FitMarks& marks, const Scene& scene, const Control& control, double value);
 
 /// All inputs of a fit, so that it can run on a separate thread.
@@ -55,8 +55,8 @@ struct FitJob {
   std::vector<FitRange> vary;
 };
 
-/// Fits as `dolp fit` does. Errors: InputError if points, parameters and scene do not fit together or no minimum was
-/// found; other errors of Evaluator::fit; Cancelled.
+/// Fits as `dolp fit` does. Errors: InputError if no minimum was found, or if the scene cannot have the points or the
+/// parameters; the other errors of Evaluator::fit; Cancelled.
 Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress,
             const std::function<void(const std::string&)>& phase = {});
 
@@ -64,6 +64,6 @@ Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress,
 std::size_t nearest_minimum(const Fit& fit, const FitJob& job);
 
 std::string fit_text(const Fit& fit, std::size_t chosen);  ///< one line about the chosen minimum
-std::string interval_text(const FitInterval& interval);    ///< "1.2 to 1.5"; an end that the range cuts off is "open"
+std::string interval_text(const FitInterval& interval);    ///< "1.2 to 1.5"; "open" for an empty end
 
 }  // namespace dolp::explore

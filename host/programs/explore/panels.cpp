@@ -12,9 +12,9 @@
 namespace dolp::explore {
 namespace {
 
-constexpr double kSpecularAzimuth_deg = 180.0;  // azimuth from the source to its mirror reflection
+constexpr double kSpecularAzimuth_deg = 180.0;  // azimuth between the source and its mirror reflection
 
-std::pair<double, double> known_um(const Scene& scene) {  // range of the plot of n and k
+std::pair<double, double> known_um(const Scene& scene) {  // wavelengths of material_curve()
   const auto spectrum = spectrum_um(scene);
   for (const BuiltInMaterial& known : materials()) {
     if (known.name == scene.word("surface.material")) return {known.from_um, known.to_um};
@@ -71,7 +71,7 @@ MaterialCurve material_curve(const Scene& scene, std::size_t count) {
       curve.n.push_back(n);
       curve.k.push_back(k);
     } catch (const InputError&) {
-      // The range of the user's file ends within the range of the plot.
+      // The user's material file has no n and k at this wavelength, so the curve leaves it out.
     }
   }
   return curve;

@@ -11,7 +11,7 @@ json axis_json(const std::string& label, const Scale& scale) {
   return {{"label", label}, {"from", scale.from}, {"to", scale.to}, {"is_log", scale.is_log}};
 }
 
-/// `style`: "curve", "overlay", or the position of a pin's colour.
+/// `style` is "curve", "overlay", or for a pin the position of its colour.
 json curve_json(const Curve& curve, const std::string& name, const json& style, Plotted quantity) {
   const PlottedDescription& description = described(quantity);
   json theta = json::array(), values = json::array(), good = json::array(), low = json::array(), high = json::array();

@@ -11,10 +11,10 @@
 
 namespace dolp::explore {
 
-/// Points to compute: either columns, each with one value for all points or one value per point; or the axes of a grid.
+/// Points to compute: a grid with axes, or a list with columns. A column has one value per point, or one for all.
 struct PointList {
   std::vector<std::pair<std::string, std::vector<double>>> values;  ///< columns or axes, with the names of `dolp eval`
-  /// True: all combinations of the values, in the order of a table. Work that several entries share is done once.
+  /// True: `values` are axes, and the points are all combinations, in the order of a table. Shared work is done once.
   bool is_grid = false;
   std::vector<Setting> changes = {};  ///< changes of the scene for numbers that have no column
 
@@ -26,9 +26,9 @@ struct PointList {
   }
 };
 
-bool has_wind(const Scene& scene);  ///< sigma comes from a wind speed
+bool has_wind(const Scene& scene);  ///< true if a wind speed determines sigma
 
-/// Points with the scene's slope distribution at some zeniths. The zenith is the first column.
+/// Points at the zeniths `theta_deg` with the scene's slope distribution. The zenith is the first column.
 PointList points_at(const Scene& scene, std::vector<double> theta_deg);
 
 std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count);  ///< equal steps, both ends included
@@ -38,11 +38,11 @@ Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list
 
 /// The results at a point, in the units of a table.
 struct Point : PointResult {
-  double theta_deg = 0.0;  ///< meaningless on a grid
+  double theta_deg = 0.0;  ///< without meaning if the point is part of a grid
 
   /// True if the status has no bit that makes DOLP meaningless or voids its error bound.
   bool is_good() const { return promises_dolp(status) && std::isfinite(values[Quantity::kDolp]); }
-  bool has_bracket() const {  // limits between which DOLP lies with all bounces
+  bool has_bracket() const {  // true if there are limits for the DOLP with all bounces
     return std::isfinite(values[Quantity::kDolpLow]) && std::isfinite(values[Quantity::kDolpHigh]);
   }
 };
@@ -54,10 +54,10 @@ enum class Plotted : std::uint8_t { kDolp, kSignedDolp, kRhoS, kRhoP, kEmissivit
 
 struct PlottedDescription {
   Plotted quantity;
-  const char* name;               ///< UTF-8
+  const char* name;               ///< name in UTF-8
   const char* meaning;            ///< text in UTF-8, with the equation
-  bool in_percent;                ///< shown multiplied by 100
-  bool needs_rho;                 ///< known only if the plan drops no effect
+  bool in_percent;                ///< true: plots show 100 times the value
+  bool needs_rho;                 ///< true: needs rho, so a run must keep all effects
   double (*value)(const Point&);  ///< NaN where the model gives no value
   bool is_signed = false;
 

@@ -10,21 +10,21 @@
 namespace dolp::explore {
 namespace {
 
-// The readout mentions albedos outside these limits.
+// If the albedo is outside these limits, the text about the maximum mentions it.
 constexpr double kAlbedoMin = 0.95;
 constexpr double kAlbedoMax = 1.05;
 constexpr double kPercent = 100.0;
 
-/// A bound of DOLP in percentage points.
+/// An error bound of DOLP as text, in percentage points.
 std::string points_text(double bound) { return std::isfinite(bound) ? fmt::format("{:.2g}", kPercent * bound) : "∞"; }
 
 struct Part {
   std::string name;
-  double q_over_i;  ///< contribution at the peak
+  double q_over_i;  ///< contribution of the effect to Q/I at the peak
 };
 
-/// The contributions of all radiating effects, which add up to Q/I. If the scene is impossible without emission, the
-/// emission contributes the rest.
+/// The contributions of all radiating effects, which add up to Q/I. If one effect cannot be removed from the scene, for
+/// example the only one, it contributes the rest.
 std::vector<Part> radiating_parts(const Session& session) {
   const Peak& peak = session.peak();
   double rest = peak.answer()->at[Quantity::kQOverI];
@@ -43,7 +43,7 @@ std::vector<Part> radiating_parts(const Session& session) {
   return parts;
 }
 
-const Point* point_without(const Session& session, const std::string& effect) {  // at the peak; null if unknown
+const Point* point_without(const Session& session, const std::string& effect) {  // at the peak; null if not computed
   if (!session.peak().answer()) return nullptr;
   const std::vector<WithoutEffect>& all = session.peak().without();
   const auto away = std::ranges::find(all, effect, &WithoutEffect::effect);
@@ -112,7 +112,7 @@ std::string peak_text(const Session& session) {
         fmt::format("the maximum is surely between {:.2f}° and {:.2f}°.", peak->theta_low_deg, peak->theta_high_deg);
   }
   if (peak->is_at_end) text += " Beyond it the model fails, or the range ends.";
-  // The bound covers numerical error only; the albedo shows the error of the surface model itself.
+  // The bound contains only the numerical error. The albedo shows the error of the surface model itself.
   const double albedo = at[Quantity::kAlbedo];
   if (albedo < kAlbedoMin) text += fmt::format(" The surface model loses energy there (albedo {:.2f}).", albedo);
   if (albedo > kAlbedoMax) text += fmt::format(" The surface model gains energy there (albedo {:.2f}).", albedo);

@@ -4,7 +4,7 @@
 
 namespace dolp::explore {
 
-/// The end of a curve's name: ", the scene before" for an earlier scene, ", coarse" for a coarse curve, or nothing.
+/// The suffix of a curve's name: ", the scene before" for points of an earlier scene, ", coarse" for a coarse curve.
 const char* remark(const Session& session, const Curve& curve);
 std::string curve_name(const Session& session);  ///< describes the surface of the curve on display
 std::string overlay_name(const Session& session);
@@ -13,16 +13,16 @@ std::string pin_name(const Session& session, const Pin& pin);
 const char* stale_text(bool is_stale);           ///< ", the scene before" or ""
 std::string peak_text(const Session& session);   ///< position of the maximum, and its uncertainty
 std::string cause_text(const Session& session);  ///< the parts of Q/I at the maximum: emission, source, surroundings
-std::string no_residuals_text(const Session& session, const Scale& theta);  ///< empty if there are residuals
+std::string no_residuals_text(const Session& session, const Scale& theta);  ///< why there are none, or ""
 std::string cursor_text(const Session& session);
-/// Q/I at the maximum with all effects and without one, in percent: "-14.36 → -59.59 %"; empty if unknown.
+/// Q/I at the maximum with all effects and without one, in percent: "-14.36 → -59.59 %". Empty if it is not known.
 std::string without_text(const Session& session, const std::string& effect);
-/// A sentence with Q/I with and without an effect; empty also if the model fails without the effect.
+/// A sentence about the Q/I of without_text(). Empty if that is empty, or if the model fails without the effect.
 std::string without_words(const Session& session, const std::string& effect);
-std::vector<std::string> cost_lines(const Session& session);  ///< of the finished curve: time, work, error
+std::vector<std::string> cost_lines(const Session& session);  ///< time, work and error of the finished curve
 std::string table_command(const SceneEdits& edits);           ///< a shell command that writes the scene's table
-/// JSON for tools/plot_view.py: the visible curves with the axes `x` and `y`, the measured points, and the map if it is
-/// shown. Units: as in the labels. Values that the model does not give are null.
+/// JSON for tools/plot_view.py: the visible curves with the axes `x` and `y`, the measured points, and the map if the
+/// window shows it. The values have the units in the labels. They are null where the model gives no value.
 std::string plot_json(const Session& session, const Scale& x, const Scale& y);
 
 }  // namespace dolp::explore

@@ -17,28 +17,28 @@ struct Scale {
   bool is_log = false;
 
   std::string refusal() const;  ///< the reason why the range cannot be drawn; empty if it can
-  /// The value at a position, and the position of a value. Both may lie outside the range.
+  /// The value at a position, and the position of a value. Values and positions may lie outside the range.
   double value(double position) const;
   double position(double value) const {
     return is_log ? std::log(value / from) / std::log(to / from) : (value - from) / (to - from);
   }
   double clamp(double value) const { return std::clamp(value, from, to); }
-  double rounded(double position) const;                ///< value rounded to four digits, clamped to the range
-  std::vector<double> values(std::size_t count) const;  ///< at equal steps of the position, with both ends
+  double rounded(double position) const;                ///< value(position) with four digits, in the range
+  std::vector<double> values(std::size_t count) const;  ///< `count` values at equal steps of position
   /// The range between two positions, which may lie outside this range.
   Scale between(double first, double last) const { return {value(first), value(last), is_log}; }
-  /// This range shifted into `all`; or `all` itself if this range is larger.
+  /// This range, shifted so that it lies in `all`. If this range is larger than `all`, returns `all`.
   Scale within(const Scale& all) const {
     const double first = all.position(from), last = all.position(to);
     if (last - first >= 1.0) return all;
     const double shift = std::max(-first, 0.0) + std::min(1.0 - last, 0.0);
     return all.between(first + shift, last + shift);
   }
-  /// This range extended to a value, if the scale can show the value.
+  /// This range, extended so that it contains `value`. Unchanged if a logarithmic scale cannot show `value`.
   Scale including(double value) const {
     return is_log && !(value > 0.0) ? *this : Scale{std::min(from, value), std::max(to, value), is_log};
   }
-  /// This range, linear or logarithmic. A logarithmic range cannot begin at 0; it then begins at 1/180 of its end.
+  /// This range as a linear or logarithmic one. If a logarithmic range would begin at or below 0, it begins at to/180.
   Scale with_log(bool wants_log) const;
 
   /// Round values in the range, at most `most` of them (at least 2). Linear: multiples of 1, 2 or 5 times a power of
@@ -49,10 +49,10 @@ struct Scale {
   friend bool operator==(const Scale&, const Scale&) = default;
 };
 
-/// A range for the values of curves, with space above them. A linear range contains 0; a logarithmic range ignores
-/// values that are not positive. Values that are not finite are ignored.
+/// A range for a plot of curves with these values, with space above the largest one. A linear range contains 0. Ignores
+/// values that are not finite and, for a logarithmic range, values that are not positive.
 Scale range_of(std::vector<double> values, bool is_log);
 
-std::string tick_text(double value);  ///< at most four digits
+std::string tick_text(double value);  ///< label of a tick, with at most four digits
 
 }  // namespace dolp::explore

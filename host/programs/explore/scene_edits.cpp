@@ -30,7 +30,7 @@ std::string with_number(const Scene& scene, const char* symbol, const std::strin
   return fmt::format("{} {:.4g}{}", symbol, scene.number(key).value(), unit);
 }
 
-/// The material of the surface or of a film as text: a name, a file, or n and k. `table` is the table with its keys.
+/// The material of the surface or of a film as text: a name, a file, or n and k. `table` has these keys.
 std::string material_of(const Scene& scene, const std::string& table) {
   if (table == "surface" && !has_index(scene)) return *scene.word("surface.reflectance_file");
   for (const char* name : {".material", ".material_file"}) {
@@ -121,7 +121,7 @@ Control film_control(const Key& key) {
 
 constexpr const char* kCoating = "surface.coating";
 
-/// True if a change makes an older change of `other` ineffective.
+/// True if `change` makes an older change of the key `other` ineffective.
 bool replaces(const Setting& change, const std::string& other) {
   const std::string& key = change.key;
   if (other == key || other == table_of(key)) return true;
@@ -131,8 +131,8 @@ bool replaces(const Setting& change, const std::string& other) {
   return std::ranges::count(described(key).rivals, other) > 0;
 }
 
-/// For each choice that excludes other choices, the word that excludes nothing. A wind excludes other slopes than
-/// Gaussian ones, and the state of the air excludes other skies than the built-in ones.
+/// Changes that make a scene compatible with every other choice: for each choice, the word that excludes nothing; sigma
+/// instead of a wind speed, which requires Gaussian slopes; no state of the air, which requires a built-in sky.
 std::vector<Setting> compatible_words(const Scene& scene) {
   std::vector<Setting> words = {{"surface.masking", "v-cavity"},    {"surface.scattering", "single"},
                                 {"emission.model", "moments"},      {"emission.bracket", false},

@@ -12,50 +12,50 @@
 
 namespace dolp::explore {
 
-/// The control of a key: a slider for a number, a list for words, a box for a flag.
+/// The control of a scene key in the window: a slider for a number, a list for words, a box for a flag.
 struct Control {
   const Key* key;
-  std::string label;     ///< the symbol of a number, in UTF-8
-  const char* equation;  ///< in UTF-8, with its number in the paper if it has one
-  Scale slider = {};     ///< a part of the key's range; the user can type other values
+  std::string label;     ///< symbol of a number, or name of a choice, in UTF-8
+  const char* equation;  ///< formula or explanation for a tooltip, in UTF-8
+  Scale slider = {};     ///< range of the slider; the user can also type other values
   /// Returns false if the scene does not use the key; the window then hides the control. Null: it is never hidden.
   bool (*is_used)(const Scene& scene) = nullptr;
-  std::optional<double> standard = {};  ///< value of a number without which a scene is valid
+  std::optional<double> standard = {};  ///< default value of a number that a scene may omit
 
   /// The scene's number; empty for words, and if the window hides the control.
   std::optional<double> value(const Scene& scene) const;
   /// The position of the scene's word in Key::words; empty for numbers, and if the window hides the control.
   std::optional<std::size_t> word(const Scene& scene) const;
-  std::string label_with_unit() const;  ///< "λ [µm]" for a number
+  std::string label_with_unit() const;  ///< for a number with a unit: "λ [µm]"
   bool is_shown(const Scene& scene) const { return !is_used || is_used(scene); }
   bool is_number() const { return key->type == Key::Type::kNumber; }
 };
 
 const Key& described(const std::string& key);  ///< the key must exist
 
-/// All sliders, in the order of the scene keys, with the numbers of films last; and all lists and boxes.
+/// The controls of all keys that the window can change, in the order of the scene keys. The numbers of films come last.
 const std::vector<Control>& controls();
 
 const Control& control(const std::string& key);              ///< the key must have a control
-Scale range_in(const Scene& scene, const Control& control);  ///< of a slider, without values that the masking excludes
+Scale range_in(const Scene& scene, const Control& control);  ///< range of its slider that the masking allows
 std::string table_of(const std::string& key);                ///< "surface.coating.1" of "surface.coating.1.n"
-std::string unit_text(const Key& key);                       ///< for display: "°" for degree, empty for 1
+std::string unit_text(const Key& key);                       ///< unit for display: "°" for "degree", "" for "1"
 bool is_bistatic(const Scene& scene);
 
-/// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1". With `other`, only the words about the
-/// shape that `other` does not have, and the material. If shape and material are those of `other`, also the numbers
-/// that differ.
+/// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1". If `other` is given, the text omits
+/// words about the shape that also describe `other`. If shape and material of both scenes are equal, the text has the
+/// numbers that differ.
 std::string surface_name(const Scene& scene, const Scene* other = nullptr);
 
-/// A scene file with changes. The window computes what `dolp eval` computes with these settings.
+/// A scene file with changes. The results in the window are those of `dolp eval` with the changes as --set.
 class SceneEdits {
  public:
   explicit SceneEdits(const Scene& opened) : opened_(opened), scene_(opened), saved_(opened.settings()) {}
   /// Errors: the errors of set().
   SceneEdits(const Scene& opened, const std::vector<Setting>& changes) : SceneEdits(opened) { become(changes); }
 
-  /// A table name with an empty value, for example "source", removes this effect; a later change of one of its keys
-  /// restores it. A change of a key removes its alternatives, for example `material` removes n and k.
+  /// A table name with an empty value, such as "source", removes this effect. A later change of a key of the table
+  /// restores the effect. A change of a key removes the key's alternatives: `material` removes n and k, for example.
   /// Errors: InputError; the scene then stays unchanged.
   void set(const std::vector<Setting>& changes);
 
@@ -66,12 +66,12 @@ class SceneEdits {
   const Scene& scene() const { return scene_; }
   const Scene& opened() const { return opened_; }
   bool is_changed() const { return changes() != saved_; }
-  void note_saved() { saved_ = changes(); }  ///< declares the current scene unchanged
-  /// Goes to another state of this file, or to another file. In another state of this file, is_changed() still compares
-  /// with the state that was saved last.
+  void note_saved() { saved_ = changes(); }  ///< makes is_changed() false until the next change
+  /// Becomes `other`, which may have the same scene file or another one. With the same file, is_changed() still
+  /// compares with the state that was saved last.
   void go_to(const SceneEdits& other);
   bool is_same_scene(const SceneEdits& other) const { return is_same_file(other) && changes() == other.changes(); }
-  const std::vector<Setting>& changes() const { return scene_.settings(); }  ///< includes the opened scene's settings
+  const std::vector<Setting>& changes() const { return scene_.settings(); }  ///< with the settings of opened()
   std::vector<Setting> changes_without(const std::vector<std::string>& keys) const;
 
  private:
@@ -87,15 +87,15 @@ class SceneEdits {
 
 /// The settings of a film: n and k, or material, or material_file; and thickness_um, which is last.
 using Film = std::vector<Setting>;
-std::vector<Film> films_of(const Scene& scene);      ///< from the outside in
-Setting coating_of(const std::vector<Film>& films);  ///< gives a scene these films
-std::string word_of(const Value& value);             ///< without quotes
+std::vector<Film> films_of(const Scene& scene);      ///< the outermost film first
+Setting coating_of(const std::vector<Film>& films);  ///< setting that gives a scene these films
+std::string word_of(const Value& value);             ///< text of a value, without quotes
 
-/// Applies a change. If the scene refuses it, replaces as few choices as possible by compatible words, and returns
-/// these. Errors: InputError if this does not help; the edits then stay unchanged.
+/// Applies a change. If the scene refuses it, also changes other choices, as few as possible, to words that exclude
+/// nothing. Returns these choices. Errors: InputError if this does not help; the edits then stay unchanged.
 std::vector<Setting> change_with_needed(SceneEdits& edits, const std::function<void(SceneEdits&)>& change);
 
-/// A sky whose brightness temperature is linear in the zenith.
+/// A sky whose brightness temperature is a linear function of the zenith angle.
 struct SkyPair {
   double zenith_K = 220.0;
   double horizon_K = 285.0;
@@ -107,12 +107,12 @@ struct SkyPair {
 /// Reads a file with the text of SkyPair::csv. Empty if the file has another text or cannot be read.
 std::optional<SkyPair> read_sky_pair(const std::filesystem::path& file);
 
-std::filesystem::path sky_file(const Scene& scene);  ///< empty for a built-in sky and without a sky
+std::filesystem::path sky_file(const Scene& scene);  ///< empty if the scene has no sky or a built-in one
 
-/// Files of the skies that the window edits; a scene names a sky by its file. The destructor removes their folder.
+/// Temporary files of the skies that the user edits, because a scene can name only a file. The destructor removes them.
 class SkyFiles {
  public:
-  /// Writes the file of a sky and returns its path. If that fails, there is no file, and the scene refuses the path.
+  /// Writes a file with `sky` and returns the path. If the writing fails, the scene will refuse the path.
   std::string path(const SkyPair& sky);
   bool hold(const std::filesystem::path& file) const { return folder_ && file.parent_path() == folder_->path(); }
 

@@ -10,10 +10,10 @@
 
 namespace dolp::explore {
 
-/// A curve that is kept while the scene changes.
+/// A curve that stays in the plot while the scene changes.
 struct Pin {
   std::string name = {};   ///< name that the user typed; if empty, the legend describes the surface
-  std::size_t colour = 0;  ///< position in the list of pin colours
+  std::size_t colour = 0;  ///< number of the colour, see pin_style()
   bool is_visible = true;
   Curve curve;
 };
@@ -21,11 +21,11 @@ struct Pin {
 struct View {
   Plotted quantity = Plotted::kDolp;
   bool is_log = false;
-  bool is_theta_log = false;    ///< curves are drawn over the logarithm of the zenith
-  bool has_overlay = true;      ///< the other slope distribution with the same D(0)
-  bool keeps_all = false;       ///< also computes effects that the plan would drop
+  bool is_theta_log = false;    ///< true: the zenith axis of the curves is logarithmic
+  bool has_overlay = true;      ///< also draws the other slope distribution with an equal D(0)
+  bool keeps_all = false;       ///< keeps effects that a run would drop as too small
   double theta_max_deg = 90.0;  ///< largest zenith of the plots and of the search for the maximum
-  std::string map_x = "theta";  ///< name of the x axis; if the scene lacks it, the map takes another
+  std::string map_x = "theta";  ///< name of the x axis; if the scene lacks this axis, the map takes another one
   std::string map_y = "sigma";
   /// Ranges that the user chose, by the label of a map axis or by one of the names below. Other axes are automatic.
   std::map<std::string, Scale> ranges = {};
@@ -35,7 +35,7 @@ struct View {
 
   static constexpr const char* kZeniths = "curve zenith";
   static constexpr const char* kValues = "curve values";
-  static constexpr const char* kColours = "map colours";  ///< values for the first and the last colour
+  static constexpr const char* kColours = "map colours";  ///< range: value of the first colour to value of the last
 
   std::optional<Scale> range(const std::string& axis) const;
   void set_range(const std::string& axis, const std::optional<Scale>& range);
@@ -52,7 +52,7 @@ struct Message {
   bool is_error = false;
 };
 
-/// What a session file keeps, besides measured points.
+/// The contents of a session file, except for the measured points.
 struct SessionState {
   SceneEdits edits;
   std::deque<Pin> pins = {};
@@ -81,7 +81,7 @@ class Session {
   void go_to(const SceneEdits& edits) {
     attempt([&] { state_.edits.go_to(edits); });
   }
-  /// Replaces everything except the states that `undo` goes back to. The curves of the pins need not be computed.
+  /// Replaces everything except the states for `undo`. The pins need no points, because wanted() requests their curves.
   void restore(const SessionState& saved, const std::optional<MeasuredData>& measured);
   void undo() { step(done_, undone_, "nothing to undo"); }
   void redo() { step(undone_, done_, "nothing to redo"); }
@@ -90,8 +90,8 @@ class Session {
   void hold(bool is_held);
   void note_saved() { state_.edits.note_saved(); }
   void pin();
-  /// Changes the view. If the quantity changes, or its axis becomes linear or logarithmic, the chosen ranges of values
-  /// and colours are removed. If the zenith axis becomes linear or logarithmic, the chosen range of zeniths is removed.
+  /// Changes the view. If View::quantity or View::is_log changes, removes the typed ranges of values and colours. If
+  /// View::is_theta_log changes, removes the typed range of zeniths. These ranges would no longer fit.
   void set_view(const View& view);
   template <class T>
   void set_view(T View::*part, const std::type_identity_t<T>& value) {
@@ -104,7 +104,7 @@ class Session {
   void set_map_cursor(double x, double y);
   void load_measured(const std::string& path);
   void clear_measured() { residuals_.clear(); }
-  void mark(const std::string& key, bool varies) {  // whether a number varies in fits
+  void mark(const std::string& key, bool varies) {  // `varies`: the number `key` varies in fits
     if (varies) {
       state_.marked.try_emplace(key);
     } else {
@@ -113,14 +113,14 @@ class Session {
   }
   /// Lets a number vary in fits over a typed range. Returns the reason if the range is refused, otherwise nothing.
   std::string set_fit_range(const std::string& key, const std::string& low, const std::string& high);
-  /// Shows a fit and goes to the minimum that is nearest to the start of `job`. Returns its position in Fit::minima.
+  /// Shows a fit and visits the minimum nearest to the start of `job`. Returns this minimum's position in Fit::minima.
   std::size_t take_fit(Fit fit, const FitJob& job);
   /// Restores the scene of the last fit, with the parameters of one of its minima.
   void visit_minimum(std::size_t position);
   void tell(std::string text, bool is_error = false) { message_ = {std::move(text), is_error}; }
 
-  std::vector<Job> wanted() const;                                   ///< the most urgent first
-  bool take_changed() { return std::exchange(is_changed_, false); }  ///< wanted() may have changed
+  std::vector<Job> wanted() const;                                   ///< the most urgent job first
+  bool take_changed() { return std::exchange(is_changed_, false); }  ///< true if wanted() may have changed
   void take(const std::vector<JobPart>& news);
 
   const SceneEdits& edits() const { return state_.edits; }
@@ -135,13 +135,13 @@ class Session {
   const std::vector<Snapshot>& snapshots() const { return state_.snapshots; }
   const HeatMap& map() const { return map_; }
   const SourceSky& source_sky() const { return source_sky_; }
-  /// The scene at one wavelength, and the axis of the plots over wavelength. If the scene is known at only one
+  /// The scene at one wavelength, and the axis of the plots over wavelength. If n and k are known at only one
   /// wavelength, both ends of the axis are equal.
   const Scene& spectral_scene() const { return spectral_scene_; }
   const MapAxis& wavelengths() const { return wavelengths_; }
-  const Sweep& spectrum() const { return spectrum_; }                ///< over wavelength, at the cursor's zenith
-  const Sweep& smooth_spectrum() const { return smooth_spectrum_; }  ///< smooth surface over wavelength, at the cursor
-  const Sweep& smooth() const { return smooth_; }                    ///< the smooth surface over zenith
+  const Sweep& spectrum() const { return spectrum_; }                ///< results over wavelength at the cursor
+  const Sweep& smooth_spectrum() const { return smooth_spectrum_; }  ///< sigma = 0, over wavelength at the cursor
+  const Sweep& smooth() const { return smooth_; }                    ///< the surface with sigma = 0, over zenith
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
   bool is_foreign(const Scene& other) const { return other.name() != scene().name() || other.text() != scene().text(); }
@@ -162,7 +162,7 @@ class Session {
   bool is_dragged() const { return is_held_ && is_in_gesture_; }  ///< the mouse is down and has changed the scene
   /// True if the points of a curve belong to an earlier scene; false during a drag, in which every curve lags behind.
   bool is_outdated(const Curve& curve) const { return curve.is_stale() && !is_dragged(); }
-  /// The effects of the last finished curve. The influence of a kept effect is its influence at the cursor's zenith.
+  /// The effects of the last finished curve. Effect::influence of a kept effect is for the cursor's zenith.
   const std::vector<Effect>& effects() const { return effects_; }
   /// The position, from 0 to 1, of the scene's value on an axis of the map.
   double map_cursor(const MapAxis& axis) const {
@@ -192,7 +192,7 @@ class Session {
 
   SkyFiles skies_;
   SessionState state_;
-  std::vector<SceneEdits> done_, undone_;  ///< states for `undo` and for `redo`, the next one last
+  std::vector<SceneEdits> done_, undone_;  ///< states to which `undo` and `redo` go, the next state last
   bool is_held_ = false;
   bool is_in_gesture_ = false;
   Curve curve_;
@@ -209,16 +209,16 @@ class Session {
   std::optional<SceneEdits> visited_;    ///< the fitted scene at the minimum that the user visited
   std::size_t minimum_ = 0;
   std::vector<Effect> effects_;
-  std::pair<std::string, double> influences_of_;  ///< key of the curve and zenith for which effects_ has influences
+  std::pair<std::string, double> influences_of_;  ///< curve's key and zenith of the influences in effects_
   Message message_;
-  std::vector<std::string> remarks_;  ///< remarks on the scene that message() has already shown
+  std::vector<std::string> remarks_;  ///< remarks on the scene that message() has shown before
   bool is_changed_ = true;
-  // During a drag the curve and another view take turns; the other view is the map and the overlay in turn.
+  // During a drag the worker computes in turn: the curve, the map (or sky), the curve, the overlay.
   bool is_curve_next_ = true;
   bool is_map_next_ = false;
 };
 
-/// A text that identifies results. It is equal if the scene's file, the changes and `keep_all` are equal.
+/// A text that identifies results: two texts are equal if the scene files, the changes and `keep_all` are equal.
 std::string content_key(const Scene& scene, const std::vector<Setting>& changes, bool keep_all);
 
 }  // namespace dolp::explore

@@ -16,7 +16,7 @@
 namespace dolp {
 namespace {
 
-/// True if the cause is lack of memory. std::thread throws such an error if there is no memory for the thread's stack.
+/// True if lack of memory caused `error`. std::thread throws such an error if there is no memory for its stack.
 bool is_of_memory(const std::system_error& error) {
   return error.code() == std::errc::not_enough_memory || error.code() == std::errc::resource_unavailable_try_again;
 }
@@ -39,7 +39,7 @@ int fail_out_of_memory(const char* program) noexcept {
   std::array<char, 128> line{};
   const int length = std::snprintf(line.data(), line.size(), "%.40s: out of memory: more than %ld MiB wanted\n",
                                    program, used.ru_maxrss / 1024);
-  // If even this fails, nothing more can be reported.
+  // If even write() fails, no message is possible.
   if (length > 0) static_cast<void>(!::write(STDERR_FILENO, line.data(), static_cast<std::size_t>(length)));
   return kExitMemory;
 }

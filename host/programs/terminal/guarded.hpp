@@ -1,4 +1,4 @@
-// Converts errors to exit statuses. No other code does this.
+// Only these functions convert errors to exit statuses.
 #pragma once
 
 #include <functional>
@@ -12,10 +12,10 @@ int fail(const std::string& program, int status, const std::string& message);
 
 void warn(const std::string& program, const std::vector<std::string>& remarks);
 
-/// Prints the line for lack of memory, without using memory. Returns kExitMemory.
+/// Prints a line that memory is short; allocates no memory for it. Returns kExitMemory.
 int fail_out_of_memory(const char* program) noexcept;
 
-/// Returns the result of `body`. If it throws, prints one line and returns the error's exit status.
+/// Returns the result of `body`. If `body` throws an error, prints one line and returns the exit status for this error.
 int guarded(const std::string& program, const std::function<int()>& body);
 
 }  // namespace dolp

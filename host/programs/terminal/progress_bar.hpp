@@ -7,9 +7,9 @@
 
 namespace dolp {
 
-/// A bar with rate and remaining time on stderr, if stderr is a terminal and `quiet` is false. After the first call of
-/// its callback, SIGINT, SIGTERM and SIGHUP only request the end of the run (base/interrupt.hpp). Before that, while
-/// inputs are read, they end the program as usual.
+/// A bar with rate and remaining time on stderr, if stderr is a terminal and `quiet` is false. While the program reads
+/// its inputs, SIGINT, SIGTERM and SIGHUP end it as usual. After the first call of callback()'s function, these signals
+/// only request the end of the run (base/interrupt.hpp).
 class ProgressBar {
  public:
   explicit ProgressBar(bool quiet);
@@ -17,11 +17,11 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// A function that draws the bar and returns false after an interrupt. It refers to this object, whose destructor
-  /// erases the bar. In run(..., ProgressBar(quiet).callback()) the object lives until the run ends.
+  /// A function that draws the bar and returns false after an interrupt. The function refers to this object, which must
+  /// outlive it: in run(..., ProgressBar(quiet).callback()) the object lives until run() returns.
   Progress callback();
 
-  /// Restarts the bar. It then counts `what`, a plural, instead of entries.
+  /// Restarts the time measurement. From now on the bar names `what` (a plural) as the counted things, not "entries".
   void count(const std::string& what);
 
  private:

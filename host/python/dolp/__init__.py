@@ -20,17 +20,17 @@ array([0.    , 0.0295, 0.1346])
 
 Scene                   a scene, from a file or a text, with changed values of keys
 table, write_table      DOLP and the other quantities over the scene's grid: as a Dataset, or in a file
-evaluate, mueller       these quantities at points; Mueller matrices of pairs of directions
+evaluate, mueller       DOLP and the other quantities at points; Mueller matrices for pairs of directions
 lookup                  values between the entries of a table
-response, moments       a table for any material; the reflectances of materials from it
+response, moments       a response table, which serves any material; reflectances of materials from such a table
 fit                     values of a scene's keys from measured data
 plan                    what a table would compute and cost
 material                n and k of a built-in material
 devices, keys, materials, citation
 
 Names and units are the same as in scene files and table files: angles in degrees, wavelengths in um, temperatures in
-K. Results are xarray Datasets with the variables, units and meanings of table files. Their values have the same bits as
-the results of the command line. `dataset.dolp.plot()` draws. `error_estimate` has an error bound for every entry.
+K. Results are xarray Datasets with the variables, units and meanings of table files. They equal the results of the
+command line bit for bit. `dataset.dolp.plot()` draws DOLP; `dataset.error_estimate` bounds its error.
 
 The package keeps the device and its kernels between calls. During a long call Python's other threads run, and Ctrl-C
 ends the call. If a process has used a Vulkan device, its forked children get a DeviceError: start new processes instead
@@ -54,7 +54,7 @@ from ._response import moments, response
 from ._runs import Plan, devices, evaluate, lookup, mueller, plan, table, write_table
 from ._scene import Material, Scene, keys, material, materials
 
-# Omits the exceptions, because `help` would print the methods of their base classes. The text above describes them.
+# Omits the exceptions, because `help` would print the methods of their base classes. The text above names them.
 __all__ = ["Fit", "Material", "Plan", "Scene", "citation", "devices", "evaluate", "fit", "keys", "lookup", "material", "materials",
            "moments", "mueller", "plan", "response", "table", "write_table"]
 __version__ = _native.version()

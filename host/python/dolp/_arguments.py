@@ -18,7 +18,7 @@ Array = Union[float, "np.ndarray", "xr.DataArray", "list[float]"]
 
 
 class MissingFileError(InputError, FileNotFoundError):
-    """A file to read does not exist."""
+    """A file that a call should read does not exist."""
 
 
 def check_mapping(name: str, values: Mapping[str, Any] | None) -> Mapping[str, Any]:
@@ -37,7 +37,7 @@ def native_path(name: str, path: Path) -> str:
 
 
 def encodable(name: str, text: str, errors: str = "strict") -> str:
-    """The text, if it can be encoded. Errors: InputError for a surrogate without its other half."""
+    """Returns `text` if UTF-8 can encode it. Errors: InputError for a surrogate without the other half of its pair."""
     try:
         text.encode("utf-8", errors)
     except UnicodeEncodeError:
@@ -84,7 +84,7 @@ def word(name: str, value: Any) -> str:
 
 
 def device_name(device: Any) -> str:
-    """A device as text: a part of its name, or its position."""
+    """A device as text: a part of its name, or its position in `devices()`."""
     return str(device) if isinstance(device, (int, np.integer)) else word("device", device)
 
 
@@ -105,12 +105,12 @@ def axis_values(name: str, values: Any) -> list[float]:
 
 
 def label_values(values: Any) -> Any:
-    """The values of an axis of materials (a name or a list of names) or of bands (a pair of wavelengths or a list)."""
+    """The values of an axis of materials (one name or several) or of bands (one pair of wavelengths or several)."""
     return values if isinstance(values, str) else np.asarray(values).tolist()
 
 
 def check_names(what: str, given: Iterable[str], known: list[str]) -> None:
-    """Errors: InputError for a name that is not in `known`; it suggests a similar name."""
+    """Errors: InputError for a name that is not in `known`; the message suggests a similar name."""
     for name in given:
         if name in known:
             continue
@@ -121,7 +121,7 @@ def check_names(what: str, given: Iterable[str], known: list[str]) -> None:
 
 
 def floats(name: str, values: Any) -> np.ndarray:
-    """Values as floats. Errors: InputError for masked arrays and dates, which would silently become other numbers."""
+    """Values as floats. Errors: InputError for masked arrays and dates, whose conversion would silently change them."""
     if isinstance(values, np.ma.MaskedArray):
         raise InputError(f"{name}: is a masked array, and results have no mask: fill or compress it")
     try:
@@ -152,7 +152,7 @@ def native_values(overrides: Mapping[str, Any] | None) -> list[tuple[str, Any]]:
 
 
 def _value(key: str, value: Any) -> Any:
-    """A value in a type that the library takes: None, bool, float, str, a list, or a range as a dictionary."""
+    """A value of a key in a type that the library takes: None, bool, float, str, a list, or a range as a dictionary."""
     if value is None or isinstance(value, (bool, np.bool_)):
         return None if value is None else bool(value)
     if isinstance(value, (str, bytes, os.PathLike)):

@@ -1,4 +1,4 @@
-"""Lookups between the values of a scene key. The table of each value is computed separately."""
+"""Lookups in a table with a scene key as axis, between the values of this key. Each value has a separate table."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -10,10 +10,10 @@ import xarray as xr
 from ._arguments import floats
 from ._native import InputError
 
-_MOST = 5  # values that an interpolation uses: four give the result, one more gives the error
-_LEAST = 3  # with fewer values the error estimate is infinite
-_SAFETY = 16.0  # stated error over the change of the result by one more value; lookups in tables use the same factor
-_MISSED, _RHO_MISSED = 2, 16  # status bits: the tolerance of DOLP or of rho is not met
+_MOST = 5  # values of the key that are used: four give the result, the fifth gives the error estimate
+_LEAST = 3  # with fewer values of the key the error estimate is infinite
+_SAFETY = 16.0  # ratio of the stated error to the change of the result by the fifth value, as kInside in core/table
+_MISSED, _RHO_MISSED = 2, 16  # status bits: DOLP, or rho, misses its tolerance
 _SMOOTH = ("stokes_i", "stokes_q", "stokes_u", "stokes_v", "rho_i", "rho_q", "albedo", "emissivity_s", "emissivity_p",
            "dolp_low", "dolp_high")
 
@@ -22,7 +22,7 @@ def between_tables(table: xr.Dataset, key: str, at: Any, look_up: Callable[[xr.D
     """The results at one value of a key that is a dimension of the table, by polynomials through the four nearest
     values.
 
-    The error estimate includes `_SAFETY` times the change of the result by one more value. Errors: InputError for a
+    The error estimate includes `_SAFETY` times the change of the result by a fifth value. Errors: InputError for a
     value outside the table.
     """
     value = floats(key, at)
@@ -68,7 +68,7 @@ def between_tables(table: xr.Dataset, key: str, at: Any, look_up: Callable[[xr.D
 
 
 def _weights(values: np.ndarray, used: np.ndarray, at: float) -> np.ndarray:
-    """Weight of each value in the polynomial through the values at the positions `used`; zero at other positions."""
+    """Weights with which the polynomial through the values at the positions `used` depends on each of `values`."""
     weights = np.zeros(len(values))
     for i in used:
         weights[i] = np.prod([(at - values[j]) / (values[i] - values[j]) for j in used if j != i])

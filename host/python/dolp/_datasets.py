@@ -15,7 +15,7 @@ from ._arguments import floats, short
 from ._native import InputError
 from ._points import COORDINATES, KEY_ATTRIBUTES, Frame
 
-# Attribute of tables over keys of the scene. Each such key has a line KEY=[VALUE, ...] with the computed values.
+# Attribute of a table that has scene keys as axes. Each such key has a line KEY=[VALUE, ...] with its computed values.
 _COMPUTED = "computed_values"
 
 
@@ -25,7 +25,7 @@ def dataset_at(parts: _native.Parts, frame: Frame) -> xr.Dataset:
 
 def table_dataset(axes: list[tuple[str, np.ndarray]], winds: np.ndarray,
                    curves: list[tuple[str, str, str, np.ndarray]], parts: _native.Parts) -> xr.Dataset:
-    """A table as the Dataset that xarray reads from the table's file."""
+    """A Dataset equal to the Dataset that xarray would read from the file of the table."""
     known = dict(COORDINATES.values())
     coordinates = {name: xr.Variable(name, np.asarray(values, object if isinstance(values, list) else None), known[name])
                    for name, values in axes}
@@ -48,7 +48,7 @@ def table_dataset(axes: list[tuple[str, np.ndarray]], winds: np.ndarray,
 
 
 def concatenated(tables: list[xr.Dataset], key: str, values: np.ndarray) -> xr.Dataset:
-    """Joins tables of scenes that differ in one key. The key becomes a dimension."""
+    """Joins tables of scenes that differ only in `key`. The key becomes a dimension of the result."""
     if not tables:
         raise InputError(f"{key}: needs at least one value")
     first = tables[0]
@@ -61,7 +61,7 @@ def concatenated(tables: list[xr.Dataset], key: str, values: np.ndarray) -> xr.D
     joined.attrs.pop("scene_hash", None)
     computed = _attributes_of(first).get(_COMPUTED)
     _set_attribute(joined, _COMPUTED, "\n".join(filter(None, [computed, f"{key}={values.tolist()}"])))
-    if "scene_overrides" in first.attrs:  # removes the override of this key, because native_table adds it
+    if "scene_overrides" in first.attrs:  # removes the override of `key`, because native_table adds one
         before, _, after = f"\n{first.attrs['scene_overrides']}\n".rpartition(f"\n{key}=")
         rest = after.partition("\n")[2]
         joined.attrs["scene_overrides"] = f"{before}\n{rest}".strip("\n")
@@ -69,9 +69,9 @@ def concatenated(tables: list[xr.Dataset], key: str, values: np.ndarray) -> xr.D
 
 
 def native_table(table: xr.Dataset) -> _native.Table:
-    """The table in a Dataset.
+    """Converts a Dataset to a table of the library.
 
-    A scalar coordinate becomes an axis with one value, or the value of a scene key if it has the name of a key.
+    A scalar coordinate becomes an axis with one value; if it is named as a scene key, it sets this key instead.
     Dimensions may have any names and order, because the coordinate of an axis shows which dimension belongs to it.
     """
     attributes = _attributes_of(table)
@@ -104,7 +104,7 @@ def native_table(table: xr.Dataset) -> _native.Table:
 
 
 def _values_of_keys(table: xr.Dataset, computed: str) -> list[str]:
-    """Overrides of the scene, from the coordinates that have names of scene keys."""
+    """Overrides KEY=VALUE of the scene, from the coordinates that are named as scene keys."""
     known = {key: json.loads(values) for key, _, values in (line.partition("=") for line in computed.split("\n")) if key}
     overrides = []
     for key in [str(name) for name in table.coords if name in KEY_ATTRIBUTES]:
@@ -119,7 +119,7 @@ def _values_of_keys(table: xr.Dataset, computed: str) -> list[str]:
 
 
 def _set_attribute(table: xr.Dataset, name: str, value: str | float) -> None:
-    """Sets an attribute. A long text becomes a variable of characters instead."""
+    """Sets an attribute of a Dataset. A text too long for an attribute becomes a variable of characters instead."""
     encoded = value.encode("utf-8", "surrogateescape") if isinstance(value, str) else b""
     if len(encoded) > _native.most_attribute_bytes:
         encoding = {"char_dim_name": f"{name}_length", "dtype": np.dtype("S1")}
@@ -129,7 +129,7 @@ def _set_attribute(table: xr.Dataset, name: str, value: str | float) -> None:
 
 
 def _attributes_of(table: xr.Dataset) -> dict[str, str | float]:
-    """The reverse of _set_attribute."""
+    """The attributes of a Dataset, with the long texts that _set_attribute stored as variables."""
     attributes = {name: value if isinstance(value, str) else float(floats(f"Dataset: attribute {name}", value))
                   for name, value in table.attrs.items() if isinstance(value, (str, int, float, np.integer, np.floating))}
     return attributes | {name: os.fsdecode(variable.values.item()) for name, variable in table.data_vars.items()

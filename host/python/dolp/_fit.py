@@ -20,15 +20,15 @@ _SYMBOLS = {"dolp": "DOLP", "q_over_i": "Q/I", "emissivity_s": "ε_s", "emissivi
 
 
 class Fit:
-    """The result of a fit. It prints as a report.
+    """The result of a fit. `print` shows it as a report.
 
     `params`: dictionary of the fitted values; `fit[key]` is one of them.
-    `stderr`: dictionary of their standard errors. An error is None if the parameter is at a bound, if the error would
-    reach beyond the range, or if the data do not determine the parameter. Then `why_no_error` in the parameter's entry
-    of values["parameters"] gives the reason. If a parameter is at its bound, the errors of the others assume that it
-    stays there.
-    `covariance`: matrix in the order of `params`; NaN without a standard error.
-    `scene`: the scene with the fitted values, and with the best combination of `compare`.
+    `stderr`: dictionary of the standard errors of these values. An error is None if the parameter is at a bound, if the
+    error would reach beyond the range, or if the data do not determine the parameter. Then `why_no_error` in the
+    parameter's entry of values["parameters"] gives the reason. If a parameter is at its bound, the errors of the other
+    parameters assume that it stays there.
+    `covariance`: matrix in the order of `params`; NaN for a parameter without a standard error.
+    `scene`: the scene with the fitted values, and with the best combination of the values in `compare`.
     `fit_quality`: "good", "doubtful" (p < 0.05), "bad" (p < 0.001), or None without a p-value.
     `values`: the report of `dolp fit --json` as a dictionary: parameters, correlation, chi_square, reduced_chi_square,
     p_value, aic, bic, minima, residuals, models, alike, ranges.
@@ -41,7 +41,7 @@ class Fit:
         self.fit_quality: str | None = values["fit_quality"]
 
     def __getitem__(self, key: str) -> float:
-        """The value of a parameter."""
+        """The fitted value of a parameter."""
         check_names("fit", [key], list(self.params))
         return self.params[key]
 
@@ -52,9 +52,9 @@ class Fit:
         return np.array(self.values["correlation"], dtype=float) * np.outer(errors, errors)
 
     def conf_interval(self, level: float = 0.95, *, scaled: bool = False) -> dict[str, tuple[float | None, float | None] | None]:
-        """Intervals of the profile likelihood at a level of 0.68 or 0.95. An end is None if the data do not bound it.
-        An interval is None if it contains no value. `scaled`: if the fit is doubtful or bad, the intervals are for
-        uncertainties that are larger by the factor sqrt(reduced chi^2).
+        """Confidence intervals at a level of 0.68 or 0.95. An end is None if the data do not limit the parameter there.
+        An interval is None if the data exclude all values. `scaled`: if the fit is doubtful or bad, the intervals are
+        for uncertainties that are larger by the factor sqrt(reduced chi^2).
         """
         if level not in (0.68, 0.95):
             raise InputError(f"level = {level}: must be 0.68 or 0.95")
@@ -62,7 +62,7 @@ class Fit:
         return {one["key"]: one[name] and tuple(one[name]) for one in self.values["parameters"]}
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws data, model and the model's bracket in percent over zenith with Matplotlib. Returns the axes."""
+        """Draws data, model and bracket of all bounces (in percent) over zenith with Matplotlib. Returns the axes."""
         import matplotlib.pyplot as plt
         axes = plt.subplots()[1] if axes is None else axes
         sets: dict[tuple[Any, ...], list[dict[str, Any]]] = {}
@@ -87,7 +87,7 @@ class Fit:
         return axes
 
     def _model(self, name: str, quantity: str, points: dict[str, Any]) -> tuple[xr.DataArray, tuple[Any, Any] | None]:
-        """The fitted model for a data set, and the bracket of the model if it has one."""
+        """Values of the fitted model for a data set, and both ends of their bracket if the scene allows one."""
         scene = self.scene.with_(self._overrides[name])
         try:
             own = evaluate(scene.with_({"emission.bracket": True}), evaluator="cpu", **points)
@@ -106,16 +106,16 @@ class Fit:
 def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, compare: Mapping[str, Iterable[str]] | None = None,
         loss: str = "squares", model_error: str = "none", starts: int = 24, seed: int = 1, plot: Path | None = None,
         evaluator: str = "vulkan", device: str = "") -> Fit:
-    """Fits values of a scene's keys to measured data. Gives intervals of the profile likelihood.
+    """Fits values of a scene's keys to measured data. Also computes confidence intervals.
 
     `data`: a CSV file, or columns by name (a dictionary, a Dataset, a pandas DataFrame): theta_deg or theta_i_deg; dolp,
     q_over_i (signed) or emissivity_s, emissivity_p; uncertainty (one standard deviation), wavelength_um. A list
-    contains several data sets; a set is data, or a pair (data, overrides of the scene).
+    contains several data sets, each alone or as a pair (data, overrides of the scene for this set).
     `vary`: (low, high) or (low, high, start) for each key to fit.
-    `compare`: lists of values for keys. All their combinations are fitted and ranked.
-    `loss`: squares; or huber, soft-l1, cauchy, tukey for data with outliers.
-    `model_error`: none, or bracket. With bracket, the truth at each point may lie anywhere in the bracket of single
-    scattering. Without it, the fit warns with dolp.ModelWarning if its status has bit 32.
+    `compare`: lists of values for other keys. One model for each combination of these values is fitted and ranked.
+    `loss`: squares; for data with outliers huber, soft-l1, cauchy or tukey.
+    `model_error`: none, or bracket. With bracket, the true value at each point may lie anywhere between dolp_low and
+    dolp_high. With none, dolp.ModelWarning appears if single scattering is not accurate enough (status 32).
     `plot`: a .png, .pdf or .svg file for the picture of data, model, residuals and contours that `dolp fit --plot`
     draws.
 

@@ -1,17 +1,17 @@
-"""Types of the C++ module for this package. Users call the functions of __init__.py."""
+"""Types of the C++ module _native, which this package uses. Users call the functions of __init__.py instead."""
 import os
 from typing import Any
 
 import numpy as np
 
 Columns = dict[str, np.ndarray]
-# Parts of a result: quantities [(name, long_name, units, ancillary, values)], status, attributes.
+# A result: its quantities as [(name, long_name, units, ancillary, values)], its status bits, its attributes.
 Parts = tuple[list[tuple[str, str, str, str, np.ndarray]], np.ndarray, dict[str, str | float]]
 
-# Contents of a table: axes [(name, values)], winds, curves [(name, long_name, units, used)], and the parts.
+# A table: axes as [(name, values)], wind speeds, curves as [(name, long_name, units, values)], and its results.
 Contents = tuple[list[tuple[str, np.ndarray]], np.ndarray, list[tuple[str, str, str, np.ndarray]], Parts]
 
-# Keys with values: None, bool, float, str, a list, or a range as {"from", "to", "count", "spacing"}.
+# Keys of a scene with values: None, bool, float, str, a list, or a range as a dict with from, to, count, spacing.
 Values = list[tuple[str, Any]]
 
 class InputError(ValueError): ...
@@ -47,7 +47,7 @@ class Table:
 class Evaluator:
     def __init__(self, evaluator: str, device: str) -> None: ...
     def table(self, scene: Scene, keep_all: bool) -> Contents: ...
-    # Returns the contents, and (beta, its long_name, its units, [(name, long_name, ancillary, has_beta, values)]).
+    # Returns the table, and (beta, long_name and units of beta, [(name, long_name, ancillary, has_beta, values)]).
     def response(self, scene: Scene) -> tuple[Contents, tuple[np.ndarray, str, str, list[tuple[str, str, str, bool, np.ndarray]]]]: ...
     def write_table(self, scene: Scene, path: os.PathLike[str] | str, keep_all: bool, resume: bool) -> str: ...
     def evaluate(self, scene: Scene, columns: Columns, keep_all: bool) -> Parts: ...

@@ -1,4 +1,4 @@
-"""Converts points and columns of callers to columns of the library, and makes the coordinates of the result."""
+"""Converts the points that a user gives to columns for the library, and makes the coordinates of the result."""
 from __future__ import annotations
 
 import os
@@ -32,10 +32,10 @@ class Frame(NamedTuple):
 
 def columns_of(points: Mapping[str, Array], labels: Mapping[str, list[str]] = {},
                has_keys: bool = False) -> tuple[Frame, dict[str, np.ndarray]]:
-    """The frame to which the points broadcast, and the columns for the library. A column has one value for all points,
-    or one value per point.
+    """The shape, dimensions and coordinates to which the arrays of `points` broadcast, and the columns for the library.
+    A column has one value for all points, or one value per point.
 
-    `labels`: for each column of names (materials, bands), the known names. The library takes positions in this list.
+    `labels`: the known names of materials and bands. The columns for the library have positions in these lists.
     """
     check_names("points", [name for name in points if not (has_keys and "." in name)], list(COORDINATES))
     points = {name: _positions(name, values, labels[name]) if name in labels else values
@@ -91,7 +91,7 @@ def _positions(name: str, values: Any, labels: list[str]) -> Any:
 
 def _dimensions(points: Mapping[str, np.ndarray],
                 shape: tuple[int, ...]) -> tuple[tuple[str, ...], dict[str, xr.Variable]]:
-    """Names of the dimensions, and those coordinates that run along only one dimension."""
+    """Names of the dimensions, and the coordinates of those dimensions along which only one column of points varies."""
     dims, coordinates = [], {}
     for axis, size in enumerate(shape):
         along = [column for column, values in points.items()
@@ -117,7 +117,7 @@ def _with_real_index(points: Mapping[str, Array]) -> Mapping[str, Array]:
 
 
 def csv_of(data: Any) -> str:
-    """The text of a CSV file, or columns as CSV text."""
+    """Measured data as CSV text, from the path of a CSV file or from columns by name."""
     if isinstance(data, (str, bytes, os.PathLike)):
         path = input_path("data", data)
         try:
@@ -126,7 +126,7 @@ def csv_of(data: Any) -> str:
             raise InputError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error.reason}") from None
     if not (isinstance(data, Mapping) or hasattr(data, "keys")):
         raise TypeError(f"data: must be a path or columns by name, not {type(data).__name__}")
-    if isinstance(data, xr.Dataset):  # in a result, coordinates and columns have different names
+    if isinstance(data, xr.Dataset):  # coordinates of a Dataset have other names than columns: theta, not theta_deg
         data = data.rename({name: column for column, (name, _) in COORDINATES.items() if name in data.variables})
     names = list(data.variables) if isinstance(data, xr.Dataset) else list(data.keys())
     columns = [floats(name, data[name]) for name in names]

@@ -1,4 +1,4 @@
-"""Response tables, and the reflectances of any material from them."""
+"""Response tables, and the reflectances of rough surfaces of any material from such tables."""
 from __future__ import annotations
 
 import numpy as np
@@ -11,17 +11,17 @@ from ._points import columns_of
 from ._runs import native_evaluator, with_axes
 from ._scene import Scene
 
-_ANGLES = 256  # number of angles at which a reflectance curve is compared with its interpolant
+_ANGLES = 256  # number of angles at which reflectances are compared with the polynomials through their values at beta
 
 
 def response(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **axes: Array) -> xr.Dataset:
     """The response table over the scene's grid, from which `moments` gets the reflectances of any material. The Dataset
     has the contents of the table's file.
 
-    `axes` (theta_deg, sigma or wind_m_s, q) replace axes of the scene. The dimension beta has local angles of
-    incidence. response_i and response_q are the weights of a smooth surface's reflectances at these angles. With
-    masking smith or v-cavity, emission_i and emission_q are the weights for direct emission. albedo and response_error
-    have no dimension beta; `long_name` describes them. Material, wavelength and radiation of the scene do not matter.
+    `axes` (theta_deg, sigma or wind_m_s, q) replace axes of the scene. The dimension beta has angles of incidence on
+    a facet. response_i and response_q are the weights of a smooth surface's reflectances at these angles. With masking
+    smith or v-cavity, emission_i and emission_q are the weights for direct emission. albedo and response_error lack the
+    dimension beta. `long_name` describes each variable. Material, wavelength and radiation of the scene do not matter.
 
     >>> r = dolp.response(scene, theta_deg=[0, 60], sigma=[0.1, 0.2])
     >>> r.response_i.dims, bool(abs(r.response_i.sum("beta") - r.albedo).max() < 1e-12)
@@ -42,8 +42,8 @@ def response(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **axe
 
 def moments(response: xr.Dataset, *, n: Array | None = None, k: Array = 0.0, r_s: xr.DataArray | None = None,
             r_p: xr.DataArray | None = None) -> xr.Dataset:
-    """rho_i, rho_q, albedo and rho_error of materials for k_s = 1 without a diffuse part, from a response table or a
-    part.
+    """rho_i, rho_q, albedo and rho_error of materials, for k_s = 1 without a diffuse part, from a response table or a
+    part of one.
 
     A material is given by n and k, as for `evaluate`, or by the reflectances r_s and r_p of its smooth surface. r_s and
     r_p are DataArrays over the response's beta and may have more dimensions. rho_error is a bound of the errors of
@@ -97,14 +97,14 @@ def _coefficients(beta: xr.DataArray) -> xr.DataArray:
 
 
 def _size(mean: xr.DataArray, half: xr.DataArray) -> xr.DataArray:
-    """Factor of response_error: the largest coefficient of the curves, each coefficient m times 2^m."""
+    """Factor of response_error: the largest of 2^m |a_m|, for the Chebyshev coefficients a_m of both reflectances."""
     growth = xr.DataArray(2.0 ** np.arange(mean.sizes["beta"]), dims="m")
     curves = mean, half / np.sin(np.deg2rad(mean.beta)) ** 2
     return np.maximum(*((growth * abs(curve.dot(_coefficients(mean.beta), "beta"))).max("m") for curve in curves))
 
 
 def _distance(response: xr.Dataset, index: xr.DataArray, r_s: xr.DataArray, r_p: xr.DataArray) -> xr.DataArray:
-    """The largest distance of (r_s + r_p) / 2 and (r_s - r_p) / 2 from their interpolants between the angles beta."""
+    """The largest distance of (r_s + r_p) / 2 and (r_s - r_p) / 2 from the polynomials through their values at beta."""
     beta, c0 = response.beta, float(response.attrs["c0"])
     x = np.polynomial.chebyshev.chebpts1(_ANGLES)
     cosine = xr.DataArray(c0 * np.sinh(0.5 * (1 + x) * np.arcsinh(1 / c0)), dims="angle")
@@ -117,7 +117,7 @@ def _distance(response: xr.Dataset, index: xr.DataArray, r_s: xr.DataArray, r_p:
 
 
 def _at_beta(name: str, values: xr.DataArray, beta: xr.DataArray) -> xr.DataArray:
-    """Checked reflectances. Errors: InputError if they are not at the angles of the response or not in [0, 1]."""
+    """The reflectances as an array. Errors: InputError if they are not at the angles beta or not in [0, 1]."""
     if not isinstance(values, xr.DataArray) or "beta" not in values.coords or values.beta.shape != beta.shape \
             or not np.allclose(values.beta, beta):
         raise InputError(f"{name}: must be a DataArray at the angles beta of the response; "

@@ -30,8 +30,8 @@ def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all
     along sigma; `t.swap_dims(sigma="wind_m_s")` makes it the dimension.
 
     Any other number of the scene can be an axis, with its key as the name. The program then computes one table for each
-    value, and `lookup` interpolates between them: `dolp.lookup(t, **{"path.transmittance": 0.85}, theta_deg=40)`. The
-    Dataset has only attributes that are equal in all these tables.
+    value, and joins them with their common attributes. `lookup` interpolates between them, as in
+    `dolp.lookup(t, **{"path.transmittance": 0.85}, theta_deg=40)`.
 
     >>> t = dolp.table(scene, theta_deg=[0, 60], sigma=[0.1, 0.2, 0.3])
     >>> dict(t.sizes)["theta"], dict(t.sizes)["sigma"], t.dolp.units, t.theta.units
@@ -55,11 +55,11 @@ def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all
 
 def write_table(scene: Scene, path: Path, *, evaluator: str = "vulkan", device: str = "", keep_all: bool = False,
                 resume: bool = False, **axes: Array) -> str:
-    """Writes the table of `table` to a file (.nc, .csv or .npy), part by part, so that memory does not grow with its
-    size.
+    """Writes the table that `table` would return to a file (.nc, .csv or .npy). It does so part by part, so that memory
+    does not grow with the size of the table.
 
     Returns the report of the run. An interrupted call leaves its finished parts beside the file, and `resume` continues
-    from there. Only in `table` can axes have keys of the scene as names.
+    from these parts. Scene keys as axes, such as path.transmittance, are possible only in `table`.
 
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     print(dolp.write_table(scene, folder + "/table.nc").splitlines()[1])
@@ -79,8 +79,8 @@ def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_
     `points` (theta_deg, sigma or wind_m_s, q, wavelength_um, n, k): arrays of the same shape are combined value by
     value, unlike the axes of `table`. Values that you do not give come from the scene. A complex n gives n and k. Any
     other number of the scene can be given too, with its key as the name; each of its values is a separate run.
-    DataArrays keep their dimensions and coordinates. If another array is the only one along a dimension, the dimension
-    gets its name in tables (theta, sigma, q, n, k or wavelength) and its values as coordinate.
+    DataArrays keep their dimensions and coordinates. If an array of another kind is the only one along a
+    dimension, it names this dimension (theta, sigma, q, n, k or wavelength, as in tables) and is its coordinate.
 
     >>> float(dolp.evaluate(scene, theta_deg=40).dolp.round(4))
     0.0295
@@ -110,11 +110,11 @@ def lookup(table: Path | xr.Dataset, **points: Array) -> xr.Dataset:
 
     `table`: a file, or a Dataset from `table` or from such a file, or a part of a Dataset. A part may have fewer values
     of an axis, such as `t.sel(k=0.1)`, and fewer variables; it needs dolp, the Stokes parameters, error_estimate,
-    status and the attribute scene. Dimensions may have any names and order, such as after
+    status and the attribute scene. Dimensions may have any names and order, for example after
     `t.swap_dims(sigma="wind_m_s")`. Axes with values that were not computed, such as after `t.interp(theta=33)`, give
     an InputError. The attribute values_hash belongs to the whole table; a lookup checks it in a file, but not in a
     Dataset. So read a file with a part of a table by `xarray.load_dataset`.
-    `points`: as for `evaluate`; an axis with only one value needs no point.
+    `points`: as for `evaluate`; an axis with only one value needs no array here.
     The file that was used last stays in memory. A Dataset is copied in each call.
 
     >>> t = dolp.table(scene, theta_deg=np.linspace(0, 80, 41), sigma=[0.1, 0.2])
@@ -153,7 +153,7 @@ def mueller(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **poin
 
 
 class Plan:
-    """The plan of a table: what the program would compute and leave out, the reasons, and the cost. It prints as a
+    """The plan of a table: what the program would compute and leave out, why, and at what cost. `print` shows it as a
     report.
 
     `values`: the report of `dolp plan --json` as a dictionary.
@@ -192,7 +192,7 @@ def _evaluator_of(evaluator: str, device: str) -> _native.Evaluator:
 
 @functools.lru_cache(maxsize=1)
 def _table_of(path: str, _: tuple[int, int, int]) -> _native.Table:
-    """The table in a file. The other argument changes with the file, so that a changed file is read again."""
+    """Reads a table. The second argument changes with the file, so that the cache does not return an old table."""
     return _native.Table.read(path)
 
 
@@ -204,7 +204,7 @@ def native_scene(scene: Scene) -> _native.Scene:
 
 
 def with_axes(scene: Scene, axes: Mapping[str, Array]) -> _native.Scene:
-    """The scene with other axes. The keys of `axes` are names of columns, such as theta_deg."""
+    """The scene with `axes` in place of axes of its grid. The names in `axes` are column names, such as theta_deg."""
     native = native_scene(scene)
     check_names("axes", axes, [column for column, *_ in _native.axes()])
     return native.with_([(f"grid.{axis}", label_values(values) if axis in native.labels() else axis_values(axis, values))
@@ -219,7 +219,7 @@ def _check_labels(scene: _native.Scene, columns: Iterable[str]) -> None:
 
 
 def _check_varied(what: str, keys: Iterable[str], columns: Iterable[str]) -> None:
-    """Errors: InputError if a key and a column vary the same value of the scene."""
+    """Errors: InputError if one of `keys` and one of `columns` are the same number of the scene, as surface.n and n."""
     for key in keys:
         table, _, column = key.partition(".")
         if column in columns and table in ("surface", "spectrum", "emission"):

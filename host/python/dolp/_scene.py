@@ -13,12 +13,12 @@ from ._native import InputError
 
 
 class Scene:
-    """A scene: a surface, its radiation and surroundings, and the accuracy of results. From a scene file or its text.
+    """A surface, its radiation and surroundings, and the accuracy of results, from a scene file or from its text.
 
-    Parameters: a path or `text`, and `overrides` of any keys. None removes a key or a table; so does "none" if the key
-    does not take words. A complex surface.n gives n and k. `scene[key]` is the value of a key, or None if the scene has
-    no value. Scenes can be copied, pickled and sent to other processes; these find the files named in a scene at the
-    same paths.
+    Parameters: a path or `text`, and `overrides`, a dict with values for any keys. The value None removes a key or a
+    table; so does "none" if the key does not take words. A complex surface.n gives n and k. `scene[key]` is the value
+    of a key, or None if the scene has no value. You can copy and pickle a scene and send it to another process. That
+    process finds the files that the scene names at the same paths.
 
     >>> smooth = dolp.Scene(scene, {"surface.sigma": 0.01, "title": "a mirror", "surface.n": 1.5 + 0.1j})
     >>> smooth.title, smooth["surface.k"], smooth["surface.masking"], smooth["grid.q"], smooth["path.radiance"]
@@ -28,7 +28,7 @@ class Scene:
     dolp.InputError: surface.sigma = -1: -1 is out of range; must be a number in [0, 10]
     """
 
-    _has_model_warning = False  # true after a dolp.ModelWarning
+    _has_model_warning = False  # true after a dolp.ModelWarning for this scene
 
     def __init__(self, path: Path | Scene | None = None, overrides: Mapping[str, Any] | None = None, *,
                  text: str | None = None) -> None:

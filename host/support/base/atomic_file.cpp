@@ -93,7 +93,7 @@ fs::path temporary_name(const fs::path& target, int number) {
   return folder_of(target) / (".dolp-" + std::to_string(::getpid()) + "-" + std::to_string(number) + ".tmp");
 }
 
-/// Calls make(name) with new names beside `target` until it does not fail with EEXIST. Returns that name and result.
+/// Calls make(name) with names in the folder of `target` until a name is free (no EEXIST). Returns name and result.
 template <class Make>
 std::pair<fs::path, int> with_new_name(const fs::path& target, const Make& make) {
   for (int i = 0; i < kMostNames; ++i) {
@@ -106,7 +106,7 @@ std::pair<fs::path, int> with_new_name(const fs::path& target, const Make& make)
   fail(target, "too many temporary files in its folder; remove .dolp-*.tmp");
 }
 
-/// A new file, with a temporary name or without a name.
+/// Creates a file without a name or, if the system cannot, with a temporary name. Returns the file and its name.
 std::pair<File, fs::path> create_temporary(const fs::path& target) {
   const bool can_be_linked = ::access(kOpenFiles, X_OK) == 0;
   const int unnamed =
@@ -121,7 +121,7 @@ std::pair<File, fs::path> create_temporary(const fs::path& target) {
 void keep_permissions(const File& file, const fs::path& target) {
   struct stat existing {};
   const bool exists = ::stat(target.c_str(), &existing) == 0;
-  // A failure is ignored, because the result is more important than its permissions.
+  // A failure of fchmod is ignored, because the file's content is more important than its permissions.
   if (exists) static_cast<void>(!::fchmod(file.get(), existing.st_mode & kPermissionBits));
 }
 
@@ -138,7 +138,7 @@ void sync_folder(const fs::path& folder, const fs::path& path) {
 
 }  // namespace
 
-// Replaces std::filesystem::canonical, which needs an existing target; an output need not exist.
+// std::filesystem::canonical() would fail for an output that does not exist yet.
 fs::path follow_links(fs::path path) {
   std::error_code error;
   for (int links = 0; fs::is_symlink(path, error); ++links) {
@@ -168,7 +168,7 @@ void check_writable(const fs::path& path) {
   struct stat existing {};
   const bool exists = ::stat(target.c_str(), &existing) == 0;
   if (!exists && errno != ENOENT) fail_errno(path, "cannot create the file");
-  // Root could write to a read-only file, but the user did not ask for that.
+  // Looks at the mode, because access() lets root write to read-only files. The user has protected this file.
   if (exists && (existing.st_mode & kWriteBits) == 0) {
     fail(path, "is read-only; remove it first, or write to another file");
   }
@@ -176,11 +176,11 @@ void check_writable(const fs::path& path) {
 }
 
 struct AtomicFile::Impl {
-  fs::path path;    // path that the user gave, for messages
-  fs::path target;  // path after symbolic links are resolved
+  fs::path path;    // the argument of the constructor, for messages
+  fs::path target;  // follow_links(path)
   File file;
-  fs::path name;         // name until the file is complete; empty: none
-  bool is_kept = false;  // true if the file keeps its name even if it is never complete
+  fs::path name;         // temporary name of the incomplete file; empty: the file has no name yet
+  bool is_kept = false;  // true: the destructor does not remove an incomplete file
   std::uint64_t size = 0;
 
   Impl(fs::path of_user, fs::path of_file, std::pair<File, fs::path> unfinished)
@@ -203,7 +203,7 @@ struct AtomicFile::Impl {
            }).first;
   }
 
-  void copy_to_target() const {  // to a device or pipe
+  void copy_to_target() const {  // used if `target` is a device or pipe
     File device(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
     if (device.get() < 0 && interrupted()) throw Cancelled();
     if (device.get() < 0) fail_errno(path, "cannot open for writing");
@@ -227,7 +227,7 @@ AtomicFile::AtomicFile(const fs::path& path) {
 
 AtomicFile::AtomicFile(const fs::path& path, const fs::path& under_way) {
   check_writable(path);
-  // This object is created before the file. If there is no memory for it, no file remains.
+  // The Impl is created before the file, so that no file remains if there is no memory for the Impl.
   impl_ = std::make_unique<Impl>(path, follow_links(path), std::pair(File(-1), under_way));
   impl_->is_kept = true;
   File& file = impl_->file;
@@ -274,11 +274,11 @@ void AtomicFile::resize(std::uint64_t size) {
 
 void AtomicFile::commit() {
   if (is_device_or_pipe(impl_->target)) return impl_->copy_to_target();
-  const fs::path folder = folder_of(impl_->target);  // needs memory, so it precedes the new name
+  const fs::path folder = folder_of(impl_->target);  // computed before the rename, because lack of memory may end it
   if (interrupted()) throw Cancelled();
   if (::fsync(impl_->descriptor()) != 0) fail_errno(impl_->path, "cannot write");
   if (impl_->name.empty()) impl_->link();
-  // The file stays open and locked until it has its final name, so no other run takes it for unfinished.
+  // The file stays open and locked until it has its final name. So no other run takes it for an unfinished file.
   if (::rename(impl_->name.c_str(), impl_->target.c_str()) != 0)
     fail_errno(impl_->path, "cannot rename the finished file");
   impl_->name.clear();

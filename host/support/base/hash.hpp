@@ -1,4 +1,4 @@
-// FNV-1a hash with 64 bits. It only serves to tell whether two inputs are equal.
+// A 64-bit hash like FNV-1a, but numbers enter as whole 64-bit words. It only serves to tell whether inputs are equal.
 #pragma once
 
 #include <bit>

@@ -2,8 +2,8 @@
 
 namespace dolp {
 
-/// After this call the first SIGINT, SIGTERM or SIGHUP only makes interrupted() true and interrupts waiting calls. The
-/// second one ends the process. Ignored signals, as with nohup, stay ignored.
+/// After this call the first SIGINT, SIGTERM or SIGHUP only makes interrupted() true and ends waiting system calls. The
+/// second signal ends the process. Signals that the process ignores already (nohup, for example) stay ignored.
 void watch_for_interrupts();
 
 bool interrupted();

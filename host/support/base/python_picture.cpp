@@ -17,7 +17,7 @@
 namespace dolp {
 namespace {
 
-/// A file in memory, so that no folder for temporary files is needed.
+/// A file that exists only in memory, so that the program needs no folder for temporary files.
 class MemoryFile {
  public:
   MemoryFile() : file_(::fdopen(::memfd_create("picture", MFD_CLOEXEC), "w+b"), std::fclose) {}
@@ -42,7 +42,7 @@ class MemoryFile {
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
 };
 
-/// Runs a script with an argument and two files for input and output. Returns false if it fails.
+/// Runs a Python script with one argument. Its stdin and stdout are `input` and `output`. Returns false if it fails.
 bool run_python(const char* script, std::string argument, const MemoryFile& input, const MemoryFile& output) {
   std::string program = "/usr/bin/python3", option = "-c", text = script;
   const std::array<char*, 5> arguments = {program.data(), option.data(), text.data(), argument.data(), nullptr};

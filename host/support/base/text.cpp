@@ -79,7 +79,7 @@ std::optional<double> parse_number(std::string_view text) {
 
 void append_number(std::string& text, double value) {
   std::array<char, 32> digits;
-  if (std::isnan(value)) value = kNan;  // writes no sign before nan
+  if (std::isnan(value)) value = kNan;  // without a sign; a negative NaN would become "-nan"
   text.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
 }
 
@@ -134,7 +134,7 @@ std::string one_line(std::string_view text) {
     if (!is_space) line += c;
     if (is_space && !line.empty() && line.back() != ' ') line += ' ';
     if (line.size() > kMessageBytes) {
-      // Removes a UTF-8 sequence that the cut has split: up to three bytes that continue it, and its first byte.
+      // Removes the last UTF-8 character, which may be incomplete: up to three continuation bytes and the first byte.
       for (int i = 0; i < 3 && (static_cast<unsigned char>(line.back()) & 0xC0U) == 0x80U; ++i) line.pop_back();
       line.pop_back();
       return line + "...";
@@ -185,7 +185,7 @@ void check_named_file(const std::string& path, const std::string& prefix) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   const bool may_be_read =
-      // read_text reports a missing file and a folder
+      // missing files and folders pass, because read_text() reports them
       is_regular_file(status) || is_directory(status) || !exists(status);
   if (path == "-" || !may_be_read) throw InputError(prefix + "is not a regular file");
 }

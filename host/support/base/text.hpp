@@ -9,13 +9,13 @@
 
 namespace dolp {
 
-std::string_view trim(std::string_view text);  ///< without blanks (space, tab) at both ends
-std::vector<std::string_view> split(std::string_view text, char separator);  ///< at least one piece
+std::string_view trim(std::string_view text);  ///< removes blanks (space, tab) at both ends
+std::vector<std::string_view> split(std::string_view text, char separator);  ///< returns at least one piece
 
 /// The lines of a text without line ends (LF or CRLF), a UTF-8 byte order mark at its start, or blank lines at its end.
 std::vector<std::string_view> split_lines(std::string_view text);
 
-std::string lower_case(std::string_view text);  ///< ASCII letters only
+std::string lower_case(std::string_view text);  ///< changes only ASCII letters
 
 /// The finite decimal number in a text, which may have blanks around it but nothing else. Independent of the locale.
 /// Errors: nullopt for all other texts, for example nan, inf, 1e999 and 1e-999.
@@ -28,16 +28,16 @@ void append_number(std::string& text, double value);  ///< appends number_text(v
 /// The shortest text that reads back as this double, for messages and scenes: 100000 instead of number_text's 1e+05.
 std::string format_number(double value);
 
-/// Number of inserted, deleted and replaced characters between two words. Compares 80 bytes at most and ignores case.
+/// Number of insertions, deletions and replacements that turn `a` into `b`. Ignores case and the bytes after the 80th.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// The candidate with the smallest edit distance from `name`, or the first of these. `candidates` must not be empty.
+/// The first of the candidates with the smallest edit distance from `name`. `candidates` must not be empty.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
 
-/// The candidate that a mistyped or shortened name probably means, if any is similar. `candidates` must not be empty.
+/// The candidate that a mistyped or shortened name probably means. Empty if none is similar. Needs a candidate.
 std::optional<std::string> near_name(std::string_view name, const std::vector<std::string>& candidates);
 
-std::string one_line(std::string_view text);  ///< cut to a length that suits a message
+std::string one_line(std::string_view text);  ///< replaces line ends by blanks; cuts long texts for a message
 
 /// Text from files and command lines, made safe to display: control characters, bytes that are not UTF-8, and
 /// characters that change the text direction become "?". Tabs stay.
@@ -51,18 +51,18 @@ inline constexpr std::size_t kMostTextBytes = 16U << 20U;  ///< size limit of a 
 /// is longer than `most_bytes` or contains a zero byte.
 std::string read_text(const std::string& path, const std::string& prefix, std::size_t most_bytes = kMostTextBytes);
 
-/// Refuses "-", a pipe or a device where an input or the window names a file. A call that opened it could wait forever.
-/// Errors: InputError that begins with `prefix`.
+/// Checks the path of a file that a scene, another input or the user of the window names. Refuses "-", pipes and
+/// devices, because reading them could wait forever. Errors: InputError that begins with `prefix`.
 void check_named_file(const std::string& path, const std::string& prefix);
 
-/// The bytes of a file that an input names. Errors: the errors of check_named_file() and read_text().
+/// Calls check_named_file() and then read_text(). Errors: the errors of both functions.
 std::string read_named_file(const std::string& path, const std::string& prefix,
                             std::size_t most_bytes = kMostTextBytes);
 
 /// Refuses a path that is not a regular file or cannot be examined. Errors: InputError that begins with `prefix`.
 void check_regular_file(const std::string& path, const std::string& prefix);
 
-std::string input_name(const std::string& path);    ///< for messages: "stdin" for "-"
-std::string shell_quoted(const std::string& text);  ///< in single quotes, for any shell
+std::string input_name(const std::string& path);    ///< name in messages: "stdin" if `path` is "-", else `path`
+std::string shell_quoted(const std::string& text);  ///< `text` in single quotes, as one word of a shell command
 
 }  // namespace dolp

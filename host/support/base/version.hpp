@@ -2,9 +2,9 @@
 
 namespace dolp {
 
-const char* program_version();  ///< "0.2.0"
+const char* program_version();  ///< for example "0.2.0"
 
-/// The commit of the build, with "-changed" if files differ from it; "unknown" outside a repository.
+/// The Git commit of the sources, with "-changed" if files differ from the commit; "unknown" without a repository.
 const char* program_commit();
 
 }  // namespace dolp

@@ -9,7 +9,7 @@
 namespace dolp::vulkan {
 namespace {
 
-// In bytes. Vulkan has no empty buffers, and no struct of the kernels is larger than this.
+// Smallest size of a buffer in bytes. Vulkan forbids empty buffers, and every struct of the kernels fits in 256 bytes.
 constexpr VkDeviceSize kSmallestBuffer = 256;
 
 }  // namespace

@@ -8,19 +8,19 @@
 
 namespace dolp::vulkan {
 
-/// A storage buffer with its memory. It is never empty.
+/// A Vulkan storage buffer with its memory.
 class Buffer {
  public:
-  /// If `texels` is a format, kernels may also read the buffer as texels.
+  /// Creates a buffer with at least `bytes`. If `texels` is a format, kernels can also read texels of this format.
   Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, VkFormat texels = VK_FORMAT_UNDEFINED);
 
   VkBuffer get() const { return buffer_.get(); }
   VkBufferView texels() const { return texels_.get(); }
   VkDeviceSize size() const { return size_; }
 
-  /// Writes bytes to the start of a mapped buffer. The next submission reads them.
+  /// Writes bytes to the start of a mapped buffer. The next submission to the queue sees these bytes.
   void write(std::span<const std::byte> bytes);
-  /// Reads bytes from the start of a mapped buffer. The submission that wrote them must have finished, with a barrier.
+  /// Reads bytes from the start of a mapped buffer. The submission that wrote them must have a barrier and be done.
   void read(std::span<std::byte> bytes) const;
 
  private:

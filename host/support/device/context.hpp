@@ -13,7 +13,7 @@
 
 namespace dolp::vulkan {
 
-/// Collects warnings and errors of the validation layer. The layer may call from any thread.
+/// Collects warnings and errors of Vulkan's validation layer. The layer may call add() from any thread.
 class ValidationLog {
  public:
   void add(std::string message);
@@ -47,11 +47,11 @@ class Instance {
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
 };
 
-/// A device that is chosen by `wish`, with its instance.
+/// A Vulkan instance with the one device that choose_device() selects.
 class Context {
  public:
-  /// Errors: DeviceError if no usable device matches, if double precision is needed and missing, or if the validation
-  /// layer is requested and missing.
+  /// Errors: DeviceError if no usable device matches `wish`, or if double precision or the validation layer is wanted
+  /// but missing.
   explicit Context(const DeviceSelector& wish);
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
@@ -60,7 +60,7 @@ class Context {
   const Device& device() const { return *device_; }
 
   std::vector<std::string> validation_messages() const { return log_.messages(); }
-  /// Errors: DeviceError with the first message of the validation layer, if any.
+  /// Errors: DeviceError with the first of the validation_messages(), if there are any.
   void check_validation() const;
 
  private:

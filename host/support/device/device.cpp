@@ -44,7 +44,7 @@ VkDeviceSize largest_device_heap(const VkPhysicalDeviceMemoryProperties& memory)
 
 dolp::Device::Type type_of(VkPhysicalDeviceType type) {
   using enum dolp::Device::Type;
-  // In the order of VkPhysicalDeviceType.
+  // in the order of the values of VkPhysicalDeviceType
   constexpr std::array kTypes = {kOther, kIntegrated, kDiscrete, kVirtual, kCpu};
   const auto number = static_cast<std::size_t>(type);
   return number < kTypes.size() ? kTypes[number] : kOther;
@@ -65,7 +65,7 @@ std::string why_not_usable(const VkPhysicalDeviceProperties& properties, bool ha
   return {};
 }
 
-// Adds driver and subgroup size, which Vulkan gives apart from VkPhysicalDeviceProperties.
+// Adds the driver's name and the subgroup size. VkPhysicalDeviceProperties does not contain them.
 void add_properties_1_2(VkPhysicalDevice physical, dolp::Device& description) {
   VkPhysicalDeviceDriverProperties driver{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
   VkPhysicalDeviceSubgroupProperties subgroup{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES,
@@ -77,7 +77,7 @@ void add_properties_1_2(VkPhysicalDevice physical, dolp::Device& description) {
   description.subgroup_size = subgroup.subgroupSize;
 }
 
-// On a CPU device a workgroup has the size of one vector. A larger one would waste invocations in small dispatches.
+// On a CPU a workgroup has the size of a subgroup. In larger workgroups, small dispatches would waste invocations.
 std::uint32_t local_size_of(const dolp::Device& device) {
   if (device.type != dolp::Device::Type::kCpu || device.subgroup_size == 0) return kLocalSize;
   return std::min(device.subgroup_size, kLocalSize);
@@ -143,7 +143,7 @@ MemoryType Device::memory_type(std::uint32_t allowed, MemoryUse use) const {
   VkMemoryPropertyFlags required = 0;
   VkMemoryPropertyFlags preferred = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
   if (use != MemoryUse::kDeviceOnly) required = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT;
-  // For readback, cached memory is preferred to fast memory of the device, because the host reads uncached memory a
+  // For readback, memory that the host caches is preferred to fast device memory: the host reads uncached memory a
   // hundred times slower.
   if (use == MemoryUse::kReadback) preferred = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
 

@@ -9,19 +9,19 @@
 
 namespace dolp::vulkan {
 
-/// Numbers of storage buffers and texel buffers that a kernel binds. Texel buffers follow the storage buffers.
+/// Each kernel binds this many storage buffers and texel buffers. The texel buffers have the last binding numbers.
 constexpr std::uint32_t kStorageCount = 7;
 constexpr std::uint32_t kTexelCount = 2;
-/// Largest number of invocations in a workgroup. Every device allows 128.
+/// Largest number of invocations in a workgroup that dolp uses. Vulkan guarantees that every device allows 128.
 constexpr std::uint32_t kLocalSize = 64;
 
-/// Description of a device. If dolp cannot run on it, the description has the reason.
+/// Properties of a device. If dolp cannot run on the device, dolp::Device::why_not has the reason.
 dolp::Device describe(VkPhysicalDevice physical);
 
 enum class MemoryUse {
-  kDeviceOnly,  ///< not mapped
-  kUpload,      ///< mapped; written by the host
-  kReadback,    ///< mapped; read by the host
+  kDeviceOnly,  ///< not mapped into the host's memory
+  kUpload,      ///< mapped, so that the host can write it
+  kReadback,    ///< mapped, so that the host can read it
 };
 
 struct MemoryType {
@@ -29,7 +29,7 @@ struct MemoryType {
   VkMemoryPropertyFlags flags = 0;
 };
 
-/// A logical device with a queue that computes.
+/// A logical Vulkan device with one compute queue.
 class Device {
  public:
   /// `float64` enables double precision in shaders; the device must support it.
@@ -43,9 +43,9 @@ class Device {
   std::uint32_t queue_family() const { return queue_family_; }
   const VkPhysicalDeviceLimits& limits() const { return limits_; }
   std::uint32_t local_size() const { return local_size_; }          ///< number of invocations in a workgroup
-  std::uint32_t timestamp_bits() const { return timestamp_bits_; }  ///< valid bits; 0 without timestamps
+  std::uint32_t timestamp_bits() const { return timestamp_bits_; }  ///< valid bits of a timestamp; 0: no timestamps
 
-  /// The best memory type for a use. Bit i of `allowed` allows type i. Errors: DeviceError if no allowed type fits.
+  /// The best memory type for `use`. Bit i of `allowed` allows type i. Errors: DeviceError if no allowed type fits.
   MemoryType memory_type(std::uint32_t allowed, MemoryUse use) const;
 
  private:

@@ -6,7 +6,7 @@
 
 namespace dolp {
 
-/// Whether the Khronos validation layer is used, for tests.
+/// Whether Vulkan's validation layer checks all calls. It is for tests.
 enum class ValidationMode {
   kFromEnvironment,  ///< used if the environment variable DOLP_VALIDATION is 1
   kOff,
@@ -14,7 +14,7 @@ enum class ValidationMode {
 };
 
 struct DeviceSelector {
-  std::string device = {};    ///< part of a name, or position; see choose_device
+  std::string device = {};    ///< the `choice` of choose_device()
   bool needs_double = false;  ///< true if shaders need double precision
   ValidationMode validation = ValidationMode::kFromEnvironment;
 };
@@ -26,11 +26,11 @@ struct DeviceList {
 
 DeviceList list_devices();  ///< does not throw if there are no devices
 
-/// The position in `devices` of the device that `choice` means. A number in the list is a position. Any other text is a
-/// part of a name, where case does not matter. An empty text matches all devices.
-/// If several devices match, chooses the first usable one (with double precision if `float64`) in the order discrete
-/// GPU, integrated GPU, virtual GPU, CPU, other.
-/// Errors: DeviceError that lists the devices if nothing matches, or names the features that the matching devices lack.
+/// Returns the position in `devices` of the device that `choice` names. If `choice` is a whole number below the number
+/// of devices, it is the position. Any other text matches the devices whose names contain it; case does not matter.
+/// Of the usable devices that match (with double precision if `float64` is true), takes the first in the order
+/// discrete GPU, integrated GPU, virtual GPU, CPU, other.
+/// Errors: DeviceError that lists the devices, if no device matches, is usable or has double precision.
 std::size_t choose_device(const std::vector<Device>& devices, const std::string& choice, bool float64);
 
 }  // namespace dolp

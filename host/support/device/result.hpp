@@ -1,4 +1,4 @@
-// Converts results of Vulkan calls to exceptions, and owns the objects that these calls create.
+// Functions that convert results of Vulkan calls to exceptions, and owners of the objects that these calls create.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -10,12 +10,12 @@
 namespace dolp::vulkan {
 
 /// The driver did not finish a submission or a compilation within a time limit, or before the user interrupted it. The
-/// driver still uses its inputs, so no object of the device may be destroyed.
+/// driver may still use Vulkan objects of the device, so the program must not destroy any of them.
 struct DeviceTimeout : DeviceError {
   explicit DeviceTimeout(const std::string& message);
 };
 
-/// True after a DeviceTimeout. Then the program must end without cleaning up, because the driver's threads still run.
+/// True after a DeviceTimeout. The program must then end without destructors, because the driver's threads still run.
 bool driver_is_busy();
 
 /// The device became unusable. A new logical device may work, even on the same hardware.
@@ -24,8 +24,8 @@ struct DeviceLost : DeviceError {
 };
 
 std::string result_name(VkResult result);  ///< for example "VK_ERROR_DEVICE_LOST"
-bool lacks_addresses();                    ///< too little address space is left for a driver
-bool lacks_threads();                      ///< the system allows fewer threads than a driver needs
+bool lacks_addresses();                    ///< true if too little address space is left for a driver
+bool lacks_threads();                      ///< true if the system allows fewer threads than a driver needs
 
 /// Throws unless `result` is VK_SUCCESS. `action` is a phrase such as "creating a buffer". Errors: DeviceLost;
 /// MemoryError if the device or its driver is out of memory; otherwise DeviceError "Vulkan: ACTION failed: RESULT".
@@ -53,7 +53,7 @@ class Handle {
   T object_ = VK_NULL_HANDLE;
 };
 
-/// Calls a create function of Vulkan. `action`: a phrase as in check(). Errors: the errors of check().
+/// Calls `create`, a function such as vkCreateBuffer. Returns an owner of the new object. Errors: those of check().
 template <class Owner, class Info, class T>
 Owner created(VkDevice device, VkResult (*create)(VkDevice, const Info*, const VkAllocationCallbacks*, T*),
               const Info& info, const std::string& action) {

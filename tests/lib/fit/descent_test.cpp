@@ -4,8 +4,8 @@
 namespace dolp::fit {
 namespace {
 
-// Least squares determine a step, with the parameters that would leave the bounds at their bound. These parameters then
-// go only half of the way. A scale as small as kScale damps no step.
+// Parameters that a step would take out of their bounds are fixed at the bound, and least squares determine the step of
+// the others. The fixed parameters then go only half of the way. The scale kScale is so small that it damps no step.
 TEST(PredictStep, ParametersLeaveTheBounds_OthersAreSolvedAgain) {
   constexpr double kScale = 1e-14;
   constexpr double kRounding = 1e-6;  // rounding error of normal equations with almost parallel columns
@@ -44,7 +44,7 @@ TEST_F(FitTest, Jacobian_IsThatOfFinerDifferences) {
   Residuals exact(model, 1e-10, Differences::kCentral, evaluator_, {});
   const Eigen::VectorXd point = Eigen::Vector2d(0.3, 0.6);
   Linearisation found = residuals.at({point}).front();
-  for (int i = 0; i < 2; ++i) residuals.linearise({&found});  // the first call chooses the steps of the differences
+  for (int i = 0; i < 2; ++i) residuals.linearise({&found});  // the first call chooses the steps of finite differences
   constexpr double kStep = 1e-4;
   for (Eigen::Index j = 0; j < 2; ++j) {
     Eigen::VectorXd below = point, above = point;

@@ -28,7 +28,7 @@ TEST_F(FitTest, IntervalEnds_LieWhereTheBestOfTheOthersHasGrownSo) {
       ASSERT_TRUE(end.has_value());
       const FitResult held =
           fitted(data, {number("surface.n", 1.1, 4.0)}, {}, {"surface.sigma=" + std::to_string(*end)});
-      // Interval ends have an error of 0.5 % of the root of the growth, so 1 % of the growth. to_string has six digits.
+      // An interval end has an error of 0.5 % of sqrt(growth of chi^2), so 1 % of the growth. to_string has six digits.
       EXPECT_NEAR(held.chi_square - result.chi_square, is_95 ? 3.841 : 1.0, 0.015 * (is_95 ? 3.841 : 1.0));
     }
   }
@@ -43,7 +43,7 @@ TEST_F(FitTest, DoubtfulFit_ScaledIntervalsAreThoseOfLargerUncertainties) {
   for (Measurement& one : data.measurements) *one.uncertainty *= std::sqrt(*result.reduced_chi_square);
   const FitResult wider = fitted(data, parameters);
   EXPECT_EQ(fit_quality(wider.p_value), "good");
-  // Tolerance as a share of the half-width: both ends have an error of 0.5 % of the root of the growth of chi^2.
+  // Tolerance as a share of the half-width: each end has an error of 0.5 % of sqrt(growth of chi^2).
   constexpr double kRoot = 0.02;
   for (std::size_t j = 0; j < 2; ++j) {
     const FitParameter &one = result.parameters[j], &other = wider.parameters[j];
@@ -106,7 +106,7 @@ TEST_F(FitTest, Intervals_HoldTheTruthAsOftenAsTheySay) {
       options.starts = 1;
       const FitResult result =
           fitted(measured(kNoise, {}, has_uncertainties, 5, static_cast<std::uint64_t>(draw)), parameters, options);
-      // Tests one parameter per draw, because both parameters of a draw are correlated.
+      // Tests one parameter per data set, because the errors of both parameters are correlated.
       const std::size_t j = static_cast<std::size_t>(draw) % 2;
       const auto holds = [&](const FitInterval& interval) {
         return interval.low.value_or(0.0) <= truth[j] && truth[j] <= interval.high.value_or(10.0);

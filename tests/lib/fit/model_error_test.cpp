@@ -1,4 +1,4 @@
-// Fits that allow for the bracket of the model.
+// Fits that allow for the bracket of DOLP as an error of the model.
 #include "fit_support.hpp"
 
 namespace dolp::fit {
@@ -36,7 +36,7 @@ TEST_F(FitTest, ModelErrorOfTheBracket_ResidualIsTheDistanceFromTheInterval) {
   }
 }
 
-// At an end of the interval of n, chi^2 minimised over sigma is the quantile for 20 degrees of freedom.
+// At the ends of n's interval, chi^2 minimised over sigma is the quantile of its distribution (20 degrees of freedom).
 TEST_F(FitTest, ModelErrorOfTheBracket_IntervalsEndAtTheQuantileOfChiSquared) {
   const SceneValues scene = parse_scene(kScene, "scene");
   const FitRange sigma = number("surface.sigma", 0.05, 0.5);
@@ -68,7 +68,7 @@ TEST_F(FitTest, ModelErrorOfTheBracket_IntervalsEndAtTheQuantileOfChiSquared) {
                InputError);
 }
 
-// The data are far from both ends of the bracket, so no n is possible. With scaled uncertainties some values are.
+// The data are far from both ends of the bracket, so no n is possible. With scaled uncertainties some values of n are.
 TEST_F(FitTest, ModelErrorOfTheBracket_ThatExplainsNothing_LeavesEmptyIntervals) {
   MeasuredData data = measured(0.0);
   for (std::size_t i = 0; i < 20; i += 2) data.measurements[i].value += 20.0 * kNoise;

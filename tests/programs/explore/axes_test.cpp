@@ -1,4 +1,4 @@
-// Axes with typed ends, logarithmic axes, and the colours of the map.
+// Axes whose ends a user types, logarithmic axes, and the colours of the map.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -24,7 +24,7 @@ std::string sixteen_films() {
   return "surface.coating=[" + films + "]";
 }
 
-/// A setting that a scene needs before it takes a key.
+/// A setting without which a scene does not accept this key.
 std::string needed_by(const Key& key) {
   for (const auto& [begin, setting] : {std::pair{"source.scale", "source.irradiance=1"},
                                        {"surface.wind_m_s", "surface.distribution=gaussian"},
@@ -211,7 +211,7 @@ TEST(Conflicts, EveryChoiceInEveryScene_IsTakenWithTheLeastThatItNeeds) {
         Changes needed = change_with_needed(changed, [&](SceneEdits& trial) { trial.set({chosen}); });
         EXPECT_EQ(needed.empty(), is_accepted(edits, {chosen})) << chosen.key << " = " << word;
         EXPECT_EQ(changed.scene().word(chosen.key), word);
-        // Without any of them the choice is refused.
+        // If any one of these changes is left out, the choice is refused.
         needed.push_back(chosen);
         for (std::size_t i = 0; i + 1 < needed.size(); ++i) {
           Changes fewer = needed;

@@ -44,7 +44,7 @@ TEST(ExploreSession, Results_AreStaleUntilTheSceneIsComputed_AndKeepTheirParamet
   expect_same(session.curve().points(), truth(session.scene(), session.curve().points()));
   EXPECT_LE(session.curve().worst_error(), 1e-3);
   EXPECT_GT(session.curve().worst_error(), 0.0);
-  // The overlay is a curve for the other slope distribution with the same D(0).
+  // The overlay is a curve for the other slope distribution with the same density D(0) of horizontal facets.
   EXPECT_EQ(session.overlay()->scene().word("surface.distribution"), "gaussian");
   EXPECT_DOUBLE_EQ(*session.overlay()->scene().number("surface.sigma"), 0.4 / std::sqrt(2.0));
   driver.session.set("surface.distribution", "gaussian");

@@ -64,7 +64,7 @@ using namespace dolp;
 using namespace dolp::explore;
 using namespace dolp::explore_test;
 
-/// Tests of the list of skies. `place` is how far an entry is below the top of the closed list, in list heights.
+/// Tests of the list of skies. `entry` is how far a sky is below the top of the closed list, in heights of that list.
 class Skies : public Window {
  protected:
   void choose(float entry) {

@@ -100,7 +100,7 @@ TEST_F(WindowLook, Note_WaitsForTheMouseToRest_AndLeavesTheNextValueInSight) {
   const Area slider = app_->control_area("surface.sigma");
   Area next = app_->control_area("surface.q");
   next.max = next.at(0.6F, 1.0F);  // without the part that the mouse pointer covers
-  // The note appears here, right of the panel.
+  // The note appears in this area, right of the panel.
   const Area note{{slider.max.x + 150.0F, slider.min.y}, {slider.max.x + 300.0F, slider.max.y + 40.0F}};
   const std::string without = pixels(note);
   const double moved_s = ImGui::GetTime();

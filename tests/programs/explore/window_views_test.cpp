@@ -103,7 +103,7 @@ TEST(ExplorePanels, Spectrum_IsTheCurveOverWavelengthAtTheCursor_AndIsComputedWh
   session.set_theta(70.0);
   driver.settle();
   ASSERT_TRUE(session.spectrum().is_finished());
-  // from half of the lower end of the band, 8 um, to the last wavelength of the material
+  // from 4 um, half of the band's lower end, to the last wavelength of the material
   EXPECT_EQ(session.wavelengths().scale, (Scale{4.0, 20.0}));
   const std::size_t at = 40;
   const Scene scene = session.spectral_scene().with("spectrum.wavelength_um", session.spectrum().at()[at]);

@@ -17,10 +17,10 @@ class CpuKernel {
   /// Builds the masking tables of `shapes`, which must be in ascending order, and drops earlier tables. If the masking
   /// needs tables, `moments` accepts only entries with these shapes.
   virtual void build_masking_tables(std::vector<std::uint32_t> shapes) = 0;
-  /// Adds DOLP_COLUMN_PARTS sums for each column of the data to `columns`.
+  /// Returns the moments of `entry`, and adds DOLP_COLUMN_PARTS sums for each column of the data to `columns`.
   virtual kernel::MomentsNode moments(const MomentsEntry& entry, std::span<double> columns) = 0;
 
-  /// Writes the two sums of each column of the data to `columns`.
+  /// Returns the sums over the azimuths at `slope`, and writes the two sums of each column of the data to `columns`.
   virtual kernel::AzimuthNode azimuths(const kernel::SlopeNode& slope, std::span<double> columns) = 0;
 
   /// The pBRDF f cos(theta_i) cos(theta_r) for k_s = 1, in 1/sr, divided by the power of two that BeamNode::density

@@ -63,7 +63,7 @@ struct KernelSource {
   std::vector<real2> rule_nodes;
   std::vector<real4> masking_table;
 
-  /// `source` has the model and the rules of `data`, but no masking tables.
+  /// The kernel source with the model and the rules of `data`, but without masking tables.
   static KernelSource of(const KernelData& data) {
     KernelSource source;
     source.kDistribution = static_cast<uint>(data.distribution);
@@ -155,7 +155,7 @@ class SourceKernel final : public CpuKernel {
     sums[0] = static_cast<double>(result.columns.i[k]);
     sums[1] = static_cast<double>(result.columns.q[k]);
   }
-#else  // files that only plan leave out the columns
+#else  // slope_samples.cpp needs no columns
   static void copy_column(std::size_t, const KernelSource::SlopeResult&, std::span<double>) {}
 #endif
 

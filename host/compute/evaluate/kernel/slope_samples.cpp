@@ -16,17 +16,17 @@ using sampling_kernel::KernelSource;
 
 namespace {
 
-// If distributions differ in width, the slopes between the narrowest and the widest are split at ends with this
-// spacing, in e-folds of slope. Tuned. Evaluations in thousands for the grid of plan/constants.hpp, at half this value,
-// this and double: masking none 27.4, 24.0, 22.1; v-cavity 54.2, 50.9, 49.2.
+// Spacing, in e-folds of slope, of more ends of pieces between the narrowest and the widest of several distributions.
+// Tuned. Evaluations in thousands for the grid of plan/constants.hpp, at half this value, this and double: masking none
+// 27.4, 24.0, 22.1; v-cavity 54.2, 50.9, 49.2.
 constexpr double kWidthStep = 1.3;
 constexpr double kNodeWidthStep = 0.4;  // the number of nodes is determined for widths at this spacing, in e-folds
 
 constexpr double kNoFacets = 80.0;  // a share of the facets below exp(-kNoFacets) counts as zero
 
-// The requirements of a shape of corners_of() on the rule of a piece.
+// The digits that one shape of corners_of() needs on a piece.
 struct SampleRequest {
-  double all = 0.0;  // weight_of_shape() of orders.glsl
+  double all = 0.0;  // estimated albedo, weight_of_shape() of orders.glsl
   double digits = 0.0;
 };
 
@@ -36,7 +36,7 @@ struct End {
   bool is_breakpoint = false;         // true if this end is that breakpoint itself
 };
 
-// Factors of the weights of the sampled slopes, for all shapes of one width m. A weight is common *
+// Factors of the weights of the sampled slopes, for all shapes of one width m. The weight of a slope is common *
 // exp(-exponent_factor(shape) * exponent). Constant factors are left out: the normalisation cancels them.
 struct SlopeWeights {
   double m = 0.0;
@@ -85,8 +85,8 @@ struct SlopeSampling::Impl {
   explicit Impl(const KernelData& of)
       : data(of), source(KernelSource::of(of)), rule(std::bit_cast<KernelSource::RuleNode>(of.rule)) {}
 
-  // The ends of the pieces: the direction's breakpoints up to the first at or beyond the cut, and more ends between the
-  // narrowest and the widest of the shapes `corners`.
+  // The ends of the pieces: the direction's breakpoints up to the first at or beyond the cut of `corners`, and more
+  // ends between the narrowest and the widest shape of `corners`.
   std::vector<End> ends_of(std::uint32_t theta, std::span<const kernel::ShapeNode> corners) {
     const kernel::ThetaNode& node = data.thetas[theta];
     const double cut = corners.front().cut;
@@ -127,7 +127,7 @@ struct SlopeSampling::Impl {
     return task;
   }
 
-  // The piece with the most nodes that a shape of `corners` requires. `requests` receives the digits for each shape.
+  // The piece for the shape of `corners` that needs the most nodes. `requests` receives the digits for each shape.
   KernelSource::Piece hardest_piece(const KernelSource::ThetaNode& theta, const KernelSource::IndexNode& index,
                                     std::span<const kernel::ShapeNode> corners, const KernelSource::Task& task,
                                     std::vector<SampleRequest>& requests) {
@@ -216,7 +216,7 @@ struct SlopeSampling::Impl {
     }
   }
 
-  // The moments of one shape, without the slopes beyond the cut. `columns` receives the sums of the columns.
+  // The moments of one shape, without the facets beyond the slope cut. `columns` receives the sums of the columns.
   kernel::MomentsNode moments_of(const SlopeSamples& samples, const KernelSource::ShapeNode& shape,
                                  const SlopeWeights& weights, std::span<const kernel::AzimuthNode> azimuths,
                                  std::span<const double> of_columns, Eigen::ArrayXd& shape_weights,

@@ -31,20 +31,20 @@ struct SampledSlope {
   double digits = 0.0;  ///< digits that the sum over the azimuths needs
 };
 
-/// A piece of the slope axis: in SlopeSamples::slopes `fine` slopes from position `first`, then `coarse` slopes.
+/// A piece of the slope axis: in SlopeSamples::slopes `fine` slopes of the finer rule from `first`, then `coarse` ones.
 struct SampledPiece {
   double start = 0.0;
   double end = 0.0;
   std::uint32_t first = 0;
   std::uint32_t fine = 0;
   std::uint32_t coarse = 0;
-  std::uint32_t direction_piece = 0;  ///< number of the direction's piece (KernelData::pieces) that contains it
+  std::uint32_t direction_piece = 0;  ///< number of the direction's piece (KernelData::pieces) that contains this piece
 };
 
-/// The slopes at which a direction and an index are sampled for all wanted shapes. They do not depend on other entries.
+/// The slopes at which the kernel samples a direction and an index for all wanted shapes. Other pairs do not matter.
 struct SlopeSamples {
   SampledEntries entries;
-  double cut = 0.0;  ///< slopes above it are left out
+  double cut = 0.0;  ///< slopes above this one are left out
   std::vector<SampledPiece> pieces;
   std::vector<SampledSlope> slopes;
 };
@@ -59,7 +59,7 @@ struct SampledAzimuths {
   std::vector<double> columns;  ///< two sums for each column of each slope, slope by slope
 };
 
-/// Plans the slope samples of a request and integrates over them. `data` must outlive it; several threads may call it.
+/// Plans the slope samples of a request and integrates over them, in any thread. `data` must outlive the object.
 class SlopeSampling {
  public:
   explicit SlopeSampling(const KernelData& data);
@@ -79,7 +79,7 @@ class SlopeSampling {
   std::unique_ptr<Impl> impl_;
 };
 
-/// One element per pair of direction and index, for the directions from `first` to `last` - 1.
+/// The wanted entries of each pair of a direction and an index, for the directions from `first` to `last` - 1.
 std::vector<SampledEntries> sampled_entries(const MomentsRequest& request, const KernelData& data, std::size_t first,
                                             std::size_t last);
 

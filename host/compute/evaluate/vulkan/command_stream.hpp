@@ -31,8 +31,8 @@ class CommandStream {
   /// Runs `pipeline` on `count` invocations from `first` (see DOLP_PUSH_CONSTANTS); does nothing if `count` is 0.
   void dispatch(const Kernels& kernels, VkPipeline pipeline, std::uint32_t first, std::uint32_t count,
                 int largest_order, std::uint32_t sky = 0);
-  /// Submits the recording and waits for its end. Returns its duration in seconds by the device's clock or, if the
-  /// queue has no timestamps, by the host's clock; this includes the submission.
+  /// Submits the recording and waits for its end. Returns the duration in seconds by the device's clock. If the queue
+  /// has no timestamps, the time is by the host's clock and includes the submission.
   /// Errors: DeviceTimeout after `timeout_s`; DeviceError if the device is lost.
   double submit_and_wait(double timeout_s);
 
@@ -50,7 +50,7 @@ class CommandStream {
 /// A buffer on the device that the host writes, directly or through a staging buffer, and kernels read.
 class InputBuffer {
  public:
-  /// If `force_staging`, the buffer uses staging on every device. Otherwise it does if the host cannot map the memory.
+  /// The buffer uses staging if `force_staging`, or if the host cannot map the memory of the device.
   InputBuffer(const Device& device, VkDeviceSize bytes, bool force_staging, VkFormat texels = VK_FORMAT_UNDEFINED);
 
   VkBuffer get() const { return buffer_.get(); }

@@ -53,7 +53,7 @@ UniquePipeline compile(VkDevice device, VkPipelineLayout layout, std::uint32_t l
   const auto shader =
       created<UniqueShaderModule>(device, vkCreateShaderModule, module_info, "creating a shader module");
 
-  // The order is that of DOLP_SPEC_*; the enumerators have the numbers of interface.glsl.
+  // In the order of DOLP_SPEC_*. The enumerators have the numbers of interface.glsl.
   const std::array<std::uint32_t, 9> values{local_size,
                                             static_cast<std::uint32_t>(variant.distribution),
                                             static_cast<std::uint32_t>(variant.masking),
@@ -85,7 +85,7 @@ constexpr auto kInterruptInterval = std::chrono::milliseconds(20);
 constexpr double kDefaultCompilationLimitS = 120.0;  // SwiftShader on an idle processor needs at most 7 s
 constexpr const char* kCompilationLimit = "DOLP_COMPILATION_LIMIT_S";
 
-/// Seconds that a driver may take for one kernel. InputError if the environment variable is not a number above 0.
+/// Seconds that a driver may take for one kernel. InputError if the variable kCompilationLimit is no number above 0.
 double compilation_limit_s() {
   const char* const wish = std::getenv(kCompilationLimit);
   if (wish == nullptr) return kDefaultCompilationLimitS;
@@ -205,7 +205,7 @@ VkPipeline Kernels::pipeline(const KernelVariant& variant) {
 
 UniquePipeline Kernels::create(std::span<const std::uint32_t> spirv, const KernelVariant& variant) const {
   const double limit_s = compilation_limit_s();
-  // A driver may never finish a compilation, and nothing can stop it. So it gets a thread that can be abandoned.
+  // A driver may never finish a compilation, and nothing can stop it. So a thread compiles that can be abandoned.
   std::packaged_task<UniquePipeline()> compilation(
       [device = device_.get(), layout = layout_.get(), local_size = local_size(), spirv, variant] {
         return compile(device, layout, local_size, spirv, variant);

@@ -32,7 +32,7 @@ struct KernelVariant {
   std::uint32_t columns = 0;
   std::uint32_t column_kind = DOLP_COLUMNS_SKY;
   bool has_curves = false;
-  std::uint32_t width = 1;  ///< largest number of entries in a row: 1, or kRowWidth of plan/rows.hpp
+  std::uint32_t width = 1;  ///< largest number of entries per invocation: 1, or kRowWidth of plan/rows.hpp
   auto operator<=>(const KernelVariant&) const = default;
 };
 
@@ -47,13 +47,12 @@ class Kernels {
 
   struct Bindings {
     std::array<VkBuffer, kStorageCount> buffers{};
-    std::array<VkBufferView, kTexelCount> texels{};  ///< the first is DOLP_BINDING_RULE_NODES
+    std::array<VkBufferView, kTexelCount> texels{};  ///< texels[0] is bound to DOLP_BINDING_RULE_NODES
   };
   /// A missing buffer or view is replaced by another: nothing reads it, but it must not refer to a destroyed buffer.
   void bind(const Bindings& bindings);
 
   VkPipeline pipeline(const KernelVariant& variant);
-  /// True if the pipeline has been created.
   bool has(const KernelVariant& variant) { return known(variant) != VK_NULL_HANDLE; }
   std::uint32_t local_size() const { return device_.local_size(); }
   VkPipelineLayout layout() const { return layout_.get(); }

@@ -31,7 +31,7 @@ class Packing {
   std::size_t node_bytes() const {
     return real_count<Node>() * real_bytes();
   }
-  /// Bytes of a structure and of `numbers` numbers that belong to it. The numbers follow all structures.
+  /// Bytes of a Node and of `numbers` numbers that belong to this Node. In a buffer all numbers follow all Nodes.
   template <class Node>
   std::size_t output_bytes(std::size_t numbers) const {
     return node_bytes<Node>() + numbers * real_bytes();
@@ -44,7 +44,6 @@ class Packing {
   VkFormat rule_texels() const { return float64_ ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32_SFLOAT; }
   VkFormat masking_texels() const { return float64_ ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT; }
   std::size_t texels_of_table() const { return masking_nodes() * (float64_ ? 2 : 1); }
-  /// Largest relative rounding error in the kernels' precision.
   double unit_roundoff() const { return float64_ ? kDoubleRoundoff : kFloatRoundoff; }
 
   /// Fills `bytes` with node_of(0), ..., node_of(count - 1), called by all cores in any order. Numbers beyond the range

@@ -72,7 +72,7 @@ class RowRun final : public Run<Moments> {
     return invocations * rows_.width * packing_.output_bytes<kernel::MomentsNode>(column_sums(data_));
   }
 
-  /// Begins the submission of the block's first tile, with the inputs that all its tiles share.
+  /// Begins the submission of the block's first tile, with the inputs that all tiles of the block share.
   void begin_block(const Block& block) {
     CommandStream& stream = context_.stream;
     stream.begin();
@@ -110,7 +110,7 @@ class RowRun final : public Run<Moments> {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       cost_.evaluations += packing_.read<kernel::MomentsNode>(scratch_, i * rows_.width).evaluations;
     }
-    // Each range has all pieces of its rows, so the pieces of a row are always summed in the same order.
+    // Each range covers whole rows, so the pieces of a row are always summed in the same order.
     const auto [least, most] = std::ranges::minmax(pieces, {}, &RowPiece::row);
     const std::uint32_t first_row = least.row;
     parallel_ranges(most.row - least.row + std::size_t{1}, kRowsAtOnce, [&](std::size_t first, std::size_t last) {

@@ -29,7 +29,7 @@ struct KernelContext {
 class TiledRun {
  public:
   virtual ~TiledRun() = default;
-  /// Creates the pipelines before the computation, so that this time is measured separately.
+  /// Creates the pipelines before the computation, so that the time for them is measured separately.
   virtual void create_pipelines() { context_.kernels.pipeline(variant_); }
   const Work& cost() const { return cost_; }
 
@@ -42,7 +42,7 @@ class TiledRun {
   void add_inputs(std::uint32_t binding, std::size_t count, VkFormat texels = VK_FORMAT_UNDEFINED) {
     add_input(binding, count * packing_.node_bytes<Node>(), texels);
   }
-  /// Creates the buffer for the results and the buffers of the rule, then binds all buffers.
+  /// Creates the buffer for the results and the buffers of the Gauss rules, then binds all buffers.
   void add_results(std::uint32_t binding, std::size_t bytes, const KernelData& data, const KernelVariant& variant);
   /// Records the upload of node_of(0), ..., node_of(count - 1).
   template <class NodeOf>
@@ -51,7 +51,7 @@ class TiledRun {
     inputs_[binding]->write(scratch_, context_.stream);
   }
   void upload_rule(const KernelData& data);
-  /// `share` is the part of the wanted entries that is done. False if the caller cancels the run.
+  /// `share` is the part of the wanted entries that is done. Returns false if the caller cancels the run.
   static bool goes_on(const Progress& progress, double share, std::size_t wanted) {
     return !progress || progress(static_cast<std::size_t>(share * static_cast<double>(wanted)), wanted);
   }
@@ -71,7 +71,7 @@ class TiledRun {
 template <class Result>
 class Run : public TiledRun {
  public:
-  /// Results at the positions of their entries; nothing if `progress` returned false. Errors: DeviceError.
+  /// Returns the results at the positions of their entries; nothing if `progress` returned false. Errors: DeviceError.
   virtual std::optional<std::vector<Result>> compute(const Progress& progress) = 0;
 
  protected:

@@ -25,14 +25,14 @@ struct TileCosts {
   std::uint64_t shape_texels = 0;      ///< texels of a shape's masking table
 };
 
-/// Invocations per dispatch, and shapes that are bound at a time; at least one each.
+/// Invocations per dispatch, and shapes whose masking tables are bound at a time; at least one each.
 struct TileSizes {
   std::uint32_t invocations = 1;
   std::uint32_t shapes = 1;
 };
 
 /// Number of invocations that may run in lockstep: lavapipe's widest vector has this many lanes. On a device with a
-/// limit of loop iterations, all of them iterate as often as the longest.
+/// limit of loop iterations, all invocations of such a group iterate as often as the longest of them.
 inline constexpr std::uint32_t kLockstep = 16;
 
 /// Consecutive chunks of shapes (plan/rows.hpp) whose masking tables are bound together, and the rows that need them.
@@ -48,7 +48,7 @@ struct SlopeBatch {
   std::vector<SlopeSamples> samples;
   std::vector<std::size_t> first;  ///< for each of `samples`, the position of its first slope in `slopes`
   std::vector<kernel::SlopeNode> slopes;
-  std::vector<std::uint32_t> in_lockstep;  ///< positions in `slopes`; some are repeated to fill groups
+  std::vector<std::uint32_t> in_lockstep;  ///< positions in `slopes`, in groups of kLockstep; repeated ones fill groups
 };
 
 struct DispatchCount {
@@ -78,7 +78,7 @@ struct RowTiles {
 /// The dispatches of a request for moments from slope samples. The request must outlive the object.
 struct SlopeTiles {
   SlopeTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options);
-  /// Directions in a batch; few enough to limit its memory.
+  /// Number of directions in a batch; it limits the memory of a batch.
   std::size_t batch_directions() const;
   SlopeBatch batch(std::size_t first) const;
   DispatchCount count() const;
@@ -88,10 +88,10 @@ struct SlopeTiles {
   KernelData data;
   SlopeSampling sampling;
   TileCosts costs;
-  std::uint32_t slopes = 0;  ///< slopes per dispatch: a multiple of kLockstep, so that no group is divided
+  std::uint32_t slopes = 0;  ///< slopes per dispatch: a multiple of kLockstep, so that no lockstep group is divided
 };
 
-/// The dispatches of a request for pBRDFs. There are no blocks, because a BeamNode contains its shape.
+/// The dispatches of a request for pBRDFs. They need no blocks of masking tables, because a BeamNode has its ShapeNode.
 struct BeamTiles {
   BeamTiles(const ScatteringRequest& request, const dolp::Device& device, const VulkanOptions& options);
   DispatchCount count() const;
@@ -108,7 +108,7 @@ class Renumbering {
  public:
   explicit Renumbering(std::size_t list_size) : number_(list_size, kUnused) {}
   std::uint32_t operator()(std::uint32_t member);
-  /// These members, in the order of their numbers.
+  /// The numbered members, in the order of their numbers.
   std::span<const std::uint32_t> used() const { return used_; }
   void clear();
 

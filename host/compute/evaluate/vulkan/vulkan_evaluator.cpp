@@ -78,7 +78,7 @@ class VulkanEvaluator::Impl {
     return true;
   }
 
-  /// Adds the cost to `report`. After a DeviceTimeout this object must not be destroyed.
+  /// Computes the request, and adds the cost to `report`. After a DeviceTimeout this object must not be destroyed.
   std::vector<Moments> compute(const MomentsRequest& request, const Progress& progress, EvaluationReport& report) {
     run_.reset();
     const auto make_run = has_slope_samples(request) ? vulkan::slope_run : vulkan::row_run;

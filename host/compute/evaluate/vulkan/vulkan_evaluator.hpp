@@ -25,7 +25,7 @@ struct VulkanOptions {
   double tile_timeout_s = 600.0;
 };
 
-/// On a processor dispatches get fewer invocations, because a call must end within a second of a cancel.
+/// If the device is a processor, dispatches get fewer invocations: a call must end within a second of a cancel.
 VulkanOptions for_device(VulkanOptions options, const dolp::Device& device, Precision precision);
 
 /// The device and the pipelines live as long as the object.
@@ -43,10 +43,9 @@ class VulkanEvaluator : public ModelEvaluator {
   /// - Cancelled if `progress`, called after each tile, returns false.
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
 
-  /// Creates the pipeline in the background. If this fails, `scatter` throws the error again.
+  /// Creates the pipeline for `request` in the background. If this fails, `scatter` throws the error again.
   void prepare(const ScatteringRequest& request) override;
 
-  /// Errors: the errors of evaluate().
   std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override;
 
   bool has_double() const override;

@@ -13,12 +13,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kBlink_s = 0.3;  // period of a text cursor
-// Longest wait of a frame for its curve during a drag. Tuned for frames of 33 ms, half of which is drawing. With double
-// the time, frames of slow scenes take too long; with half, curves of scenes with a band lag behind the slider.
+constexpr double kBlink_s = 0.3;  // period in which the text cursor blinks
+// Longest time that a frame waits for its curve during a drag. Tuned for frames of 33 ms, half of which is drawing.
+// Twice this time makes frames of slow scenes too long. With half of it, curves of bands lag behind the slider.
 constexpr double kCatchUp_s = 0.03;
-constexpr std::size_t kFramesAfterEvent = 4;  // ImGui shows some reactions, such as an open list, some frames later
-constexpr std::size_t kFramesAfterNews = 2;   // tables adapt to the width of their text one frame later
+constexpr std::size_t kFramesAfterEvent = 4;  // ImGui draws some effects, such as an open list, some frames later
+constexpr std::size_t kFramesAfterNews = 2;   // ImGui fits tables to their text one frame later
 
 std::string times_text(std::vector<double> times_s) {
   if (times_s.empty()) return "none";
@@ -63,7 +63,7 @@ void App::catch_up() {
 
 void App::draw() {
   screen_.follow(actions_.preferences());
-  for (;;) {  // each event has a frame, and only the last one is shown
+  for (;;) {  // each event has a frame; the window shows only the last frame
     input_.begin_frame();
     draw_all(ui_, [this] { catch_up(); });
     if (!input_.has_more()) break;
@@ -97,7 +97,7 @@ bool App::answer(const AfterFrame& after_frame) {
     if (after_frame) after_frame(seconds_since(start));
     if (!is_open) return false;
     const bool has_news = input_.take_news() || !actions_.picture_path.empty();
-    if (session_.is_dragged()) return true;  // only one frame per move, to leave the processor to the curves
+    if (session_.is_dragged()) return true;  // draws once per mouse move, because curves need the processor
     left = has_news ? kFramesAfterEvent : left - 1;
   }
   return true;
@@ -112,7 +112,7 @@ void App::reopen() { glfwSetWindowShouldClose(screen_.window(), GLFW_FALSE); }
 
 void App::run(const AfterFrame& after_frame) {
   while (answer(after_frame)) {
-    // Draws once more when the mouse has rested for kTooltipDelay_s, because then a note appears.
+    // Draws once more when the mouse has rested for kTooltipDelay_s, because then a tooltip appears.
     constexpr double kNote_s = static_cast<double>(kTooltipDelay_s) + 0.05;
     if (ImGui::GetIO().WantTextInput) {
       glfwWaitEventsTimeout(kBlink_s);
@@ -125,12 +125,12 @@ void App::run(const AfterFrame& after_frame) {
 }
 
 std::string App::run_frames(std::size_t count, const std::string& screenshot_path) {
-  std::vector<double> all_s, computing_s;  // durations: of all frames, and of frames while the worker was busy
+  std::vector<double> all_s, computing_s;  // durations of all frames, and of those during a computation
   constexpr auto kPause = std::chrono::milliseconds(5);
   const bool wants_picture = !screenshot_path.empty();
   Clock::time_point start = Clock::now();
   for (std::size_t left = count; left > 0; --left) {
-    // Waits with the last frames until all results are there and the layout is stable.
+    // Before each of the last frames, waits for all results. With several such frames, the layout becomes stable.
     if (wants_picture && left <= kFramesAfterEvent) {
       for (exchange(); !is_idle(); exchange()) std::this_thread::sleep_for(kPause);
       start = Clock::now();
@@ -154,7 +154,7 @@ void run_program(const Scene& scene, const ProgramOptions& options) {
   }
   require_device(options.device);
   AppOptions app_options = options;
-  // Pictures for manuals and measurements do not depend on the user's preferences.
+  // With `frames` the window serves measurements and pictures for manuals, which must not depend on preferences.
   if (options.frames == 0) app_options.preferences = Preferences::default_path();
   App app(SceneEdits(scene), app_options);
   Session& session = app.session();

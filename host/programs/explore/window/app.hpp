@@ -7,8 +7,8 @@
 namespace dolp::explore {
 
 struct AppOptions {
-  std::string device;                      ///< its position or a part of its name
-  std::string command_line;                ///< written into tables as their history
+  std::string device;                      ///< position of the device, or a part of its name
+  std::string command_line;                ///< text that tables contain as their history
   std::filesystem::path preferences = {};  ///< file of the preferences; empty: preferences are not stored
 };
 
@@ -16,19 +16,19 @@ class App {
  public:
   using AfterFrame = std::function<void(double frame_s)>;
 
-  App(SceneEdits edits, const AppOptions& options);  ///< Errors: the errors of Screen
+  App(SceneEdits edits, const AppOptions& options);  ///< Errors: the errors of Screen()
 
   Session& session() { return session_; }
-  /// The area of a named item in the last frame. Errors: std::out_of_range if the frame did not draw it.
+  /// The area of a named item in the last frame. Errors: std::out_of_range if the last frame did not draw this item.
   Area control_area(const std::string& name) { return input_.areas().at(name); }
   const CurveView& curve_view() const { return ui_.curves; }
   const MapView& map_view() const { return ui_.map; }
   const AxisEditor& axis_editor() const { return ui_.axis_editor; }
 
   /// Takes input and results, and draws one frame. Returns false if the user has closed the window.
-  /// Errors: DeviceError if no device can compute, or if it is lost.
+  /// Errors: DeviceError if no device can compute, or if the device is lost.
   bool frame();
-  /// Draws frames until all events, also new ones, have been shown. Returns false if the user has closed the window.
+  /// Draws frames until the window shows the effect of all events. Returns false if the user has closed the window.
   bool answer(const AfterFrame& after_frame = {});
   void close();   ///< ends run(); any thread may call it
   void reopen();  ///< lets run() continue after close()
@@ -40,7 +40,7 @@ class App {
 
   /// True if nothing remains to be computed and the session has all results.
   bool is_idle() { return worker_.is_idle() && is_all_taken_ && !actions_.fit_task.is_running(); }
-  void settle();  ///< draws until is_idle()
+  void settle();  ///< draws frames until is_idle() is true
   /// Writes a picture of the window with its next frame. Errors: IoError.
   void save_picture(const std::string& path) { actions_.picture_path = path; }
 
@@ -53,7 +53,7 @@ class App {
   Session session_;
   Screen screen_;
   Evaluator evaluator_;
-  std::atomic<bool> is_catching_up_ = false;  ///< while true, news need not wake the window by an event
+  std::atomic<bool> is_catching_up_ = false;  ///< true while catch_up() waits; no event need then wake the window
   Worker worker_;
   Actions actions_;
   Input input_;
@@ -61,17 +61,17 @@ class App {
   bool is_all_taken_ = false;
 };
 
-/// run_program() chooses `preferences`.
+/// Options of run_program(), which sets `preferences` itself.
 struct ProgramOptions : AppOptions {
   std::string measured_path;           ///< CSV of measured points; empty: none
   std::size_t frames = 0;              ///< number of frames to draw; 0: until the window is closed
   std::string screenshot_path;         ///< PNG of the last frame; empty: none
   std::string panel = {};              ///< name of the first panel; empty: the map
   std::string session_path = {};       ///< session file that replaces the scene; empty: none
-  std::vector<Setting> settings = {};  ///< changes of the session
+  std::vector<Setting> settings = {};  ///< --set: changes of the scene in the session
 };
 
-/// Shows the window. If `frames` is given, prints their durations. Errors: the errors of the public header.
+/// Shows the window. If `frames` is given, prints the durations of the frames. Errors: the errors of dolp/errors.hpp.
 void run_program(const Scene& scene, const ProgramOptions& options);
 
 }  // namespace dolp::explore

@@ -14,7 +14,7 @@
 namespace dolp::explore {
 namespace {
 
-constexpr auto kFading = std::chrono::milliseconds(300);  // time for which a closed dialog remains visible
+constexpr auto kFading = std::chrono::milliseconds(300);  // time in which a closed dialog disappears
 
 }  // namespace
 
@@ -71,7 +71,7 @@ void Actions::save_plot(const std::string& path, const Scale& x, const Scale& y)
   session_.tell("drawing " + path);
   plot_task_.start([path, json = plot_json(session_, x, y)](const Progress&) -> BackgroundTask::Ending {
     check_writable(path);
-    draw_with_python(std::string(embedded_plot_view_py()).c_str(), json, path);
+    draw_with_python(embedded_plot_view_py().data(), json, path);
     return [text = "saved " + path] { return text; };
   });
 }
@@ -123,7 +123,7 @@ namespace {
 
 using Path = const std::string&;
 
-/// A path beside the scene's file, or in the folder that was last chosen for it.
+/// A path named after the scene's file: in the folder last chosen for this file, otherwise in the file's folder.
 std::string suggested_path(const Ui& ui, const std::string& ending) {
   const std::filesystem::path file = ui.session.scene().name();
   const std::filesystem::path folder = file == ui.saved.first ? ui.saved.second : file.parent_path();
@@ -187,8 +187,8 @@ struct Command {
     const std::string_view keys = shortcut;
     if (keys.empty()) return false;
     const char key = keys.back();
-    if (keys.starts_with("Ctrl+Shift") != is_shift && key != '+') return false;  // on many keyboards + is Shift and =
-    if (key == 'Z' && ImGui::GetIO().WantTextInput) return false;  // the text field with the focus undoes its text
+    if (keys.starts_with("Ctrl+Shift") != is_shift && key != '+') return false;  // some keyboards need Shift for +
+    if (key == 'Z' && ImGui::GetIO().WantTextInput) return false;                // the text field with the focus undoes
     using explore::is_pressed;
     if (key == '+') return is_pressed('=') || is_pressed(GLFW_KEY_KP_ADD);
     if (key == '-') return is_pressed(key) || is_pressed(GLFW_KEY_KP_SUBTRACT);
@@ -244,8 +244,8 @@ constexpr Command kCommands[] = {
     {"Help", "Shortcuts and hints", "Ctrl+H", [](Ui& ui) { ui.shows_help = true; }},
 };
 
-/// Names the area of the menu, or of the menu entry, that is drawn next. After drawing, ImGui's last item may be an
-/// open menu instead.
+/// Names the area of the menu, or of the menu entry, that is drawn next. It must be called before the drawing:
+/// afterwards ImGui's last item may be an open menu.
 void name_next(const std::string& name, const char* text) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   name_area(name, {corner, {corner.x + ImGui::CalcTextSize(text).x, corner.y + ImGui::GetTextLineHeight()}});

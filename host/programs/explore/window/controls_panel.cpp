@@ -14,8 +14,8 @@ namespace {
 
 constexpr const char* kSkyProfile = "surroundings.profile";
 constexpr const char* kUniformSky = "surroundings.temperature_K";
-constexpr double kUniformSky_K = 250.0;    // used if the opened scene has no uniform sky
-constexpr Scale kSkySlider{150.0, 350.0};  // in K; the user can type other temperatures
+constexpr double kUniformSky_K = 250.0;    // for a new uniform sky, if the opened scene has none
+constexpr Scale kSkySlider{150.0, 350.0};  // range in K; the user can type other values
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
@@ -25,7 +25,7 @@ void heading(const char* text) {
   ImGui::Separator();
 }
 
-/// Draws the pieces of an interval as bars at the bottom of the last slider. An open end reaches the slider's end.
+/// Draws the pieces of a fitted interval as bars at the bottom of the last slider. An open end is at the slider's end.
 void draw_interval(const Control& control, const FitInterval& interval) {
   const ImVec2 corner = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
   const auto at = [&](const std::optional<double>& value, double otherwise) {
@@ -59,7 +59,7 @@ bool has_effect(const Scene& scene, const std::string& table) {
   return scene.number(table + ".temperature_K").has_value();
 }
 
-/// n and k of the material of the surface or of a film, at the start of the spectrum.
+/// n and k at the start of the spectrum, for the material of the surface or of the film that `table` names.
 std::pair<double, double> index_of(const Scene& scene, const std::string& table) {
   Scene bare = scene.without("surface.coating");
   for (const char* name : {"material", "material_file"}) {
@@ -68,7 +68,7 @@ std::pair<double, double> index_of(const Scene& scene, const std::string& table)
   return bare.refractive_index(spectrum_um(scene).first);
 }
 
-/// The typed text as a value. If it is not a number, the scene refuses it and lists the allowed values.
+/// The typed text as a value. If the text is not a number, the scene will refuse it and list the allowed values.
 Value value_of(const std::string& text) {
   const std::optional<double> number = parse_number(text);
   return number ? Value(*number) : Value(TomlText{text});
@@ -78,7 +78,7 @@ struct Controls {
   Session& session;
   NumberFields& fields;
 
-  struct Slider {  // with a field beside it
+  struct Slider {  // a slider with a text field beside it
     std::string id, label;
     std::string note;
     std::string reset_key;  ///< key that a Ctrl-click resets
@@ -91,7 +91,7 @@ struct Controls {
     return session.message().is_error ? session.message().text : "";
   }
 
-  /// Draws fields. When a refused text is gone, also removes the session's message about it.
+  /// Calls `draw`. If a refused text of field `id` is then gone, also removes the session's message about this text.
   void draw_fields(const std::string& id, const std::function<void()>& draw) {
     const std::string before = fields.reason(id);
     draw();
@@ -165,7 +165,7 @@ struct Controls {
     }
   }
 
-  // Each control reads its value again, because an earlier control may have changed the scene.
+  // Both loops read each value from the session, because an earlier control may have changed the scene.
   void draw_choices(const std::string& table) {
     for (const Control& control : controls()) {
       if (table_of(control.key->key) != table) continue;
@@ -179,7 +179,7 @@ struct Controls {
     }
   }
 
-  /// Draws the list of materials for the surface or a film. Returns the chosen settings of its table; empty: no choice.
+  /// Draws the list of materials for the surface or a film. If the user chooses one, returns its settings.
   std::vector<Setting> draw_material(const std::string& table) {
     static const std::vector<BuiltInMaterial> known = materials();
     const Scene& scene = session.scene();
@@ -229,7 +229,7 @@ struct Controls {
       Film chosen = draw_material(film);
       if (is_removed) films.erase(films.begin() + static_cast<std::ptrdiff_t>(layer) - 1);
       if (!chosen.empty()) {
-        chosen.push_back(films[layer - 1].back());  // the thickness
+        chosen.push_back(films[layer - 1].back());  // keeps the thickness, which is last in a Film
         films[layer - 1] = chosen;
       }
       if (is_removed || !chosen.empty()) return session.set({coating_of(films)});
@@ -247,7 +247,7 @@ struct Controls {
     if (const auto clicked = draw_list("source kind", -1.0F, kinds[now].text, "", now, kinds)) set(changes[*clicked]);
   }
 
-  /// A box that removes an effect from the scene and brings it back: as in the opened scene, or with default values.
+  /// Draws a box that removes an effect from the scene, or restores it from the opened scene or with default values.
   void draw_effect_box(const std::string& table) {
     bool wanted = has_effect(session.scene(), table);
     if (!ImGui::Checkbox(table.c_str(), &wanted)) return;
@@ -272,7 +272,6 @@ struct Controls {
     const std::string current = session.scene().word(kSkyProfile).value_or("");
     const std::string opened = session.edits().opened().word(kSkyProfile).value_or("");
     std::vector<ListEntry> skies = {{"uniform"}, {"clear-sky"}, {"overcast"}, {"zenith and horizon"}};
-    // The sky file of the opened scene remains a choice.
     if (!sky_file(session.edits().opened()).empty()) skies.push_back({file_name(opened)});
     const std::string name = current.empty()                            ? "uniform"
                              : read_sky_pair(sky_file(session.scene())) ? "zenith and horizon"
@@ -296,7 +295,7 @@ struct Controls {
   void draw_sky_temperature(const std::string& name, SkyPair sky, double SkyPair::*temperature_K) {
     const auto change = [&](const std::string& text) {
       const std::optional<double> typed = parse_number(text);
-      // If the text is not a temperature, the scene refuses it as the temperature of a uniform sky.
+      // If the text is not a temperature, returns a setting that the scene will refuse, for its error message.
       if (!typed || !described(kUniformSky).range.contains(*typed)) return Setting{kUniformSky, TomlText{text}};
       sky.*temperature_K = *typed;
       return Setting{kSkyProfile, session.skies().path(sky)};

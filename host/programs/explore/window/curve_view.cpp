@@ -11,9 +11,9 @@ namespace dolp::explore {
 namespace {
 
 constexpr float kCurveWidth = 2.0F;
-// Heights of the view, in lines of text.
-constexpr float kRoomForTwo = 18.0F;        // a higher view has a legend of two lines
-constexpr float kRoomForResiduals = 17.0F;  // a higher view has residuals below the curve
+// Heights of the curve view, in lines of text.
+constexpr float kRoomForTwo = 18.0F;        // if the view is higher, the legend has two lines
+constexpr float kRoomForResiduals = 17.0F;  // if the view is higher, residuals are below the curve
 constexpr float kLeastResiduals = 7.0F;
 
 struct Shown {
@@ -21,11 +21,11 @@ struct Shown {
   CurveStyle style;
 };
 
-bool is_dim(const Session& session, const Curve& curve) {  // curves of an earlier or another scene
+bool is_dim(const Session& session, const Curve& curve) {  // true if the curve is not of the current scene
   return session.is_outdated(curve) || session.is_foreign(curve.scene());
 }
 
-CurveStyle bad_style() { return {kBadColour, 4.0F, 4.0F}; }  // for parts in which the model fails
+CurveStyle bad_style() { return {kBadColour, 4.0F, 4.0F}; }  // for the parts of a curve in which the model fails
 
 std::vector<Shown> shown_curves(const Session& session) {
   std::vector<Shown> curves;
@@ -36,7 +36,7 @@ std::vector<Shown> shown_curves(const Session& session) {
   for (const Pin& pin : session.pins()) {
     if (pin.is_visible) add(pin.curve, pin_style(pin.colour));
   }
-  add(session.curve(), current_style());  // last, so that it is on top
+  add(session.curve(), current_style());  // the last curve is drawn on top of the others
   return curves;
 }
 
@@ -65,15 +65,15 @@ std::vector<double> values_to_show(const Session& session, const std::vector<Sho
   return values;
 }
 
-/// Fills the area between the limits of the DOLP with all bounces. Only the current curve has such a band, because
-/// overlapping bands are unreadable.
+/// Fills the area between the limits of the DOLP with all bounces. Used only for the current curve, because overlapping
+/// areas are unreadable.
 void draw_bracket(const Plot& plot, const Shown& shown) {
   const std::vector<Point> points = shown.curve->drawn();
   const ImU32 colour = band_colour(shown.style);
   const auto at = [&](const Point& point, Quantity limit) {
     return plot.at(point.theta_deg, std::max(described(Plotted::kDolp).scale() * point[limit], plot.y().from));
   };
-  // Anti-aliased edges would be visible as seams.
+  // Turns off anti-aliasing, which would make the edges between the quads visible.
   const ImDrawListFlags flags = std::exchange(plot.list()->Flags, ImDrawListFlags_None);
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const Point& a = points[i];
@@ -103,7 +103,7 @@ void draw_curve(const Plot& plot, const Shown& shown, Plotted quantity) {
   draw_line(plot.list(), good, shown.style, kCurveWidth);
 }
 
-/// Adds an entry to the legend, in a new line if needed, and draws its name. Returns the area for a sample of the line.
+/// Adds a name to the legend, in a new line if needed. Returns the area beside the name, for a sample of the line.
 Area add_entry(const char* id, const std::string& name, ImU32 colour = kTextColour) {
   const float line = ImGui::GetTextLineHeight();
   const float width = 2.3F * line + ImGui::CalcTextSize(shown(name).c_str()).x;
@@ -152,7 +152,7 @@ void draw_legend(const std::vector<Shown>& curves, Session& session) {
 }
 
 /// Draws the legend and returns its height, which does not depend on the entries, so that the plot does not move. If
-/// there are more entries, the legend has a scroll bar; not during a drag, which makes names longer for a short time.
+/// the entries need more height, there is a scroll bar, but not during a drag, when names are longer for a short time.
 float draw_legend_above(const std::vector<Shown>& curves, Session& session, ImVec2 size) {
   const float lines = size.y > kRoomForTwo * ImGui::GetTextLineHeight() ? 2.0F : 1.0F;
   const float height = lines * ImGui::GetTextLineHeightWithSpacing();
@@ -188,7 +188,7 @@ void draw_peak(const Plot& plot, const Session& session) {
   const float side = is_low ? 1.0F : -1.0F;
   plot.list()->AddTriangleFilled({at.x, at.y + side * scaled(3.0F)}, {at.x - scaled(5.0F), at.y + side * scaled(12.0F)},
                                  {at.x + scaled(5.0F), at.y + side * scaled(12.0F)}, kTextColour);
-  // The label is on the side towards the middle, so that it stays inside the plot.
+  // The label of the maximum is on the side towards the middle, so that the label stays inside the plot.
   const bool is_right = at.x > 0.5F * (plot.min().x + plot.max().x);
   const float line = ImGui::GetTextLineHeight();
   const float beside = std::max(std::min(at.y + side * scaled(8.0F), plot.max().y - line), plot.min().y + line);
@@ -196,7 +196,7 @@ void draw_peak(const Plot& plot, const Session& session) {
              fmt::format("{:.2f} % at {:.2f}°", value, peak->at.theta_deg));
 }
 
-/// Measured points or residuals with error bars of one standard deviation.
+/// Draws measured points or residuals, with error bars of one standard deviation.
 void draw_points(const Plot& plot, const std::vector<Measurement>& points, double scale, bool is_filled, ImU32 colour) {
   const auto line = [&](ImVec2 from, ImVec2 to) { plot.list()->AddLine(from, to, colour, scaled(1.0F)); };
   const float cap = scaled(3.0F);
@@ -218,7 +218,7 @@ void draw_points(const Plot& plot, const std::vector<Measurement>& points, doubl
   }
 }
 
-ImU32 colour_of_points(const Session& session) {  // grey for points loaded for another scene
+ImU32 colour_of_points(const Session& session) {  // grey if the points were loaded for another scene
   return session.is_foreign(session.residuals().loaded_for()) ? kDimColour : kTextColour;
 }
 
@@ -262,11 +262,11 @@ void CurveView::choose_axes(const Session& session, Zoom& zoom, const Scale& zen
   if (has_zeniths) zoom.x = zoom.x->within(zeniths);
   x_ = has_zeniths ? *zoom.x : zeniths;
   const bool is_same = quantity_ == session.view().quantity && y_.is_log == values.is_log;
-  // Without a curve the axis of values is linear. A logarithmic range that the user chose waits until there is a curve.
+  // Without a curve `values` is linear. A logarithmic range that the user chose is not used until there is a curve.
   if (zoom.y && zoom.y->is_log == values.is_log) {
     values = *zoom.y;
   } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left) && is_same) {
-    // While a slider is dragged the axis only grows, so that only the curve moves.
+    // During a drag of a slider the axis may grow but not shrink, so that the curve moves and the axis rests.
     values = {std::min(y_.from, values.from), std::max(y_.to, values.to), y_.is_log};
   }
   quantity_ = session.view().quantity;
@@ -305,7 +305,7 @@ void CurveView::draw(Session& session, AxisEditor& editor, ImVec2 size) {
                fmt::format("{:.2f}°, {:.4g}", x_.value(plot.mouse_x()), y_.value(plot.mouse_y())));
   }
   plot.unclip();
-  draw_peak(plot, session);  // not clipped, so that the mark is whole even at an end of the axis
+  draw_peak(plot, session);  // after unclip(), so that the mark is complete even at an end of the axis
   area_ = plot.area();
   edit_axes(view, editor, plot, values.label);
   if (view != session.view()) session.set_view(view);

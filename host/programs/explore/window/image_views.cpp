@@ -12,13 +12,13 @@ namespace {
 
 constexpr std::size_t kCutCount = 181;
 constexpr float kLobeWidth = 2.0F;
-constexpr int kCells = 56;  // cells across a sphere, each a few pixels large
+constexpr int kCells = 56;  // number of cells across the sphere; each has a few pixels
 
 struct Disc {
   ImVec2 middle;
   float radius;
 
-  /// The point at a share of the radius, and at an angle counterclockwise from the right.
+  /// The point at `share` times the radius, at an angle that counts counterclockwise from the right.
   ImVec2 at(double share, double angle_deg) const {
     const double angle = angle_deg * kDegree;
     return {middle.x + radius * static_cast<float>(share * std::cos(angle)),
@@ -34,7 +34,7 @@ double largest_magnitude(const ScatteringCut& cut, std::size_t element) {
   return largest;
 }
 
-/// Half rings of equal magnitude and rays of equal zenith, above a surface.
+/// Draws the grid of a polar plot above a surface: half rings of equal magnitude and rays of equal zenith.
 void draw_polar_grid(ImDrawList* list, const Disc& disc, const Scale& magnitude) {
   for (const double tick : magnitude.ticks(4)) {
     const double part = magnitude.position(tick);
@@ -49,7 +49,7 @@ void draw_polar_grid(ImDrawList* list, const Disc& disc, const Scale& magnitude)
   }
 }
 
-/// The lobe of an element: solid where positive, dashed where negative.
+/// Draws a Mueller element over the directions of `cut`: a solid line where it is positive, a dashed line elsewhere.
 void draw_lobe(ImDrawList* list, const Disc& disc, const ScatteringCut& cut, std::size_t element, double largest) {
   for (const bool is_negative : {false, true}) {
     std::vector<ImVec2> line;
@@ -62,14 +62,14 @@ void draw_lobe(ImDrawList* list, const Disc& disc, const ScatteringCut& cut, std
   }
 }
 
-ImU32 angle_colour(double angle_deg) {  // equal at 0 and 180 degrees
+ImU32 angle_colour(double angle_deg) {  // the colours for 0 and 180 degrees are equal
   float r = 0.0F, g = 0.0F, b = 0.0F;
   ImGui::ColorConvertHSVtoRGB(static_cast<float>(angle_deg / 180.0), 0.65F, 0.95F, r, g, b);
   return ImGui::ColorConvertFloat4ToU32({r, g, b, 1.0F});
 }
 
 struct Colours {
-  Scale dolp;             ///< range from the darkest colour to the lightest
+  Scale dolp;             ///< DOLP of the darkest and of the lightest colour
   bool is_angle = false;  ///< the image shows the angle of polarisation instead of DOLP
 
   ImU32 colour(const std::optional<ImagePolarisation>& polarisation) const {
@@ -78,7 +78,7 @@ struct Colours {
   }
 };
 
-/// The range of DOLP. It begins at 0, or with `from_least` at the smallest value.
+/// The range of the points' DOLP. It begins at 0, or if `from_least` is true at the smallest value.
 Scale dolp_range(const std::vector<Point>& points, double theta_max_deg, bool from_least) {
   constexpr double kLeastRange = 1e-6;
   Scale range{1.0, 0.0};
@@ -108,14 +108,14 @@ void draw_sphere(const Session& session, ImVec2 middle, float radius, const Colo
   }
 }
 
-/// A square plate seen from afar, with a line along its polarisation.
+/// Draws a square plate as seen from far away, with a line along the polarisation of its light.
 void draw_plate(const Session& session, ImVec2 middle, float radius, double azimuth_deg, const Colours& colours) {
   const std::optional<ImagePolarisation> polarisation =
       polarisation_at(session.curve().points(), session.theta_deg(), azimuth_deg);
   const double azimuth = azimuth_deg * kDegree;
   const double shortened = std::max(0.02, std::cos(session.theta_deg() * kDegree));
   const auto at = [&](double along, double across) {
-    // Perspective shortens the side along the tilt.
+    // The tilt shortens the image of the plate along the azimuth.
     const double x = along * shortened * std::cos(azimuth) - across * std::sin(azimuth);
     const double y = along * shortened * std::sin(azimuth) + across * std::cos(azimuth);
     return ImVec2{middle.x + radius * static_cast<float>(x), middle.y - radius * static_cast<float>(y)};
@@ -150,7 +150,7 @@ void draw_bar(ImVec2 corner, float width, const Colours& colours) {
 
 void draw_rings(const SourceSky& sky, const Disc& disc, const Colours& colours) {
   ImDrawList* const list = ImGui::GetWindowDrawList();
-  // Anti-aliased edges would be visible as seams.
+  // Turns off anti-aliasing, which would make the edges between the cells visible.
   const ImDrawListFlags flags = std::exchange(list->Flags, ImDrawListFlags_None);
   const double half_deg = 0.5 * SourceSky::azimuth_deg(1);
   for (std::size_t i = 0; i < SourceSky::kAzimuths; ++i) {
@@ -168,7 +168,7 @@ void draw_rings(const SourceSky& sky, const Disc& disc, const Colours& colours) 
   list->Flags = flags;
 }
 
-/// Circles at some zeniths, a ring for the scene's source, a square for its view.
+/// Draws circles at some zeniths, a ring at the direction of the source, and a square at the direction of the view.
 void draw_sky_marks(const Scene& scene, double source_zenith_deg, const Disc& disc) {
   ImDrawList* const list = ImGui::GetWindowDrawList();
   for (const double zenith_deg : {30.0, 60.0, 90.0}) {

@@ -20,15 +20,15 @@ struct Area {
 
   float width() const { return max.x - min.x; }
   float height() const { return max.y - min.y; }
-  /// The point at fractions of width and height from the upper left corner.
+  /// The point at `x` times the width and `y` times the height from the upper left corner.
   ImVec2 at(float x, float y) const { return {min.x + x * width(), min.y + y * height()}; }
 };
 
-/// Queues the events of a window. ImGui reads the state of keys and buttons once per frame, and would miss a key that
-/// goes down and up between two frames. So each event gets a frame; the window shows only some of these frames.
+/// A queue of the events of a window. ImGui reads the state of keys and buttons once per frame, and would miss a key
+/// that goes down and up between two frames. So each event gets its ImGui frame. The window shows only some of them.
 class Input {
  public:
-  /// Becomes the window's user pointer. `on_drop` gets the path of each file that is dropped on the window.
+  /// Sets GLFW's user pointer of `window` to this object. `on_drop` gets the path of each file dropped on the window.
   Input(GLFWwindow* window, std::function<void(const std::string&)> on_drop);
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
@@ -39,7 +39,7 @@ class Input {
   /// True if events since the last call may have changed the window.
   bool take_news() { return std::exchange(has_news_, false); }
   double rest_s() const { return std::chrono::duration<double>(Clock::now() - last_event_).count(); }
-  std::map<std::string, Area>& areas() { return areas_; }  ///< named items of this frame, for tests
+  std::map<std::string, Area>& areas() { return areas_; }  ///< named areas of this frame, for tests
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -56,7 +56,7 @@ class Input {
   bool has_news_ = false;
   Clock::time_point last_event_;
   std::map<std::string, Area> areas_;
-  // State of keyboard and mouse after the events that ImGui has got so far.
+  // State of keyboard and mouse after the events that left the queue so far.
   int pressed_key_ = 0;
   bool is_inside_ = false;
   ImVec2 mouse_;

@@ -20,11 +20,11 @@ Scale values_range(const std::vector<NamedLine>& lines, bool is_log) {
   return range_of(std::move(all), is_log);
 }
 
-/// Draws lines with gaps where they have no value. Their names are in the upper right corner, or in a row above.
+/// Draws lines with gaps where a line has no value, and their names in the upper right corner or above the plot.
 void draw_lines(const Plot& plot, const std::vector<double>& xs, const std::vector<NamedLine>& lines,
                 bool is_above = false) {
   plot.clip();
-  for (const NamedLine& line : std::views::reverse(lines)) {  // so that the first line is on top
+  for (const NamedLine& line : std::views::reverse(lines)) {  // the first line is drawn last, on top
     std::vector<ImVec2> points;
     for (std::size_t i = 0; i < xs.size(); ++i)
       points.push_back(plot.can_show(xs[i], line.values[i]) ? plot.at(xs[i], line.values[i]) : kGap);
@@ -58,7 +58,7 @@ void mark_spectrum(const Plot& plot, const Scene& scene) {
   plot.unclip();
 }
 
-/// A quantity along a sweep, with gaps where the model fails. Dim while the sweep belongs to an earlier scene.
+/// A line of a quantity along a sweep, with gaps where the model fails. It is dim while newer points are computed.
 NamedLine line_of(const Sweep& sweep, Plotted quantity, const CurveStyle& style, const std::string& name) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   NamedLine line{name, sweep.is_finished() ? style : stale(style), {}};

@@ -10,10 +10,10 @@
 namespace dolp::explore {
 namespace {
 
-constexpr double kMostContrast = 1e3;  // largest over smallest value of a logarithmic colour scale
+constexpr double kMostContrast = 1e3;  // largest ratio of last to first value of a logarithmic colour scale
 constexpr std::size_t kMostLines = 7;
-constexpr ImU32 kLightLine = IM_COL32(255, 255, 255, 190);  // over the colours of a map, in both themes
-constexpr ImU32 kDarkLine = IM_COL32(0, 0, 0, 170);         // over the white of diverging colours
+constexpr ImU32 kLightLine = IM_COL32(255, 255, 255, 190);  // lines on the colours of viridis()
+constexpr ImU32 kDarkLine = IM_COL32(0, 0, 0, 170);         // lines on the colours of diverging()
 constexpr float kBarRoom = 5.4F;                            // space right of the map, in lines of text
 
 Scale times(const Scale& range, double factor) { return {factor * range.from, factor * range.to, range.is_log}; }
@@ -58,7 +58,7 @@ Scale MapView::colour_range() const {
     const double largest = std::max(std::abs(field_.min), std::abs(field_.max));
     return {-largest, largest};
   }
-  // A logarithmic colour scale begins at the smallest value, but not below the largest value over kMostContrast.
+  // A logarithmic colour scale begins at the smallest value, or at the largest value / kMostContrast if that is larger.
   const double low = is_log_ && field_.max > 0.0 ? std::max(field_.min, field_.max / kMostContrast) : field_.min;
   return {low, field_.max, is_log_ && low > 0.0};
 }
@@ -98,7 +98,7 @@ void MapView::draw_contours(const Plot& plot) const {
   std::vector<ImVec2> labels;
   for (const Contour& contour : contours_) {
     if (contour.segments.empty()) continue;
-    // The label is on the segment that is farthest from the edges of the map.
+    // The label of a contour line is on the segment that is farthest from the edges of the map.
     const auto room = [](const Segment& s) { return std::min({s.x0, 1.0 - s.x0, s.y0, 1.0 - s.y0}); };
     const Segment& inner = *std::ranges::max_element(contour.segments, {}, room);
     const ImVec2 at = plot.at_position(inner.x0, inner.y0);

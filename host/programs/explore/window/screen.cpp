@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kWidth = 1440;
 constexpr int kHeight = 900;
-constexpr int kLeastWidth = 800;  // a smaller window would cut off texts of the controls
+constexpr int kLeastWidth = 800;  // in a smaller window, labels of controls would be cut off
 constexpr int kLeastHeight = 560;
 
 std::string glfw_error() {
@@ -38,9 +38,9 @@ bool is_set(const char* variable) {
 
 int scaled_length(int length, float scale) { return static_cast<int>(std::lround(scale * static_cast<float>(length))); }
 
-/// Opens a window as large as its content at the display's scale, or as the display.
+/// Opens a window of kWidth by kHeight, times the scale of the display, but not larger than the display.
 GLFWwindow* open_window() {
-  // The oldest version with which ImGui draws more than 65536 corners.
+  // OpenGL 3.2 is the oldest version with which ImGui draws more than 65536 vertices at once.
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 2);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
@@ -59,7 +59,7 @@ GLFWwindow* open_window() {
   return window;
 }
 
-/// A function of OpenGL. The program is not linked to OpenGL, so that it also runs where only tables are computed.
+/// A function of OpenGL. The program is not linked to OpenGL, so that its commands for tables run without OpenGL.
 template <class Function>
 Function* opengl(const char* name) {
   return reinterpret_cast<Function*>(glfwGetProcAddress(name));
@@ -108,7 +108,7 @@ Screen::Library::Library() {
   if (!is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY"))
     throw DeviceError("no display for the window: neither DISPLAY nor WAYLAND_DISPLAY is set");
 #ifdef GLFW_PLATFORM
-  // Otherwise GLFW 3.4 tries Wayland first, and the Wayland library prints a line.
+  // Without this hint GLFW 3.4 tries Wayland first, and the Wayland library prints an error.
   if (!is_set("WAYLAND_DISPLAY")) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
 #endif
   if (glfwInit() == GLFW_FALSE) throw DeviceError("no display for the window: " + glfw_error());
@@ -144,7 +144,7 @@ void Screen::follow(const Preferences& wanted) {
   ImGui::GetStyle().ScaleAllSizes(scale_);
   ImGui::GetIO().Fonts->Clear();
   load_font(kFontPixels * scale_);
-  if (!is_first) ImGui_ImplOpenGL3_DestroyDeviceObjects();  // the next frame makes new ones with the new font
+  if (!is_first) ImGui_ImplOpenGL3_DestroyDeviceObjects();  // the next frame creates them with the new font
   glfwSetWindowSizeLimits(window_, scaled_length(kLeastWidth, scale_), scaled_length(kLeastHeight, scale_),
                           GLFW_DONT_CARE, GLFW_DONT_CARE);
 }

@@ -22,11 +22,11 @@ class Texture {
 
   /// Replaces the image by `count` rows of `count` colours. The first row is the lowest; a row begins on the left.
   void set(const std::vector<ImU32>& colours, std::size_t count);
-  /// Draws the image between two corners. Each colour fills a cell around its position; outer cells are cut in half.
+  /// Draws the image between two corners. Each colour fills a cell; the cells at the edges are only half as large.
   void draw(ImDrawList* list, ImVec2 min, ImVec2 max) const;
 
  private:
-  unsigned id_ = 0;  ///< OpenGL's name of the texture; 0: none
+  unsigned id_ = 0;  ///< OpenGL's number of the texture; 0 before set()
   std::size_t count_ = 0;
 };
 
@@ -40,18 +40,18 @@ class Screen {
 
   GLFWwindow* window() const { return window_; }
   void follow(const Preferences& wanted);  ///< applies theme and size of the text; call it between two frames
-  /// Shows ImGui's frame, unless the window has no area. Returns the shown frame as a PNG file if that is wanted.
+  /// Shows ImGui's frame, unless the window has no area. If `wants_picture`, returns the frame as a PNG file.
   std::string show(bool wants_picture) const;
 
  private:
-  struct Library {  // starts GLFW once and ends it, which also closes the window
+  struct Library {  // starts GLFW; the destructor ends GLFW, which closes the window
     Library();
     ~Library();
   };
 
   Library library_;
   GLFWwindow* window_;
-  float scale_ = 0.0F;  ///< size of the text, relative to a usual display
+  float scale_ = 0.0F;  ///< factor for the size of text and controls
 };
 
 }  // namespace dolp::explore

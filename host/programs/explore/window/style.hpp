@@ -26,20 +26,20 @@ ImU32 viridis(double position);
 /// Source: C. Brewer, ColorBrewer (Apache License 2.0), linear between its eleven colours.
 ImU32 diverging(double position);
 
-/// The style of a curve. Curves never differ only in colour.
+/// The style of a curve. Any two styles also differ in their dashes, for readers who do not see colours.
 struct CurveStyle {
   ImU32 colour;
   float dash;  ///< length of dashes in pixels; 0 for a solid line
   float gap;
 };
 
-/// The styles of the current curve, of the overlay, and of pins by number.
+/// The styles of the current curve, of the overlay, and of a pin with the colour number `pin` (Pin::colour).
 /// Source: M. Okabe, K. Ito, Color Universal Design (2008).
 CurveStyle current_style();
 CurveStyle overlay_style();
 CurveStyle pin_style(std::size_t pin);
 CurveStyle stale(const CurveStyle& style);   ///< for a curve of an earlier scene
-ImU32 band_colour(const CurveStyle& style);  ///< fill of the band around a curve
+ImU32 band_colour(const CurveStyle& style);  ///< for the area between the limits of a DOLP
 
 inline constexpr Themed kTextColour{IM_COL32(225, 228, 232, 255), IM_COL32(24, 26, 30, 255)};
 inline constexpr Themed kDimColour{IM_COL32(150, 156, 163, 255), IM_COL32(96, 101, 108, 255)};
@@ -47,30 +47,30 @@ inline constexpr Themed kGridColour{IM_COL32(62, 66, 72, 255), IM_COL32(214, 217
 inline constexpr Themed kPlotColour{IM_COL32(20, 21, 24, 255), IM_COL32(255, 255, 255, 255)};
 inline constexpr Themed kBackground{IM_COL32(28, 31, 33, 255), IM_COL32(240, 241, 243, 255)};
 inline constexpr Themed kLabelGround{IM_COL32(20, 21, 24, 215), IM_COL32(255, 255, 255, 215)};
-/// Colour of entries with a status.
+/// Colour where the status of an entry is bad.
 inline constexpr Themed kBadColour{IM_COL32(110, 112, 116, 255), IM_COL32(150, 152, 156, 255)};
 inline constexpr Themed kErrorColour{IM_COL32(255, 150, 110, 255), IM_COL32(178, 40, 0, 255)};
-inline constexpr Themed kRefusedColour{IM_COL32(110, 48, 34, 255), IM_COL32(255, 200, 186, 255)};  // background
+inline constexpr Themed kRefusedColour{IM_COL32(110, 48, 34, 255), IM_COL32(255, 200, 186, 255)};  // fill
 inline constexpr Themed kStaleVeil{IM_COL32(20, 21, 24, 150), IM_COL32(255, 255, 255, 150)};
 inline constexpr Themed kIntervalColour{IM_COL32(90, 205, 130, 255), IM_COL32(0, 130, 60, 255)};
 inline constexpr Themed kHeadingColour{IM_COL32(230, 179, 0, 255), IM_COL32(148, 98, 0, 255)};
 inline constexpr Themed kCursorColour{IM_COL32(255, 255, 255, 200), IM_COL32(40, 40, 40, 200)};
 
-/// Loads the font DejaVu Sans, or ImGui's ASCII font if it is not installed. Needs an ImGui context.
+/// Loads the font DejaVu Sans if it is installed, otherwise ImGui's ASCII font. Needs an ImGui context.
 void load_font(float pixels);
 inline constexpr float kFontPixels = 15.0F;  ///< default size of the font
 
-float scaled(float pixels);                ///< `pixels` at the default text size; grows with the text
+float scaled(float pixels);                ///< `pixels` times the ratio of current to default text size
 std::string shown(std::string_view text);  ///< for display: without DejaVu Sans, names replace Greek letters and signs
 std::string ascii(std::string_view text);  ///< names replace Greek letters and signs
 
 /// Breaks the lines of a text only at spaces, so that numbers and paths stay whole if they fit in a line.
 std::string in_lines(std::string text, float width);
 
-void coloured_text(ImU32 colour, const std::string& text);  ///< at ImGui's cursor, wrapped at the edge of the window
+void coloured_text(ImU32 colour, const std::string& text);  ///< draws text at ImGui's cursor, in lines
 
-inline constexpr float kTooltipDelay_s = 0.5F;  ///< delay before a note appears at a resting mouse
+inline constexpr float kTooltipDelay_s = 0.5F;  ///< time that the mouse rests before a tooltip appears
 
-void tooltip(const std::string& text);  ///< shows a note beside the last item while the mouse rests on it
+void tooltip(const std::string& text);  ///< shows `text` while the mouse rests on the last item
 
 }  // namespace dolp::explore

@@ -14,7 +14,7 @@ void cell(const std::string& text, ImU32 colour = kTextColour) {
   coloured_text(colour, text);
 }
 
-/// The influence in points of DOLP: a bound for a dropped effect, an estimate for a kept one.
+/// The influence of an effect on DOLP in percentage points: a bound for a dropped effect, an estimate for a kept one.
 std::string influence_text(const Effect& row) {
   if (!row.bound && !row.influence) return "";
   const double points = 100.0 * row.bound.value_or(row.influence.value_or(0.0));
@@ -28,7 +28,7 @@ bool is_stale(const Session& session) { return !session.effects().empty() && !se
 void draw_row(const Session& session, const Effect& row) {
   const bool is_absent = row.state == EffectState::kAbsent;
   const ImU32 colour = is_absent || is_stale(session) ? kDimColour : kTextColour;
-  const bool is_slopes = row.name == "distribution";  // without its distribution the surface is smooth
+  const bool is_slopes = row.name == "distribution";  // the surface without slope distribution is smooth
   const std::string removed = is_slopes ? "roughness" : row.name;
   const std::string without = is_absent ? "" : without_text(session, removed);
   cell(row.name, colour);
@@ -40,7 +40,7 @@ void draw_row(const Session& session, const Effect& row) {
   if (!row.needs.empty()) tooltip("needs: " + row.needs);
 }
 
-/// One line per minimum and one per kind of interval. Returns the minimum that was clicked.
+/// Draws a table: a row for each minimum, then the intervals for 68 % and 95 %. Returns the minimum that was clicked.
 std::optional<std::size_t> draw_minima(const Fit& fit, std::optional<std::size_t> current) {
   std::optional<std::size_t> clicked;
   const int columns = static_cast<int>(fit.parameters.size()) + 2;
@@ -67,7 +67,7 @@ std::optional<std::size_t> draw_minima(const Fit& fit, std::optional<std::size_t
   return clicked;
 }
 
-/// The lines of the report that interpret the result. The table above has the numbers.
+/// Draws the lines of the fit's report that explain the result. The numbers are in the table of draw_minima().
 void draw_words(const Fit& fit) {
   constexpr std::array<std::string_view, 9> kShown = {"minimum",    "misfit",     "scale",  "scaled", "pieces",
                                                       "correlated", "degenerate", "status", "model"};
@@ -84,7 +84,7 @@ void draw_effects(const Session& session) {
   struct Column {
     const char* name;
     const char* meaning;
-    float width;  ///< in units of the font size
+    float width;  ///< width in units of the font size
   };
   const std::array<Column, 5> columns = {
       {{is_stale(session) ? "the scene before" : "effect", "a part of the scene", 6.8F},

@@ -22,7 +22,7 @@ void label(const char* text) {
   ImGui::SameLine();
 }
 
-/// Continues beside the last item, or in a new line if the free space is narrower than `width` times the font size.
+/// Continues beside the last item, or in a new line if the room is narrower than `width` times the font size.
 void continue_row(float width) {
   ImGui::SameLine();
   if (ImGui::GetContentRegionAvail().x < width * ImGui::GetFontSize()) ImGui::NewLine();
@@ -44,7 +44,7 @@ void draw_task(const std::string& name, BackgroundTask& task) {
   ImGui::PopID();
 }
 
-/// Draws a title, and for each of `things` a row with a button to remove it. `id` distinguishes the rows of two lists.
+/// Draws a title, and for each of `things` a row with a button to remove it. The IDs of the rows begin with `id`.
 template <class Things, class DrawRow>
 void draw_removable(const char* title, const char* id, Things& things, const DrawRow& draw_row) {
   if (things.empty()) return;
@@ -72,7 +72,7 @@ void draw_map_axes(const Session& session, View& view) {
   for (const auto& [id, axis, other] : {std::tuple{"map x", &x, &y}, {"map y", &y, &x}}) {
     const auto position = static_cast<std::size_t>(std::ranges::find(axes, axis->name, &MapAxis::name) - axes.begin());
     if (const auto clicked = draw_list(id, 5.5F * ImGui::GetFontSize(), axis->label, "", position, entries)) {
-      // Swaps the axes if the other axis has this name.
+      // If the user chose the name of the other axis, the axes swap.
       const std::string& name = axes[*clicked].name;
       const std::string& left = name == other->name ? axis->name : other->name;
       view.map_x = axis == &x ? name : left;
@@ -118,7 +118,7 @@ void draw_view_controls(Session& session, NumberFields& fields) {
 void draw_fit(const Session& session, Actions& actions) {
   if (!session.residuals().data()) return;
   ImGui::Spacing();
-  // The progress bar replaces the button, and the result is elsewhere, so that the sliders below do not move.
+  // The progress bar is in the place of the button, so that the sliders below do not move.
   if (actions.fit_task.is_running()) return draw_task("fit", actions.fit_task);
   const bool is_ready = session.fit_job().has_value();
   ImGui::BeginDisabled(!is_ready);
@@ -197,7 +197,7 @@ void draw_panel_tabs(Ui& ui) {
 void draw_panel(Ui& ui, ImVec2 size) {
   using Draw = void (*)(Ui&, ImVec2);
   constexpr std::array<Draw, kPanelNames.size()> kDraw = {
-      // in the order of Panel
+      // the order is that of the enum Panel
       [](Ui& u, ImVec2 room) { u.map.draw(u.session, u.axis_editor, room); },
       [](Ui& u, ImVec2 room) { draw_slopes(u.session, room); },
       [](Ui& u, ImVec2 room) { draw_material(u.session, room); },
@@ -235,7 +235,7 @@ void draw_one_page(Ui& ui) {
   draw_panel(ui, ImGui::GetContentRegionAvail());
 }
 
-void draw_right(Ui& ui, float window_height) {  // everything right of the controls
+void draw_right(Ui& ui, float window_height) {  // draws everything right of the controls
   draw_view_controls(ui.session, ui.fields);
   const float em = ImGui::GetFontSize();
   const ImVec2 room = ImGui::GetContentRegionAvail();

@@ -7,28 +7,28 @@
 
 namespace dolp::explore {
 
-/// Fields that never lose text. Enter, Tab, a click elsewhere or the loss of the window's focus apply the text. Refused
-/// text stays in its field, marked, until the user corrects it or Escape restores the value.
+/// Text fields for numbers. Enter, Tab, a click elsewhere or the loss of the window's focus apply the text of a field.
+/// If the text is refused, the field keeps and marks it until the user corrects it or Escape restores the value.
 class NumberFields {
  public:
-  /// Applies a text. Returns the reason if it is refused, in one line, otherwise nothing.
+  /// Applies a text. Returns one line with the reason if the text is refused, otherwise "".
   using Apply = std::function<std::string(const std::string& text)>;
   using ApplyEnds = std::function<std::string(const std::string& low, const std::string& high)>;
 
-  /// Draws a field at ImGui's cursor with `value` or with the typed text. The name of its area is "field ID".
+  /// Draws a field at ImGui's cursor. It shows `value` or what the user types. The name of its area is "field ID".
   void draw(const std::string& id, double value, const Apply& apply);
   /// Draws the field for one end of a range: `end` is 0 or 1, and the field's ID is `id` with " 0" or " 1". Both texts
   /// are applied together, so a refused text is tried again when the other end changes.
   void draw_end(const std::string& id, std::size_t end, const std::array<double, 2>& ends, const ApplyEnds& apply);
-  std::string text(const std::string& id) const {  // typed but not applied yet; empty: none
+  std::string text(const std::string& id) const {  // text that is typed but not applied; "" if none
     const auto typed = typed_.find(id);
     return typed == typed_.end() ? "" : typed->second.text;
   }
-  std::string reason(const std::string& id) const {  // why the text was refused; empty if it was not
+  std::string reason(const std::string& id) const {  // why the typed text was refused; "" if it was not
     const auto typed = typed_.find(id);
     return typed == typed_.end() ? "" : typed->second.reason;
   }
-  void draw_reason(const std::string& id) const;  ///< below the fields
+  void draw_reason(const std::string& id) const;  ///< draws reason(id) below the fields
 
  private:
   struct Typed {
@@ -46,27 +46,27 @@ struct ListEntry {
   bool is_enabled = true;
 };
 
-/// Draws a list that opens on a click; closed, it shows `current`, and `note` as a tooltip. `width` is as in ImGui, and
-/// `id` names its area. Returns the position of the entry that the user clicks, unless it is `chosen`.
+/// Draws a list that opens on a click. While it is closed, it shows `current`, and `note` as a tooltip. `width` is for
+/// ImGui::SetNextItemWidth, and `id` names the area. Returns the entry that the user clicks, unless it is `chosen`.
 std::optional<std::size_t> draw_list(const std::string& id, float width, const std::string& current,
                                      const std::string& note, std::optional<std::size_t> chosen,
                                      const std::vector<ListEntry>& entries);
 
-void row_label(const std::string& text);  ///< in the left column; the next control is beside it
+void row_label(const std::string& text);  ///< draws a label, and the next control beside it
 
-/// Draws a field for a name, which a right click on the last item opens. Returns the name typed in this frame.
+/// Draws a text field for a name. A right click on the last item opens it. Returns the name if the user changes it.
 std::optional<std::string> typed_name(std::string name, const std::string& hint = {});
 
-/// A small window for one axis. A double click on the numbers of the axis opens it.
+/// A small window to type the range of an axis. A double click on the numbers beside the axis opens it.
 class AxisEditor {
  public:
   struct Change {
-    std::optional<Scale> range;  ///< typed; empty: the data determine it
+    std::optional<Scale> range;  ///< typed range; empty: an automatic one
     bool is_log = false;
   };
-  using Check = std::function<std::string(const Scale& range)>;  ///< returns the reason of a refusal, or nothing
+  using Check = std::function<std::string(const Scale& range)>;  ///< why the range is refused, or ""
 
-  /// Draws the window if it belongs to the axis with this label. `numbers` is the area of the axis's numbers.
+  /// Draws the small window if the user opened it for the axis `label`. `numbers` is the area of this axis's numbers.
   std::optional<Change> draw(const std::string& label, const Area& numbers, const Scale& now, const Check& check);
 
   bool is_open() const { return !shown_.empty(); }
@@ -75,7 +75,7 @@ class AxisEditor {
   std::optional<Change> draw_content(const Scale& now, const Check& check);
 
   NumberFields fields_;
-  std::string shown_;  ///< label of the axis; empty: no axis
+  std::string shown_;  ///< label of the axis; empty if the window is closed
   bool is_opening_ = false;
 };
 
@@ -90,7 +90,7 @@ class PathDialog {
   };
 
   void open(Request request);
-  /// Draws the dialog if it is open. Areas have the names of the listed files and folders; folders end with a slash.
+  /// Draws the dialog if it is open. The areas (Input::areas) have the names of the files, and of the folders with "/".
   void draw();
 
  private:
@@ -101,8 +101,8 @@ class PathDialog {
   Request request_;
   bool is_opening_ = false;
   bool wants_focus_ = false;
-  std::filesystem::path folder_;     ///< empty: the program's working folder
-  std::vector<std::string> listed_;  ///< folders, then files
+  std::filesystem::path folder_;     ///< folder on display; empty: the working folder
+  std::vector<std::string> listed_;  ///< names of its folders, then of its files
   std::string name_;
 };
 

@@ -17,8 +17,7 @@ enum class Treatment {
 struct Direction {
   double theta_deg = 0.0;
   double cos_theta = 1.0;  ///< cosine of `used_deg`; for a mirror at 90 degrees a tiny positive number
-  double used_deg =
-      0.0;  ///< zenith for the evaluator: `theta_deg`, or slightly below 90 degrees to compute the limit at 90 degrees
+  double used_deg = 0.0;   ///< zenith for the evaluator: `theta_deg`, or slightly below 90 degrees for a limit at 90
   Treatment treatment = Treatment::kIntegrated;
 };
 

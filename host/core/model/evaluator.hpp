@@ -12,9 +12,8 @@ namespace dolp {
 
 struct Work {
   double evaluations = 0.0;  ///< number of evaluations of the integrand
-  double kernel_s =
-      0.0;              ///< time of the kernels: by timestamps of the device, or by a clock around the loop on the CPU
-  double sums_s = 0.0;  ///< host time to sum over slopes, interpolate, and combine responses (response_basis.hpp)
+  double kernel_s = 0.0;     ///< time of the kernels: timestamps of the device, or time of the loop on the CPU
+  double sums_s = 0.0;       ///< host time to sum over slopes, interpolate, and combine responses (response_basis.hpp)
   std::uint64_t dispatches = 0;
   std::uint64_t interpolated = 0;         ///< entries whose moments come from other moments, not from a kernel
   std::uint64_t interpolation_nodes = 0;  ///< moments that a kernel computes in order to interpolate those entries

@@ -55,11 +55,9 @@ struct MomentsRequest {
   Precision precision = Precision::kAuto;       ///< kAuto means float
   bool may_interpolate = true;    ///< allows interpolation between slope distributions, within `tolerance`
   bool has_extra_splits = false;  ///< splits the integrals more finely, to check a computation without this
-  std::shared_ptr<const ResponseBasis>
-      basis;  ///< responses that give the moments of all optics; null: each is integrated
-  std::shared_ptr<const SkyBasis>
-      sky;                           ///< adds one of Moments::columns for each function of this sky; null: no columns
-  std::optional<Response> response;  ///< fills Moments::columns with responses instead
+  std::shared_ptr<const ResponseBasis> basis;  ///< responses that give the moments of all optics; null: none
+  std::shared_ptr<const SkyBasis> sky;         ///< adds one of Moments::columns per function of this sky; null: none
+  std::optional<Response> response;            ///< fills Moments::columns with responses instead
   Layout layout = Layout::kGrid;
   std::vector<double> theta_deg;
   std::vector<FacetOptics> optics;  ///< bare facets, or facets with films

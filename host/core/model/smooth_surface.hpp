@@ -45,7 +45,8 @@ double reflectance_level(const FacetOptics& optics);
 /// Cosine sqrt(1 - Re N^2) of the incidence at which total reflection begins. 0 if the reflectances have no sharp kink.
 double critical_cosine(const FacetOptics& optics);
 
-/// Moments of a mirror, the limit of every surface for sigma -> 0: R_s and R_p at the incidence `cosine`, unmasked.
+/// Moments of a mirror, the limit of every surface for sigma -> 0: R_s and R_p at the incidence `cosine`.
+/// Domain: cosine in (0, 1]. Accuracy: see smooth_absorptance.
 Moments mirror_moments(const FacetOptics& optics, double cosine);
 
 }  // namespace dolp

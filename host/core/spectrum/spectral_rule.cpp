@@ -41,8 +41,7 @@ constexpr int kMostNodes = 24;
 // where an absorptance has a square root in wavelength. The error bound is kProbeSafety times the largest error.
 constexpr double kProbeSafety = 10.0;
 constexpr std::array<double, 7> kProbeCosines = {1.0, 0.5, 0.25, 0.15, 0.1, 0.07, 0.04};
-constexpr std::array<double, 7> kCriticalShares = {0.03, 0.19, 0.34, 0.52,
-                                                   0.67, 0.81, 0.96};  // positions of these wavelengths in a segment
+constexpr std::array<double, 7> kCriticalShares = {0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};  // positions in a segment
 // If kMostNodes nodes leave a segment with an error above kShareOfTolerance of the tolerance, the segment is cut into
 // panels. Their number grows until the error at the probes is below kPanelShareOfTolerance of the tolerance, or until
 // the whole band would have about kMostPanels. Mirrors may have more panels, because their moments are cheap and no

@@ -14,8 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kConvertedRowsAtOnce = std::size_t{1}
-                                             << 17U;  // rows that are in memory when a .csv or .npy is made
+constexpr std::size_t kConvertedRowsAtOnce = std::size_t{1} << 17U;  // rows in memory, for a .csv or .npy
 constexpr std::string_view kIdentityEnd = "; ";
 
 // PATH.partial for `path`. If `path` is a link, it is beside the link's target, because the link may be on another file

@@ -159,8 +159,7 @@ struct SceneValues : SceneModel {
   std::string text;                ///< text of the scene file, unchanged
   std::vector<std::string> files;  ///< paths of the files that the scene names, as the process opens them
   std::vector<Setting> settings;   ///< settings that were applied to the text
-  std::shared_ptr<const SceneDocument>
-      document;  ///< text and settings as TOML; null if the scene was not read from a text
+  std::shared_ptr<const SceneDocument> document;  ///< text and settings as TOML; null without a text
 };
 
 /// The scene at one wavelength instead of its spectrum. Errors: InputError if n, k or E0 are not known there.

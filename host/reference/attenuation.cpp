@@ -17,8 +17,7 @@ namespace {
 
 constexpr double kVerticalSlope = 1e17;  // at larger slopes, gamma equals pi/2 in double precision
 
-// Integral of p(t) weight(t) dt over the slopes t in [low, high]. The variable is v, t = width sinh(v), in which the
-// integrand is smooth.
+// Integral of p(t) weight(t) dt over t in [low, high]. The integrand is smooth in the variable v, t = width sinh(v).
 template <class Weight>
 double integrate_slopes(const Slopes& slopes, double low, double high, double tolerance, const Weight& weight) {
   const double width = slopes.width();

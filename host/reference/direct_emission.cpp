@@ -20,8 +20,7 @@ using std::numbers::pi;
 namespace {
 
 constexpr double kRounding = 256.0 * std::numeric_limits<double>::epsilon();
-// Facets count as vertical if their slope exceeds this times max(1, width) / sin(theta). The relative error of this is
-// 1 / kVertical.
+// Slopes above this times max(1, width) / sin(theta) count as vertical, with a relative error of 1 / kVertical.
 constexpr double kVertical = 1e10;
 constexpr double kSmallestSine = 1e-12;
 constexpr double kNoShare = 1e-19;  // a smaller share of the facets emits less than rounding
@@ -117,8 +116,7 @@ class Facets {
     return std::min(vertical, slopes_.quantile(kNoShare));
   }
 
-  // Emission of the facets steeper than t. For these, e G_1 is proportional to the slope with smith masking, and
-  // constant with v-cavity.
+  // Emission of the facets steeper than t. There e G_1 is proportional to the slope (smith) or constant (v-cavity).
   Emitted tail(double t, const Refinement& refinement) {
     const double share = masking_ == Masking::kVCavity ? slopes_.share_above(t) : slopes_.length_above(t) / t;
     if (share < kNoShare) return {};

@@ -37,19 +37,16 @@ constexpr double kStepsPerGamma = 3.0;
 // kBendShare of the integral remains, if it is smaller. Steeper grooves have many small bends.
 constexpr double kBendShare = 1e-2;
 constexpr double kSteepestBends = 10.0;
-// An attempt with more bounces than kMostBounces, about two seconds of work, is abandoned, and repeated with a
-// tolerance kLessAmbitious times as large. An attempt with a tolerance of kLeastAmbition or more is the last and is not
-// abandoned.
+// An attempt with more than kMostBounces bounces, two seconds of work, is abandoned and repeated with kLessAmbitious
+// times the tolerance. An attempt with a tolerance of kLeastAmbition or more is the last and not abandoned.
 constexpr double kMostBounces = 2e7;
 constexpr double kLessAmbitious = 100.0;
 constexpr double kLeastAmbition = 1e-5;
 constexpr double kThinWeight = 0.02;   // SlopeTask::thin_weight
 constexpr double kNegligible = 1e-12;  // smaller integrals, relative to the albedo, are only rounding errors
-// Factor from the difference of two quadrature rules to the returned error. In panels that still have bends, the error
-// may exceed the difference.
+// Factor from the difference of two rules to the error, which may be larger in panels that still have bends.
 constexpr double kBentErrors = 6.0;
-// A first estimate of the integrals uses kLookShares quantiles of the slopes, at most kLookSteepest, and kLookAzimuths
-// azimuths.
+// The first estimate uses kLookShares quantiles of the slopes, none above kLookSteepest, and kLookAzimuths azimuths.
 constexpr int kLookShares = 16;
 constexpr int kLookAzimuths = 16;
 constexpr double kLookSteepest = 50.0;
@@ -237,8 +234,7 @@ class Surveyor {
     double bends;  ///< bends of the integrand are searched up to this slope
     double all;    ///< the integral over slopes ends here
   };
-  // Slopes beyond which the rest of the integral is negligible, or beyond which light has too many bounces to be
-  // followed.
+  // Slopes beyond which the rest of the integral is negligible, or light has too many bounces to be followed.
   Ends ends(const GrooveValues& expected) {
     const double scale = std::min(expected[kReflected], expected[kAbsorbed]);
     Ends ends{kSteepestBends, kSteepest};

@@ -24,14 +24,12 @@ namespace {
 
 constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// The absorbed part is added to cos(theta) - albedo. If it is below this share of the albedo, its relative error is
-// unimportant.
+// Below this share of the albedo, the absorbed part, which is added to cos(theta) - albedo, needs no relative accuracy.
 constexpr double kSmallAbsorbed = 1e-2;
 // Elevations above the horizon, and quantities proportional to them, have a relative error of a few ulps even if they
 // are tiny (test ReferenceMoments_NextToGrazing_KeepTheirDigits).
 constexpr double kElevationRounding = 32.0 * std::numeric_limits<double>::epsilon();
-// At theta = 90 degrees the integral over u ends at the distance kHorizonGap from the horizon. A power law gives the
-// rest.
+// At theta = 90 degrees the integral over u ends this far from the horizon. A power law gives the rest.
 constexpr double kHorizonGap = 1e-30;
 // If the fixed direction is closer to the horizon than this, the masking changes where theta_r is about as close to it.
 // Panels could step over this layer, so there are more break points towards the horizon.
@@ -113,8 +111,7 @@ class Hemisphere {
   double evaluations() const { return evaluations_; }
 
  private:
-  // One zenith theta_r of the outer integral (`running`), with values that depend on theta and theta_r but not on
-  // azimuth.
+  // One zenith theta_r of the outer integral, with values that depend on theta and theta_r, but not on the azimuth.
   struct Row {
     double t;
     double cos2_mean;
@@ -183,8 +180,7 @@ class Hemisphere {
     return breaks;
   }
 
-  // The variable is v, tan(delta/4) = width sinh(v). At v = 1 the facet density D is small, because 4 tan^2(delta/4) is
-  // about s2.
+  // The variable is v, tan(delta/4) = width sinh(v). At v = 1 the density D is small, as 4 tan^2(delta/4) is about s2.
   Integral<kAzimuthCount> integrate_azimuth(const Row& row) {
     const double t2 = row.t * row.t;
     const double scale2 =
@@ -239,9 +235,8 @@ class Hemisphere {
     return both;
   }
 
-  // The integrands of albedo, r_i, r_q and absorbed part: cos(theta) f cos(theta_r) = D G M / 4 with 1, R and 1 - R in
-  // M. M00 and M01 of eq. (7) need only squared lengths of columns of the Jones matrix of eq. (4), which the rotation
-  // by eta_r keeps.
+  // cos(theta) f cos(theta_r) = D G M / 4, with 1, R or 1 - R in the Mueller matrix M. Its M00 and M01, eq. (7), need
+  // only squared lengths of columns of the Jones matrix, eq. (4), which the rotation by eta_r keeps.
   AzimuthValues integrand(const Row& row, double delta) const {
     const double sin_half = std::sin(0.5 * delta);
     const double cos_half = std::cos(0.5 * delta);
@@ -302,8 +297,7 @@ double amplitude_rounding(double reflected, double albedo) {
   return kRounding * (2.0 * std::sqrt(reflected * albedo) + kRounding * albedo);
 }
 
-// Rounding errors and the error of the masking G are relative to `magnitude`; for G with a factor 2, because G_1 may be
-// as small as 1/2.
+// Rounding and the error of the masking G are relative to `magnitude`; twice for G, because G_1 may be as small as 1/2.
 template <std::size_t N>
 double error_of(const Integral<N>& integral, std::size_t k, double magnitude, const Refinement& refinement) {
   const double masking_error = 2.0 * masking_tolerance_for(refinement);
@@ -354,8 +348,7 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   moments.albedo_error = error_at(kAlbedo);
   moments.r_i_error = error_at(kReflected) + amplitude_error;
   moments.r_q_error = error_at(kPolarised) + amplitude_error;
-  // cos(theta) - r_i has a smaller error if little is reflected, (cos(theta) - albedo) + absorbed if little is
-  // absorbed.
+  // If little is reflected, cos(theta) - r_i is more accurate, otherwise (cos(theta) - albedo) + absorbed.
   const double direct_error = moments.r_i_error + kRounding * cos_theta;
   const double split_error = moments.albedo_error + error_at(kAbsorbed) + kRounding * cos_theta;
   const bool is_split = split_error < direct_error;

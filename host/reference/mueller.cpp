@@ -28,8 +28,7 @@ using Jones = std::array<std::array<Number, 2>, 2>;
 
 constexpr double kMaskingTolerance = 1e-13;
 constexpr double kRetro = 1e-50;  // below this sin^2(2 beta) there is no plane of incidence
-// If the square of the horizontal part of omega_i + omega_r is below this, grooves of every azimuth reflect one beam
-// into the other.
+// Below this squared horizontal part of omega_i + omega_r, grooves of every azimuth reflect one beam into the other.
 constexpr double kMirrored = 1e-50;
 constexpr int kMostMuellerBounces = 2000;
 constexpr int kMostInQuad = 24;  // light with more bounces is only a correction and may be in double
@@ -156,8 +155,7 @@ struct GroovePlane {
   }
   Vector in_groove(const Vector& a) const { return {dot(a, u), dot(a, v), a[2]}; }
   /// The half-angle of the groove that reflects one beam into the other with `bounces` bounces, the first one at facet
-  /// A. In the unfolded groove the ray turns by 2 * bounces * gamma, from omega_i to -omega_r or to the mirror image of
-  /// -omega_r.
+  /// A. In the unfolded groove the ray turns by 2 * bounces * gamma, from omega_i to -omega_r or to its mirror image.
   Real gamma(int bounces) const {
     const Real turn = bounces % 2 == 1 ? Real(psi_i + psi_r) : Real(psi_i - psi_r);
     return (boost::math::constants::pi<Real>() - turn) / (2 * bounces);
@@ -230,8 +228,7 @@ struct GroovePair {
     return total;
   }
   /// True if no ray can leave at psi_r after `bounces` or more bounces. In the unfolded groove the ray passes the apex
-  /// at a distance from cos(gamma) sin(|psi| - gamma) to sin(|psi| + gamma), for psi = psi_i as well as for psi =
-  /// psi_r.
+  /// at a distance from cos(gamma) sin(|psi| - gamma) to sin(|psi| + gamma), for both psi.
   bool is_beyond(int bounces) const {
     const Real widest = std::max(toward.gamma(bounces), against.gamma(bounces));
     return abs(Real(abs(toward.psi_i) - abs(toward.psi_r))) > 4 * widest;

@@ -11,8 +11,7 @@ constexpr int kMostSteps = 150;
 constexpr int kPlainSteps = 12;
 // If there are more bends, each is so small that refinement copes without break points.
 constexpr std::size_t kMostBends = 40;
-// The scan of t has equal steps of 1/gamma, because bends of grooves are equally spaced in 1/gamma, and equal steps of
-// log t.
+// The scan of t has equal steps of log t, and equal steps of 1/gamma, in which bends of grooves are equally spaced.
 constexpr double kStepInverse = 0.04;
 constexpr double kMostInverse = 10.0;
 constexpr int kStepsPerDecade = 16;
@@ -22,8 +21,7 @@ constexpr double kSmallestShare = 1e-7;  // relative to the width; smaller slope
 constexpr double kThinLayer = 0.05;
 constexpr double kPlaneLayerGrowth = 8.0;
 
-// The positions at which `regime` changes between neighbours of `points`, which ascend, found by bisection to the last
-// bits.
+// The positions between the ascending `points` at which `regime` changes, found by bisection to the last bits.
 std::vector<double> changes(const std::vector<double>& points, const std::function<std::uint64_t(double)>& regime) {
   std::vector<double> found;
   std::uint64_t below = regime(points.front());

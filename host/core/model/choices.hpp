@@ -11,9 +11,8 @@ namespace dolp {
 
 enum class Distribution : std::uint32_t { kCauchy = 0, kGaussian = 1 };
 enum class Masking : std::uint32_t { kNone = 0, kVCavity = 1, kIntegral = 2, kSmith = 3 };
-/// True if the facets that are visible from a direction have together the projected area of the surface. Then no more
-/// light is reflected than arrives, and rho and f have limits at 90 degrees; otherwise they diverge there. Direct
-/// emission needs such a masking.
+/// True if the facets visible from a direction have together the projected area of the surface. Then no more light is
+/// reflected than arrives, and rho and f have limits at 90 degrees. Direct emission needs such a masking.
 constexpr bool keeps_projected_area(Masking masking) {
   return masking == Masking::kVCavity || masking == Masking::kSmith;
 }

@@ -41,9 +41,8 @@ struct Response {
   Of of = Of::kReflected;
 };
 
-/// Entries whose moments an evaluator computes. A grid has all combinations of `optics`, `theta_deg`, `sigma` and `q`,
-/// of which q varies fastest. In a list each of these four vectors has one value per entry. The position in this order
-/// identifies an entry.
+/// A grid has all combinations of `optics`, `theta_deg`, `sigma` and `q`; q varies fastest. In a list each of these
+/// four vectors has one value per entry. The position in this order identifies an entry.
 struct MomentsRequest {
   enum class Layout { kGrid, kList };
 
@@ -68,8 +67,7 @@ struct MomentsRequest {
   std::size_t size() const;
   bool is_wanted(std::size_t entry) const { return wanted.empty() || wanted[entry] != 0; }
   std::size_t wanted_count() const;
-  /// `share` times the tolerance. In float the result is at least kLeastFloatTolerance, or the tolerance if it is
-  /// smaller.
+  /// `share` times the tolerance. In float at least kLeastFloatTolerance, or the tolerance if it is smaller.
   double finer_tolerance(double share) const;
   std::size_t shapes() const { return sigma.size() * q.size(); }
   MomentsPoint operator[](std::size_t entry) const;

@@ -39,9 +39,8 @@ CurveCoefficients coefficients_of(const FacetOptics& index, double c0) {
   return transform * values;
 }
 
-/// Bounds of the errors of the two columns of `all` if only the first `count` coefficients are kept. A bound is the sum
-/// of the other computed coefficients, plus kCoefficients unknown ones as large as the largest of the last
-/// kLastOfCurve.
+/// Bounds of the errors of the two columns of `all` if only the first `count` coefficients are kept. Sums the other
+/// computed coefficients, and kCoefficients unknown ones as large as the largest of the last kLastOfCurve.
 Eigen::RowVector2d errors_of(const CurveCoefficients& all, Eigen::Index count) {
   return all.bottomRows(kCoefficients - count).cwiseAbs().colwise().sum() +
          kCoefficients * all.bottomRows<kLastOfCurve>().cwiseAbs().colwise().maxCoeff();
@@ -110,8 +109,7 @@ std::shared_ptr<const ResponseBasis> ResponseBasis::of(const std::vector<FacetOp
   for (const FacetOptics& index : candidates_of(indices, kMostCandidates)) {
     if (needed(index, basis->c0_, tolerance) > basis->count_) continue;
     basis->bend_ = std::min(basis->bend_, distance_of_bend(index));
-    // Indices with total reflection are no reference: the kink of their reflectances would add to the responses'
-    // errors.
+    // No reference has total reflection: the kink of its reflectances would add to the errors of the responses.
     if (critical_cosine(index) > 0.0 || reflectance_level(index) >= lowest) continue;
     lowest = reflectance_level(index);
     basis->reference_ = index;

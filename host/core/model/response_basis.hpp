@@ -2,8 +2,7 @@
 // The moments of single scattering are linear in the Fresnel reflectances as functions of c, the cosine of the local
 // angle of incidence. A response is a moment with a Chebyshev polynomial of 2 u - 1, u = asinh(c / c0) / asinh(1 / c0),
 // instead of the reflectances. The moments of an index are weighted sums of responses. The weights are the Chebyshev
-// coefficients of its reflectances, for every direction, slope distribution and masking. Omitted coefficients bound the
-// error.
+// coefficients of its reflectances, for every direction, slope distribution and masking.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,15 +23,13 @@ struct ResponseWeights {
 
 class ResponseBasis {
  public:
-  /// A basis with which reflectances that are summed from polynomials have errors below `tolerance`, relative to the
-  /// reflectance_level of the index. `passes`: kernel passes that compute responses. Null if these passes would take
-  /// longer than integrating each index.
+  /// The reflectances of an index, as sums of polynomials, have errors below `tolerance` times its reflectance_level.
+  /// `passes`: kernel passes that compute responses. Null if they would take longer than integrating each index.
   static std::shared_ptr<const ResponseBasis> of(const std::vector<FacetOptics>& indices, double tolerance,
                                                  std::size_t passes);
 
-  /// The index that a kernel pass integrates in addition to the responses: the one with the lowest reflectance_level.
-  /// The moments of another index may be those of this index plus a sum over responses, which is smaller and has less
-  /// error.
+  /// The index that a kernel pass integrates besides the responses: the one with the lowest reflectance_level. Another
+  /// index may have the moments of this index plus a sum over responses, which is smaller and has less error.
   const FacetOptics& reference() const { return reference_; }
   std::size_t count() const { return count_; }
   double c0() const { return c0_; }

@@ -27,8 +27,7 @@ inline bool is_specular(const BeamAngles& a) {
   return a.theta_i_deg == a.theta_r_deg && (is_forward || a.theta_i_deg == 0.0);
 }
 
-/// One pair of beams, slope distribution and index: positions in the lists `angles`, `shapes` and `optics` of a
-/// request.
+/// One pair of beams, slope distribution and index: positions in the lists of a ScatteringRequest.
 struct ScatteringEntry {
   std::uint32_t angles = 0;
   std::uint32_t shape = 0;
@@ -47,8 +46,7 @@ struct ScatteringRequest {
   std::vector<ScatteringEntry> entries;
 };
 
-/// The Mueller matrix f_s cos(theta_i) cos(theta_r) for k_s = 1, row by row. The cosines keep it finite at grazing
-/// angles.
+/// The Mueller matrix f_s cos(theta_i) cos(theta_r) for k_s = 1, row by row. It is finite at grazing angles.
 /// Units: sr-1. Conventions: shaders/physics/README.md, section 1, defines the polarisation frames, Q, U and V.
 struct ScatteringMatrix {
   std::array<double, 16> m{};

@@ -190,8 +190,7 @@ std::vector<SceneEntries> SceneEntries::parts(std::size_t most) const {
 
 void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& whole,
                   const std::function<void(const GridRun&)>& use) {
-  // The last axis varies fastest. A run covers the last axes, as far as the part has all of their values, and one axis
-  // more.
+  // The last axis varies fastest. A run covers the last axes of which the part has all values, and one axis more.
   std::size_t slowest = count.size() - 1;
   while (slowest > 0 && count[slowest] == whole[slowest]) --slowest;
   const auto from = static_cast<std::ptrdiff_t>(slowest);

@@ -48,8 +48,7 @@ struct FilmValue {
   friend auto operator<=>(const FilmValue&, const FilmValue&) = default;
 };
 
-/// How an entry differs from the scene, besides direction, slope shape and index. Each variant needs its own
-/// Radiometry.
+/// How an entry differs from the scene, besides direction, slope shape and index. Each variant needs a Radiometry.
 struct SceneVariant {
   std::optional<double> wavelength_um = {};               ///< nullopt: the scene's spectrum
   std::optional<std::uint32_t> material = {}, band = {};  ///< positions in SceneModel::materials and bands
@@ -66,8 +65,7 @@ void set_value(SceneVariant& variant, Axis axis, double value);
 
 std::vector<SceneVariant> variants_of(const Axes& axes);
 
-/// Entries that follow each other both in a part of a grid and in the whole grid: where they begin, and how many they
-/// are.
+/// Entries that follow each other both in a part of a grid and in the whole grid: first positions, and number.
 struct GridRun {
   std::size_t in_part = 0;
   std::size_t in_whole = 0;
@@ -123,8 +121,7 @@ class SceneEntries {
   PerAxis first_in(const SceneEntries& whole) const;
   const PerAxis& whole() const { return whole_; }
   const Axes& whole_axes() const { return *whole_axes_; }
-  /// The position in this part of the entry at `in_whole` in the whole grid; nullopt if the part does not have this
-  /// entry.
+  /// The position in this part of the entry at `in_whole` in the whole grid; nullopt if the part lacks it.
   std::optional<std::size_t> position_of(std::size_t in_whole) const;
 
  private:

@@ -58,9 +58,8 @@ struct SkyWeights {
 /// A few functions of the zenith with absolute values up to 1. Their weighted sums give a sky at each wavelength.
 class SkyBasis {
  public:
-  /// Chooses some of `functions`, given by their values at the nodes. Adds the function with the largest error until
-  /// weighted sums approximate each function to `tolerance` of its largest value, or until kMostSkyFunctions are
-  /// chosen.
+  /// Chooses some of `functions`, given at the nodes. Adds the function with the largest error until weighted sums
+  /// approximate each one to `tolerance` of its largest value, or until kMostSkyFunctions are chosen.
   SkyBasis(SkyNodes nodes, const std::vector<Eigen::VectorXd>& functions, double tolerance);
 
   const SkyNodes& nodes() const { return nodes_; }

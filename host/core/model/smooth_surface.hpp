@@ -19,8 +19,7 @@ struct ReflectedAmplitudes {
 /// Domain: cosine in (0, 1].
 ReflectedAmplitudes film_amplitudes(const FacetOptics& optics, double cosine);
 
-/// Number of fringes between grazing and normal incidence, summed over the films. A fringe is a period of e^(2 i
-/// delta).
+/// Fringes between grazing and normal incidence, summed over the films. A fringe is a period of e^(2 i delta).
 double fringe_count(const FacetOptics& optics);
 
 /// Absorptances of a smooth surface, s = 1 - R_s and p = 1 - R_p.
@@ -37,9 +36,8 @@ struct SmoothAbsorptance {
 /// and the relative error of `split` is 1e-10.
 SmoothAbsorptance smooth_absorptance(const FacetOptics& optics, double cosine);
 
-/// The smaller of the reflectance and the absorptance. Errors of reflectance curves are relative to it. For a bare
-/// medium both are taken at normal incidence; otherwise both are means over four angles, because films may reflect
-/// nothing at one.
+/// The smaller of reflectance and absorptance, to which errors of reflectances are relative. For a bare medium both are
+/// at normal incidence; otherwise both are means over four angles, because films may reflect nothing at one.
 double reflectance_level(const FacetOptics& optics);
 
 /// Cosine sqrt(1 - Re N^2) of the incidence at which total reflection begins. 0 if the reflectances have no sharp kink.

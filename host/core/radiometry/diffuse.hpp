@@ -17,8 +17,7 @@ struct DiffuseLight {
 /// The diffuse part of a pBRDF.
 /// Equation: f = k_d / pi (cos theta_i cos theta_r)^c. With diffuse_polarisation "transmission" the light enters the
 /// body, loses its polarisation there and leaves. Then f has also the factor t(theta_r) t(theta_i)^T / t_+(0)^2, where
-/// t = (t_+, t_-, 0, 0) and t_+- = (T_s +- T_p) / 2 are transmittances of the smooth surface; angle 0 is normal
-/// incidence.
+/// t = (t_+, t_-, 0, 0) and t_+- = (T_s +- T_p) / 2 of the smooth surface; angle 0 is normal incidence.
 /// Source: Baek, Jeon, Tong, Kim 2018, Simultaneous acquisition of polarimetric SVBRDF and normals, section 4.
 /// Domain: a bare medium.
 class DiffuseReflection {
@@ -30,8 +29,7 @@ class DiffuseReflection {
   DiffuseLight rho(double cosine) const;
   /// The diffuse pBRDF times pi cos(theta_i).
   DiffuseLight beam(double cos_theta_i, double cos_theta_r) const;
-  /// The transmittances t_+ and t_- at the incidence `cosine`, both divided by t_+ at normal incidence. (1, 0) without
-  /// diffuse_polarisation.
+  /// t_+ and t_- at the incidence `cosine`, over t_+ at normal incidence. (1, 0) without diffuse_polarisation.
   DiffuseLight transmitted(double cosine) const;
   /// Weights with which a sky's radiances at the nodes add up to the mean radiance that the diffuse part receives.
   Eigen::VectorXd mean_weights(const SkyNodes& nodes) const;

@@ -106,8 +106,7 @@ bool reflectance_diverges(const Surface& surface, const Direction& direction, st
 
 /// The terms of I and Q that grow fastest as cos(theta) -> 0, times a factor that makes them finite.
 /// Equation: let D be the exitance of the surroundings, minus pi B unless the emission is fresnel. If D is not 0, the
-/// terms are D r_i and D r_q. If D is 0, they are E0 r_i, E0 r_q, the path radiance and, unless the emission is
-/// fresnel, pi B.
+/// terms are D r_i and D r_q. If D is 0, they are E0 r_i, E0 r_q, the path and, unless the emission is fresnel, pi B.
 Stokes grazing_stokes(const SceneModel& scene, const SpectralRule& rule, std::span<const SkyWeights> sky,
                       std::span<const Moments> moments) {
   const Surface& surface = scene.surface;

@@ -29,14 +29,12 @@ class Radiometry {
   explicit Radiometry(const SceneModel& scene, const KeptEffects& kept = {}, double dropped = 0.0,
                       const std::shared_ptr<const SkyBasis>& sky = nullptr);
 
-  /// The spectral samples of the scene. `point` needs Moments for the index of each sample, in the order of the
-  /// samples.
+  /// The spectral samples of the scene. `point` needs Moments for the index of each sample, in this order.
   const SpectralRule& rule() const { return rule_; }
 
-  /// Domain: if a moment is NaN, the entry is outside the model's domain: the status is 4 (kOutsideModelDomain), and
-  /// every quantity is NaN. At 90 degrees rho diverges with masking none or integral, or with an unpolarised diffuse
-  /// part with c < 0. Then rho and the Stokes parameters are NaN, the status is 1 | 4 (rho outside [0, 1], and
-  /// kOutsideModelDomain), and dolp is the limit.
+  /// Domain: a moment is NaN outside the model's domain. Then the status is 4 (kOutsideModelDomain) and every quantity
+  /// NaN. At 90 degrees rho diverges with masking none or integral, or with an unpolarised diffuse part with c < 0.
+  /// Then rho and the Stokes parameters are NaN, the status is 1 | 4 (1: rho outside [0, 1]), and dolp is the limit.
   PointResult point(const Direction& direction, std::span<const Moments> moments) const;
 
   /// Facet optics of each spectral sample, and the diffuse reflection of a surface with these optics.
@@ -47,8 +45,7 @@ class Radiometry {
   };
   Optics optics_with(std::vector<FacetOptics> facets) const;
 
-  /// For an entry with another n or k than the scene. `optics` affects fresnel emission and a polarised diffuse part
-  /// only.
+  /// For an entry with another n or k than the scene. Only fresnel emission and a polarised diffuse part use `optics`.
   PointResult point(const Direction& direction, std::span<const Moments> moments, const Optics& optics) const;
 
   /// Result in bistatic mode. `moments` and rho belong to the direction of the view; the source is at theta_i.

@@ -39,8 +39,7 @@ Reflectance reflectance(const Surface& surface, const Moments& moments, double c
 /// True if rho_s or rho_p is outside [0, 1] by more than its error.
 bool is_unphysical(const Reflectance& r);
 
-/// Mean of rho over the spectral samples, weighted with the emission, else with the incident light, else with the
-/// width.
+/// Mean of rho over the spectral samples. The weights are the emission, else the incident light, else the width.
 MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances, double cos_theta);
 
 Emissivity fresnel_emissivity(const FacetOptics& index, double cos_theta);

@@ -27,8 +27,8 @@ struct Stokes {
 /// Lower and upper bound of the DOLP that the surface has with all bounces.
 /// Equation: the true eps_I is the direct eps_I + d with an unknown d, 0 <= d <= D = 1 - rho_I - eps_I,direct; eps_Q
 /// changes by at most d. Let X be the exitance of source and surroundings, and N = pi B - X. Then I = X + N eps_I and Q
-/// = N eps_Q. The extreme values of DOLP are at d = D, where I is the I of single scattering: (|sum N eps_Q,direct| -+
-/// sum |N| D) / I.
+/// = N eps_Q. DOLP has its extreme values at d = D, where I is that of single scattering: (|sum N eps_Q,direct| -+ sum
+/// |N| D) / I.
 /// Under a sky, X is the middle of the range of the sky's exitance, and M is half of this range. The reflection of the
 /// sky's difference from X is computed with single scattering. The light D - d of later bounces comes from an unknown
 /// part of the sky; it changes Q and I by at most M (D - d). So the extreme values may also be at d = 0.
@@ -61,8 +61,7 @@ void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std:
 /// Adds the specular part of add_sky: `specular` times the weighted sum of the moments with the functions of the sky.
 void add_specular_sky(Stokes& sum, double specular, double rounding, const SkyWeights& weights, const Moments& moments);
 
-/// Adds the reflected beam of the source as an exitance, pi E0 cos(theta_i) f. `diffuse`: pi cos(theta_i) f of the
-/// diffuse part.
+/// Adds the source's reflected beam as an exitance, pi E0 cos(theta_i) f. `diffuse`: pi cos(theta_i) f, diffuse part.
 void add_beam(Stokes& sum, double k_s, const SpectralRule& rule, std::span<const Scattered> scattered,
               std::span<const DiffuseLight> diffuse, double cos_theta_r);
 

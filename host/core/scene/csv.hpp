@@ -33,13 +33,11 @@ class CsvReader {
 
   std::size_t line_number() const;
 
-  /// "file:line: ", the beginning of a message about the current line or, before the first next(), about the first
-  /// line.
+  /// "file:line: ", with which a message begins. Before the first next() it names the first line.
   std::string where() const;
   [[noreturn]] void fail(const std::string& what) const;
 
-  /// The number in a cell of the line. Errors: InputError that names file, line, `column`, value and, if `range` is
-  /// given, the allowed values.
+  /// The number in a cell of the line. Errors: InputError that names file, line, `column`, value and `range`.
   double number(std::size_t cell, std::string_view column, const NumberRange* range = nullptr) const;
 
  private:
@@ -62,9 +60,8 @@ struct CsvColumn {
 /// The columns of a file. The header may name them in any order, in upper or lower case.
 class CsvColumns {
  public:
-  /// Reads the header. Leaves out columns in `ignored`. Errors: InputError for a name that is unknown (with a
-  /// suggestion), repeated, or required and missing; for a separator other than the comma; and for numbers instead of
-  /// names.
+  /// Leaves out columns in `ignored`. Errors: InputError for a name that is unknown (with a suggestion), repeated, or
+  /// required and missing; for a separator other than the comma; and for numbers instead of names.
   CsvColumns(const CsvReader& header, std::vector<CsvColumn> known, const std::vector<std::string>& ignored = {});
 
   /// For a file without a header, whose rows have all known columns in this order.
@@ -78,8 +75,7 @@ class CsvColumns {
   /// For each cell of a row, the position of its column among the known columns; nullopt if the column is left out.
   const std::vector<std::optional<std::size_t>>& cells() const { return cells_; }
 
-  /// The number in the column `name` of a row; nullopt if the file lacks the column. Errors: InputError for a wrong
-  /// value, or for more cells than the header has.
+  /// Nullopt if the file lacks the column. Errors: InputError for a wrong value, or for more cells than columns.
   std::optional<double> number(const CsvReader& row, std::string_view name) const;
   double number_at(const CsvReader& row, std::size_t cell) const;
 

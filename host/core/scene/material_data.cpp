@@ -70,8 +70,7 @@ std::vector<const Material*> materials_with(std::string_view words) {
   return found;
 }
 
-/// The material with this full name, else with these first words, else with these words anywhere. Null if not exactly
-/// one.
+/// The only material with this full name, else with these first words, else with these words anywhere; or null.
 const Material* match_name(std::string_view name) {
   const std::string wanted = lower_case(trim(name));
   std::vector<const Material*> beginning;

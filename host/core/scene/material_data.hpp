@@ -12,9 +12,8 @@ namespace dolp {
 /// The materials of host/data/materials.csv with their sources, in the order of host/data/materials_sources.csv.
 const std::vector<Material>& built_in_materials();
 
-/// Finds a built-in material; case does not matter. Whole words of its name are enough if no other material has them:
-/// "water" finds "water 25C". Errors: InputError that begins with `prefix` and suggests names, if no or several
-/// materials fit.
+/// Case does not matter. Whole words of a name are enough if only one material has them: "water" finds "water 25C".
+/// Errors: InputError that begins with `prefix` and suggests names, if not exactly one material fits.
 const Material& named_material(std::string_view name, const std::string& prefix);
 
 /// The built-in material called `name`, fitted to `spectrum`. Errors: errors of named_material and fit_to_spectrum.
@@ -40,8 +39,7 @@ Spectrum known_range(const Material& material);
 /// Refuses a tabulated material that lacks n or k in a part of the spectrum. The message begins with `prefix`.
 void check_covers(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
-/// Refuses a material whose formula gives an n outside the allowed range, as near a pole. Checks 1001 wavelengths of a
-/// band.
+/// Refuses a material whose formula gives an n that is not allowed, as near a pole. Checks 1001 wavelengths of a band.
 void check_formula(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
 /// Fits a tabulated material to the spectrum of a scene. For a band the result keeps the tables; for a single

@@ -22,8 +22,7 @@ constexpr std::size_t kMostPointsBytes = 1U << 30U;
 
 using FilmColumn = std::pair<std::size_t, FilmValue::Part>;
 
-/// A column of points: a value on an axis, a number of a film, or an angle of a pair of directions. Angles are
-/// required.
+/// A column: a value on an axis, a number of a film, or an angle of a pair of directions. Angles are required.
 struct ColumnRule {
   std::string name;
   NumberRange range;

@@ -15,8 +15,7 @@
 namespace dolp {
 
 enum class PointsKind {
-  /// For `eval` and `lookup`. Columns: axes (theta_deg, sigma, q, n, k, wavelength_um, ...) and numbers of films, at
-  /// least one.
+  /// For `eval` and `lookup`. At least one column: axes (theta_deg, sigma, q, n, k, ...) or numbers of films.
   kDirections,
   /// For `mueller`. Columns: theta_i_deg, theta_r_deg, delta_phi_deg, and any of sigma, q, n, k and numbers of films.
   kGeometries,
@@ -58,8 +57,7 @@ inline double value_or(const Points::Column& column, std::size_t row, double fal
 /// no other label contains this part. Errors: InputError that lists the known labels.
 std::vector<double> label_positions(const Points& points, Axis axis, const AxisLabels& known);
 
-/// Makes points from arrays. Errors: InputErrors of read_points, and InputError if an array's length is neither 1 nor
-/// `count`.
+/// Points from arrays. Errors: InputErrors of read_points, and InputError if a length is neither 1 nor `count`.
 Points points_of(std::span<const Column> columns, std::size_t count, PointsKind kind);
 
 /// Reads the points in the CSV file at `path` ("-" is stdin). A header without rows is a valid list of no points.

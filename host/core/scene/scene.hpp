@@ -96,8 +96,7 @@ struct Surroundings {
   void set_sky(SkyProfile sky);
 };
 
-/// Path to the sensor, with transmittance tau and radiance L. It changes I to tau I + L (for exitances, to tau I + pi
-/// L) and multiplies Q, U and V by tau.
+/// Path to the sensor. It changes I to tau I + L (exitances: tau I + pi L) and multiplies Q, U and V by tau.
 struct Path {
   double transmittance = 1.0;
   std::optional<double> temperature_K;  ///< temperature from which L = (1 - tau) B(T) follows
@@ -167,8 +166,7 @@ SceneModel at_wavelength(const SceneModel& scene, double wavelength_um);
 
 void set_films(Surface& surface, const std::vector<FilmValue>& films);
 
-/// The scene with the changes of a variant. Domain: the scene has the films that the variant changes. Errors: errors of
-/// at_wavelength.
+/// The changed scene. Domain: it has the films that the variant changes. Errors: errors of at_wavelength.
 SceneModel with_variant(const SceneModel& scene, const SceneVariant& variant);
 
 }  // namespace dolp

@@ -18,8 +18,7 @@ namespace {
 
 constexpr std::size_t kMostDepth = 100;
 
-/// Where the string ends that begins at `begin`. In TOML one or three quotation marks, single or double, enclose a
-/// string.
+/// Where the string ends that begins at `begin`. One or three quotation marks, single or double, enclose a string.
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
   const char quote = text[begin];
   const std::string three(3, quote);
@@ -34,8 +33,8 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// The line where nesting exceeds kMostDepth, else 0. Such a text is refused, because the TOML parser recurses at each
-/// level.
+/// The line where nesting exceeds kMostDepth, else 0. A text with such a line would make the TOML parser recurse
+/// deeply.
 std::size_t line_of_deep_nesting(std::string_view text) {
   std::vector<std::size_t> around = {0};  // depth at the beginning of the text and at each open bracket
   std::size_t depth = 0;
@@ -78,8 +77,7 @@ std::string_view table_part(std::string_view key) {
   return dot == std::string_view::npos ? std::string_view{} : key.substr(0, dot);
 }
 
-/// Reads `text` as TOML, else as a number in a notation that TOML lacks, else as a word, and calls `insert` with the
-/// value.
+/// Calls `insert` with `text` as TOML, else as a number in a notation that TOML lacks, else as a word.
 template <class Insert>
 void insert_text(const std::string& text, bool is_text_key, const Insert& insert) {
   try {

@@ -15,8 +15,7 @@ namespace dolp {
 /// True if the setting removes its key: its value is empty, `{}` or, for keys of is_removed_by_none, `none`.
 bool is_removal(const Setting& setting);
 
-/// A value as one line of TOML. For messages, `is_escaped` is false: then texts stand in quotation marks without
-/// escapes.
+/// A value as one line of TOML. If `is_escaped` is false, as for messages, texts have no escapes.
 std::string toml_text(const toml::node& node, bool is_escaped = true);
 
 class SceneDocument {
@@ -34,8 +33,8 @@ class SceneDocument {
   /// The key to blame if `keys` contradict each other: the first of them that a setting gave, else the first.
   std::string first_set(std::initializer_list<std::string> keys) const;
 
-  /// Throws an InputError that names the line or the setting of the key, its value and the problem `what`. If the key
-  /// is absent, it names the line of its table.
+  /// Throws an InputError with the key's line or setting, its value and `what`. An absent key has the line of its
+  /// table.
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
 
   /// The text with which the message of fail() begins, without `what`.

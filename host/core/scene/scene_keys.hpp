@@ -23,13 +23,11 @@ struct KeyValue {
 struct SceneKey {
   Key description;
   std::function<void(SceneValues& scene, const KeyValue& value)> set;
-  /// The value in a scene. Nullopt if the scene lacks it, as n of a named material, or the temperature without
-  /// emission.
+  /// Nullopt if the scene lacks the value, for example n of a named material, or the temperature without emission.
   std::function<std::optional<KeyValue>(const SceneValues& scene)> value;
 };
 
-/// Keys that describe something together. A scene that has one of `heads` chooses this alternative. `companions` may be
-/// added to a head.
+/// Keys that belong together. A scene with one of `heads` chooses the alternative; then it may have `companions` too.
 struct KeyAlternative {
   std::vector<std::string> heads;
   std::vector<std::string> companions = {};

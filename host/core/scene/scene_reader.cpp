@@ -19,8 +19,8 @@
 namespace dolp {
 namespace {
 
-/// The known key or table that is most similar to `key`. A name counts as similar, too, if it is in another table, if
-/// its table is missing, or if it continues `key`.
+/// The known key or table that is most similar to `key`: with few other letters, in another table, or beginning with
+/// it.
 std::string key_hint(const std::string& key) {
   std::vector<std::string> known = scene_tables();
   for (const Key& description : dolp::keys()) known.push_back(description.key);
@@ -219,8 +219,7 @@ Spectrum all_wavelengths(const SceneValues& scene) {
   return all;
 }
 
-/// Loads the material of `table`, which is "surface" or a layer of the coating. `stored`: the material as a table file
-/// has it, else null.
+/// Loads the material of `table`, "surface" or a layer. `stored`: the material from a table file, or null.
 void load_material(SceneValues& scene, const SceneDocument& document, const std::string& table, Material& material,
                    std::string& name, const std::string& file, const KnownData* known, const Material* stored) {
   const bool is_file = document.find(table + ".material_file") != nullptr;
@@ -407,8 +406,7 @@ void check_smith(const SceneValues& scene, const SceneDocument& document) {
   }
 }
 
-/// Refuses multiple scattering, the bracket dolp_low and dolp_high, direct emission and polarised diffuse light where
-/// the model does not define them.
+/// Refuses multiple scattering, emission.bracket, direct emission and polarised diffuse light where they are undefined.
 void check_scattering(const SceneValues& scene, const SceneDocument& document) {
   const Surface& surface = scene.surface;
   const Emission emission = scene.emission.value_or(Emission());

@@ -55,8 +55,7 @@ struct BuiltInSky {
 };
 const std::vector<BuiltInSky>& built_in_skies();
 
-/// Air of a built-in sky. If both values are absent, it is the air of the US Standard Atmosphere 1976, and its
-/// emissivity does not depend on the wavelength.
+/// Air of a built-in sky. Without both values: US Standard Atmosphere 1976, with one emissivity for all wavelengths.
 struct SkyAir {
   std::optional<double> vapour_cm = {};  ///< precipitable water in cm
   std::optional<double> temperature_K = {};

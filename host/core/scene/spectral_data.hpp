@@ -26,8 +26,7 @@ struct NamedValue {
   NumberRange range;
 };
 
-/// Appends a wavelength and a value. Checks that both are in range and that the wavelength ascends. Messages begin with
-/// `where`.
+/// Appends a row if both numbers are in range and the wavelength ascends. Otherwise a message begins with `where`.
 void append_row(SpectralTable& table, double wavelength_um, const NamedValue& value, const std::string& where);
 
 struct SpectralRow {
@@ -36,9 +35,8 @@ struct SpectralRow {
   std::size_t line;
 };
 
-/// Sorts rows by wavelength and appends them. Leaves out rows outside of kWavelengthUmRange and repeated rows. `named`:
-/// name and range of the values. Errors: InputError with file and line for two values at one wavelength; errors of
-/// append_row.
+/// Sorts and appends rows, without repeated rows and rows outside of kWavelengthUmRange. `named`: name and range of the
+/// values. Errors: InputError with file and line for two values at one wavelength; errors of append_row.
 void append_rows(SpectralTable& table, std::vector<SpectralRow> rows, const NamedValue& named, const std::string& file);
 
 /// A row of a CSV that has values over an angle from 0 to 90 degrees and, in some files, over wavelength.
@@ -49,9 +47,8 @@ struct AngleRow {
   std::size_t line = 0;
 };
 
-/// Reads the rows of a CSV, sorted by wavelength, then by angle. All wavelengths have the same angles, from 0 to 90
-/// degrees. `angle` and `values` are names of columns; `file` is for messages. Errors: InputError with file, line and
-/// column.
+/// Rows of a CSV, sorted by wavelength, then by angle. All wavelengths have the same angles, from 0 to 90 degrees.
+/// `angle` and `values` name columns, `file` is for messages. Errors: InputError with file, line and column.
 std::vector<AngleRow> read_angle_rows(CsvReader& row, const CsvColumns& columns, const std::string& angle,
                                       const std::vector<std::string>& values, const std::string& file);
 
@@ -60,8 +57,8 @@ struct Between {
   std::size_t first = 0;
   double share = 0.0;
 };
-/// The interval that contains `value`; beyond an end of the list, the first or the last interval. In a list of one
-/// value, first is 0 and so is share.
+/// The interval with `value`; beyond an end, the first or the last interval. For a list of one value: first = share =
+/// 0.
 Between between(const std::vector<double>& list, double value);
 
 /// Refuses a table that lacks values in a part of the spectrum. The message begins with `prefix`.

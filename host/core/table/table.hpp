@@ -19,15 +19,13 @@ inline constexpr std::size_t kMostTableEntries = std::size_t{1} << 36U;
 inline constexpr const char* kConventions = "Conventions";
 inline constexpr const char* kConventionsOfFiles = "CF-1.8";
 
-/// Attribute with the scene's n, k and E0 over wavelength. A line of its text is a name, a wavelength in um and a
-/// value.
+/// Attribute with the scene's n, k and E0. Each line of its text has a name, a wavelength in um and a value.
 inline constexpr const char* kSpectralData = "spectral_data";
 
 /// The text of the attribute kSpectralData, from the curves of n, k and E0 in `head`; empty without curves.
 std::string spectral_data_of(const TableHead& head);
 
-/// Reads the attribute kSpectralData into the curves of `head`, and removes it. Errors: InputError that begins with
-/// `name`.
+/// Parses the attribute kSpectralData, puts n, k and E0 into `head`, and removes it. Errors: InputError about `name`.
 void take_spectral_data(TableHead& head, const std::string& name);
 
 /// The value of an attribute; null if the head has no attribute of this name and type.
@@ -82,8 +80,7 @@ TableHead head_of(const TableHead& whole, const TableBox& box);
 inline constexpr const char* kValuesHash = "values_hash";
 
 /// A checksum for each variable, in the order of for_each_variable. The bits of each value are multiplied by an odd
-/// number that follows from its position, so that another value or position changes the sum. Parts may be summed in any
-/// order.
+/// number that depends on its position, so another value or position changes the sum. Parts may come in any order.
 using ValueSums = std::vector<std::uint64_t>;
 
 /// The checksums of a part of a table that begins at the positions `first`.

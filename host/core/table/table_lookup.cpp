@@ -143,8 +143,7 @@ struct TableLookup::Window {
     return locations[axis].is_value ? locations[axis].next : locations[axis].next - 1;
   }
 
-  /// Positions in the table of the entries at the corners of the point's cell, without the part along the axis
-  /// `without`.
+  /// Positions in the table of the corners of the point's cell, without the step along the axis `without`.
   using Corners = boost::container::static_vector<std::size_t, std::size_t{1} << kAxisCount>;
   Corners corners(const TableLookup& lookup, std::size_t without) const {
     Corners corners = {0};
@@ -234,8 +233,7 @@ struct TableLookup::Rows {
   }
 };
 
-/// How one more value of an axis changes the result. The changes are computed on the lines along this axis that pass
-/// through the corners of the point's cell.
+/// Changes of the result by one more value of an axis, on the lines along it through the corners of the point's cell.
 struct TableLookup::Lines {
   /// The change of an interpolation if one more value, before or after its values, is used: a divided difference.
   struct Change {
@@ -353,8 +351,7 @@ struct TableLookup::Lines {
 #pragma GCC unroll 6
         for (std::size_t j = 0; j < kMostChanges; ++j) sums[j] += of_value[j] * value;
       }
-      // A change that uses an unknown entry is NaN. Then the comparison below keeps the largest change of the earlier
-      // lines.
+      // A change that uses an unknown entry is NaN. Then the comparison below keeps the change of the earlier lines.
       if (!std::isfinite(sums[0])) known_changes(values, sums);
 #pragma GCC unroll 6
       for (std::size_t j = 0; j < kMostChanges; ++j) {
@@ -369,8 +366,7 @@ struct TableLookup::Lines {
     }
     if (largest[0] < 0.0) return kInfinity;
     if (largest[0] == 0.0) return 0.0;
-    // On a coarse axis the level-0 changes of all lines may pass through 0 together. The changes of the next levels do
-    // not.
+    // On a coarse axis the level-0 changes of all lines may pass through 0 together, but not those of the next levels.
     largest[0] = std::max(largest[0], kFastestFall * largest[1]);
     if (is_short) largest[0] = std::max(largest[0], kFastestFallOfTwo * largest[2]);
     return factor * (largest[0] + std::max(largest[kLevels], 0.0));

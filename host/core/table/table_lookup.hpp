@@ -31,9 +31,8 @@ std::vector<double> masking_kinks(const SceneModel& scene);
 /// Accuracy: tests LookupEstimates.
 class TableLookup {
  public:
-  /// `table` must outlive the object. Errors: InputError that begins with `name` for an axis with equal values; for a
-  /// table without dolp, its error, the Stokes parameters or the status; and for a table with the error of rho but
-  /// without rho.
+  /// `table` must outlive the object. Errors: InputError that begins with `name`, for an axis with equal values, and
+  /// for a table without dolp, its error, the Stokes parameters or the status, or with an error of rho but no rho.
   TableLookup(const TableValues& table, const SceneModel& scene, const std::string& name);
 
   const AxisLabels& labels() const { return table_.labels; }
@@ -45,8 +44,7 @@ class TableLookup {
   /// A value on each axis; values on axes that the table lacks are ignored.
   using Point = AxisArray<double>;
   /// The result at a point inside the axes. Quantities that the table lacks are NaN. The window of values that are read
-  /// moves along theta, away from entries outside the model's domain. If it cannot avoid them, the result is NaN with
-  /// status 4 (outside the model's domain).
+  /// avoids entries outside the model's domain. If it cannot, the result is NaN with status 4, outside the domain.
   PointResult at(const Point& point) const;
   PointResult at(double theta_deg, double sigma, double q) const {
     Point point{};

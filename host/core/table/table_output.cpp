@@ -17,8 +17,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kConvertedRowsAtOnce = std::size_t{1} << 17U;  // rows in memory, for a .csv or .npy
 constexpr std::string_view kIdentityEnd = "; ";
 
-// PATH.partial for `path`. If `path` is a link, it is beside the link's target, because the link may be on another file
-// system.
+// The partial file is beside the target if `path` is a link, because the link may be on another file system.
 fs::path partial_path(const fs::path& path) { return follow_links(path).string() + ".partial"; }
 fs::path progress_path(const fs::path& path) { return partial_path(path).string() + ".txt"; }
 

@@ -64,8 +64,7 @@ class TableOutput {
   std::string note_;
 };
 
-/// The first difference between two identities of the form "name value; ...", such as "evaluator cpu, not vulkan";
-/// nullopt if they are equal.
+/// The first difference of two identities "name value; ...", such as "evaluator cpu, not vulkan"; nullopt if equal.
 std::optional<std::string> difference(const std::string& identity, const std::string& wanted);
 
 }  // namespace dolp

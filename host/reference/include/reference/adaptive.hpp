@@ -44,9 +44,8 @@ class Breaks {
   std::vector<double> points_;
 };
 
-/// 21-point Kronrod rule. Its error is the difference from the 10-point Gauss rule with half of the nodes, plus
-/// rounding. This error is very pessimistic for smooth integrands, but the usual sharper estimate fails for others.
-/// Source: Boost.Math.
+/// 21-point Kronrod rule. The error is the difference from the 10-point Gauss rule in it, plus rounding. It is far too
+/// large for smooth integrands, but the usual sharper estimate fails for others. Source: Boost.Math.
 template <std::size_t N, class Integrand>
 Integral<N> kronrod_panel(const Integrand& integrand, double low, double high) {
   using Kronrod = boost::math::quadrature::gauss_kronrod<double, 21>;
@@ -78,8 +77,7 @@ Integral<N> kronrod_panel(const Integrand& integrand, double low, double high) {
   return result;
 }
 
-/// Maps s in [0, 1] to an interval by s^2 (3 - 2 s), which makes roots and 3/2 powers at both ends of the interval
-/// smooth.
+/// Maps s in [0, 1] to an interval by s^2 (3 - 2 s), which makes roots and 3/2 powers at both ends smooth.
 struct Stretch {
   double low;
   double high;
@@ -131,8 +129,7 @@ double scaled_error(const Values<N>& error, const Values<N>& scale) {
   return worst;
 }
 
-/// Halves the panel with the largest error until all errors are within `goal.relative` times their scales, or until
-/// there are `goal.max_panels` panels.
+/// Halves the worst panel until all errors are within `goal.relative` times their scales, or at `goal.max_panels`.
 template <std::size_t N, class Integrand, class Scale>
 Integral<N> integrate(const Integrand& integrand, const Breaks& breaks, const Goal& goal, const Scale& scale) {
   const std::vector<double> points = breaks.sorted();

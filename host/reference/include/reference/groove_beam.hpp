@@ -1,7 +1,7 @@
 // A beam in a symmetric V-groove, followed from facet to facet and cut at the rims.
 // Axes: u across the groove, v along it, z upward. The origin is the middle of the aperture. Facet A descends from the
-// rim at u = -cos(alpha) to the apex at u = 0, z = -sin(alpha); facet B descends from the rim at u = +cos(alpha). Both
-// facets have length 1.
+// rim at u = -cos(alpha) to the apex at u = 0, z = -sin(alpha); facet B descends from u = +cos(alpha). Both have length
+// 1.
 #pragma once
 
 #include <algorithm>
@@ -46,8 +46,7 @@ class GrooveBeam {
   /// Outward normal of the current facet.
   Vector<Real> normal() const { return {-side_ * groove_.sin_alpha, Real(0), groove_.cos_alpha}; }
 
-  /// Reflects the beam into `k_out`, and moves it to the other facet. Returns the flux that misses this facet and
-  /// leaves.
+  /// Reflects the beam into `k_out`, toward the other facet. Returns the flux that misses that facet and leaves.
   Real reflect(const Vector<Real>& k_out) {
     const Real before = flux_;
     k_ = k_out;

@@ -29,8 +29,7 @@ using Curves = std::function<std::array<double, kCurves>(double cos_beta)>;
 /// The result is exact at 0 and 90 degrees.
 Zenith zenith_from_deg(double theta_deg);
 
-/// The moments of a rough surface (sigma > 0) with k_s = 1; if `sky` is given, also those with this function of the
-/// sky.
+/// The moments of a rough surface (sigma > 0) with k_s = 1; with `sky`, also those with this function of the sky.
 /// Equation: r = cos(theta) int f cos(theta_r) sin(theta_r) dtheta_r dDelta_phi, eqs. (7), (15), (16), over theta_r
 /// (outer integral) and delta = pi - Delta_phi (inner integral).
 /// Domain: theta in [0, 90] degrees. At 90 degrees the moments are limits: 0 for v-cavity and smith, else finite. For

@@ -19,7 +19,7 @@ ReferenceMueller reference_scattering(const Surface& surface, const FacetOptics&
 
 /// The part of the pBRDF, times both cosines, of light that bounces k = `bounces` times in V-grooves.
 /// Equation: f^(k) cos(theta_i) cos(theta_r) = D sin(alpha) cos(alpha) w_k M / (2 k |h|), summed over both facets that
-/// the light may meet first.
+/// may be first.
 /// - h is the horizontal part of omega_i + omega_r, and u is the unit vector along h or against h.
 /// - psi_i and psi_r are the angles of omega_i and omega_r from z toward u, in the plane across the groove.
 /// - gamma = 90 degrees - alpha is (180 - psi_i - psi_r)/(2 k) for odd k, (180 - psi_i + psi_r)/(2 k) for even k.
@@ -30,8 +30,8 @@ ReferenceMueller reference_scattering(const Surface& surface, const FacetOptics&
 ReferenceMueller reference_bounces(const Surface& surface, const FacetOptics& constants, double theta_i_deg,
                                    double theta_r_deg, double delta_phi_deg, int bounces);
 
-/// The sum of reference_bounces. Its error is 0 unless theta_i is close to theta_r, where beams with any number of
-/// bounces contribute.
+/// Sum of reference_bounces. Its error is 0 unless theta_i is close to theta_r: there any number of bounces
+/// contributes.
 struct BouncesSum {
   ReferenceMueller matrix{};
   double error = 0.0;

@@ -35,14 +35,12 @@ inline SlopePoint slope_point(double t, double chi_rad) { return {t, std::sin(ch
 
 using Electric = std::array<std::complex<double>, 3>;
 
-/// The direction of the view in the axes of a groove: u across it, at the azimuth phi from the plane of incidence, v
-/// along it, z up.
+/// The view in the axes of a groove: u across it, at the azimuth phi from the plane of incidence, v along it, z up.
 inline Vector<double> toward_view(const SlopePoint& point, const Zenith& view) {
   return {view.sin * point.sin_chi, -view.sin * point.cos_chi, view.cos};
 }
 
-/// Electric vectors of an s wave and a p wave of unit amplitude that propagate along k: s = k x z (at theta = 0 the
-/// limit of this) and p = k x s.
+/// Electric vectors of an s and a p wave of unit amplitude along k, with s = k x z (at theta = 0 the limit), p = k x s.
 struct UnitLight {
   Electric from_s;
   Electric from_p;

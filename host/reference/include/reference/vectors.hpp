@@ -36,8 +36,7 @@ Vector<Real> unit(const Vector<Real>& a) {
   return scaled(Real(1) / sqrt(dot(a, a)), a);
 }
 
-/// A reflection. s is normal to the incident direction k and the reflected direction k_out; p_in = k x s, p_out = k_out
-/// x s.
+/// s is normal to the incident direction k and the reflected direction k_out; p_in = k x s, p_out = k_out x s.
 template <class Real>
 struct Bounce {
   Real cos_beta;
@@ -45,8 +44,7 @@ struct Bounce {
   Vector<Real> k_out;
 };
 
-/// Reflects k at a facet. At normal incidence s is `s_at_normal`, a unit vector in the facet; any would do, as r_p =
-/// -r_s.
+/// At normal incidence s is `s_at_normal`, a unit vector in the facet. Any other would do, because r_p = -r_s.
 template <class Real>
 Bounce<Real> bounce(const Vector<Real>& k, const Vector<Real>& normal, const Vector<Real>& s_at_normal) {
   constexpr double kNormal = 1e-30;  // below this sin^2 beta the direction of s is only rounding error

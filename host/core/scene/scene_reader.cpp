@@ -19,8 +19,7 @@
 namespace dolp {
 namespace {
 
-/// The known key or table that is most similar to `key`: with few other letters, in another table, or beginning with
-/// it.
+/// The known key or table that is most similar to `key`: few letters differ, the table differs, or it continues.
 std::string key_hint(const std::string& key) {
   std::vector<std::string> known = scene_tables();
   for (const Key& description : dolp::keys()) known.push_back(description.key);

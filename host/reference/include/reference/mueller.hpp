@@ -25,13 +25,12 @@ ReferenceMueller reference_scattering(const Surface& surface, const FacetOptics&
 /// - gamma = 90 degrees - alpha is (180 - psi_i - psi_r)/(2 k) for odd k, (180 - psi_i + psi_r)/(2 k) for even k.
 /// - w_k cos(alpha) is the flux that leaves a groove after k bounces.
 /// - M is the Mueller matrix of the electric vectors, which are followed through the bounces.
-/// Domain: masking v-cavity. NaN where h = 0, the mirror direction: for k >= 2, grooves of every azimuth reflect into
-/// this direction, so that f^(k) grows like 1/|h|, which can be integrated.
+/// Domain: masking v-cavity. NaN in the mirror direction, h = 0: for k >= 2, grooves of every azimuth reflect into it.
+/// There f^(k) grows like 1/|h|.
 ReferenceMueller reference_bounces(const Surface& surface, const FacetOptics& constants, double theta_i_deg,
                                    double theta_r_deg, double delta_phi_deg, int bounces);
 
-/// Sum of reference_bounces. Its error is 0 unless theta_i is close to theta_r: there any number of bounces
-/// contributes.
+/// Sum of reference_bounces. Its error is 0 unless theta_i is close to theta_r: there all bounces contribute.
 struct BouncesSum {
   ReferenceMueller matrix{};
   double error = 0.0;

@@ -57,8 +57,7 @@ IntegralMasking::IntegralMasking(const Slopes& slopes, const Zenith& zenith, dou
 double IntegralMasking::operator()(double alpha_rad) const {
   const double limit_rad = 2.0 * zenith_.elevation_rad + alpha_rad;
   const double cos_theta_minus_alpha = std::sin(zenith_.elevation_rad + alpha_rad);
-  if (cos_theta_minus_alpha <= 0.0)
-    return share_below_;  // theta = 90 degrees and alpha = 0, so the integral from a to b is empty
+  if (cos_theta_minus_alpha <= 0.0) return share_below_;  // a = b, because theta = 90 degrees and alpha = 0
   const auto weight = [&](double slope) {
     const double cos_gamma = 1.0 / std::sqrt(1.0 + slope * slope);
     const double cos_theta_plus_gamma = zenith_.cos * cos_gamma - zenith_.sin * slope * cos_gamma;

@@ -68,7 +68,6 @@ SmoothAbsorptance covered_absorptance(const FacetOptics& optics, double cosine) 
   const double r_s = std::lerp(measured.r_s[i - 1], measured.r_s[i], share);
   const double r_p = std::lerp(measured.r_p[i - 1], measured.r_p[i], share);
   if (i > 1) return {1.0 - r_s, 1.0 - r_p};
-  // Below the second angle R_s - R_p is proportional to sin^2(beta).
   const double end = std::sin(measured.beta_deg[1] * std::numbers::pi / 180.0);
   const double half = 0.5 * (measured.r_s[1] - measured.r_p[1]) * (1.0 - cosine) * (1.0 + cosine) / (end * end);
   const double mean = 0.5 * (r_s + r_p);

@@ -109,7 +109,6 @@ std::vector<double>& add_column(Points& points, const ColumnRule& rule) {
   return rule.of(points).emplace();
 }
 
-/// Refuses points that lack required columns. The message names all missing columns.
 void check_required(Points& points, const std::vector<ColumnRule>& rules) {
   std::vector<std::string> missing;
   for (const ColumnRule& rule : rules) {

@@ -33,8 +33,7 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// The line where nesting exceeds kMostDepth, else 0. A text with such a line would make the TOML parser recurse
-/// deeply.
+/// The line where nesting exceeds kMostDepth, else 0. There the TOML parser would recurse too deeply.
 std::size_t line_of_deep_nesting(std::string_view text) {
   std::vector<std::size_t> around = {0};  // depth at the beginning of the text and at each open bracket
   std::size_t depth = 0;

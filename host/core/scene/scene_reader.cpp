@@ -19,7 +19,7 @@
 namespace dolp {
 namespace {
 
-/// The known key or table that is most similar to `key`: few letters differ, the table differs, or it continues.
+/// The known key or table with the fewest differences from `key`. Another table, or an incomplete name, counts as one.
 std::string key_hint(const std::string& key) {
   std::vector<std::string> known = scene_tables();
   for (const Key& description : dolp::keys()) known.push_back(description.key);
@@ -105,7 +105,6 @@ struct Needs {
   bool are_met;
   const char* text;
 };
-/// Refuses `key` if a need is not met. The message names all needs that are not met.
 void check_needs(const SceneDocument& document, std::string_view key, const std::vector<Needs>& needs) {
   std::vector<std::string> missing;
   for (const Needs& need : needs) {

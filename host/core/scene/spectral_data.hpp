@@ -57,8 +57,7 @@ struct Between {
   std::size_t first = 0;
   double share = 0.0;
 };
-/// The interval with `value`; beyond an end, the first or the last interval. For a list of one value: first = share =
-/// 0.
+/// The interval with `value`; beyond an end, the first or the last interval. With one value in the list, share is 0.
 Between between(const std::vector<double>& list, double value);
 
 /// Refuses a table that lacks values in a part of the spectrum. The message begins with `prefix`.

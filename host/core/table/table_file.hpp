@@ -24,7 +24,7 @@ std::string result_rows(const ResultColumns& results, std::size_t rows, const Qu
 
 Quantities in_csv_order(const Quantities& quantities);
 
-/// Writes points with their results as CSV. A file is complete or absent. Standard output ("-") gets all rows last.
+/// Writes points with their results as CSV. A file is complete or absent; standard output ("-") gets all rows at once.
 class ResultCsv {
  public:
   /// `columns`: names of the columns whose cells `start` appends. Errors: IoError.

@@ -81,7 +81,6 @@ PointResult unknown() {
   return result;
 }
 
-/// Refuses a table without the quantities that every result needs. The message names all missing quantities.
 void check_variables(const TableValues& table, const std::string& name) {
   std::vector<std::string> missing;
   for (const Quantity quantity : kAllQuantities) {

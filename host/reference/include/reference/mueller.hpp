@@ -18,19 +18,19 @@ ReferenceMueller reference_scattering(const Surface& surface, const FacetOptics&
                                       double theta_r_deg, double delta_phi_deg);
 
 /// The part of the pBRDF, times both cosines, of light that bounces k = `bounces` times in V-grooves.
-/// Equation: f^(k) cos(theta_i) cos(theta_r) = D sin(alpha) cos(alpha) w_k M / (2 k |h|), summed over both facets that
-/// may be first.
+/// Equation: f^(k) cos(theta_i) cos(theta_r) = D sin(alpha) cos(alpha) w_k M / (2 k |h|), summed over both first
+/// facets.
 /// - h is the horizontal part of omega_i + omega_r, and u is the unit vector along h or against h.
 /// - psi_i and psi_r are the angles of omega_i and omega_r from z toward u, in the plane across the groove.
 /// - gamma = 90 degrees - alpha is (180 - psi_i - psi_r)/(2 k) for odd k, (180 - psi_i + psi_r)/(2 k) for even k.
 /// - w_k cos(alpha) is the flux that leaves a groove after k bounces.
 /// - M is the Mueller matrix of the electric vectors, which are followed through the bounces.
-/// Domain: masking v-cavity. NaN in the mirror direction, h = 0: for k >= 2, grooves of every azimuth reflect into it.
-/// There f^(k) grows like 1/|h|.
+/// Domain: masking v-cavity. NaN in the mirror direction, h = 0: for k >= 2, grooves of every azimuth reflect into it,
+/// so that f^(k) grows like 1/|h|, which can be integrated.
 ReferenceMueller reference_bounces(const Surface& surface, const FacetOptics& constants, double theta_i_deg,
                                    double theta_r_deg, double delta_phi_deg, int bounces);
 
-/// Sum of reference_bounces. Its error is 0 unless theta_i is close to theta_r: there all bounces contribute.
+/// Sum of reference_bounces. Its error is 0 unless theta_i is close to theta_r: there many bounces contribute.
 struct BouncesSum {
   ReferenceMueller matrix{};
   double error = 0.0;

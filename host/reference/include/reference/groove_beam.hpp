@@ -1,6 +1,6 @@
 // A beam in a symmetric V-groove, followed from facet to facet and cut at the rims.
-// Axes: u across the groove, v along it, z upward. The origin is in the middle of the aperture. Facet A descends from
-// the rim at u = -cos(alpha) to the apex at u = 0, z = -sin(alpha); facet B descends from u = +cos(alpha). Lengths: 1.
+// Axes: u across the groove, v along it, z upward, from the middle of the aperture. Both facets have length 1: facet A
+// from the rim at u = -cos(alpha) to the apex at u = 0, z = -sin(alpha), facet B from the rim at u = +cos(alpha).
 #pragma once
 
 #include <algorithm>

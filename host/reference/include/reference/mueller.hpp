@@ -18,8 +18,8 @@ ReferenceMueller reference_scattering(const Surface& surface, const FacetOptics&
                                       double theta_r_deg, double delta_phi_deg);
 
 /// The part of the pBRDF, times both cosines, of light that bounces k = `bounces` times in V-grooves.
-/// Equation: f^(k) cos(theta_i) cos(theta_r) = D sin(alpha) cos(alpha) w_k M / (2 k |h|), summed over both first
-/// facets.
+/// Equation: f^(k) cos(theta_i) cos(theta_r) = D sin(alpha) cos(alpha) w_k M / (2 k |h|), summed over both facets that
+/// the light may meet first.
 /// - h is the horizontal part of omega_i + omega_r, and u is the unit vector along h or against h.
 /// - psi_i and psi_r are the angles of omega_i and omega_r from z toward u, in the plane across the groove.
 /// - gamma = 90 degrees - alpha is (180 - psi_i - psi_r)/(2 k) for odd k, (180 - psi_i + psi_r)/(2 k) for even k.

@@ -31,9 +31,9 @@ struct MomentsPoint {
 /// Requests responses (response_basis.hpp): moments with polynomials of the local angle instead of the reflectances.
 struct Response {
   enum class Of : std::uint8_t {
-    kReflected,  ///< polynomials in the moments of the reflected light
-    kSky,        ///< polynomials in the moments of the reflected light, times the only function of the request's sky
-    kDirect      ///< polynomials in the moments of the direct emission
+    kReflected,  ///< r_i and r_q with these polynomials
+    kSky,        ///< r_i and r_q with these polynomials, times the only function of the request's sky
+    kDirect      ///< direct_i and direct_q with these polynomials
   };
   std::size_t count = 0;
   double c0 = 1.0;
@@ -62,7 +62,7 @@ struct MomentsRequest {
   std::vector<FacetOptics> optics;  ///< bare facets, or facets with films
   std::vector<double> sigma;
   std::vector<double> q;
-  std::vector<char> wanted;  ///< a flag per entry of a grid; empty: all are wanted. Other entries get undefined moments
+  std::vector<char> wanted;  ///< a flag per entry of a grid; empty: all. Moments of unwanted entries are undefined
 
   std::size_t size() const;
   bool is_wanted(std::size_t entry) const { return wanted.empty() || wanted[entry] != 0; }

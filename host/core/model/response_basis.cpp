@@ -55,7 +55,7 @@ std::size_t needed(const FacetOptics& index, double c0, double tolerance) {
   return count;
 }
 
-/// At most `most` different indices, evenly spaced in the list.
+/// At most `most` of the indices, evenly spaced in `indices`, without repetitions.
 std::vector<FacetOptics> candidates_of(const std::vector<FacetOptics>& indices, std::size_t most) {
   std::vector<FacetOptics> candidates;
   const std::size_t count = std::min(indices.size(), most);

@@ -139,7 +139,7 @@ double reflectance_level(const FacetOptics& optics) {
 double critical_cosine(const FacetOptics& optics) {
   if (optics.measured) return 0.0;
   const OpticalConstants& index = optics.index;
-  // Chosen. If Im N^2 is larger, total reflection begins so gradually that quadrature needs no split there.
+  // Chosen. If Im N^2 is larger, total reflection begins so gradually that integrals need not be split there.
   constexpr double kSoft = 0.3;
   const double squared = (1.0 - index.n) * (1.0 + index.n) + index.k * index.k;
   const bool is_sharp = 2.0 * index.n * index.k < kSoft;

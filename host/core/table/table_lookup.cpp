@@ -105,7 +105,7 @@ std::vector<double> masking_kinks(const SceneModel& scene) {
   if (masking != Masking::kVCavity) return {};
   const CosSin view = cos_sin_deg(view_deg);
   const double cos_azimuth = cos_sin_deg(scene.geometry.relative_azimuth_deg).cos;
-  // (1 - G) cos^2(beta), with the masking G before it is limited to 1. 2 cos(alpha) cos(beta) = theta.cos + view.cos.
+  // (1 - G) cos^2(beta) for a masking G without its limit 1, from 2 cos(alpha) cos(beta) = theta.cos + view.cos.
   const auto hidden = [&](double theta_deg) {
     const CosSin theta = cos_sin_deg(theta_deg);
     const double cos2_beta = 0.5 * (1.0 + theta.cos * view.cos + theta.sin * view.sin * cos_azimuth);

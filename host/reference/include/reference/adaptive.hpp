@@ -24,7 +24,7 @@ struct Integral {
 struct Goal {
   double relative = 1e-9;        ///< required error of each integral, divided by its scale
   std::size_t max_panels = 400;  ///< at this number of panels the quadrature stops and returns the error reached
-  int subdivisions = 1;          ///< equal parts of each first panel; more parts make another, finer rule
+  int subdivisions = 1;          ///< panels between two break points at first; more panels make another, finer rule
 };
 
 /// The ends of the first panels: both ends of the interval, and all break points between them.

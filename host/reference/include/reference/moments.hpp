@@ -13,7 +13,7 @@ namespace dolp::reference {
 /// Accuracy of the quadratures. Two computations with different settings have nearly independent errors.
 struct Refinement {
   double relative_tolerance = 1e-9;  ///< error of r_i, albedo and absorbed part; the error of r_q is relative to r_i
-  int subdivisions = 1;              ///< equal parts of each first panel of a quadrature
+  int subdivisions = 1;              ///< panels between two break points of a quadrature at first
 };
 
 /// A function of the zenith of the reflected ray, and the zeniths of its kinks, for ColumnMoments.

@@ -11,7 +11,7 @@ namespace dolp {
 struct ReferenceOptions {
   /// Tolerance of the integrals. r_i and r_q have it relative to r_i; albedo and absorbed part, relative to themselves.
   double relative_tolerance = 1e-9;
-  /// Equal parts of each first panel of the quadratures. With 2, a computation is repeated with other nodes.
+  /// Panels between two break points of a quadrature at first. With 2, a computation is repeated with other nodes.
   int subdivisions = 1;
 };
 

@@ -67,7 +67,7 @@ struct MomentsRequest {
   std::size_t size() const;
   bool is_wanted(std::size_t entry) const { return wanted.empty() || wanted[entry] != 0; }
   std::size_t wanted_count() const;
-  /// `share` times the tolerance. In float at least kLeastFloatTolerance, or the tolerance if it is smaller.
+  /// `share` times the tolerance, but in float at least kLeastFloatTolerance or, if it is smaller, the tolerance.
   double finer_tolerance(double share) const;
   std::size_t shapes() const { return sigma.size() * q.size(); }
   MomentsPoint operator[](std::size_t entry) const;
@@ -78,7 +78,7 @@ struct MomentsRequest {
 
 /// Moments of one entry whose integrands contain a function g, |g| <= 1. If g is a function of a sky, it depends on the
 /// zenith of the reflected ray and multiplies the integrands of r_i and r_q. In a response, g depends on the local
-/// angle of incidence and replaces (R_s + R_p) / 2 in r_i and (R_s - R_p) / (2 sin^2) in r_q.
+/// angle of incidence beta and replaces (R_s + R_p) / 2 in r_i and (R_s - R_p) / (2 sin^2(beta)) in r_q.
 struct ColumnMoments {
   double i = 0.0;
   double q = 0.0;

@@ -29,7 +29,7 @@ class DiffuseReflection {
   DiffuseLight rho(double cosine) const;
   /// The diffuse pBRDF times pi cos(theta_i).
   DiffuseLight beam(double cos_theta_i, double cos_theta_r) const;
-  /// t_+ and t_- at the incidence `cosine`, over t_+ at normal incidence. (1, 0) without diffuse_polarisation.
+  /// t_+ and t_- at the incidence `cosine`, divided by t_+ at normal incidence. (1, 0) if is_polarised_ is false.
   DiffuseLight transmitted(double cosine) const;
   /// Weights with which a sky's radiances at the nodes add up to the mean radiance that the diffuse part receives.
   Eigen::VectorXd mean_weights(const SkyNodes& nodes) const;

@@ -33,7 +33,7 @@ class SceneDocument {
   /// The key to blame if `keys` contradict each other: the first of them that a setting gave, else the first.
   std::string first_set(std::initializer_list<std::string> keys) const;
 
-  /// Throws an InputError with the key's line or setting, its value, and `what`. If it is absent: its table's line.
+  /// Throws an InputError with the key's line or setting, its value, and `what`. An absent key: the line of its table.
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
 
   /// The text with which the message of fail() begins, without `what`.

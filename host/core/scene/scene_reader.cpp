@@ -19,7 +19,8 @@
 namespace dolp {
 namespace {
 
-/// The known key or table with the fewest differences from `key`. Another table, or an incomplete name, counts as one.
+/// The known key or table with the fewest differences from `key`. Another table or an incomplete name is one
+/// difference.
 std::string key_hint(const std::string& key) {
   std::vector<std::string> known = scene_tables();
   for (const Key& description : dolp::keys()) known.push_back(description.key);

@@ -51,7 +51,7 @@ struct SpectralRule {
   std::vector<SpectralSample> samples;
   double path_exitance = 0.0;   ///< pi times the path radiance; 0 without [path]
   double relative_error = 0.0;  ///< bound of the relative error of band integrals without panels; 0 at one wavelength
-  std::size_t panels = 0;       ///< number of panels; the last samples are their kPanelNodes samples each
+  std::size_t panels = 0;       ///< number of panels; each has kPanelNodes samples, at the end of `samples`
   std::vector<FacetOptics> indices() const;
 };
 

@@ -165,7 +165,7 @@ std::string values_hash(const TableLayout& layout, const ValueSums& sums) {
   std::uint64_t hash = kHashStart;
   for (const Axis axis : kAllAxes) {
     const std::vector<double>& values = head.axes[axis];
-    if (description_of(axis).has_labels) {  // hashes the text, because a part numbers the labels differently
+    if (description_of(axis).has_labels) {  // hashes texts, because a part of a table numbers labels differently
       for (const double value : values) hash = hashed(hashed(hash, head.label(axis, value)), std::uint64_t{0});
     } else if (axis != Axis::kTemperature || !values.empty()) {  // an absent temperature axis is not hashed
       hash = hashed(hash, std::span(values));

@@ -27,8 +27,7 @@
 namespace dolp {
 namespace {
 
-constexpr std::uint64_t kMostOverhead = 1U
-                                        << 20U;  ///< most bytes of a file besides the values: shapes, names and units
+constexpr std::uint64_t kMostOverhead = 1U << 20U;  ///< most bytes of a file besides the values: shapes, names, units
 
 /// A file in memory, without a name. Only the bytes that are written take memory; all other bytes read as zero.
 class MemoryFile {

@@ -46,9 +46,9 @@ std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking ma
 Moments mirror_moments(double theta_deg, const FacetOptics& constants);
 
 /// The moments of a surface of symmetric V-grooves (sigma > 0) with all bounces, for k_s = 1.
-/// Equation: r = int P t dt dphi sum_k w_k |E_k|^2 over the facets that the light meets first. w_k is the flux that
-/// leaves a groove after k bounces, over half of the groove's width. |E_k|^2 is the mean intensity of s and p light
-/// after k bounces. The absorbed part is the sum over what all bounces absorb.
+/// Equation: r = int P t dt dphi sum_k w_k |E_k|^2 over the facets that the light meets first, with the slope density
+/// P. w_k is the flux that leaves a groove after k bounces, over half of the groove's width. |E_k|^2 is the mean
+/// intensity of s and p light after k bounces. The absorbed part is the sum over what all bounces absorb.
 /// Domain: theta in [0, 90] degrees; at 90 degrees all moments are 0, which is the limit.
 /// Accuracy: the returned errors. They meet `refinement`, unless many steep grooves reflect so much that this is too
 /// much work: metals reach 1e-8 to 1e-4 of r_i, total reflection at q close to 1 reaches no accuracy. Grooves steeper
@@ -78,7 +78,7 @@ GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zeni
 
 /// The direct emission of a rough surface (sigma > 0): direct_i, direct_q and their errors. All other moments are 0.
 /// Equation: cos(theta) eps = int P t dt dphi e G_1 (1 - |r|^2) in the view's frame, over all facets with e =
-/// cos(theta) + sin(theta) t cos(phi) > 0. G_1 is the masking of the view.
+/// cos(theta) + sin(theta) t cos(phi) > 0. G_1 is the masking of the view, P the slope density.
 /// Domain: masking smith or v-cavity; theta in [0, 90] degrees; at 90 degrees both moments are 0, which is the limit.
 /// Accuracy: the tolerance of `refinement`, relative to direct_i.
 Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,

@@ -116,8 +116,9 @@ struct SlopeTask {
   double most_work = 1.0;                             ///< after this much work no integral is refined
 };
 
-/// Integrals of N functions: int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi. After the N integrals come N others:
-/// the integrated errors of the integrals over chi. `expected`: rough values of the N integrals.
+/// Integrals of N functions, with the slope density P: int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi. After the N
+/// integrals come N others: the integrated errors of the integrals over chi. `expected`: rough values of the N
+/// integrals.
 template <std::size_t N>
 Integral<2 * N> integrate_slopes_of(const SlopeTask<N>& task, const Slopes& slopes, const RegimeScan& scan,
                                     const Refinement& refinement, const Values<N>& expected) {

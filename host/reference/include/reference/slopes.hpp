@@ -26,7 +26,7 @@ class Slopes {
 
   double quantile(double share) const;
 
-  /// int 2 pi P t^2 dt over all slopes above t. Domain: cauchy q > 3/2; t >= 1e8 m, where P follows a power law.
+  /// int 2 pi P t^2 dt above t, with the slope density P. Domain: cauchy q > 3/2; t >= 1e8 m, where P is a power law.
   double length_above(double t) const;
 
   /// at(v) is t = width sinh(v), coordinate_of() its inverse, density_at() 2 pi P t dt/dv, whose integral over v is 1.

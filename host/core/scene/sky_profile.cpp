@@ -66,9 +66,9 @@ double vapour_pressure(const SkyAir& air, double air_K, const std::string& prefi
 // Band of carbon dioxide in which a few metres of air are opaque. Real edges are not sharp.
 constexpr double kOpaqueFrom_um = 4.17;
 constexpr double kOpaqueTo_um = 4.45;
-// A black cloud with its base at 1 km. Below the cloud the temperature falls by 6.5 K per km, and the vapour falls to 1
-// / e in 2 km, as in the standard atmosphere. Low clouds are black at the temperature of their base (Martin and
-// Berdahl, Solar Energy 33, 321 (1984)).
+// A black cloud with its base at 1 km. Below the cloud the temperature falls by 6.5 K per km, and the vapour to 1 / e
+// in 2 km, as in the standard atmosphere. Low clouds are black at the temperature of their base (Martin and Berdahl,
+// Solar Energy 33, 321 (1984)).
 constexpr double kCloudBase_km = 1.0;
 constexpr double kLapse_K_km = 6.5;
 constexpr double kVapourHeight_km = 2.0;

@@ -117,8 +117,7 @@ struct SlopeTask {
 };
 
 /// Integrals of N functions, with the slope density P: int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi. After the N
-/// integrals come N others: the integrated errors of the integrals over chi. `expected`: rough values of the N
-/// integrals.
+/// integrals come N others: the integrated errors of the integrals over chi. `expected`: rough values of the first N.
 template <std::size_t N>
 Integral<2 * N> integrate_slopes_of(const SlopeTask<N>& task, const Slopes& slopes, const RegimeScan& scan,
                                     const Refinement& refinement, const Values<N>& expected) {

@@ -32,7 +32,7 @@ constexpr double kInside = 16.0;
 constexpr double kAtEnds = 37.0;
 // Tuned. A small change may be chance, so the change by one more value counts as at least kFastestFall times the change
 // with one value fewer and, on a short axis, kFastestFallOfTwo times the change with two values fewer. With half, this
-// and double, 44, 2 and 0 lookups err by more than the stated error; medians of the stated errors: 2.65e-4, 3.02e-4 and
+// and double, 44, 2 and 0 lookups exceed the stated error; the medians of the stated errors are 2.65e-4, 3.02e-4 and
 // 3.95e-4.
 constexpr double kFastestFall = 0.2;
 constexpr double kFastestFallOfTwo = 0.25;

@@ -18,10 +18,9 @@ struct Groove {
 enum class Facet { kA, kB };
 
 /// The part of a parallel beam that enters through the whole aperture and meets facet `first` first.
-/// Its flux is per unit of length along the groove. The beams that meet A first and B first have together 2 cos(alpha)
-/// cos(theta). On a facet the beam covers an interval. Its end nearer to the apex is followed as a ray, the edge. The
-/// other end is flux / cos(beta) away, because reflection keeps the flux. What would lie above the rim misses the
-/// facet.
+/// Its flux is per unit of length along the groove. Together with the part for the other facet it is 2 cos(alpha)
+/// cos(theta). On a facet the beam covers an interval, whose end nearer to the apex is followed as a ray, the edge. The
+/// other end is flux / cos(beta) away, because reflection keeps the flux. Light above the rim misses it.
 template <class Real>
 class GrooveBeam {
  public:

@@ -31,7 +31,7 @@ constexpr double kLargestPlanckExponent = 750.0;
 constexpr double kPieceRelativeError = 1e-12;  // of sums over pieces, each of which is accurate to rounding
 
 // A segment gets so many nodes that the absorptances of the smooth surface have at most this error. It is relative to
-// the smaller of reflectance and absorptance, but at least to kSmallestPart. With n = 1 the former is 0.
+// the smaller of reflectance and absorptance, but at least to kSmallestPart. With n = 1 the reflectance is 0.
 constexpr double kNodesRelativeError = 1e-10;
 constexpr double kSmallestPart = 1e-4;
 constexpr int kMostNodes = 24;

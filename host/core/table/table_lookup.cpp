@@ -32,8 +32,8 @@ constexpr double kInside = 16.0;
 constexpr double kAtEnds = 37.0;
 // Tuned. A small change may be chance, so the change by one more value counts as at least kFastestFall times the change
 // with one value fewer and, on a short axis, kFastestFallOfTwo times the change with two values fewer. With half, this
-// and double, 44, 2 and 0 lookups exceed the stated error; the medians of the stated errors are 2.65e-4, 3.02e-4 and
-// 3.95e-4.
+// and double, 44, 2 and 0 of these lookups err by more than the stated error; the medians of the stated errors are
+// 2.65e-4, 3.02e-4 and 3.95e-4.
 constexpr double kFastestFall = 0.2;
 constexpr double kFastestFallOfTwo = 0.25;
 // Tuned. At a kink the stated error is this times the interpolation error of a ramp that begins at the kink. With no

@@ -44,7 +44,7 @@ constexpr double kLessAmbitious = 100.0;
 constexpr double kLeastAmbition = 1e-5;
 constexpr double kThinWeight = 0.02;   // SlopeTask::thin_weight
 constexpr double kNegligible = 1e-12;  // smaller integrals, relative to the albedo, are only rounding errors
-// Factor from the difference of two rules to the error, which may be larger in panels that still have bends.
+// Factor from the difference of two quadrature rules to the error, which is larger in panels that still have bends.
 constexpr double kBentErrors = 6.0;
 // The first estimate uses kLookShares quantiles of the slopes, none above kLookSteepest, and kLookAzimuths azimuths.
 constexpr int kLookShares = 16;

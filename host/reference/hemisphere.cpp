@@ -1,6 +1,6 @@
 // Integrals over the zenith theta_r and the azimuth Delta_phi of reflection, for a fixed zenith theta. Let
 // mean = (theta + theta_r)/2, t = tan((theta_r - theta)/2), delta = pi - Delta_phi and s2 = sin^2(delta/2). Then
-// equations (2) and (3) are sums of non-negative terms, in which nothing cancels:
+// equations (2) and (3) of Wang, Li, Wang 2025 are sums of non-negative terms, in which nothing cancels:
 //   cos^2 beta  = cos^2 mean + sin(theta) sin(theta_r) s2
 //   sin^2 beta  = t^2/(1 + t^2) + sin(theta) sin(theta_r) cos^2(delta/2)
 //   tan^2 alpha = t^2 + (1 + t^2) sin(theta) sin(theta_r) s2 / cos^2 mean

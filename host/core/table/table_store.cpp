@@ -119,7 +119,7 @@ class Writer {
     const hsize_t count = 1;
     put(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, take(H5Screate_simple(1, &count, nullptr), H5Sclose), &value);
   }
-  // int, because CF-1.8 has no unsigned int, and the masks must have the type of the status variable.
+  // The masks are int: CF-1.8 has no unsigned int, and they must have the type of the status variable.
   void put_status_bits(const Hdf5Handle& object) const {
     std::array<int, kStatusBits.size()> masks{};
     std::array<const char*, kStatusBits.size()> meanings{};
@@ -174,7 +174,7 @@ void put_long_text(const Writer& writer, const std::string& name, const std::str
   const std::vector<hsize_t> shape = {text.size()};
   const Hdf5Handle length =  // this variable is never written, so that it takes no space
       writer.define((name + "_length").c_str(), H5T_IEEE_F32BE, shape, nullptr, H5D_ALLOC_TIME_LATE);
-  // By this text, with the length in ten characters, the netCDF library marks a dimension without coordinates.
+  // The netCDF library marks a dimension without coordinates by this text and the length in ten characters.
   std::string digits = std::to_string(text.size());
   digits.insert(0, 10 - std::min<std::size_t>(digits.size(), 10), ' ');
   writer.check(H5DSset_scale(length.id(), ("This is a netCDF dimension but not a netCDF variable." + digits).c_str()));

@@ -27,7 +27,7 @@ class TableStore {
   TableValues read(const TableBox& box) const;
   /// The checksums of a part as the file contains it; nullopt if the part cannot be read.
   std::optional<ValueSums> measured(const TableBox& box) const;
-  /// Adds attributes and writes everything except the values. `sums`: of all values. Errors: IoError, Cancelled.
+  /// Adds attributes and writes all except the values. `sums`: checksums of all parts. Errors: IoError, Cancelled.
   void finish(std::vector<Attribute> more, const ValueSums& sums);
 
  private:

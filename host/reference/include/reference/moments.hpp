@@ -30,8 +30,8 @@ using Curves = std::function<std::array<double, kCurves>(double cos_beta)>;
 Zenith zenith_from_deg(double theta_deg);
 
 /// The moments of a rough surface (sigma > 0) with k_s = 1; with `sky`, also those with this function of the sky.
-/// Equation: r = cos(theta) int f cos(theta_r) sin(theta_r) dtheta_r dDelta_phi, eqs. (7), (15), (16), over theta_r
-/// (outer integral) and delta = pi - Delta_phi (inner integral).
+/// Equation: r = cos(theta) int f cos(theta_r) sin(theta_r) dtheta_r dDelta_phi, eqs. (7), (15), (16) of Wang, Li, Wang
+/// 2025. The outer integral is over theta_r, the inner one over delta = pi - Delta_phi.
 /// Domain: theta in [0, 90] degrees. At 90 degrees the moments are limits: 0 for v-cavity and smith, else finite. For
 /// the Cauchy distribution with q <= 3/2, which has too many vertical facets, they are infinite.
 Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,

@@ -10,7 +10,7 @@ using ReferenceMueller = std::array<std::array<double, 4>, 4>;
 
 /// f_s cos(theta_i) cos(theta_r) with k_s = 1. The Jones matrix is computed in quadruple precision from the s and p
 /// vectors of the beams and of the facet. So it needs no angle eta, and cancellation does no harm.
-/// Equation: (4), (7), (15). For Scattering::kMultiple it is the sum of reference_all_bounces. Units: sr^-1.
+/// Equation: (4), (7), (15) of Wang, Li, Wang 2025; for kMultiple, the sum of reference_all_bounces. Units: sr^-1.
 /// Conventions: Delta_phi = 180 degrees is the specular side. Each beam has s = k x z and p = k x s. At zenith 0, s is
 /// the limit for the beam's azimuth. Q = I_s - I_p, U = 2 Re(E_s* E_p), V = 2 Im(E_s* E_p).
 /// Domain: zeniths in [0, 90] degrees, but not both 90; sigma > 0. Accuracy: 1e-12 of element m00.

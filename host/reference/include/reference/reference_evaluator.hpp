@@ -18,7 +18,7 @@ struct ReferenceOptions {
 /// An evaluator that is slow and independent of the shaders. It computes moments by nested adaptive Gauss-Kronrod
 /// quadrature in double, over zenith and azimuth of reflection. At every point it integrates the masking `integral`
 /// over the facet tilt. V-grooves with all bounces and the direct emission it integrates over the slopes of the facets.
-/// Equation: (4), (7), (9)-(13), (15), (16).
+/// Equation: (4), (7), (9)-(13), (15), (16) of Wang, Li, Wang 2025.
 /// Accuracy: the tolerance of the integrals is ReferenceOptions::relative_tolerance, or a hundredth of the request's
 /// tolerance if that is larger. It is at most half of the request's tolerance, unless that is 0. With all bounces in
 /// steep metal grooves the quadratures may end earlier, with larger errors. The returned errors are the errors of the

@@ -12,7 +12,7 @@ class Slopes {
   /// Domain: sigma > 0; cauchy q > 1.
   Slopes(Distribution distribution, double sigma, double q);
 
-  /// D(alpha) in 1/sr. Equation: (8) for the cauchy, (1) for the gaussian.
+  /// D(alpha) in 1/sr. Equation: (8) for the cauchy, (1) for the gaussian, of Wang, Li, Wang 2025.
   double facet_density(double tan2_alpha) const;
 
   /// p(t), the density of the slopes t = tan(gamma) in one vertical plane.
@@ -60,7 +60,7 @@ double smith_lambda(const Slopes& slopes, const Zenith& zenith);
 
 /// G_1 of the masking `integral`, by direct numerical integration over the tilt gamma in one vertical plane.
 /// Equation: G_1 = P(gamma < a) + int_a^b p (1 + cos(theta + gamma)/cos(theta - alpha)), a = pi/2 - theta, b =
-/// min(pi/2, pi - 2 theta + alpha). Source: eqs. (9)-(12). Accuracy: `tolerance`, absolute.
+/// min(pi/2, pi - 2 theta + alpha). Source: Wang, Li, Wang 2025, eqs. (9)-(12). Accuracy: `tolerance`, absolute.
 class IntegralMasking {
  public:
   /// Integrates the part of G_1 that does not depend on alpha.

@@ -15,9 +15,9 @@ using std::numbers::pi;
 
 namespace {
 
-constexpr double kVerticalSlope = 1e17;  // beyond this slope gamma equals pi/2 in double precision
+constexpr double kVerticalSlope = 1e17;  // at larger slopes, gamma equals pi/2 in double precision
 
-// Integral of p(t) weight(t) dt over [low, high]. With t = width sinh(v), the integrand is smooth in v.
+// Integral of p(t) weight(t) dt over t in [low, high]. The integrand is smooth in the variable v, t = width sinh(v).
 template <class Weight>
 double integrate_slopes(const Slopes& slopes, double low, double high, double tolerance, const Weight& weight) {
   const double width = slopes.width();
@@ -57,7 +57,7 @@ IntegralMasking::IntegralMasking(const Slopes& slopes, const Zenith& zenith, dou
 double IntegralMasking::operator()(double alpha_rad) const {
   const double limit_rad = 2.0 * zenith_.elevation_rad + alpha_rad;
   const double cos_theta_minus_alpha = std::sin(zenith_.elevation_rad + alpha_rad);
-  if (cos_theta_minus_alpha <= 0.0) return share_below_;  // theta = 90 degrees and alpha = 0, so a = b
+  if (cos_theta_minus_alpha <= 0.0) return share_below_;  // a = b, because theta = 90 degrees and alpha = 0
   const auto weight = [&](double slope) {
     const double cos_gamma = 1.0 / std::sqrt(1.0 + slope * slope);
     const double cos_theta_plus_gamma = zenith_.cos * cos_gamma - zenith_.sin * slope * cos_gamma;
@@ -77,7 +77,7 @@ Attenuation::Attenuation(const Slopes& slopes, Masking masking, const Zenith& a,
   if (masking == Masking::kSmith) {
     smith_ = std::min(a.cos, b.cos) > 0.0 ? 1.0 / (1.0 + smith_lambda(slopes, a) + smith_lambda(slopes, b)) : 0.0;
   }
-  // G_1 falls with the zenith angle, so the lower direction has the smaller G_1.
+  // G is the smaller of both G_1. G_1 falls with the zenith angle, so it is the G_1 of the lower direction.
   if (masking == Masking::kIntegral) integral_.emplace(slopes, a.elevation_rad < b.elevation_rad ? a : b, tolerance);
 }
 
@@ -86,7 +86,7 @@ double Attenuation::operator()(double tan2_alpha, double cos2_beta) const {
     case Masking::kNone:
       return 1.0;
     case Masking::kVCavity:
-      // G is 2 cos(alpha) cos(theta) / cos(beta) with the larger theta; cos(alpha) = (cos a + cos b) / (2 cos(beta)).
+      // G = 2 cos(alpha) cos(theta) / cos(beta) for the lower direction; cos(alpha) = (cos a + cos b) / (2 cos(beta)).
       return std::min(1.0, v_cavity_ / cos2_beta);
     case Masking::kIntegral:
       return (*integral_)(std::atan(std::sqrt(tan2_alpha)));

@@ -20,10 +20,10 @@ using std::numbers::pi;
 namespace {
 
 constexpr double kRounding = 256.0 * std::numeric_limits<double>::epsilon();
-// Facets count as vertical above this times max(1, width) / sin(theta), with a relative error of 1 / kVertical.
+// Slopes above this times max(1, width) / sin(theta) count as vertical, with a relative error of 1 / kVertical.
 constexpr double kVertical = 1e10;
 constexpr double kSmallestSine = 1e-12;
-constexpr double kNoShare = 1e-19;  // a smaller share of the facets contributes less than rounding
+constexpr double kNoShare = 1e-19;  // a smaller share of the facets emits less than rounding
 constexpr int kHalvings = 60;
 
 enum Component : std::size_t { kIntensity, kPolarised, kCount };
@@ -31,7 +31,7 @@ using Emitted = Values<kCount>;
 
 using Absorption = std::function<FresnelCoefficients(double cos_beta)>;
 
-// The facets of a surface that are visible from one direction. If `is_response`, errors are relative to cos(theta).
+// The facets of a surface that are visible from one direction. With `is_response`, errors are relative to cos(theta).
 class Facets {
  public:
   Facets(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants, Absorption absorption,
@@ -65,8 +65,8 @@ class Facets {
   }
 
  private:
-  // e: the area of a facet seen from the view, divided by its horizontal projection. `side` is 1 for facet A, at the
-  // azimuth phi, and -1 for facet B, at phi + 180 degrees.
+  // e: the area of a facet as the viewer sees it, divided by the facet's horizontal projection. `side` is 1 for facet
+  // A, at the azimuth phi, and -1 for facet B, at phi + 180 degrees.
   double facing(const SlopePoint& point, double side) const {
     return view_.cos + side * point.t * view_.sin * point.sin_chi;
   }
@@ -110,13 +110,13 @@ class Facets {
     return number;
   }
 
-  // The slope beyond which facets count as vertical, or beyond which only kNoShare of the facets lie, if it is smaller.
+  // The slope at which integration ends: steeper facets count as vertical, or their share is below kNoShare.
   double end() const {
     const double vertical = kVertical * std::max(1.0, slopes_.width()) / std::max(view_.sin, kSmallestSine);
     return std::min(vertical, slopes_.quantile(kNoShare));
   }
 
-  // Emission of the facets steeper than t. With smith masking e G_1 is proportional to t there, with v-cavity constant.
+  // Emission of the facets steeper than t. There e G_1 is proportional to the slope (smith) or constant (v-cavity).
   Emitted tail(double t, const Refinement& refinement) {
     const double share = masking_ == Masking::kVCavity ? slopes_.share_above(t) : slopes_.length_above(t) / t;
     if (share < kNoShare) return {};
@@ -152,7 +152,7 @@ Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg,
 Moments direct_response(const Slopes& slopes, Masking masking, double theta_deg,
                         const std::function<double(double cos_beta)>& curve, double bend,
                         const Refinement& refinement) {
-  const FacetOptics bent{1.0 / bend, 0.0};  // the index whose Brewster angle is where the curve bends
+  const FacetOptics bent{1.0 / bend, 0.0};  // the index whose Brewster angle is where `curve` has its sharp bend
   const auto absorption = [&](double cos_beta) -> FresnelCoefficients {
     const double sin2_beta = (1.0 - cos_beta) * (1.0 + cos_beta);
     const double f = curve(cos_beta);

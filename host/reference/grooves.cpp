@@ -23,34 +23,35 @@ using Vector3 = Vector<double>;
 
 constexpr double kRounding = 256.0 * std::numeric_limits<double>::epsilon();
 constexpr double kDark = 1e-24;  // light of lower intensity is not followed
-// Most bounces that are followed. How much of the remaining light leaves the groove stays unknown.
+// Most bounces of a beam that are followed. How much of the remaining light leaves the groove stays unknown.
 constexpr int kMostFollowed = 2000;
 constexpr double kSteepest = 1e15;
 constexpr double kSteeper = 1.5;
-// Beyond the steepest slope that is followed, grooves reflect less, but for jumps where the number of bounces changes.
+// Grooves steeper than the steepest that is integrated reflect less than that one, except where the number of bounces
+// jumps. So they are assumed to reflect at most kTailRoom times as much.
 constexpr double kTailRoom = 2.0;
-constexpr double kTailShare = 0.01;  // share of the tolerance for the error from grooves that are not followed
-// The number of bounces of a beam changes over angles of about the groove's half-angle gamma.
+constexpr double kTailShare = 0.01;  // share of the tolerance for the error due to grooves that are not integrated
+// Steps of the scan per half-angle gamma of the groove. Over angles of about gamma the number of bounces changes.
 constexpr double kStepsPerGamma = 3.0;
-// The search for bends ends at kSteepestBends, or earlier, at the slope beyond which this share of the integral
-// remains. Steeper grooves have many small bends.
+// Bends of the integrand are searched up to the slope kSteepestBends, or up to the slope beyond which the share
+// kBendShare of the integral remains, if it is smaller. Steeper grooves have many small bends.
 constexpr double kBendShare = 1e-2;
 constexpr double kSteepestBends = 10.0;
-// An attempt with more bounces than this, about two seconds of work, is abandoned. The next has a tolerance larger by
-// the factor kLessAmbitious. From kLeastAmbition an attempt is the last, and returns the accuracy that it reaches.
+// An attempt with more than kMostBounces bounces, two seconds of work, is abandoned and repeated with kLessAmbitious
+// times the tolerance. An attempt with a tolerance of kLeastAmbition or more is the last and not abandoned.
 constexpr double kMostBounces = 2e7;
 constexpr double kLessAmbitious = 100.0;
 constexpr double kLeastAmbition = 1e-5;
 constexpr double kThinWeight = 0.02;   // SlopeTask::thin_weight
-constexpr double kNegligible = 1e-12;  // integrals below this share of the albedo are zero except for rounding
-// Factor of the errors of panels that still have bends: there the difference of two rules may be below the error.
+constexpr double kNegligible = 1e-12;  // smaller integrals, relative to the albedo, are only rounding errors
+// Factor from the difference of two quadrature rules to the error, which is larger in panels that still have bends.
 constexpr double kBentErrors = 6.0;
 // The first estimate uses kLookShares quantiles of the slopes, none above kLookSteepest, and kLookAzimuths azimuths.
 constexpr int kLookShares = 16;
 constexpr int kLookAzimuths = 16;
 constexpr double kLookSteepest = 50.0;
 
-// Lost light may or may not leave the groove; it counts as reflected.
+// kReflected includes kLost, the light that is no longer followed. It may or may not leave the groove.
 enum Component : std::size_t {
   kAlbedo,
   kReflected,
@@ -102,7 +103,8 @@ void follow(const Groove<double>& groove, const SlopePoint& point, const Vector3
   }
 }
 
-// Encodes for each bounce of a beam whether none, some or all of it leaves, and the side of the special angles.
+// A number that changes where the integrand bends: for each bounce of a beam it encodes whether none, some or all of
+// the light leaves the groove, and between which special angles the angle of incidence is.
 std::uint64_t history(const SlopePoint& point, const Vector3& omega, Facet first, const SpecialAngles& special,
                       const SkyFunction* sky) {
   constexpr std::uint64_t kPrime = 1099511628211U;
@@ -148,7 +150,7 @@ class Surveyor {
         sky_(sky),
         may_abandon_(may_abandon) {}
 
-  /// Meaningless if the attempt is abandoned.
+  /// The moments; meaningless if is_abandoned().
   Moments moments() {
     const GrooveValues expected = look_at_all();
     const auto [bends_end, end] = ends(expected);
@@ -168,7 +170,7 @@ class Surveyor {
     const Integral<2 * kCount> integral = integrate_slopes_of<kCount>(
         task, slopes_, scan, {refinement_.relative_tolerance / kBentErrors, refinement_.subdivisions}, expected);
 
-    // Grooves steeper than `end` reflect a share between 0 and kTailRoom times the share at slope `end`.
+    // Grooves steeper than `end` reflect a share of their light between 0 and kTailRoom times the share at slope `end`.
     const double share = slopes_.share_above(end);
     const double tail_weight = share * view_.cos;
     const GrooveValues at_end = look(end);
@@ -186,7 +188,7 @@ class Surveyor {
     m.r_q = integral.value[kPolarised];
     m.deficit = integral.value[kAbsorbed] + (tail_weight - 0.5 * tail_most) + half_lost;
     m.albedo_error = error_of(kAlbedo) + kRounding * tail_weight;
-    // Amplitudes have an absolute error. It matters in their squares if they are small, as for N near 1.
+    // Amplitudes have an absolute rounding error. It matters in their squares if they are small, as for N near 1.
     const double amplitude_error = kRounding * (std::sqrt(m.r_i * m.albedo) + kRounding * m.albedo);
     m.r_i_error = error_of(kReflected) + unknown + amplitude_error;
     m.r_q_error = std::max(error_of(kPolarised), error_of(kReflected)) + 2.0 * unknown + amplitude_error;
@@ -229,10 +231,10 @@ class Surveyor {
   }
 
   struct Ends {
-    double bends;  ///< bends are not searched beyond this slope
-    double all;    ///< no beam is followed beyond this slope
+    double bends;  ///< bends of the integrand are searched up to this slope
+    double all;    ///< the integral over slopes ends here
   };
-  // Slopes beyond which the rest is negligible, or light has too many bounces to be followed.
+  // Slopes beyond which the rest of the integral is negligible, or light has too many bounces to be followed.
   Ends ends(const GrooveValues& expected) {
     const double scale = std::min(expected[kReflected], expected[kAbsorbed]);
     Ends ends{kSteepestBends, kSteepest};

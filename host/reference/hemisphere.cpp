@@ -1,10 +1,10 @@
-// Let theta be the fixed and theta_r the running zenith angle, mean = (theta + theta_r)/2,
-// t = tan((theta_r - theta)/2), delta = pi - Delta_phi (zero on the specular side) and s2 = sin^2(delta/2). Then
-// equations (2) and (3) are sums of non-negative terms, in which nothing cancels:
+// Integrals over the zenith theta_r and the azimuth Delta_phi of reflection, for a fixed zenith theta. Let
+// mean = (theta + theta_r)/2, t = tan((theta_r - theta)/2), delta = pi - Delta_phi and s2 = sin^2(delta/2). Then
+// equations (2) and (3) of Wang, Li, Wang 2025 are sums of non-negative terms, in which nothing cancels:
 //   cos^2 beta  = cos^2 mean + sin(theta) sin(theta_r) s2
 //   sin^2 beta  = t^2/(1 + t^2) + sin(theta) sin(theta_r) cos^2(delta/2)
 //   tan^2 alpha = t^2 + (1 + t^2) sin(theta) sin(theta_r) s2 / cos^2 mean
-// The peak of D lies at t = 0, delta = 0.
+// The facet density D has its peak in the specular direction, t = 0 and delta = 0.
 #include "reference/moments.hpp"
 
 #include <algorithm>
@@ -24,28 +24,29 @@ namespace {
 
 constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// The absorbed part is added to cos(theta) - albedo. Below this share of the albedo it needs no relative accuracy.
+// Below this share of the albedo, the absorbed part, which is added to cos(theta) - albedo, needs no relative accuracy.
 constexpr double kSmallAbsorbed = 1e-2;
-// Elevations, and all that is proportional to them, have an error of a few ulps even if they are tiny (test
-// ReferenceMoments_NextToGrazing_KeepTheirDigits).
+// Elevations above the horizon, and quantities proportional to them, have a relative error of a few ulps even if they
+// are tiny (test ReferenceMoments_NextToGrazing_KeepTheirDigits).
 constexpr double kElevationRounding = 32.0 * std::numeric_limits<double>::epsilon();
-// At theta = 90 degrees the integral over u ends at this distance from the horizon. The rest follows a power law.
+// At theta = 90 degrees the integral over u ends this far from the horizon. A power law gives the rest.
 constexpr double kHorizonGap = 1e-30;
-// If the elevation of the fixed direction is below this, the masking changes in a layer of running elevations about as
-// thin. Panels could step over this layer, so break points become denser towards the horizon.
+// If the fixed direction is closer to the horizon than this, the masking changes where theta_r is about as close to it.
+// Panels could step over this layer, so there are more break points towards the horizon.
 constexpr double kNearHorizon_rad = 1e-3;
 constexpr double kLayerGrowth = 10.0;
-constexpr double kInnerShare = 0.02;  // errors of inner integrals, relative to the error of the integral around them
-// An azimuth integral cannot have a smaller relative error: a Kronrod panel has a rounding of 1e-15 of its magnitude.
+constexpr double kInnerShare = 0.02;  // error of an inner integral, relative to the error of the outer integral
+// Least relative error of an integral over the azimuth: a Kronrod panel has a rounding error of 1e-15 of its magnitude.
 constexpr double kInnerFloor = 4e-15;
-constexpr double kNegligible = 1e-12;  // integrals below this share of the albedo are zero except for rounding
+constexpr double kNegligible = 1e-12;  // smaller integrals, relative to the albedo, are only rounding errors
 
-// G is of order 1. Its error is above rounding, but too small to look like structure to the azimuth's quadrature.
+// Tolerance of the masking G, which is of order 1. It is above rounding. To the integral over the azimuth, errors below
+// this tolerance do not look like structure of the integrand.
 double masking_tolerance_for(const Refinement& refinement) {
   return std::max(1e-14, 1e-3 * kInnerShare * refinement.relative_tolerance);
 }
 
-// K responses of the reflected part and K responses of the polarised part follow the moments.
+// After the moments come K responses of r_i and K responses of r_q.
 enum Component : std::size_t { kAlbedo, kReflected, kPolarised, kAbsorbed, kMomentCount };
 template <std::size_t N>
 Values<N> moment_scales(const Values<N>& value) {
@@ -60,8 +61,8 @@ Values<N> moment_scales(const Values<N>& value) {
 template <std::size_t K>
 class Hemisphere {
  public:
-  // Components: moments and responses, then the two moments with a function of the sky. As many others follow: the
-  // errors of the azimuth integrals, which the outer rule only sums.
+  // Components of the integrals: moments and responses, then the two moments with a function of the sky. The same
+  // number follows again, for the errors of the integrals over the azimuth; the outer integral only sums these errors.
   static constexpr std::size_t kAzimuthCount = kMomentCount + 2 * K;
   static constexpr std::size_t kSkyReflected = kAzimuthCount;
   static constexpr std::size_t kSkyPolarised = kAzimuthCount + 1;
@@ -87,8 +88,8 @@ class Hemisphere {
     if (fixed_.cos > 0.0) {
       return integrate<kCount>([this](double u) { return row_values(u); }, breaks, goal, both_scales);
     }
-    // At theta = 90 degrees u ends at 0, where the integrand is |u|^(2q - 4) for q < 2. So the variable is log |u|. The
-    // power law gives the part with |u| < kHorizonGap.
+    // At theta = 90 degrees u ends at 0, where the integrand is |u|^(2q - 4) for q < 2. So the variable is log |u|, and
+    // a power law gives the part with |u| < kHorizonGap.
     const auto in_log = [this](double x) {
       BothValues values = row_values(-std::exp(x));
       for (double& value : values) value *= std::exp(x);
@@ -110,7 +111,7 @@ class Hemisphere {
   double evaluations() const { return evaluations_; }
 
  private:
-  // One running zenith angle, with values that depend on both zenith angles but not on the azimuth.
+  // One zenith theta_r of the outer integral, with values that depend on theta and theta_r, but not on the azimuth.
   struct Row {
     double t;
     double cos2_mean;
@@ -118,8 +119,8 @@ class Hemisphere {
     Zenith running;
     Attenuation attenuation;
   };
-  // Break points in u, where tan((theta_r - theta)/2) = width sinh(u): the specular direction u = 0, corners of the
-  // sky, and zenith angles at which a break point of the azimuth appears at Delta_phi = 180 or 0 degrees.
+  // Break points in u, where tan((theta_r - theta)/2) = width sinh(u): the specular direction u = 0, kinks of the sky,
+  // and the theta_r at which a break point of the azimuth appears at Delta_phi = 180 or 0 degrees.
   Breaks zenith_breaks() const {
     const double width = slopes_.width();
     Breaks breaks(std::asinh(-std::tan(0.5 * theta_rad_) / width),
@@ -151,10 +152,10 @@ class Hemisphere {
     return breaks;
   }
 
-  // The break points lie at these values of s2:
-  //   the special angles of beta
+  // Break points of the azimuth are where s2 has these values:
+  //   the angle beta is one of special_beta_rad()
   //   v-cavity: (cos theta + cos theta_r) min(cos theta, cos theta_r) = cos^2 beta
-  //   integral: alpha = 2 max(theta, theta_r) - pi/2, above which b = pi/2
+  //   integral: alpha = 2 max(theta, theta_r) - pi/2; for a larger alpha, the end b of the masking's integral is pi/2
   Breaks azimuth_breaks(const Row& row, double width) const {
     Breaks breaks(0.0, std::asinh(1.0 / width));
     const auto add_s2 = [&](double s2) {
@@ -179,7 +180,7 @@ class Hemisphere {
     return breaks;
   }
 
-  // v is given by tan(delta/4) = width sinh(v). D has fallen off at v = 1, because 4 tan^2(delta/4) is about s2.
+  // The variable is v, tan(delta/4) = width sinh(v). At v = 1 the density D is small, as 4 tan^2(delta/4) is about s2.
   Integral<kAzimuthCount> integrate_azimuth(const Row& row) {
     const double t2 = row.t * row.t;
     const double scale2 =
@@ -219,7 +220,7 @@ class Hemisphere {
     const Row row{t, cos_mean * cos_mean, fixed_.sin * running.sin, running,
                   Attenuation(slopes_, masking_, fixed_, running, masking_tolerance_for(refinement_))};
     const auto inner = integrate_azimuth(row);
-    // Twice, because delta covers only half of the azimuth.
+    // The first factor 2 is there because delta covers only half of the azimuth.
     const double jacobian = 2.0 * running.sin * 2.0 * slopes_.width() * std::cosh(u) / (1.0 + t * t);
     BothValues both;
     for (std::size_t k = 0; k < inner.value.size(); ++k) {
@@ -234,8 +235,8 @@ class Hemisphere {
     return both;
   }
 
-  // cos(theta) f cos(theta_r) = D G M / 4 with R, with 1 instead of R, and with 1 - R. M00 and M01 of eq. (7) need only
-  // squared lengths of columns of the Jones matrix of eq. (4), which the rotation by eta_r does not change.
+  // cos(theta) f cos(theta_r) = D G M / 4, with 1, R or 1 - R in the Mueller matrix M. Its M00 and M01, eq. (7), need
+  // only squared lengths of columns of the Jones matrix, eq. (4), which the rotation by eta_r keeps.
   AzimuthValues integrand(const Row& row, double delta) const {
     const double sin_half = std::sin(0.5 * delta);
     const double cos_half = std::cos(0.5 * delta);
@@ -247,8 +248,8 @@ class Hemisphere {
 
     const double cos_beta = std::sqrt(cos2_beta);
     const FresnelCoefficients r = fresnel(constants_, cos_beta);
-    // sin_eta and cos_eta are the components of the facet normal across and along the plane of omega_i and z, divided
-    // by sin beta. In the retro direction (beta = 0) there is no eta and no polarisation, because r_p = -r_s.
+    // eta is the angle between the plane of omega_i and z and the plane of incidence on the facet. In the retro
+    // direction (beta = 0) there is no eta, and no polarisation, because r_p = -r_s.
     const double sin_2beta = 2.0 * std::sqrt(cos2_beta * sin2_beta);
     double from_s = 0.5 * (std::norm(r.r_s) + std::norm(r.r_p));
     double from_p = from_s;
@@ -273,7 +274,7 @@ class Hemisphere {
     return values;
   }
 
-  // Angles beta where the Fresnel coefficients bend: total reflection, and the (pseudo-)Brewster angle.
+  // Angles beta at which the Fresnel coefficients bend sharply: total reflection, and the (pseudo-)Brewster angle.
   std::vector<double> special_beta_rad() const {
     std::vector<double> angles{std::atan(std::hypot(constants_.index.n, constants_.index.k))};
     if (constants_.index.n < 1.0) angles.push_back(std::asin(constants_.index.n));
@@ -291,20 +292,20 @@ class Hemisphere {
   double evaluations_ = 0.0;
 };
 
-// r_s and r_p have an absolute error. It matters in their squares if they are small, as for N near 1.
+// Rounding error of |r_s|^2 and |r_p|^2. The amplitudes have an absolute error, which matters if they are small.
 double amplitude_rounding(double reflected, double albedo) {
   return kRounding * (2.0 * std::sqrt(reflected * albedo) + kRounding * albedo);
 }
 
-// Rounding and the error of G are relative to `magnitude`. The factor 2 is there because G_1 may be as small as 1/2.
+// Rounding and the error of the masking G are relative to `magnitude`; twice for G, because G_1 may be as small as 1/2.
 template <std::size_t N>
 double error_of(const Integral<N>& integral, std::size_t k, double magnitude, const Refinement& refinement) {
   const double masking_error = 2.0 * masking_tolerance_for(refinement);
   return integral.error[k] + integral.value[N / 2 + k] + (masking_error + kRounding + kElevationRounding) * magnitude;
 }
 
-// The limits theta -> 90 degrees for a Cauchy distribution with so many vertical facets that r grows without bound. All
-// vertical facets then reflect into the hemisphere. They turn the plane of incidence by 90 degrees, so r_q is negative.
+// The limits theta -> 90 degrees for a Cauchy distribution with so many vertical facets that r_i grows without bound.
+// All vertical facets reflect into the hemisphere, and turn the plane of incidence by 90 degrees. So r_q is negative.
 Moments divergent_moments(const FacetOptics& constants) {
   const bool is_vacuum = constants == FacetOptics(1.0, 0.0);
   const double grown = is_vacuum ? 0.0 : kInfinity;
@@ -347,7 +348,7 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   moments.albedo_error = error_at(kAlbedo);
   moments.r_i_error = error_at(kReflected) + amplitude_error;
   moments.r_q_error = error_at(kPolarised) + amplitude_error;
-  // cos(theta) - r_i is more accurate if little is reflected; (cos(theta) - albedo) + absorbed, if little is absorbed.
+  // If little is reflected, cos(theta) - r_i is more accurate, otherwise (cos(theta) - albedo) + absorbed.
   const double direct_error = moments.r_i_error + kRounding * cos_theta;
   const double split_error = moments.albedo_error + error_at(kAbsorbed) + kRounding * cos_theta;
   const bool is_split = split_error < direct_error;
@@ -365,7 +366,7 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
 
 std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking masking, double theta_deg,
                                                 const Curves& curves, double bend, const Refinement& refinement) {
-  const FacetOptics bent{1.0 / bend, 0.0};  // the index whose Brewster angle is where the curves bend
+  const FacetOptics bent{1.0 / bend, 0.0};  // the index whose Brewster angle is where `curves` have their sharp bend
   const auto integral =
       Hemisphere<kCurves>(slopes, masking, theta_deg, bent, refinement, nullptr, &curves).integrate_zenith();
   std::vector<ColumnMoments> columns;

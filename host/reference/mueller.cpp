@@ -19,7 +19,7 @@ namespace dolp {
 
 namespace {
 
-// 34 digits suffice for the textbook formulas, which cancel near grazing, retro direction and critical angle.
+// 34 digits suffice, although the textbook formulas cancel near grazing, retro direction and critical angle.
 using Real = boost::multiprecision::cpp_bin_float_quad;
 using Complex = boost::multiprecision::cpp_complex_quad;
 using Vector = reference::Vector<Real>;
@@ -31,8 +31,8 @@ constexpr double kRetro = 1e-50;  // below this sin^2(2 beta) there is no plane 
 // Below this squared horizontal part of omega_i + omega_r, grooves of every azimuth reflect one beam into the other.
 constexpr double kMirrored = 1e-50;
 constexpr int kMostMuellerBounces = 2000;
-constexpr int kMostInQuad = 24;  // light with more bounces is only a correction, so double precision suffices
-// The sum ends if the last kIdleBounces terms together are at most the share kIdleShare of it.
+constexpr int kMostInQuad = 24;  // light with more bounces is only a correction and may be in double
+// The sum over bounces ends if its last kIdleBounces terms together are at most the share kIdleShare of it.
 constexpr int kIdleBounces = 8;
 constexpr double kIdleShare = 1e-14;
 
@@ -42,7 +42,7 @@ using reference::scaled;
 using reference::sum;
 using reference::unit;
 
-/// k is the direction of propagation, s = k x z / |k x z| and p = k x s.
+/// A beam: k is its direction of propagation, s = k x z / |k x z| and p = k x s.
 struct BeamFrame {
   Vector k;
   Vector s;
@@ -57,7 +57,7 @@ Vector toward(double zenith_deg, double azimuth_deg) {
   return {sin(zenith) * cos(azimuth), sin(zenith) * sin(azimuth), cos(zenith)};
 }
 
-/// The source is at azimuth 0. At zenith 0 `s` is the limit of k x z.
+/// The beam from the source, at azimuth 0. At zenith 0, s is the limit of k x z.
 BeamFrame incident_beam(double zenith_deg) {
   const Vector k = scaled<Real>(-1, toward(zenith_deg, 0.0));
   const Vector s{0, 1, 0};
@@ -87,7 +87,7 @@ reference::Amplitudes<Number> fresnel_amplitudes(const FacetOptics& constants,
 }
 
 // The columns are the reflected (s, p) amplitudes for an incident s wave and an incident p wave of unit amplitude. The
-// facet's s is normal to both beams. In the retro direction any s works, because r_p = -r_s.
+// facet's s vector is normal to both beams. In the retro direction any vector in the facet works, because r_p = -r_s.
 Jones<Complex> jones_matrix(const BeamFrame& in, const BeamFrame& out, const reference::Amplitudes<Complex>& r) {
   const Vector normal = cross(in.k, out.k);
   const Vector facet_s = dot(normal, normal) > kRetro ? unit(normal) : in.s;
@@ -105,8 +105,8 @@ Jones<Complex> jones_matrix(const BeamFrame& in, const BeamFrame& out, const ref
   return jones;
 }
 
-// Element (a, b) is half the trace of sigma_a J sigma_b J^+. The matrices sigma turn the coherency matrix <E E^+> into
-// the Stokes parameters I, Q, U = 2 Re(E_s* E_p), V = 2 Im(E_s* E_p).
+// Element (a, b) is half the trace of sigma_a J sigma_b J^+. The matrices sigma, here `basis`, turn the coherency
+// matrix <E E^+> into the Stokes parameters I, Q, U = 2 Re(E_s* E_p), V = 2 Im(E_s* E_p).
 template <class Number>
 ReferenceMueller mueller_from_jones(const Jones<Number>& jones) {
   using Matrix = Jones<Number>;
@@ -138,8 +138,8 @@ void add(ReferenceMueller& total, const ReferenceMueller& term) {
   for (std::size_t i = 0; i < 16; ++i) total[i / 4][i % 4] += term[i / 4][i % 4];
 }
 
-/// The plane across the grooves that reflect one beam into another. Its horizontal direction u is along or against the
-/// horizontal part of omega_i + omega_r, because reflection keeps the component along the groove.
+/// The plane across the grooves that reflect the beam `in` into the beam `out`. Its horizontal direction u is along the
+/// horizontal part of omega_i + omega_r, or against it, because reflection keeps the component along the groove.
 struct GroovePlane {
   Vector u, v;
   Real across;        ///< length of the horizontal part of omega_i + omega_r
@@ -154,8 +154,8 @@ struct GroovePlane {
     psi_r = atan2(dot(out.k, u), out.k[2]);
   }
   Vector in_groove(const Vector& a) const { return {dot(a, u), dot(a, v), a[2]}; }
-  /// The half-angle of the groove that reflects one beam into the other with this number of bounces, the first at A.
-  /// Unfolded, the ray turns by 2 * bounces * gamma, from omega_i to -omega_r or to its mirror image.
+  /// The half-angle of the groove that reflects one beam into the other with `bounces` bounces, the first one at facet
+  /// A. In the unfolded groove the ray turns by 2 * bounces * gamma, from omega_i to -omega_r or to its mirror image.
   Real gamma(int bounces) const {
     const Real turn = bounces % 2 == 1 ? Real(psi_i + psi_r) : Real(psi_i - psi_r);
     return (boost::math::constants::pi<Real>() - turn) / (2 * bounces);
@@ -181,7 +181,7 @@ Number along(const RealVector<Number>& a, const std::array<Number, 3>& e) {
   return a[0] * e[0] + a[1] * e[1] + a[2] * e[2];
 }
 
-// f^(k) cos(theta_i) cos(theta_r) of the beams that meet A of one groove plane first. `Number` is complex.
+// f^(k) cos(theta_i) cos(theta_r), with k = `bounces`, of the beams that meet facet A first. `Number` is complex.
 template <class Number>
 ReferenceMueller bounces_in_plane(const reference::Slopes& slopes, const FacetOptics& constants, const BeamFrame& in,
                                   const BeamFrame& out, const GroovePlane& plane, int bounces) {
@@ -210,7 +210,7 @@ ReferenceMueller bounces_in_plane(const reference::Slopes& slopes, const FacetOp
   return scaled_matrix(mueller_from_jones(jones), slopes.facet_density(cotangent * cotangent) * factor);
 }
 
-/// Two beams, and the two planes across the grooves that reflect one into the other.
+/// Two beams, and the two groove planes (u along h and against it) in which grooves reflect one into the other.
 struct GroovePair {
   BeamFrame in, out;
   GroovePlane toward, against;
@@ -227,8 +227,8 @@ struct GroovePair {
     add(total, in_plane(slopes, constants, in, out, against, bounces));
     return total;
   }
-  /// True if no ray can leave at psi_r after `bounces` or more bounces. Unfolded, the ray passes the apex at a distance
-  /// between cos(gamma) sin(|psi| - gamma) and sin(|psi| + gamma), both for psi = psi_i and for psi = psi_r.
+  /// True if no ray can leave at psi_r after `bounces` or more bounces. In the unfolded groove the ray passes the apex
+  /// at a distance from cos(gamma) sin(|psi| - gamma) to sin(|psi| + gamma), for both psi.
   bool is_beyond(int bounces) const {
     const Real widest = std::max(toward.gamma(bounces), against.gamma(bounces));
     return abs(Real(abs(toward.psi_i) - abs(toward.psi_r))) > 4 * widest;
@@ -267,7 +267,7 @@ BouncesSum reference_all_bounces(const Surface& surface, const FacetOptics& cons
     for (const double value : latest) recent += value;
     if (k >= kIdleBounces && recent <= kIdleShare * sum.matrix[0][0]) return sum;
   }
-  // Bounds the rest if the terms fall at least like bounces^(-9/8), or by the share 1e-4 per bounce.
+  // Bounds the rest of the sum if its terms fall at least like bounces^(-9/8), or by the share 1e-4 per bounce.
   sum.error = recent * kMostMuellerBounces;
   return sum;
 }

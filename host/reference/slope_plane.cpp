@@ -9,19 +9,19 @@ namespace {
 constexpr int kBisections = 60;
 constexpr int kMostSteps = 150;
 constexpr int kPlainSteps = 12;
-// If there are more bends, each is so small that refinement without break points is as good.
+// If there are more bends, each is so small that refinement copes without break points.
 constexpr std::size_t kMostBends = 40;
-// The scan of t has equal steps of 1/gamma, because bends of grooves have equal distances in 1/gamma, and of log t.
+// The scan of t has equal steps of log t, and equal steps of 1/gamma, in which bends of grooves are equally spaced.
 constexpr double kStepInverse = 0.04;
 constexpr double kMostInverse = 10.0;
 constexpr int kStepsPerDecade = 16;
-constexpr double kSmallestShare = 1e-7;  // slopes below this share of the width contribute less than rounding
-// Integrands may vary in a layer next to chi = 0 or t = 0. If it is thinner than kThinLayer, the distances of its break
-// points grow by the factor kPlaneLayerGrowth.
+constexpr double kSmallestShare = 1e-7;  // relative to the width; smaller slopes contribute less than rounding
+// Integrands may vary in a layer next to chi = 0 or t = 0. If this layer is thinner than kThinLayer, it gets break
+// points whose distances grow by the factor kPlaneLayerGrowth.
 constexpr double kThinLayer = 0.05;
 constexpr double kPlaneLayerGrowth = 8.0;
 
-// The positions at which `regime` changes between the ascending `points`, found by bisection to the last bits.
+// The positions between the ascending `points` at which `regime` changes, found by bisection to the last bits.
 std::vector<double> changes(const std::vector<double>& points, const std::function<std::uint64_t(double)>& regime) {
   std::vector<double> found;
   std::uint64_t below = regime(points.front());
@@ -65,7 +65,7 @@ std::vector<double> RegimeScan::chi_breaks(double t) const {
   const int steps = static_cast<int>(exact_steps) + 1;
   std::vector<double> points;
   for (int i = 0; i <= kPlainSteps; ++i) points.push_back(0.5 * pi * i / kPlainSteps);
-  // Equal steps of the view's angle in the plane across the groove, tan(psi) = tan(theta) sin(chi).
+  // Steps that are equal in the view's angle psi in the plane across the groove, tan(psi) = tan(theta) sin(chi).
   for (int i = 1; i < steps; ++i) {
     const double psi = theta_rad_ * i / steps;
     points.push_back(std::asin(std::min(1.0, std::tan(psi) * layer)));

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kNearGrazingDeg = 90.0 - 1e-12;
 
-// Cosine that replaces cos(90 degrees) in the closed form of a mirror. It is far below 1 / |N|^2 for every index N.
+// Replaces cos(90 degrees) in the closed form of a mirror. It is far below 1 / |N|^2 for every refractive index N.
 constexpr double kNearGrazingCosine = 1e-100;
 
 constexpr double kSmallestSigma = 1e-28;

@@ -12,11 +12,11 @@ namespace dolp {
 
 struct Work {
   double evaluations = 0.0;  ///< number of evaluations of the integrand
-  double kernel_s = 0.0;     ///< time of the kernels: timestamps of the device, or duration of the loop on the CPU
-  double sums_s = 0.0;       ///< host time for sums over slopes, interpolation and combinations of responses
+  double kernel_s = 0.0;     ///< time of the kernels: timestamps of the device, or time of the loop on the CPU
+  double sums_s = 0.0;       ///< host time to sum over slopes, interpolate, and combine responses (response_basis.hpp)
   std::uint64_t dispatches = 0;
-  std::uint64_t interpolated = 0;  ///< entries whose moments are interpolated or combined, not computed by a kernel
-  std::uint64_t interpolation_nodes = 0;  ///< moments that a kernel computes for these entries
+  std::uint64_t interpolated = 0;         ///< entries whose moments come from other moments, not from a kernel
+  std::uint64_t interpolation_nodes = 0;  ///< moments that a kernel computes in order to interpolate those entries
 
   Work& operator+=(const Work& other) {
     evaluations += other.evaluations;
@@ -33,20 +33,20 @@ struct EvaluationReport : Work {
   std::string evaluator;           ///< vulkan, cpu or reference
   std::string device;              ///< name of the device, or of the processor
   std::string driver;              ///< name and version of the driver; empty for cpu and reference
-  std::string precision;           ///< precision that was used: float, double, or float and double
+  std::string precision;           ///< precision of the computations: float, double, or float and double
   std::uint32_t devices_lost = 0;  ///< devices lost and replaced by a new one
-  double setup_s = 0.0;            ///< time to create pipelines and, if the run needed a new one, the device
-  double pipelines_s = 0.0;        ///< time to create pipelines only
+  double setup_s = 0.0;            ///< time to create pipelines and, if the run needed a new device, the device
+  double pipelines_s = 0.0;        ///< the part of setup_s that creates pipelines
 };
 
-/// Adds a precision to `used`, which is EvaluationReport::precision.
+/// Adds float or double to `used`, the value of EvaluationReport::precision so far.
 inline void note_precision(std::string& used, bool in_double) {
   const char* name = in_double ? "double" : "float";
   if (used.empty()) used = name;
   if (used != name) used = "float and double";
 }
 
-/// Computes the moments or Mueller matrices of a request, in the order of its entries and in its precision.
+/// Computes the moments or Mueller matrices of a request, in the order of the request's entries and in its precision.
 class ModelEvaluator {
  public:
   virtual ~ModelEvaluator() = default;
@@ -55,9 +55,9 @@ class ModelEvaluator {
   /// Announces a later call of `scatter`. The evaluator may prepare for it in parallel with other calls.
   virtual void prepare(const ScatteringRequest& /*request*/) {}
   virtual bool has_double() const { return true; }
-  /// True if the evaluator must compute each entry separately. Then a run uses neither interpolation nor responses.
+  /// True if the evaluator must compute each entry separately. Then a run neither interpolates nor combines responses.
   virtual bool computes_each_entry() const { return false; }
-  /// Totals over all calls since clear_report.
+  /// Totals over all calls since the last clear_report.
   virtual EvaluationReport report() const = 0;
   virtual void clear_report() {}
 };

@@ -18,7 +18,7 @@ namespace dolp {
 class ResponseBasis;
 class SkyBasis;
 
-/// The tightest tolerance of a rule in float. Below it rounding errors dominate.
+/// Tightest tolerance of a quadrature rule in float. At a tighter tolerance rounding errors would dominate.
 inline constexpr double kLeastFloatTolerance = 2e-6;
 
 struct MomentsPoint {
@@ -28,86 +28,87 @@ struct MomentsPoint {
   friend bool operator==(const MomentsPoint&, const MomentsPoint&) = default;
 };
 
-/// Asks for responses to the local angle of incidence (response_basis.hpp) instead of moments with functions of a sky.
+/// Requests responses (response_basis.hpp): moments with polynomials of the local angle instead of the reflectances.
 struct Response {
   enum class Of : std::uint8_t {
-    kReflected,  ///< responses of the reflected light
-    kSky,        ///< responses of the reflected light times the only function of the request's sky
-    kDirect      ///< responses of the direct emission
+    kReflected,  ///< r_i and r_q with these polynomials
+    kSky,        ///< r_i and r_q with these polynomials, times the only function of the request's sky
+    kDirect      ///< direct_i and direct_q with these polynomials
   };
   std::size_t count = 0;
   double c0 = 1.0;
-  double bend = 1.0;  ///< distance of a singularity that the rules must resolve (ResponseBasis::bend)
+  double bend = 1.0;  ///< distance of the singularity that the quadrature must resolve (ResponseBasis::bend)
   Of of = Of::kReflected;
 };
 
-/// A grid has all combinations of optics, theta, sigma and q; q varies fastest. A list has one value per entry in each
-/// of these four vectors. An entry is identified by its position in this order.
+/// A grid has all combinations of `optics`, `theta_deg`, `sigma` and `q`; q varies fastest. In a list each of these
+/// four vectors has one value per entry. The position in this order identifies an entry.
 struct MomentsRequest {
   enum class Layout { kGrid, kList };
 
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
   Scattering scattering = Scattering::kSingle;  ///< kMultiple only with v-cavity
-  bool wants_direct = false;                    ///< asks for direct_i and direct_q too; only with v-cavity or smith
-  double tolerance = 1e-4;                      ///< tolerance of the rule, relative to r_i
+  bool wants_direct = false;                    ///< requests also direct_i and direct_q; only with v-cavity or smith
+  double tolerance = 1e-4;                      ///< tolerance of the integrals, relative to r_i
   Precision precision = Precision::kAuto;       ///< kAuto means float
-  bool may_interpolate = true;                  ///< allows interpolation between slope distributions, to `tolerance`
-  bool has_extra_splits = false;                ///< adds split lines, so that the result can check a rule without them
-  std::shared_ptr<const ResponseBasis> basis;   ///< basis from which all optics are combined; null: each is integrated
-  std::shared_ptr<const SkyBasis> sky;  ///< Moments::columns has a column per function of this sky; null: no columns
-  std::optional<Response> response;     ///< asks for responses, which Moments::columns then has instead
+  bool may_interpolate = true;    ///< allows interpolation between slope distributions, within `tolerance`
+  bool has_extra_splits = false;  ///< splits the integrals more finely, to check a computation without this
+  std::shared_ptr<const ResponseBasis> basis;  ///< responses that give the moments of all optics; null: none
+  std::shared_ptr<const SkyBasis> sky;         ///< adds one of Moments::columns per function of this sky; null: none
+  std::optional<Response> response;            ///< fills Moments::columns with responses instead
   Layout layout = Layout::kGrid;
   std::vector<double> theta_deg;
   std::vector<FacetOptics> optics;  ///< bare facets, or facets with films
   std::vector<double> sigma;
   std::vector<double> q;
-  std::vector<char> wanted;  ///< one flag per entry of a grid; empty: all. Moments of unwanted entries are undefined
+  std::vector<char> wanted;  ///< a flag per entry of a grid; empty: all. Moments of unwanted entries are undefined
 
   std::size_t size() const;
   bool is_wanted(std::size_t entry) const { return wanted.empty() || wanted[entry] != 0; }
   std::size_t wanted_count() const;
-  /// `share` times the tolerance, but in float at least the smaller of kLeastFloatTolerance and the tolerance.
+  /// `share` times the tolerance, but in float at least kLeastFloatTolerance or, if it is smaller, the tolerance.
   double finer_tolerance(double share) const;
   std::size_t shapes() const { return sigma.size() * q.size(); }
   MomentsPoint operator[](std::size_t entry) const;
   /// The same request for only some directions of a grid, given by their positions in `theta_deg`.
   MomentsRequest of_directions(std::span<const std::size_t> directions) const;
-  void append(const MomentsPoint& point);  ///< also makes the request a list
+  void append(const MomentsPoint& point);  ///< adds an entry; the request becomes a list
 };
 
-/// Moments of one entry whose integrands contain a function g of the facet, |g| <= 1. For a sky, g depends on the
-/// zenith of the reflected ray and multiplies the integrands of r_i and r_q. For a response, g depends on the local
-/// angle of incidence and replaces (R_s + R_p) / 2 in r_i and (R_s - R_p) / (2 sin^2) in r_q.
+/// Moments of one entry whose integrands contain a function g, |g| <= 1. If g is a function of a sky, it depends on the
+/// zenith of the reflected ray and multiplies the integrands of r_i and r_q. In a response, g depends on the local
+/// angle of incidence beta and replaces (R_s + R_p) / 2 in r_i and (R_s - R_p) / (2 sin^2(beta)) in r_q.
 struct ColumnMoments {
   double i = 0.0;
   double q = 0.0;
-  double error = 0.0;  ///< bound of the absolute errors of i and q; for a response the next three add to it
-  // Only for a response. i_apart and q_apart are signed differences between two rules. The magnitude of their weighted
-  // sum bounds the error of a weighted sum of responses. relative_error is relative to that sum.
+  double error = 0.0;  ///< bound of the absolute errors of i and q; a response has more errors, below
+  // Only for a response. i_apart and q_apart are signed differences between the results of two quadrature rules. The
+  // error of a weighted sum of responses is at most |weighted sum of i_apart| + relative_error |weighted sum of i| +
+  // the weighted sum of `error`; for q with q_apart.
   double i_apart = 0.0;
   double q_apart = 0.0;
   double relative_error = 0.0;
 };
 
-/// The moments of one entry for k_s = 1. All have the factor cos(theta), which keeps them finite at theta = 90 degrees:
-/// r = rho cos(theta). For s and p polarisation, rho_s = rho_I + rho_Q and rho_p = rho_I - rho_Q.
+/// The moments of one entry for k_s = 1. Each moment is rho times cos(theta), which keeps it finite at theta = 90
+/// degrees. For s and p polarisation, rho_s = rho_I + rho_Q and rho_p = rho_I - rho_Q.
 struct Moments {
   double r_i = 0.0;      ///< rho_I cos(theta)
-  double r_q = 0.0;      ///< rho_Q cos(theta), with its sign
-  double albedo = 0.0;   ///< A cos(theta): the integral of r_i for R = 1
+  double r_q = 0.0;      ///< rho_Q cos(theta)
+  double albedo = 0.0;   ///< A cos(theta): r_i of facets with R_s = R_p = 1
   double deficit = 0.0;  ///< cos(theta) - r_i, computed without cancellation where rho_I is near 1
-  /// Emission of the facets straight to the viewer: eps_I cos(theta). NaN if the request does not want direct emission.
+  /// eps_I cos(theta) of the light that facets emit straight to the viewer. NaN if the request does not ask for it.
   double direct_i = std::numeric_limits<double>::quiet_NaN();
   double direct_q = std::numeric_limits<double>::quiet_NaN();  ///< eps_Q cos(theta); eps_s = eps_I + eps_Q
-  // Bounds of the absolute errors of these six numbers. They include quadrature, masking tables and rounding.
+  // Bounds of the absolute errors of these six moments. They include quadrature, masking tables and rounding.
   double r_i_error = 0.0;
   double r_q_error = 0.0;
   double albedo_error = 0.0;
   double deficit_error = 0.0;
   double direct_i_error = 0.0;
   double direct_q_error = 0.0;
-  double evaluations = 0.0;                 ///< integrand evaluations spent on this entry
+  double evaluations = 0.0;                 ///< evaluations of the integrand for this entry
   std::vector<ColumnMoments> columns = {};  ///< one column for each function of the request's sky, or for each response
 };
 
@@ -121,6 +122,6 @@ inline constexpr std::array<MomentMember, 6> kMomentMembers = {{{&Moments::r_i, 
                                                                 {&Moments::deficit, &Moments::deficit_error},
                                                                 {&Moments::direct_i, &Moments::direct_i_error},
                                                                 {&Moments::direct_q, &Moments::direct_q_error}}};
-inline constexpr std::size_t kDirectMembers = 2;  ///< the last members are direct_i and direct_q
+inline constexpr std::size_t kDirectMembers = 2;  ///< direct_i and direct_q are the last of kMomentMembers
 
 }  // namespace dolp

@@ -12,14 +12,14 @@
 namespace dolp {
 namespace {
 
-// Choices of c0, the cosine below which the polynomials resolve most finely. Metals need the smallest, because of the
-// pole of R_p; dielectrics need the largest.
+// Choices of c0, the cosine below which the polynomials resolve most finely. Metals need the smallest c0, because R_p
+// has a pole near grazing incidence; dielectrics need the largest.
 constexpr std::array<double, 5> kScales = {1.0, 0.3, 0.1, 0.03, 0.01};
-constexpr Eigen::Index kCoefficients = 65;  // coefficients that are computed for a curve
+constexpr Eigen::Index kCoefficients = 65;  // Chebyshev coefficients that are computed for a reflectance curve
 constexpr Eigen::Index kLastOfCurve = 4;
-constexpr double kReach = 0.25;           // largest error of a combined curve, as a share of the tolerance
-constexpr double kTimeOfResponse = 0.08;  // time that a response adds to a pass, relative to a pass without responses
-constexpr double kLeastGain = 1.25;       // responses must be this many times faster than separate indices
+constexpr double kReach = 0.25;           // largest error of a curve in few polynomials, as a share of the tolerance
+constexpr double kTimeOfResponse = 0.08;  // time that one response adds to a kernel pass, relative to a pass without
+constexpr double kLeastGain = 1.25;       // least speed-up over separate indices with which a run uses responses
 // Allowed numbers of responses. They are few because a driver compiles separate kernels for each of them.
 constexpr std::array<std::size_t, 3> kCounts = {8, 16, kMostResponses};
 constexpr std::size_t kMostCandidates = 256;  // most indices of a run among which the reference index is chosen
@@ -39,14 +39,14 @@ CurveCoefficients coefficients_of(const FacetOptics& index, double c0) {
   return transform * values;
 }
 
-/// Bounds of the errors of both curves if only the first `count` coefficients are kept: the sum of the other computed
-/// coefficients, plus kCoefficients unknown ones, each as large as the largest of the last kLastOfCurve.
+/// Bounds of the errors of the two columns of `all` if only the first `count` coefficients are kept. Sums the other
+/// computed coefficients, and kCoefficients unknown ones as large as the largest of the last kLastOfCurve.
 Eigen::RowVector2d errors_of(const CurveCoefficients& all, Eigen::Index count) {
   return all.bottomRows(kCoefficients - count).cwiseAbs().colwise().sum() +
          kCoefficients * all.bottomRows<kLastOfCurve>().cwiseAbs().colwise().maxCoeff();
 }
 
-/// The fewest polynomials that represent an index to the tolerance; kMostResponses + 1 if kMostResponses do not.
+/// The fewest polynomials that represent the reflectance curves of an index; kMostResponses + 1 if more are needed.
 std::size_t needed(const FacetOptics& index, double c0, double tolerance) {
   const CurveCoefficients all = coefficients_of(index, c0);
   const double most = kReach * tolerance * reflectance_level(index);
@@ -55,7 +55,7 @@ std::size_t needed(const FacetOptics& index, double c0, double tolerance) {
   return count;
 }
 
-/// At most `most` different indices, evenly spaced in the list.
+/// At most `most` of the indices, evenly spaced in `indices`, without repetitions.
 std::vector<FacetOptics> candidates_of(const std::vector<FacetOptics>& indices, std::size_t most) {
   std::vector<FacetOptics> candidates;
   const std::size_t count = std::min(indices.size(), most);
@@ -66,7 +66,7 @@ std::vector<FacetOptics> candidates_of(const std::vector<FacetOptics>& indices, 
   return candidates;
 }
 
-/// Distance in the complex plane from the cosines [0, 1] to the nearest singularity of the curves.
+/// Distance in the complex plane from the cosines [0, 1] to the nearest singularity of the reflectances of `index`.
 double distance_of_bend(const OpticalConstants& index) {
   const std::complex<double> n(index.n, index.k);
   const std::complex<double> pole = 1.0 / std::sqrt(n * n + 1.0);
@@ -109,7 +109,7 @@ std::shared_ptr<const ResponseBasis> ResponseBasis::of(const std::vector<FacetOp
   for (const FacetOptics& index : candidates_of(indices, kMostCandidates)) {
     if (needed(index, basis->c0_, tolerance) > basis->count_) continue;
     basis->bend_ = std::min(basis->bend_, distance_of_bend(index));
-    // Excludes indices with total reflection: its kink would add to the errors of the responses.
+    // No reference has total reflection: the kink of its reflectances would add to the errors of the responses.
     if (critical_cosine(index) > 0.0 || reflectance_level(index) >= lowest) continue;
     lowest = reflectance_level(index);
     basis->reference_ = index;

@@ -1,8 +1,8 @@
-// Combines the moments of many indices from the moments of one index and from responses.
+// Computes the moments of many indices from the moments of one index and from responses.
 // The moments of single scattering are linear in the Fresnel reflectances as functions of c, the cosine of the local
 // angle of incidence. A response is a moment with a Chebyshev polynomial of 2 u - 1, u = asinh(c / c0) / asinh(1 / c0),
-// instead of the reflectances. The Chebyshev coefficients of an index's curves are the weights with which responses sum
-// to its moments, at every direction, slope distribution and masking. The omitted coefficients bound the error.
+// instead of the reflectances. The moments of an index are weighted sums of responses. The weights are the Chebyshev
+// coefficients of its reflectances, for every direction, slope distribution and masking.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,20 +23,20 @@ struct ResponseWeights {
 
 class ResponseBasis {
  public:
-  /// The errors of combined curves stay below the tolerance, relative to the reflectance_level of the index. `passes`:
-  /// number of kernel passes that compute responses. Null if they cost more than integrating each index.
+  /// The reflectances of an index, as sums of polynomials, have errors below `tolerance` times its reflectance_level.
+  /// `passes`: kernel passes that compute responses. Null if they would take longer than integrating each index.
   static std::shared_ptr<const ResponseBasis> of(const std::vector<FacetOptics>& indices, double tolerance,
                                                  std::size_t passes);
 
-  /// The index that a pass integrates in addition to the responses: the one with the lowest reflectance_level. Another
-  /// index may be computed as this index plus a sum of differences, which has a smaller error.
+  /// The index that a kernel pass integrates besides the responses: the one with the lowest reflectance_level. Another
+  /// index may have the moments of this index plus a sum over responses, which is smaller and has less error.
   const FacetOptics& reference() const { return reference_; }
   std::size_t count() const { return count_; }
   double c0() const { return c0_; }
-  /// Distance in the complex plane from the cosines [0, 1] to the nearest singularity of polynomials or curves.
+  /// Distance in the complex plane from the cosines [0, 1] to the nearest singularity of polynomials or reflectances.
   double bend() const { return bend_; }
   const ResponseWeights& of_reference() const { return of_reference_; }
-  /// Nullopt if the curves of the index need more responses, for example because of total reflection.
+  /// Nullopt if the index needs more than count() responses, for example because of total reflection.
   std::optional<ResponseWeights> weights_of(const FacetOptics& index) const;
 
  private:
@@ -50,6 +50,6 @@ class ResponseBasis {
   double tolerance_ = 0.0;
 };
 
-inline constexpr std::size_t kMostResponses = 24;  ///< limit of the kernels
+inline constexpr std::size_t kMostResponses = 24;  ///< most responses that the kernels can compute at once
 
 }  // namespace dolp

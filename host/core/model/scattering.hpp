@@ -18,16 +18,16 @@ struct BeamAngles {
   double delta_phi_deg = 0.0;
 };
 
-/// True if a facet can reflect one beam into the other; false if both are at 90 degrees.
+/// True if there is a facet that reflects one beam into the other. There is none if both beams are at 90 degrees.
 inline bool has_facet(const BeamAngles& a) { return a.theta_i_deg < 90.0 || a.theta_r_deg < 90.0; }
 
-/// True if this facet is parallel to the macroscopic surface, so that a mirror reflects one beam into the other.
+/// True if a mirror reflects one beam into the other, so that the reflecting facet is parallel to the surface.
 inline bool is_specular(const BeamAngles& a) {
   const bool is_forward = std::abs(a.delta_phi_deg) == 180.0;
   return a.theta_i_deg == a.theta_r_deg && (is_forward || a.theta_i_deg == 0.0);
 }
 
-/// One entry, as positions in the lists `angles`, `shapes` and `optics` of its request.
+/// One pair of beams, slope distribution and index: positions in the lists of a ScatteringRequest.
 struct ScatteringEntry {
   std::uint32_t angles = 0;
   std::uint32_t shape = 0;
@@ -46,8 +46,8 @@ struct ScatteringRequest {
   std::vector<ScatteringEntry> entries;
 };
 
-/// The Mueller matrix f_s cos(theta_i) cos(theta_r) for k_s = 1, row by row. It is finite at grazing incidence.
-/// Units: sr-1. Conventions: frames, Q, U and V of shaders/physics/README.md, section 1.
+/// The Mueller matrix f_s cos(theta_i) cos(theta_r) for k_s = 1, row by row. It is finite at grazing angles.
+/// Units: sr-1. Conventions: shaders/physics/README.md, section 1, defines the polarisation frames, Q, U and V.
 struct ScatteringMatrix {
   std::array<double, 16> m{};
   double error = 0.0;  ///< bound of the absolute error of each element
@@ -59,10 +59,10 @@ struct Scattered {
   double q = 0.0;
   double u = 0.0;
   double v = 0.0;
-  double error = 0.0;  ///< bound of the absolute error of each one
+  double error = 0.0;  ///< bound of the absolute error of i, q, u and v
 };
 
-/// Bounds of the errors relative to m00. They include rounding (tests MuellerAccuracy.*).
+/// Bounds of the error of a ScatteringMatrix, relative to its first element. Rounding is included (MuellerAccuracy.*).
 constexpr double kScatteringErrorFloat = 1e-5;
 constexpr double kScatteringErrorDouble = 1e-11;
 

@@ -6,8 +6,8 @@
 namespace dolp {
 namespace {
 
-// Axes in the order in which a grid is cut into parts. All materials, wavelengths and indices of a direction stay
-// together as long as possible, so that their shared work is done once.
+// Axes in the order in which a grid is cut into parts. All materials, wavelengths and indices of a direction stay in
+// one part as long as possible, so that the kernels compute what they share only once.
 constexpr std::array kCuttingOrder = {Axis::kTheta, Axis::kMaterial,    Axis::kBand,  Axis::kWavelength, Axis::kN,
                                       Axis::kK,     Axis::kTemperature, Axis::kSigma, Axis::kQ};
 static_assert(kCuttingOrder.size() == kAxisCount);
@@ -190,7 +190,7 @@ std::vector<SceneEntries> SceneEntries::parts(std::size_t most) const {
 
 void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& whole,
                   const std::function<void(const GridRun&)>& use) {
-  // A run covers the fastest axes of which the part has all values, and the next slower axis.
+  // The last axis varies fastest. A run covers the last axes of which the part has all values, and one axis more.
   std::size_t slowest = count.size() - 1;
   while (slowest > 0 && count[slowest] == whole[slowest]) --slowest;
   const auto from = static_cast<std::ptrdiff_t>(slowest);

@@ -25,10 +25,10 @@ Axes axes_of(std::vector<double> theta_deg, std::vector<double> sigma, std::vect
 /// The axes of a part: only the values first[axis], ..., first[axis] + count[axis] - 1. Empty axes stay empty.
 Axes part_of(const Axes& axes, const PerAxis& first, const PerAxis& count);
 
-/// Position on each axis of the entry that has a given position in a table.
+/// Position on each axis of the entry at `position` in a table that has `counts` values on its axes.
 PerAxis positions_on_axes(std::size_t position, const PerAxis& counts);
 
-/// Number of values on each axis, where an empty axis counts as 1; and the product of such numbers.
+/// counts_of: number of values on each axis, where an empty axis counts as 1. size_of: the product of these numbers.
 PerAxis counts_of(const Axes& axes);
 std::size_t size_of(const PerAxis& counts);
 
@@ -39,7 +39,7 @@ struct SceneEntry {
   std::uint32_t variant = 0;              ///< position in SceneEntries::variants
 };
 
-/// A value of one film of the coating, which replaces the value in the scene.
+/// A number of one film of the coating that an entry uses instead of the number in the scene.
 struct FilmValue {
   enum class Part : std::uint8_t { kN, kK, kThickness };
   std::size_t layer = 0;  ///< counts from 0, from the outside in
@@ -48,7 +48,7 @@ struct FilmValue {
   friend auto operator<=>(const FilmValue&, const FilmValue&) = default;
 };
 
-/// Changes of an entry to the scene, except direction, slope shape and index. Each variant needs its own Radiometry.
+/// How an entry differs from the scene, besides direction, slope shape and index. Each variant needs a Radiometry.
 struct SceneVariant {
   std::optional<double> wavelength_um = {};               ///< nullopt: the scene's spectrum
   std::optional<std::uint32_t> material = {}, band = {};  ///< positions in SceneModel::materials and bands
@@ -57,29 +57,29 @@ struct SceneVariant {
   friend auto operator<=>(const SceneVariant&, const SceneVariant&) = default;
 };
 
-/// The axes whose values make variants, in the order of tables. In a table all entries of a variant are consecutive.
+/// The axes whose values make variants, in the order of tables. In a table the entries of a variant follow each other.
 inline constexpr std::array kVariantAxes = {Axis::kMaterial, Axis::kBand, Axis::kWavelength, Axis::kTemperature};
 
-/// Axes outside of kVariantAxes change nothing.
+/// Writes a value of `axis` into the variant, or nothing if the axis is none of kVariantAxes.
 void set_value(SceneVariant& variant, Axis axis, double value);
 
 std::vector<SceneVariant> variants_of(const Axes& axes);
 
-/// Consecutive entries of a part of a grid that are consecutive in the whole grid as well.
+/// Entries that follow each other both in a part of a grid and in the whole grid: first positions, and number.
 struct GridRun {
   std::size_t in_part = 0;
   std::size_t in_whole = 0;
   std::size_t count = 0;
 };
 
-/// A grid, which is the product of its axes, or a list of points. An entry is identified by its position.
+/// The entries of a scene: a grid, which is the product of its axes, or a list of points.
 class SceneEntries {
  public:
   SceneEntries() = default;
   SceneEntries(std::vector<SceneEntry> points, std::vector<SceneVariant> variants = {{}})  // NOLINT: a list is entries
       : variants_(std::move(variants)), points_(std::move(points)) {}
   SceneEntries(std::initializer_list<SceneEntry> points) : points_(points) {}
-  /// `index`: index of the surface; a grid with only one of the axes n and k takes the other number from it.
+  /// `index`: index of the surface. A grid with only one of the axes n and k takes the other number from `index`.
   static SceneEntries of_grid(Axes axes, const OpticalConstants& index);
   static SceneEntries grid(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q);
 
@@ -94,7 +94,7 @@ class SceneEntries {
   /// The variants, at least one. A grid has all combinations of kVariantAxes; a list has the variants of its points.
   const std::vector<SceneVariant>& variants() const { return variants_; }
 
-  // Only for a grid.
+  // The next functions need a grid.
   const Axes& axes() const { return axes_; }
   const PerAxis& counts() const { return counts_; }
   const std::vector<double>& theta_deg() const { return axes_[Axis::kTheta]; }
@@ -103,25 +103,25 @@ class SceneEntries {
   PerAxis axis_positions(std::size_t entry) const { return positions_on_axes(entry, counts_); }
   std::size_t entries_per_direction() const { return sigma().size() * q().size(); }
   const OpticalConstants& index() const { return index_; }
-  /// Position in variants() of the entry at these positions on the axes.
+  /// Position in variants() of the entry that has the positions `on_axes` on the axes.
   std::size_t variant_at(const PerAxis& on_axes) const;
   bool has_own_index() const { return !axes_[Axis::kN].empty() || !axes_[Axis::kK].empty(); }
-  /// The refractive index at these positions on the axes. Domain: a grid with an axis of n or k.
+  /// The refractive index at the positions `on_axes`. Domain: a grid with an axis of n or k.
   OpticalConstants index_at(const PerAxis& on_axes) const;
 
-  /// A list of the entries at some positions, with only the variants that these entries use.
+  /// A list of the entries at `positions`, with only the variants that these entries use.
   SceneEntries chosen(std::span<const std::size_t> positions) const;
-  /// Cuts the entries into parts of at most `most`. Parts of a grid are grids. They are whole directions with all
-  /// wavelengths and indices, if `most` allows it. Parts of a list have consecutive points.
+  /// Cuts the entries into parts of at most `most` entries. Parts of a grid are grids; if `most` allows it, they
+  /// contain all wavelengths and indices of their directions. Parts of a list have consecutive points.
   std::vector<SceneEntries> parts(std::size_t most) const;
   /// The part of a grid with only the values first[i], ..., first[i] + count[i] - 1 of each axis.
   SceneEntries part(const PerAxis& first, const PerAxis& count) const;
-  /// For a part of a grid: its first position on each axis, and the counts and axes of the whole grid.
+  /// In a part of a grid: the position of its first value on each axis; the counts and the axes of the whole grid.
   const PerAxis& first() const { return first_; }
   PerAxis first_in(const SceneEntries& whole) const;
   const PerAxis& whole() const { return whole_; }
   const Axes& whole_axes() const { return *whole_axes_; }
-  /// The position in this part of an entry of the whole grid; nullopt if the part does not have it.
+  /// The position in this part of the entry at `in_whole` in the whole grid; nullopt if the part lacks it.
   std::optional<std::size_t> position_of(std::size_t in_whole) const;
 
  private:
@@ -136,7 +136,7 @@ class SceneEntries {
   std::vector<SceneEntry> points_;
 };
 
-/// The part begins at the positions `first`. The part and the whole grid have `count` and `whole` values on each axis.
+/// Calls `use` for each run of a part. The part has `count` of the `whole` values of each axis, from position `first`.
 void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& whole,
                   const std::function<void(const GridRun&)>& use);
 

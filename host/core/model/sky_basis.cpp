@@ -13,19 +13,19 @@
 namespace dolp {
 namespace {
 
-constexpr Eigen::Index kPoints = 17;  // chosen; Planck's function of a temperature linear in zenith needs fewer
+constexpr Eigen::Index kPoints = 17;  // points per part; enough if the temperature is linear in the zenith
 
-// Between the nodes, a sum of functions may miss a sky by up to this factor more than at the nodes.
+// At any zenith a weighted sum of functions misses a sky by at most this times the largest error at the nodes.
 constexpr double kBetweenNodes = 1.5;
 constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
-// If a part has enough points, its Chebyshev coefficients fall at least geometrically. Then the sum of the omitted ones
-// is less than kBeyondLast times the sum of the last kLastCoefficients.
+// With enough points in a part, the Chebyshev coefficients of a function fall at least geometrically. Then the sum of
+// the omitted coefficients is less than kBeyondLast times the sum of the last kLastCoefficients.
 constexpr Eigen::Index kLastCoefficients = 4;
 constexpr double kBeyondLast = 2.0;
 
-// In the last part of the zeniths, which ends at the horizon, the integral runs over y in [0, 1] with the cosine c_0
-// y^4, where c_0 is the cosine at the start of the part. So fractional powers of the cosine are smooth in y.
+// In the last part, which ends at the horizon, the integral runs over y in [0, 1], where cos(zenith) = c_0 y^4 and c_0
+// is the cosine at the start of the part. So fractional powers of the cosine are smooth in y.
 constexpr double kHorizonPower = 4.0;
 
 }  // namespace
@@ -67,7 +67,7 @@ Eigen::RowVectorXd SkyNodes::at(double zenith_deg, const Eigen::MatrixXd& values
   const double start = *(above - 1);
   const double x = std::clamp((end - zenith_deg + (start - zenith_deg)) / (end - start), -1.0, 1.0);
   const Eigen::Index first = (above - ends_deg_.begin() - 1) * kPoints;
-  // This loop computes cardinal_values without their allocations, because tables of a sky need some 10,000 zeniths.
+  // This loop does the work of cardinal_values without its allocations, because a table of a sky needs 10,000 zeniths.
   Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(values.cols());
   double total = 0.0;
   for (Eigen::Index i = 0; i < kPoints; ++i) {
@@ -116,7 +116,7 @@ Eigen::VectorXd SkyNodes::mean_weights(double power, const std::function<double(
       add(0.5 * (1.0 - Rule::abscissa()[i]), Rule::weights()[i]);
     }
   }
-  return weights / weights.sum();  // normalised, so that the mean of a constant is the constant
+  return weights / weights.sum();  // so that the mean of a constant is the constant
 }
 
 SkyBasis::SkyBasis(SkyNodes nodes, const std::vector<Eigen::VectorXd>& functions, double tolerance)

@@ -14,7 +14,7 @@ class LeastSquares {
   /// Domain: the columns are linearly independent.
   explicit LeastSquares(const Eigen::MatrixXd& columns);
 
-  /// The weight of each column in the sum that is nearest to `values`. Rows that `values` lacks count as 0.
+  /// The weight of each column in the sum that is nearest to `values`. Rows beyond the end of `values` count as 0.
   Eigen::VectorXd solve(const Eigen::VectorXd& values) const;
 
  private:
@@ -22,8 +22,8 @@ class LeastSquares {
   Eigen::MatrixXd triangle_;  ///< the columns are orthonormal_ * triangle_
 };
 
-/// Zeniths at which functions of a sky are tabulated. Within a part, between two of `ends_deg`, a function is the
-/// polynomial through its values at Chebyshev-Lobatto points. At the ends it may have corners.
+/// Zeniths at which functions of the zenith are tabulated. `ends_deg` divides [0, 90] into parts; a function may have
+/// kinks at these ends. In each part it is the polynomial through its values at Chebyshev-Lobatto points.
 class SkyNodes {
  public:
   /// `ends_deg`: at least three values, ascending from 0 to 90.
@@ -32,15 +32,15 @@ class SkyNodes {
   const std::vector<double>& ends_deg() const { return ends_deg_; }
   const std::vector<double>& zenith_deg() const { return zenith_deg_; }
 
-  /// The values of functions at a zenith, from their values at the nodes. Shape: `values` are nodes x functions.
+  /// The values of functions at `zenith_deg`. Shape: `values`, the values at the nodes, are nodes x functions.
   Eigen::RowVectorXd at(double zenith_deg, const Eigen::MatrixXd& values) const;
 
-  /// Estimate of the largest distance between a function and the polynomials through its values at the nodes.
+  /// Estimate of the largest distance between a function and the polynomials through `values`, its values at the nodes.
   double error(const Eigen::VectorXd& values) const;
 
-  /// Weights that add a function's values at the nodes up to a mean over the sky, in which a zenith counts with
-  /// cos^(power + 1) sin, times `factor` of the cosine. A surface receives this mean if its reflectance is proportional
-  /// to cos^power times the factor. Domain: power > -1.
+  /// Weights with which a function's values at the nodes add up to its mean over the sky. In the mean a zenith has the
+  /// weight cos^(power + 1) sin, times `factor` of the cosine: a surface receives this mean if its reflectance is
+  /// proportional to cos^power times `factor`. Domain: power > -1.
   Eigen::VectorXd mean_weights(double power, const std::function<double(double)>& factor = {}) const;
 
  private:
@@ -49,17 +49,17 @@ class SkyNodes {
   std::vector<double> zenith_deg_;
 };
 
-/// A function of the zenith as a weighted sum of the functions of a basis.
+/// Approximates a function of the zenith by a weighted sum of the functions of a SkyBasis.
 struct SkyWeights {
   Eigen::VectorXd of;  ///< weight of each function of the basis
-  double error = 0.0;  ///< bound of the distance between function and sum, at any zenith
+  double error = 0.0;  ///< bound of the distance between the function and the sum, at any zenith
 };
 
-/// A few functions of the zenith with absolute values up to 1. Their weighted sums give a sky at all wavelengths.
+/// A few functions of the zenith with absolute values up to 1. Their weighted sums give a sky at each wavelength.
 class SkyBasis {
  public:
-  /// Chooses some of `functions`, given at the nodes. Adds the worst represented one until weighted sums represent each
-  /// function to `tolerance` of its largest value, or until kMostSkyFunctions are chosen.
+  /// Chooses some of `functions`, given at the nodes. Adds the function with the largest error until weighted sums
+  /// approximate each one to `tolerance` of its largest value, or until kMostSkyFunctions are chosen.
   SkyBasis(SkyNodes nodes, const std::vector<Eigen::VectorXd>& functions, double tolerance);
 
   const SkyNodes& nodes() const { return nodes_; }
@@ -76,6 +76,6 @@ class SkyBasis {
   LeastSquares sums_;
 };
 
-inline constexpr std::size_t kMostSkyFunctions = 8;  ///< limit of the kernels
+inline constexpr std::size_t kMostSkyFunctions = 8;  ///< most functions of a sky that the kernels accept
 
 }  // namespace dolp

@@ -29,7 +29,7 @@ double power_law_reach(double share, double exponent) {
 }
 
 double gamma_ratio(double x) {
-  // In long double, Boost's default, these functions would take most of the host's time for a slope distribution.
+  // By default Boost computes in long double. This would take most of the host's time for a slope distribution.
   const boost::math::policies::policy<boost::math::policies::promote_double<false>> in_double;
   if (x < 1.0) return boost::math::tgamma_ratio(x + 0.5, x, in_double);
   return boost::math::tgamma_delta_ratio(x + 0.5, -0.5, in_double);

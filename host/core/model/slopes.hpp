@@ -12,8 +12,8 @@ struct SlopeShape {
 
 double slope_width(const SlopeShape& shape);  ///< m = sqrt(2) sigma, the unit of slopes
 
-/// Slope width sigma of the sea in a wind of U m/s. The slopes are summed over all directions.
-/// Equation: 2 sigma^2 = m^2 = 0.003 + 0.00512 U.
+/// Slope width sigma of the sea in a wind of U m/s.
+/// Equation: the mean square slope, summed over both horizontal directions, is 2 sigma^2 = 0.003 + 0.00512 U.
 /// Source: Cox and Munk, J. Opt. Soc. Am. 44 (1954) 838: clean sea, U from 1 to 14 m/s, 12.5 m above the water.
 double sigma_of_wind(double wind_m_s);
 double wind_of_sigma(double sigma);

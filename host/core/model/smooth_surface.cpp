@@ -23,7 +23,7 @@ Wave wave_in(const OpticalConstants& index, double cosine) {
   return {square, std::sqrt(of_q)};
 }
 
-// Much faster than operator/, which guards against overflow that does not occur here.
+// Faster than operator/, which guards against overflow. Here nothing overflows.
 std::complex<double> quotient(std::complex<double> a, std::complex<double> b) {
   return a * std::conj(b) / std::norm(b);
 }
@@ -37,12 +37,12 @@ ReflectedAmplitudes interface_amplitudes(const Wave& above, const Wave& below) {
 using Complex = std::complex<double>;
 
 SmoothAbsorptance bare_absorptance(const OpticalConstants& index, double cosine) {
-  // Below this n and k, fourth powers of N underflow. The medium absorbs less than 4e-75, so this n may replace its n.
+  // If n and k are smaller, fourth powers of N underflow. As the medium absorbs less than 4e-75, kLeast may replace n.
   constexpr double kLeast = 1e-75;
   const double n = index.k < kLeast ? std::max(index.n, kLeast) : index.n;
   const double k = index.k;
   const Complex square((n - k) * (n + k), 2.0 * n * k);
-  // Real part of N^2 - sin^2(beta). The first form keeps the digits of a small N^2, the second the digits of N^2 - 1.
+  // Real part of N^2 - sin^2(beta). The first form keeps the digits of a small N^2; the second keeps those of N^2 - 1.
   const bool is_small = n < 0.5 && k < 0.5;
   const double real =
       is_small ? square.real() - (1.0 - cosine) * (1.0 + cosine) : (n - 1.0) * (n + 1.0) - k * k + cosine * cosine;
@@ -68,7 +68,6 @@ SmoothAbsorptance covered_absorptance(const FacetOptics& optics, double cosine) 
   const double r_s = std::lerp(measured.r_s[i - 1], measured.r_s[i], share);
   const double r_p = std::lerp(measured.r_p[i - 1], measured.r_p[i], share);
   if (i > 1) return {1.0 - r_s, 1.0 - r_p};
-  // Below the second angle R_s - R_p is proportional to sin^2(beta).
   const double end = std::sin(measured.beta_deg[1] * std::numbers::pi / 180.0);
   const double half = 0.5 * (measured.r_s[1] - measured.r_p[1]) * (1.0 - cosine) * (1.0 + cosine) / (end * end);
   const double mean = 0.5 * (r_s + r_p);
@@ -140,7 +139,7 @@ double reflectance_level(const FacetOptics& optics) {
 double critical_cosine(const FacetOptics& optics) {
   if (optics.measured) return 0.0;
   const OpticalConstants& index = optics.index;
-  // Chosen; if Im N^2 is larger, total reflection begins so gradually that rules need no split line.
+  // Chosen. If Im N^2 is larger, total reflection begins so gradually that integrals need not be split there.
   constexpr double kSoft = 0.3;
   const double squared = (1.0 - index.n) * (1.0 + index.n) + index.k * index.k;
   const bool is_sharp = 2.0 * index.n * index.k < kSoft;
@@ -155,7 +154,7 @@ Moments mirror_moments(const FacetOptics& optics, double cosine) {
   moments.deficit = 0.5 * (absorbed.s + absorbed.p) * cosine;
   moments.r_i = cosine - moments.deficit;
   moments.r_q = 0.5 * (absorbed.p - absorbed.s) * cosine;
-  // Vacuum reflects exactly nothing, without an error.
+  // With N = 1 exactly nothing is reflected, so these moments have no error.
   moments.r_i_error = moments.r_i == 0.0 ? 0.0 : rounding;
   moments.r_q_error = moments.r_i == 0.0 ? 0.0 : rounding;
   moments.albedo_error = rounding;

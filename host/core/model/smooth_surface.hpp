@@ -19,7 +19,7 @@ struct ReflectedAmplitudes {
 /// Domain: cosine in (0, 1].
 ReflectedAmplitudes film_amplitudes(const FacetOptics& optics, double cosine);
 
-/// Number of fringes that the films add between grazing and normal incidence. A fringe is a period of e^(2 i delta).
+/// Fringes between grazing and normal incidence, summed over the films. A fringe is a period of e^(2 i delta).
 double fringe_count(const FacetOptics& optics);
 
 /// Absorptances of a smooth surface, s = 1 - R_s and p = 1 - R_p.
@@ -36,14 +36,14 @@ struct SmoothAbsorptance {
 /// and the relative error of `split` is 1e-10.
 SmoothAbsorptance smooth_absorptance(const FacetOptics& optics, double cosine);
 
-/// The smaller of reflectance and absorptance; errors of curves are relative to it. For a bare medium both are taken at
-/// normal incidence. Otherwise both are means over four angles, because films may reflect nothing at one angle.
+/// The smaller of reflectance and absorptance, to which errors of reflectances are relative. For a bare medium both are
+/// at normal incidence; otherwise both are means over four angles, because films may reflect nothing at one.
 double reflectance_level(const FacetOptics& optics);
 
-/// Cosine at which total reflection begins, sqrt(1 - Re N^2), if the reflectances have a kink or nearly one; else 0.
+/// Cosine sqrt(1 - Re N^2) of the incidence at which total reflection begins. 0 if the reflectances have no sharp kink.
 double critical_cosine(const FacetOptics& optics);
 
-/// Moments of a mirror, the limit of every surface for sigma -> 0: R_s and R_p at the direction, without masking.
+/// Moments of a mirror, the limit of every surface for sigma -> 0: R_s and R_p at the incidence `cosine`.
 /// Domain: cosine in (0, 1]. Accuracy: see smooth_absorptance.
 Moments mirror_moments(const FacetOptics& optics, double cosine);
 

@@ -8,7 +8,7 @@
 
 namespace dolp {
 
-/// Diffusely reflected light if the incident light is unpolarised. In the frame of the view, Q > 0 is s-polarised.
+/// Diffusely reflected light if the incident light is unpolarised. Q > 0 means s-polarised with respect to the view.
 struct DiffuseLight {
   double i = 0.0;
   double q = 0.0;
@@ -16,21 +16,22 @@ struct DiffuseLight {
 
 /// The diffuse part of a pBRDF.
 /// Equation: f = k_d / pi (cos theta_i cos theta_r)^c. With diffuse_polarisation "transmission" the light enters the
-/// body, loses its polarisation there and leaves. Then f also has the factor t(theta_r) t(theta_i)^T / t_+(0)^2, with t
-/// = (t_+, t_-, 0, 0) and t_+- = (T_s +- T_p) / 2 of the smooth surface; the angle 0 is normal incidence.
+/// body, loses its polarisation there and leaves. Then f has also the factor t(theta_r) t(theta_i)^T / t_+(0)^2, where
+/// t = (t_+, t_-, 0, 0) and t_+- = (T_s +- T_p) / 2 of the smooth surface; angle 0 is normal incidence.
 /// Source: Baek, Jeon, Tong, Kim 2018, Simultaneous acquisition of polarimetric SVBRDF and normals, section 4.
 /// Domain: a bare medium.
 class DiffuseReflection {
  public:
   DiffuseReflection(const Surface& surface, const FacetOptics& optics);
 
-  /// By reciprocity this is also the reflectance for uniform incident light. Domain: cosine in [0, 1].
+  /// Reflectance into the direction `cosine` under uniform light. By reciprocity, `i` is also the reflectance for light
+  /// that comes from this direction. Domain: cosine in [0, 1].
   DiffuseLight rho(double cosine) const;
   /// The diffuse pBRDF times pi cos(theta_i).
   DiffuseLight beam(double cos_theta_i, double cos_theta_r) const;
-  /// t_+ and t_- at a direction, each divided by t_+ at normal incidence. (1, 0) without diffuse_polarisation.
+  /// t_+ and t_- at the incidence `cosine`, divided by t_+ at normal incidence. (1, 0) if is_polarised_ is false.
   DiffuseLight transmitted(double cosine) const;
-  /// Weights that sum a sky's values at nodes to the mean radiance that the diffuse part receives.
+  /// Weights with which a sky's radiances at the nodes add up to the mean radiance that the diffuse part receives.
   Eigen::VectorXd mean_weights(const SkyNodes& nodes) const;
 
  private:
@@ -39,7 +40,7 @@ class DiffuseReflection {
   bool is_polarised_;
   FacetOptics optics_;
   double normal_ = 1.0;    ///< t_+(0)
-  double integral_ = 0.0;  ///< integral of mu^(c + 1) t_+(mu) over the cosine mu from 0 to 1, divided by `normal_`
+  double integral_ = 0.0;  ///< integral of mu^(c + 1) t_+ over the cosine mu from 0 to 1, divided by `normal_`
 };
 
 /// True if the diffuse part of rho has no limit at 90 degrees.

@@ -59,9 +59,9 @@ std::uint32_t tolerance_status(const PointResult& result, double tolerance) {
   return (dolp_missed ? std::uint32_t{kToleranceNotMet} : 0U) | (rho_missed ? std::uint32_t{kRhoToleranceNotMet} : 0U);
 }
 
-/// Estimated change of I by light that single scattering loses at a second facet, or by light that a masking adds. The
-/// estimate compares rho_I with rho_I / A, where A is the albedo; this quotient counts every facet once. With direct
-/// emission the change is the light that is neither emitted nor reflected.
+/// Estimated error of I in single scattering: light that a second facet would reflect is lost, or a masking adds light.
+/// With direct emission the error is the light that is neither emitted nor reflected. Otherwise it is the difference of
+/// rho_I and rho_I / A: dividing by the albedo A counts every facet once.
 double change_by_model(const SceneModel& scene, const SpectralRule& rule, std::span<const Moments> moments,
                        std::span<const Reflectance> reflectances, std::span<const Emissivity> emissivities,
                        double cos_theta) {
@@ -95,7 +95,7 @@ bool is_known(const Moments& moments) {
   return !std::isnan(moments.r_i) && !std::isnan(moments.r_q) && !std::isnan(moments.deficit);
 }
 
-// The specular part of rho has a limit for a mirror or n = 1, and then stays below 2 as the cosine vanishes.
+// True if rho has no limit at 90 degrees. The specular part has a limit for a mirror or n = 1; then rho stays below 2.
 bool reflectance_diverges(const Surface& surface, const Direction& direction, std::span<const Moments> moments) {
   if (direction.theta_deg != kRightAngle_deg) return false;
   if (direction.cos_theta == 0.0 || diffuse_diverges(surface)) return true;
@@ -140,7 +140,7 @@ PointResult grazing_limit(const SceneModel& scene, const SpectralRule& rule, std
   result[kRhoErrorEstimate] = 0.0;
   if (keeps_projected_area(surface.masking)) {
     if (direction.cos_theta > 0.0) result[kAlbedo] = moments.front().albedo / direction.cos_theta;
-    // A diverging diffuse part is unpolarised, so DOLP is 0. No limit is given if emission and surroundings cancel.
+    // A diverging diffuse part is unpolarised, so DOLP is 0. DOLP has no limit if emission and surroundings cancel.
     const bool cancels = emission_model(scene) == EmissionModel::kFresnel && is_isothermal(rule);
     if (diffuse_diverges(surface) && !cancels) result[kDolp] = result[kQOverI] = result[kErrorEstimate] = 0.0;
     return result;
@@ -226,7 +226,7 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
                                  double cos_theta_i, std::span<const Scattered> scattered) const {
   const bool bistatic = scene_.geometry.mode == Mode::kBistatic;
   PointResult result;
-  boost::container::small_vector<Reflectance, 1> reflected;  // most scenes have one sample
+  boost::container::small_vector<Reflectance, 1> reflected;  // most scenes have one spectral sample
   boost::container::small_vector<DiffuseSample, 1> diffuse;
   boost::container::small_vector<DiffuseLight, 1> diffuse_beam;
   for (std::size_t j = 0; j < moments.size(); ++j) {
@@ -260,7 +260,7 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   if (bistatic)
     add_beam(sum, beam_specular_, kept_rule_, scattered, {diffuse_beam.data(), diffuse_beam.size()}, cos_theta);
   add_path(sum, scene_.path, kept_rule_.path_exitance);
-  const double unit = bistatic ? 1.0 / pi : 1.0;  // sums are exitances; bistatic results are radiances
+  const double unit = bistatic ? 1.0 / pi : 1.0;  // `sum` is an exitance, and bistatic results are radiances
   const MeanReflectance mean = mean_reflectance(rule_, reflectances, cos_theta);
   result[kStokesI] = unit * sum.i;
   result[kStokesQ] = unit * sum.q + 0.0;  // adding 0 turns -0 into 0

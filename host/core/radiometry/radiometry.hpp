@@ -15,29 +15,29 @@
 namespace dolp {
 
 /// Converts moments to the quantities that a sensor measures.
-/// Equation: I = pi B (1 - rho_I) + X rho_I and Q = (X - pi B) rho_Q, with X = E0 cos(theta) + pi B(T_surr); then the
-/// path is applied. With emission.model = "fresnel" the emission uses 1 - R_s(theta) and 1 - R_p(theta) of the smooth
-/// surface instead of 1 - rho_s and 1 - rho_p, for any k_s and diffuse part. In bistatic mode X has no E0, the sums are
-/// divided by pi, and E0 cos(theta_i) f is added, with the pBRDF f from the source to the view. With emission.bracket
-/// the error estimate also bounds the errors of dolp_low and dolp_high.
+/// Equation: I = pi B (1 - rho_I) + X rho_I and Q = (X - pi B) rho_Q, with the incident X = E0 cos(theta) + pi
+/// B(T_surr). Then the path is applied. With emission.model = "fresnel" the surface emits with 1 - R_s(theta) and 1 -
+/// R_p(theta) of the smooth surface instead of 1 - rho_s and 1 - rho_p, for any k_s and diffuse part. In bistatic mode
+/// X has no E0, I and Q are divided by pi, and E0 cos(theta_i) f is added, with the pBRDF f from the source to the
+/// view. With emission.bracket the error estimate bounds also the errors of dolp_low and dolp_high.
 /// Source: shaders/physics/README.md, section 4; Wang, Li, Wang 2025, eqs. (16), (18).
 class Radiometry {
  public:
-  /// `kept`: effects that contribute. If the moments are not kept, the specular part of rho counts as 0, `point`
-  /// ignores the numbers in its Moments, and quantities that need them are NaN. `dropped`: bound of the change of DOLP
-  /// by other effects; it is added to the error estimates. `sky`: basis of the moments; null: basis of the scene.
+  /// `kept`: effects that contribute. If it lacks the moments, the specular part of rho counts as 0, `point` ignores
+  /// the numbers in its Moments, and quantities that need them are NaN. `dropped`: bound of the change of DOLP by the
+  /// other effects; the error estimates include it. `sky`: sky functions of the moments; null: those of the scene.
   explicit Radiometry(const SceneModel& scene, const KeptEffects& kept = {}, double dropped = 0.0,
                       const std::shared_ptr<const SkyBasis>& sky = nullptr);
 
-  /// The spectral rule of the scene. `point` needs moments for the index of each of its samples, in this order.
+  /// The spectral samples of the scene. `point` needs Moments for the index of each sample, in this order.
   const SpectralRule& rule() const { return rule_; }
 
-  /// Domain: if a moment is NaN, the entry is outside the model's domain, the status is 4 and every quantity is NaN. At
-  /// 90 degrees rho diverges with masking none or integral, or with k_d > 0 and c < 0. Then rho and the Stokes
-  /// parameters are NaN with status 1 | 4, and dolp is the limit.
+  /// Domain: a moment is NaN outside the model's domain. Then the status is 4 (kOutsideModelDomain) and every quantity
+  /// NaN. At 90 degrees rho diverges with masking none or integral, or with an unpolarised diffuse part with c < 0.
+  /// Then rho and the Stokes parameters are NaN, the status is 1 | 4 (1: rho outside [0, 1]), and dolp is the limit.
   PointResult point(const Direction& direction, std::span<const Moments> moments) const;
 
-  /// Facet optics of each sample, and the diffuse reflection with these optics.
+  /// Facet optics of each spectral sample, and the diffuse reflection of a surface with these optics.
   struct Optics {
     std::vector<FacetOptics> facets;
     std::vector<DiffuseReflection> diffuse;
@@ -45,7 +45,7 @@ class Radiometry {
   };
   Optics optics_with(std::vector<FacetOptics> facets) const;
 
-  /// For an entry with a separate n or k. Only fresnel emission and a polarised diffuse part use `optics`.
+  /// For an entry with another n or k than the scene. Only fresnel emission and a polarised diffuse part use `optics`.
   PointResult point(const Direction& direction, std::span<const Moments> moments, const Optics& optics) const;
 
   /// Result in bistatic mode. `moments` and rho belong to the direction of the view; the source is at theta_i.
@@ -61,15 +61,15 @@ class Radiometry {
 
   PointResult finished(PointResult result) const;
 
-  SceneModel scene_;  ///< the surface lacks its specular or diffuse part if that is dropped
+  SceneModel scene_;  ///< its surface lacks the specular or the diffuse part if this part is dropped
   double beam_specular_;
   KeptEffects kept_;
   double dropped_;
   bool knows_rho_;
   SpectralRule rule_;
-  SpectralRule kept_rule_;                 ///< rule_ with the factors of dropped effects set to 0
-  std::shared_ptr<const SkyBasis> basis_;  ///< basis of the sky; null if the sky is absent or dropped
-  std::vector<SkyWeights> sky_;            ///< weights of the sky in each sample; empty without a profile
+  SpectralRule kept_rule_;                 ///< rule_, with 0 for the radiation of dropped effects
+  std::shared_ptr<const SkyBasis> basis_;  ///< functions of the sky; null if the sky is absent or dropped
+  std::vector<SkyWeights> sky_;            ///< weights of the functions in each sample; empty without a sky profile
   Optics optics_;
 };
 

@@ -9,10 +9,10 @@
 namespace dolp {
 namespace {
 
-// Reflectances are computed by fewer than 8 operations on positive terms.
+// Relative rounding error of a reflectance, which takes fewer than 8 operations on positive terms.
 constexpr double kReflectanceRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
-/// A sample counts with its emission if the scene emits, else with the incident light, else with the width of its band.
+/// Weight of a sample in a mean: its emission if the scene emits, else the incident light, else the width of its band.
 double mean_weight(const SpectralSample& sample, double total_emitted, double total_incident, double cos_theta) {
   if (total_emitted != 0.0) return sample.emitted;
   if (total_incident != 0.0) return sample.irradiance * cos_theta + sample.surroundings;
@@ -21,7 +21,7 @@ double mean_weight(const SpectralSample& sample, double total_emitted, double to
 
 }  // namespace
 
-// 1 - rho is computed from the absorbed part, because subtracting rho from 1 would lose digits of a metal's emission.
+// 1 - rho is a sum over the absorbed light, because subtracting rho from 1 would lose digits of a metal's emission.
 Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta, const DiffuseLight& diffuse) {
   const double scale = surface.specular / cos_theta;
   const double absorbed_terms = (1.0 - surface.specular) + scale * std::abs(moments.deficit) + diffuse.i;

@@ -16,7 +16,7 @@ struct Reflectance {
   double rho_i_error = 0.0;
   double rho_q_error = 0.0;
   double absorbed_error = 0.0;
-  double mismatch = 0.0;  ///< |rho_i + absorbed - 1|; not exactly 0, because rho_i and absorbed come from separate sums
+  double mismatch = 0.0;  ///< |rho_i + absorbed - 1|, not exactly 0, because rho_i and absorbed are separate sums
 };
 
 /// Polarised emissivity at one index: i + q for s polarisation, i - q for p polarisation.
@@ -25,13 +25,13 @@ struct Emissivity {
   double q = 0.0;
   double i_error = 0.0;
   double q_error = 0.0;
-  double terms = 0.0;  ///< sum of the magnitudes of the terms of i, or of q; rounding is relative to it
+  double terms = 0.0;  ///< larger sum of |terms|, of i or of q; rounding errors are relative to it
 };
 
 struct MeanReflectance {
   double rho_i = 0.0;
   double rho_q = 0.0;
-  double error = 0.0;  ///< error of rho_i or of rho_q, whichever is larger
+  double error = 0.0;  ///< error of rho_i or rho_q, whichever is larger
 };
 
 Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta, const DiffuseLight& diffuse);
@@ -39,7 +39,7 @@ Reflectance reflectance(const Surface& surface, const Moments& moments, double c
 /// True if rho_s or rho_p is outside [0, 1] by more than its error.
 bool is_unphysical(const Reflectance& r);
 
-/// Mean of rho over the samples. Its weights depend on the radiation that the scene has (see Quantity).
+/// Mean of rho over the spectral samples. The weights are the emission, else the incident light, else the width.
 MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances, double cos_theta);
 
 Emissivity fresnel_emissivity(const FacetOptics& index, double cos_theta);

@@ -11,19 +11,19 @@ namespace {
 
 using std::numbers::pi;
 
-// Relative to the terms of a sum: one or two units in the last place, times Planck's exponent, at most 745.
+// Relative rounding error of a radiance: one or two units in the last place, times Planck's exponent, at most 745.
 constexpr double kRadianceRounding = 1e-12;
 
-/// Contribution of one sample to I, with the emission 1 - rho of Kirchhoff's law.
+/// Contribution of one spectral sample to I, with the emission 1 - rho of Kirchhoff's law.
 struct Intensity {
   double value = 0.0;
-  double terms = 0.0;  ///< sum of the magnitudes of its terms; rounding is relative to this sum
-  double error = 0.0;  ///< error that follows from the errors of the moments
+  double terms = 0.0;  ///< sum of the magnitudes of the terms of `value`; rounding errors are relative to it
+  double error = 0.0;  ///< error of `value` due to the errors of the moments
 };
 
 /// Equation: I = pi B (1 - rho_I) + X rho_I = pi B + (X - pi B) rho_I. The form with the smaller terms is used: the
-/// first keeps digits for a metal, the second for equal temperatures and for a reflectance far above 1. The errors of
-/// rho_I and of the absorbed part are correlated, so the error bound may use only one of them and add their mismatch.
+/// first keeps digits for a metal; the second for equal temperatures and for a reflectance far above 1. As rho_I + (1 -
+/// rho_I) is 1 up to `mismatch`, the error of one of them, plus the mismatch, bounds the error of the other.
 Intensity moments_intensity(double emitted, double incident, double net, double net_terms, const Reflectance& r) {
   const double split_terms = std::abs(emitted * r.absorbed) + std::abs(incident * r.rho_i);
   const double whole_terms = std::abs(emitted) + net_terms * std::abs(r.rho_i);
@@ -37,11 +37,11 @@ Intensity moments_intensity(double emitted, double incident, double net, double 
   return {emitted * r.absorbed + incident * r.rho_i, split_terms, std::min({apart, by_reflected, by_absorbed})};
 }
 
-/// Adds one sample with Kirchhoff's emission to the sums. `rounding`: relative error of each term.
+/// Adds one spectral sample, with Kirchhoff's emission, to `sum`. `rounding`: relative error of each term.
 void add_moments_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, double direct,
                         double rounding) {
   const double net = direct + sample.excess;
-  // At equal temperatures the excess is exactly 0, without rounding.
+  // If surface and surroundings have equal temperatures, the excess is exactly 0, without rounding.
   const double thermal = sample.excess == 0.0 ? 0.0 : std::abs(sample.emitted) + std::abs(sample.surroundings);
   const double net_terms = std::abs(direct) + thermal;
   const Intensity intensity = moments_intensity(sample.emitted, direct + sample.surroundings, net, net_terms, r);
@@ -64,7 +64,7 @@ void add_emitting_sample(Stokes& sum, const SpectralSample& sample, const Reflec
                  rounding * (emitted_terms + std::abs(incident * r.rho_q));
 }
 
-/// The middle of the range of some values, and half of its width. Both are 0 without values.
+/// The middle of the range of some values, and half of the width of this range. Both are 0 without values.
 struct Span {
   double middle = 0.0;
   double half = 0.0;
@@ -193,9 +193,9 @@ Bracket bracket(const SceneModel& scene, const SpectralRule& rule, std::span<con
   single.i += sky.i;
   single.i_error += sky.i_error;
   double q = sky.q;
-  double unknown = 0.0;    // largest change of Q if the surface emits all of D (see Bracket)
-  double unreached = 0.0;  // largest change of Q and of I if all of D comes from an unknown part of the sky
-  double reflected = 0.0;  // change of I if D has the middle radiance of the sky
+  double unknown = 0.0;    // largest change of Q if the surface emits all of the light D (see Bracket)
+  double unreached = 0.0;  // largest change of Q and of I if all of the light D comes from an unknown part of the sky
+  double reflected = 0.0;  // change of I if the light D comes from a sky with the middle exitance
   double error = sky.q_error;
   for (std::size_t j = 0; j < reflectances.size(); ++j) {
     const SpectralSample& sample = rule.samples[j];

@@ -15,7 +15,7 @@ namespace {
 constexpr double kWholeInPercent = 100.0;
 constexpr const char* kDecimalPoint = "numbers must have a decimal point";
 
-/// The text between the double quotes around a cell. A cell with more quotes inside stays unchanged.
+/// The text inside the double quotes around a cell. A cell with further double quotes stays unchanged.
 std::string_view unquoted(std::string_view cell) {
   const bool is_quoted = cell.size() >= 2 && cell.front() == '"' && cell.back() == '"';
   const std::string_view inner = is_quoted ? cell.substr(1, cell.size() - 2) : cell;
@@ -38,7 +38,7 @@ std::vector<std::string_view> split_cells(std::string_view line, char separator)
   return cells;
 }
 
-/// The names and units of columns for messages, for example "wavelength_um, irradiance (W m-2 um-1)".
+/// Names of `columns` with their units, as messages show them: "wavelength_um, irradiance (W m-2 um-1)".
 std::string names_of(const std::vector<CsvColumn>& columns) {
   std::vector<std::string> names;
   for (const CsvColumn& column : columns)
@@ -177,7 +177,7 @@ void CsvColumns::check_width(const CsvReader& row) const {
   const std::size_t width = row.cells().size();
   if (width == cells_.size()) return;
   check_separators(row, known_);
-  if (width < cells_.size()) return;  // number() reports the column that has no value
+  if (width < cells_.size()) return;  // later number() reports the column without a value
   row.fail(fmt::format("{}: one value too many after column {}; there are {} columns{}",
                        one_line(row.cells()[cells_.size()]), names_.back(), cells_.size(),
                        width == 2 * cells_.size() ? std::string("; ") + kDecimalPoint : std::string()));

@@ -12,7 +12,7 @@ namespace dolp {
 
 struct CsvForm {
   char separator = ',';         ///< if it is ' ', any number of blanks separates two cells
-  bool has_blank_lines = true;  ///< true: skips blank lines. Lines that begin with # are always skipped
+  bool has_blank_lines = true;  ///< skip blank lines. Lines that begin with # are always skipped
   std::size_t first_line = 1;
 };
 
@@ -33,11 +33,11 @@ class CsvReader {
 
   std::size_t line_number() const;
 
-  /// "file:line: ", with which every message about the line begins. Before the first next() it names the first line.
+  /// "file:line: ", with which a message begins. Before the first next() it names the first line.
   std::string where() const;
   [[noreturn]] void fail(const std::string& what) const;
 
-  /// Errors: InputError that names file, line, `column`, value and, if `range` is given, what is allowed.
+  /// The number in a cell of the line. Errors: InputError that names file, line, `column`, value and `range`.
   double number(std::size_t cell, std::string_view column, const NumberRange* range = nullptr) const;
 
  private:
@@ -57,25 +57,25 @@ struct CsvColumn {
   std::string unit = {};        ///< unit for messages, if `name` does not contain it
 };
 
-/// The columns of a file. The names in its header may be in any order and in upper or lower case.
+/// The columns of a file. The header may name them in any order, in upper or lower case.
 class CsvColumns {
  public:
   /// Leaves out columns in `ignored`. Errors: InputError for a name that is unknown (with a suggestion), repeated, or
   /// required and missing; for a separator other than the comma; and for numbers instead of names.
   CsvColumns(const CsvReader& header, std::vector<CsvColumn> known, const std::vector<std::string>& ignored = {});
 
-  /// For rows without a header, which have all known columns in their order.
+  /// For a file without a header, whose rows have all known columns in this order.
   explicit CsvColumns(std::vector<CsvColumn> known);
-  /// Reads the first line as a header. Errors: also InputError for a text without lines.
+  /// Reads the first line of a text as a header. Errors: also InputError for a text without lines.
   static CsvColumns first_of(CsvReader& reader, std::vector<CsvColumn> known,
                              const std::vector<std::string>& ignored = {});
 
   bool has(std::string_view name) const { return cell_of(name).has_value(); }
 
-  /// For each cell of a row, the position of its column among the known columns; nullopt for a column that is left out.
+  /// For each cell of a row, the position of its column among the known columns; nullopt if the column is left out.
   const std::vector<std::optional<std::size_t>>& cells() const { return cells_; }
 
-  /// Nullopt if the file lacks the column. Errors: InputError for a wrong value, or for more cells than the header has.
+  /// Nullopt if the file lacks the column. Errors: InputError for a wrong value, or for more cells than columns.
   std::optional<double> number(const CsvReader& row, std::string_view name) const;
   double number_at(const CsvReader& row, std::size_t cell) const;
 
@@ -87,7 +87,7 @@ class CsvColumns {
 
   std::vector<CsvColumn> known_;
   std::vector<std::optional<std::size_t>> cells_;
-  std::vector<std::string> names_;  // names in the header of the file
+  std::vector<std::string> names_;  // column names in the file's header
 };
 
 /// Message about an unknown column. It lists the allowed columns, and suggests one with a similar name.

@@ -1,4 +1,4 @@
-// The files that are built into the program. No files are searched at run time.
+// Texts of the data files that are built into the program, which opens no data file at run time.
 #pragma once
 
 #include <string_view>

@@ -21,7 +21,7 @@ constexpr int kFormulaSteps = 1000;
 
 enum IndexColumn : std::size_t { kIndexName = 0, kWavelength = 1, kN = 2, kK = 3, kIndexColumns = 4 };
 
-/// The columns are name, rii_path, from_um, to_um, points_in_table, points_kept, source.
+/// Columns of materials_sources.csv: name, rii_path, from_um, to_um, points_in_table, points_kept, source.
 enum SourceColumn : std::size_t { kName = 0, kSource = 6, kSourceColumns = 7 };
 
 std::vector<Material> read_sources() {
@@ -70,7 +70,7 @@ std::vector<const Material*> materials_with(std::string_view words) {
   return found;
 }
 
-/// By the full name, else by its first words, else by any whole words. Null if not exactly one material fits.
+/// The only material with this full name, else with these first words, else with these words anywhere; or null.
 const Material* match_name(std::string_view name) {
   const std::string wanted = lower_case(trim(name));
   std::vector<const Material*> beginning;
@@ -83,7 +83,7 @@ const Material* match_name(std::string_view name) {
   return beginning.size() == 1 ? beginning.front() : nullptr;
 }
 
-/// Suggests materials: those whose names contain or begin with `name`, else those with the most similar name or word.
+/// Suggests the materials whose names contain or begin with `name`, else those with the most similar name or word.
 std::string name_hint(std::string_view name) {
   std::vector<std::string> alike;
   for (const Material* material : materials_with(trim(name))) alike.push_back(material->name);

@@ -13,18 +13,18 @@ namespace dolp {
 const std::vector<Material>& built_in_materials();
 
 /// Case does not matter. Whole words of a name are enough if only one material has them: "water" finds "water 25C".
-/// Errors: InputError that begins with `prefix`, for an unknown name; it suggests the nearest known ones.
+/// Errors: InputError that begins with `prefix` and suggests names, if not exactly one material fits.
 const Material& named_material(std::string_view name, const std::string& prefix);
 
 /// The built-in material called `name`, fitted to `spectrum`. Errors: errors of named_material and fit_to_spectrum.
 Material find_material(std::string_view name, const Spectrum& spectrum, const std::string& prefix);
 
 /// Reads a user's file with n and k over wavelength in um, and fits it to `spectrum`. Between rows n and k are linear.
-/// A file `.yml` or `.yaml` is a "full database record" of refractiveindex.info. Its DATA items are tabulated nk, n or
-/// k, or one of the formulas 1 to 9 for n, with or without tabulated k.
+/// A file `.yml` or `.yaml` is a "full database record" of refractiveindex.info. Each item of its list DATA has
+/// tabulated nk, n or k, or one of the formulas 1 to 9 for n. A formula may stand beside an item with k.
 /// Any other file is a CSV with the columns `wavelength_um` (or `wl`) and n, k or both. Another line of names begins
 /// another table, as in the CSV that refractiveindex.info exports. A line that begins with # is a comment.
-/// Without k, k is 0. A k from -1e-5 to 0 is noise and counts as 0.
+/// If the file has no k, k is 0. A k from -1e-5 to 0 is noise and counts as 0.
 /// Errors: InputError with file and line; if the file cannot be opened, the message begins with `prefix`; errors of
 /// append_rows and fit_to_spectrum.
 Material read_material_file(const std::string& path, const Spectrum& spectrum, const std::string& prefix);
@@ -39,20 +39,20 @@ Spectrum known_range(const Material& material);
 /// Refuses a tabulated material that lacks n or k in a part of the spectrum. The message begins with `prefix`.
 void check_covers(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
-/// Refuses a material whose formula gives an n that is not allowed (a pole). Checks 1001 wavelengths of a band.
+/// Refuses a material whose formula gives an n that is not allowed, as near a pole. Checks 1001 wavelengths of a band.
 void check_formula(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
 /// Fits a tabulated material to the spectrum of a scene. For a band the result keeps the tables; for a single
 /// wavelength it has the constant index at this wavelength. Errors: InputError of check_covers and check_formula.
 Material fit_to_spectrum(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
-/// Reads a user's CSV with the columns beta_deg (angle of incidence, from 0 to 90), r_s and r_p, and wavelength_um if
-/// the reflectances depend on it. Then each wavelength has the same angles.
+/// Reads a user's CSV with the columns beta_deg (angle of incidence, from 0 to 90), r_s and r_p. If the reflectances
+/// depend on the wavelength, it has also the column wavelength_um, and each wavelength has the same angles.
 /// Domain: reflectances in [0, 1]. At 0 degrees r_s and r_p differ by at most 0.01; both are replaced by their mean.
 /// Errors: InputError with file and line; if the file cannot be opened, the message begins with `prefix`.
 ReflectanceTable read_reflectance_file(const std::string& path, const std::string& prefix);
 
-/// Reads the text of such a file. Errors: InputError that begins with `name` and the line.
+/// Reads the text of a file for read_reflectance_file. Errors: InputError that begins with `name` and the line.
 ReflectanceTable parse_reflectances(const std::string& text, const std::string& name);
 
 }  // namespace dolp

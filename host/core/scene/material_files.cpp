@@ -18,14 +18,14 @@
 namespace dolp {
 namespace {
 
-// The longest record of the database has 2.6 MB. A text of 4 MiB takes up to 2 s and 0.7 GB.
+// The longest record of refractiveindex.info has 2.6 MB. Reading 4 MiB takes up to 2 s and 0.7 GB of memory.
 constexpr std::size_t kMostRecordBytes = 4U << 20U;
-constexpr int kRangeSteps = 1000;  // steps of a search for wavelengths at which n is allowed
-// A measured k near 0 may be negative by this noise. A lower k follows another sign convention, or is a mistake.
+constexpr int kRangeSteps = 1000;  // steps of the search for wavelengths at which a formula gives an allowed n
+// Noise of a measured k, which may make it negative. A k below -kKNoise is an error, or has another sign convention.
 constexpr double kKNoise = 1e-5;
 constexpr NumberRange kNoisyKRange{-kKNoise, kKRange.max};
 
-/// Collects the rows of n and k of a file, table by table. The rows of a table may be in any order.
+/// Collects the rows of n and k in one table of a file, in any order, and appends them to the material.
 class IndexRows {
  public:
   explicit IndexRows(Material& material) : material_(material) {}
@@ -82,14 +82,14 @@ std::string where(const Material& material, const YAML::Mark& mark) {
   throw InputError(where(material, node.Mark()) + what);
 }
 
-/// The text of a key of a DATA item. Errors: InputError if the item lacks the key.
+/// The value of `key` in an item of the list DATA. Errors: InputError if the item lacks the key.
 YAML::Node text_of(const Material& material, const YAML::Node& item, const char* key) {
   const YAML::Node text = item[key];
   if (!text || !text.IsScalar()) fail(material, item, fmt::format("{}: missing; a DATA item must have it", key));
   return text;
 }
 
-/// Reader of the numbers in a YAML text. The text of a block ("data: |") begins one line below its mark.
+/// Reads numbers from a text in a YAML file. The text of a block ("data: |") begins one line below the mark `|`.
 CsvReader rows_of(const Material& material, const YAML::Node& text) {
   const bool is_block = text.Scalar().find('\n') != std::string::npos;
   return {text.Scalar(),
@@ -105,7 +105,7 @@ std::vector<double> numbers_of(const Material& material, const YAML::Node& text,
   return numbers;
 }
 
-/// Reads a formula. The table of n contains only the ends of the range; between them the formula is evaluated.
+/// Reads an item with a formula. The material's table of n gets only the ends of the range in which the formula holds.
 void read_formula(Material& material, const YAML::Node& item, int number) {
   const YAML::Node range = text_of(material, item, "wavelength_range");
   const YAML::Node coefficients = text_of(material, item, "coefficients");
@@ -137,7 +137,7 @@ void read_formula(Material& material, const YAML::Node& item, int number) {
   material.n.formula = formula;
 }
 
-/// The number of the formula, 1 to kDispersionFormulas, or 0 if the type is not a formula.
+/// The number of the formula that `type` names, or 0 if `type` does not name a formula.
 int formula_of(std::string_view type) {
   int number = kDispersionFormulas;
   while (number > 0 && type != fmt::format("formula {}", number)) --number;
@@ -173,13 +173,13 @@ void read_item(Material& material, IndexRows& rows, const YAML::Node& item) {
     check_keys(material, item, {"type", "wavelength_range", "coefficients"});
     return read_formula(material, item, formula);
   }
-  check_keys(material, item, {"type", "data", "wavelength_range"});  // records have wavelength_range beside tables too
+  check_keys(material, item, {"type", "data", "wavelength_range"});  // tables may have wavelength_range too
   const CsvColumns columns(index_columns(has_n, !has_n || is_nk));
   for (CsvReader row = rows_of(material, text_of(material, item, "data")); row.next();) rows.add(row, columns);
   rows.end_table();
 }
 
-/// For a message: what a YAML text without values of n is.
+/// Describes, for a message, a YAML text that has no values of n.
 std::string kind_without_data(const YAML::Node& root) {
   if (root.IsSequence()) return "it is a catalogue, a list of records";
   if (!root.IsMap()) return "it has no keys; a CSV must have another name than .yml";
@@ -187,7 +187,7 @@ std::string kind_without_data(const YAML::Node& root) {
   return "it has no list DATA";
 }
 
-/// Reads the DATA items of a record and ignores everything else in it.
+/// Reads the items of the list DATA of a record, and ignores the rest of the record.
 void parse_yaml(Material& material, IndexRows& rows, const std::string& text) {
   try {
     const YAML::Node record = YAML::Load(text);

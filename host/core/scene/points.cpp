@@ -22,12 +22,12 @@ constexpr std::size_t kMostPointsBytes = 1U << 30U;
 
 using FilmColumn = std::pair<std::size_t, FilmValue::Part>;
 
-/// A column: the coordinate on an axis, a number of a film, or an angle of a pair of directions, which is required.
+/// A column: a value on an axis, a number of a film, or an angle of a pair of directions. Angles are required.
 struct ColumnRule {
   std::string name;
   NumberRange range;
   std::variant<Axis, Points::Column Points::*, FilmColumn> column;
-  bool is_wind = false;  ///< the column has winds, from which the values of sigma follow
+  bool is_wind = false;  ///< the column has winds; value() turns them into sigmas
 
   double value(double number) const { return is_wind ? sigma_of_wind(number) : number; }
   bool is_required() const { return column.index() == 1; }
@@ -39,7 +39,7 @@ struct ColumnRule {
   }
 };
 
-/// Adds a rule for each of `names` that is the key of a number of a film.
+/// Adds a rule for each of `names` that is a film's n, k or thickness, such as "surface.coating.1.thickness_um".
 void append_film_rules(std::vector<ColumnRule>& rules, const std::vector<std::string>& names) {
   static const std::map<std::string, FilmValue::Part> kParts = {
       {"n", FilmValue::Part::kN}, {"k", FilmValue::Part::kK}, {"thickness_um", FilmValue::Part::kThickness}};
@@ -53,7 +53,7 @@ void append_film_rules(std::vector<ColumnRule>& rules, const std::vector<std::st
   }
 }
 
-/// The columns that points may have. Columns of films have a rule only if they are among `names`.
+/// Rules for the columns that points may have. Of the films, only those columns that `names` contains get a rule.
 std::vector<ColumnRule> column_rules(PointsKind kind, const std::vector<std::string>& names) {
   std::vector<ColumnRule> rules;
   const bool has_pairs = kind == PointsKind::kGeometries;
@@ -78,7 +78,7 @@ std::vector<CsvColumn> csv_columns(const std::vector<ColumnRule>& rules) {
   return columns;
 }
 
-/// Position of the end of the first line that is neither blank nor a comment.
+/// Position in `text` where the first line ends that is neither blank nor a comment.
 std::size_t end_of_header(std::string_view text) {
   std::size_t begin = 0;
   for (;;) {
@@ -89,7 +89,7 @@ std::size_t end_of_header(std::string_view text) {
   }
 }
 
-/// The rule for a column. Errors: InputError that begins with Points::where().
+/// The rule for the column `name`. Errors: InputError for an unknown column.
 const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_view name, const Points& points) {
   const auto found = std::ranges::find(rules, name, &ColumnRule::name);
   if (found == rules.end())
@@ -97,7 +97,7 @@ const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_vi
   return *found;
 }
 
-/// Adds an empty column. Errors: InputError if the points have it already.
+/// Adds the column of `rule`, without values. Errors: InputError if the points have this column already.
 std::vector<double>& add_column(Points& points, const ColumnRule& rule) {
   if (rule.of(points)) {
     const bool is_other = rule.is_wind != points.has_winds && std::holds_alternative<Axis>(rule.column) &&
@@ -109,7 +109,6 @@ std::vector<double>& add_column(Points& points, const ColumnRule& rule) {
   return rule.of(points).emplace();
 }
 
-/// Refuses points that lack required columns. The message names all of them.
 void check_required(Points& points, const std::vector<ColumnRule>& rules) {
   std::vector<std::string> missing;
   for (const ColumnRule& rule : rules) {

@@ -15,36 +15,36 @@
 namespace dolp {
 
 enum class PointsKind {
-  /// For `eval` and `lookup`: at least one axis (theta_deg, sigma, q, n, k, wavelength_um, ...) or number of a film.
+  /// For `eval` and `lookup`. At least one column: axes (theta_deg, sigma, q, n, k, ...) or numbers of films.
   kDirections,
-  /// For `mueller`: theta_i_deg, theta_r_deg and delta_phi_deg, and any of sigma, q, n, k and numbers of films.
+  /// For `mueller`. Columns: theta_i_deg, theta_r_deg, delta_phi_deg, and any of sigma, q, n, k and numbers of films.
   kGeometries,
 };
 
-/// Scattered points, in their order. A column that they lack is nullopt.
+/// Scattered points, in the order of the input. A column that the input lacks is nullopt.
 struct Points {
   std::string name;  ///< name for messages: the path of the file, "stdin", or "points" for arrays
   std::size_t count = 0;
-  std::string header;                 ///< column names as given, joined by commas without blanks
-  std::vector<std::string> rows;      ///< cells of each row as typed, joined by commas without blanks; empty for arrays
-  std::vector<std::string> left_out;  ///< columns of the file that are results, and not used
+  std::string header;                 ///< column names as given, joined by commas
+  std::vector<std::string> rows;      ///< cells of each row as typed, joined by commas; empty for arrays
+  std::vector<std::string> left_out;  ///< columns of the file that are not read because they are results
   using Column = std::optional<std::vector<double>>;
   AxisArray<Column> coordinates;
-  /// Labels in the columns of a file, for axes with labels. The values of such a column are positions in this list.
+  /// For axes with labels, the different labels in the file. The values of such a column are positions in this list.
   AxisLabels labels;
-  /// Numbers of films, by layer (from 0) and part. Columns have names like "surface.coating.1.thickness_um".
+  /// n, k or thickness of films, by layer (from 0) and part. Columns have names like "surface.coating.1.thickness_um".
   std::map<std::pair<std::size_t, FilmValue::Part>, Column> films;
-  bool has_winds = false;                          ///< true if winds were given instead of sigma
+  bool has_winds = false;                          ///< true if the points have winds instead of sigmas
   Column theta_i_deg, theta_r_deg, delta_phi_deg;  ///< only for kGeometries, which have no theta_deg and wavelength_um
   std::size_t header_line = 0;                     ///< line of the header in the file; 0 for arrays
   std::vector<std::uint32_t> row_lines;            ///< line of each row in the file; empty for arrays
   std::size_t size() const { return count; }
   Column& operator[](Axis axis) { return coordinates[axis]; }
   const Column& operator[](Axis axis) const { return coordinates[axis]; }
-  /// The value in a row of an axis's column, as messages show it.
+  /// The value on `axis` of a row, as messages show it.
   std::string text_at(Axis axis, std::size_t row) const;
   std::vector<FilmValue> films_at(std::size_t row) const;
-  /// The beginning of messages: "file:line" or "points[row]". Without a row, the line of the header.
+  /// The beginning of messages about a row: "file:line" or "points[row]". Without `row`, messages are about the header.
   std::string where(std::size_t row) const;
   std::string where() const;
 };
@@ -53,11 +53,11 @@ inline double value_or(const Points::Column& column, std::size_t row, double fal
   return column ? (*column)[row] : fallback;
 }
 
-/// For each point: position in `known` of its label. Case does not matter. A part of a label is enough if no other
-/// label contains it. Errors: InputError that lists the known labels.
+/// For each point: the position in `known` of the point's label. Case does not matter. A part of a label is enough if
+/// no other label contains this part. Errors: InputError that lists the known labels.
 std::vector<double> label_positions(const Points& points, Axis axis, const AxisLabels& known);
 
-/// Errors: InputErrors of read_points, and InputError for a column whose length is neither 1 nor `count`.
+/// Points from arrays. Errors: InputErrors of read_points, and InputError if a length is neither 1 nor `count`.
 Points points_of(std::span<const Column> columns, std::size_t count, PointsKind kind);
 
 /// Reads the points in the CSV file at `path` ("-" is stdin). A header without rows is a valid list of no points.

@@ -15,7 +15,7 @@
 
 namespace dolp {
 
-/// A quantity tabulated over strictly ascending wavelengths. A `formula` replaces the interpolation. The scene reader
+/// A quantity over strictly ascending wavelengths, interpolated between them or given by a `formula`. The scene reader
 /// ensures that `at` is only called between the first and the last wavelength.
 struct SpectralTable {
   enum class Interpolation { kLinear, kLogLog };
@@ -26,14 +26,14 @@ struct SpectralTable {
   double at(double wavelength_um) const;
 };
 
-/// A refractive index n + ik. If `n.wavelength_um` is empty, it is `constant` at every wavelength.
+/// A refractive index n + ik. If the table `n` is empty, the index is `constant` at every wavelength.
 struct Material {
   std::string name;    ///< empty if the scene gives n and k as numbers
-  std::string source;  ///< origin of the values; empty if the scene gives n and k as numbers
+  std::string source;  ///< where the values come from; empty if the scene gives n and k as numbers
   OpticalConstants constant;
   SpectralTable n, k;
-  std::shared_ptr<const Material> tabulated = {};  ///< the whole table, if `constant` was read from one
-  double least_k = 0.0;  ///< least k in the file if it is below 0, else 0; a k below 0 counts as 0
+  std::shared_ptr<const Material> tabulated = {};  ///< the whole table if `constant` is its value at one wavelength
+  double least_k = 0.0;  ///< least k in the file if negative, else 0; the tables have 0 for a negative k
   bool is_constant() const { return n.wavelength_um.empty(); }
   OpticalConstants at(double wavelength_um) const;
 };
@@ -43,11 +43,11 @@ struct Layer {
   double thickness_um = 0.0;
 };
 
-/// Reflectances at ascending wavelengths. A single element of `measured` holds at every wavelength.
+/// Reflectances at ascending wavelengths. A single element of `measured` is for every wavelength.
 struct ReflectanceTable {
   std::vector<double> wavelength_um;
   std::vector<std::shared_ptr<const MeasuredReflectance>> measured;
-  std::shared_ptr<const MeasuredReflectance> at(double wavelength_um) const;  ///< linear in the wavelength
+  std::shared_ptr<const MeasuredReflectance> at(double wavelength_um) const;  ///< interpolated linearly in wavelength
 };
 
 struct Surface {
@@ -69,38 +69,38 @@ struct Surface {
   bool is_bare() const { return coating.empty() && !reflectance; }
   bool has_constant_optics() const;
   FacetOptics optics_at(double wavelength_um) const;
-  /// Wavelengths at which the optics may have corners: the rows of tables.
+  /// Wavelengths at which the optics may have kinks: the rows of the tables of n, k and reflectances.
   std::vector<double> optics_rows_um() const;
 };
 
 struct Emission {
   double temperature_K = 0.0;
   EmissionModel model = EmissionModel::kMoments;
-  bool has_bracket = false;  ///< true adds the results dolp_low and dolp_high
+  bool has_bracket = false;  ///< if true, results have dolp_low and dolp_high
 };
 
-/// Irradiance of the source at normal incidence, given in one of three kinds.
+/// Irradiance E0 of the source at normal incidence. A scene gives it in one of three ways.
 struct Source {
   enum class Kind { kFlat, kRelative, kTabulated };
   Kind kind = Kind::kFlat;
   double irradiance = 0.0;           ///< for kFlat: W m-2 um-1, constant over a band
-  double relative_irradiance = 0.0;  ///< for kRelative: E0 / (pi B(T)) at each wavelength, with the T of the emission
+  double relative_irradiance = 0.0;  ///< for kRelative: E0 / (pi B(T)) at each wavelength, with T of the emission
   SpectralTable table;               ///< for kTabulated: W m-2 um-1
-  double scale = 1.0;                ///< factor that multiplies the irradiance of each kind
+  double scale = 1.0;                ///< factor of E0, for each kind
 };
 
 struct Surroundings {
   double temperature_K = 0.0;                           ///< used if there is no profile
-  SkyAir air = {};                                      ///< air of a built-in profile
+  SkyAir air = {};                                      ///< air of a built-in sky
   std::shared_ptr<const SkyProfile> profile = nullptr;  ///< null for a uniform sky
   void set_sky(SkyProfile sky);
 };
 
-/// Path to the sensor. It changes I to tau I + L (hemispherical mode: tau I + pi L) and multiplies Q, U and V by tau.
+/// Path to the sensor. It changes I to tau I + L (exitances: tau I + pi L) and multiplies Q, U and V by tau.
 struct Path {
   double transmittance = 1.0;
-  std::optional<double> temperature_K;  ///< gives the path the radiance L = (1 - tau) B(T)
-  std::optional<double> radiance;       ///< radiance L in W m-2 sr-1 um-1, instead of a temperature
+  std::optional<double> temperature_K;  ///< temperature from which L = (1 - tau) B(T) follows
+  std::optional<double> radiance;       ///< L in W m-2 sr-1 um-1, instead of a temperature
 };
 
 struct Spectrum {
@@ -111,7 +111,7 @@ struct Spectrum {
 
 struct Geometry {
   Mode mode = Mode::kHemispherical;
-  double view_zenith_deg = 60.0;        ///< only for bistatic mode
+  double view_zenith_deg = 60.0;        ///< zenith of the view; only for bistatic mode
   double relative_azimuth_deg = 180.0;  ///< only for bistatic mode; 180 is the specular side
 };
 
@@ -121,7 +121,7 @@ struct Accuracy {
   bool may_interpolate = true;  ///< allows interpolation between slope distributions, and responses
 };
 
-/// Names that a scene gives, else empty. `material` is the full name of the material.
+/// Names as a scene gives them; empty if it gives none. `material` is completed to the full name of the material.
 struct SceneNames {
   struct OfLayer {
     std::string material, material_file;
@@ -144,29 +144,29 @@ struct SceneModel {
   Spectrum spectrum;
   Geometry geometry;
   Accuracy accuracy;
-  std::shared_ptr<const std::vector<Material>> materials = {};  ///< materials of the grid's axis kMaterial
-  std::vector<Spectrum> bands = {};                             ///< bands of the grid's axis kBand
+  std::shared_ptr<const std::vector<Material>> materials = {};  ///< materials on the grid's axis of materials
+  std::vector<Spectrum> bands = {};                             ///< bands on the grid's axis of bands
 };
 
 struct SceneValues : SceneModel {
   std::string title;
   SceneNames names;
-  Axes grid;                     ///< values in the user's order; sigma and q come from [surface] if [grid] lacks them
-  AxisLabels labels;             ///< labels of the grid's materials and bands
-  std::vector<double> wind_m_s;  ///< winds from which the grid's values of sigma follow; empty if the scene gives sigma
-  std::string path_name;         ///< path from the command line, for messages
-  std::string text;              ///< text of the scene file, unchanged
-  std::vector<std::string> files;  ///< files that the scene names, with the paths by which the process opens them
+  Axes grid;                       ///< values in the user's order; sigma and q are from [surface] if [grid] lacks them
+  AxisLabels labels;               ///< names of the materials and bands on the grid's axes
+  std::vector<double> wind_m_s;    ///< winds from which the grid's sigmas follow; empty if the scene gives sigmas
+  std::string path_name;           ///< path of the scene as the user gave it, for messages
+  std::string text;                ///< text of the scene file, unchanged
+  std::vector<std::string> files;  ///< paths of the files that the scene names, as the process opens them
   std::vector<Setting> settings;   ///< settings that were applied to the text
-  std::shared_ptr<const SceneDocument> document;  ///< TOML of text and settings; null for a scene that was not read
+  std::shared_ptr<const SceneDocument> document;  ///< text and settings as TOML; null without a text
 };
 
-/// The scene at one wavelength. Errors: InputError if n, k or E0 are not known at this wavelength.
+/// The scene at one wavelength instead of its spectrum. Errors: InputError if n, k or E0 are not known there.
 SceneModel at_wavelength(const SceneModel& scene, double wavelength_um);
 
 void set_films(Surface& surface, const std::vector<FilmValue>& films);
 
-/// Domain: the scene has the films that the variant changes. Errors: errors of at_wavelength.
+/// The changed scene. Domain: it has the films that the variant changes. Errors: errors of at_wavelength.
 SceneModel with_variant(const SceneModel& scene, const SceneVariant& variant);
 
 }  // namespace dolp

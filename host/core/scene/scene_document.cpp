@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMostDepth = 100;
 
-/// The end of the string that begins at `begin`. TOML has strings in one or in three quotation marks, single or double.
+/// Where the string ends that begins at `begin`. One or three quotation marks, single or double, enclose a string.
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
   const char quote = text[begin];
   const std::string three(3, quote);
@@ -33,9 +33,9 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// Line where nesting exceeds kMostDepth, or 0. Such a text is refused, because the TOML parser recurses at each level.
+/// The line where nesting exceeds kMostDepth, else 0. There the TOML parser would recurse too deeply.
 std::size_t line_of_deep_nesting(std::string_view text) {
-  std::vector<std::size_t> around = {0};  // depths at the beginning of the text and of each open bracket
+  std::vector<std::size_t> around = {0};  // depth at the beginning of the text and at each open bracket
   std::size_t depth = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -60,7 +60,7 @@ std::size_t line_of_deep_nesting(std::string_view text) {
   return 0;
 }
 
-/// Keys count the elements of a list from 1. Any other text gives a position beyond every list.
+/// The position of a list element in C++. Keys count elements from 1. For any other text: a position beyond every list.
 std::size_t list_position(std::string_view part) {
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
@@ -70,13 +70,13 @@ std::size_t list_position(std::string_view part) {
 
 std::string last_part(std::string_view key) { return std::string(key.substr(key.find_last_of('.') + 1)); }
 
-/// The part of a dotted key that names the table; empty for a key at the top.
+/// The table's name in a dotted key; empty for a key outside of tables.
 std::string_view table_part(std::string_view key) {
   const std::size_t dot = key.find_last_of('.');
   return dot == std::string_view::npos ? std::string_view{} : key.substr(0, dot);
 }
 
-/// Reads a text as TOML, else as a number in a notation that TOML lacks, else as a word. Calls `insert` with the value.
+/// Calls `insert` with `text` as TOML, else as a number in a notation that TOML lacks, else as a word.
 template <class Insert>
 void insert_text(const std::string& text, bool is_text_key, const Insert& insert) {
   try {
@@ -158,7 +158,7 @@ void SceneDocument::apply(const Setting& setting) {
   const SceneKey* known = find_scene_key(key);
   const auto insert = [&](const auto& v) { table.insert_or_assign(leaf, v); };
   if (const auto* text = std::get_if<std::string>(&setting.value.content())) {
-    insert(*text);  // it need not be UTF-8, as TOML must
+    insert(*text);  // this text need not be UTF-8, unlike TOML
   } else {
     const bool is_of_user = std::holds_alternative<TomlText>(setting.value.content());
     insert_text(value, is_of_user && known && known->description.type == Key::Type::kText, insert);
@@ -168,7 +168,7 @@ void SceneDocument::apply(const Setting& setting) {
 
 toml::table& SceneDocument::create_table(const std::vector<std::string_view>& path, const std::string& origin) {
   toml::table* table = &root_;
-  toml::array* list = nullptr;  // not null if the next part of the path is an element of this list
+  toml::array* list = nullptr;  // the list of which the next part of the path is an element; null if it is none
   std::string key;
   for (const std::string_view part : path) {
     if (list) {
@@ -246,8 +246,8 @@ unsigned SceneDocument::line_of(std::string_view key) const {
 
 std::string SceneDocument::prefix(std::string_view key) const {
   const toml::node* node = find(key);
-  // If a key is missing, the message does not name the setting that created its table. But it names the setting that
-  // created an axis without a required key.
+  // If a key is missing in a table that a setting created, the message does not name this setting. Exception: a setting
+  // that created an axis without a required key is named.
   const bool is_of_value = node != nullptr || find_scene_key(table_part(key)) != nullptr;
   if (const std::string* origin = is_of_value ? origin_of(key) : nullptr; origin)
     return *origin + ": " + (node ? "" : last_part(key) + ": ");

@@ -1,4 +1,4 @@
-// The TOML of a scene after its settings were applied. It knows the origin of each value, for messages.
+// A scene as TOML, after settings were applied. It remembers which setting gave a value, for messages.
 #pragma once
 
 #include <toml++/toml.h>
@@ -12,10 +12,10 @@
 
 namespace dolp {
 
-/// True for an empty value, `{}`, or `none` where it removes (is_removed_by_none).
+/// True if the setting removes its key: its value is empty, `{}` or, for keys of is_removed_by_none, `none`.
 bool is_removal(const Setting& setting);
 
-/// A value as one line of TOML. Without `is_escaped`, which is for messages, texts are quoted without escapes.
+/// A value as one line of TOML. If `is_escaped` is false, as for messages, texts have no escapes.
 std::string toml_text(const toml::node& node, bool is_escaped = true);
 
 class SceneDocument {
@@ -23,23 +23,23 @@ class SceneDocument {
   /// Errors: InputError for a syntax error, nesting deeper than 100, or a text longer than kMostTextBytes.
   SceneDocument(const std::string& text, const std::string& path_name);
 
-  /// Gives a key another value, or removes it. Errors: InputError.
+  /// Gives a key another value, or removes the key. Errors: InputError.
   void apply(const Setting& setting);
 
   const toml::table& root() const { return root_; }
   const toml::node* find(std::string_view key) const;
   bool is_set(std::string_view key) const { return origin_of(key) != nullptr; }
 
-  /// For a message about keys that contradict each other: the first of them that a setting gave, else the first.
+  /// The key to blame if `keys` contradict each other: the first of them that a setting gave, else the first.
   std::string first_set(std::initializer_list<std::string> keys) const;
 
-  /// InputError with line or setting of the key, its value and the problem. An absent key has the line of the table.
+  /// Throws an InputError with the key's line or setting, its value, and `what`. An absent key: the line of its table.
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
 
-  /// The beginning of the message of fail(), before the problem.
+  /// The text with which the message of fail() begins, without `what`.
   std::string prefix(std::string_view key) const;
 
-  /// The line of a key's value, else of the nearest table around it, else 1.
+  /// The line of a key's value. If the key is absent, the line of the innermost table around it, or 1.
   unsigned line_of(std::string_view key) const;
 
  private:
@@ -50,7 +50,7 @@ class SceneDocument {
 
   std::string name_;
   toml::table root_;
-  std::map<std::string, std::string, std::less<>> origins_;  // origin of each key that a setting gave
+  std::map<std::string, std::string, std::less<>> origins_;  // for each key that a setting gave: that setting
 };
 
 }  // namespace dolp

@@ -39,7 +39,7 @@ void assign(Choice& choice, const KeyValue& v) requires std::is_enum_v<Choice> {
   choice = static_cast<Choice>(v.word);
 }
 
-/// The value at an address in a scene. nullopt for a null pointer, and for a number, text or list that is empty.
+/// The value at `at`. nullopt for a null pointer, an empty text or list, and an absent number.
 template <class Content>
 std::optional<KeyValue> value_at(const Content* at) {
   if (!at) return std::nullopt;
@@ -54,7 +54,7 @@ std::optional<KeyValue> value_at(const Content* at) {
 
 bool always(const SceneValues&) { return true; }
 
-/// A key whose value is at `address(scene)`, which may be null. The scene has the value if `is_there`.
+/// A key whose value is stored at `address(scene)`, which may be null. If not `is_there`, a scene lacks the value.
 template <class Address, class IsThere>
 SceneKey key_at(Key description, Address address, IsThere is_there) {
   return {std::move(description), [address](SceneValues& s, const KeyValue& v) { assign(*address(s), v); },
@@ -66,7 +66,7 @@ Key described(const std::string& key, Type type, const char* unit, const NumberR
   return {key, type, unit, range, std::move(words), fallback, meaning};
 }
 
-/// A key that changes more of a scene than the number at its address.
+/// Replaces the setter of a key that changes more of a scene than one number.
 SceneKey with_set(SceneKey key, std::function<void(SceneValues& scene, const KeyValue& value)> set) {
   key.set = std::move(set);
   return key;
@@ -121,7 +121,7 @@ void set_wind(SceneValues& s, const KeyValue& v) {
   s.surface.wind_m_s = v.number;
 }
 
-/// Makes a key that gives E0. Setting it also sets the kind of the source.
+/// Makes a key that gives E0. Its setter also sets the kind of the source.
 SceneKey source_number(const char* key, const char* unit, const char* meaning, Source::Kind kind,
                        double Source::*number_of) {
   const auto is_kind = [kind](const SceneValues& s) { return s.source && s.source->kind == kind; };
@@ -135,7 +135,7 @@ SceneKey source_number(const char* key, const char* unit, const char* meaning, S
       set);
 }
 
-/// Makes a key of the air of a built-in sky. In a scene that is complete, setting it also changes the sky.
+/// Makes a key of the air of a built-in sky. In a scene that was read, its setter also changes the sky.
 SceneKey air_number(const char* key, const char* unit, const NumberRange& range, const char* meaning,
                     std::optional<double> SkyAir::*number_of) {
   const auto set = [=](SceneValues& s, const KeyValue& v) {
@@ -161,7 +161,7 @@ SceneKey wind_axis() {
                   set);
 }
 
-/// A layer of the coating; keys count layers from 1. Adds missing layers if the scene may be changed.
+/// A layer of the coating; `layer` counts from 1. Adds the missing layers of a scene that is not const.
 template <class Scene>
 auto& layer_of(Scene& s, std::size_t layer) {
   if constexpr (!std::is_const_v<Scene>) {

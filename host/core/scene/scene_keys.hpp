@@ -15,8 +15,8 @@ namespace dolp {
 struct KeyValue {
   double number = 0.0;
   std::size_t word = 0;              ///< position in Key::words
-  std::string text = {};             ///< value of a text; also the text of a word or a flag
-  std::vector<double> numbers = {};  ///< values of a pair, of several pairs one after the other, or of an axis
+  std::string text = {};             ///< value of a text, a word or a flag as text
+  std::vector<double> numbers = {};  ///< values of an axis, of a pair, or of several pairs in a row
   std::vector<std::string> names = {};
 };
 
@@ -27,29 +27,29 @@ struct SceneKey {
   std::function<std::optional<KeyValue>(const SceneValues& scene)> value;
 };
 
-/// Keys that belong together. Any of `heads` chooses the alternative; `companions` also need one of the heads.
+/// Keys that belong together. A scene with one of `heads` chooses the alternative; then it may have `companions` too.
 struct KeyAlternative {
   std::vector<std::string> heads;
   std::vector<std::string> companions = {};
 
-  std::vector<std::string> keys() const;  ///< heads, then companions
+  std::vector<std::string> keys() const;  ///< the heads, then the companions
 };
 
-/// Alternatives of which a scene has at most one.
+/// Alternatives of which a scene can have only one, such as a constant n and a material.
 struct KeyChoice {
   std::string table;
   std::vector<KeyAlternative> alternatives;
-  bool is_required = true;   ///< one alternative must be chosen, unless an optional table is absent
-  bool is_of_layer = false;  ///< the table is a layer of a coating, so it may be absent
+  bool is_required = true;   ///< a scene must choose an alternative, unless it lacks an optional table
+  bool is_of_layer = false;  ///< `table` is a layer of a coating, so it may be absent
 };
 
-inline constexpr std::size_t kMostLayers = 16;  ///< most layers of a coating
+inline constexpr std::size_t kMostLayers = 16;  ///< of a coating
 
 const std::vector<SceneKey>& scene_key_table();
 const std::vector<KeyChoice>& key_choices();
 const SceneKey* find_scene_key(std::string_view key);
 
-/// The keys of the alternatives that exclude `key`.
+/// The keys that a scene cannot have beside `key`, because they are of other alternatives.
 std::vector<std::string> keys_replaced_by(std::string_view key);
 
 std::vector<std::string> scene_tables();
@@ -57,17 +57,17 @@ std::vector<std::string> scene_tables();
 /// True for a table whose absence removes an effect: emission, source, surroundings, path.
 bool is_effect_table(std::string_view table);
 
-/// True for the coating or one of its layers: "surface.coating", "surface.coating.2".
+/// True for "surface.coating" and for its layers, such as "surface.coating.2".
 bool is_coating(std::string_view key);
 
-/// True if the value `none` removes a key or a table. Where `none` may be a value, only `{}` removes the key.
+/// True if the setting `none` removes this key or table. Otherwise `none` may be a value, and only `{}` removes it.
 bool is_removed_by_none(std::string_view key);
 
 void add_effect(SceneValues& scene, std::string_view table);
 
 class SceneDocument;
 
-/// Reads the value of a key that the document has. Errors: InputError by SceneDocument::fail.
+/// Reads the value of a key that the document has. Errors: the InputError of SceneDocument::fail.
 KeyValue read_value(const SceneDocument& document, const Key& description);
 
 }  // namespace dolp

@@ -19,8 +19,8 @@
 namespace dolp {
 namespace {
 
-/// The most similar known key or table. A known name in another table, a known name without its table, and the
-/// beginning of a known name count as similar.
+/// The known key or table with the fewest differences from `key`. Another table or an incomplete name is one
+/// difference.
 std::string key_hint(const std::string& key) {
   std::vector<std::string> known = scene_tables();
   for (const Key& description : dolp::keys()) known.push_back(description.key);
@@ -48,7 +48,7 @@ void append_layer_keys(const SceneDocument& document, const std::string& coating
   }
 }
 
-/// Every key of the document, known or not, in the order of the lines. Keys in tables and layers are dotted.
+/// All keys of the document, known or not, in the order of their lines. Keys in tables and layers have dots.
 std::vector<std::string> document_keys(const SceneDocument& document) {
   std::vector<std::string> keys;
   const std::vector<std::string> tables = scene_tables();
@@ -75,7 +75,7 @@ std::vector<std::string> document_keys(const SceneDocument& document) {
   return keys;
 }
 
-/// The alternative that the document chooses; nullptr for none. Two are an error, and so is a companion without a head.
+/// The head that the document has; null if it has none. Two heads are an error, and so is a companion without a head.
 const std::string* chosen_key(const SceneDocument& document, const KeyChoice& choice) {
   const auto first_of = [&](const std::vector<std::string>& keys) -> const std::string* {
     const auto found = std::ranges::find_if(keys, [&](const std::string& key) { return document.find(key); });
@@ -106,7 +106,6 @@ struct Needs {
   bool are_met;
   const char* text;
 };
-/// The message names all needs that are not met.
 void check_needs(const SceneDocument& document, std::string_view key, const std::vector<Needs>& needs) {
   std::vector<std::string> missing;
   for (const Needs& need : needs) {
@@ -134,7 +133,7 @@ void check_required(const SceneDocument& document, const Key& known) {
   if (document.find(table) || !may_lack) document.fail(known.key, "missing; must be " + known.allowed());
 }
 
-/// Collects errors, so that one message can report up to kMostTold of them.
+/// Collects errors, so that one message reports up to kMostTold of them.
 class Mistakes {
  public:
   template <class Check>
@@ -182,14 +181,14 @@ SceneValues read_keys(const SceneDocument& document) {
   return scene;
 }
 
-/// The path, relative to the process, of a file that a scene names.
+/// The path by which the process opens `file`: absolute as it is, else relative to the folder of the scene.
 std::string resolve_path(const std::string& file, const std::string& scene_path) {
   const std::size_t slash = scene_path.find_last_of('/');
   const bool is_as_given = file.starts_with('/') || slash == std::string::npos;
   return is_as_given ? file : scene_path.substr(0, slash + 1) + file;
 }
 
-/// With `known`, an InputError begins with `prefix` if the file may not be opened or cannot be read.
+/// Reads a file that a scene names. With `known`, messages begin with `prefix` and do not quote the file.
 template <class Read>
 auto read_file_of(SceneValues& scene, const std::string& file, const std::string& prefix, const KnownData* known,
                   const Read& read) {
@@ -200,12 +199,12 @@ auto read_file_of(SceneValues& scene, const std::string& file, const std::string
   }
   try {
     return read(path);
-  } catch (const InputError&) {  // its message quotes the file, and a table may name any file on this machine
+  } catch (const InputError&) {  // this message quotes the file, and a table may name any file on this machine
     throw InputError(prefix + "cannot be read, or holds nothing of the kind");
   }
 }
 
-/// The range from the shortest to the longest wavelength of a scene, including its axes.
+/// The range from the shortest to the longest wavelength of a scene's spectrum and axes.
 Spectrum all_wavelengths(const SceneValues& scene) {
   Spectrum all = scene.spectrum;
   for (const double wavelength_um : scene.grid[Axis::kWavelength]) {
@@ -219,7 +218,7 @@ Spectrum all_wavelengths(const SceneValues& scene) {
   return all;
 }
 
-/// `table`: "surface", or a layer of the coating. `stored`: material from a table file; null if there is none.
+/// Loads the material of `table`, "surface" or a layer. `stored`: the material from a table file, or null.
 void load_material(SceneValues& scene, const SceneDocument& document, const std::string& table, Material& material,
                    std::string& name, const std::string& file, const KnownData* known, const Material* stored) {
   const bool is_file = document.find(table + ".material_file") != nullptr;
@@ -249,7 +248,7 @@ void load_material(SceneValues& scene, const SceneDocument& document, const std:
   check_axis(material);
 }
 
-/// The full names of the built-in materials on the grid's axis. "all" means all materials that cover the spectrum.
+/// The full names of the materials on the grid's axis. "all" means all built-in materials that cover the spectrum.
 std::vector<std::string> axis_names(const SceneValues& scene, const std::string& prefix) {
   std::vector<std::string> names;
   const std::vector<std::string>& given = scene.labels[Axis::kMaterial];
@@ -268,7 +267,7 @@ std::vector<std::string> axis_names(const SceneValues& scene, const std::string&
   return names;
 }
 
-/// The first material of the axis becomes the material of the scene.
+/// Loads the materials of the grid's axis. The first becomes the material of the scene.
 void load_axis_materials(SceneValues& scene, const SceneDocument& document, const KnownData* known) {
   if (!document.find("grid.material")) return;
   const std::string prefix = document.prefix("grid.material");
@@ -360,7 +359,7 @@ void load_profile(SceneValues& scene, const SceneDocument& document, const Known
   scene.surroundings->set_sky(std::move(*profile));
 }
 
-/// Fills in quantities that the scene gives only as an axis. Each gets the first value of its axis.
+/// If the scene gives a quantity only as an axis, its value in the scene becomes the first value of the axis.
 void fill_from_grid(SceneValues& scene, const SceneDocument& document) {
   Axes& grid = scene.grid;
   OpticalConstants& index = scene.surface.material.constant;
@@ -406,7 +405,7 @@ void check_smith(const SceneValues& scene, const SceneDocument& document) {
   }
 }
 
-/// Refuses multiple scattering, bracket, direct emission and polarised diffuse light where they are not defined.
+/// Refuses multiple scattering, emission.bracket, direct emission and polarised diffuse light where they are undefined.
 void check_scattering(const SceneValues& scene, const SceneDocument& document) {
   const Surface& surface = scene.surface;
   const Emission emission = scene.emission.value_or(Emission());
@@ -447,7 +446,7 @@ void check_radiation(const SceneValues& scene, const SceneDocument& document) {
   }
 }
 
-/// Applies a setting. Errors: InputError, also if it removes a key that scenes cannot have.
+/// Applies a setting. Errors: InputError, also for a setting that removes an unknown key.
 void apply(SceneDocument& document, const Setting& setting) {
   const std::vector<std::string> tables = scene_tables();
   const bool is_known =
@@ -459,7 +458,7 @@ void apply(SceneDocument& document, const Setting& setting) {
   document.apply(setting);
 }
 
-/// The scene of a document. Paths of files are relative to the folder of `path_name`.
+/// Makes the scene that a document describes. Paths in the document are relative to the folder of `path_name`.
 SceneValues scene_of(const SceneDocument& document, const std::string& path_name, const KnownData* known) {
   SceneValues scene = read_keys(document);
   fill_from_grid(scene, document);

@@ -20,7 +20,7 @@ double read_number(const SceneDocument& document, std::string_view key, const to
   const auto* integer = node.as_integer();
   const auto* real = node.as_floating_point();
   if (!integer && !real) document.fail(key, "must be " + allowed);
-  // node.value<double>() is empty for an integer that no double can hold exactly. Rounds it to the nearest double.
+  // Rounds an integer that no double can hold exactly. node.value<double>() would be empty.
   const double number = integer ? static_cast<double>(integer->get()) : real->get();
   if (!range.contains(number)) document.fail(key, fmt::format("{} is out of range; must be {}", number, allowed));
   return number;
@@ -74,7 +74,7 @@ AxisRange read_axis_rule(const SceneDocument& document, const Key& description, 
   return rule;
 }
 
-/// The ends are exact. Exchanging `from` and `to` gives exactly the same values in reverse order.
+/// The values of an axis from `from` to `to`. Both ends are exact. Exchanging them reverses the values exactly.
 std::vector<double> axis_values(const AxisRange& rule) {
   std::vector<double> values(rule.count, rule.from);
   const auto last = static_cast<double>(rule.count - 1);
@@ -147,7 +147,7 @@ KeyValue read_word(const SceneDocument& document, const Key& description, const 
   return value;
 }
 
-/// What to write where a key that takes one number has a list.
+/// For a message: how to write several values, if a key that takes one number has a list.
 std::string list_hint(const Key& description) {
   const std::string name = description.key.substr(description.key.find('.') + 1);
   const std::string axis = "grid." + name;

@@ -22,22 +22,22 @@ namespace {
 
 constexpr std::size_t kMostZeniths = 1000;
 
-// Zeniths at which smooth parts of a sky are divided. Polynomials through Chebyshev points need short parts near a
-// horizon where the sky is as flat as exp(-1/cos).
+// Zeniths at which a sky is divided further, even where it is smooth. Near the horizon a sky may be as flat as
+// exp(-1/cos); there polynomials through Chebyshev points need short parts.
 constexpr std::array<double, 2> kDivisions_deg = {60.0, 85.0};
 constexpr std::array<double, 11> kLayerDivisions_deg = {0.0,  30.0, 60.0,  75.0,  82.0, 86.0,
                                                         88.0, 89.0, 89.75, 89.94, 90.0};
 
-// Planck's function is smooth between two temperatures whose ratio is at most kDivisionRatio. Temperatures below
-// kColdestShare of the warmest radiate too little to matter.
+// Between two temperatures, Planck's function is smooth if their ratio is at most kDivisionRatio. Temperatures below
+// kColdestShare of the warmest one radiate too little to matter.
 constexpr double kDivisionRatio = 2.0;
 constexpr double kColdestShare = 1.0 / 256.0;
 
 // Air of the US Standard Atmosphere 1976 at sea level: 15 degrees C, and 5.9 g m-3 of water vapour, which is 7.85 hPa.
 constexpr double kAir_K = 288.15;
 constexpr double kVapour_hPa = 7.85;
-// Precipitable water in cm is this times the vapour pressure in hPa over the temperature in K. Source: Prata, Q. J. R.
-// Meteorol. Soc. 122, 1127 (1996).
+// Precipitable water in cm is this times the vapour pressure in hPa, divided by the temperature in K. Source: Prata, Q.
+// J. R. Meteorol. Soc. 122, 1127 (1996).
 constexpr double kWater_cmK_hPa = 46.5;
 constexpr double kWindowFrom_um = 10.5;
 constexpr double kWindowTo_um = 12.5;
@@ -55,7 +55,7 @@ double window_emissivity(double vapour_hPa, double air_K) {
 // Vapour pressure of saturated air. Source: Alduchov and Eskridge, J. Appl. Meteorol. 35, 601 (1996).
 double saturated_hPa(double air_K) { return 6.1094 * std::exp(17.625 * (air_K - 273.15) / (air_K - 30.11)); }
 
-/// The pressure of the water vapour in hPa. Errors: InputError if the air cannot hold so much.
+/// The pressure of the water vapour in hPa. Errors: InputError if the air cannot hold this much water.
 double vapour_pressure(const SkyAir& air, double air_K, const std::string& prefix) {
   if (!air.vapour_cm) return air.temperature_K ? std::min(kVapour_hPa, saturated_hPa(air_K)) : kVapour_hPa;
   const double vapour_hPa = *air.vapour_cm * air_K / kWater_cmK_hPa;
@@ -63,12 +63,12 @@ double vapour_pressure(const SkyAir& air, double air_K, const std::string& prefi
   if (*air.vapour_cm <= most_cm) return vapour_hPa;
   throw InputError(fmt::format("{}air at {} K holds at most {:.3g} cm of water vapour", prefix, air_K, most_cm));
 }
-// The band of carbon dioxide at 4.3 um, in which a few metres of air are opaque. Sharp edges are an idealisation.
+// Band of carbon dioxide in which a few metres of air are opaque. Real edges are not sharp.
 constexpr double kOpaqueFrom_um = 4.17;
 constexpr double kOpaqueTo_um = 4.45;
-// A black cloud with its base at 1 km. Below it the temperature falls by 6.5 K per km, and the vapour has a scale
-// height of 2 km, as in the standard atmosphere. Low clouds are black at the temperature of their base (Martin and
-// Berdahl, Solar Energy 33, 321 (1984)).
+// A black cloud with its base at 1 km. Below the cloud the temperature falls by 6.5 K per km, and the vapour to 1 / e
+// in 2 km, as in the standard atmosphere. Low clouds are black at the temperature of their base (Martin and Berdahl,
+// Solar Energy 33, 321 (1984)).
 constexpr double kCloudBase_km = 1.0;
 constexpr double kLapse_K_km = 6.5;
 constexpr double kVapourHeight_km = 2.0;
@@ -198,7 +198,7 @@ std::optional<SkyProfile> built_in_sky(std::string_view name, const SkyAir& air,
   sky.air_K = air.temperature_K.value_or(kAir_K);
   if (is_overcast) sky.beyond_K = sky.air_K - kLapse_K_km * kCloudBase_km;
   const double vapour_hPa = vapour_pressure(air, sky.air_K, prefix);
-  // Share of the vapour below the cloud, if there is one.
+  // Share of the vapour that is below the cloud; 1 without a cloud.
   const double below = is_overcast ? -std::expm1(-kCloudBase_km / kVapourHeight_km) : 1.0;
   const auto visible = [&](double vertical) { return is_overcast ? 1.0 - std::pow(1.0 - vertical, below) : vertical; };
   const double mean = clear_emissivity(vapour_hPa, sky.air_K);

@@ -9,12 +9,12 @@
 
 namespace dolp {
 
-/// Brightness temperatures or radiances at zeniths, linear between them; or a layer of air before a black background.
-/// Equation: air has L = t^(1 / cos(zenith)) B(beyond_K) + (1 - t^(1 / cos(zenith))) B(air_K), t = 1 - emissivity.
+/// A sky as temperatures or radiances at zeniths, linear between them, or as a layer of air before a black background.
+/// Equation: the air has L = t^(1 / cos(zenith)) B(beyond_K) + (1 - t^(1 / cos(zenith))) B(air_K), t = 1 - emissivity.
 /// Source: Granqvist and Hjortsberg, J. Appl. Phys. 52, 4205 (1981), for a plane-parallel atmosphere of one
-/// temperature. Idso, Water Resources Research 17, 295 (1981), for the vertical emissivities of clear air at 8-14 um
-/// and in the window at 10.5-12.5 um. The rest of 8-14 um has the emissivity that gives this mean over 8-14 um; other
-/// wavelengths have the mean.
+/// temperature. Idso, Water Resources Research 17, 295 (1981), for the vertical emissivities of clear air: the mean
+/// over 8-14 um, and the value in the window at 10.5-12.5 um. The rest of 8-14 um has the emissivity that leads to this
+/// mean. Other wavelengths have the mean.
 struct SkyProfile {
   enum class Kind { kTemperature, kRadiance, kLayers };
   Kind kind = Kind::kTemperature;
@@ -23,20 +23,20 @@ struct SkyProfile {
   std::vector<double> values;  ///< temperatures in K or radiances in W m-2 sr-1 um-1. Shape: wavelengths x zeniths
   double air_K = 0.0;
   double beyond_K = 0.0;
-  double emissivity = 0.0;                   ///< vertical emissivity of the air, where it is not opaque
-  std::optional<double> window = {};         ///< vertical emissivity at 10.5-12.5 um; nullopt: `emissivity`
+  double emissivity = 0.0;            ///< vertical emissivity of the air, except in the opaque band of carbon dioxide
+  std::optional<double> window = {};  ///< vertical emissivity at 10.5-12.5 um; nullopt: `emissivity`
   std::optional<double> beside_window = {};  ///< vertical emissivity in the rest of 8-14 um; nullopt: `emissivity`
 
-  /// Radiance of the sky as a mixture of two black bodies, plus a radiance.
+  /// Radiance of the sky as a weighted mean of two black bodies, plus `radiance`.
   struct Emission {
-    double share = 1.0;  ///< share of the first black body; the second has the rest
+    double share = 1.0;  ///< weight of the first black body; the second has the weight 1 - share
     double first_K = 0.0;
     double second_K = 0.0;
     double radiance = 0.0;  ///< W m-2 sr-1 um-1, in addition
   };
   Emission at(double wavelength_um, double zenith_deg) const;
 
-  /// Zeniths that divide an interval between two rows in which the temperature changes by more than a factor of two.
+  /// If the temperature between the rows of an interval changes by more than a factor of two: zeniths that divide it.
   std::vector<double> temperature_divisions_deg(std::size_t interval) const;
   /// Zeniths from 0 to 90 between which the profile is a smooth function of zenith.
   std::vector<double> ends_deg() const;
@@ -44,7 +44,7 @@ struct SkyProfile {
   std::vector<double> breaks_um() const;
   /// The temperature, if it is the same at every zenith and wavelength; else nullopt.
   std::optional<double> only_temperature() const;
-  /// The text of a file that parse_sky_profile reads; empty for kLayers.
+  /// The profile as a CSV file that parse_sky_profile reads; empty for kLayers.
   std::string text() const;
   std::uint64_t hash() const;
 };
@@ -55,18 +55,18 @@ struct BuiltInSky {
 };
 const std::vector<BuiltInSky>& built_in_skies();
 
-/// Air of a built-in sky. Without both values it is the air of the US Standard Atmosphere 1976, without the window.
+/// Air of a built-in sky. Without both values: US Standard Atmosphere 1976, with one emissivity for all wavelengths.
 struct SkyAir {
-  std::optional<double> vapour_cm = {};  ///< precipitable water
+  std::optional<double> vapour_cm = {};  ///< precipitable water in cm
   std::optional<double> temperature_K = {};
   bool is_standard() const { return !vapour_cm && !temperature_K; }
 };
 
-/// Nullopt for an unknown name. Errors: InputError that begins with `prefix` if the air cannot hold the vapour.
+/// The built-in sky `name`, or nullopt. Errors: InputError that begins with `prefix` if the air cannot hold the vapour.
 std::optional<SkyProfile> built_in_sky(std::string_view name, const SkyAir& air = {}, const std::string& prefix = {});
 
-/// Reads a CSV with the columns zenith_deg, temperature_K or radiance, and wavelength_um if they depend on it. Each
-/// wavelength has the same zeniths, from 0 to 90. Errors: InputError that names file, line, column and value.
+/// Reads a CSV with the columns zenith_deg, temperature_K or radiance, and wavelength_um if the values depend on it.
+/// Each wavelength has the same zeniths, from 0 to 90. Errors: InputError that names file, line, column and value.
 SkyProfile parse_sky_profile(std::string_view text, const std::string& name);
 SkyProfile read_sky_profile(const std::string& path, const std::string& prefix);
 

@@ -44,7 +44,7 @@ bool covers(const SpectralTable& table, const Spectrum& spectrum) {
 constexpr std::size_t kMostAngleRows = 100'000;
 constexpr double kLargestSplitAtNormal = 0.01;
 
-/// Refuses angles that do not ascend from 0 to 90, or that differ from the angles of `first`, the first wavelength.
+/// Refuses angles that do not ascend from 0 to 90, or that differ from those of the first wavelength, `first`.
 void check_angles(std::span<const AngleRow> rows, std::span<const AngleRow> first, const std::string& angle,
                   const std::string& file) {
   const auto fail = [&](const AngleRow& row, const std::string& what) {
@@ -132,7 +132,7 @@ std::string wavelength_text(double min_um, double max_um) {
 SceneModel at_wavelength(const SceneModel& scene, double wavelength_um) {
   SceneModel at{.surface = scene.surface,
                 .emission = scene.emission,
-                .source = std::nullopt,  // not copied, because its table may be long; set below
+                .source = std::nullopt,  // set below, because copying its table may take long
                 .surroundings = scene.surroundings,
                 .path = scene.path,
                 .spectrum = {wavelength_um, wavelength_um},

@@ -15,7 +15,7 @@ namespace dolp {
 SpectralTable sun_irradiance();
 
 /// Reads a user's CSV with the columns wavelength_um and irradiance (W m-2 um-1), interpolated linearly. A file without
-/// a line of names has these columns in this order. Skips blank lines and lines that begin with #.
+/// column names has these columns in this order. Skips blank lines and lines that begin with #.
 /// Domain: irradiance >= 0, at least one row.
 /// Errors: InputError; if the file cannot be opened, the message begins with `prefix`; errors of append_rows.
 SpectralTable read_irradiance_file(const std::string& path, const std::string& prefix);
@@ -26,7 +26,7 @@ struct NamedValue {
   NumberRange range;
 };
 
-/// Checks that both numbers are in range and that the wavelength ascends. Messages begin with `where`.
+/// Appends a row if both numbers are in range and the wavelength ascends. Otherwise a message begins with `where`.
 void append_row(SpectralTable& table, double wavelength_um, const NamedValue& value, const std::string& where);
 
 struct SpectralRow {
@@ -35,29 +35,29 @@ struct SpectralRow {
   std::size_t line;
 };
 
-/// Sorts and appends rows. Leaves out rows outside of kWavelengthUmRange and repeated rows. `named`: name and range of
-/// the values. Errors: InputError with file and line for two values at one wavelength; errors of append_row.
+/// Sorts and appends rows, without repeated rows and rows outside of kWavelengthUmRange. `named`: name and range of the
+/// values. Errors: InputError with file and line for two values at one wavelength; errors of append_row.
 void append_rows(SpectralTable& table, std::vector<SpectralRow> rows, const NamedValue& named, const std::string& file);
 
-/// A row of a CSV of values over an angle from 0 to 90 degrees, and maybe over wavelength.
+/// A row of a CSV that has values over an angle from 0 to 90 degrees and, in some files, over wavelength.
 struct AngleRow {
-  double wavelength_um = 0.0;  ///< 0 in a file without this column
+  double wavelength_um = 0.0;  ///< 0 in a file without wavelengths
   double angle_deg = 0.0;
   std::vector<double> values;
   std::size_t line = 0;
 };
 
-/// The rows of a CSV by wavelength, then by angle. All wavelengths have the same angles, with 0 and 90 degrees.
-/// `angle` and `values` are names of columns, `file` is for messages. Errors: InputError with file, line and column.
+/// Rows of a CSV, sorted by wavelength, then by angle. All wavelengths have the same angles, from 0 to 90 degrees.
+/// `angle` and `values` name columns, `file` is for messages. Errors: InputError with file, line and column.
 std::vector<AngleRow> read_angle_rows(CsvReader& row, const CsvColumns& columns, const std::string& angle,
                                       const std::vector<std::string>& values, const std::string& file);
 
-/// The interval of an ascending list that contains a value, and the fraction of the interval below the value.
+/// An interval between neighbours in an ascending list, and how far into it a value lies: 0 at its start, 1 at its end.
 struct Between {
   std::size_t first = 0;
   double share = 0.0;
 };
-/// The first or the last interval for a value beyond an end. A list of one value has one interval, without a length.
+/// The interval with `value`; beyond an end, the first or the last interval. With one value in the list, share is 0.
 Between between(const std::vector<double>& list, double value);
 
 /// Refuses a table that lacks values in a part of the spectrum. The message begins with `prefix`.

@@ -7,7 +7,7 @@
 namespace dolp {
 namespace {
 
-// Chosen. Largest error of a sky, as a share of the tolerance. Each function of a basis slows a kernel by a sixth.
+// Chosen. Error of a sky as a sum of functions, as a share of the tolerance. Each function slows a kernel by a sixth.
 constexpr double kBasisShare = 0.02;
 
 Eigen::VectorXd vector_of(const std::vector<double>& values) {

@@ -18,33 +18,33 @@ namespace {
 
 using FineRule = boost::math::quadrature::gauss<double, 16>;
 
-// The constants below are chosen. With half or double of each, except kPieceWavelengthRatio, which must be above 1, the
-// evaluations and bounds of the tables of night_paint, bare_aluminium and water stay the same.
+// The constants below are chosen. With half or double of each constant, except kPieceWavelengthRatio, which must be
+// above 1, the evaluations and error bounds of the tables of night_paint, bare_aluminium and water stay the same.
 
-// The band is cut into pieces on which 16 Gauss nodes integrate Planck's function to rounding. Within a piece, these
-// constants limit the change of the exponent h c / (lambda k_B T) and the ratio of the wavelengths.
+// A band is cut into pieces on which 16 Gauss nodes integrate Planck's function to rounding. Limits within a piece: the
+// change of the exponent h c / (lambda k_B T), and the ratio of the longest to the shortest wavelength.
 constexpr double kPieceExponentChange = 4.0;
 constexpr double kPieceWavelengthRatio = 1.5;
-// h c / k_B in um K, used to choose pieces, and the exponent beyond which Planck's function underflows.
+// h c / k_B in um K, with which the exponent is computed, and the exponent beyond which Planck's function underflows.
 constexpr double kExponentScale_umK = 14388.0;
 constexpr double kLargestPlanckExponent = 750.0;
-constexpr double kPieceRelativeError = 1e-12;  // for sums over pieces, each of which is accurate to rounding
+constexpr double kPieceRelativeError = 1e-12;  // of sums over pieces, each of which is accurate to rounding
 
-// Largest relative error of the smooth surface's absorptances in a segment. It is relative to reflectance or
-// absorptance, whichever is smaller, but to no less than kSmallestPart, because with n = 1 the reflectance is 0.
+// A segment gets so many nodes that the absorptances of the smooth surface have at most this error. It is relative to
+// the smaller of reflectance and absorptance, but at least to kSmallestPart. With n = 1 the reflectance is 0.
 constexpr double kNodesRelativeError = 1e-10;
 constexpr double kSmallestPart = 1e-4;
 constexpr int kMostNodes = 24;
-// The nodes of a segment are checked with absorptances of the smooth surface at these probes, because a rough surface
-// averages them over angles. Other probes are the critical angles at some wavelengths, where an absorptance has a
-// square root in wavelength. The bound is kProbeSafety times the largest error at the probes.
+// At these angles, the probes, the absorptances of the smooth surface test the nodes of a segment. They represent a
+// rough surface, whose absorptances are averages over angles. Other probes are the critical angles at some wavelengths,
+// where an absorptance has a square root in wavelength. The error bound is kProbeSafety times the largest error.
 constexpr double kProbeSafety = 10.0;
 constexpr std::array<double, 7> kProbeCosines = {1.0, 0.5, 0.25, 0.15, 0.1, 0.07, 0.04};
 constexpr std::array<double, 7> kCriticalShares = {0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};  // positions in a segment
-// If more nodes do not reduce the error of a segment to kShareOfTolerance of the tolerance, the segment is cut into
+// If kMostNodes nodes leave a segment with an error above kShareOfTolerance of the tolerance, the segment is cut into
 // panels. Their number grows until the error at the probes is below kPanelShareOfTolerance of the tolerance, or until
-// the whole band would have about kMostPanels. Mirrors may have more panels, because their moments are cheap and
-// roughness does not smooth their roots. panel_error estimates the remaining error.
+// the whole band would have about kMostPanels. Mirrors may have more panels, because their moments are cheap and no
+// roughness smooths their square roots. panel_error estimates the remaining error.
 constexpr double kShareOfTolerance = 0.005;
 constexpr double kPanelShareOfTolerance = 0.03;
 constexpr int kLeastPanels = 4;
@@ -52,7 +52,7 @@ constexpr double kMostPanels = 32.0;
 constexpr double kMostMirrorPanels = 512.0;
 constexpr double kMostFringes = 256.0;  // most parts into which the fringes of films divide a band
 
-/// A node of the fine rule: the spectral factors at its wavelength, all multiplied by the weight of the node.
+/// A node of the 16-point rule: the spectral factors at its wavelength, all multiplied by the weight of the node.
 struct FineNode : SpectralFactors {
   double wavelength_um = 0.0;
   double path = 0.0;
@@ -195,7 +195,7 @@ std::vector<double> gauss_wavelengths(double from_um, double to_um, int count) {
   return wavelengths_um;
 }
 
-/// The values of the nodes' Lagrange polynomials at one wavelength.
+/// The value at `wavelength_um` of the Lagrange polynomial of each node.
 std::vector<double> lagrange(const std::vector<double>& nodes_um, double wavelength_um) {
   std::vector<double> values(nodes_um.size(), 1.0);
   for (std::size_t j = 0; j < nodes_um.size(); ++j)
@@ -218,7 +218,7 @@ std::vector<SpectralSample> samples_at(const SceneModel& scene, const std::vecto
   return samples;
 }
 
-/// Wavelengths that divide a band into parts in which films add at most one fringe each.
+/// Wavelengths that divide the band into parts in which the films cause at most one interference fringe each.
 std::vector<double> fringe_ends(const SceneModel& scene) {
   const double from = 1.0 / scene.spectrum.max_um;
   const double to = 1.0 / scene.spectrum.min_um;
@@ -243,7 +243,7 @@ std::vector<double> probe_cosines(const Surface& surface, double from_um, double
   return cosines;
 }
 
-/// The integral of one spectral factor, and its integrals times the absorptances of the smooth surface.
+/// The integral of one spectral factor, and its integrals with the absorptances s and p of the smooth surface.
 struct ProbeSum {
   double whole = 0.0;
   double s = 0.0;
@@ -272,8 +272,8 @@ std::vector<ProbeSums> exact_sums(const Surface& surface, const std::vector<Fine
   return sums;
 }
 
-/// Largest error of the samples' integrals of an absorptance, relative to the integral of reflectance or absorptance,
-/// whichever is smaller, but to no less than `least` of the whole integral.
+/// Largest error of the integrals s and p that `samples` give at the probes. It is relative to the integral of the
+/// reflectance or of the absorptance, whichever is smaller, but at least to `least` times the integral `whole`.
 double nodes_error(const std::vector<SpectralSample>& samples, const std::vector<ProbeSums>& exact,
                    const std::vector<double>& cosines, double least) {
   double worst = 0.0;
@@ -313,9 +313,9 @@ SegmentRule smooth_segment(const SceneModel& scene, double from_um, double to_um
                            const std::vector<double>& cosines) {
   if (scene.surface.has_constant_optics()) return {samples_at(scene, gauss_wavelengths(from_um, to_um, 1), fine), 0.0};
   SegmentRule rule;
-  // With films the fringes need many nodes. So films get no more nodes than the tolerance requires.
+  // The interference fringes of films need many nodes, so films get only as many as the tolerance requires.
   const double enough = scene.surface.coating.empty() ? kNodesRelativeError : enough_for_tolerance(scene);
-  // The exact integrals use the halves of the segment, so that no node of theirs is a node of the rule.
+  // The exact integrals use the halves of the segment. So they share no node with the samples that they test.
   const std::vector<ProbeSums> exact = exact_sums(scene.surface, finer_nodes(scene, from_um, to_um), cosines);
   for (int count = 1; count <= kMostNodes; ++count) {
     rule.samples = samples_at(scene, gauss_wavelengths(from_um, to_um, count), fine);
@@ -325,7 +325,7 @@ SegmentRule smooth_segment(const SceneModel& scene, double from_um, double to_um
   return rule;
 }
 
-/// Cuts a segment into equal panels. To check them, each half of a panel gets twice as many nodes.
+/// Cuts a segment into `panels` equal panels of kPanelNodes samples, and computes their error.
 SegmentRule segment_of_panels(const SceneModel& scene, double from_um, double to_um, int panels,
                               const std::vector<double>& cosines) {
   SegmentRule rule;
@@ -342,7 +342,7 @@ SegmentRule segment_of_panels(const SceneModel& scene, double from_um, double to
   return rule;
 }
 
-/// Adds the samples of one segment of the material to a rule, or to `panels` if the segment is cut into panels.
+/// Adds the samples of one segment of the material to `rule`; if the segment needs panels, to `panels`.
 void append_segment(const SceneModel& scene, double from_um, double to_um, SpectralRule& rule,
                     std::vector<SpectralSample>& panels) {
   const std::vector<FineNode> fine = fine_nodes(scene, from_um, to_um);

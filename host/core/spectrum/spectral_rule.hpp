@@ -8,62 +8,62 @@
 
 namespace dolp {
 
-/// The effects of a scene that the radiometry includes. Flags of effects that the scene lacks change nothing.
+/// The effects of a scene that the radiometry includes. A flag has no meaning if the scene lacks the effect.
 struct KeptEffects {
   bool emission = true;
   bool source = true;
   bool surroundings = true;
-  bool profile = true;        ///< difference of the surroundings' profile from its mean
-  bool path_radiance = true;  ///< only the radiance; the transmittance, which cancels in DOLP, always stays
+  bool profile = true;        ///< difference of a sky profile from its mean
+  bool path_radiance = true;  ///< radiance of the path; its transmittance cancels in DOLP and always stays
   bool diffuse = true;
-  bool further_bounces = true;  ///< bounces in V-grooves after the first bounce
-  bool moments = true;  ///< specular part of rho, from the evaluator's moments at theta or (bistatic) at the view
+  bool further_bounces = true;  ///< bounces in V-grooves after the first one
+  bool moments = true;          ///< specular part of rho in the direction theta, in bistatic mode of the view
   friend bool operator==(const KeptEffects&, const KeptEffects&) = default;
 };
 
-/// Integrals of the radiation times a weight function. Units: W m-2 over a band, W m-2 um-1 at a single wavelength.
+/// Radiation, integrated with a weight function. Units: W m-2 over a band, W m-2 um-1 at a single wavelength.
 struct SpectralFactors {
   double emitted = 0.0;          ///< pi B(T); 0 without [emission]
-  double surroundings = 0.0;     ///< pi B(T_surr), or the mean of a profile; 0 without [surroundings]
-  double excess = 0.0;           ///< surroundings - emitted; exactly 0 if the temperatures are equal
+  double surroundings = 0.0;     ///< pi B(T_surr), or pi times the mean of a sky profile; 0 without [surroundings]
+  double excess = 0.0;           ///< surroundings - emitted; exactly 0 if both have the same temperature
   double irradiance = 0.0;       ///< E0 at normal incidence; 0 without [source]
   double width = 0.0;            ///< integral of the weight function in um; 1 at a single wavelength
-  std::vector<double> sky = {};  ///< profile minus its mean, at the nodes of SkySampler; empty without a profile
+  std::vector<double> sky = {};  ///< pi times profile, minus `surroundings`, at the nodes of SkySampler; else empty
 
   void add(const SpectralFactors& more, double factor);
 };
 
-/// One refractive index at which moments are needed, and the integrals of the radiation that multiply these moments.
-/// The moments rho(lambda) depend on the wavelength only through the index. On each segment between rows of the
-/// material, rho is taken as the polynomial through its values at the Gauss nodes of the segment. So the band integral
-/// of F rho, for a factor F, is a sum over the nodes: rho at the node times the integral of F times the node's Lagrange
-/// polynomial. Such an integral may be negative. The integrals of all nodes add up to the band integral of F.
+/// A refractive index at which moments are needed, and the integrals of the radiation that multiply these moments.
+/// rho(lambda) depends on the wavelength only through the index. On each segment between rows of the material, rho is
+/// replaced by the polynomial through its values at the Gauss nodes of the segment. So the band integral of F rho,
+/// where F is one of SpectralFactors, is a sum over the nodes: rho at the node times the integral of F times the node's
+/// Lagrange polynomial. An integral may be negative. The integrals of all nodes add up to the band integral of F.
 struct SpectralSample : SpectralFactors {
   FacetOptics index;
   double wavelength_um = 0.0;  ///< first wavelength at which the index occurs
 };
 
-/// Number of samples in a panel, in ascending order of wavelength. A panel is a part of a segment in which total
-/// reflection begins. At each zenith rho has a square root in the wavelength there.
+/// Number of samples in a panel, ascending in wavelength. A panel is a part of a segment in which total reflection
+/// begins, so that rho at each zenith has a square root in the wavelength.
 inline constexpr std::size_t kPanelNodes = 8;
 
 struct SpectralRule {
   std::vector<SpectralSample> samples;
   double path_exitance = 0.0;   ///< pi times the path radiance; 0 without [path]
-  double relative_error = 0.0;  ///< bound of the relative error of band sums, without panels; 0 at a single wavelength
-  std::size_t panels = 0;       ///< number of panels; their samples, kPanelNodes each, are the last of `samples`
+  double relative_error = 0.0;  ///< bound of the relative error of band integrals without panels; 0 at one wavelength
+  std::size_t panels = 0;       ///< number of panels; each has kPanelNodes samples, at the end of `samples`
   std::vector<FacetOptics> indices() const;
 };
 
-/// A single wavelength or a constant index needs one sample. Otherwise each segment of the material gets as many Gauss
-/// nodes as the reflectances of the smooth surface require.
-/// Accuracy: 1e-9 relative for band sums (tests SpectralRule_*Band*), except for panels.
+/// Samples for the spectrum of a scene. A single wavelength or a constant index needs one sample. Otherwise each
+/// segment of the material gets as many Gauss nodes as the reflectances of the smooth surface require.
+/// Accuracy: 1e-9 relative for band integrals (tests SpectralRule_*Band*), except in panels.
 SpectralRule spectral_rule(const SceneModel& scene);
 
-/// Estimates the error of a sum over the panels. `term(j, m)`: term of sample j, with the moments of sample m.
-/// The term at every second node of a panel is predicted from the terms at the other nodes. The estimate is the sum of
-/// the errors of these predictions. For a square root that begins anywhere in a panel, the estimate is at least 2.3
-/// times the error, and 6 times in the median (tests Bands_*).
+/// Estimates the error of a sum over the samples of all panels. `term(j, m)`: term of sample j, with moments of sample
+/// m. In each panel, the term at every second node is predicted from the moments at the other nodes. The estimate is
+/// the sum of the errors of these predictions. For a square root that begins anywhere in a panel, the estimate is at
+/// least 2.3 times the error, and 6 times in the median (tests Bands_*).
 template <typename Term>
 double panel_error(const SpectralRule& rule, const Term& term) {
   double error = 0.0;
@@ -85,7 +85,7 @@ double panel_error(const SpectralRule& rule, const Term& term) {
   return error;
 }
 
-/// A rule with the factors of dropped effects set to 0.
+/// `rule` with 0 for the irradiance and exitances of dropped effects.
 SpectralRule kept_rule(SpectralRule rule, const KeptEffects& kept);
 
 }  // namespace dolp

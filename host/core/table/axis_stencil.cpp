@@ -8,7 +8,7 @@
 namespace dolp {
 namespace {
 
-// Values with a smaller relative difference count as equal. One may have been typed with fewer digits.
+// Two values with a smaller relative difference count as equal, because one may have been typed with fewer digits.
 constexpr double kSame = 4.0 * std::numeric_limits<double>::epsilon();
 
 bool is_same(double a, double b) { return std::abs(a - b) <= kSame * std::max(std::abs(a), std::abs(b)); }
@@ -62,7 +62,7 @@ Stencil LookupAxis::stencil(const Location& location, std::size_t count, int shi
       std::clamp<std::ptrdiff_t>(centred + shift, next + 1 - wanted, next - 1), 0, size - wanted);
   Stencil stencil{static_cast<std::size_t>(first), static_cast<std::size_t>(wanted), {}};
   const std::array<double, kMostStencil>& factors = factors_[stencil.count][stencil.first];
-  // The product of the distances from all values before i, then from all after it.
+  // For value i, the product of its distances from all values before it, then from all values after it.
   double before = 1.0;
   for (std::size_t i = 0; i < stencil.count; ++i) {
     stencil.weights[i] = before * factors[i];

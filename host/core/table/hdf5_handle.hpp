@@ -6,7 +6,7 @@
 
 namespace dolp {
 
-/// An HDF5 identifier, and the call that closes it. A failed call gives a negative identifier, which is not closed.
+/// An HDF5 identifier that is closed with `close`. A failed call gives a negative identifier, which is not closed.
 class Hdf5Handle {
  public:
   using Close = herr_t (*)(hid_t);

@@ -15,17 +15,17 @@ namespace dolp {
 
 inline constexpr std::size_t kMostTableEntries = std::size_t{1} << 36U;
 
-/// Name and value of the attribute with the conventions that a table file follows.
+/// Name and value of the attribute with the conventions that table files follow.
 inline constexpr const char* kConventions = "Conventions";
 inline constexpr const char* kConventionsOfFiles = "CF-1.8";
 
-/// Attribute with n, k and E0 of the scene. Each line of its text has a name, a wavelength in um and a value.
+/// Attribute with the scene's n, k and E0. Each line of its text has a name, a wavelength in um and a value.
 inline constexpr const char* kSpectralData = "spectral_data";
 
-/// The text of the attribute kSpectralData; empty for a table without curves.
+/// The text of the attribute kSpectralData, from the curves of n, k and E0 in `head`; empty without curves.
 std::string spectral_data_of(const TableHead& head);
 
-/// Moves the attribute kSpectralData into the curves of the head. Errors: InputError that begins with `name`.
+/// Parses the attribute kSpectralData, puts n, k and E0 into `head`, and removes it. Errors: InputError about `name`.
 void take_spectral_data(TableHead& head, const std::string& name);
 
 /// The value of an attribute; null if the head has no attribute of this name and type.
@@ -35,7 +35,7 @@ const Content* find_attribute(const TableHead& head, std::string_view name) {
   return found == head.attributes.end() ? nullptr : std::get_if<Content>(&found->value);
 }
 
-/// The names of the coordinates that are not axes, in the form of the attribute `coordinates`.
+/// The names of the coordinates that are not axes, as the attribute `coordinates` lists them.
 std::string coordinates_of(const TableHead& head);
 
 /// The layout of a table, which is known before its values.
@@ -48,8 +48,8 @@ struct TableLayout {
 
 TableLayout layout_of(const TableValues& table);
 
-/// Calls use(of, width) for each variable, in the order of files. of(values) is its column in TableValues, and `width`
-/// is the number of its values per entry.
+/// Calls use(of, width) for each variable, in the order in which files have them. of(values) is the variable's column
+/// in TableValues, and `width` is the number of its values per entry.
 template <class Use>
 void for_each_variable(const TableLayout& layout, const Use& use) {
   for (const Quantity quantity : layout.quantities)
@@ -65,30 +65,30 @@ void for_each_variable(const TableLayout& layout, const Use& use) {
 
 ResultColumns columns_of(std::span<const PointResult> results, const Quantities& quantities);
 
-/// A part of a table: `count` values of each axis, beginning at the positions `first`.
+/// A part of a table: `count` values of each axis, from the positions `first`.
 struct TableBox {
   PerAxis first = {};
   PerAxis count = {};
 };
 
-/// Boxes in the order of the table, with at most `most` entries but at least one each.
+/// Cuts a table into boxes, in the table's order. A box has at most `most` entries, but at least one.
 std::vector<TableBox> boxes_in_order(const PerAxis& counts, std::size_t most);
 
 TableHead head_of(const TableHead& whole, const TableBox& box);
 
-/// The attribute with the hash of a table's values, by which a reader detects damage.
+/// Name of the attribute with the hash of a table's values, by which a reader detects damage.
 inline constexpr const char* kValuesHash = "values_hash";
 
-/// One sum for each variable, in the order of for_each_variable. The bits of each value are multiplied by an odd number
-/// that follows from its position, so that another value or position changes the sum. Parts may be summed in any order.
+/// A checksum for each variable, in the order of for_each_variable. The bits of each value are multiplied by an odd
+/// number that depends on its position, so another value or position changes the sum. Parts may come in any order.
 using ValueSums = std::vector<std::uint64_t>;
 
-/// The sums of a part of a table that begins at the positions `first`.
+/// The checksums of a part of a table that begins at the positions `first`.
 ValueSums sums_of(const TableValues& part, const TableLayout& layout, const PerAxis& first);
 
 void add(ValueSums& sums, const ValueSums& of_part);
 
-/// The hash of all values of a table, and of the axes and curves of its head.
+/// The hash of a table: of the checksums of all values, and of the axes and curves of its head.
 std::string values_hash(const TableLayout& layout, const ValueSums& sums);
 
 }  // namespace dolp

@@ -12,10 +12,10 @@
 
 namespace dolp {
 
-/// Appends the first cells of a row, with a comma after each. The results come after them.
+/// Appends to `text` the cells with which a row begins, each with a comma after it. The results of the row follow them.
 using RowStart = std::function<void(std::string& text, std::size_t row)>;
 
-/// Names of the quantities and of the status, separated by commas.
+/// Names of the quantities and, if `has_status`, of the status, separated by commas.
 std::string result_header(const Quantities& quantities, bool has_status = true);
 
 /// CSV rows. Each row has the cells that `start` appends, then the quantities in the given order, then the status.
@@ -24,11 +24,10 @@ std::string result_rows(const ResultColumns& results, std::size_t rows, const Qu
 
 Quantities in_csv_order(const Quantities& quantities);
 
-/// Writes points and their results as CSV. A file gets rows as they come, and is complete or absent. Standard output
-/// ("-") gets all rows at the end.
+/// Writes points with their results as CSV. A file is complete or absent; standard output ("-") gets all rows at once.
 class ResultCsv {
  public:
-  /// `columns`: header for the cells that `start` appends. Errors: IoError.
+  /// `columns`: names of the columns whose cells `start` appends. Errors: IoError.
   ResultCsv(const std::filesystem::path& path, const std::string& columns, const Quantities& quantities,
             RowStart start);
   /// Adds the results of the next points. Errors: IoError; Cancelled when interrupted().
@@ -67,7 +66,7 @@ void check_output_path(const std::filesystem::path& path);
 /// Errors: errors of check_output_path; IoError if writing fails, and then the target is unchanged.
 void write_table(const TableValues& table, const std::filesystem::path& path);
 
-/// A .csv or .npy file consists of its start and of the rows of all parts of the table, in order.
+/// The texts of a .csv or .npy file: its beginning, and the rows of a part. The parts follow in the order of the table.
 std::string table_start(const TableLayout& layout, TableFormat format);
 std::string table_rows(const TableValues& part, const TableLayout& layout, TableFormat format);
 

@@ -18,26 +18,27 @@ namespace {
 
 constexpr auto kTheta = static_cast<std::size_t>(Axis::kTheta);
 constexpr auto kQ = static_cast<std::size_t>(Axis::kQ);
-// Values of each axis that are read.
+// Number of values that an interpolation reads on each axis.
 constexpr std::array<std::size_t, kAxisCount> kWindow = {2, 2, 4, 4, 4, 4, 6, 6, 6};
 constexpr std::size_t kMostRows =
-    std::size_t{4} * 4 * 4 * 4 * 6 * 6;  // most rows along q in a window; on an axis with labels a point is at a value
-constexpr int kMostShift = 3;            // values by which a window may move away from unknown entries
-constexpr std::size_t kLeastValues = 4;  // fewer values of an axis give no reliable estimate of the error
-// Tuned. Ratio of the stated error to the change that one more value makes: kInside if the window has a value to add on
-// both sides, else kAtEnds. Of 581,000 bistatic lookups, 147, 2 and 0 err by more than the stated error with half, this
-// and double. The medians of the stated errors are 1.56e-4, 3.02e-4 and 6.00e-4.
+    std::size_t{4} * 4 * 4 * 4 * 6 * 6;  // most rows along q that an interpolation reads; axes with labels count once
+constexpr int kMostShift = 3;            // values by which the window of read values may move away from unknown entries
+constexpr std::size_t kLeastValues = 4;  // an axis with fewer values gives no reliable error estimate
+// Tuned. An interpolation error is estimated as kInside times the change of the result by one more value of the axis,
+// or as kAtEnds times this change in the first and the last interval of the axis and if no more value exists. Of
+// 581,000 bistatic lookups, 147, 2 and 0 err by more than the stated error with half, this and double. The medians of
+// the stated errors are 1.56e-4, 3.02e-4 and 6.00e-4.
 constexpr double kInside = 16.0;
 constexpr double kAtEnds = 37.0;
-// Tuned. The change by one more value counts as at least kFastestFall times the change with one value fewer, and on a
-// short axis as at least kFastestFallOfTwo times the change with two values fewer. A smaller change is small by chance.
-// With half, this and double, 44, 2 and 0 of these lookups err by more than the stated error; the medians of the stated
-// errors are 2.65e-4, 3.02e-4 and 3.95e-4.
+// Tuned. A small change may be chance, so the change by one more value counts as at least kFastestFall times the change
+// with one value fewer and, on a short axis, kFastestFallOfTwo times the change with two values fewer. With half, this
+// and double, 44, 2 and 0 of these lookups err by more than the stated error; the medians of the stated errors are
+// 2.65e-4, 3.02e-4 and 3.95e-4.
 constexpr double kFastestFall = 0.2;
 constexpr double kFastestFallOfTwo = 0.25;
-// Tuned. Ratio of the stated error at a kink to the interpolation error of a ramp. With no error for kinks, and with
-// half, this and double, 38, 4, 2 and 2 of these lookups err by more than the stated error; the medians of the stated
-// errors are 2.99e-4, 3.01e-4, 3.02e-4 and 3.04e-4.
+// Tuned. At a kink the stated error is this times the interpolation error of a ramp that begins at the kink. With no
+// error for kinks, and with half, this and double, 38, 4, 2 and 2 of these lookups err by more than the stated error;
+// the medians of the stated errors are 2.99e-4, 3.01e-4, 3.02e-4 and 3.04e-4.
 constexpr double kKinkMargin = 2.0;
 
 using enum Quantity;
@@ -46,13 +47,13 @@ using enum Quantity;
 constexpr std::array kSmooth = {kStokesI, kStokesQ,     kStokesU,     kStokesV, kRhoI,    kRhoQ,
                                 kAlbedo,  kEmissivityS, kEmissivityP, kDolpLow, kDolpHigh};
 
-/// True if a stated error depends on the interpolation error of the quantity.
+/// True if the error of `quantity` contributes to a stated error.
 bool has_error(Quantity quantity) {
   constexpr std::array kWithout = {kStokesV, kAlbedo, kEmissivityS, kEmissivityP};
   return std::ranges::find(kWithout, quantity) == kWithout.end();
 }
 
-/// Quantities that lookup needs in a table, in addition to the status.
+/// Quantities that a table must have for lookup, in addition to the status.
 constexpr std::array kNeeded = {kDolp, kStokesI, kStokesQ, kStokesU, kStokesV, kErrorEstimate};
 
 const std::vector<double>& checked(const std::vector<double>& values, const char* axis, const std::string& name) {
@@ -80,7 +81,6 @@ PointResult unknown() {
   return result;
 }
 
-/// Refuses a table without the quantities that every result needs. The message names all that are missing.
 void check_variables(const TableValues& table, const std::string& name) {
   std::vector<std::string> missing;
   for (const Quantity quantity : kAllQuantities) {
@@ -105,7 +105,7 @@ std::vector<double> masking_kinks(const SceneModel& scene) {
   if (masking != Masking::kVCavity) return {};
   const CosSin view = cos_sin_deg(view_deg);
   const double cos_azimuth = cos_sin_deg(scene.geometry.relative_azimuth_deg).cos;
-  // (1 - G) cos^2(beta), if G were not limited to 1. This uses 2 cos(alpha) cos(beta) = cos(theta) + cos(theta_view).
+  // (1 - G) cos^2(beta) for a masking G without its limit 1, from 2 cos(alpha) cos(beta) = theta.cos + view.cos.
   const auto hidden = [&](double theta_deg) {
     const CosSin theta = cos_sin_deg(theta_deg);
     const double cos2_beta = 0.5 * (1.0 + theta.cos * view.cos + theta.sin * view.sin * cos_azimuth);
@@ -116,7 +116,7 @@ std::vector<double> masking_kinks(const SceneModel& scene) {
   for (int theta_deg = 0; theta_deg < 90; ++theta_deg) {
     const double below = hidden(theta_deg);
     const double above = hidden(theta_deg + 1);
-    // A secant over one degree finds the kink within some 0.01 degrees, which hardly changes the size of its error.
+    // The secant finds the angle of the kink within 0.01 degrees, which hardly changes the kink's interpolation error.
     if ((below > 0.0) != (above > 0.0)) kinks_deg.push_back(theta_deg + below / (below - above));
   }
   return kinks_deg;
@@ -137,12 +137,12 @@ struct TableLookup::Window {
   bool is_entry() const {
     return std::ranges::all_of(stencils, [](const Stencil& of_axis) { return of_axis.count == 1; });
   }
-  /// Rank of the last value of an axis that is not above the point.
+  /// Rank of the last value of `axis` that is not above the point.
   std::size_t below(std::size_t axis) const {
     return locations[axis].is_value ? locations[axis].next : locations[axis].next - 1;
   }
 
-  /// Positions in the table of the corners of the point's cell. They are 0 along the axis `without`.
+  /// Positions in the table of the corners of the point's cell, without the step along the axis `without`.
   using Corners = boost::container::static_vector<std::size_t, std::size_t{1} << kAxisCount>;
   Corners corners(const TableLookup& lookup, std::size_t without) const {
     Corners corners = {0};
@@ -160,14 +160,14 @@ struct TableLookup::Window {
   }
 };
 
-/// The entries of a window as rows along q. All columns of the table have the same rows.
+/// The entries of a window as rows along q. Each row has a weight and its first position. They serve all columns.
 struct TableLookup::Rows {
   struct Row {
     std::size_t begin = 0;
     double weight = 1.0;
   };
   boost::container::static_vector<Row, kMostRows> rows;
-  std::array<std::size_t, kMostStencil> along{};  ///< position of each value of a row, from the beginning of the row
+  std::array<std::size_t, kMostStencil> along{};  ///< position of each value of a row, relative to the row's first
   Stencil q;
 
   Rows(const TableLookup& lookup, const Window& window) : q(window.stencils[kQ]) {
@@ -175,7 +175,7 @@ struct TableLookup::Rows {
     for (std::size_t axis = 0; axis < kQ; ++axis) {
       const Stencil& stencil = window.stencils[axis];
       const std::size_t before = rows.size();
-      for (std::size_t i = stencil.count; i-- > 0;) {  // i = 0 is last: it overwrites the row that the others read
+      for (std::size_t i = stencil.count; i-- > 0;) {  // ends with i = 0, which overwrites the row that all others read
         const std::size_t begin = lookup.position(axis, stencil.first + i);
         for (std::size_t row = 0; row < before; ++row) {
           const Row next = {rows[row].begin + begin, rows[row].weight * stencil.weights[i]};
@@ -186,10 +186,10 @@ struct TableLookup::Rows {
     for (std::size_t k = 0; k < q.count; ++k) along[k] = lookup.position(kQ, q.first + k);
   }
 
-  /// The sum of weight x value(position), or with `kOfSizes` of |weight| x value(position).
+  /// The sum of weight x value(position) or, with `kOfSizes`, of |weight| x value(position).
   template <bool kOfSizes = false, class Value>
   double sum(const Value& value) const {
-    bool is_dense = true;  // true if neighbours along q are neighbours in memory
+    bool is_dense = true;  // true if the values of a row are neighbours in memory
     for (std::size_t k = 1; k < q.count; ++k) is_dense = is_dense && along[k] == along[0] + k;
     if (is_dense && q.count == kWindow[kQ]) return sum_dense<kWindow[kQ], kOfSizes>(value);
     if (is_dense && q.count == kWindow[kQ] - 1) return sum_dense<kWindow[kQ] - 1, kOfSizes>(value);
@@ -208,7 +208,7 @@ struct TableLookup::Rows {
   static double used(double weight) {
     return kOfSizes ? std::abs(weight) : weight;
   }
-  /// Computes sum() with loops whose length the compiler knows. Two partial sums run side by side.
+  /// sum() with loops whose length the compiler knows. The CPU can compute the two partial sums at the same time.
   template <std::size_t kCount, bool kOfSizes, class Value>
   double sum_dense(const Value& value) const {
     std::array<double, kCount> weights;
@@ -234,15 +234,15 @@ struct TableLookup::Rows {
 
 /// Changes of the result by one more value of an axis, on the lines along it through the corners of the point's cell.
 struct TableLookup::Lines {
-  /// A divided difference of `count` values: the change of an interpolation by one more value at one of its ends.
+  /// The change of an interpolation if one more value, before or after its values, is used: a divided difference.
   struct Change {
-    std::size_t first = 0;  ///< position on a line of the first value that the change uses
+    std::size_t first = 0;  ///< position on the line of the first value that the change uses
     std::size_t count = 0;
-    /// 0: the window and one more value, or the whole axis; each next level has one value fewer; kLevels: a kink.
+    /// 0: uses the window and one more value, or the whole axis. Each next level uses one value fewer. kLevels: a kink.
     std::size_t level = 0;
   };
-  static constexpr std::size_t kLevels = 3;  // levels of a short axis; other axes have one level fewer
-  // Two for each level, and one for a kink; a short axis has only one at level 0.
+  static constexpr std::size_t kLevels = 3;  // levels of changes on a short axis; other axes have one level fewer
+  // Two changes for each level, but one at level 0 of a short axis, and one change for a kink.
   static constexpr std::size_t kMostChanges = 6;
   static constexpr std::size_t kMostValues = kMostStencil + 1;
   boost::container::static_vector<Change, kMostChanges> changes;
@@ -251,9 +251,9 @@ struct TableLookup::Lines {
   std::array<std::size_t, kMostValues> along{};  ///< position of each value along a line
   std::size_t count = 0;
   Window::Corners begin;
-  double factor = 1.0;  ///< factor from the change to the error, including the weights of the other axes
+  double factor = 1.0;  ///< converts a change to an error, including the weights of the other axes
   bool has_error = false;
-  bool is_short = false;  ///< true if the window and one more value are the whole axis
+  bool is_short = false;  ///< true if the window and one more value make up the whole axis
   bool is_unknown = false;
 
   Lines(const TableLookup& lookup, const Window& window, std::size_t number) {
@@ -273,7 +273,7 @@ struct TableLookup::Lines {
       const std::size_t centred = below + 1 > before / 2 ? below + 1 - before / 2 : 0;
       const std::size_t first = std::clamp(centred, stencil.first, stencil.first + stencil.count - before);
       const double distances = axis.distances(window.locations[number], first, before);
-      // The number first - 1 wraps around if first is 0; then `with` is skipped.
+      // If first is 0, first - 1 wraps around to a huge number, which the loop skips.
       for (const std::size_t with : {first - 1, first}) {
         if (with + values > axis.size() || with > first) continue;
         const std::span<const double> of_change = axis.divided_difference(with, values);
@@ -295,8 +295,8 @@ struct TableLookup::Lines {
     }
   }
 
-  /// Adds a change for the kink of the masking in the window, modelled as a ramp that begins there, as steep as the
-  /// second difference at the kink. Of several kinks, the one whose ramp has the largest interpolation error counts.
+  /// Adds a change for a kink of the masking inside the window. The kink is modelled as a ramp that begins at it and is
+  /// as steep as the second difference there. Of several kinks, only the one with the largest error is added.
   void add_kink(const LookupAxis& axis, double theta_deg, const Stencil& stencil, std::size_t start,
                 const std::vector<double>& kinks_deg) {
     const std::size_t last = stencil.first + stencil.count - 1;
@@ -313,7 +313,7 @@ struct TableLookup::Lines {
       kink_deg = kink;
     }
     if (largest == 0.0 || stencil.count < 3) return;
-    std::size_t middle = stencil.first + 1;  // middle of the three values around the kink
+    std::size_t middle = stencil.first + 1;  // middle of the three values whose second difference is used
     while (middle + 1 < last && axis.coordinate_at(middle) + axis.coordinate_at(middle + 1) < 2.0 * kink_deg) ++middle;
     const std::span<const double> difference = axis.divided_difference(middle - 1, 3);
     const double of_ramp = difference[1] * std::max(axis.coordinate_at(middle) - kink_deg, 0.0) +
@@ -324,7 +324,7 @@ struct TableLookup::Lines {
     changes.push_back({middle - 1 - start, 3, kLevels});
   }
 
-  /// Each change uses only the entries that it needs, so some changes on a line with unknown entries are known.
+  /// Computes each change separately, so that changes that need no unknown entry of the line are known.
   void known_changes(const double* values, double* sums) const {
     for (std::size_t j = 0; j < changes.size(); ++j) {
       sums[j] = 0.0;
@@ -334,7 +334,7 @@ struct TableLookup::Lines {
     }
   }
 
-  /// Estimate of the interpolation error along the axis, for a column of the table.
+  /// Estimate of the error of interpolating `column`, a quantity of the table, along the axis.
   double error(const std::vector<double>& column) const {
     if (!has_error) return 0.0;
     if (is_unknown) return kInfinity;
@@ -350,7 +350,7 @@ struct TableLookup::Lines {
 #pragma GCC unroll 6
         for (std::size_t j = 0; j < kMostChanges; ++j) sums[j] += of_value[j] * value;
       }
-      // A sum with an unknown entry is NaN. The comparison below then keeps the earlier value.
+      // A change that uses an unknown entry is NaN. Then the comparison below keeps the change of the earlier lines.
       if (!std::isfinite(sums[0])) known_changes(values, sums);
 #pragma GCC unroll 6
       for (std::size_t j = 0; j < kMostChanges; ++j) {
@@ -365,7 +365,7 @@ struct TableLookup::Lines {
     }
     if (largest[0] < 0.0) return kInfinity;
     if (largest[0] == 0.0) return 0.0;
-    // On a coarse axis the changes of all lines may pass through 0 together, so the next levels limit the fall.
+    // On a coarse axis the level-0 changes of all lines may pass through 0 together, but not those of the next levels.
     largest[0] = std::max(largest[0], kFastestFall * largest[1]);
     if (is_short) largest[0] = std::max(largest[0], kFastestFallOfTwo * largest[2]);
     return factor * (largest[0] + std::max(largest[kLevels], 0.0));
@@ -407,7 +407,7 @@ bool TableLookup::make_known(Window& window, double theta_deg) const {
   std::size_t count = kWindow[kTheta];
   const int away = theta_deg > 45.0 ? -1 : 1;
   while (!is_known(window)) {
-    // The window moves away from unknown entries by up to kMostShift values, then gets one value fewer.
+    // The window moves away from unknown entries by up to kMostShift values. If that fails, it gets one value fewer.
     if (++shift > kMostShift) {
       shift = 0;
       if (--count < 2) return false;
@@ -459,10 +459,10 @@ PointResult TableLookup::at(const Point& point) const {
 }
 
 void TableLookup::finish(PointResult& result, const PointResult& change, double error, double rho_error) const {
-  // Error of the quotient above / below: (error of above + |quotient| * error of below) / least |below|.
+  // Error of the quotient `above` / `below`: (error of above + |quotient| * error of below) / least possible |below|.
   const auto over = [](double below, double below_error, double quotient, double above_error) {
     const double least = std::abs(below) - below_error;
-    // A quotient of 0 stays 0 even if the error of the denominator is infinite.
+    // If the quotient is 0, an infinite error of the denominator does not matter.
     const double of_below = quotient == 0.0 ? 0.0 : std::abs(quotient) * below_error;
     return above_error + of_below == 0.0 ? 0.0 : least > 0.0 ? (above_error + of_below) / least : kInfinity;
   };

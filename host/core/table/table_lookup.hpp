@@ -12,27 +12,27 @@
 namespace dolp {
 
 /// Zenith angles of the source, in degrees, at which the masking of a bistatic beam has a kink for all sigma and q.
-/// Method: `integral` and V-cavities depend on the lower of the two directions, which changes where the source has the
-/// zenith of the view. V-cavities have another kink where G reaches 1 (shaders/physics/README.md, section 2).
-/// Domain: kinks of further bounces and of total reflection are not included.
+/// Method: masking `integral` and v-cavity depend on the lower of source and view, so there is a kink where both have
+/// the same zenith. V-cavity has another kink where G reaches 1 (shaders/physics/README.md, section 2).
+/// Domain: kinks due to further bounces and to total reflection are not included.
 std::vector<double> masking_kinks(const SceneModel& scene);
 
-/// Reads a table between its entries.
-/// Method: a tensor product of polynomials. Along theta, ln sigma and ln(q - 1) they have degree five, through the six
-/// values around the point. Along the logarithms of wavelength, temperature, n and k they have degree three, through
-/// four values. The degree is lower if an axis has fewer values. On an axis with labels a point must be at a value.
-/// DOLP follows from the interpolated Stokes parameters, which are smooth even where DOLP has a kink.
-/// Stated errors: the bounds of the entries that are read, each times the magnitude of its weight, plus an
-/// interpolation error for each axis. The interpolation error is kInside or kAtEnds times the change that one more
-/// value makes, on the lines along the axis through the corners of the point's cell. If all values of the axis are
-/// read, it is based on the change that the last of them makes. Along theta a kink of the masking adds the error that
-/// it causes in the window. The interpolation error is an estimate and misses structure that is narrower than the grid.
-/// Between the values of an axis with fewer than four values it is infinite.
+/// Interpolates the results of a table at points between its entries.
+/// Method: a product of polynomials, one for each axis. Along theta, ln sigma and ln(q - 1) they have degree five,
+/// through the six values around the point; along the logarithms of wavelength, temperature, n and k they have degree
+/// three, through four values. The degree is lower if an axis has fewer values. On an axis with labels a point must be
+/// at a value. DOLP follows from the interpolated Stokes parameters, which are smooth even where DOLP has a kink.
+/// Stated errors: the error bound of each entry that is read, times the magnitude of its weight, plus an interpolation
+/// error for each axis. The latter is kInside or kAtEnds times the change of the result by one more value of the axis,
+/// on the lines along the axis through the corners of the point's cell. If the axis has no further value, it is the
+/// change by the last value. Along theta a kink of the masking adds the error that it causes. The interpolation error
+/// is an estimate: it misses structure that is narrower than the grid. On an axis with fewer than four values it is
+/// infinite between the values.
 /// Accuracy: tests LookupEstimates.
 class TableLookup {
  public:
-  /// `table` must outlive the object. Errors: InputError that begins with `name`, for an axis with equal values; for a
-  /// table without dolp, its error, the Stokes parameters or the status; and for an error of rho without rho.
+  /// `table` must outlive the object. Errors: InputError that begins with `name`, for an axis with equal values, and
+  /// for a table without dolp, its error, the Stokes parameters or the status, or with an error of rho but no rho.
   TableLookup(const TableValues& table, const SceneModel& scene, const std::string& name);
 
   const AxisLabels& labels() const { return table_.labels; }
@@ -43,8 +43,8 @@ class TableLookup {
 
   /// A value on each axis; values on axes that the table lacks are ignored.
   using Point = AxisArray<double>;
-  /// The result at a point inside the axes. Quantities that the table lacks are NaN. Next to entries outside the
-  /// model's domain the window moves away from them. Between such entries the result is NaN with status 4.
+  /// The result at a point inside the axes. Quantities that the table lacks are NaN. The window of values that are read
+  /// avoids entries outside the model's domain. If it cannot, the result is NaN with status 4, outside the domain.
   PointResult at(const Point& point) const;
   PointResult at(double theta_deg, double sigma, double q) const {
     Point point{};
@@ -61,19 +61,19 @@ class TableLookup {
 
   std::size_t position(std::size_t axis, std::size_t rank) const { return axes_[axis].position(rank) * strides_[axis]; }
   bool is_known(const Window& window) const;
-  /// Moves a window away from unknown entries, or shortens it; false if unknown entries remain.
+  /// Moves the window away from unknown entries, or gives it fewer values; false if unknown entries remain in it.
   bool make_known(Window& window, double theta_deg) const;
   std::uint32_t cell_status(const Window& window) const;
   void finish(PointResult& result, const PointResult& change, double error, double rho_error) const;
   void add_status(PointResult& result) const;
 
   const TableValues& table_;
-  double tolerance_;               ///< for the status
-  std::vector<double> kinks_deg_;  ///< values of theta at which the masking has a kink
+  double tolerance_;               ///< tolerance of DOLP and rho, which decides status bits
+  std::vector<double> kinks_deg_;  ///< zeniths of the source at which the masking has a kink
   std::vector<LookupAxis> axes_;   ///< axes in the table's order; an absent axis has one value
-  PerAxis strides_ = {};           ///< distance in the table between neighbours on each axis
-  Quantities interpolated_;        ///< smooth quantities that are not 0 everywhere
-  std::vector<char> is_known_;     ///< for each theta, ascending: true if all of its entries are finite
+  PerAxis strides_ = {};           ///< step in the table from one value of an axis to the next
+  Quantities interpolated_;        ///< the kSmooth quantities that are not 0 everywhere
+  std::vector<char> is_known_;     ///< for each theta, ascending: true if I is finite in all of its entries
 };
 
 }  // namespace dolp

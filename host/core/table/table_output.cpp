@@ -14,19 +14,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kConvertedRowsAtOnce = std::size_t{1} << 17U;  // rows in memory at a time
+constexpr std::size_t kConvertedRowsAtOnce = std::size_t{1} << 17U;  // rows in memory, for a .csv or .npy
 constexpr std::string_view kIdentityEnd = "; ";
 
-// The partial file is beside the file to which a link leads, because the link may be on another file system.
+// The partial file is beside the target if `path` is a link, because the link may be on another file system.
 fs::path partial_path(const fs::path& path) { return follow_links(path).string() + ".partial"; }
 fs::path progress_path(const fs::path& path) { return partial_path(path).string() + ".txt"; }
 
-/// A line of a progress file: a hash, which reveals damage, and the text. `hash`: start value of the hash.
+/// A line of a progress file: `text`, after a hash of it that reveals damage. `hash`: start value of this hash.
 std::string progress_line(std::uint64_t hash, std::string_view text) {
   return fmt::format("{:016x} {}\n", hashed(hash, text), text);
 }
 
-/// The text of the first of some lines; nullopt if progress_line did not make this line from the text and `hash`.
+/// The text of the first line of `lines`; nullopt if progress_line did not make this line from the text and `hash`.
 std::optional<std::string_view> first_text(std::string_view lines, std::uint64_t hash) {
   constexpr std::size_t kHashSize = 17;
   const std::string_view line = lines.substr(0, lines.find('\n') + 1);
@@ -35,7 +35,7 @@ std::optional<std::string_view> first_text(std::string_view lines, std::uint64_t
   return line == progress_line(hash, text) ? std::optional(text) : std::nullopt;
 }
 
-/// Removes the first piece of a text, up to a separator, and returns this piece.
+/// Removes from `text` everything up to the first separator, and returns what was before the separator.
 std::string_view next_piece(std::string_view& text, std::string_view separator) {
   const std::size_t end = text.find(separator);
   const std::string_view piece = text.substr(0, end);
@@ -116,7 +116,7 @@ std::uint64_t TableOutput::reuse_finished_parts() {
   return parts_done_ > 0 ? taken : 0;
 }
 
-/// The start value of progress_line for the next part, which has these sums.
+/// The start value of progress_line for part number parts_done_, which has the checksums `of_part`.
 std::uint64_t TableOutput::part_hash(const ValueSums& of_part) const {
   std::uint64_t hash = hashed(hashed(kHashStart, job_.identity), std::uint64_t{parts_done_});
   for (const std::uint64_t sum : of_part) hash = hashed(hash, sum);

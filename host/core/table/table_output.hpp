@@ -13,37 +13,37 @@
 
 namespace dolp {
 
-/// A table file that is being written part by part. A resumable table of several parts is in PATH.partial until it is
-/// complete, and PATH.partial.txt has a line for each finished part, with a hash of its values. Any other table is in a
-/// file without a name until it is complete. A .csv or .npy is made from the values at the end.
+/// Writes a table file part by part. If the table is resumable and has several parts, its values are in PATH.partial
+/// until it is complete, and PATH.partial.txt has a line for each finished part, with a hash of its values. Any other
+/// table is in a file without a name until it is complete. A .csv or .npy is made from the values at the end.
 class TableOutput {
  public:
   struct Job {
     std::filesystem::path path;
     TableLayout layout;
-    std::vector<TableBox> parts = {};  ///< parts in the order of write(); empty: any number of parts, in any order
-    std::string identity = {};  ///< names and values that all parts share, see difference(); empty: not resumable
-    bool is_resumed = false;    ///< continues PATH.partial if it exists
+    std::vector<TableBox> parts = {};  ///< parts that write() gets, in this order; empty: any parts, in any order
+    std::string identity = {};  ///< names and values that all parts share, for difference(); empty: not resumable
+    bool is_resumed = false;    ///< continues PATH.partial if this file exists
     Progress progress = {};     ///< called while finished parts are read, with 0 as the number of done entries
   };
-  /// If `is_resumed`, reuses finished parts of an earlier run, up to the first that is missing or changed.
-  /// Errors: errors of check_output_path; InputError if the partial file has another identity, or another process
-  /// writes it; IoError if PATH.partial or PATH.partial.txt is a link; Cancelled.
+  /// If `is_resumed`, reuses the finished parts of an earlier run, up to the first part that is missing or changed.
+  /// Errors: errors of check_output_path; InputError if the partial file has another identity or is in use by another
+  /// process; IoError if PATH.partial or PATH.partial.txt is a link; Cancelled.
   explicit TableOutput(Job job);
   ~TableOutput();
   TableOutput(const TableOutput&) = delete;
   TableOutput& operator=(const TableOutput&) = delete;
 
-  /// Number of finished parts, and the note of the last part that was reused.
+  /// Number of finished parts, and the note that write() stored with the last of the reused parts.
   std::size_t parts_done() const { return parts_done_; }
   const std::string& note() const { return note_; }
 
-  /// `note`: a line to store with the part, which begins at the positions `first`. Errors: IoError, Cancelled.
+  /// Writes the part that begins at the positions `first`. `note`: a line to store with it. Errors: IoError, Cancelled.
   void write(TableValues part, const PerAxis& first, const std::string& note);
-  /// Adds attributes and makes the file at PATH. Errors: IoError, Cancelled; then PATH is unchanged.
+  /// Adds the attributes `more` and makes the file at PATH. Errors: IoError, Cancelled; then PATH is unchanged.
   void finish(const std::vector<Attribute>& more);
 
-  /// How to continue from the partial file; nullopt if there is none.
+  /// A hint how to resume from the partial file; nullopt if there is no partial file.
   std::optional<std::string> rest() const;
 
  private:
@@ -55,9 +55,9 @@ class TableOutput {
 
   Job job_;
   TableFormat format_;
-  std::optional<AtomicFile> file_;  ///< has the values; none for a .csv or .npy of one part
+  std::optional<AtomicFile> file_;  ///< contains the values; nullopt for a .csv or .npy of one part
   std::optional<TableStore> store_;
-  std::optional<AtomicFile> progress_;  ///< text of the finished parts of a resumable table
+  std::optional<AtomicFile> progress_;  ///< the file PATH.partial.txt of a resumable table
   TableValues only_part_;
   ValueSums sums_;
   std::size_t parts_done_ = 0;

@@ -1,4 +1,4 @@
-// Reads tables with HDF5 instead of the netCDF library, which follows the dimension scales of damaged files and hangs.
+// Reads tables with HDF5, because the netCDF library follows dimension scales and hangs if they are damaged.
 #include "table/table_reader.hpp"
 
 #include <fcntl.h>
@@ -26,25 +26,25 @@ constexpr std::size_t kMostAngles = 1024;                      // most angles of
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostShrinking = 1032;              // other tools may use deflate, which leaves at least a 1032nd
-constexpr std::size_t kMostStoredTextBytes = 64U << 20U;  // the longest text is the scene, with at most 16 MiB
+constexpr std::size_t kMostShrinking = 1032;  // deflate, which other tools may use, leaves at least a 1032nd
+constexpr std::size_t kMostStoredTextBytes = 64U << 20U;  // the longest text, the scene, has at most 16 MiB
 
 constexpr const char* kPartHint =
     "as in a part of a table; in Python dolp.lookup(xarray.load_dataset(FILE), ...) takes parts";
 
-/// An open file. Errors: InputError that begins with the file's name.
+/// An open HDF5 file. Errors: InputError that begins with the file's name.
 class Reader {
  public:
   explicit Reader(const fs::path& path) : path_(path) {
     check_regular_file(path.string(), path.string() + ": ");
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // keeps HDF5 from printing
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // keeps HDF5 from printing errors
     file_ = {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
     if (!file_ || H5Fget_filesize(file_.id(), &bytes_) < 0) fail("is not a NetCDF table of dolp, or cannot be read");
   }
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
   /// If a file cannot be closed, for example because its server is gone, HDF5 keeps it half closed and crashes at exit.
-  /// So dup2 closes the real file and gives its descriptor to /dev/null, which HDF5 can close.
+  /// So dup2 closes the file itself, and the file's descriptor becomes /dev/null, which HDF5 can close.
   ~Reader() {
     void* descriptor = nullptr;
     const int other = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
@@ -58,7 +58,7 @@ class Reader {
     if (code < 0) fail(what + ": cannot be read; the file is damaged");
   }
 
-  /// Takes over an HDF5 object. Errors: InputError that names `name`, if there is no object.
+  /// Takes over an HDF5 object. Errors: InputError that names `name`, if HDF5 gave no object.
   Hdf5Handle take(hid_t id, Hdf5Handle::Close close, const std::string& name) const {
     check(id < 0 ? -1 : 0, name);
     return {id, close};
@@ -66,7 +66,7 @@ class Reader {
 
   const Hdf5Handle& file() const { return file_; }
 
-  /// A variable of the file; an empty handle if there is none. Refuses a variable whose values are in another file.
+  /// A variable of the file, else an empty handle. Refuses a variable whose values are in another file.
   Hdf5Handle find(const std::string& name) const {
     const htri_t exists = H5Lexists(file_.id(), name.c_str(), H5P_DEFAULT);
     check(exists, name);
@@ -91,7 +91,7 @@ class Reader {
     return shape;
   }
 
-  /// Refuses more values than a file of this size can hold, before memory is allocated for them.
+  /// Refuses a variable with more values than a file of this size can hold, before memory is allocated for them.
   void check_claim(const std::string& name, std::size_t bytes) const {
     if (bytes / kMostShrinking <= bytes_) return;
     fail(fmt::format("{}: {} bytes are claimed, which a file of {} cannot hold", name, bytes, bytes_));
@@ -109,7 +109,7 @@ class Reader {
 
 bool is_of_class(hid_t type, H5T_class_t wanted) { return H5Tget_class(type) == wanted; }
 
-/// The values of a list; empty if the file lacks it. Errors: InputError for more than `most` values.
+/// The values of a variable that is a list; empty if the file lacks it. Errors: InputError for more than `most` values.
 std::vector<double> read_list(const Reader& reader, const std::string& name, std::size_t most,
                               bool may_be_scalar = false) {
   const Hdf5Handle variable = reader.find(name);
@@ -127,7 +127,7 @@ std::vector<double> read_list(const Reader& reader, const std::string& name, std
   return values;
 }
 
-/// Texts of one length, padded with zero bytes, or of any length. `read` fills the memory of `count` texts.
+/// Reads texts, either of one length, padded with zero bytes, or of any length. `read` fills memory for `count` texts.
 template <class Read>
 std::vector<std::string> read_texts(const Reader& reader, const std::string& name, const Hdf5Handle& type,
                                     const Hdf5Handle& space, std::size_t count, const Read& read) {
@@ -181,7 +181,7 @@ std::optional<std::variant<std::string, double>> read_value(const Reader& reader
   return value;
 }
 
-/// A text attribute of the file or of a variable; nullopt if there is none.
+/// A text attribute of the file or of a variable; nullopt if there is no such attribute.
 std::optional<std::string> find_text(const Reader& reader, const Hdf5Handle& object, const char* name) {
   const htri_t exists = H5Aexists(object.id(), name);
   reader.check(exists, name);
@@ -192,7 +192,7 @@ std::optional<std::string> find_text(const Reader& reader, const Hdf5Handle& obj
   return text ? std::optional(*text) : std::nullopt;
 }
 
-/// Attributes are in the order in which they were made, or by name if the file lacks this order.
+/// The attributes, in the order in which they were made; if the file lacks this order, sorted by name.
 Hdf5Handle attribute_at(const Reader& reader, hsize_t position) {
   for (const H5_index_t index : {H5_INDEX_CRT_ORDER, H5_INDEX_NAME}) {
     Hdf5Handle attribute(
@@ -202,7 +202,7 @@ Hdf5Handle attribute_at(const Reader& reader, hsize_t position) {
   reader.fail("an attribute cannot be read; the file is damaged");
 }
 
-/// All attributes except those that belong to the file format.
+/// All attributes of the table, without those that belong to the file format.
 std::vector<Attribute> read_attributes(const Reader& reader) {
   H5O_info_t info{};
   reader.check(H5Oget_info2(reader.file().id(), &info, H5O_INFO_NUM_ATTRS), "the attributes");
@@ -218,7 +218,7 @@ std::vector<Attribute> read_attributes(const Reader& reader) {
   return attributes;
 }
 
-/// Appends texts that are stored as variables because they are too long for attributes.
+/// Appends the texts that are stored as variables because they are too long for attributes.
 void append_long_texts(const Reader& reader, std::vector<Attribute>& attributes) {
   for (const char* name : {"title", "history", "scene", "scene_path", "scene_overrides", "surroundings_profile",
                            "coating", "reflectance", "materials", kSpectralData}) {
@@ -241,7 +241,7 @@ struct TableReader::Impl {
   Reader reader;
   TableLayout layout;
   TableHead& head = layout.head;
-  std::vector<std::pair<std::string, Hdf5Handle>> open;  // in the order of for_each_variable
+  std::vector<std::pair<std::string, Hdf5Handle>> open;  // variables in the order of for_each_variable
 
   explicit Impl(const fs::path& path) : reader(path) {}
 
@@ -301,7 +301,7 @@ struct TableReader::Impl {
   void read_curves() {
     for (const TableCurve& described : kTableCurves) {
       Curve& curve = head.*described.curve;
-      // Files of dolp 0.2 store the scene's curves as variables over separate wavelengths, not as the attribute.
+      // Files of dolp 0.2 have the scene's n, k and E0 as variables over separate wavelengths, not as the attribute.
       curve.wavelength_um = read_list(reader, described.name + std::string("_wavelength"), kMostTableEntries);
       const bool is_of_scene = !curve.wavelength_um.empty();
       std::vector<double>& values = is_of_scene ? curve.values : curve.used;
@@ -321,7 +321,7 @@ struct TableReader::Impl {
       first.push_back(box.first[axis]);
       count.push_back(box.count[axis]);
     }
-    if (reader.shape_of(variable, name).size() > count.size()) {  // the variable also has the dimension beta
+    if (reader.shape_of(variable, name).size() > count.size()) {  // this variable has also the dimension beta
       first.push_back(0);
       count.push_back(width);
     }

@@ -22,12 +22,12 @@ class TableReader {
   const TableHead& head() const { return layout().head; }
 
   TableValues read(const TableBox& box) const;
-  /// Reads the entries at ascending positions, and checks the hash of the whole table. Errors: also Cancelled.
+  /// Reads the entries at `positions`, which ascend, and checks the hash of the whole table. Errors: also Cancelled.
   TableValues read_entries(std::span<const std::size_t> positions, const Progress& progress) const;
 
-  /// The sums of a part that was read, for check_hash.
+  /// The checksums of a part that was read, for check_hash.
   ValueSums sums_of(const TableValues& part, const TableBox& box) const;
-  /// Refuses a file whose values differ from those that dolp wrote, or that has no hash. `sums`: sums over all parts.
+  /// Refuses a file without a hash, or whose values differ from those that dolp wrote. `sums`: checksums of all parts.
   void check_hash(const ValueSums& sums) const;
 
  private:

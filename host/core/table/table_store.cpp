@@ -27,9 +27,9 @@
 namespace dolp {
 namespace {
 
-constexpr std::uint64_t kMostOverhead = 1U << 20U;  ///< bytes that HDF5 adds for shapes, names and units
+constexpr std::uint64_t kMostOverhead = 1U << 20U;  ///< most bytes of a file besides the values: shapes, names, units
 
-/// A file in memory, without a name. Only written bytes take memory; the other bytes read as zero.
+/// A file in memory, without a name. Only the bytes that are written take memory; all other bytes read as zero.
 class MemoryFile {
  public:
   /// `table`: path of the table, for messages. Errors: IoError.
@@ -64,8 +64,8 @@ class MemoryFile {
 };
 
 struct Hdf5Failure {
-  std::string reason;      ///< reason in HDF5's words; empty if HDF5 had no memory for them
-  bool is_memory = false;  ///< true if the reason is lack of memory
+  std::string reason;      ///< error in HDF5's words; empty if HDF5 had no memory for it
+  bool is_memory = false;  ///< true if memory was lacking
 
   static herr_t add(unsigned, const H5E_error2_t* error, void* failure) {
     auto& first_failure = *static_cast<Hdf5Failure*>(failure);
@@ -76,19 +76,19 @@ struct Hdf5Failure {
   }
 };
 
-/// Makes HDF5 objects in a MemoryFile. Errors: std::bad_alloc, or IoError with HDF5's reason, if a call fails.
+/// Makes HDF5 objects in a MemoryFile. Errors: if a call of HDF5 fails, std::bad_alloc or IoError with HDF5's reason.
 class Writer {
  public:
   explicit Writer(const MemoryFile& memory) : memory_(memory) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // keeps HDF5 from printing
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // keeps HDF5 from printing errors
     const Hdf5Handle access = take(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    check(H5Pset_fapl_stdio(access.id()));  // the default driver needs a file with a name
+    check(H5Pset_fapl_stdio(access.id()));  // the default driver would need a file with a name
     check(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18));
     const Hdf5Handle creation = take(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-    // Without this order the netCDF library can open a file only for reading.
+    // Without the order of creation, the netCDF library can open a file only for reading.
     check(H5Pset_link_creation_order(creation.id(), kOrdered));
     check(H5Pset_attr_creation_order(creation.id(), kOrdered));
-    check(H5Pset_obj_track_times(creation.id(), false));  // so that the same scene gives the same bytes
+    check(H5Pset_obj_track_times(creation.id(), false));  // without times, a scene gives the same bytes in each run
     file_ = take(H5Fcreate(memory.path().c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
   }
 
@@ -107,7 +107,7 @@ class Writer {
     put(object, name, type.id(), type.id(), take(H5Screate(text.empty() ? H5S_NULL : H5S_SCALAR), H5Sclose),
         text.empty() ? nullptr : text.data());
   }
-  /// The type of texts with `width` bytes. H5T_VARIABLE means any length.
+  /// The HDF5 type of texts with `width` bytes. H5T_VARIABLE as the width means any length.
   Hdf5Handle text_type(std::size_t width) const {
     Hdf5Handle type = take(H5Tcopy(H5T_C_S1), H5Tclose);
     check(H5Tset_size(type.id(), width));
@@ -119,7 +119,7 @@ class Writer {
     const hsize_t count = 1;
     put(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, take(H5Screate_simple(1, &count, nullptr), H5Sclose), &value);
   }
-  // CF-1.8 has no unsigned int, and the masks must have the type of the status variable.
+  // The masks are int: CF-1.8 has no unsigned int, and they must have the type of the status variable.
   void put_status_bits(const Hdf5Handle& object) const {
     std::array<int, kStatusBits.size()> masks{};
     std::array<const char*, kStatusBits.size()> meanings{};
@@ -131,14 +131,15 @@ class Writer {
     put_text(object, "flag_meanings", fmt::format("{}", fmt::join(meanings, " ")));
   }
 
-  /// Reserves the space of the variable. It is not compressed, because zlib saves half of the file but takes longer
-  /// than everything else in writing a table. It is contiguous, because pointers to chunks have no checksum.
+  /// Reserves the space of the variable in the file. The values are not compressed, because zlib would save half of the
+  /// file but take longer than the rest of writing a table. They are contiguous, because pointers to chunks have no
+  /// checksum.
   Hdf5Handle define(const char* name, hid_t type, const std::vector<hsize_t>& shape, const void* fill,
                     H5D_alloc_time_t allocation = H5D_ALLOC_TIME_EARLY) const {
     const Hdf5Handle creation = take(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     check(H5Pset_attr_creation_order(creation.id(), kOrdered));
     check(H5Pset_obj_track_times(creation.id(), false));
-    // Filling would write each variable twice. HDF5 requires it for texts of variable length.
+    // Filling the space would write each variable twice. HDF5 requires filling for texts of variable length.
     if (H5Tis_variable_str(type) <= 0) check(H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER));
     check(H5Pset_alloc_time(creation.id(), allocation));
     if (fill) check(H5Pset_fill_value(creation.id(), type, fill));
@@ -168,10 +169,10 @@ class Writer {
   Hdf5Handle file_;
 };
 
-/// Stores a text as a variable, whose dimension is the length of the text.
+/// Stores a text as a variable of characters, whose dimension is the length of the text.
 void put_long_text(const Writer& writer, const std::string& name, const std::string& text) {
   const std::vector<hsize_t> shape = {text.size()};
-  const Hdf5Handle length =  // never written, so that it takes no space in the file
+  const Hdf5Handle length =  // this variable is never written, so that it takes no space
       writer.define((name + "_length").c_str(), H5T_IEEE_F32BE, shape, nullptr, H5D_ALLOC_TIME_LATE);
   // The netCDF library marks a dimension without coordinates by this text and the length in ten characters.
   std::string digits = std::to_string(text.size());
@@ -200,7 +201,8 @@ void put_attributes(const Writer& writer, const TableHead& head) {
   if (const std::string data = spectral_data_of(head); !data.empty()) put_more(writer, {{kSpectralData, data}});
 }
 
-/// `along`: dimension of the coordinate, or an empty handle for a single value; null if the coordinate is a dimension.
+/// Writes a coordinate. `along`: its dimension, or an empty handle for a single value; null if it is a dimension
+/// itself.
 template <class Described>
 Hdf5Handle put_coordinate(const Writer& writer, const Described& described, const std::vector<double>& values,
                           const Hdf5Handle* along = nullptr) {
@@ -227,7 +229,7 @@ Hdf5Handle put_labels(const Writer& writer, const TableHead& head, Axis axis) {
   return variable;
 }
 
-using AxisVariables = AxisArray<Hdf5Handle>;  ///< an absent axis has an empty handle
+using AxisVariables = AxisArray<Hdf5Handle>;  ///< the handle of an absent axis is empty
 
 AxisVariables put_axes(const Writer& writer, const TableHead& head) {
   AxisVariables axes;
@@ -269,7 +271,7 @@ std::uint64_t offset_of(const Writer& writer, const Hdf5Handle& variable) {
   return offset;
 }
 
-/// Returns the offset of the values. `qualifiers`: names of variables such as its error or the status, or "".
+/// Returns the offset of the variable's values. `qualifiers`: names of the variables with its error and status, or "".
 template <class Described>
 std::uint64_t put_variable(const Writer& writer, const TableHead& head, const AxisVariables& axes,
                            const Described& described, const std::string& units, const char* qualifiers,
@@ -313,7 +315,7 @@ std::uint64_t most_bytes(const TableLayout& layout) {
   return numbers * sizeof(double) + bytes_of(head.attributes) + spectral_data_of(head).size() + kMostOverhead;
 }
 
-/// Refuses a file that is longer than the system allows, because HDF5 crashes if a file cannot grow.
+/// Refuses a file longer than the system allows, because HDF5 would crash when the file cannot grow.
 void check_room(const AtomicFile& file, std::uint64_t bytes) {
   rlimit limit{};
   if (::getrlimit(RLIMIT_FSIZE, &limit) != 0 || bytes <= limit.rlim_cur) return;
@@ -328,7 +330,7 @@ struct TableStore::Impl {
   AtomicFile& file;
   MemoryFile memory;
   Writer writer{memory};
-  std::vector<std::uint64_t> offsets;  ///< where the values of each variable begin, in the order of for_each_variable
+  std::vector<std::uint64_t> offsets;  ///< offset of the values of each variable, in the order of for_each_variable
 
   Impl(TableLayout of_file, AtomicFile& of_table)
       : layout(std::move(of_file)), file(of_table), memory(of_table.path().string()) {
@@ -349,7 +351,7 @@ struct TableStore::Impl {
     if (layout.has_status) offsets.push_back(put_status(writer, head, axes));
   }
 
-  /// Calls use(offset, values) for each run of values that are consecutive in a part and in the file.
+  /// Calls use(offset, values) for each run of values that follow each other both in a part and in the file.
   template <class Values, class Use>
   void each_run(Values& part, const PerAxis& first, const Use& use) const {
     std::size_t variable = 0;
@@ -362,7 +364,7 @@ struct TableStore::Impl {
     });
   }
 
-  /// Writes all bytes of the file except the values.
+  /// Writes all bytes of the file except those of the values.
   void write_gaps() {
     writer.check(H5Fflush(writer.file().id(), H5F_SCOPE_GLOBAL));
     std::vector<std::pair<std::uint64_t, std::uint64_t>> values;
@@ -410,7 +412,7 @@ TableValues TableStore::read(const TableBox& box) const {
 std::optional<ValueSums> TableStore::measured(const TableBox& box) const {
   try {
     return sums_of(read(box), impl_->layout, box.first);
-  } catch (const IoError&) {  // for example because the file is cut short
+  } catch (const IoError&) {  // for example if the file was cut short
     return std::nullopt;
   }
 }

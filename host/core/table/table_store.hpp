@@ -10,8 +10,8 @@
 namespace dolp {
 
 /// Writes a NetCDF-4 table whose values may come in any order. Checksums of HDF5 protect names, shapes and attributes;
-/// the hash protects the values. HDF5 makes everything except the values, in memory, because it crashes if a disk is
-/// full. A text that is too long for an attribute becomes a variable of characters with the attribute's name.
+/// the table's hash protects the values. HDF5 makes everything except the values in memory, because it crashes if a
+/// disk is full. A text that is too long for an attribute becomes a variable of characters with the attribute's name.
 class TableStore {
  public:
   /// `file` must outlive the object. The constructor writes nothing to it.
@@ -21,13 +21,13 @@ class TableStore {
   TableStore& operator=(const TableStore&) = delete;
   ~TableStore();
 
-  /// Writes a part. Returns its sums, for the caller to add up. Errors: IoError, Cancelled.
+  /// Writes a part. Returns the checksums of the part, for the caller to add up. Errors: IoError, Cancelled.
   ValueSums write(const TableValues& part, const PerAxis& first);
-  /// Reads a written part. Errors: IoError.
+  /// Reads a part that was written. Errors: IoError.
   TableValues read(const TableBox& box) const;
-  /// The sums of a part that the file contains; nullopt if the part cannot be read.
+  /// The checksums of a part as the file contains it; nullopt if the part cannot be read.
   std::optional<ValueSums> measured(const TableBox& box) const;
-  /// Adds attributes and writes everything except the values. `sums`: sums over all values. Errors: IoError, Cancelled.
+  /// Adds attributes and writes all except the values. `sums`: checksums of all parts. Errors: IoError, Cancelled.
   void finish(std::vector<Attribute> more, const ValueSums& sums);
 
  private:

@@ -22,9 +22,9 @@ struct Integral {
 };
 
 struct Goal {
-  double relative = 1e-9;        ///< required error of each integral, divided by the integral's scale
-  std::size_t max_panels = 400;  ///< the quadrature stops at this number and returns the error reached
-  int subdivisions = 1;          ///< equal parts of each first panel; more parts give a different, finer rule
+  double relative = 1e-9;        ///< required error of each integral, divided by its scale
+  std::size_t max_panels = 400;  ///< at this number of panels the quadrature stops and returns the error reached
+  int subdivisions = 1;          ///< panels between two break points at first; more panels make another, finer rule
 };
 
 /// The ends of the first panels: both ends of the interval, and all break points between them.
@@ -44,8 +44,8 @@ class Breaks {
   std::vector<double> points_;
 };
 
-/// 21-point Kronrod rule. The error is the difference from the 10-point Gauss rule in it, plus rounding: very
-/// pessimistic for smooth integrands, but the usual sharper estimate fails for others. Source: Boost.Math.
+/// 21-point Kronrod rule. The error is the difference from the 10-point Gauss rule in it, plus rounding. It is far too
+/// large for smooth integrands, but the usual sharper estimate fails for others. Source: Boost.Math.
 template <std::size_t N, class Integrand>
 Integral<N> kronrod_panel(const Integrand& integrand, double low, double high) {
   using Kronrod = boost::math::quadrature::gauss_kronrod<double, 21>;
@@ -77,7 +77,7 @@ Integral<N> kronrod_panel(const Integrand& integrand, double low, double high) {
   return result;
 }
 
-/// An interval as the image of [0, 1] under s -> s^2 (3 - 2 s), which makes roots and 3/2 powers at its ends smooth.
+/// Maps s in [0, 1] to an interval by s^2 (3 - 2 s), which makes roots and 3/2 powers at both ends smooth.
 struct Stretch {
   double low;
   double high;
@@ -119,7 +119,7 @@ Integral<N> sum_of(const std::vector<Panel<N>>& panels) {
   return total;
 }
 
-/// Each error is divided by its scale. A component with infinite scale does not count.
+/// The largest of the errors, each divided by its scale. A component with an infinite scale does not count.
 template <std::size_t N>
 double scaled_error(const Values<N>& error, const Values<N>& scale) {
   double worst = 0.0;
@@ -129,7 +129,7 @@ double scaled_error(const Values<N>& error, const Values<N>& scale) {
   return worst;
 }
 
-/// Halves the worst panel until all errors are within `goal.relative` times the scales, or until `goal.max_panels`.
+/// Halves the worst panel until all errors are within `goal.relative` times their scales, or at `goal.max_panels`.
 template <std::size_t N, class Integrand, class Scale>
 Integral<N> integrate(const Integrand& integrand, const Breaks& breaks, const Goal& goal, const Scale& scale) {
   const std::vector<double> points = breaks.sorted();

@@ -8,7 +8,7 @@
 
 namespace dolp::reference {
 
-/// Complex reflection amplitudes, and absorptances without cancellation.
+/// Complex reflection amplitudes, and absorptances that lose no digits by cancellation.
 struct FresnelCoefficients {
   std::complex<double> r_s;
   std::complex<double> r_p;
@@ -16,15 +16,14 @@ struct FresnelCoefficients {
   double absorbed_p = 0.0;  ///< 1 - |r_p|^2
 };
 
-/// beta is the angle from the facet normal. At normal incidence r_p = -r_s.
+/// beta is the angle of incidence on the facet. At normal incidence r_p = -r_s.
 FresnelCoefficients fresnel(const FacetOptics& optics, double cos_beta);
 
-/// Amplitudes of a medium under films, from the characteristic matrices of the films, in any number type.
-///
+/// Reflection amplitudes of a medium under films, from the characteristic matrices of the films, in any number type.
 /// Equation: the tangential fields (E, H) above a film are [cos d, -i sin d / y; -i y sin d, cos d] times the fields
-/// below it. Here q = sqrt(N^2 - sin^2 beta), d = 2 pi q thickness, and y is q for s and q / N^2 for p. The fields of
-/// the medium are (1, y). Above all films r = (y_0 E - H) / (y_0 E + H). Each matrix is scaled with e^(i d), which
-/// cancels in r and keeps thick absorbing films finite.
+/// below it. Here q = sqrt(N^2 - sin^2 beta), d = 2 pi q thickness, and y is q for s and q / N^2 for p. In the medium
+/// the fields are (1, y). Above all films r = (y_0 E - H) / (y_0 E + H). Each matrix is scaled with e^(i d), which
+/// cancels in r and keeps the matrices of thick absorbing films finite.
 /// Source: Born and Wolf, Principles of Optics, section 1.6.2.
 template <class Number, class Real>
 Amplitudes<Number> stack_amplitudes(const FacetOptics& optics, const Real& cos_beta, const Real& sin2_beta) {

@@ -1,8 +1,6 @@
 // A beam in a symmetric V-groove, followed from facet to facet and cut at the rims.
-//
-// Axes: u across the groove, v along it, z upward. The origin is the middle of the aperture. Facet A descends from the
-// rim at u = -cos(alpha) to the apex at u = 0, z = -sin(alpha), facet B from the rim at u = +cos(alpha). Both have
-// length 1.
+// Axes: u across the groove, v along it, z upward, from the middle of the aperture. Both facets have length 1: facet A
+// from the rim at u = -cos(alpha) to the apex at u = 0, z = -sin(alpha), facet B from the rim at u = +cos(alpha).
 #pragma once
 
 #include <algorithm>
@@ -19,18 +17,17 @@ struct Groove {
 
 enum class Facet { kA, kB };
 
-/// The part of a parallel beam that enters through the whole aperture and meets one facet first.
-///
-/// Its flux is per unit of length along the groove. The beams that meet A first and B first have the flux 2 cos(alpha)
-/// cos(theta) together. On a facet the beam covers an interval. The edge nearer to the apex is followed as a ray. The
-/// other edge is flux / cos(beta) away, because reflection keeps the flux. Above the rim the beam misses the facet.
+/// The part of a parallel beam that enters through the whole aperture and meets facet `first` first.
+/// Its flux is per unit of length along the groove. Together with the part for the other facet it is 2 cos(alpha)
+/// cos(theta). On a facet the beam covers an interval, whose end nearer to the apex is followed as a ray, the edge. The
+/// other end is flux / cos(beta) away, because reflection keeps the flux. Light above the rim misses it.
 template <class Real>
 class GrooveBeam {
  public:
   /// `omega`: unit vector toward the source, omega[2] > 0.
   GrooveBeam(const Groove<Real>& groove, const Vector<Real>& omega, Facet first)
       : groove_(groove), side_(first == Facet::kA ? Real(-1) : Real(1)), k_(scaled(Real(-1), omega)) {
-    // Where the ray to the apex crosses the aperture. Rays on A's side of it meet A first.
+    // The ray that hits the apex crosses the aperture at u = to_apex. Rays nearer to the rim of A meet A first.
     const Real to_apex = groove.sin_alpha * omega[0] / omega[2];
     const Real inside = std::clamp<Real>(to_apex, -groove.cos_alpha, groove.cos_alpha);
     meets_apex_ = inside == to_apex;
@@ -40,14 +37,14 @@ class GrooveBeam {
     if (land() <= 0) flux_ = 0;
   }
 
-  /// Flux on the current facet; 0 when all light has left.
+  /// Flux on the current facet; 0 when all light has left the groove.
   const Real& flux() const { return flux_; }
   /// Direction toward the current facet or, when all light has left, away from the groove.
   const Vector<Real>& direction() const { return k_; }
   /// Outward normal of the current facet.
   Vector<Real> normal() const { return {-side_ * groove_.sin_alpha, Real(0), groove_.cos_alpha}; }
 
-  /// Reflects the beam into `k_out` and moves to the other facet. Returns the flux that leaves the groove instead.
+  /// Reflects the beam into `k_out`, toward the other facet. Returns the flux that misses that facet and leaves.
   Real reflect(const Vector<Real>& k_out) {
     const Real before = flux_;
     k_ = k_out;
@@ -57,14 +54,14 @@ class GrooveBeam {
   }
 
  private:
-  // Moves the edge nearer to the apex along the beam to the facet on `side_`. Returns the flux between edge and rim.
+  // Follows the edge of the beam, along k_, to the facet on `side_`. Returns the flux that fits between edge and rim.
   Real land() {
     const Vector<Real> n = normal();
     const Real cos_beta = -dot(k_, n);
     if (cos_beta <= 0) return 0;
     const Vector<Real> rim{side_ * groove_.cos_alpha, Real(0), Real(0)};
     const Vector<Real> down{-side_ * groove_.cos_alpha, Real(0), -groove_.sin_alpha};
-    Real depth = 1;  // distance of the edge from the rim, along the facet
+    Real depth = 1;  // distance along the facet from its rim to the edge of the beam
     if (!meets_apex_) {
       const Vector<Real> from_rim = sum(edge_, scaled(Real(-1), rim));
       const Vector<Real> hit = sum(from_rim, scaled(Real(dot(from_rim, n) / cos_beta), k_));

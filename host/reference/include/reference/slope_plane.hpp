@@ -1,9 +1,8 @@
-// Integrals over the slopes of the facets, for integrands that bend along unknown curves.
-//
-// A slope is given by its length t and by the angle chi with sin(chi) = cos(phi), from the normal of the plane of
-// incidence. An integrand covers two facets at once: A at the azimuth phi, and B at phi + 180 degrees. The plane of
-// incidence is a plane of symmetry, so chi runs only from 0 to pi/2. The bends of the integrand are detected: a number
-// `regime` encodes on which side of each bend a slope lies, and bisection finds where this number changes.
+// Integrals over the slopes of the facets, for integrands that bend sharply along unknown curves.
+// A slope is given by its length t and by the angle chi from the normal of the plane of incidence; sin(chi) = cos(phi).
+// An integrand covers two facets: A at the azimuth phi, and B at phi + 180 degrees. The plane of incidence is a plane
+// of symmetry, so chi runs only from 0 to pi/2. The bends of the integrand are detected: a number `regime` encodes on
+// which side of each bend a slope lies, and bisection finds where this number changes.
 #pragma once
 
 #include <algorithm>
@@ -36,12 +35,12 @@ inline SlopePoint slope_point(double t, double chi_rad) { return {t, std::sin(ch
 
 using Electric = std::array<std::complex<double>, 3>;
 
-/// The axes are those of a groove: u across it, at the azimuth phi from the plane of incidence, v along it, z up.
+/// The view in the axes of a groove: u across it, at the azimuth phi from the plane of incidence, v along it, z up.
 inline Vector<double> toward_view(const SlopePoint& point, const Zenith& view) {
   return {view.sin * point.sin_chi, -view.sin * point.cos_chi, view.cos};
 }
 
-/// Electric vectors of two waves of unit amplitude toward k, with s = k x z (at theta = 0 its limit) and p = k x s.
+/// Electric vectors of an s and a p wave of unit amplitude along k, with s = k x z (at theta = 0 the limit), p = k x s.
 struct UnitLight {
   Electric from_s;
   Electric from_p;
@@ -60,14 +59,14 @@ inline double reflect(const Bounce<double>& b, const FresnelCoefficients& r, Ele
   return std::norm(incident.s) * r.absorbed_s + std::norm(incident.p) * r.absorbed_p;
 }
 
-/// The angles beta of total reflection and of the (pseudo-)Brewster minimum.
+/// The angles beta at which total reflection begins and at which R_p has its (pseudo-)Brewster minimum.
 class SpecialAngles {
  public:
   explicit SpecialAngles(const FacetOptics& constants)
       : brewster_(1.0 / std::hypot(1.0, constants.index.n, constants.index.k)),
         critical_(constants.index.n < 1.0 ? std::sqrt(1.0 - constants.index.n * constants.index.n) : 0.0) {}
 
-  /// The interval between special angles that contains cos(beta): 0 to 3.
+  /// Number, 0 to 3, of the interval between the special angles in which beta lies.
   std::uint64_t side(double cos_beta) const {
     return (cos_beta < brewster_ ? 1U : 0U) + (cos_beta < critical_ ? 2U : 0U);
   }
@@ -77,24 +76,24 @@ class SpecialAngles {
   double critical_;
 };
 
-/// A number for each slope. It differs between slopes on different sides of a bend.
+/// A number for each slope. Slopes on different sides of a bend of the integrand have different numbers.
 using Regime = std::function<std::uint64_t(const SlopePoint&)>;
 
-/// Steps of the scan of chi in addition to a dozen equal steps.
+/// Steps of a scan of chi that are added to a dozen equal steps.
 struct ScanSteps {
-  /// Equal steps of the view's zenith in the plane across the groove, per half-angle gamma of the groove.
+  /// Steps, equal in the view's zenith in the plane across the groove; their number per half-angle gamma of the groove.
   double per_gamma = 0.0;
   int halvings = 0;  ///< steps toward chi = 0, each half as long as the previous one
 };
 
-/// Finds the bends of the integrand for one view: computes the regime at many slopes, then bisects where it changes.
+/// Finds the bends of the integrand for one view. Computes the regime at many slopes, then bisects where it changes.
 class RegimeScan {
  public:
   RegimeScan(const Zenith& view, double theta_rad, const ScanSteps& steps, Regime regime)
       : view_(view), theta_rad_(theta_rad), steps_(steps), regime_(std::move(regime)) {}
-  /// Break points in (0, pi/2) at one t. If there are too many, only those of a thin layer.
+  /// Break points of chi in (0, pi/2) at slope t. If there are too many, only those for a thin layer next to chi = 0.
   std::vector<double> chi_breaks(double t) const;
-  /// Break points up to `end`: the values of t at which a bend begins or ends at chi = 0 or pi/2.
+  /// Break points of t up to `end`: slopes at which a bend begins or ends at chi = 0 or pi/2.
   std::vector<double> t_breaks(double width, double end) const;
 
  private:
@@ -107,23 +106,23 @@ class RegimeScan {
 template <std::size_t N>
 struct SlopeTask {
   std::function<Values<N>(const SlopePoint&)> integrand;
-  std::function<Values<N>(const Values<N>&)> scales;  ///< scales to which Goal::relative refers
-  double steepest;                                    ///< upper end of t
-  double bends_end;                                   ///< bends are searched up to this t, at most `steepest`
-  /// Integrals over chi with less weight per v than this may have the absolute error of integrals with this weight. 0
-  /// if integrals may grow with t.
+  std::function<Values<N>(const Values<N>&)> scales;  ///< scales of the errors, see Goal::relative
+  double steepest;                                    ///< upper end of the integral over t
+  double bends_end;                                   ///< bends are searched up to this t, which is at most `steepest`
+  /// Where the weight of v is below this, the integral over chi may have the same weighted error as at this weight. 0
+  /// if the integral over chi may grow with t.
   double thin_weight = 0.0;
   std::function<double()> work = [] { return 0.0; };  ///< work done so far, in any unit
   double most_work = 1.0;                             ///< after this much work no integral is refined
 };
 
-/// Integrals of N functions: int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi. After these N values follow N others,
-/// the integrated errors of the inner integrals. `expected` has roughly the expected values.
+/// Integrals of N functions, with the slope density P: int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi. After the N
+/// integrals come N others: the integrated errors of the integrals over chi. `expected`: rough values of the first N.
 template <std::size_t N>
 Integral<2 * N> integrate_slopes_of(const SlopeTask<N>& task, const Slopes& slopes, const RegimeScan& scan,
                                     const Refinement& refinement, const Values<N>& expected) {
   constexpr double kInnerShare = 0.02;
-  constexpr double kInnerFloor = 4e-15;  // the rounding of a Kronrod panel is 1e-15 of its magnitude
+  constexpr double kInnerFloor = 4e-15;  // a Kronrod panel has a rounding error of 1e-15 of its magnitude
   const auto is_tired = [&] { return task.work() > task.most_work; };
   Values<N> boundless;
   boundless.fill(std::numeric_limits<double>::infinity());

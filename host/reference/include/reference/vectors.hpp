@@ -44,10 +44,10 @@ struct Bounce {
   Vector<Real> k_out;
 };
 
-/// At normal incidence s is `s_at_normal`, a unit vector in the facet; any s would do, because r_p = -r_s.
+/// At normal incidence s is `s_at_normal`, a unit vector in the facet. Any other would do, because r_p = -r_s.
 template <class Real>
 Bounce<Real> bounce(const Vector<Real>& k, const Vector<Real>& normal, const Vector<Real>& s_at_normal) {
-  constexpr double kNormal = 1e-30;  // below this sin^2 beta the direction of s is only rounding
+  constexpr double kNormal = 1e-30;  // below this sin^2 beta the direction of s is only rounding error
   Bounce<Real> b;
   b.cos_beta = -dot(k, normal);
   b.k_out = sum(k, scaled(Real(2 * b.cos_beta), normal));
@@ -69,7 +69,7 @@ Amplitudes<Complex> components(const Bounce<Real>& b, const std::array<Complex, 
   return {b.s[0] * e[0] + b.s[1] * e[1] + b.s[2] * e[2], b.p_in[0] * e[0] + b.p_in[1] * e[1] + b.p_in[2] * e[2]};
 }
 
-/// The electric vector after reflection, from its components before it and the amplitude coefficients `r`.
+/// The electric vector after reflection. `incident`: its components before; `r`: reflection amplitudes.
 template <class Real, class Complex>
 std::array<Complex, 3> reflected(const Bounce<Real>& b, const Amplitudes<Complex>& incident,
                                  const Amplitudes<Complex>& r) {

@@ -41,7 +41,7 @@ double cusp_digits(Distribution distribution, Masking masking, const SlopeShape&
 
 using RuleNodes = std::vector<std::array<double, 2>>;  // (abscissa, weight) of each node
 
-/// Ascending nodes on [-1, 1]. Accuracy: 1e-15 (tests/compute/plan_test.cpp, polynomials of degree 2 * order - 1).
+/// Ascending nodes on [-1, 1]. Accuracy: 1e-15 (tests/compute/plan/plan_test.cpp, polynomials of degree 2 * order - 1).
 RuleNodes gauss_legendre(int order);
 
 /// The sections of physics/quadrature.glsl, each with the orders 1 to `largest_order`. The result stays valid.

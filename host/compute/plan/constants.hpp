@@ -114,7 +114,8 @@ inline constexpr double kLeastShareOfTolerance = 0.1;
 /// reflected light: the last bounces may be grazing, and then even weak reflectors reflect everything.
 inline constexpr double kGrooveRoundings = 4.0;
 /// Error of treating several bounces in a groove as one, divided by cos(theta) and by the share of such grooves. From
-/// kVeryManyBounces bounces kVeryManyBouncesError holds. Fitted to the steep cases of tests/compute/evaluate/grooves_test.cpp.
+/// kVeryManyBounces bounces kVeryManyBouncesError holds. Fitted to the steep cases of
+/// tests/compute/evaluate/grooves_test.cpp.
 inline constexpr double kManyBouncesError = 1e-3;
 inline constexpr double kVeryManyBounces = 1024.0;
 inline constexpr double kVeryManyBouncesError = 1e-2;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws a lookup table: DOLP against theta for several sigma, and over theta and sigma where both have enough values.
+"""Draws a lookup table: DOLP against theta for several sigma, and a map over theta and sigma if both have many values.
 
 Usage: plot_table.py TABLE.nc OUT.png [--q Q] [--wavelength UM] [--temperature K] [--n N] [--k K] [--material NAME] [--band FROM-TO]
        plot_table.py TABLE.nc OUT.png --rank THETA ...   ranks the materials of a table by DOLP at this zenith
@@ -46,9 +46,9 @@ STATUS_MEANINGS = {
 RHO_TOLERANCE_NOT_MET = 16
 
 
-# Axes with numbers, and their symbols. The picture shows one value of each.
+# Axes with numbers, and the symbols of these axes. The picture shows one value of each axis.
 SYMBOLS = {"q": "q", "wavelength": "λ", "temperature": "T", "n": "n", "k": "k"}
-NAMED = ("material", "band")  # axes with names; the picture shows one value of each
+NAMED = ("material", "band")  # axes with names; the picture shows one name of each axis
 UNITS = {"wavelength": " µm", "temperature": " K", "band": " µm"}
 KEYS = {"temperature": ("emission", "temperature_K"), "q": ("surface", "q"), "wavelength": ("spectrum", "wavelength_um"), "n": ("surface", "n"), "k": ("surface", "k"),
         "sigma": ("surface", "sigma"), "wind_m_s": ("surface", "wind_m_s")}  # keys of the scene's values on these axes
@@ -60,7 +60,7 @@ def text_of(dataset, name):
 
 
 def scene_part(dataset, part):
-    """The keys of one part of the scene, such as surface, after its overrides. Empty if the texts are not TOML."""
+    """The keys of one part of the scene, such as surface, with the overrides applied. Empty if a text is not TOML."""
     try:
         keys = tomllib.loads(text_of(dataset, "scene")).get(part, {})
         for line in text_of(dataset, "scene_overrides").splitlines():
@@ -88,7 +88,7 @@ def index_in_scene(dataset, axis):
 
 
 def title_of(dataset):
-    """The scene's title, with the wavelengths, and without the scene's wind if the table has an axis of winds."""
+    """The scene's title with the scene's spectrum. Without the scene's wind if the table has an axis of winds."""
     title = re.sub(r"[, ]*[\d.]+( *[-–] *[\d.]+)? *[uµ]m$", "", text_of(dataset, "title"))
     if "wind_m_s" in dataset.variables:
         title = re.sub(r"[, ]*wind [\d.]+ m/s", "", title)
@@ -148,7 +148,7 @@ class Slice:
             return data[np.ix_(rows, columns)]
 
         self.dolp = 100.0 * values("dolp", np.nan)
-        if "stokes_i" in dataset.variables:  # omits DOLP at 90 degrees where it is a limit and I is NaN
+        if "stokes_i" in dataset.variables:  # omits DOLP at 90 degrees if it is a limit, without I
             self.dolp[np.isnan(values("stokes_i", np.nan))] = np.nan
         status = values("status", 0) if "status" in dataset.variables else np.zeros(self.dolp.shape, int)
         self.status = status & ~RHO_TOLERANCE_NOT_MET  # DOLP may meet its tolerance even if rho does not
@@ -169,7 +169,7 @@ class Slice:
         return promised.max() if promised.size else None
 
     def largest(self):
-        """End of the DOLP scale: SHOWN_SHARE_PERCENT of the entries without a status lie below it."""
+        """End of the DOLP scale: SHOWN_SHARE_PERCENT of the entries with status 0 lie below this end."""
         trusted = self.dolp[(self.status == 0) & np.isfinite(self.dolp)]
         shown = trusted if trusted.size else self.dolp[np.isfinite(self.dolp)]
         return max(np.percentile(shown, SHOWN_SHARE_PERCENT), SMALLEST_SPAN_PERCENT) if shown.size else 1.0
@@ -192,7 +192,7 @@ def cell_edges(centres):
 
 
 def highest_peak(curve):
-    """The largest local maximum of the curve; 0 without one."""
+    """The largest local maximum of the curve; 0 if there is none."""
     known = curve[np.isfinite(curve)]
     is_peak = (known[1:-1] > known[:-2]) & (known[1:-1] >= known[2:])
     return max(known[1:-1][is_peak], default=0.0)
@@ -242,7 +242,6 @@ def draw_flags(axes, table):
 
 
 def draw_contours(axes, table):
-    """Draws lines of equal DOLP."""
     shown = np.ma.masked_where((table.status != 0) | ~np.isfinite(table.dolp), table.dolp)
     if shown.count() == 0 or shown.max() - shown.min() < SMALLEST_SPAN_PERCENT:
         return

@@ -1,9 +1,8 @@
-"""The model's curves for figures 4-7 of the paper, computed by dolp, and the numbers behind the paper's statements.
+"""The model's curves for figures 4-7 of the paper, computed by dolp, and numbers that check statements of the paper.
 
 The paper does not print k_s, k_d, c, q, E0 and the masking of its Gaussian curves. So each figure is computed for two
 choices of these values, called readings: `integral`, with the unchanged sample scenes, and `smith`, with other values.
-A Gaussian gets sigma / sqrt(q - 1), so that it has the same density D(0) of horizontal facets as the Cauchy
-distribution with sigma and q. Angles are in degrees, DOLP in percent.
+A Gaussian has the width sigma / sqrt(q - 1), and so the Cauchy distribution's density D(0) of horizontal facets.
 """
 import csv
 import dataclasses
@@ -31,10 +30,10 @@ VIEW_DEG = 60.0  # zenith of the view in bistatic mode
 PAPER_ANGLES_DEG = [*range(0, 60, 6), *range(60, 91, 3)]
 STEPS_PER_DEGREE = 10
 ANGLES_DEG = np.arange(90 * STEPS_PER_DEGREE + 1) / STEPS_PER_DEGREE
-MODEL_FAILS = 1 | 4 | 8  # status bits that mark where the model fails
+MODEL_FAILS = 1 | 4 | 8  # status bits: rho outside [0, 1], outside the domain, I <= 0
 
 FIGURE4_SIGMA, FIGURE4_Q, FIGURE4_THETA_I_DEG = 0.3, 2.0, 30.0
-GRAZING_THETA_I_DEG = 85.0  # angle of incidence at which G of the masking `integral` bends sharply over the view zenith
+GRAZING_THETA_I_DEG = 85.0  # angle of incidence at which G (`integral`) over the view zenith has a sharp bend
 GRAZING_DEG = 90.0 - 1e-6  # stands for 90 degrees, where G would be a ratio of two infinite pBRDFs
 
 
@@ -101,7 +100,6 @@ class Curve:
         return (float(ANGLES_DEG[top]), float(held[top])) if is_inside else None
 
     def fails_from(self):
-        """First angle at which the model fails, or None."""
         failing = np.flatnonzero(~self.holds())
         return float(ANGLES_DEG[failing[0]]) if failing.size else None
 
@@ -144,8 +142,8 @@ def dolp_curves(program, samples, roughened=False):
 
 
 def largest_difference(one, other, low, high):
-    """The angle in [low, high] at which the DOLP of two curves differs most, and the difference there. Only angles at
-    which the model holds for both curves count."""
+    """The angle from `low` to `high` with the largest difference of DOLP, and this difference. Leaves out angles at
+    which the model fails for a curve."""
     where = (ANGLES_DEG >= low) & (ANGLES_DEG <= high) & one.holds() & other.holds()
     apart = np.where(where, one.dolp - other.dolp, 0.0)
     worst = int(np.argmax(np.abs(apart)))

@@ -11,7 +11,6 @@ DIGITS = 6
 
 
 def plain(value):
-    """A rounded float for JSON, or None (in JSON null) if `value` is not finite."""
     return round(float(value), DIGITS) if math.isfinite(value) else None
 
 

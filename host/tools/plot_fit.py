@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
-"""Draws what `dolp fit --plot` reports: data, fit and bracket, residuals, contours of two parameters.
+"""Draws the picture of `dolp fit --plot`, which runs this program: data, fit and bracket, residuals, contours.
 
 Usage: plot_fit.py .png|.pdf|.svg < REPORT.json > PICTURE
-`dolp fit --plot PICTURE` runs this program. It needs python3-matplotlib.
-Exit status: 0 done, 2 usage or the input is not a report of a fit, 4 the picture could not be written.
+Needs python3-matplotlib. Exit status: 0 done, 2 usage or no report of a fit as input, 4 the picture cannot be written.
 """
 import json
 import re
@@ -144,7 +143,7 @@ def draw_pair(axes, report):
                   va="center", color="0.3")
         return
     x, y, growth = (np.array(contours[name], dtype=float) for name in ("x", "y", "growth"))
-    root = np.ma.masked_invalid(np.sqrt(growth))  # closer to linear than `growth`, which makes contours smoother
+    root = np.ma.masked_invalid(np.sqrt(growth))  # the root is closer to linear, so contours are smoother
     widths = (2.0, 1.0)
     axes.contour(x, y, root, np.sqrt(contours["levels"]), colors=COLOURS[0], linewidths=widths)
     for level, region, width in zip(contours["levels"], REGIONS, widths):
@@ -186,7 +185,7 @@ def alike(report):
 
 
 def title_of(report):
-    """The scene's title, in which the wavelengths of the data replace the wavelengths of the scene."""
+    """The scene's title without its wavelengths. If the data have no wavelengths, the scene's spectrum is added."""
     title = re.sub(r"[, ]*[\d.]+( *[-–] *[\d.]+)? *[uµ]m$", "", report["title"])
     if all(point["wavelength_um"] is None for point in report["points"]):
         ends = dict.fromkeys(f"{end:g}" for end in report["spectrum_um"])

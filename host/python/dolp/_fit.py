@@ -108,16 +108,16 @@ def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, compa
         evaluator: str = "vulkan", device: str = "") -> Fit:
     """Fits values of a scene's keys to measured data. Also computes confidence intervals.
 
-    `data`: a CSV file, or columns by name (a dictionary, a Dataset, a pandas DataFrame): theta_deg or theta_i_deg; dolp,
-    q_over_i (signed) or emissivity_s, emissivity_p; uncertainty (one standard deviation), wavelength_um. A list
-    contains several data sets. Each item is data, or a pair (data, overrides of the scene for these data).
+    `data`: a CSV file, or columns by name (a dictionary, a Dataset, a pandas DataFrame). Needs theta_deg (theta_i_deg)
+    and one of dolp, q_over_i (signed) and the emissivities (emissivity_s, emissivity_p). May have uncertainty (one
+    standard deviation) and wavelength_um. For several data sets, `data` is a list. Each item of the list is the data,
+    or a pair (data, overrides of the scene for these data).
     `vary`: (low, high) or (low, high, start) for each key to fit.
     `compare`: lists of values for other keys. One model for each combination of these values is fitted and ranked.
     `loss`: squares, or for data with outliers one of huber, soft-l1, cauchy and tukey.
     `model_error`: none, or bracket. With bracket, the true value at each point may lie anywhere between dolp_low and
     dolp_high. With none, dolp.ModelWarning appears if single scattering is not accurate enough (status 32).
-    `plot`: a .png, .pdf or .svg file for the picture of data, model, residuals and contours that `dolp fit --plot`
-    draws.
+    `plot`: a .png, .pdf or .svg file, to which the fit draws data, model, residuals and contours.
 
     >>> truth = dolp.evaluate(scene, theta_deg=np.arange(5, 85, 5), n=1.6)
     >>> data = {"theta_deg": truth.theta, "dolp": truth.dolp, "uncertainty": np.full(16, 0.001)}

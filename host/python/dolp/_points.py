@@ -23,8 +23,6 @@ KEY_ATTRIBUTES = {key: {"long_name": meaning, "units": unit} for key, unit, _, _
 
 
 class Frame(NamedTuple):
-    """Shape, dimensions and coordinates of a result."""
-
     shape: tuple[int, ...]
     dims: tuple[Hashable, ...]
     coordinates: dict[Hashable, xr.Variable]

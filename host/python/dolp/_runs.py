@@ -109,11 +109,11 @@ def lookup(table: Path | xr.Dataset, **points: Array) -> xr.Dataset:
     """Values between the entries of a table. Their error estimates include the error of interpolation.
 
     `table`: a file, or a Dataset from `table` or from such a file, or a part of a Dataset. A part may have fewer values
-    of an axis, such as `t.sel(k=0.1)`, and fewer variables; it needs dolp, the Stokes parameters, error_estimate,
-    status and the attribute scene. Dimensions may have any names and order, for example after
+    of an axis, such as `t.sel(k=0.1)`, and fewer variables, but must have dolp, the Stokes parameters, error_estimate,
+    status and the attribute `scene`. Dimensions may have any names and order, for example after
     `t.swap_dims(sigma="wind_m_s")`. Axes with values that were not computed, such as after `t.interp(theta=33)`, give
     an InputError. The attribute values_hash belongs to the whole table; a lookup checks it in a file, but not in a
-    Dataset. So read a file with a part of a table by `xarray.load_dataset`.
+    Dataset. If a file has only a part of a table, read it by `xarray.load_dataset`.
     `points`: as for `evaluate`. You can leave out an axis of the table that has only one value.
     The file of the last lookup stays in memory. A Dataset is copied in each call.
 

@@ -148,7 +148,7 @@ class Slice:
             return data[np.ix_(rows, columns)]
 
         self.dolp = 100.0 * values("dolp", np.nan)
-        if "stokes_i" in dataset.variables:  # omits DOLP at 90 degrees if it is a limit, without I
+        if "stokes_i" in dataset.variables:  # leaves out limits of DOLP at 90 degrees, where I is NaN
             self.dolp[np.isnan(values("stokes_i", np.nan))] = np.nan
         status = values("status", 0) if "status" in dataset.variables else np.zeros(self.dolp.shape, int)
         self.status = status & ~RHO_TOLERANCE_NOT_MET  # DOLP may meet its tolerance even if rho does not
@@ -317,7 +317,7 @@ def draw_ranking(tables, theta, path):
 
 
 def finite(text):
-    """Reads a number. argparse uses the function's name in its messages."""
+    """Reads a finite number. Messages of argparse contain the name of this function, as in "invalid finite value"."""
     number = float(text)
     if not np.isfinite(number):
         raise ValueError

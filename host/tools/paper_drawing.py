@@ -1,4 +1,4 @@
-"""Pictures of figures 4-7 of the paper, from the curves of paper_curves.py, as small PNG files."""
+"""Draws figures 4-7 of the paper with the curves of paper_curves.py, as small PNG files."""
 import pathlib
 import sys
 

@@ -1,4 +1,4 @@
-"""Converts the points that a user gives to columns for the library, and makes the coordinates of the result."""
+"""Converts the user's points to columns for the library, and makes the coordinates of the result."""
 from __future__ import annotations
 
 import os

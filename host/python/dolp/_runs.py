@@ -1,4 +1,4 @@
-"""Tables, points, lookups, Mueller matrices and plans of scenes."""
+"""Computes tables, values at points, lookups, Mueller matrices and plans of scenes."""
 from __future__ import annotations
 
 import functools

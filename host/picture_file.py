@@ -5,10 +5,8 @@ import os
 
 
 def save(figure, path, colours=None, **how):
-    """Writes a figure to a temporary file, then renames it. `colours` limits the colours of a PNG to keep the file
-    small.
-
-    Errors: OSError that names `path`. The old file then remains unchanged.
+    """Writes a figure to a temporary file, then renames the file to `path`. `colours` limits the number of colours of
+    a PNG, to keep the file small. Errors: OSError that names `path`; an old file at `path` then remains unchanged.
     """
     target = os.path.realpath(path)  # if `path` is a symbolic link, its target is replaced
     suffix = os.path.splitext(target)[1]

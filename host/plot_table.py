@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Draws a lookup table: DOLP against theta for several sigma, and over theta and sigma where both have enough values.
+"""Draws a lookup table: DOLP against theta for several sigma, and a map over theta and sigma if both have many values.
 
 Usage: plot_table.py TABLE.nc OUT.png [--q Q] [--wavelength UM] [--temperature K] [--n N] [--k K] [--material NAME] [--band FROM-TO]
        plot_table.py TABLE.nc OUT.png --rank THETA ...   ranks the materials of a table by DOLP at this zenith
-Draws one value of each other axis: the value nearest to its option. Without the option, it draws the value nearest to
-the value in the scene, or the middle value if the scene has none; of materials and bands it draws the first. One of the
-curves has the sigma of the scene. If the table has winds, wind takes the role of sigma. Entries with a status other
-than 0 are faint in the curves and hatched grey in the map. Needs python3-netcdf4, python3-numpy and python3-matplotlib.
+From each other axis, such as q, the picture shows one value: the value nearest to the option --q. Without the option it
+is the value nearest to the scene's, or the middle value if the scene has none; of materials and bands it is the first.
+One of the curves has the scene's sigma. If the table has winds, wind takes the role of sigma. Entries whose status is
+not 0 are faint in the curves and hatched grey in the map. Needs python3-netcdf4, python3-numpy and python3-matplotlib.
 Exit status: 0 done, 2 usage or a file that is not such a table, 4 the picture could not be written.
 """
 import argparse
@@ -31,11 +31,11 @@ import picture_file  # noqa: E402
 COLOURS = "viridis"
 MOST_CURVES = 6
 CONTOURS_PERCENT = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50)
-SHOWN_SHARE_PERCENT = 97  # this share of the entries lies in the DOLP scale; a rise near grazing must not fill it
+SHOWN_SHARE_PERCENT = 97  # share of the entries inside the DOLP scale; a steep rise near grazing may lie outside
 FEW_ANGLES = 25  # with at most this many zeniths each entry gets a dot
 # Least number of values of theta and of sigma for a map. A smaller map would suggest structure that the table lacks.
 FEWEST_OF_MAP = 6
-SMALLEST_SPAN_PERCENT = 0.01  # least range of the DOLP axes, so that rounding noise does not look like a signal
+SMALLEST_SPAN_PERCENT = 0.01  # least range of the DOLP axis, so that rounding noise does not look like a signal
 STATUS_MEANINGS = {
     1: r"$\rho_s$ or $\rho_p$ outside [0, 1]",
     2: "tolerance not met",
@@ -46,12 +46,12 @@ STATUS_MEANINGS = {
 RHO_TOLERANCE_NOT_MET = 16
 
 
-# Axes with numbers, and their symbols. The picture shows one value of each.
+# Axes with numbers, and the symbols of these axes. The picture shows one value of each axis.
 SYMBOLS = {"q": "q", "wavelength": "λ", "temperature": "T", "n": "n", "k": "k"}
-NAMED = ("material", "band")  # axes with names; the picture shows one value of each
+NAMED = ("material", "band")  # axes with names; the picture shows one name of each axis
 UNITS = {"wavelength": " µm", "temperature": " K", "band": " µm"}
 KEYS = {"temperature": ("emission", "temperature_K"), "q": ("surface", "q"), "wavelength": ("spectrum", "wavelength_um"), "n": ("surface", "n"), "k": ("surface", "k"),
-        "sigma": ("surface", "sigma"), "wind_m_s": ("surface", "wind_m_s")}  # scene keys with the values of these axes
+        "sigma": ("surface", "sigma"), "wind_m_s": ("surface", "wind_m_s")}  # keys of the scene's values on these axes
 
 
 def text_of(dataset, name):
@@ -60,7 +60,7 @@ def text_of(dataset, name):
 
 
 def scene_part(dataset, part):
-    """The keys of one part of the scene, such as surface, after its overrides. Empty if the texts are not TOML."""
+    """The keys of one part of the scene, such as surface, with the overrides applied. Empty if a text is not TOML."""
     try:
         keys = tomllib.loads(text_of(dataset, "scene")).get(part, {})
         for line in text_of(dataset, "scene_overrides").splitlines():
@@ -88,7 +88,7 @@ def index_in_scene(dataset, axis):
 
 
 def title_of(dataset):
-    """The scene's title, with the wavelengths, and without the scene's wind if the table has an axis of winds."""
+    """The scene's title with the scene's spectrum. Without the scene's wind if the table has an axis of winds."""
     title = re.sub(r"[, ]*[\d.]+( *[-–] *[\d.]+)? *[uµ]m$", "", text_of(dataset, "title"))
     if "wind_m_s" in dataset.variables:
         title = re.sub(r"[, ]*wind [\d.]+ m/s", "", title)
@@ -110,8 +110,8 @@ def position_of(dataset, axis, name):
 
 
 class Slice:
-    """The part of a table at one value of every axis except theta and sigma. Theta and sigma are ascending, DOLP is in
-    percent. If the table has winds, `sigma` holds the winds."""
+    """The part of a table at one value of every axis except theta and sigma. Theta and sigma are sorted, DOLP is in
+    percent. If the table has winds, `sigma` contains the winds instead."""
 
     def __init__(self, dataset, wanted):
         """`wanted` has a value for each axis in SYMBOLS and NAMED, or None for the default."""
@@ -148,7 +148,7 @@ class Slice:
             return data[np.ix_(rows, columns)]
 
         self.dolp = 100.0 * values("dolp", np.nan)
-        if "stokes_i" in dataset.variables:  # omits limits of DOLP at 90 degrees, which have no I
+        if "stokes_i" in dataset.variables:  # leaves out limits of DOLP at 90 degrees, where I is NaN
             self.dolp[np.isnan(values("stokes_i", np.nan))] = np.nan
         status = values("status", 0) if "status" in dataset.variables else np.zeros(self.dolp.shape, int)
         self.status = status & ~RHO_TOLERANCE_NOT_MET  # DOLP may meet its tolerance even if rho does not
@@ -169,7 +169,7 @@ class Slice:
         return promised.max() if promised.size else None
 
     def largest(self):
-        """End of the DOLP scale: SHOWN_SHARE_PERCENT of the entries without a status lie below it."""
+        """End of the DOLP scale: SHOWN_SHARE_PERCENT of the entries with status 0 lie below this end."""
         trusted = self.dolp[(self.status == 0) & np.isfinite(self.dolp)]
         shown = trusted if trusted.size else self.dolp[np.isfinite(self.dolp)]
         return max(np.percentile(shown, SHOWN_SHARE_PERCENT), SMALLEST_SPAN_PERCENT) if shown.size else 1.0
@@ -192,7 +192,7 @@ def cell_edges(centres):
 
 
 def highest_peak(curve):
-    """The largest local maximum of the curve; 0 without one."""
+    """The largest local maximum of the curve; 0 if there is none."""
     known = curve[np.isfinite(curve)]
     is_peak = (known[1:-1] > known[:-2]) & (known[1:-1] >= known[2:])
     return max(known[1:-1][is_peak], default=0.0)
@@ -242,7 +242,6 @@ def draw_flags(axes, table):
 
 
 def draw_contours(axes, table):
-    """Draws lines of equal DOLP."""
     shown = np.ma.masked_where((table.status != 0) | ~np.isfinite(table.dolp), table.dolp)
     if shown.count() == 0 or shown.max() - shown.min() < SMALLEST_SPAN_PERCENT:
         return
@@ -318,7 +317,7 @@ def draw_ranking(tables, theta, path):
 
 
 def finite(text):
-    """Reads a number. argparse uses the function's name in its messages."""
+    """Reads a finite number. Messages of argparse contain the name of this function, as in "invalid finite value"."""
     number = float(text)
     if not np.isfinite(number):
         raise ValueError

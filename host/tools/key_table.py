@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints the keys of scenes as a Markdown table for the manual. Usage: key_table.py DOLP, the path of the program."""
+"""Prints the keys of scenes as a Markdown table. Usage: key_table.py DOLP, where DOLP is the path of the program."""
 import json
 import subprocess
 import sys

@@ -1,8 +1,8 @@
-"""The model's curves for figures 4-7 of the paper, computed by dolp, and the numbers behind the paper's statements.
+"""The model's curves for figures 4-7 of the paper, computed by dolp, and numbers that check statements of the paper.
 
-The paper prints neither k_s, k_d, c, q and E0 nor the masking of its Gaussian curves. So each figure is computed for
-two readings of the paper: `integral`, with the unchanged sample scenes, and `smith`, with other values. A Gaussian has
-the same D(0) as the Cauchy distribution: sigma_G = sigma / sqrt(q - 1). Angles are in degrees, DOLP in percent.
+The paper does not print k_s, k_d, c, q, E0 and the masking of its Gaussian curves. So each figure is computed for two
+choices of these values, called readings: `integral`, with the unchanged sample scenes, and `smith`, with other values.
+A Gaussian has the width sigma / sqrt(q - 1), and so the Cauchy distribution's density D(0) of horizontal facets.
 """
 import csv
 import dataclasses
@@ -30,11 +30,11 @@ VIEW_DEG = 60.0  # zenith of the view in bistatic mode
 PAPER_ANGLES_DEG = [*range(0, 60, 6), *range(60, 91, 3)]
 STEPS_PER_DEGREE = 10
 ANGLES_DEG = np.arange(90 * STEPS_PER_DEGREE + 1) / STEPS_PER_DEGREE
-MODEL_FAILS = 1 | 4 | 8  # status bits that mark where the model fails
+MODEL_FAILS = 1 | 4 | 8  # status bits: rho outside [0, 1], outside the domain, I <= 0
 
 FIGURE4_SIGMA, FIGURE4_Q, FIGURE4_THETA_I_DEG = 0.3, 2.0, 30.0
-GRAZING_THETA_I_DEG = 85.0  # angle of incidence at which G of the masking `integral` bends sharply over the view zenith
-GRAZING_DEG = 90.0 - 1e-6  # instead of 90 degrees, where both pBRDFs diverge whose ratio is G
+GRAZING_THETA_I_DEG = 85.0  # angle of incidence at which G (`integral`) over the view zenith has a sharp bend
+GRAZING_DEG = 90.0 - 1e-6  # stands for 90 degrees, where G would be a ratio of two infinite pBRDFs
 
 
 class CannotRun(Exception):
@@ -54,7 +54,7 @@ class Program:
     changes: dict = dataclasses.field(default_factory=dict)
 
     def columns(self, command, scene, settings, points, options=()):
-        """The columns that `dolp COMMAND` writes for `points`; both are dicts of columns. Errors: CannotRun."""
+        """The columns that `dolp COMMAND` writes for the columns `points`, by name. Errors: CannotRun."""
         rows = [",".join(points), *(",".join(map(repr, row)) for row in zip(*(map(float, c) for c in points.values())))]
         line = [str(self.path), command, str(ROOT / "host" / "scenes" / f"{scene}.toml"), "--points", "-", "-o", "-",
                 "--quiet", *options, *(("--evaluator", self.evaluator) if self.evaluator else ())]
@@ -75,7 +75,7 @@ class Program:
 
 @dataclasses.dataclass
 class Curve:
-    """DOLP of a sample over the zenith: of the source in bistatic mode, of the view in hemispherical mode."""
+    """DOLP of a sample over the zenith of the source (bistatic mode) or of the view (hemispherical mode)."""
 
     sample: str
     reading: str
@@ -93,14 +93,13 @@ class Curve:
         return float(self.dolp[round(theta_deg * STEPS_PER_DEGREE)])
 
     def peak(self):
-        """Angle and value of the largest DOLP. None if DOLP rises up to 90 degrees or to where the model fails."""
+        """Angle and value of the largest DOLP. None if it is at 0 or 90 degrees, or next to where the model fails."""
         held = np.where(self.holds(), self.dolp, -np.inf)
         top = int(np.argmax(held))
         is_inside = 0 < top < held.size - 1 and np.isfinite(held[top + 1])
         return (float(ANGLES_DEG[top]), float(held[top])) if is_inside else None
 
     def fails_from(self):
-        """First angle at which the model fails, or None."""
         failing = np.flatnonzero(~self.holds())
         return float(ANGLES_DEG[failing[0]]) if failing.size else None
 
@@ -113,12 +112,12 @@ def scene_value(sample, settings, key):
 
 
 def width(sigma, q, distribution):
-    """The sigma for `distribution`. With it the Gaussian has the same D(0) as the Cauchy distribution with `sigma`."""
+    """The sigma with which `distribution` has the D(0) of the Cauchy distribution with `sigma` and `q`."""
     return sigma / math.sqrt(q - 1.0) if distribution == "gaussian" else sigma
 
 
 def curve(program, sample, reading, mode, distribution, roughness_of=None):
-    """The DOLP curve of a sample. If `roughness_of` names another sample, the curve gets the sigma of that sample."""
+    """The DOLP curve of a sample, with the sigma of the sample `roughness_of` if this is not None."""
     settings = READINGS[reading] | program.changes
     q = scene_value(sample, settings, "surface.q")
     sigma = width(scene_value(roughness_of or sample, settings, "surface.sigma"), q, distribution)
@@ -143,8 +142,8 @@ def dolp_curves(program, samples, roughened=False):
 
 
 def largest_difference(one, other, low, high):
-    """The angle in [low, high] at which the DOLP of two curves differs most, and the difference there. Only angles at
-    which the model holds for both curves count."""
+    """The angle from `low` to `high` with the largest difference of DOLP, and this difference. Leaves out angles at
+    which the model fails for a curve."""
     where = (ANGLES_DEG >= low) & (ANGLES_DEG <= high) & one.holds() & other.holds()
     apart = np.where(where, one.dolp - other.dolp, 0.0)
     worst = int(np.argmax(np.abs(apart)))
@@ -177,7 +176,7 @@ class Attenuation:
         return np.diff(self.g) / np.radians(1.0 / STEPS_PER_DEGREE)
 
     def corner(self):
-        """Angle and size (1/rad) of the largest jump of dG/dtheta_r, from one-sided differences of second order."""
+        """Angle and size (1/rad) of the largest jump of dG/dtheta_r, found by one-sided differences of second order."""
         g, step = self.g, np.radians(1.0 / STEPS_PER_DEGREE)
         right = (-3.0 * g[2:-2] + 4.0 * g[3:-1] - g[4:]) / (2.0 * step)
         left = (3.0 * g[2:-2] - 4.0 * g[1:-3] + g[:-4]) / (2.0 * step)
@@ -186,7 +185,7 @@ class Attenuation:
 
 
 def attenuation(program, masking, distribution, theta_i_deg):
-    """G as the ratio of m00 (of the Mueller matrix) with and without masking. At k_d = 0 m00 is proportional to G."""
+    """The masking G: element m00 of the Mueller matrix with masking, divided by m00 without masking, for k_d = 0."""
     view = np.minimum(ANGLES_DEG, GRAZING_DEG)
     points = {"theta_i_deg": np.full(view.size, theta_i_deg), "theta_r_deg": view,
               "delta_phi_deg": np.full(view.size, 180.0)}

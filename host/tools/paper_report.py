@@ -11,7 +11,6 @@ DIGITS = 6
 
 
 def plain(value):
-    """A rounded float for JSON; null if it is not finite."""
     return round(float(value), DIGITS) if math.isfinite(value) else None
 
 
@@ -82,7 +81,7 @@ def corner_text(corner):
 
 
 def dolp_markdown(report):
-    """Markdown tables: peaks of DOLP, Cauchy minus Gaussian, angles at which aluminium exceeds steel, all DOLP."""
+    """Markdown tables of DOLP: peaks; Cauchy minus Gaussian; where aluminium exceeds steel; all values."""
     curves = report["curves"]
     column = {angle: i for i, angle in enumerate(model.PAPER_ANGLES_DEG)}
     heads = ["masking", "mode", "sample", "distribution", "peak", *(f"{angle}°" for angle in KEY_ANGLES_DEG),

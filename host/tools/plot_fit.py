@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Draws what `dolp fit --plot` reports: data, fit and bracket, residuals, contours of two parameters.
+"""Draws the picture of `dolp fit --plot`, which runs this program: data, fit and bracket, residuals, contours.
 
-Usage: plot_fit.py .png|.pdf|.svg < REPORT.json > PICTURE    `dolp fit --plot PICTURE` runs it
-Needs python3-matplotlib. Exit status: 0 done, 2 no report of a fit, 4 the picture could not be written.
+Usage: plot_fit.py .png|.pdf|.svg < REPORT.json > PICTURE
+Needs python3-matplotlib. Exit status: 0 done, 2 usage or no report of a fit as input, 4 the picture cannot be written.
 """
 import json
 import re
@@ -30,7 +30,7 @@ MARKS = ".x+^sv"
 
 
 def curves(points):
-    """For each data set, quantity and wavelength: the columns of its points as arrays, by ascending zenith."""
+    """Yields for each data set, quantity and wavelength the columns of the points, as arrays sorted by zenith."""
     found = {}
     for point in points:
         found.setdefault((point["data"], point["quantity"], point["wavelength_um"]), []).append(point)
@@ -143,7 +143,7 @@ def draw_pair(axes, report):
                   va="center", color="0.3")
         return
     x, y, growth = (np.array(contours[name], dtype=float) for name in ("x", "y", "growth"))
-    root = np.ma.masked_invalid(np.sqrt(growth))  # closer to linear than `growth`, so its contours are smoother
+    root = np.ma.masked_invalid(np.sqrt(growth))  # the root is closer to linear, so contours are smoother
     widths = (2.0, 1.0)
     axes.contour(x, y, root, np.sqrt(contours["levels"]), colors=COLOURS[0], linewidths=widths)
     for level, region, width in zip(contours["levels"], REGIONS, widths):
@@ -175,7 +175,7 @@ def caption(report):
 
 
 def alike(report):
-    """A line of the caption: how many models fit equally well, and ranges over all models with a delta AIC up to 4."""
+    """A line of the caption: the number of models that fit equally well, and the 95 % ranges of the parameters."""
     if not report.get("alike"):
         return ""
     ends = lambda interval: " to ".join("open" if end is None else f"{end:.4g}" for end in interval or ())
@@ -185,7 +185,7 @@ def alike(report):
 
 
 def title_of(report):
-    """The scene's title, in which the wavelengths of the data replace the wavelengths of the scene."""
+    """The scene's title without its wavelengths. If the data have no wavelengths, the scene's spectrum is added."""
     title = re.sub(r"[, ]*[\d.]+( *[-–] *[\d.]+)? *[uµ]m$", "", report["title"])
     if all(point["wavelength_um"] is None for point in report["points"]):
         ends = dict.fromkeys(f"{end:g}" for end in report["spectrum_um"])

@@ -52,7 +52,7 @@ def sky_exitance(program, sky, band):
 
 
 def uniform_temperature(program, band, wanted):
-    """The temperature, found by bisection, at which the uniform sky has the irradiance `wanted`."""
+    """The temperature, found by bisection, at which a uniform sky has the irradiance `wanted`."""
     low, high = 100.0, 400.0
     while high - low > 0.01:
         middle = 0.5 * (low + high)

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Draws the plots of the window: its curves, measured points and map.
+"""Draws the plots of the window of `dolp explore`, which runs this program: curves, measured points and map.
 
-Usage: plot_view.py .svg|.pdf|.png < PLOTS.json > PICTURE    the window of `dolp explore` runs it
-Needs python3-matplotlib. Exit status: 0 done, 2 no plots of the window, 4 the picture could not be written.
+Usage: plot_view.py .svg|.pdf|.png < PLOTS.json > PICTURE
+Needs python3-matplotlib. Exit status: 0 done, 2 usage or no such plots as input, 4 the picture cannot be written.
 """
 import json
 import sys
@@ -24,11 +24,10 @@ FAILING = {"color": "0.6", "linewidth": 0.8, "linestyle": "--"}
 BAND = "all bounces lie between"
 MODEL_FAILS = "the model fails here (status)"
 CONTOURS = 7
-MOST_CONTRAST = 1e3  # ratio of the largest to the smallest value of a logarithmic colour scale; the window has the same
+MOST_CONTRAST = 1e3  # largest divided by smallest value of a logarithmic colour scale, as in the window
 
 
 def numbers(values):
-    """An array with NaN for missing values."""
     return np.array([np.nan if value is None else value for value in values], dtype=float)
 
 

@@ -6,8 +6,8 @@ In each Markdown file of the repository, or only in the named files, the lines b
     <!-- generated: COMMAND -->
 and
     <!-- end of generated -->
-become the output of COMMAND, run in the repository's root. Words of COMMAND may begin with build/release/,
-which --build replaces. --check writes nothing and names the outdated parts.
+become the output of COMMAND, run in the repository's root. --build replaces build/release/ at the beginning of a word
+of COMMAND. --check writes nothing and names the outdated parts.
 Exit status: 0 done or nothing outdated, 1 --check found an outdated part, 2 a command fails or a mark has no end.
 """
 import argparse

@@ -95,7 +95,7 @@ def flag(name: str, value: Any) -> bool:
 
 
 def axis_values(name: str, values: Any) -> list[float]:
-    """The values of an axis as a list. `values` is a number or a list."""
+    """The values of an axis of numbers as a list. `values` is a number or a list."""
     if isinstance(values, str):
         raise InputError(f"{name}: {short(values)} is a text; numpy.linspace(first, last, count) makes a range of numbers")
     array = floats(name, values)
@@ -152,7 +152,7 @@ def native_values(overrides: Mapping[str, Any] | None) -> list[tuple[str, Any]]:
 
 
 def _value(key: str, value: Any) -> Any:
-    """A value of a key in a type that the library takes: None, bool, float, str, a list, or a range as a dictionary."""
+    """Converts the value of a scene key to None, bool, float, str, a list, or (for a range of numbers) a dictionary."""
     if value is None or isinstance(value, (bool, np.bool_)):
         return None if value is None else bool(value)
     if isinstance(value, (str, bytes, os.PathLike)):

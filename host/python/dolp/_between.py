@@ -1,4 +1,4 @@
-"""Lookups in a table with a scene key as axis, between the values of this key. Each value has a separate table."""
+"""Lookups in a table that has a scene key as an axis, at a number between two of the computed values of this key."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -10,20 +10,20 @@ import xarray as xr
 from ._arguments import floats
 from ._native import InputError
 
-_MOST = 5  # values of the key that are used: four give the result, the fifth gives the error estimate
+_MOST = 5  # values of the key that a lookup uses: four give the result, the fifth gives the error estimate
 _LEAST = 3  # with fewer values of the key the error estimate is infinite
-_SAFETY = 16.0  # ratio of the stated error to the change of the result by the fifth value, as kInside in core/table
+_SAFETY = 16.0  # stated error divided by the change due to the fifth value; equals kInside in core/table
 _MISSED, _RHO_MISSED = 2, 16  # status bits: DOLP, or rho, misses its tolerance
 _SMOOTH = ("stokes_i", "stokes_q", "stokes_u", "stokes_v", "rho_i", "rho_q", "albedo", "emissivity_s", "emissivity_p",
            "dolp_low", "dolp_high")
 
 
 def between_tables(table: xr.Dataset, key: str, at: Any, look_up: Callable[[xr.Dataset], xr.Dataset]) -> xr.Dataset:
-    """The results at one value of a key that is a dimension of the table, by polynomials through the four nearest
-    values.
+    """The results at the value `at` of the scene key `key`, a dimension of the table. `look_up` gives the results at
+    the four nearest values of the key, and a polynomial interpolates between these results.
 
-    The error estimate includes `_SAFETY` times the change of the result by a fifth value. Errors: InputError for a
-    value outside the table.
+    The error estimate includes `_SAFETY` times the change of the result if a fifth value is used too. Errors:
+    InputError if `at` is outside the table.
     """
     value = floats(key, at)
     if value.ndim > 0:
@@ -68,7 +68,7 @@ def between_tables(table: xr.Dataset, key: str, at: Any, look_up: Callable[[xr.D
 
 
 def _weights(values: np.ndarray, used: np.ndarray, at: float) -> np.ndarray:
-    """Weights with which the polynomial through the values at the positions `used` depends on each of `values`."""
+    """Lagrange weights of the results at `values`, for interpolation at `at`. Zero except at the positions `used`."""
     weights = np.zeros(len(values))
     for i in used:
         weights[i] = np.prod([(at - values[j]) / (values[i] - values[j]) for j in used if j != i])

@@ -28,10 +28,10 @@ class Fit:
     parameter's entry of values["parameters"] gives the reason. If a parameter is at its bound, the errors of the other
     parameters assume that it stays there.
     `covariance`: matrix in the order of `params`; NaN for a parameter without a standard error.
-    `scene`: the scene with the fitted values, and with the best combination of the values in `compare`.
+    `scene`: the scene with the fitted values, and with the best of the models that the argument `compare` asks for.
     `fit_quality`: "good", "doubtful" (p < 0.05), "bad" (p < 0.001), or None without a p-value.
-    `values`: the report of `dolp fit --json` as a dictionary: parameters, correlation, chi_square, reduced_chi_square,
-    p_value, aic, bic, minima, residuals, models, alike, ranges.
+    `values`: the report of `dolp fit --json` as a dictionary, with parameters, correlation, chi_square,
+    reduced_chi_square, p_value, aic, bic, minima, residuals, models, alike, ranges.
     """
 
     def __init__(self, text: str, values: dict[str, Any], scene: Scene, overrides: dict[str, Mapping[str, Any]]) -> None:
@@ -62,7 +62,7 @@ class Fit:
         return {one["key"]: one[name] and tuple(one[name]) for one in self.values["parameters"]}
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws data, model and bracket of all bounces (in percent) over zenith with Matplotlib. Returns the axes."""
+        """Draws data, model and bracket (dolp_low to dolp_high) over zenith with Matplotlib. Returns the axes."""
         import matplotlib.pyplot as plt
         axes = plt.subplots()[1] if axes is None else axes
         sets: dict[tuple[Any, ...], list[dict[str, Any]]] = {}
@@ -87,7 +87,7 @@ class Fit:
         return axes
 
     def _model(self, name: str, quantity: str, points: dict[str, Any]) -> tuple[xr.DataArray, tuple[Any, Any] | None]:
-        """Values of the fitted model for a data set, and both ends of their bracket if the scene allows one."""
+        """Values of the fitted model for a data set, and both ends of the bracket, or None if the scene allows none."""
         scene = self.scene.with_(self._overrides[name])
         try:
             own = evaluate(scene.with_({"emission.bracket": True}), evaluator="cpu", **points)
@@ -108,16 +108,16 @@ def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, compa
         evaluator: str = "vulkan", device: str = "") -> Fit:
     """Fits values of a scene's keys to measured data. Also computes confidence intervals.
 
-    `data`: a CSV file, or columns by name (a dictionary, a Dataset, a pandas DataFrame): theta_deg or theta_i_deg; dolp,
-    q_over_i (signed) or emissivity_s, emissivity_p; uncertainty (one standard deviation), wavelength_um. A list
-    contains several data sets, each alone or as a pair (data, overrides of the scene for this set).
+    `data`: a CSV file, or columns by name (a dictionary, a Dataset, a pandas DataFrame). Needs theta_deg (theta_i_deg)
+    and one of dolp, q_over_i (signed) and the emissivities (emissivity_s, emissivity_p). May have uncertainty (one
+    standard deviation) and wavelength_um. For several data sets, `data` is a list. Each item of the list is the data,
+    or a pair (data, overrides of the scene for these data).
     `vary`: (low, high) or (low, high, start) for each key to fit.
     `compare`: lists of values for other keys. One model for each combination of these values is fitted and ranked.
-    `loss`: squares; for data with outliers huber, soft-l1, cauchy or tukey.
+    `loss`: squares, or for data with outliers one of huber, soft-l1, cauchy and tukey.
     `model_error`: none, or bracket. With bracket, the true value at each point may lie anywhere between dolp_low and
     dolp_high. With none, dolp.ModelWarning appears if single scattering is not accurate enough (status 32).
-    `plot`: a .png, .pdf or .svg file for the picture of data, model, residuals and contours that `dolp fit --plot`
-    draws.
+    `plot`: a .png, .pdf or .svg file, to which the fit draws data, model, residuals and contours.
 
     >>> truth = dolp.evaluate(scene, theta_deg=np.arange(5, 85, 5), n=1.6)
     >>> data = {"theta_deg": truth.theta, "dolp": truth.dolp, "uncertainty": np.full(16, 0.001)}

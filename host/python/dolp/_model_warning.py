@@ -17,7 +17,7 @@ class ModelWarning(UserWarning):
 
 
 def warn_of_model(scene: Scene, status: Any, change: float | None = None, stacklevel: int = 3) -> None:
-    """Warns once for each scene if an entry has status 32. `change`: the largest relative error of I, if known."""
+    """Warns once for each scene if an entry has status 32. `change`: the largest relative change of I, if known."""
     if scene._has_model_warning or not np.any(np.asarray(status) & _MODEL_INACCURATE):
         return
     scene._has_model_warning = True

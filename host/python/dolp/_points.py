@@ -1,4 +1,4 @@
-"""Converts the points that a user gives to columns for the library, and makes the coordinates of the result."""
+"""Converts the user's points to columns for the library, and makes the coordinates of the result."""
 from __future__ import annotations
 
 import os
@@ -23,8 +23,6 @@ KEY_ATTRIBUTES = {key: {"long_name": meaning, "units": unit} for key, unit, _, _
 
 
 class Frame(NamedTuple):
-    """Shape, dimensions and coordinates of a result."""
-
     shape: tuple[int, ...]
     dims: tuple[Hashable, ...]
     coordinates: dict[Hashable, xr.Variable]
@@ -32,10 +30,10 @@ class Frame(NamedTuple):
 
 def columns_of(points: Mapping[str, Array], labels: Mapping[str, list[str]] = {},
                has_keys: bool = False) -> tuple[Frame, dict[str, np.ndarray]]:
-    """The shape, dimensions and coordinates to which the arrays of `points` broadcast, and the columns for the library.
-    A column has one value for all points, or one value per point.
+    """Returns the shape, dimensions and coordinates to which the arrays of `points` broadcast, and the columns for the
+    library. A column has one value for all points, or one value per point.
 
-    `labels`: the known names of materials and bands. The columns for the library have positions in these lists.
+    `labels`: the known names of materials and bands. Instead of names, the columns have positions in these lists.
     """
     check_names("points", [name for name in points if not (has_keys and "." in name)], list(COORDINATES))
     points = {name: _positions(name, values, labels[name]) if name in labels else values
@@ -91,7 +89,7 @@ def _positions(name: str, values: Any, labels: list[str]) -> Any:
 
 def _dimensions(points: Mapping[str, np.ndarray],
                 shape: tuple[int, ...]) -> tuple[tuple[str, ...], dict[str, xr.Variable]]:
-    """Names of the dimensions, and the coordinates of those dimensions along which only one column of points varies."""
+    """Names of the dimensions. Also coordinates, for each dimension along which only one column of points varies."""
     dims, coordinates = [], {}
     for axis, size in enumerate(shape):
         along = [column for column, values in points.items()

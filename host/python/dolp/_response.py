@@ -1,4 +1,4 @@
-"""Response tables, and the reflectances of rough surfaces of any material from such tables."""
+"""Computes response tables, and from such a table the reflectances of a rough surface of any material."""
 from __future__ import annotations
 
 import numpy as np
@@ -11,7 +11,7 @@ from ._points import columns_of
 from ._runs import native_evaluator, with_axes
 from ._scene import Scene
 
-_ANGLES = 256  # number of angles at which reflectances are compared with the polynomials through their values at beta
+_ANGLES = 256  # number of angles at which _distance compares reflectances with polynomials
 
 
 def response(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **axes: Array) -> xr.Dataset:
@@ -47,8 +47,8 @@ def moments(response: xr.Dataset, *, n: Array | None = None, k: Array = 0.0, r_s
 
     A material is given by n and k, as for `evaluate`, or by the reflectances r_s and r_p of its smooth surface. r_s and
     r_p are DataArrays over the response's beta and may have more dimensions. rho_error is a bound of the errors of
-    rho_i and rho_q. With n and k it includes the distance between the reflectances and the polynomials through their
-    values at beta, measured at 256 angles. With r_s and r_p this distance is unknown, and you must add it.
+    rho_i and rho_q. A response table replaces the reflectances by polynomials through their values at beta. If you give
+    n and k, rho_error includes the error due to these polynomials, from 256 angles. Otherwise you must add this error.
 
     >>> r = dolp.response(scene, theta_deg=60)
     >>> m = dolp.moments(r, n=[1.3, 1.5, 4], k=0.05)
@@ -90,21 +90,21 @@ def _fresnel(index: xr.DataArray, cosine: xr.DataArray) -> tuple[xr.DataArray, x
 
 
 def _coefficients(beta: xr.DataArray) -> xr.DataArray:
-    """Matrix that turns values at beta, which are zeros of a Chebyshev polynomial, into Chebyshev coefficients."""
+    """Matrix that turns values at the angles beta into Chebyshev coefficients of the polynomial through the values."""
     count = beta.size
     values = np.polynomial.chebyshev.chebvander(np.polynomial.chebyshev.chebpts1(count)[::-1], count - 1).T
     return xr.DataArray(values * np.where(np.arange(count) == 0, 1, 2)[:, None] / count, {"beta": beta}, ("m", "beta"))
 
 
 def _size(mean: xr.DataArray, half: xr.DataArray) -> xr.DataArray:
-    """Factor of response_error: the largest of 2^m |a_m|, for the Chebyshev coefficients a_m of both reflectances."""
+    """Factor on response_error: the largest 2^m |a_m|, with the Chebyshev coefficients a_m of both `curves`."""
     growth = xr.DataArray(2.0 ** np.arange(mean.sizes["beta"]), dims="m")
     curves = mean, half / np.sin(np.deg2rad(mean.beta)) ** 2
     return np.maximum(*((growth * abs(curve.dot(_coefficients(mean.beta), "beta"))).max("m") for curve in curves))
 
 
 def _distance(response: xr.Dataset, index: xr.DataArray, r_s: xr.DataArray, r_p: xr.DataArray) -> xr.DataArray:
-    """The largest distance of (r_s + r_p) / 2 and (r_s - r_p) / 2 from the polynomials through their values at beta."""
+    """Largest distance, over _ANGLES angles, of (r_s + r_p) / 2 and (r_s - r_p) / 2 from interpolation in beta."""
     beta, c0 = response.beta, float(response.attrs["c0"])
     x = np.polynomial.chebyshev.chebpts1(_ANGLES)
     cosine = xr.DataArray(c0 * np.sinh(0.5 * (1 + x) * np.arcsinh(1 / c0)), dims="angle")
@@ -117,7 +117,7 @@ def _distance(response: xr.Dataset, index: xr.DataArray, r_s: xr.DataArray, r_p:
 
 
 def _at_beta(name: str, values: xr.DataArray, beta: xr.DataArray) -> xr.DataArray:
-    """The reflectances as an array. Errors: InputError if they are not at the angles beta or not in [0, 1]."""
+    """Returns the reflectances `values`. Errors: InputError if they are not at the angles beta, or not in [0, 1]."""
     if not isinstance(values, xr.DataArray) or "beta" not in values.coords or values.beta.shape != beta.shape \
             or not np.allclose(values.beta, beta):
         raise InputError(f"{name}: must be a DataArray at the angles beta of the response; "

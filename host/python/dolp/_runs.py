@@ -1,4 +1,4 @@
-"""Tables, points, lookups, Mueller matrices and plans of scenes."""
+"""Computes tables, values at points, lookups, Mueller matrices and plans of scenes."""
 from __future__ import annotations
 
 import functools
@@ -30,7 +30,7 @@ def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all
     along sigma; `t.swap_dims(sigma="wind_m_s")` makes it the dimension.
 
     Any other number of the scene can be an axis, with its key as the name. The program then computes one table for each
-    value, and joins them with their common attributes. `lookup` interpolates between them, as in
+    value and joins the tables. Only attributes equal in all tables remain. `lookup` interpolates between values, as in
     `dolp.lookup(t, **{"path.transmittance": 0.85}, theta_deg=40)`.
 
     >>> t = dolp.table(scene, theta_deg=[0, 60], sigma=[0.1, 0.2, 0.3])
@@ -77,9 +77,9 @@ def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_
     """The quantities of a table at points: a Dataset with the shape to which the arrays of `points` broadcast.
 
     `points` (theta_deg, sigma or wind_m_s, q, wavelength_um, n, k): arrays of the same shape are combined value by
-    value, unlike the axes of `table`. Values that you do not give come from the scene. A complex n gives n and k. Any
+    value, unlike the axes of `table`. Numbers that you do not give come from the scene. A complex n gives n and k. Any
     other number of the scene can be given too, with its key as the name; each of its values is a separate run.
-    DataArrays keep their dimensions and coordinates. If an array of another kind is the only one along a
+    DataArrays keep their dimensions and coordinates. If an array that is no DataArray is the only one along a
     dimension, it names this dimension (theta, sigma, q, n, k or wavelength, as in tables) and is its coordinate.
 
     >>> float(dolp.evaluate(scene, theta_deg=40).dolp.round(4))
@@ -109,13 +109,13 @@ def lookup(table: Path | xr.Dataset, **points: Array) -> xr.Dataset:
     """Values between the entries of a table. Their error estimates include the error of interpolation.
 
     `table`: a file, or a Dataset from `table` or from such a file, or a part of a Dataset. A part may have fewer values
-    of an axis, such as `t.sel(k=0.1)`, and fewer variables; it needs dolp, the Stokes parameters, error_estimate,
-    status and the attribute scene. Dimensions may have any names and order, for example after
+    of an axis, such as `t.sel(k=0.1)`, and fewer variables, but must have dolp, the Stokes parameters, error_estimate,
+    status and the attribute `scene`. Dimensions may have any names and order, for example after
     `t.swap_dims(sigma="wind_m_s")`. Axes with values that were not computed, such as after `t.interp(theta=33)`, give
     an InputError. The attribute values_hash belongs to the whole table; a lookup checks it in a file, but not in a
-    Dataset. So read a file with a part of a table by `xarray.load_dataset`.
-    `points`: as for `evaluate`; an axis with only one value needs no array here.
-    The file that was used last stays in memory. A Dataset is copied in each call.
+    Dataset. If a file has only a part of a table, read it by `xarray.load_dataset`.
+    `points`: as for `evaluate`. You can leave out an axis of the table that has only one value.
+    The file of the last lookup stays in memory. A Dataset is copied in each call.
 
     >>> t = dolp.table(scene, theta_deg=np.linspace(0, 80, 41), sigma=[0.1, 0.2])
     >>> bool(abs(dolp.lookup(t.sel(sigma=0.2), theta_deg=33).dolp - dolp.evaluate(scene, theta_deg=33).dolp) < 1e-5)
@@ -219,7 +219,7 @@ def _check_labels(scene: _native.Scene, columns: Iterable[str]) -> None:
 
 
 def _check_varied(what: str, keys: Iterable[str], columns: Iterable[str]) -> None:
-    """Errors: InputError if one of `keys` and one of `columns` are the same number of the scene, as surface.n and n."""
+    """Errors: InputError if one of `keys` and one of `columns` name the same number, such as surface.n and n."""
     for key in keys:
         table, _, column = key.partition(".")
         if column in columns and table in ("surface", "spectrum", "emission"):
@@ -228,8 +228,8 @@ def _check_varied(what: str, keys: Iterable[str], columns: Iterable[str]) -> Non
 
 def _over_keys(run: Callable[..., _native.Parts], scene: _native.Scene, columns: dict[str, np.ndarray],
                varied: dict[str, np.ndarray]) -> _native.Parts:
-    """The results of points with several values of the keys in `varied`: one run per combination of values, and the
-    attributes that are equal in all runs."""
+    """The results of points at which the scene keys in `varied` have several values. Each combination of these values
+    is one run. The results have the attributes that are equal in all runs."""
     different, which = np.unique(np.stack(np.broadcast_arrays(*varied.values()), axis=-1), axis=0, return_inverse=True)
     size = max(values.size for values in (*columns.values(), *varied.values()))
     which = np.broadcast_to(which.ravel(), size)

@@ -15,10 +15,10 @@ from ._native import InputError
 class Scene:
     """A surface, its radiation and surroundings, and the accuracy of results, from a scene file or from its text.
 
-    Parameters: a path or `text`, and `overrides`, a dict with values for any keys. The value None removes a key or a
-    table; so does "none" if the key does not take words. A complex surface.n gives n and k. `scene[key]` is the value
-    of a key, or None if the scene has no value. You can copy and pickle a scene and send it to another process. That
-    process finds the files that the scene names at the same paths.
+    Parameters: a path or `text`, and `overrides`, a dict with values for any keys. None removes a key or a whole
+    table of keys; so does "none" for a key without words as values. A complex surface.n gives n and k. `scene[key]` is
+    the value of a key, or None if the scene has no value. You can copy and pickle a scene and send it to another
+    process. That process reads the files that the scene names from the same paths.
 
     >>> smooth = dolp.Scene(scene, {"surface.sigma": 0.01, "title": "a mirror", "surface.n": 1.5 + 0.1j})
     >>> smooth.title, smooth["surface.k"], smooth["surface.masking"], smooth["grid.q"], smooth["path.radiance"]
@@ -71,7 +71,7 @@ class Scene:
         return self._native.value(check_key(key))
 
     def toml(self) -> str:
-        """The text of a scene file for this scene, with its overrides applied."""
+        """The text of a scene file that describes this scene, including the overrides."""
         return self._native.toml()
 
     def __repr__(self) -> str:

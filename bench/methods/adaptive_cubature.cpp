@@ -47,7 +47,8 @@ class Cubature final : public Solver {
       Integral integral{surface};
       double values[2];
       double errors[2];
-      // ERROR_LINF divides the larger error of r_i and r_q by the larger value, r_i. Studies report this ratio.
+      // ERROR_LINF controls the larger error of r_i and r_q, divided by the larger of both values, which is r_i. The
+      // studies report this ratio, too.
       const int status =
           routine_(2, integrand, &integral, 2, kLow, kHigh, kMostEvaluations, 0.0, setting, ERROR_LINF, values, errors);
       if (status != 0) throw Unavailable("libcubature gave up");

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Multiplies and adds as fast as the device can. While one of twelve independent chains waits, the others continue.
+// Multiplies and adds as fast as the device can. The code has twelve independent chains of operations, so that others
+// continue while one waits.
 
 #include "physics/prelude.glsl"
 #include "interface.glsl"

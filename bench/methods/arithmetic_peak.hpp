@@ -7,8 +7,8 @@
 
 namespace dolp::bench {
 
-/// Measures how many float multiplications and additions per second a kernel does that does nothing else. Returns one
-/// value per repeat, in ascending order. Errors: DeviceError.
+/// Measures the float multiplications and additions per second of a kernel that does nothing else. Returns one value
+/// per repeat, in ascending order. Errors: DeviceError.
 std::vector<double> arithmetic_peak(const std::string& device, std::size_t repeats);
 
 }  // namespace dolp::bench

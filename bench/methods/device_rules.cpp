@@ -78,7 +78,8 @@ class DeviceRule final : public Solver {
       const std::size_t zeniths = std::min(most_zeniths, nodes - first);
       for (std::size_t i = 0; i < data.size(); ++i) {
         const MomentsEntry entry = data[i];
-        // KernelData repeats the directions for each variant of split lines. The angle is the same in all variants.
+        // KernelData contains every direction several times, for different sets of lines that split the integral. The
+        // product rule splits nothing, so it takes the first copy.
         const auto direction = static_cast<std::uint32_t>(entry.theta % data.directions);
         words_.push_back(
             {direction, entry.shape, entry.index, static_cast<std::uint32_t>(first + kZenithUnit * zeniths)});

@@ -54,12 +54,12 @@ class MaskingTails {
 namespace {
 
 constexpr double kStep = 1.0 / 24.0;      // step between nodes in X; the interpolation error is 1e-12
-constexpr double kEndOverWidth = 1e6;     // last tau over max(1, m); beyond, integrals are powers of tau within 1e-12
+constexpr double kEndOverWidth = 1e6;  // last tau, divided by max(1, m); from there on, integrals equal powers of tau within 1e-12
 constexpr double kVerticalSlope = 1e100;  // steepest sampled slope; its square does not overflow
 using CellRule = boost::math::quadrature::gauss<double, 4>;
 
 /// Reflectances R_s and R_p, computed without complex numbers.
-/// Source: Born and Wolf, Principles of Optics, 14.2, with N cos(beta') = u + iv.
+/// Source: Born and Wolf, Principles of Optics, 14.2. N cos(beta') = u + iv, where beta' is the angle of refraction.
 struct Reflectances {
   double s;
   double p;
@@ -74,7 +74,8 @@ Reflectances reflectances(const OpticalConstants& index, double cos_beta) {
   const double v2 = real > 0.0 ? 0.5 * imaginary * imaginary / (modulus + real) : 0.5 * (modulus - real);
   const double u = std::sqrt(u2);
   const double r_s = ((cos_beta - u) * (cos_beta - u) + v2) / ((cos_beta + u) * (cos_beta + u) + v2);
-  // R_p/R_s = ((u - g)^2 + v^2)/((u + g)^2 + v^2), g = sin(beta) tan(beta). Here cos^2(beta) multiplies both sums.
+  // R_p/R_s = ((u - g)^2 + v^2)/((u + g)^2 + v^2), g = sin(beta) tan(beta). The code multiplies both sums by
+  // cos^2(beta).
   const double low = u * cos_beta - sin2;
   const double high = u * cos_beta + sin2;
   const double v2_cos2 = v2 * cos_beta * cos_beta;
@@ -230,9 +231,10 @@ RunningBeam DirectSurface::beam(double cos_r, double sin_r) const {
   return beam;
 }
 
-// `integral` masking. With kappa = 1/(cos(alpha) (cot(theta) + t)), mu = cot(theta) and tau_b = tan(alpha - 2 theta):
-//   if the upper limit of the tilt is pi/2:  1 - G1 = kappa height(mu)
-//   otherwise:  1 - G1 = kappa (height(mu) - height(tau_b) - (tau_b - mu) first(tau_b)) + probability(tau_b)
+// `integral` masking depends on the beam nearer to the horizon, with zenith theta. Let mu = cot(theta), tau_b =
+// tan(alpha - 2 theta) and kappa = 1/(cos(alpha) (mu + tan(alpha))).
+//   If the upper limit of the tilt is pi/2:  1 - G1 = kappa height(mu)
+//   Otherwise:  1 - G1 = kappa (height(mu) - height(tau_b) - (tau_b - mu) first(tau_b)) + probability(tau_b)
 double DirectSurface::attenuation(const RunningBeam& beam, double cos_alpha, double tan_alpha, double cos_beta) const {
   if (entry_.masking == Masking::kNone) return 1.0;
   if (entry_.masking == Masking::kSmith) return beam.masking;

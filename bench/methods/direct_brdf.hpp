@@ -21,13 +21,14 @@ struct Entry {
 };
 Entry entry_of(const MomentsRequest& request, std::size_t position);
 
-/// Masking G times two elements of the Mueller matrix M of one facet: `i` is G M00, `q` is G M01.
+/// Two elements of the Mueller matrix M of a facet, times the masking G: `i` is G M00, `q` is G M01.
 struct Reflected {
   double i = 0.0;
   double q = 0.0;
 };
 
-/// Tables of integrals over the tail of the in-plane slope density. `smith` and `integral` masking follow from them.
+/// Tables of integrals over the in-plane slope density, from a given slope to infinity. `smith` and `integral` masking
+/// are computed from these integrals.
 class MaskingTails;
 
 /// A direction of the running beam, with the part of the masking G that does not depend on the facet.
@@ -45,7 +46,8 @@ struct RunningBeam {
 /// Domain: 0 < theta < 90 degrees, sigma > 0, cauchy q > 1 (smith: q > 3/2).
 class DirectSurface {
  public:
-  /// How Smith's Lambda is computed. The closed form is faster for a few running beams, the table for many.
+  /// How to compute Lambda of Smith's masking. The closed form is faster for a few directions of the running beam, the
+  /// table for many.
   enum class SmithBy { kClosedForm, kTable };
   DirectSurface(const Entry& entry, SmithBy smith_by);
   DirectSurface(const DirectSurface&) = delete;
@@ -57,16 +59,17 @@ class DirectSurface {
   /// Width m of the slope distribution, m^2 = 2 sigma^2.
   double width() const { return m_; }
 
-  /// Density of the slopes t = tan(alpha) in the slope plane, P(t) = D cos^4(alpha). Units: 1.
+  /// Density P(t) = D cos^4(alpha) of the slopes t = tan(alpha), per unit area of the plane of slopes. Units: 1.
   double slope_density(double tan2_alpha) const;
 
-  /// With this probability, in (0, 1], a facet drawn from the density D cos(alpha) is steeper than the returned slope.
+  /// The slope that a facet exceeds with this probability, in (0, 1], if it is drawn from the density D cos(alpha).
   double sampled_slope(double probability) const;
 
-  /// The running beam in a direction with cos_r > 0, including its part of the masking G.
+  /// The running beam in the direction with cosine cos_r > 0 and sine sin_r, with its part of the masking G.
   RunningBeam beam(double cos_r, double sin_r) const;
 
-  /// Masking G times M00 and M01 of the facet that reflects one beam into the other. M01 is 0 if eta is undefined.
+  /// Masking G times M00 and M01 of the facet that reflects one beam into the other. M01 is 0 if the facet has no plane
+  /// of incidence, or the surface has none.
   Reflected reflected(const RunningBeam& beam, double cos_alpha, double tan_alpha, double cos_beta) const;
 
  private:
@@ -87,8 +90,8 @@ class DirectSurface {
 /// the integrand is doubled to count the other half.
 Reflected beam_integrand(const DirectSurface& surface, const RunningBeam& beam, double cos_azimuth);
 
-/// Integrand of the moments at one facet, with slope tan_alpha and azimuth phi_h from the fixed beam, per unit of
-/// P(t) t dt dphi_h. Zero if the reflected ray does not leave the surface.
+/// Integrand of the moments as a function of the facet: its slope t = tan_alpha, and its azimuth phi_h from the fixed
+/// beam. The factor P(t) t dt dphi_h is left out. Zero if the reflected ray does not leave the surface.
 /// Equation: r = int P t dt dphi_h (cos(beta)/cos(alpha)) G M, over cos(theta_r) > 0.
 Reflected half_vector_integrand(const DirectSurface& surface, double tan_alpha, double cos_phi);
 

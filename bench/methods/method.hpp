@@ -16,7 +16,8 @@ namespace dolp::bench {
 struct Answer {
   double r_i = 0.0;
   double r_q = 0.0;
-  /// bound or estimate of max(|d r_i|, |d r_q|)/r_i, where d is the error; empty if the method states none
+  /// bound or estimate of max(|d r_i|, |d r_q|)/r_i, where d r_i and d r_q are the errors; empty if the method states
+  /// none
   std::optional<double> stated_error;
 };
 
@@ -65,7 +66,7 @@ struct Method {
   std::string setting_name;            ///< quantity in `settings`: nodes, samples, tolerance
   std::vector<double> settings;        ///< settings to measure, from coarse to fine
   std::vector<double> quick_settings;  ///< the subset that --quick runs
-  /// computes many entries per call; the time per entry is the time of a call divided by their number
+  /// True if one call computes many entries. The time per entry is then the time of the call divided by their number.
   bool is_batched = false;
   bool needs_grid = false;  ///< saves time only for entries that form a grid
   bool is_random = false;   ///< answers differ from call to call; the error is the rms over the calls
@@ -79,7 +80,7 @@ const std::vector<Method>& methods();
 // The solvers, one family per file.
 std::unique_ptr<Solver> make_midpoint_rule();
 std::unique_ptr<Solver> make_gauss_rule();
-/// Errors: Unavailable without a usable device (both functions).
+/// Errors of both functions: Unavailable without a usable device.
 std::unique_ptr<Solver> make_vulkan_midpoint(const SolverOptions& options);
 std::unique_ptr<Solver> make_vulkan_gauss(const SolverOptions& options);
 std::unique_ptr<Solver> make_monte_carlo();

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t kBlock = 64;  // invocations that a core takes at a time
 
-/// Calls body(i) once for each i < count, in several threads. It does not use OpenMP, whose threads spin while they
-/// wait. That is slower when other programs run.
+/// Calls body(i) once for each i < count, in several threads. It does not use OpenMP: threads of OpenMP spin while they
+/// wait, which is slow if other programs run.
 void on_all_cores(std::size_t count, const std::function<void(std::size_t)>& body) {
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {

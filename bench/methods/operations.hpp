@@ -16,7 +16,7 @@ struct KernelWork {
   double busy_lanes = 1.0;
 };
 
-/// Counts the operations of `workgroups` evenly spread workgroups, and extrapolates to all of the request. Accuracy: a
+/// Counts the operations of `workgroups` evenly spread workgroups, and extrapolates to the whole request. Accuracy: a
 /// few percent, if the other workgroups resemble the counted ones. Domain: requests that has_kernel_for accepts.
 KernelWork count_operations(const MomentsRequest& request, std::size_t workgroups, std::size_t lanes);
 

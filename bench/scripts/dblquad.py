@@ -19,9 +19,9 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.special import betainc, gammaln
 
 STEP = 1 / 64  # step of asinh(tau/width) between nodes of the masking tables
-FAR = 1e5  # last tau of the masking tables over max(1, m); beyond, the integrals are powers of tau
+FAR = 1e5  # last tau of the masking tables, divided by max(1, m); from there on, the integrals are powers of tau
 MOST_REPEATS = 3
-ENOUGH_S = 1.5  # after this many seconds in total no repeat follows
+ENOUGH_S = 1.5  # repeats end after this many seconds in total
 
 
 class MaskingTails:
@@ -70,7 +70,8 @@ class MaskingTails:
 
 
 class Surface:
-    """The integrand D G M sin(theta_r)/4 for both moments."""
+    """The integrand D G M sin(theta_r)/4 of both moments: slope density D, masking G, element M of the Mueller
+    matrix."""
 
     def __init__(self, request):
         self.is_gaussian = request["distribution"] == "gaussian"

@@ -13,7 +13,7 @@ import time
 import numpy as np
 import scipy.optimize
 
-STEP = 1e-4  # step of finite differences over the range of a parameter
+STEP = 1e-4  # step of finite differences, as a share of the parameter's range
 
 
 class Model:

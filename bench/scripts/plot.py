@@ -55,7 +55,8 @@ def read_result(path, study):
 
 
 def points(result, method, case):
-    """(error, time per entry) of each setting that ran. The bound of the reference replaces errors below it."""
+    """Points (error, time per entry), one for each setting that ran. The reference has an error bound, too; an error
+    below this bound is replaced by the bound."""
     bound = case["reference"]["bound"]
     return [(max(row["error"], bound), row["time_s"]) for row in result["results"]
             if row["method"] == method and row["case"] == case["name"] and "error" in row]
@@ -138,8 +139,8 @@ def draw_curves(axes, result, case):
 
 
 def label_ends(axes, ends):
-    """Labels each curve at its most accurate point: the curve with the largest error there on the right, the others on
-    the left. Moves labels that would touch."""
+    """Writes the name of each curve beside its most accurate point. The name is on the right for the curve whose error
+    is largest there, and on the left for all others. Moves names that would touch."""
     if not ends:
         return
     to_points = 72.0 / axes.figure.dpi

@@ -45,7 +45,8 @@ def line_of(name, rows):
 
 
 def intervals_of(result):
-    """For each bounded 95 % interval, yields the distances of both ends from the truth, in half-widths."""
+    """For each 95 % interval with two ends, yields the distances of its ends from the true value, divided by half of
+    the interval's width."""
     for row in sets_of(result):
         for truth, (low, high) in zip(row["truth"], row["interval_95"]):
             if low is not None and high is not None:

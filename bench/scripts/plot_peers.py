@@ -36,8 +36,9 @@ def time_table(result):
 
 
 def ratio_text(row):
-    """Two ratios: the row's time over the time of dolp's kernels that interpolate, and over the time of its kernels
-    that integrate every entry. A star marks times with the cheapest setting of each entry (hindsight)."""
+    """Two ratios of times. Both divide the row's time: the first by the time of dolp's kernels that interpolate, the
+    second by the time of its kernels that integrate every entry. A star marks times with the cheapest setting of each
+    entry (hindsight)."""
     cells = []
     for prefix in ("table_", ""):
         ratio = row.get(f"{prefix}ratio", row.get(f"hindsight_{prefix}ratio"))

@@ -6,7 +6,7 @@ TOLERANCE = 1e-4
 
 
 def interpolated(rows):
-    """Returns the rows of runs that may interpolate between entries, as `dolp table` does."""
+    """Returns the rows of those runs that may interpolate between entries, as `dolp table` does."""
     return [row for row in rows if row["interpolation"] == "auto"]
 
 

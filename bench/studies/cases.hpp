@@ -22,8 +22,8 @@ struct Case {
 /// All cases, in the order in which figures show them.
 const std::vector<Case>& cases();
 
-/// A request of `count` entries of equal cost that share no work. The first is the case itself; theta, sigma and q of
-/// the others differ from it by up to 1e-3 (relative).
+/// A request of `count` entries that take equal time but share no work. The first entry is the case itself; theta,
+/// sigma and q of the others differ from it by up to 1e-3 (relative).
 MomentsRequest neighbourhood(const Case& which, std::size_t count);
 
 }  // namespace dolp::bench

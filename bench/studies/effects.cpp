@@ -52,7 +52,7 @@ std::vector<std::string> left_out(const TimedScene& timed) {
   return names;
 }
 
-/// One scene of a group, run as planned and with all effects kept.
+/// One scene of a group in two runs: `planned` drops effects as the plan says, `all` keeps all effects.
 struct Pair {
   std::string name;
   TimedScene planned;

@@ -175,7 +175,8 @@ ordered_json spectrum_json(ModelEvaluator& evaluator) {
           {"q", result.parameters[1].value},   {"chi_square", result.chi_square}};
 }
 
-/// Median over the sets of the part `bracket`: length of n's 95 % interval, divided by the length of n's range.
+/// For each data set of the part `bracket`, divides the length of n's 95 % interval by the length of n's search range.
+/// Returns the median of these ratios.
 double median_share_of_n(const ordered_json& rows) {
   const FitRange range = bracket_set(0).parameters.front();
   std::vector<double> shares;

@@ -32,8 +32,9 @@ struct FitSet {
 /// points, true values inside the search ranges, and noise between 0.0005 and 0.01 (log-uniform).
 FitSet fit_set(std::size_t number);
 
-/// Makes a set whose data include all bounces. The fit of n and sigma uses single scattering, and allows for the
-/// bracket of DOLP as an error of this model. The data have noise if `number` is odd.
+/// Makes a set whose data include all bounces. The fit of n and sigma uses single scattering. It counts the bracket of
+/// DOLP, a range that contains the DOLP with all bounces, as the error of single scattering. The data have noise if
+/// `number` is odd.
 FitSet bracket_set(std::size_t number);
 
 /// The set whose fit is timed: n, k and sigma from 40 points of Q/I.

@@ -123,7 +123,7 @@ void PeerSettings::warm_up() {
   try {
     solver_.solve(request, method_.settings.front());
   } catch (const Unavailable&) {
-    // The first try meets the same error again and reports it.
+    // The first timed call meets the same error again and reports it.
   }
 }
 

@@ -35,7 +35,8 @@ std::vector<PeerCase> peer_cases() {
   return cases;
 }
 
-// The two methods of dolp that others are compared with: one integrates every entry, one interpolates as `dolp table`.
+// The two methods of dolp that others are compared with. kOwn integrates every entry; kOwnTable interpolates between
+// entries, as `dolp table` does.
 constexpr const char* kOwn = "vulkan-float";
 constexpr const char* kOwnTable = "vulkan-table";
 
@@ -184,7 +185,7 @@ ordered_json Study::measured_row(const Method& method, Solver& solver, const Pee
     const std::size_t entries = batch.request.size();
     const Measurement measurement = measure(solver, batch.request, tried->setting, method.is_random, effort_.timing);
     const double error = method.is_batched ? batch.worst_error(measurement.last, sample) : tried->worst_error();
-    if (error > tolerance) {  // a larger grid is interpolated more, which may increase the error
+    if (error > tolerance) {  // in a larger grid more entries are interpolated, which may increase the error
       settings.reject(*tried, error);
       continue;
     }

@@ -44,7 +44,7 @@ constexpr std::array<GridSize, 8> kGrids = {{{32, 32, 32},
                                              {256, 128, 64},
                                              {256, 128, 128}}};
 constexpr std::size_t kMainGrid = 1;         // position in kGrids of the grid that all parts except `grids` use
-constexpr GridSize kSmallGrid = {2, 2, 16};  // for the warm-up; its entries fill whole kernel rows
+constexpr GridSize kSmallGrid = {2, 2, 16};  // for the first, untimed run; its entries fill whole kernel rows
 constexpr std::size_t kQuickEntries = std::size_t{24} * 24 * 24;
 constexpr std::size_t kFullRepeats = 5;
 constexpr std::size_t kQuickRepeats = 2;
@@ -132,7 +132,7 @@ struct MaterialAxes {
   std::vector<double> n = {}, k = {}, wavelength_um = {};
   std::optional<OpticalConstants> index = {};  ///< replaces n and k of the scene
   std::vector<Layer> coating = {};
-  std::size_t over = 0;  ///< results divide this case's kernel time by that of the case at this position
+  std::size_t over = 0;  ///< position of the case whose kernel time divides the kernel time of this case
   std::vector<Spectrum> bands = {};
   std::vector<double> temperature_K = {};
   bool has_all_materials = false;
@@ -247,7 +247,7 @@ Study::Study(StudyRun& run)
       device_(device_of(run.options())),
       parts_(chosen(kParts, run.options().cases, "--case")),
       grids_(grids_up_to(quick() ? std::min(run.options().entries, kQuickEntries) : run.options().entries)) {
-  if (run.options().cases.empty()) parts_.pop_back();  // `kernels` runs in the processes of `cores` and `vector-width`
+  if (run.options().cases.empty()) parts_.pop_back();  // omits `kernels`, which the parts `cores` and `vector-width` run
   if (runs("grids")) run_.expect(kMaskings.size() * (grids_.size() + 2 * kTolerances.size() - 1));
   if (runs("materials")) run_.expect(kMaskingsByRows.size() * material_axes().size());
   if (runs("arithmetic")) run_.expect(kMaskingsByRows.size() * arithmetic_tolerances().size());

@@ -22,7 +22,7 @@ class TimedScene {
   const EffectPlan& plan() const { return plan_; }
   const std::vector<PointResult>& results() const { return results_; }
   const Work& work() const { return work_; }  ///< work of the last call
-  /// Raw times per entry in seconds: of whole calls, and of the kernels and sums of moments in them.
+  /// Raw times per entry in seconds: for whole calls, and for the kernels and the sums of moments within the calls.
   std::vector<double> times_s() const;
   std::vector<double> kernel_times_s() const;
 

@@ -30,7 +30,8 @@ class GroupedKernel {
   /// Fills the masking table of a shape. If the data needs tables, call this before run_pieces.
   virtual void build_masking_table(std::size_t shape) = 0;
 
-  /// Runs invocations from `first` until `members` is full. Each writes one node for each entry of its kernel row.
+  /// Runs invocations until `members` is full, beginning with invocation number `first`. Each invocation writes one
+  /// node for each entry of its kernel row.
   virtual void run_pieces(std::size_t first, std::span<kernel::MomentsNode> members) = 0;
 };
 

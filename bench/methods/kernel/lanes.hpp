@@ -1,5 +1,5 @@
-// Types and functions of GLSL that the kernel source needs. The including file defines `real`: a plain float, so that
-// the C++ compiler may optimise freely, or a number that counts its operations.
+// Types and functions of GLSL that the kernel source needs. The file that includes this one defines the type `real`. It
+// is either a plain float, so that the C++ compiler may optimise freely, or a number that counts its operations.
 #pragma once
 
 #include <bit>

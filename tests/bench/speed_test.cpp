@@ -60,7 +60,7 @@ TEST(BenchNative, Grid_HasTheDevicesNodesOrMoreAndItsMoments) {
 // With 256 nodes per axis, several invocations compute the parts of one entry.
 TEST(BenchDeviceRule, ManyNodes_EveryMasking_GivesTheSumOfTheHost) {
   constexpr double kNodes = 256;
-  constexpr double kRounding = 2e-5;  // error due to the rounding of angles in float; it is largest for the smoothest surface
+  constexpr double kRounding = 2e-5;  // due to the rounding of angles in float; largest for the smoothest surface
   const std::vector<NestedGrid::Place> places = NestedGrid::sample(3);
   const std::unique_ptr<Solver> device = solver_of("vulkan-gauss");
   const std::unique_ptr<Solver> host = solver_of("gauss");

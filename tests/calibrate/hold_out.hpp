@@ -15,7 +15,7 @@ struct HoldOutOptions {
   double tolerance = 1e-4;
   std::size_t entries = 1000;
   std::uint64_t seed = 1;
-  std::size_t climbs = 0;  ///< a climb starts from each of so many entries, the worst of the random ones
+  std::size_t climbs = 0;          ///< a climb starts from each of so many entries, the worst of the random ones
   bool against_reference = false;  ///< compare with the reference, which takes a second of one core per entry
   /// multiplies all bounds. The smallest share without an error above its bound shows how much too large bounds are.
   double bound_share = 1.0;

@@ -50,7 +50,7 @@ TEST(CosSinDeg, OtherAngles_AgreeWithTheLibrary) {
 
 // ---- Loops ---------------------------------------------------------------------------------------------------------
 
-// after so many iterations of all its loops, an invocation on lavapipe stops without an error
+// After so many iterations of all its loops, an invocation on lavapipe stops without an error
 constexpr double kDriverLimit = 65535.0;
 
 TEST(Loops, HardDirectionsAndIndicesAtEveryTolerance_StayBelowTheDriversLimit) {

@@ -41,7 +41,7 @@ double error_at(const EntryResponses& all, std::size_t entry) {
 }
 
 /// Expects that weights of `a` and `b` differ by no more than the sum of their errors. Returns the largest ratio of
-/// difference to this sum. Point i is entry i of `b` and entry i times `step` of `a`.
+/// difference to this sum. Point i is entry i of `b` and entry i * `step` of `a`.
 double expect_within_bounds(const EntryResponses& a, const EntryResponses& b, const std::vector<Point>& points,
                             std::size_t step = 1) {
   double worst = 0.0;

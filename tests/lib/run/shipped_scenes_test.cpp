@@ -117,7 +117,7 @@ std::optional<Part> part_of(const std::string& effect) {
   return found == kParts.end() ? std::nullopt : std::optional(found->second);
 }
 
-// Comments state changes of DOLP. The plan states changes of (Q/I, U/I), which are at least as large.
+// Comments state changes of DOLP. The plan states changes of the vector (Q/I, U/I), which are at least as large.
 TEST_P(ShippedScene, Plan_EstimatesTheChangesThatTheCommentStates) {
   constexpr double kAccuracy = 0.2;  // percentage points; both values of DOLP have a tolerance of 1e-3
   const auto [name, statement_count] = GetParam();

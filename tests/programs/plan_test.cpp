@@ -15,7 +15,7 @@ using nlohmann::json;
 const std::vector<std::string> kIsothermal = {"--set", "surroundings.temperature_K=300"};
 const std::vector<std::string> kBistatic = {"--set", "geometry.mode=bistatic", "--set",
                                             "source.relative_irradiance=0.5"};
-// Emission and surroundings are equally warm, so only the source adds polarisation, and moments are not needed.
+// With emission and surroundings equally warm, only the source adds polarisation. So the run needs no moments.
 const std::vector<std::string> kBeamAlone = {"--set", "surroundings.temperature_K=300",
                                              "--set", "geometry.mode=bistatic",
                                              "--set", "source.relative_irradiance=0.5"};

@@ -38,7 +38,6 @@ VulkanOptions validated(Precision precision = Precision::kFloat) {
   return options;
 }
 
-// A grid of a few directions, shapes and indices in random order.
 MomentsRequest small_request(Distribution distribution, Masking masking) {
   MomentsRequest request;
   request.distribution = distribution;

@@ -215,7 +215,6 @@ TEST(TableLookup, AValueTwice_IsRefused) {
   EXPECT_THROW(TableLookup(table, with_tolerance(1e-4), "t.nc"), InputError);
 }
 
-// In many tables dolp_low is 0 at every entry.
 TEST(TableLookup, QuantityThatIs0Everywhere_Is0) {
   TableValues table = made_up(spaced(0.0, 60.0, 8), spaced(0.1, 0.5, 6), spaced(1.5, 4.0, 6));
   table[Quantity::kDolpLow].assign(table[Quantity::kDolp].size(), 0.0);

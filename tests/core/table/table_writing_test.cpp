@@ -124,7 +124,6 @@ TEST_F(TableFiles, WriteTable_DiskFull_LeavesNothingOrWhatWasThere) {
       fs::remove(at(name));
     }
   }
-  // After the failures the libraries NetCDF and HDF5 still work.
   write_table(table, at("t.nc"));
   expect_same(read_table(at("t.nc")), table);
 }

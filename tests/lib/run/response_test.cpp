@@ -92,7 +92,6 @@ TEST_P(ResponsesOf, SomeEntries_AreThoseOfTheReference) {
 INSTANTIATE_TEST_SUITE_P(Models, ResponsesOf, testing::ValuesIn(kModels),
                          [](const auto& test) { return name_of(test.param); });
 
-// The grid includes 90 degrees, where some models need no computation.
 TEST(Responses, OfADevice_AreThoseOfTheCpu) {
   std::vector<Point> points;
   for (const double theta_deg : {0.0, 60.0, 90.0}) {

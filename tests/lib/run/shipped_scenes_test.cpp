@@ -30,7 +30,6 @@ struct Statement {
   std::map<std::string, std::string> changes;
 };
 
-/// The comment at the top of a scene, without line breaks.
 std::string comment_of(const std::string& name) {
   std::ifstream file(scene_path(name));
   std::string text;

@@ -133,7 +133,6 @@ TEST(HeatMap, Axes_FollowTheScene) {
   session.set_view(&View::map_x, "n");
   session.set("surface.material", "water 25C");
   EXPECT_EQ(session.map().x().label, "θ [°]");
-  // The map shows only wavelengths for which the material is known.
   session.set_view(&View::map_x, "wavelength");
   session.set("surface.material", "oxidised Al mirror");
   EXPECT_EQ(session.map().x().scale, (Scale{2.0, 12.5}));

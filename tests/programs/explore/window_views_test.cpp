@@ -205,8 +205,7 @@ TEST_F(Window, Films_AreAddedOutside_ChangedRemovedAndSaved_AndUndoBringsThemBac
   save_scene(session(), at("coated.toml"));
   EXPECT_EQ(films_of(Scene::from_file(at("coated.toml"))), films());
   click_control("surface.coating.1.material");
-  click(app_->control_area("surface.coating.1.material")
-            .at(0.5F, 2.6F));  // lines down from the closed list: its first material
+  click(app_->control_area("surface.coating.1.material").at(0.5F, 2.6F));  // the first material of the list
   EXPECT_TRUE(word("surface.coating.1.material"));
   EXPECT_EQ(number("surface.coating.1.thickness_um"), before.number("surface.coating.1.thickness_um"));
   keys("ctrl+z");

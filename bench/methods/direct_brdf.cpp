@@ -54,7 +54,7 @@ class MaskingTails {
 namespace {
 
 constexpr double kStep = 1.0 / 24.0;      // step between nodes in X; the interpolation error is 1e-12
-constexpr double kEndOverWidth = 1e6;  // last tau, divided by max(1, m); from there on, integrals equal powers of tau within 1e-12
+constexpr double kEndOverWidth = 1e6;     // last tau/max(1, m); from there on, integrals are powers of tau within 1e-12
 constexpr double kVerticalSlope = 1e100;  // steepest sampled slope; its square does not overflow
 using CellRule = boost::math::quadrature::gauss<double, 4>;
 

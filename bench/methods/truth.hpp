@@ -11,7 +11,7 @@ namespace dolp::bench {
 /// The reference's moments of one entry.
 struct Truth {
   Moments moments;
-  double bound = 0.0;  ///< bound of max(|d r_i|, |d r_q|)/r_i, where d r_i and d r_q are the errors of r_i and r_q
+  double bound = 0.0;   ///< bound of max(|d r_i|, |d r_q|)/r_i, where d r_i and d r_q are the errors of r_i and r_q
   double time_s = 0.0;  ///< time per entry, on one core
 };
 

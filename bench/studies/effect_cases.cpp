@@ -16,7 +16,7 @@ constexpr double kTemperature = 298.15;  // temperature of the surface, K
 constexpr double kLastTheta = 85.0;
 constexpr double kFirstSigma = 0.05;
 constexpr double kLastSigma = 1.0;
-constexpr double kIrradiance = 20.0;  // irradiance of the source, W m-2 um-1; 2/3 of a black body's exitance at kTemperature
+constexpr double kIrradiance = 20.0;  // of the source, W m-2 um-1; a black body at kTemperature emits 3/2 of it
 constexpr double kSunAtTenUm = 0.18;  // sunlight above the atmosphere at 10.6 um, W m-2 um-1
 constexpr double kSunInVisible = 1800.0;
 constexpr double kVisible_um = 0.55;
@@ -155,8 +155,7 @@ std::vector<EffectGroup> surface_groups(const SceneValues& base) {
                                                           }}})};
 }
 
-/// Groups for multiple bounces and the other effects that single scattering ignores. Only `v-cavity` masking supports
-/// all of them.
+/// Groups for multiple bounces, direct emission and the bracket of DOLP, which only `v-cavity` masking supports.
 std::vector<EffectGroup> scattering_groups(const Axes& grid) {
   SceneValues rough = emitting(grid);
   rough.surface.masking = Masking::kVCavity;

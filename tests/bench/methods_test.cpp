@@ -84,7 +84,7 @@ class BenchMethod : public testing::TestWithParam<std::string> {};
 TEST_P(BenchMethod, EveryCase_CheapSetting_AgreesWithReference) {
   const std::unique_ptr<Solver> solver = solver_of(GetParam());
   const Expected& expected = kExpected.at(GetParam());
-  const std::size_t entries = GetParam() == "dblquad" ? 1 : 2;  // the separate timing of dblquad is slow
+  const std::size_t entries = GetParam() == "dblquad" ? 1 : 2;  // dblquad.py repeats each entry for 1.5 s
   for (const Case& one : cases()) {
     if (!expected.tolerance.contains(one.name)) {
       EXPECT_THROW(worst_error(*solver, neighbourhood(one, entries), expected.setting), Unavailable) << one.name;
@@ -109,7 +109,8 @@ std::string test_name(const testing::TestParamInfo<std::string>& tested) {
 }
 INSTANTIATE_TEST_SUITE_P(Registry, BenchMethod, testing::ValuesIn(method_names()), test_name);
 
-// A tight tolerance shows errors of the masking tables (integral, smith) and of the integral's end at the horizon.
+// With this tight tolerance, errors would show in the masking tables (`integral` and `smith` masking), and at the
+// horizon, where the integral ends.
 TEST(BenchFormulas, AdaptiveCubature_TightTolerance_AgreesWithReferenceForBothDistributions) {
   const std::unique_ptr<Solver> hcubature = solver_of("hcubature");
   for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
@@ -156,7 +157,8 @@ TEST(BenchRules, MonteCarlo_Repeats_ScatterAsStatedAboutTheTruth) {
     sum_2 += deviation * deviation;
     stated_2 += *answer.stated_error * *answer.stated_error;
   }
-  // 64 repeats determine the scatter to 9 %, the mean to 1/8 of the scatter. Both tolerances are four standard errors.
+  // With 64 repeats the measured standard deviation has an error of 9 %, and the mean an error of 1/8 of the standard
+  // deviation. Both tolerances are four times these errors.
   EXPECT_NEAR(std::sqrt(sum_2 / stated_2), 1.0, 0.36);
   EXPECT_LE(std::abs(sum / kRepeats), 4.0 * std::sqrt(stated_2 / kRepeats) / std::sqrt(kRepeats));
 }

@@ -14,7 +14,6 @@ using namespace dolp;
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-// Each of these studies takes about a second.
 const std::string kAccuracy = "accuracy --quick --entries 16 ";
 const std::string kEffects = "effects --quick --entries 9 ";
 

@@ -38,8 +38,9 @@ double largest_difference(const std::vector<Answer>& a, const std::vector<Answer
   return largest;
 }
 
-// The native build computes neighbouring directions together, with the largest quadrature order that one of them needs.
-// On this coarse grid the orders differ much, so it uses up to four times as many evaluations as the device.
+// The native build computes neighbouring directions together, with the largest quadrature order that any of them needs.
+// The directions of this grid need very different orders. So the native build uses up to four times as many evaluations
+// as the device.
 TEST(BenchNative, Grid_HasTheDevicesNodesOrMoreAndItsMoments) {
   constexpr double kTolerance = 1e-4;
   const std::unique_ptr<Solver> native = solver_of("native-float");
@@ -59,7 +60,7 @@ TEST(BenchNative, Grid_HasTheDevicesNodesOrMoreAndItsMoments) {
 // With 256 nodes per axis, several invocations compute the parts of one entry.
 TEST(BenchDeviceRule, ManyNodes_EveryMasking_GivesTheSumOfTheHost) {
   constexpr double kNodes = 256;
-  constexpr double kRounding = 2e-5;  // Rounding error of the angles in float, largest for the smoothest surface.
+  constexpr double kRounding = 2e-5;  // due to the rounding of angles in float; largest for the smoothest surface
   const std::vector<NestedGrid::Place> places = NestedGrid::sample(3);
   const std::unique_ptr<Solver> device = solver_of("vulkan-gauss");
   const std::unique_ptr<Solver> host = solver_of("gauss");
@@ -76,7 +77,8 @@ TEST(BenchOperations, WholeRequest_CountsWhatTheKernelDoes) {
   const KernelWork work = count_operations(request, 1'000'000, 8);
   const Solution solution = solver_of("vulkan-float")->solve(request, request.tolerance);
   EXPECT_NEAR(work.evaluations / *solution.evaluations, 1.0, 1e-3);
-  // Each evaluation has three square roots and, in Fresnel's formulas, about 40 products. Integration limits need more.
+  // An evaluation takes three square roots and about 40 products in Fresnel's formulas, and more for integration
+  // limits.
   EXPECT_GT(static_cast<double>(work.counts.square_root), 3.0 * work.evaluations);
   EXPECT_GT(static_cast<double>(work.counts.multiply), 40.0 * work.evaluations);
   EXPECT_LT(static_cast<double>(work.counts.flops()), 5000.0 * work.evaluations);

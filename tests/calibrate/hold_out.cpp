@@ -15,11 +15,12 @@ namespace {
 constexpr double kFinerBy = 1e-5;
 constexpr double kFinest = 1e-13;
 constexpr double kReferenceTolerance = 1e-9;
-constexpr std::size_t kAtOnce = 2000;  // entries per call of an evaluator, which keeps all their masking tables
+constexpr std::size_t kAtOnce = 2000;  // entries per call of an evaluator, which keeps a masking table for each
 constexpr std::size_t kClimbSteps = 40;
 constexpr std::size_t kNeighbours = 16;
 
-/// Moments of some entries, by the rule under test with its stated errors and by a far more accurate computation.
+/// Moments of some entries, computed twice: by the rule under test, with the errors that it states, and far more
+/// accurately.
 struct Answers {
   std::vector<Moments> stated;
   std::vector<Moments> exact;

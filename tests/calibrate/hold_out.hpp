@@ -1,5 +1,5 @@
 // Test of the error bounds with random entries that did not take part in the fit of the rules. Compares the results
-// with finer rules or with the independent reference. A climb then searches near a bad entry for a worse one.
+// with those of finer rules or of the independent reference. A climb then searches near a bad entry for a worse one.
 #pragma once
 
 #include <cstddef>
@@ -15,9 +15,9 @@ struct HoldOutOptions {
   double tolerance = 1e-4;
   std::size_t entries = 1000;
   std::uint64_t seed = 1;
-  std::size_t climbs = 0;          ///< number of the worst random entries near which a climb looks for worse ones
+  std::size_t climbs = 0;          ///< a climb starts from each of so many entries, the worst of the random ones
   bool against_reference = false;  ///< compare with the reference, which takes a second of one core per entry
-  /// multiplies all bounds; the smallest value that passes shows how much bounds exceed errors
+  /// multiplies all bounds. The smallest share without an error above its bound shows how much too large bounds are.
   double bound_share = 1.0;
 };
 

@@ -25,7 +25,7 @@ constexpr double kCornerShare = 0.25;
 // be 1 for scattered points, and 30 for a dense grid: interpolation first computes one entry of 30, but every entry
 // that misses its tolerance is computed again. The value lies between both costs.
 constexpr double kAgainWeight = 8.0;
-// The relative error of r_q / r_i, the DOLP of reflected light, is at most the sum of the errors of r_q and r_i.
+// The DOLP of the reflected light is r_q / r_i. Its error is at most the sum of the relative errors of r_q and r_i.
 constexpr double kErrorsOfDolp = 2.0;
 constexpr int kMostLevels = 8;
 constexpr double kLeastTolerance = 1e-13;

@@ -17,7 +17,7 @@ namespace {
 
 using namespace dolp;
 
-// A tenth of the tightest tolerance in the tests of grooves. Near q = 1 the reference does not reach it.
+// A tenth of the tightest tolerance in the tests of grooves. Near q = 1 the reference does not reach this accuracy.
 constexpr double kTolerance = 1e-7;
 // Leaves out random entries if the relative error of the reference is larger.
 constexpr double kLeastKnown = 1e-3;

@@ -69,7 +69,7 @@ def memory_limit(driver):
 def few_threads(driver):
     """the system allows n threads beside the first"""
     driver.expect("table", LARGE)
-    # Number of threads of lavapipe, which cannot work without them, and of the program.
+    # Number of threads that lavapipe (which cannot work with fewer) and the program need.
     needed = 2 * min(os.cpu_count(), 32) + 3
     for n in [0, *driver.numbers(needed, 7)] if driver.is_quick else range(needed + 20):
         fault = driver.preload("thread", DOLP_MOST_THREADS=str(n))

@@ -32,8 +32,8 @@ HoldOutOptions few_entries() {
   return options;
 }
 
-// Bounds that are a thousand times too small must be found. Typical errors are a tenth of their bound, so most entries
-// fail, and the worst ratio of error to bound rises a thousandfold.
+// A typical error is a tenth of its bound. So if all bounds are a thousand times too small, most entries fail, and the
+// worst ratio of error to bound is a thousand times larger.
 TEST(HoldOut, PlantedUnderstatement_IsFound) {
   HoldOutOptions options = few_entries();
   const HoldOut honest = held_out(options);

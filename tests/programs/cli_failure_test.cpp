@@ -178,7 +178,7 @@ TEST_F(CommandLine, CpuAndReference_NoDriver_Work) {
 }
 
 TEST_F(CommandLine, Strict_FloatAtTightTolerance_Exit1WithTheResults) {
-  // Rounding in float has a relative size of 6e-8, far above this tolerance.
+  // rounding in float is 6e-8, far above this tolerance
   const std::vector<std::string> hard = joined(kEval, {"--tolerance", "1e-10", "--precision", "float"});
   EXPECT_EQ(dolp(hard).status, kDone);
   const Outcome outcome = dolp(joined(hard, {"--strict"}));

@@ -142,7 +142,6 @@ int an_allowed_core() {
 }
 
 TEST_F(CommandLine, Table_OneCoreOrAll_SameNumbers) {
-  // The grid is so large that all loops use several threads.
   const std::vector<std::string> arguments = split_at(
       "table scene.toml -o - --quiet --tolerance 1e-2 --set grid.theta_deg={from=0,to=90,count=24} "
       "--set grid.sigma={from=0.05,to=1.0,count=16} --set grid.q={from=1.6,to=8,count=24}",
@@ -218,7 +217,8 @@ TEST_F(CommandLine, Evaluators_SamePoints_AgreeWithinTheirStatedErrors) {
       const auto sum = [&](const char* name) { return vulkan.at(name)[i] + other->at(name)[i]; };
       const auto difference = [&](const char* name) { return std::abs(vulkan.at(name)[i] - other->at(name)[i]); };
       EXPECT_LE(difference("dolp"), sum("error_estimate")) << i;
-      // rho_error_estimate is relative to rho_i. The bound is the sum of the estimates times the mean of both rho_i.
+      // rho_error_estimate is relative to rho_i: (sum of the two estimates) * (mean of the two rho_i) bounds the
+      // difference.
       EXPECT_LE(difference("rho_i"), sum("rho_error_estimate") * 0.5 * sum("rho_i")) << i;
       EXPECT_LE(difference("rho_q"), sum("rho_error_estimate") * 0.5 * sum("rho_i")) << i;
     }
@@ -251,7 +251,7 @@ TEST_F(CommandLine, Json_EachEvaluator_HasTheContractsKeys) {
   }
 }
 
-// For a rough metal single scattering is wrong. Few entries suffice for the summary to report by how much.
+// For a rough metal multiple bounces matter. The summary must report the error of single scattering.
 TEST_F(CommandLine, Summary_MaskingWithADirectEmission_SaysWhatSingleScatteringLeavesOpen) {
   const std::vector<std::string> metal = {"--set", "surface.masking=smith", "--set", "surface.n=10",
                                           "--set", "surface.k=60"};
@@ -268,7 +268,7 @@ TEST_F(CommandLine, Summary_MaskingWithADirectEmission_SaysWhatSingleScatteringL
     EXPECT_NE(text.out.find("direct emission differs by up to "), std::string::npos) << text.out;
     options.push_back("--json");
     EXPECT_GT(json::parse(with(options).out)["scattering_gap"], 0.01);
-    // the masking of scene.toml, `integral`, has no direct emission
+    // scene.toml has `integral` masking, for which there is no direct emission
     EXPECT_TRUE(json::parse(with({"--json"}).out)["scattering_gap"].is_null());
     EXPECT_EQ(with({}).out.find("  scattering "), std::string::npos);
   }
@@ -276,7 +276,6 @@ TEST_F(CommandLine, Summary_MaskingWithADirectEmission_SaysWhatSingleScatteringL
 
 TEST_F(CommandLine, Json_WallTime_CountsTheWriting) {
   ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
-  // The program waits when it opens the pipe, until a reader opens it too.
   const std::jthread reader([this] {
     std::this_thread::sleep_for(std::chrono::milliseconds(1500));
     content("pipe");
@@ -417,7 +416,8 @@ TEST_F(CommandLine, Materials_List_HasNameRangeAndSource) {
 }
 
 TEST_F(CommandLine, Materials_OneAtAWavelength_HasNAndKOfItsTable) {
-  // These values are from a row of host/data/materials.csv. A name may end at any blank, in upper or lower case.
+  // The values are from a row of host/data/materials.csv. A user may write only the first words of a material's name,
+  // in upper or lower case.
   constexpr double kWaterN = 1.218;
   constexpr double kWaterK = 0.0508;
   const Outcome text = dolp({"materials", "WATER", "--at", "10"});

@@ -49,7 +49,7 @@ TEST_F(Mueller, Points_RepeatedInOrderWithAllElements) {
   EXPECT_EQ(f.at("m00")[0], f.at("m00")[1]);
   EXPECT_EQ(f.at("m02")[0], -f.at("m02")[1]);
   EXPECT_NE(f.at("m02")[0], 0.0);
-  EXPECT_GT(f.at("m00")[3], f.at("m00")[2]);  // lines[3] is farther from the specular direction
+  EXPECT_GT(f.at("m00")[3], f.at("m00")[2]);  // the direction of lines[2] is farther from the specular one
 }
 
 TEST_F(Mueller, Evaluators_AgreeWithinTheirStatedErrors) {
@@ -69,7 +69,6 @@ TEST_F(Mueller, Evaluators_AgreeWithinTheirStatedErrors) {
     EXPECT_LE(in_float, 1e-5);
     EXPECT_GT(in_float, 1e-11);  // the reference uses other formulas, so rounding differs
     EXPECT_LE(worst({"--evaluator", evaluator, "--precision", "double"}), 1e-11);
-    // With precision auto this tolerance selects double.
     EXPECT_LE(worst({"--evaluator", evaluator, "--tolerance", "1e-8"}), 1e-11);
   }
 }

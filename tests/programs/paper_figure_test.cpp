@@ -14,8 +14,8 @@ using namespace dolp;
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-// The manual has DOLP to 0.01 percentage points, angles to 0.1 degrees and G to 0.001. DOLP of the curves is accurate
-// to 0.01 percentage points, the tolerance of the scenes. The curves have a step of 0.1 degrees.
+// Precision of the numbers in the manual: 0.01 percentage points of DOLP, 0.1 degrees, and 0.001 of G. The curves have
+// steps of 0.1 degrees and DOLP to 0.01 percentage points, the tolerance of the scenes.
 constexpr double kPointTolerance = 0.02;
 constexpr double kAngleToleranceDeg = 0.2;
 constexpr double kAttenuationTolerance = 6e-4;
@@ -48,7 +48,7 @@ class PaperFigure : public testing::Test {
   TemporaryFolder folder_;
 };
 
-/// The only element of `list` whose members include those of `wanted`.
+/// The only element of `list` that has all members of `wanted` with equal values.
 const json& one_of(const json& list, const json& wanted) {
   const auto matches = [&](const json& entry) {
     return std::ranges::all_of(wanted.items(), [&](const auto& item) { return entry.at(item.key()) == item.value(); });

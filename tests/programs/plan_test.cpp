@@ -15,11 +15,11 @@ using nlohmann::json;
 const std::vector<std::string> kIsothermal = {"--set", "surroundings.temperature_K=300"};
 const std::vector<std::string> kBistatic = {"--set", "geometry.mode=bistatic", "--set",
                                             "source.relative_irradiance=0.5"};
-// Emission and surroundings are equally warm, so only the source adds polarisation, and moments are not needed.
+// With emission and surroundings equally warm, only the source adds polarisation. So the run needs no moments.
 const std::vector<std::string> kBeamAlone = {"--set", "surroundings.temperature_K=300",
                                              "--set", "geometry.mode=bistatic",
                                              "--set", "source.relative_irradiance=0.5"};
-// Relative error of predictions: in float the device may round an order of a rule differently than the CPU.
+// Relative error of predictions: in float the device may round the order of a quadrature rule differently than the CPU.
 constexpr double kOrderRounding = 0.05;
 // Relative error of predictions that are made from 256 of the entries.
 constexpr double kSampling = 0.1;
@@ -45,7 +45,7 @@ class Plan : public CommandLine {
   }
 };
 
-// As a check a run computes a few entries again. Only these entries may get masking tables, or memory runs out.
+// A run computes a few entries again as a check. If all entries had masking tables for this, memory would run out.
 TEST_F(Plan, MillionValuesOfAnAxis_FitIntoTwoGigabytes) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "AddressSanitizer takes terabytes of addresses";
@@ -86,7 +86,8 @@ TEST_F(Plan, Memory_IsAboutThatOfTheTable) {
   const std::string peak =
       "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True); "
       "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)";
-  // Real over predicted memory. Drivers differ, and parts of a table may overlap if the machine is busy.
+  // Largest ratio of real to predicted memory. Drivers differ, and a busy machine may hold several parts of a table at
+  // a time.
   constexpr double kAbout = 1.7;
   // These tables have one, two and six parts. With more parts the memory stays constant.
   for (const char* count : {"200", "1200", "6000"}) {
@@ -159,7 +160,7 @@ TEST_F(Plan, WhatTheResultDoesNotNeed_IsNotComputed_AndTheAnswerIsThatOfEverythi
     EXPECT_EQ(table(joined(of.options, {"--keep-all"}))["effects"]["dropped"].size(), 0U);
     const TableValues all = read_table(at("t.nc"));
     for (const Quantity quantity : kAllQuantities) {
-      // only with emission.bracket
+      // files have these quantities only with emission.bracket
       const bool is_of_bracket = std::string(description_of(quantity).name).starts_with("dolp_");
       EXPECT_EQ(all[quantity].size(), is_of_bracket ? 0U : all.size()) << description_of(quantity).name;
     }
@@ -247,7 +248,6 @@ TEST_F(Plan, ManyEntries_PredictionFromSomeIsNearly) {
   const json spent = table(joined(grid, {"--evaluator", "cpu"}));
   EXPECT_FALSE(predicted["first_attempt"]["is_exact"]);
   const double evaluations = spent["evaluations"];
-  // directions need different numbers of evaluations
   EXPECT_NEAR(predicted["evaluations"], evaluations, 2.0 * kSampling * evaluations);
 }
 

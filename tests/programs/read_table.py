@@ -25,7 +25,7 @@ def read_csv(path):
 
 
 def positions(dataset, columns, row_count):
-    """For each axis, the positions of the entries of all CSV rows."""
+    """For each axis of the table, a list with one position for each CSV row."""
     result = []
     for column, axis in AXES.items():
         values = np.asarray(dataset[axis][:])

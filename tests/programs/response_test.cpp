@@ -57,7 +57,7 @@ TEST_F(Response, SceneWithoutAMaterial_HasOneForEachMasking) {
 TEST_F(Response, WhatItDoesNotDependOn_ChangesNoWeight) {
   ASSERT_EQ(response({"--quiet"}).status, 0);
   const std::vector<std::string> scene = {"response", "scene.toml", "-o", "same.nc", "--evaluator", "cpu", "--quiet"};
-  // The files do not exist. The command must not open them.
+  // The settings name files that do not exist. The command must not open them.
   ASSERT_EQ(dolp(joined(scene, {"--set", "surface.masking=smith", "--set", "grid.theta_deg=[0,60,89]", "--set",
                                 "surface.material_file=missing.csv", "--set", "source.file=missing.csv"}))
                 .status,
@@ -124,7 +124,7 @@ TEST_F(Response, Verify_ComparesWithTheReference) {
 TEST_F(Response, Verify_FindsWrongWeights) {
   ASSERT_EQ(response({"--set", "grid.q=2", "--set", "surface.masking=none", "--quiet"}).status, 0);
   TableValues table = read_table(at("r.nc"));
-  // an entry has 24 weights, so this is a weight of the second entry
+  // each entry has 24 weights, so this weight is of the second entry
   table.responses[ResponseVariable::kResponseQ][30] += 1e-3;
   write_table(table, at("r.nc"));
   const Outcome outcome = dolp({"verify", "r.nc"});

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Theta and sigma descend or are unordered. Sigma and q are so dense that they are interpolated.
+// The values of theta and sigma are not in ascending order. Sigma and q are so dense that the program interpolates.
 const std::string kGrid = R"(title = "in parts"
 [surface]
 k = 0.2
@@ -84,7 +84,7 @@ TEST_F(Shards, MergedAgain_AreTheTableOfOneRun_WithEveryMasking) {
   }
 }
 
-// 14 shards are more than the grid has directions, so shards also divide the wavelengths and n.
+// There are more shards than directions, so shards also divide the axes of wavelength and n.
 TEST_F(Shards, OfSeveralAxes_MergeIntoTheTableAndItsCsv) {
   ASSERT_EQ(dolp({"table", "grid.toml", "-o", "one.csv"}).status, 0);
   for (int i = 1; i <= 14; ++i) {
@@ -150,7 +150,6 @@ TEST_F(Shards, BadNumbers_OneLineEach) {
   }
 }
 
-// host/cluster/submit.sh needs this name.
 TEST_F(Shards, OneOfOne_HasTheNameOfAShard_AndMerges) {
   ASSERT_EQ(dolp({"table", "grid.toml", "-o", "t.nc", "--shard", "1/1"}).status, 0);
   EXPECT_FALSE(fs::exists(at("t.nc")));
@@ -160,7 +159,7 @@ TEST_F(Shards, OneOfOne_HasTheNameOfAShard_AndMerges) {
   expect_same("one.nc", "t.nc");
 }
 
-// A scene with data files. Shards must notice changes of files and options that the scene's text does not show.
+// A scene that names data files. Shards must notice changes of these files, and of options that are not in the scene.
 class Inputs : public Shards {
  protected:
   void SetUp() override {
@@ -305,7 +304,8 @@ TEST_F(Resume, AfterCtrlC_SaysHowToGoOn_AndGivesTheSameBits) {
   EXPECT_NE(resumed.out.find("2621440"), std::string::npos) << resumed.out;
 }
 
-// The values (t.nc.partial) or progress (t.nc.partial.txt) of an interrupted run are damaged before it resumes.
+// An interrupted run leaves values (t.nc.partial) and its progress (t.nc.partial.txt). They are damaged before it
+// resumes.
 TEST_F(Resume, OverADamagedPartialFile_GivesTheSameBits) {
   make_whole();
   ASSERT_EQ(interrupted(SIGINT).status, 130);

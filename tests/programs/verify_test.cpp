@@ -51,7 +51,7 @@ std::string refusal(const TableValues& table, const std::string& scene_text) {
 TEST(CheckTable, NothingToCompare_IsRefused) {
   TableValues table = small_table();
   table[Quantity::kAlbedo] = {1.0};
-  table[Quantity::kDolp] = {0.1};  // without an error estimate DOLP is not compared
+  table[Quantity::kDolp] = {0.1};  // without error_estimate DOLP is not compared
   EXPECT_NE(refusal(table, kScene).find("t.nc: has nothing to compare"), std::string::npos);
 }
 
@@ -134,7 +134,7 @@ TEST_F(Verify, ValueOfAnyQuantityThatIsOff_IsFound) {
   const TableValues table = make_table({"--set", "grid.theta_deg=[0.001, 40, 60, 80]"});
   for (const Quantity quantity : quantities) {
     const double right = table[quantity][0];
-    // Entry 0 is near theta = 0. Its DOLP is so small that the error estimate of DOLP is no bound for the error of I.
+    // At theta near 0 (entry 0) DOLP is tiny, so its error estimate would be no bound for the error of I.
     put_value(at("t.nc"), quantity, 0, right + 0.05 * std::max(1.0, std::abs(right)));
     const nlohmann::json json = verify_json(kAccuracy);
     EXPECT_EQ(json["failures"].size(), 1U) << description_of(quantity).name;
@@ -199,7 +199,7 @@ TEST_F(Verify, OneCorruptedValue_Exit1AndIsNamed) {
                                       : table[Quantity::kRhoErrorEstimate][at_entry] * table[Quantity::kRhoI][at_entry];
     if (name.starts_with("stokes")) bound *= table[Quantity::kStokesI][at_entry];
     if (corruption.quantity == Quantity::kStokesI) bound /= table[Quantity::kDolp][at_entry];
-    // The stored error is at most one bound. So after this change of three bounds the error is at least two bounds.
+    // The table's error is at most `bound`. So adding three bounds makes an error of at least two.
     put_value(at("t.nc"), corruption.quantity, at_entry, table[corruption.quantity][at_entry] + 3.0 * bound);
     const nlohmann::json json = verify_json(kAccuracy);
     EXPECT_EQ(json["passed"], false);
@@ -265,7 +265,7 @@ TEST_F(Verify, ReducedVariables_AreComparedAsFarAsTheyAreThere) {
   }
   write_table(table, at("t.nc"));
   const nlohmann::json json = verify_json(kDone);
-  // dolp, q_over_i, stokes_i, stokes_q, albedo, emissivity_s, emissivity_p
+  // compared: dolp, q_over_i, stokes_i, stokes_q, albedo, emissivity_s, emissivity_p
   EXPECT_EQ(json["quantities"].size(), 7U);
 }
 
@@ -311,7 +311,6 @@ TEST_F(Verify, TheTableAlone_IsSufficient) {
     const TableValues table = make_table(options);
     EXPECT_FALSE(table.index_n.values.empty());
     const nlohmann::json before = verify_json(kDone, {"--named-files", "--samples", "3"})["quantities"];
-    // The table has the data with which it was computed, so a change of the file has no effect.
     put("index.csv", "wavelength_um,n,k\n7,2.4,0.1\n13,2.6,0.1\n");
     EXPECT_EQ(verify_json(kDone, {"--samples", "3"})["quantities"], before) << options[1];
   }
@@ -395,7 +394,8 @@ TEST_F(Verify, HardCases_OneLinePerModelAndAllRowsOnRequest) {
     const std::string out = dolp(arguments).out;
     return static_cast<std::size_t>(std::ranges::count(out, '\n'));
   };
-  // Lines for the title, the device, the verdict, and each distribution with each masking. Failed cases add lines.
+  // The report has lines for title, device and verdict, and one for each distribution with each masking. Failures add
+  // lines.
   constexpr std::size_t kFrame = 3 + 8;
   EXPECT_EQ(lines(command), kFrame + static_cast<std::size_t>(failed));
   std::vector<std::string> with_all = command;

@@ -80,7 +80,8 @@ TEST(ReferenceBounces, EachNumber_IsReciprocal) {
   for (const int bounces : {1, 2, 3, 4, 5}) EXPECT_GT(largest.at(static_cast<std::size_t>(bounces)), 0.0) << bounces;
 }
 
-// The smallest eigenvalue of Cloude's coherency matrix, divided by the largest. Negative: the matrix is not realisable.
+// Smallest eigenvalue of Cloude's coherency matrix, divided by the largest. If it is negative, the Mueller matrix is
+// not realisable.
 double smallest_eigenvalue(const ReferenceMueller& m) {
   using Complex = std::complex<double>;
   const Complex i(0.0, 1.0);
@@ -113,7 +114,8 @@ TEST(ReferenceBounces, Sum_IsPhysical) {
   }
 }
 
-// Grooves of any azimuth reflect twice into the mirror direction; at zenith 0 only right-angled ones reflect back.
+// Grooves of every azimuth send light into the mirror direction after two bounces. At zenith 0 only right-angled
+// grooves do.
 TEST(ReferenceBounces, MirrorDirection_IsWhereTwoBouncesDiverge) {
   const Surface surface = grooves(Distribution::kCauchy, 0.4, 2.0);
   const auto twice = [&](double theta_r_deg, double delta_phi_deg) {
@@ -140,8 +142,8 @@ TEST(ReferenceBounces, ScatterOfTheEvaluator_IsTheSum) {
   for (std::size_t e = 0; e < 16; ++e) EXPECT_EQ(matrix.m[e], f[e / 4][e % 4]);
 }
 
-// Integrates the pBRDF elements f_00 and f_01 over x and y, the horizontal components of omega_r: d Omega cos(theta_r)
-// = dx dy. Polar coordinates around the mirror direction remove the divergence there.
+// Integrates the pBRDF elements f_00 and f_01 over x and y, the horizontal components of omega_r, because d Omega
+// cos(theta_r) = dx dy. Uses polar coordinates around the mirror direction, where the pBRDF diverges.
 std::complex<double> hemispherical(const Surface& surface, const OpticalConstants& index, double theta_deg) {
   constexpr int kSectors = 12, kRings = 3;
   const double centre = -std::sin(theta_deg * kRadPerDeg);

@@ -94,7 +94,7 @@ TEST(ReferenceGrooves, Albedo_IsOne_AndNothingIsLost) {
   }
 }
 
-// Shares of rays with 0, 1, 2, ... bounces in a groove. Follows each ray from facet to facet.
+// Share of the rays that bounce 0, 1, 2, ... times in a groove, found by following each ray from facet to facet.
 std::vector<double> counted_shares(double alpha, const reference::Vector<double>& omega, int rays) {
   std::vector<double> shares(40);
   const double c = std::cos(alpha), s = std::sin(alpha);
@@ -123,7 +123,7 @@ std::vector<double> counted_shares(double alpha, const reference::Vector<double>
 
 TEST(GrooveBeam, Fluxes_MatchCountedRays) {
   constexpr int kRays = 20000;
-  constexpr double kTolerance = 3.0 / kRays;  // one ray at each end of up to three beams
+  constexpr double kTolerance = 3.0 / kRays;  // up to three beams, each with an error of one ray
   for (const double alpha_deg : {10.0, 35.0, 60.0, 80.0, 85.0}) {
     for (const double theta_deg : {0.0, 20.0, 55.0, 80.0, 89.0}) {
       for (const double phi_deg : {0.0, 40.0, 89.0, 130.0}) {
@@ -177,8 +177,8 @@ TEST(ReferenceGrooves, LimitsOfTheMaterial) {
   EXPECT_EQ(vacuum.r_i, 0.0);
   EXPECT_EQ(vacuum.r_q, 0.0);
   EXPECT_NEAR(vacuum.deficit, 0.5, kRounding);
-  // The mirror absorbs almost nothing: 1 - R is 4e-12 at normal incidence. It is larger only for p polarisation within
-  // 1e-6 of grazing incidence, where rays have few bounces.
+  // A mirror absorbs almost nothing: 1 - R is 4e-12 at normal incidence. It is larger only within 1e-6 of grazing
+  // incidence for p polarisation, where a ray has few bounces.
   const Moments mirror = all_bounces({kGaussian, 60.0, {0.3, 2.0}, {1.0, 1e6}}, {.relative_tolerance = 1e-6});
   EXPECT_NEAR(mirror.r_i, 0.5, 1e-5);
 }
@@ -236,7 +236,7 @@ TEST(ReferenceDirect, BracketsTheEmission) {
     EXPECT_LT(0.0, multiple.direct_i);
     EXPECT_LT(multiple.direct_i, multiple.deficit);
     EXPECT_LT(multiple.deficit, single.deficit);
-    // Bounces after the first cannot add more polarised light than light in total.
+    // Further bounces add more light in total than polarised light.
     EXPECT_LE(std::abs(-multiple.r_q - multiple.direct_q), multiple.deficit - multiple.direct_i);
   }
 }
@@ -256,7 +256,8 @@ TEST(ReferenceDirect, Vacuum_EmitsAll) {
   }
 }
 
-// Integrates over facets in polar coordinates around the view: angle of incidence beta, and azimuth eta.
+// Integrates over the facets as the viewer sees them: over the angle of incidence beta and the azimuth eta around the
+// view.
 TEST(ReferenceDirect, PlainQuadratureAroundTheView_Agrees) {
   constexpr double kPlainTolerance = 1e-6;
   constexpr unsigned kDepth = 9;

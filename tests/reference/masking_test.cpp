@@ -51,7 +51,6 @@ double plain_g1(Distribution distribution, double sigma, double q, double theta,
   const auto weighted = [&](double gamma) {
     return density(gamma) * (1.0 + std::cos(theta + gamma) / std::cos(theta - alpha));
   };
-  // The slope density has its peak at 0.
   const double left = rule.integrate(density, -0.5 * pi, 0.0) + rule.integrate(density, 0.0, a);
   return left + rule.integrate(weighted, a, b);
 }
@@ -84,7 +83,7 @@ TEST(ReferenceMasking, G1_HeavyTails_KeepTheWholeDensity) {
 
 TEST(ReferenceMasking, G1_SingularDensity_MatchesIntegrationOverTheSlope) {
   constexpr double kTolerance = 1e-10;                        // error of the exp-sinh rule for t^(1 - 2q)
-  constexpr double kSigma = 0.3, kTheta = 0.9, kAlpha = 0.4;  // then the tilt's upper limit b is pi/2
+  constexpr double kSigma = 0.3, kTheta = 0.9, kAlpha = 0.4;  // with these angles the tilt's upper limit is pi/2
   const double sin_theta = std::sin(kTheta), cos_theta = std::cos(kTheta);
   boost::math::quadrature::exp_sinh<double> to_infinity;
   boost::math::quadrature::tanh_sinh<double> finite;
@@ -125,7 +124,7 @@ TEST(ReferenceMasking, G1_IsWithinHalfAndOneAndFallsWithTheZenithAngle) {
 }
 
 TEST(ReferenceMasking, SmithLambda_MatchesItsDefinition) {
-  // Lambda = int_mu^inf (t - mu) p(t) dt / mu has no upper limit. So the tolerance is relative for large values.
+  // Lambda is an integral to infinity and may be large. So the tolerance of large values is relative.
   constexpr double kTolerance = 1e-9;
   boost::math::quadrature::exp_sinh<double> rule;
   for (const double sigma : {0.05, 0.4, 2.0}) {

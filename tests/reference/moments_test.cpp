@@ -56,7 +56,7 @@ Reflectances fresnel_reflectances(OpticalConstants constants, double theta_deg) 
 }
 
 TEST(Adaptive, KronrodPanel_Polynomials_AreExactUpToTheOrdersOfBothRules) {
-  // The Kronrod rule with 21 points is exact up to degree 31, its Gauss rule with 10 points up to degree 19.
+  // Gauss's rule with 10 points is exact up to degree 19, Kronrod's extension of it to 21 points up to degree 31.
   constexpr double kRounding = 1e-15;
   for (int degree = 0; degree <= 30; degree += 2) {
     const auto panel =
@@ -103,7 +103,7 @@ TEST(ReferenceMoments, SmithAlbedoAt60Degrees_MatchesTheModelDocument) {
 }
 
 TEST(ReferenceMoments, Grazing_IsTheLimit) {
-  // Near 90 degrees r is linear in cos(theta), except for logarithms, with a slope below 100.
+  // Near 90 degrees moments change linearly with cos(theta), apart from logarithms, by less than 100 cos(theta).
   constexpr double kOffset_deg = 1e-4;
   const double tolerance = 100.0 * kOffset_deg * kRadPerDeg;
   for (const Masking masking : kMaskings) {
@@ -122,8 +122,8 @@ TEST(ReferenceMoments, GrazingWithHeavyTails_DivergesBelowThreeHalves) {
     const Moments heavy = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5}, kSteel);
     EXPECT_EQ(heavy.r_i, std::numeric_limits<double>::infinity());
     EXPECT_EQ(heavy.r_q, -std::numeric_limits<double>::infinity());
-    // For q just above 3/2, r_i grows as 1/(2q - 3). At twice the distance from 3/2 it is half as large. The ratio of
-    // both has a relative error of the distance times a factor below 100.
+    // For q just above 3/2, r_i is proportional to 1/(2q - 3). So `near` is twice `far`, with a relative error of up to
+    // 100 kDistance.
     constexpr double kDistance = 1e-5;
     const double near = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5 + kDistance}, kSteel).r_i;
     const double far = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5 + 2.0 * kDistance}, kSteel).r_i;
@@ -133,7 +133,7 @@ TEST(ReferenceMoments, GrazingWithHeavyTails_DivergesBelowThreeHalves) {
 }
 
 TEST(ReferenceMoments, Deficit_IsTheAbsorbedPartOfASmoothMetal) {
-  // With sigma = 1e-3 the deficit is nearly the light that the smooth metal absorbs, 0.5 % of cos(theta).
+  // For sigma = 1e-3 the deficit is about 0.5 % of cos(theta), the light that the smooth metal absorbs.
   constexpr double kRelative = 1e-3;
   const OpticalConstants metal{27.0, 90.0};
   const Moments rough = moments(Distribution::kGaussian, Masking::kSmith, 30.0, {1e-3, 2.0}, metal);
@@ -151,9 +151,9 @@ Surface surface_of(Distribution distribution, Masking masking, double sigma, dou
   return surface;
 }
 
-// The azimuth at which v-cavity masking has a kink: there (cos(theta_i) + cos(theta_r)) min(cos(theta_i), cos(theta_r))
-// = cos^2(beta). At theta_r = 3 theta_i - 180 and at 60 + theta_i / 3 degrees this azimuth is 180 degrees. Integrals
-// over the azimuth have a square root there, as functions of theta_r.
+// The azimuth at which v-cavity masking has a kink: (cos(theta_i) + cos(theta_r)) min(cos(theta_i), cos(theta_r)) =
+// cos^2(beta). At theta_r = 3 theta_i - 180 and 60 + theta_i / 3 degrees this azimuth is 180 degrees. There integrals
+// over the azimuth have a square root as functions of theta_r.
 double bend_deg(double theta_i_deg, double theta_r_deg) {
   const double c_i = std::cos(theta_i_deg * kRadPerDeg), c_r = std::cos(theta_r_deg * kRadPerDeg);
   const double sines = std::sin(theta_i_deg * kRadPerDeg) * std::sin(theta_r_deg * kRadPerDeg);
@@ -162,8 +162,8 @@ double bend_deg(double theta_i_deg, double theta_r_deg) {
 }
 
 TEST(ReferenceMoments, PlainQuadratureOfTheMuellerMatrix_Agrees) {
-  // Tolerances relative to r_i. kInner is for integrals over the azimuth, kOuter for the integral over the zenith;
-  // kOuter is larger than the error due to kInner.
+  // Tolerances relative to r_i: kInner for integrals over the azimuth, kOuter for the integral of these over the
+  // zenith.
   constexpr double kInner = 1e-6;
   constexpr double kOuter = 5e-6;
   constexpr unsigned kDepth = 8;
@@ -195,8 +195,8 @@ TEST(ReferenceMoments, PlainQuadratureOfTheMuellerMatrix_Agrees) {
   }
 }
 
-// With v-cavity and smith masking rho has a limit at 90 degrees, and approaches it as c = cos(theta) or c log c. For c
-// below 1e-11 the values at 4c, 2c and c lie on a line to 1e-13. Lost digits would appear as noise.
+// With v-cavity and smith masking rho has a limit at 90 degrees. Just below 90 degrees rho is linear in cos(theta): at
+// 4, 2 and 1 times the gap its values lie on a line to 1e-13. Lost digits would appear as noise.
 TEST(ReferenceMoments, NextToGrazing_KeepTheirDigits) {
   constexpr double kTolerance = 1e-13;
   const ReferenceOptions options{.relative_tolerance = kTolerance, .subdivisions = 2};
@@ -213,7 +213,6 @@ TEST(ReferenceMoments, NextToGrazing_KeepTheirDigits) {
         const auto far = rho(4.0);
         const auto middle = rho(2.0);
         const auto near = rho(1.0);
-        // The change from 2c to c is half the change from 4c to 2c.
         for (const std::size_t k : {0U, 1U}) {
           EXPECT_NEAR(near[k] - middle[k], 0.5 * (middle[k] - far[k]), 2.0 * kTolerance * near[0])
               << "gap " << gap_deg << " sigma " << shape.sigma;

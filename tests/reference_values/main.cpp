@@ -29,21 +29,21 @@ using dolp::name_of;
 using dolp::reference::Case;
 using dolp::reference::Group;
 
-// A reflection below this share of the albedo is the rounding error of 0, which n = 1 and k = 0 give.
+// n = 1 and k = 0 reflect nothing. A reflection below this share of the albedo is 0 with a rounding error.
 constexpr double kNegligible = 1e-12;
 // Relative rounding error of a closed form, which has fewer than 16 operations.
 constexpr double kClosedFormRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
-/// Two accuracies of the reference. The file gets values of `fine`, with errors of at least their distance from
+/// Two settings of the reference. A file gets the values of `fine`; the stated errors are at least the difference from
 /// `coarse`.
 struct Refinements {
   dolp::ReferenceOptions coarse;
   dolp::ReferenceOptions fine;
 };
-// The finest settings whose results differ only by rounding in double.
+// The finest settings that still help: their results differ only by rounding in double.
 constexpr Refinements kForHardCases{{.relative_tolerance = 3e-13, .subdivisions = 1},
                                     {.relative_tolerance = 1e-13, .subdivisions = 2}};
-// Tests compare random points at tolerances down to 1e-9; these values are a thousand times more accurate.
+// A thousand times more accurate than the tightest tolerance of tests with random points, 1e-9.
 constexpr Refinements kForRandomPoints{{.relative_tolerance = 1e-11, .subdivisions = 1},
                                        {.relative_tolerance = 1e-12, .subdivisions = 2}};
 
@@ -65,7 +65,7 @@ dolp::MomentsRequest request_of(const Group& group, const std::vector<Case>& cas
   return request;
 }
 
-/// The finer result, with errors of at least its distance from the coarser result.
+/// The result of `fine`. Its errors are made at least as large as its difference from the result of `coarse`.
 Moments compared(const Moments& coarse, const Moments& fine) {
   Moments result = fine;
   result.r_i_error = std::max(fine.r_i_error, std::abs(coarse.r_i - fine.r_i));
@@ -80,8 +80,8 @@ void replace(double& value, double& error, double exact) {
   error = kClosedFormRounding * std::abs(exact);
 }
 
-/// Equation (A is the albedo at theta = 0): A = 1 - (m^2/(1 + m^2))^(q - 1) for cauchy and A = 1 - exp(-1/m^2) for
-/// gaussian without masking; A = 1 - ln 2 for smith masking with q = 2 and sigma = 1/sqrt(2).
+/// Albedo A at theta = 0. Without masking A = 1 - (m^2/(1 + m^2))^(q - 1) for cauchy, and A = 1 - exp(-1/m^2) for
+/// gaussian. For smith masking with q = 2 and sigma = 1/sqrt(2), A = 1 - ln 2.
 bool put_normal_albedo(const Row& row, Moments& moments) {
   const double m2 = 2.0 * row.input.shape.sigma * row.input.shape.sigma;
   const double q = row.input.shape.q;
@@ -163,7 +163,7 @@ std::string csv_line(const Row& row) {
   return line + "," + c.name + "," + row.origin + "\n";
 }
 
-// A program that reads the file meanwhile gets either the old or the complete new file.
+// Renames the file at the end, so that other programs find either the old or the complete new file.
 void write(const std::filesystem::path& path, const std::string& command, const std::vector<Row>& rows) {
   const std::filesystem::path part = path.string() + ".part";
   std::ofstream file(part);

@@ -7,9 +7,9 @@
 namespace dolp::reference {
 namespace {
 
-// Random cases of smith masking with the Cauchy distribution have a larger q than this. The moments exist for q > 1.5.
+// Moments with smith masking and the Cauchy distribution exist for q > 1.5. Random cases have a larger q than this.
 constexpr double kSmallestSmithQ = 1.53;
-// Distance from a special angle: much more than rounding, much less than the distance between quadrature nodes.
+// Distance from a special angle, so large that rounding does not matter and no quadrature node lies in between.
 constexpr double kBeside_deg = 1e-7;
 
 constexpr OpticalConstants kMetal{27.0, 90.0};

@@ -34,8 +34,9 @@ inline constexpr std::array<Group, 8> kGroups{{{Distribution::kCauchy, Masking::
                                                {Distribution::kGaussian, Masking::kVCavity},
                                                {Distribution::kGaussian, Masking::kSmith}}};
 
-/// The hard cases of a group: ends of every range, coinciding split lines, indices that reflect nothing or everything.
-/// With v-cavity and smith masking moments vanish at 90 degrees; a case just below ("grazing-limit") replaces it.
+/// The hard cases of a group: ends of every range, directions at which lines that split the integral coincide, indices
+/// that reflect nothing or everything. With v-cavity and smith masking moments vanish at 90 degrees. The case
+/// "grazing-limit" just below 90 degrees replaces this case.
 std::vector<Case> hard_cases(const Group& group);
 
 /// Random points: `count_a` of domain A (sigma 0.01 to 1.2, q 1.06 to 13, theta to 89.5 degrees), `count_b` of domain B

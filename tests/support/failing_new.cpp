@@ -17,7 +17,7 @@ void* operator new(std::size_t size) {
   throw std::bad_alloc();
 }
 
-// operator delete below frees with std::free, so memory must not come from operator new of the address sanitizer.
+// Replaces this operator of the address sanitizer, because operator delete below calls std::free.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   try {
     return ::operator new(size);

@@ -9,8 +9,8 @@
 
 namespace dolp {
 
-/// An evaluator that computes every request in one precision, whatever the request wants. (A run first requests float,
-/// then double for entries that miss their tolerance.)
+/// An evaluator that computes in one precision and ignores the precision that a request asks for. (A run asks first for
+/// float, then for double where entries miss their tolerance.)
 class FixedPrecision final : public ModelEvaluator {
  public:
   explicit FixedPrecision(Precision precision,

@@ -77,7 +77,7 @@ class RandomPoints : public Draws {
     }
   }
 
-  // In about half of the pairs, the second direction is within three slope widths of the specular direction.
+  // The second direction of about half of the pairs is within three slope widths of the specular direction.
   BeamAngles angles(double sigma, const OpticalConstants& index) {
     BeamAngles a{zenith(), zenith(), uniform(-180.0, 180.0)};
     const double width_deg = 60.0 * std::min(sigma, 0.5);

@@ -60,7 +60,8 @@ class Image {
 };
 
 pid_t start(const Command& command, const Descriptor& in, const Descriptor& out, const Descriptor& err) {
-  // Allocates memory, which the child must not do: at the fork another thread may hold the lock of the allocator.
+  // Allocates memory before the fork. After it the child must not, as another thread may have held the allocator's
+  // lock.
   const Image image(command);
   const pid_t process = ::fork();
   require(process >= 0, "cannot fork");
@@ -91,7 +92,7 @@ Descriptor::Descriptor(int number) : number_(number) { require(number_ >= 0, "ca
 Descriptor::~Descriptor() { ::close(number_); }
 
 Outcome run(const Command& command) {
-  // The program writes into files. Pipes would have to be read while it runs.
+  // The program's output goes into files, because this process would have to read pipes while the program runs.
   const TemporaryFolder folder;
   const fs::path in_path = folder.path() / "in";
   const fs::path out_path = command.out_path.empty() ? folder.path() / "out" : command.out_path;

@@ -142,7 +142,7 @@ inline std::string kernel_and_model_name(const testing::TestParamInfo<KernelAndM
   return name_of(std::get<0>(test.param)) + name_of(std::get<1>(test.param));
 }
 
-/// The four moments that are integrals over the hemisphere, without those of the direct emission.
+/// The four moments that are integrals over the hemisphere. The moments of the direct emission are not among them.
 inline constexpr std::span<const MomentMember> kHemisphereMembers(kMomentMembers.data(), 4);
 
 inline bool are_same(const Moments& a, const Moments& b) {

@@ -22,7 +22,7 @@ using Real = long double;
 inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 inline constexpr unsigned kSeed = 20250811;
 inline constexpr int kRandomScenes = 2000;
-// Rounding in double, mainly of Planck's exponent, which is below 50 in these scenes.
+// Rounding in double, mainly of the exponent in Planck's law, which is below 50 in these scenes.
 inline constexpr double kAgreement = 1e-12;
 // Stated accuracy of integrals over a band for tabulated materials.
 inline constexpr double kBandAgreement = 1e-9;
@@ -92,7 +92,8 @@ inline PrintedStokes printed_stokes(const SceneValues& scene, Real wavelength_um
   return stokes;
 }
 
-/// Integral of `f` from the first to the last point. The slope of `f` may jump only at the points, which ascend.
+/// Integral of `f` over the ascending `points`, from the first to the last. Between them the slope of `f` must not
+/// jump.
 inline Real integral(const std::vector<double>& points, const std::function<Real(Real)>& f) {
   boost::math::quadrature::tanh_sinh<Real> rule;
   Real sum = 0.0L;

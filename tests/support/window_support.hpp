@@ -18,12 +18,13 @@ namespace dolp::explore_test {
 using explore::App;
 using explore::Area;
 
-// Where drag_slider ends, as a share of the slider's length. A slider jumps to the mouse.
+// The point to which drag_slider drags, as a share of the slider's length. A click moves the slider's handle to the
+// mouse.
 inline constexpr float kPartOfSlider = 0.7F;
 // Frames that ImGui needs to process an event.
 inline constexpr int kFrames = 4;
 
-// Tolerance of a dragged value, as a share of the slider's range. The handle may cover this share of the slider.
+// Tolerance of a dragged value, as a share of the slider's range. It allows for the width of the slider's handle.
 inline constexpr double kGrab = 0.2;
 
 // A scene that is cheap to compute, because most tests wait for the whole map.

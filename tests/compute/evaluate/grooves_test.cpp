@@ -1,5 +1,5 @@
 // All bounces in V-grooves and direct emission, with every kernel. Results are compared with stored values and with the
-// reference. Other tests check properties that hold for all inputs. Random numbers have fixed seeds.
+// reference, and obey properties that hold for all inputs. Random numbers have fixed seeds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -128,7 +128,7 @@ TEST_P(Grooves, WithoutAndWithTheDirectEmission_TheOtherMomentsAgree) {
     const Moments b = evaluator->evaluate(without, {}).front();
     expect_within_bounds(a, b, name_of({Distribution::kCauchy, masking}));
     EXPECT_TRUE(std::isnan(b.direct_i));
-    // The emissivity lies between the direct emission and 1 - rho of single scattering.
+    // The emissivity is at least the direct emission, and at most 1 - rho, where rho is for single scattering.
     EXPECT_LE(a.direct_i, a.deficit);
   }
 }
@@ -219,8 +219,8 @@ int most_bounces_toward_the_mirror(Distribution distribution, const OpticalConst
   return most;
 }
 
-// A metal needs two beams for each number of bounces up to 1,000. The kernel follows each beam from its first bounce,
-// which makes 1e6 bounces. A bounce takes about 50 ns.
+// For a metal the kernel computes the light after 1, 2, ..., 1,000 bounces. For each of these numbers it follows two
+// beams from their first bounce on. That makes 1e6 bounces, and a bounce takes about 50 ns.
 TEST(GroovesMueller, TowardTheMirrorDirection_WorkIsBounded) {
   for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
     const int paint = most_bounces_toward_the_mirror(distribution, {1.5, 0.1});
@@ -232,7 +232,7 @@ TEST(GroovesMueller, TowardTheMirrorDirection_WorkIsBounded) {
 }
 
 TEST(GroovesMueller, TowardTheMirrorDirection_SumsAreThoseOfTheReference) {
-  constexpr double kPrinted = 1e-15;  // rounding of the angles in radians, which f multiplies by 1/|h|
+  constexpr double kPrinted = 1e-15;  // allowed rounding error, relative to m00
   for (const OpticalConstants& index : {OpticalConstants{1.5, 0.1}, OpticalConstants{3.0, 4.0}}) {
     std::vector<ScatteringPoint> points;
     for (const BeamAngles& angles : toward_the_mirror()) points.push_back({angles, {0.3, 2.02}, index});
@@ -342,7 +342,7 @@ TEST(GrooveScenes, Bracket_IsWhatItsEndsSayAndHoldsAllBounces) {
     if (i == 0) continue;  // at theta = 0 nothing is polarised
     const double direct_q = 0.5 * std::abs(direct[i][Quantity::kEmissivityS] - direct[i][Quantity::kEmissivityP]);
     const double slack = mean_emissivity(single[i]) - mean_emissivity(direct[i]);
-    // |N| in Q = N eps_Q, which all models have in common. Single scattering gives it as |Q / rho_Q|.
+    // All models have Q = N (eps_s - eps_p) / 2 with the same N. For single scattering this gives |N| = |Q / rho_Q|.
     const double net = std::abs(single[i][Quantity::kStokesQ] / single[i][Quantity::kRhoQ]);
     EXPECT_NEAR(high, net * (direct_q + slack) / single[i][Quantity::kStokesI], kAccuracy);
     EXPECT_NEAR(low, net * std::max(direct_q - slack, 0.0) / single[i][Quantity::kStokesI], kAccuracy);

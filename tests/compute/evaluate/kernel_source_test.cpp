@@ -71,7 +71,7 @@ constexpr int kSamples = 20000;
 
 // ---- Elementary functions ------------------------------------------------------------------------------------------
 
-// Difference of `value` and `exact` in ulps: units of the last place of `exact` in the type Real.
+// Difference of `value` and `exact` in ulps. An ulp is a unit of the last place of `exact` in the type Real.
 template <class Real>
 double ulps(Real value, long double exact) {
   using Limits = std::numeric_limits<Real>;
@@ -129,7 +129,7 @@ TYPED_TEST_SUITE(Elementary, Sources, SourceNames);
 // Half an ulp for each of the last two or three roundings, and the error of the argument after its reduction. The
 // comments of the kernel source promise "a few units in the last place".
 constexpr double kFewUlps = 3.0;
-// before the series, these functions have up to three roots and quotients, each with a rounding error
+// before their series, these functions compute up to three roots and quotients, each with a rounding error
 constexpr double kRootUlps = 6.0;
 
 TYPED_TEST(Elementary, Functions_OverTheirDomain_AreAFewUlpsFromExact) {
@@ -219,7 +219,7 @@ TYPED_TEST(Elementary, EndsOfTheDomains_AreExact) {
 using Wide = boost::multiprecision::cpp_bin_float_50;
 using WideComplex = boost::multiprecision::cpp_complex_50;
 
-// Fresnel's equations in textbook form. Cancellation costs at most 27 of the 50 digits, so 23 remain.
+// Fresnel's equations in textbook form, with 50 digits. Cancellation costs at most 27 digits.
 struct ExactFresnel {
   Wide r_s;
   Wide r_p;
@@ -303,7 +303,8 @@ TYPED_TEST(FresnelSource, NormalIncidence_HasTheLimitOfTheQuotient) {
   for (const OpticalConstants& optical : {OpticalConstants{1.508, 0.0}, OpticalConstants{27.0, 90.0}}) {
     const kernel::IndexNode index = rounded_index<TypeParam>(optical);
     const auto f = source.fresnel(index_in<TypeParam>(index), Real(1));
-    // (R_s - R_p)/sin^2(beta) at cos(beta) = 1 - 1e-20 is within about 1e-20 of its limit. Of 50 digits 30 remain.
+    // cos(beta) = 1 - 1e-20 gives the limit of (R_s - R_p)/sin^2(beta) within 1e-20. Cancellation leaves 30 of 50
+    // digits.
     const Wide c = 1 - Wide(1e-20);
     const Wide sin2 = 1 - c * c;
     const WideComplex n2(Wide(index.n2m1_re) + 1, Wide(index.n2m1_im));
@@ -333,7 +334,7 @@ TYPED_TEST(FresnelSource, TotalReflection_AbsorbsExactlyNothing) {
     const Real above = static_cast<Real>(index.critical_cos + 0.5 * (1.0 - index.critical_cos));
     const auto f = source.fresnel(index_in<TypeParam>(index), above);
     const ExactFresnel exact = exact_fresnel(index, static_cast<double>(above));
-    // n^2 - 1 + cos^2(beta) cancels, which multiplies its relative error by 2 to 3 at this angle.
+    // The subtraction in n^2 - 1 + cos^2(beta) makes the relative rounding error 2 to 3 times larger at this angle.
     EXPECT_LE(relative_error(f.absorbed_s, 1 - exact.r_s), 3.0 * kFresnelUlps * kEpsilon<TypeParam>) << n;
     EXPECT_GT(f.absorbed_s, Real(0));
   }

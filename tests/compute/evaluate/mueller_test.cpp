@@ -1,6 +1,6 @@
-// The Mueller pBRDF of the device and the CPU in float and double, compared with explicit vectors in quadruple
-// precision. (tests/reference shows that the latter matrices are reciprocal and realisable.) The environment variable
-// DOLP_PROPERTY_DRAWS sets the number of points per model.
+// The Mueller pBRDF of the device and the CPU in float and double, compared with a computation from explicit vectors in
+// quadruple precision. Tests in tests/reference show that the matrices of this computation are reciprocal and
+// realisable. The environment variable DOLP_PROPERTY_DRAWS sets the number of points per model.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -26,8 +26,8 @@ constexpr std::uint64_t kSeed = 20260110;
 
 const std::size_t kPoints = draws_wanted(400);
 
-// Matrices with a smaller m00 are not compared. The slope density in the reference may be 1e22 times smaller than m00.
-// Below the normal numbers of a double it would lose its relative accuracy.
+// Matrices with a smaller m00 are not compared: the reference computes them from slope densities up to 1e22 times
+// smaller, which would lie below the normal numbers of a double and lose digits.
 constexpr double kSmallest = 1e-280;
 
 class MuellerKernel : public testing::TestWithParam<KernelAndModel> {
@@ -70,7 +70,8 @@ TEST_P(MuellerKernel, AllElements_AgreeWithExplicitVectors) {
   EXPECT_LE(worst, tolerance()) << text_of(points[where]);
 }
 
-// By mirror symmetry the pBRDF obeys f(-dphi) = T f(dphi) T, T = diag(1, 1, -1, -1). Kernels give this bit for bit.
+// Mirror symmetry relates the pBRDF f at the azimuths dphi and -dphi: f(-dphi) = T f(dphi) T, T = diag(1, 1, -1, -1).
+// Results of a kernel obey this relation bit for bit.
 TEST_P(MuellerKernel, OppositeAzimuth_TurnsTheSignsOfUAndV) {
   const Matrix mirror = Eigen::Vector4d(1.0, 1.0, -1.0, -1.0).asDiagonal();
   std::vector<ScatteringPoint> points = random().draw(kPoints);
@@ -171,7 +172,8 @@ TEST(MuellerLimits, CornersOfTheDomain_AreFiniteAndTheSameInBothPrecisions) {
   }
 }
 
-// The moments are integrals of the first row of the Mueller pBRDF. The kernels of both must use the same model.
+// The moments are integrals of the first row of the Mueller pBRDF. One kernel computes moments and another one pBRDFs,
+// so this compares the two kernels.
 TEST(Mueller, HemisphericalSum_GivesTheMoments) {
   constexpr int kZeniths = 400;
   constexpr int kAzimuths = 400;

@@ -38,7 +38,6 @@ VulkanOptions validated(Precision precision = Precision::kFloat) {
   return options;
 }
 
-// A grid of a few directions, shapes and indices in random order.
 MomentsRequest small_request(Distribution distribution, Masking masking) {
   MomentsRequest request;
   request.distribution = distribution;
@@ -269,7 +268,8 @@ constexpr double kSentinel = -12'345.0;
 constexpr std::uint32_t kFirst = 3;   // first entry that run.run computes
 constexpr std::uint32_t kCount = 70;  // number of entries: more than a workgroup, but no multiple of it
 
-// Buffers of a request. After the results each output buffer has a workgroup of sentinels, which must not change.
+// Buffers of a request. In each output buffer, sentinels for a whole workgroup follow the results; they must not
+// change.
 class SentinelRun {
  public:
   SentinelRun(Session& session, const MomentsRequest& request) : session_(session), data_(kernel_data(request)) {

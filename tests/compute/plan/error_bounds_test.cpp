@@ -16,7 +16,7 @@
 namespace dolp {
 namespace {
 
-// With smith masking all moments vanish at exactly 90 degrees. Scenes use the limit just below 90 degrees.
+// Allowed difference of moments that are 0, such as all moments with smith masking at exactly 90 degrees.
 constexpr double kNothing = 1e-28;
 constexpr std::uint64_t kSeed = 20260402;
 constexpr std::size_t kDraws = 60;
@@ -35,8 +35,9 @@ class Switches {
   Switches(const Model& model, std::uint64_t seed) : model_(model), random_(seed) {}
 
   std::vector<Point> points() {
-    // At 18, 30 and 45 degrees lines that split the integral meet, with `integral` masking also at 90/7 = 12.857. At
-    // 12.9, 18.05 and 30.2 degrees lines nearly meet. At 65, 80, 88 and 89 the quadrature orders change.
+    // Lines that split the integral meet at 18, 30 and 45 degrees, and with `integral` masking at 90/7 = 12.857
+    // degrees. They nearly meet at 12.9, 18.05 and 30.2 degrees. The quadrature orders change at 65, 80, 88 and 89
+    // degrees.
     for (const double theta_deg :
          {12.857142857142858, 12.9, 18.0, 18.05, 22.5, 30.0, 30.2, 36.0, 44.9, 45.0, 60.0, 65.0, 80.0, 88.0, 89.0}) {
       add([&](Point& p) { p.theta_deg = beside(theta_deg); });
@@ -104,8 +105,8 @@ TEST_P(CoarseRule, CoarseAndFineRule_DifferByNoMoreThanTheyState) {
 INSTANTIATE_TEST_SUITE_P(Kernels, CoarseRule, testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kModels)),
                          kernel_and_model_name);
 
-// Entries for which the two rules of an error estimate once agreed by chance or made equal errors. Because of them a
-// bound is at least a share of the tolerance, and a multiple of the difference of the rules.
+// Entries that had too small error estimates in the past. An estimate compares two rules, and here both rules agreed by
+// chance or made equal errors. Therefore a bound is now at least a share of the tolerance.
 struct HardEntry {
   Model model;
   double tolerance;

@@ -107,7 +107,7 @@ TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
   for (const Scattering scattering : {Scattering::kSingle, Scattering::kMultiple}) {
     for (const Model& model : kModels) {
       const bool is_multiple = scattering == Scattering::kMultiple;
-      // With several bounces, moments of many indices do not follow from a few responses. So indices share nothing.
+      // With multiple bounces the program computes the moments of each index separately, so indices share no work.
       if (is_multiple && (model.masking != Masking::kVCavity || sharing == Sharing::kIndices)) continue;
       Random random(kSeed + 10 * static_cast<std::uint64_t>(kernel) + static_cast<std::uint64_t>(sharing));
       for (std::size_t grid = 0; grid < grids; ++grid) {
@@ -120,7 +120,7 @@ TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
       }
     }
   }
-  // kIndices is not checked: there the random indices decide whether the program interpolates.
+  // There is no expectation for kIndices, because there the random indices decide whether the program interpolates.
   if (sharing == Sharing::kShapes) {
     EXPECT_GT(2 * work.interpolated, entries);
   } else if (sharing != Sharing::kIndices) {
@@ -136,7 +136,7 @@ std::string case_name(const testing::TestParamInfo<std::tuple<Kernel, Sharing>>&
 INSTANTIATE_TEST_SUITE_P(Kernels, Grids, testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kSharings)),
                          case_name);
 
-// Like a second computation of some grid entries: the heavy tail (q = 1.2) has the middle one of three widths.
+// The wanted entries have three values of sigma. The one with the heaviest tail (q = 1.2) has the middle sigma.
 TEST(SecondPass, SomeShapesOfAGrid_HeaviestTailIsNotLost) {
   for (const Masking masking : {Masking::kNone, Masking::kVCavity}) {
     MomentsRequest request;

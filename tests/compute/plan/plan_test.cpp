@@ -50,7 +50,7 @@ TEST(CosSinDeg, OtherAngles_AgreeWithTheLibrary) {
 
 // ---- Loops ---------------------------------------------------------------------------------------------------------
 
-// lavapipe stops an invocation after this many iterations of all its loops, without an error.
+// After so many iterations of all its loops, an invocation on lavapipe stops without an error
 constexpr double kDriverLimit = 65535.0;
 
 TEST(Loops, HardDirectionsAndIndicesAtEveryTolerance_StayBelowTheDriversLimit) {
@@ -98,7 +98,8 @@ TEST(GaussLegendre, Orders_IntegratePolynomialsOfDegree2nMinus1AndNoMore) {
 
 double tan_deg(double angle_deg) { return std::tan(angle_deg * std::numbers::pi / 180.0); }
 
-// The expected slopes are those listed above breakpoints(), where c / (1 + s) = tan(45 - theta/2).
+// The comment above breakpoints() lists the slopes. c = cos(theta) and s = sin(theta) give c / (1 + s) = tan(45 -
+// theta/2).
 TEST(Breakpoints, Directions_AreAtTheAnglesWhereLinesMeet) {
   constexpr unsigned kBoth = kRootAbove | kRootBelow;
   struct Case {
@@ -128,7 +129,7 @@ TEST(Breakpoints, Directions_AreAtTheAnglesWhereLinesMeet) {
   }
 }
 
-// A vertical ray turns by 2 (90 - alpha) at each bounce after the first: bounces = 90 / (90 - alpha).
+// At each bounce after the first, a vertical ray turns by 2 (90 - alpha). It leaves after 90 / (90 - alpha) bounces.
 TEST(SlopeWithBounces, Bounces_FollowFromTheAngleOfTheGroove) {
   EXPECT_NEAR(slope_with_bounces(2.0), 1.0, 1e-15);
   EXPECT_NEAR(slope_with_bounces(3.0), tan_deg(60.0), 1e-14);
@@ -184,7 +185,7 @@ TEST(Rule, DigitsAndShapes_DecideOrdersAndLines) {
   EXPECT_TRUE(gaussian_line(0.61, 7.0) && !gaussian_line(0.59, 7.0));
   EXPECT_TRUE(gaussian_line(0.31, 9.0) && !gaussian_line(0.29, 9.0));
   EXPECT_FALSE(needs_line(Distribution::kCauchy, Masking::kNone, {1.0, 1.6}, 7.0, 1e-4));
-  // With integer q the mean slope L(theta) of Smith's masking is smooth, so it has no cusp.
+  // With integer q, Smith's masking is a smooth function of theta, so it has no cusp.
   EXPECT_LT(cusp_digits(Distribution::kCauchy, Masking::kSmith, {0.3, 3.0}, 7.0), -100.0);
   EXPECT_GT(cusp_digits(Distribution::kCauchy, Masking::kSmith, {0.3, 2.5}, 7.0), -10.0);
 }

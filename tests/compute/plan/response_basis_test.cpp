@@ -96,7 +96,8 @@ TEST(ResponseBasis, CombinedReflectances_StayWithinTheirBounds) {
 TEST(ResponseBasis, FewIndices_HaveNone) {
   EXPECT_FALSE(ResponseBasis::of({}, 1e-4, 1));
   EXPECT_FALSE(ResponseBasis::of({{1.5, 0.1}}, 1e-4, 1));
-  // If responses take one kernel pass, a basis saves work from three indices; with three passes from seven.
+  // The program uses a response basis only if it saves work. This takes at least three indices if the responses need
+  // one kernel pass, and at least seven if they need three.
   const std::vector<FacetOptics> three = {{1.5, 0.1}, {1.6, 0.1}, {1.7, 0.2}};
   EXPECT_TRUE(ResponseBasis::of(three, 1e-4, 1));
   EXPECT_FALSE(ResponseBasis::of(three, 1e-4, 3));

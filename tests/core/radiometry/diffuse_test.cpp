@@ -96,7 +96,7 @@ TEST(DiffuseReflection, GrazingView_HasALimit) {
   EXPECT_TRUE(diffuse_diverges(paint(1.5, 0.0, -0.9, DiffusePolarisation::kNone)));
   const DiffuseReflection diffuse(surface, surface.material.constant);
   EXPECT_EQ(diffuse.rho(0.0).i, 0.0);
-  EXPECT_NEAR(diffuse.rho(1e-8).i / diffuse.rho(1e-6).i, std::pow(1e-2, 0.1), 1e-4);  // proportional to cos^(c + 1)
+  EXPECT_NEAR(diffuse.rho(1e-8).i / diffuse.rho(1e-6).i, std::pow(1e-2, 0.1), 1e-4);  // rho ~ cos^(0.1)
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ TEST(Radiometry, MomentsOffByTheirErrors_StayWithinTheEstimates) {
     off.deficit_error = std::max(off.deficit_error, std::abs(off.deficit - exact.deficit));
     const PointResult truth = evaluate(scene, direction, exact);
     const PointResult result = evaluate(scene, direction, off);
-    if (truth[Quantity::kStokesI] == 0.0) continue;  // without radiation DOLP does not exist
+    if (truth[Quantity::kStokesI] == 0.0) continue;  // without radiation DOLP is undefined
     ASSERT_LE(std::abs(result[Quantity::kDolp] - truth[Quantity::kDolp]), result[Quantity::kErrorEstimate])
         << "scene " << i;
     const double rho_error = std::max(std::abs(result[Quantity::kRhoI] - truth[Quantity::kRhoI]),
@@ -55,8 +55,8 @@ TEST(Radiometry, ErrorOfTheDeficit_CancelsInIsothermalIntensityWhereItCannotMatt
   const PointResult cold = evaluate(scene, direction, moments);
   scene.surroundings->temperature_K = 289.0;
   const PointResult warm = evaluate(scene, direction, moments);
-  // I = pi B + (X - pi B) rho, where X comes from the surroundings. With 1 K instead of 50 K between both temperatures,
-  // X - pi B is much smaller, and so is the effect of an error of rho.
+  // I = pi B + (X - pi B) rho, where pi B is emitted by a black body and X comes from the surroundings. If both
+  // temperatures differ by 1 K instead of 50 K, X - pi B is much smaller, and so is the effect of an error of rho.
   EXPECT_LT(warm[Quantity::kErrorEstimate], 1e-3 * cold[Quantity::kErrorEstimate]);
 }
 
@@ -160,7 +160,7 @@ TEST(Radiometry, GrazingWithDivergingReflectance_GivesTheLimitOfDolp) {
   EXPECT_TRUE(std::isnan(limit[Quantity::kRhoI]) && std::isnan(limit[Quantity::kStokesI]) &&
               std::isnan(limit[Quantity::kStokesU]));
   const PointResult near_limit = evaluate(scene, {89.9999, 1e-14}, grazing_moments());
-  // The tolerance is for the diffuse part, which grows as cos^-0.3, while the specular part grows as 1/cos.
+  // The difference is due to the diffuse part, which grows as cos^-0.3, while the specular part grows as 1/cos.
   EXPECT_NEAR(std::abs(near_limit[Quantity::kDolp]), limit[Quantity::kDolp], 1e-8);
 }
 

@@ -31,7 +31,7 @@ TEST(Radiometry, RandomScenes_AgreeWithPrintedFormulas) {
       expected.i = integral(ends, [&](Real um) { return at(um).i; });
       expected.q = integral(ends, [&](Real um) { return at(um).q; });
     }
-    // I and Q are sums whose terms may cancel. So a part of the tolerance is relative to the emission.
+    // The terms of I and Q may cancel. So a part of the tolerance is relative to the emission, not to the result.
     const double scale = std::abs(static_cast<double>(expected.i)) + std::abs(static_cast<double>(expected.q));
     const double cancelled = 10.0 * kAgreement * Radiometry(scene).rule().samples[0].emitted;
     ASSERT_NEAR(actual[Quantity::kStokesI], static_cast<double>(expected.i), kAgreement * scale + cancelled)

@@ -359,7 +359,6 @@ TEST(MaterialFile_FormulaWithAPole, HoldsWhereTheSpectrumHasNone) {
 }
 
 TEST(Sun_At10p6, IsTheReferenceSpectrum) {
-  // host/data/sun.csv states 0.179 for this wavelength, with three digits.
   constexpr double kThreeDigits = 0.01;
   EXPECT_NEAR(sun_irradiance().at(10.6), 0.179, 0.179 * kThreeDigits);
 }

@@ -213,7 +213,6 @@ TEST(SceneOverride_Malformed, IsRefused) {
   EXPECT_TRUE(contains(error_of(kMinimal, {"grid.thta=1"}), "the nearest known key is grid.theta_deg"));
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface.n.x=1"}), "--set surface.n.x=1: surface.n is not a table"));
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface=3"}), "--set surface=3: must be a table, [surface]"));
-  // A value must not contain further keys.
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface.n=1\nsurface.k=2"}), "must be a number"));
 }
 

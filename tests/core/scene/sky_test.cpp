@@ -94,7 +94,8 @@ TEST(SkyProfile, BetweenRows_IsAStraightLine) {
   EXPECT_DOUBLE_EQ(sky_radiance(sky, 10.0, 90.0), 8.0);
 }
 
-// Plane-parallel air with zenith transmittance t has L = B(air) (1 - t^(1 / cos(zenith))). Clouds are black bodies.
+// Plane-parallel air has the radiance B (1 - t^(1 / cos(zenith))), with Planck's radiance B at the temperature of the
+// air and the transmittance t at the zenith. Clouds are black bodies.
 TEST(SkyProfile, BuiltInSkies_FollowTheirFormulas) {
   const double emissivity = 0.24 + 2.98e-8 * 7.85 * 7.85 * std::exp(3000.0 / 288.15);
   const SkyProfile clear = *built_in_sky("clear-sky");
@@ -110,7 +111,7 @@ TEST(SkyProfile, BuiltInSkies_FollowTheirFormulas) {
   for (const BuiltInSky& sky : built_in_skies()) EXPECT_TRUE(built_in_sky(sky.name)) << sky.name;
 }
 
-// With the weight mu^(c + 1), the mean of mu^p over mu = cos(zenith) is (c + 2) / (c + 2 + p).
+// Means over mu = cos(zenith) have the weight mu^(c + 1). So the mean of mu^p is (c + 2) / (c + 2 + p).
 TEST(SkyNodes, Means_OfPowersOfTheCosine_AreTheirClosedForms) {
   const SkyNodes nodes({0.0, 25.0, 60.0, 85.0, 90.0});
   for (const double c : {-0.9, -0.5, 0.0}) {
@@ -126,7 +127,7 @@ TEST(SkyNodes, Means_OfPowersOfTheCosine_AreTheirClosedForms) {
   }
 }
 
-// By w = 46.5 e / T, a column of w = 1 cm of vapour at T = 290 K has the vapour pressure e = 290 / 46.5 hPa.
+// A column of w cm of vapour has the vapour pressure e = w T / 46.5 hPa. Here w is 1 cm and T is 290 K.
 TEST(BuiltInSky, VapourAndTemperature_GiveTheEmittancesOfIdso) {
   const SkyProfile sky = *built_in_sky("clear-sky", {1.0, 290.0});
   const double vapour = std::pow(290.0 / 46.5, 2.0) * std::exp(3000.0 / 290.0);

@@ -215,7 +215,6 @@ TEST(TableLookup, AValueTwice_IsRefused) {
   EXPECT_THROW(TableLookup(table, with_tolerance(1e-4), "t.nc"), InputError);
 }
 
-// In many tables dolp_low is 0 at every entry.
 TEST(TableLookup, QuantityThatIs0Everywhere_Is0) {
   TableValues table = made_up(spaced(0.0, 60.0, 8), spaced(0.1, 0.5, 6), spaced(1.5, 4.0, 6));
   table[Quantity::kDolpLow].assign(table[Quantity::kDolp].size(), 0.0);
@@ -237,8 +236,9 @@ TEST(MaskingKinks, BistaticBeams_LieWhereTheLowerDirectionChanges_AndWhereNothin
       {Mode::kBistatic, Masking::kSmith, 33.0, 120.0, {}},
       {Mode::kBistatic, Masking::kNone, 33.0, 120.0, {}},
       {Mode::kHemispherical, Masking::kIntegral, 33.0, 120.0, {}},
-      // For v-cavity masking G has a kink where 2 cos(alpha) cos(theta') = cos(beta); theta' is the larger of theta and
-      // the view zenith `view`. On the specular side the kink is at theta = 60 + view / 3 and at 3 view - 180 degrees.
+      // The masking G of v-cavity is min(1, 2 cos(alpha) cos(theta') / cos(beta)), where theta' is the larger of theta
+      // and the view zenith. It has a kink where both arguments are equal. Opposite to the source, this is at theta =
+      // 60 + view / 3 and at 3 view - 180 degrees.
       {Mode::kBistatic, Masking::kVCavity, 70.0, 180.0, {30.0, 60.0 + 70.0 / 3.0}},
       {Mode::kBistatic, Masking::kVCavity, 30.0, 180.0, {70.0}},
       {Mode::kBistatic, Masking::kVCavity, 65.0, 0.0, {65.0}},

@@ -90,7 +90,7 @@ TEST_F(TableFiles, Netcdf_Metadata_FollowsCf) {
               ancillary.empty() ? "(absent)" : ancillary);
     std::array<int, 3> dimensions{};
     EXPECT_EQ(nc_inq_vardimid(file, variable(described.name), dimensions.data()), NC_NOERR);
-    // lengths alone would not show the order, because two are equal
+    // compares names, because two axes have equal lengths
     const std::array<const char*, 3> axes = {"theta", "sigma", "q"};
     for (std::size_t i = 0; i < axes.size(); ++i) {
       std::array<char, NC_MAX_NAME + 1> name{};
@@ -152,7 +152,7 @@ TEST_F(TableFiles, ReadTable_SizesThatNoTableHas_AreRefusedByName) {
     std::array<std::size_t, 3> lengths;
     const char* message;
   };
-  // The number of entries of the first case overflows a 64-bit integer to 3456.
+  // In 64 bits the number of entries of the first case overflows to 3456.
   for (const Claim& claim : {Claim{{6365383, 1165742, 2485952}, "theta: 50923064 bytes are claimed, which a file of"},
                              Claim{{1ULL << 60U, 1, 1}, "theta: 1152921504606846976 values"},
                              Claim{{262144, 262144, 2}, "q: 2 values; a table has at most 68719476736 entries"},

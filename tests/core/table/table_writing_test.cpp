@@ -69,7 +69,7 @@ TEST_F(TableFiles, CheckOutputPath_WrongPaths_AreRefusedBeforeAnyWork) {
   EXPECT_EQ(names(), std::vector<std::string>{"folder.nc"});
 }
 
-// The name of the table is short enough, but names of its temporary files would be too long.
+// The length of the table's name is allowed, but names of its temporary files would be too long.
 TEST_F(TableFiles, TableOutput_NameTooLongForAPartialFile_IsRefusedBeforeAnyWork) {
   const TableValues table = sample_table(2, 1, 1);
   const TableLayout layout{table, table.quantities(), true};
@@ -124,7 +124,6 @@ TEST_F(TableFiles, WriteTable_DiskFull_LeavesNothingOrWhatWasThere) {
       fs::remove(at(name));
     }
   }
-  // After the failures the libraries NetCDF and HDF5 still work.
   write_table(table, at("t.nc"));
   expect_same(read_table(at("t.nc")), table);
 }
@@ -235,7 +234,7 @@ TEST_F(TableFiles, PartialFile_NoMemoryForItsWriter_IsNotLeft) {
       const TableOutput output(std::move(own));
       has_failed = failing.has_failed();
     } catch (const std::bad_alloc&) {
-      // Not every failed allocation reaches this handler, because some calls succeed without the memory.
+      // Not every allocation that fails leads here, because some calls of the libraries succeed without the memory.
     }
     ASSERT_EQ(names(), std::vector<std::string>{}) << before;
   }

@@ -305,7 +305,7 @@ TEST_F(Library, AProgressThatReturnsFalse_Cancels_AndLeavesNoFile) {
   EXPECT_TRUE(std::filesystem::is_empty(at("")));
 }
 
-// A run reads an existing shard in parts. It is cancelled before the first or before the second part.
+// The shard exists already. A run reads it in parts, and is cancelled before the first or before the second part.
 TEST_F(Library, Cancelled_WhileAKeptShardIsRead_IsHonoured) {
   const dolp::Scene scene =
       scene_.with({{"surface.masking", "none"}, {"surface.distribution", "gaussian"}, {"accuracy.tolerance", 1e-2}})

@@ -76,10 +76,10 @@ class FitContours : public FitTest {
   }
 };
 
-// Residuals are not linear between grid nodes, and descents stop before they reach the bottom of the chi^2 valley.
+// The tolerance is 0.1: residuals are not linear between grid nodes, and descents stop before they reach the minimum.
 TEST_F(FitContours, EightPoints_AreWhereTheLeastOfTheThirdParameterSays) { expect_true(8, 7, 0.1); }
 
-// Four points cannot distinguish n, k and sigma. The valley of chi^2 is bent, and the grid is coarse.
+// The tolerance is larger: four points cannot distinguish n, k and sigma. So the valley of chi^2 is bent.
 TEST_F(FitContours, FourPoints_AreWhereTheLeastOfTheThirdParameterSays) { expect_true(4, 7, 0.4); }
 
 }  // namespace

@@ -4,8 +4,9 @@
 namespace dolp::fit {
 namespace {
 
-// Parameters that a step would take out of their bounds are fixed at the bound, and least squares determine the step of
-// the others. The fixed parameters then go only half of the way. The scale kScale is so small that it damps no step.
+// predict_step fixes a parameter at its bound if the step would cross the bound. Least squares determine the step of
+// the others. The returned step leads fixed parameters only half of the way to the bound. kScale is so small that it
+// damps no step.
 TEST(PredictStep, ParametersLeaveTheBounds_OthersAreSolvedAgain) {
   constexpr double kScale = 1e-14;
   constexpr double kRounding = 1e-6;  // rounding error of normal equations with almost parallel columns

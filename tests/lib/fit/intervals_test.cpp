@@ -28,13 +28,14 @@ TEST_F(FitTest, IntervalEnds_LieWhereTheBestOfTheOthersHasGrownSo) {
       ASSERT_TRUE(end.has_value());
       const FitResult held =
           fitted(data, {number("surface.n", 1.1, 4.0)}, {}, {"surface.sigma=" + std::to_string(*end)});
-      // An interval end has an error of 0.5 % of sqrt(growth of chi^2), so 1 % of the growth. to_string has six digits.
+      // The end of an interval has an error of 0.5 % of sqrt(growth), so 1 % of the growth, which is the increase of
+      // chi^2 above its minimum. to_string has six digits.
       EXPECT_NEAR(held.chi_square - result.chi_square, is_95 ? 3.841 : 1.0, 0.015 * (is_95 ? 3.841 : 1.0));
     }
   }
 }
 
-// The scaled intervals equal the intervals for uncertainties that are multiplied by sqrt(reduced chi^2).
+// Scaled intervals must equal the intervals of a fit whose uncertainties are multiplied by sqrt(reduced chi^2).
 TEST_F(FitTest, DoubtfulFit_ScaledIntervalsAreThoseOfLargerUncertainties) {
   const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0)};
   MeasuredData data = measured(kNoise, {"surface.sigma=0.26"});
@@ -57,8 +58,8 @@ TEST_F(FitTest, DoubtfulFit_ScaledIntervalsAreThoseOfLargerUncertainties) {
   }
 }
 
-// For each k below the minimum, chi^2 has two minima in n: one at the bound of n, and a lower one inside. Intervals
-// that follow only the first would miss most of the interval of k.
+// For each k below the minimum, chi^2 has two minima in n: one at the bound of n, and a lower one inside the range. If
+// intervals followed only the minimum at the bound, they would miss most of the interval of k.
 TEST_F(FitTest, MinimumAtABound_IntervalHasTheOtherBranch) {
   MeasuredData data;
   data.name = "paint";
@@ -106,7 +107,7 @@ TEST_F(FitTest, Intervals_HoldTheTruthAsOftenAsTheySay) {
       options.starts = 1;
       const FitResult result =
           fitted(measured(kNoise, {}, has_uncertainties, 5, static_cast<std::uint64_t>(draw)), parameters, options);
-      // Tests one parameter per data set, because the errors of both parameters are correlated.
+      // Tests only one parameter per data set, because both parameters of a data set have correlated errors.
       const std::size_t j = static_cast<std::size_t>(draw) % 2;
       const auto holds = [&](const FitInterval& interval) {
         return interval.low.value_or(0.0) <= truth[j] && truth[j] <= interval.high.value_or(10.0);

@@ -36,7 +36,8 @@ TEST_F(FitTest, ModelErrorOfTheBracket_ResidualIsTheDistanceFromTheInterval) {
   }
 }
 
-// At the ends of n's interval, chi^2 minimised over sigma is the quantile of its distribution (20 degrees of freedom).
+// The ends of n's interval are where chi^2, minimised over sigma, equals the quantile of its distribution with 20
+// degrees of freedom.
 TEST_F(FitTest, ModelErrorOfTheBracket_IntervalsEndAtTheQuantileOfChiSquared) {
   const SceneValues scene = parse_scene(kScene, "scene");
   const FitRange sigma = number("surface.sigma", 0.05, 0.5);
@@ -68,7 +69,8 @@ TEST_F(FitTest, ModelErrorOfTheBracket_IntervalsEndAtTheQuantileOfChiSquared) {
                InputError);
 }
 
-// The data are far from both ends of the bracket, so no n is possible. With scaled uncertainties some values of n are.
+// The data are far from both ends of the bracket, so no value of n is consistent with them. If the fit scales the
+// uncertainties to the scatter of the data, some values of n are.
 TEST_F(FitTest, ModelErrorOfTheBracket_ThatExplainsNothing_LeavesEmptyIntervals) {
   MeasuredData data = measured(0.0);
   for (std::size_t i = 0; i < 20; i += 2) data.measurements[i].value += 20.0 * kNoise;

@@ -22,16 +22,18 @@
 namespace dolp {
 namespace {
 
-// Largest share of points that miss the tolerance even at the finest level. For tolerances below kTight it is
-// kTightMissedShare. The causes are rounding and, at 1e-9, the largest order that a quadrature rule has.
+// Largest share of points that miss the tolerance even at the finest level: kTightMissedShare for tolerances below
+// kTight, otherwise kMissedShare. They miss it because of rounding and, at 1e-9, because quadrature rules have a
+// largest order.
 constexpr double kMissedShare = 0.01;
 constexpr double kTightMissedShare = 0.04;
 constexpr double kTight = 1e-8;
-// Largest median of stated over true error. The stated error is a multiple of the difference from a rule with a fifth
-// fewer digits. At six digits the difference is 10^1.5 times the true error; the multiple adds 10^0.5.
+// Largest median of the ratio of stated to true error. The stated error is a multiple of the difference between two
+// rules, of which the coarser has a fifth fewer digits. At six digits the difference is 10^1.5 times the true error,
+// and the multiple is 10^0.5.
 constexpr double kMedianPessimism = 100.0;
-// The median leaves out errors below these limits, which are rounding. In float the limit is 16 units in the last place
-// of 24 bits, far above typical rounding. In double it is ten times 1e-12, the error of the reference.
+// Errors below these limits do not count in the median, because they are rounding. In float the limit is 16 units in
+// the last place of 24 bits. In double it is ten times 1e-12, the error of the reference.
 constexpr double kFloatRounding = 1e-6;
 constexpr double kDoubleRounding = 1e-11;
 

@@ -106,7 +106,8 @@ TEST_P(BistaticByEvaluator, RandomScenes_AgreeWithTheModelWrittenOut) {
     const SlopeShape shape{scene.surface.sigma, scene.surface.q};
     const PointResult r = evaluate_scene(scene, {{theta_i_deg, shape, {}}}, *evaluator, {}).front();
     const Radiance l = model_radiance(scene, theta_i_deg);
-    // The stated error of DOLP covers the errors of Q and U relative to I. The factor 2 covers the error of I, too.
+    // The stated error of DOLP covers the errors of Q and U, both relative to I. The factor 2 covers the error of I,
+    // too.
     const double bound = 2.0 * r[Quantity::kErrorEstimate] + 1e-9;
     EXPECT_NEAR(r[Quantity::kStokesQ] / l.i, l.q / l.i, bound) << n;
     EXPECT_NEAR(r[Quantity::kStokesU] / l.i, l.u / l.i, bound) << n;
@@ -121,7 +122,7 @@ TEST_P(BistaticByEvaluator, RandomScenes_AgreeWithTheModelWrittenOut) {
   std::printf("worst DOLP difference %.1e\n", worst);
 }
 
-/// An evaluator that states an error of 1 % of m00 for each beam in float. In double it states its usual error.
+/// An evaluator whose stated error of each beam is 1 % of m00 in float, and as small as usual in double.
 class BiasedBeams final : public ModelEvaluator {
  public:
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
@@ -142,7 +143,7 @@ class BiasedBeams final : public ModelEvaluator {
   CpuEvaluator own_;
 };
 
-// The stated error of the entry includes the error of its beam. So the run computes entry and beam again in double.
+// A beam's error is part of the stated error of its entry. If it is large, the run computes both again in double.
 TEST(Bistatic, BeamWithALargeError_IsTriedAgainInDouble) {
   RandomScenes random;
   SceneValues scene = random.scene();
@@ -214,7 +215,7 @@ TEST(Bistatic, SourceAngles_ShareTheMomentsOfTheView) {
   const double three = evaluator.report().evaluations;
   evaluate_scene(scene, {{10.0, shape, {}}}, evaluator, {});
   EXPECT_GT(three, 0.0);
-  // each call computes moments only for the view direction; the report adds the evaluations of both calls
+  // All entries share the moments of the view direction. So one entry takes as many evaluations as three.
   EXPECT_EQ(2.0 * three, evaluator.report().evaluations);
   EXPECT_EQ(results[0][Quantity::kRhoI], results[2][Quantity::kRhoI]);
   EXPECT_EQ(results[2].status, 0U);  // at 90 degrees the source adds nothing

@@ -19,7 +19,7 @@ namespace dolp {
 namespace {
 
 const std::string kScene = kRoughMetal + "[grid]\ntheta_deg = [30, 60]\n";
-// Allows an error of 1e-3 for each of two models.
+// Two models are compared, and the result of each may have an error of 1e-3.
 constexpr double kAccuracy = 2e-3;
 
 using Overrides = std::vector<std::string>;

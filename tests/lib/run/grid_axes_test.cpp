@@ -104,7 +104,8 @@ TEST(GridAxes, FileReadBack_HasItsLabelsAndVerifiesWithoutTheMaterials) {
   EXPECT_TRUE(check.passed());
   EXPECT_EQ(check.checked, 6U);
 
-  // The file of one shard has only its labels. use_scene_labels replaces their positions by those in the scene.
+  // The file of a shard lists only its own materials. use_scene_labels turns positions in this list into those in the
+  // scene.
   TableHead part = reader.head();
   part.axes[Axis::kMaterial] = {0.0};
   part.labels[Axis::kMaterial] = {"PET"};

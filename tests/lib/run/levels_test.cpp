@@ -45,7 +45,7 @@ TEST(EvaluateScene_Levels, ThatWorsen_LeaveTheFirst) {
   EXPECT_EQ(result[Quantity::kRhoQ], 0.1);
 }
 
-/// Moments that the check contradicts: r_q of the check differs by `bounds` times the sum of both stated errors.
+/// The check of the run contradicts these moments: its r_q differs by `bounds` times the sum of both stated errors.
 class Contradicts final : public MomentsOnly {
  public:
   explicit Contradicts(double bounds) : bounds_(bounds) {}

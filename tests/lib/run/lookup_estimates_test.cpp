@@ -202,8 +202,8 @@ TEST(LookupEstimates, RandomPointsAcrossTotalReflection_ErrorsAreWithinThem) {
   expect_honest(scene_across_total_reflection);
 }
 
-// Tables for which the true error would be 1.8 to 5.7 times the stated error if lookups did not consider kinks, or if
-// they trusted changes between cells that are small by chance.
+// For these tables the true error would be 1.8 to 5.7 times the stated error if lookups did not consider kinks, or if
+// they relied on differences between cells that are small only by chance.
 TEST(LookupEstimates, TablesWithKinksOrShortAxes_ErrorsAreWithinThem) {
   const struct {
     NextScene next_scene;

@@ -64,7 +64,7 @@ TEST(ModelChange, EmissionAndSurroundings_IsTheLostLightTimesTheDifferenceOfThei
     overrides.insert(overrides.end(), {"surface.material={}", "surface.n=1", "surface.k=0"});
     const double emitted = result_of(overrides)[kStokesI];
     ASSERT_GT(emitted, 0.0);
-    // `excess` is surroundings - emitted, from I = emitted + rho_i (surroundings - emitted)
+    // I = emitted + rho_i (surroundings - emitted). `excess` is the difference in brackets.
     const double excess = (result[kStokesI] - emitted) / result[kRhoI];
     const double lost = (1.0 / result[kAlbedo] - 1.0) * result[kRhoI];
     EXPECT_NEAR(result.model_change, std::abs(lost * excess) / result[kStokesI], 1e-5 * result.model_change);

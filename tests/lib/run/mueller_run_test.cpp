@@ -65,7 +65,8 @@ TEST(MuellerRun, NinetyDegrees_IsTheLimitWhereThereIsOneAndNanElsewhere) {
       (at.theta_i_deg == 90.0 ? near.theta_i_deg : near.theta_r_deg) = 90.0 - 1e-6;
       const MuellerMatrix g = elements(scene_with(masking), near);
       EXPECT_GT(f[0], 0.0);
-      for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(f[i], g[i], 1e-6 * f[0]);  // `near` is 2e-8 rad away
+      for (std::size_t i = 0; i < 16; ++i)
+        EXPECT_NEAR(f[i], g[i], 1e-6 * f[0]);  // `near` differs from `at` by 2e-8 rad
       SceneValues diffuse = scene_with(masking);
       diffuse.surface.diffuse = 0.1;
       EXPECT_TRUE(is_all_nan(elements(diffuse, at)));
@@ -93,7 +94,7 @@ TEST(MuellerRun, Mirror_HasTheDiffusePartButInItsSpecularDirection) {
   EXPECT_EQ(elements(scene, {90.0, 40.0, 180.0}, 0.0), expected);
 }
 
-// With an almost perfect conductor more bounces count than the program follows. With a paint only a few count.
+// For an almost perfect conductor the program would have to follow more bounces than it can. For a paint few suffice.
 TEST(MuellerRun, MoreBouncesThanAreFollowed_AreNan) {
   SceneValues scene = scene_with(Masking::kVCavity);
   scene.surface.scattering = Scattering::kMultiple;

@@ -41,7 +41,7 @@ double error_at(const EntryResponses& all, std::size_t entry) {
 }
 
 /// Expects that weights of `a` and `b` differ by no more than the sum of their errors. Returns the largest ratio of
-/// difference to this sum. Point i is entry i of `b` and entry i times `step` of `a`.
+/// difference to this sum. Point i is entry i of `b` and entry i * `step` of `a`.
 double expect_within_bounds(const EntryResponses& a, const EntryResponses& b, const std::vector<Point>& points,
                             std::size_t step = 1) {
   double worst = 0.0;
@@ -92,7 +92,6 @@ TEST_P(ResponsesOf, SomeEntries_AreThoseOfTheReference) {
 INSTANTIATE_TEST_SUITE_P(Models, ResponsesOf, testing::ValuesIn(kModels),
                          [](const auto& test) { return name_of(test.param); });
 
-// The grid includes 90 degrees, where some models need no computation.
 TEST(Responses, OfADevice_AreThoseOfTheCpu) {
   std::vector<Point> points;
   for (const double theta_deg : {0.0, 60.0, 90.0}) {

@@ -38,8 +38,8 @@ struct GgxMoments {
   double albedo = 0.0;
 };
 
-/// Source: Walter et al. 2007, eq. (33); Heitz 2014, eqs. (72), (99). GGX for one pair of directions, times
-/// cos(theta_r): the albedo, and rho_i and rho_q with the reflectances of the facet.
+/// Integrand of the moments over the direction of reflection, for a GGX surface. For `albedo` the reflectance is 1.
+/// Source: Walter et al. 2007, eq. (33); Heitz 2014, eqs. (72), (99).
 GgxMoments ggx_terms(double alpha_g, Masking masking, const OpticalConstants& index, double theta, double theta_r,
                      double phi) {
   const double a2 = alpha_g * alpha_g;

@@ -59,7 +59,7 @@ TEST(Limits_RightAngle, DivergingReflectanceLeavesOnlyTheDolp) {
 }
 
 TEST(Limits_RightAngle, DivergingSpecularDolpIsTheQuotientJustBefore) {
-  // Over the last 1e-6 degrees the quotient changes by about cos(theta), here 2e-8, divided by the moments.
+  // In the last 1e-6 degrees the quotient changes by about cos(theta), which is 2e-8, divided by the moments.
   constexpr double kChange = 1e-4;
   for (const Masking masking : {Masking::kNone, Masking::kIntegral}) {
     for (const Distribution distribution : kDistributions) {
@@ -99,7 +99,8 @@ TEST(Limits_RightAngle, MirrorReflectsAllWithoutPolarisation) {
 }
 
 TEST(Limits_RightAngle, MirrorsOwnEmissionHasThePolarisationOfItsLimit) {
-  // With c = cos(theta) near 0, 1 - R_s = 4 c Re(w)/|w|^2 and 1 - R_p = 4 c Re(N^2* w)/|w|^2, where w = sqrt(N^2 - 1).
+  // At small c = cos(theta), a smooth surface of index N emits 1 - R_s = 4 c Re(w)/|w|^2 and 1 - R_p = 4 c Re(N^2*
+  // w)/|w|^2, where w = sqrt(N^2 - 1).
   constexpr double kRelativeRounding = 1e-13;
   for (const OpticalConstants& index : {kDielectric, kAbsorbing, kMetal, OpticalConstants{1e6, 1e6}}) {
     const std::complex<double> square = std::complex(index.n, index.k) * std::complex(index.n, index.k);

@@ -100,7 +100,7 @@ TEST_P(PartsOfModel, AxesOfIndexAndWavelength_KeepTheirBitsInParts) {
 INSTANTIATE_TEST_SUITE_P(SceneParts, PartsOfModel,
                          testing::Combine(testing::ValuesIn(kDistributions), testing::ValuesIn(kMaskings)));
 
-// The moments of many indices are combined from a few indices. Each part must use the few that the whole grid uses.
+// The moments of many indices are combined from those of a few. Each part must use the same few as the whole grid.
 TEST(SceneParts, CombinedIndices_KeepTheirBitsInParts) {
   for (const Masking masking : {Masking::kVCavity, Masking::kIntegral}) {
     SceneValues scene = make_scene(Distribution::kCauchy, masking, kAbsorbing);

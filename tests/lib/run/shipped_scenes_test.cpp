@@ -30,7 +30,6 @@ struct Statement {
   std::map<std::string, std::string> changes;
 };
 
-/// The comment at the top of a scene, without line breaks.
 std::string comment_of(const std::string& name) {
   std::ifstream file(scene_path(name));
   std::string text;
@@ -117,7 +116,7 @@ std::optional<Part> part_of(const std::string& effect) {
   return found == kParts.end() ? std::nullopt : std::optional(found->second);
 }
 
-// Comments state changes of DOLP. The plan states changes of (Q/I, U/I), which are at least as large.
+// Comments state changes of DOLP. The plan states changes of the vector (Q/I, U/I), which are at least as large.
 TEST_P(ShippedScene, Plan_EstimatesTheChangesThatTheCommentStates) {
   constexpr double kAccuracy = 0.2;  // percentage points; both values of DOLP have a tolerance of 1e-3
   const auto [name, statement_count] = GetParam();

@@ -36,7 +36,8 @@ SkyProfile profile_of(std::vector<double> zenith_deg, std::vector<double> values
   return profile;
 }
 
-/// The sky of shaders/physics/README.md, section 11: T = 290 - 80 mu + 10 mu^2, at zeniths in equal steps.
+/// The sky of shaders/physics/README.md, section 11, at zeniths in equal steps: T = 290 - 80 mu + 10 mu^2, mu =
+/// cos(zenith).
 SkyProfile quadratic_sky(int steps) {
   SkyProfile sky;
   for (int i = 0; i <= steps; ++i) {
@@ -142,8 +143,8 @@ SceneValues random_scene(Draws& random) {
 // The environment variable DOLP_PROPERTY_DRAWS sets the number of scenes.
 TEST(Sky, RandomScenes_AgreeWithTheReferenceWithinTheirBounds) {
   const int scenes = static_cast<int>(draws_wanted(250));
-  // Largest share of scenes that miss their tolerance. In 1,000 scenes the share was 0.129. These scenes had grooves,
-  // jumps of the sky at which not all integrals are split, or directions near the horizon.
+  // Largest share of scenes that miss their tolerance. In 1,000 scenes the share was 0.129. The causes were grooves,
+  // directions near the horizon, and skies with jumps at which not all integrals are split.
   constexpr double kMostMissed = 0.2;
   Draws random(20261124);
   CpuEvaluator evaluator;
@@ -290,8 +291,9 @@ TEST(Sky, DiffuseSurface_ReflectsTheMeanThatItsExponentWeights) {
     scene.emission.reset();
     CpuEvaluator cpu;
     const PointResult result = result_of(scene, 40.0, cpu);
-    // With f_d = (k_d / pi) (mu cos(theta))^c the exitance is pi S = 2 pi k_d cos^c(theta) int L mu^(c + 1) dmu. The
-    // substitution mu = v^(1 / (c + 2)) makes the weight constant.
+    // The diffuse pBRDF is (k_d / pi) (mu cos(theta))^c, with mu = cos(zenith). So a sky of radiance L gives the
+    // exitance 2 pi k_d cos^c(theta) int L mu^(c + 1) dmu. The substitution mu = v^(1 / (c + 2)) makes the weight
+    // constant.
     constexpr int kSteps = 20000;
     double sum = 0.0;
     for (int i = 0; i < kSteps; ++i) {

@@ -34,7 +34,7 @@ std::string label(const StoredCase& c) {
 
 TEST(HardCases, References_AreAsGoodAsStated) {
   constexpr double kRelative = 1.5e-13;
-  // In the case almost-vacuum the amplitudes r_s and r_p are 5e-5, with rounding errors of 1e-16, and r_i is 3e-9.
+  // In the case almost-vacuum, r_i is 3e-9. It comes from amplitudes of 5e-5 that have rounding errors of 1e-16.
   constexpr double kAlmostVacuum = 3e-11;
   for (const StoredCase& c : hard_cases()) {
     const Moments& m = c.moments;
@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(Double, HardCasesOn,
                                           testing::Values(1e-4, 1e-6, 1e-9)),
                          setting_name);
 
-// An evaluator with wrong results and too small errors, which must be detected.
+// An evaluator whose results are wrong by `bias` and whose stated errors are too small. The check must detect this.
 class BiasedEvaluator final : public MomentsOnly {
  public:
   explicit BiasedEvaluator(const std::vector<StoredCase>& cases) : stored_(cases) {}
@@ -163,8 +163,8 @@ TEST(Qualify, OrdinaryCases_MeetTheToleranceInDouble) {
   }
 }
 
-// With v-cavity and smith masking rho has a limit at 90 degrees. The stored values are for 1e-9 degrees less. There rho
-// differs from its limit by about the cosine, 2e-11, times a logarithm.
+// With v-cavity and smith masking the program gives the limit of rho at 90 degrees. The stored values are for 1e-9
+// degrees less, where rho differs from the limit by about the cosine, 2e-11, times a logarithm.
 TEST(HardCases, RightAngle_IsTheLimitOfTheStoredValue) {
   constexpr double kApproach = 1e-8;
   for (const StoredCase& c : hard_cases()) {

@@ -133,7 +133,6 @@ TEST(HeatMap, Axes_FollowTheScene) {
   session.set_view(&View::map_x, "n");
   session.set("surface.material", "water 25C");
   EXPECT_EQ(session.map().x().label, "θ [°]");
-  // The map shows only wavelengths for which the material is known.
   session.set_view(&View::map_x, "wavelength");
   session.set("surface.material", "oxidised Al mirror");
   EXPECT_EQ(session.map().x().scale, (Scale{2.0, 12.5}));
@@ -159,7 +158,7 @@ class Axes : public Window {
   void type_ends(ImVec2 numbers, const std::string& from, const std::string& to) {
     double_click(numbers);
     if (!from.empty()) type(from);
-    xdotool({"key", "Tab"});  // a separate call, because a key that stays down would move on to more fields
+    xdotool({"key", "Tab"});  // not keys(): it holds the key so long that it would skip a field
     frames();
     if (!to.empty()) type(to);
     keys("Return");
@@ -194,7 +193,7 @@ TEST_F(Axes, NumbersDoubleClicked_TakeTypedEnds_AndCloseAfterARefusedEndIsTakenB
 
 TEST_F(Axes, RangeOfTheMap_IsComputedAnew_AndARefusedEndGoesWithTheOther) {
   double_click(beside(app_->map_view().area()));
-  type("2.5");  // larger than the upper end, so it is refused until that end changes too
+  type("2.5");  // above the upper end, so refused until the upper end changes too
   xdotool({"key", "Tab"});
   frames();
   EXPECT_NE(session().map().y().scale.from, 2.5);

@@ -57,7 +57,7 @@ void fill(Session& session, const std::string& measured) {
             .panel = Panel::kSlopes,
             .mueller_row = 1,
             .mueller_column = 3};
-  session.set_view(view);  // resets ranges, so it comes before them
+  session.set_view(view);  // resets all ranges, so it precedes view.ranges
   view.ranges = {{View::kZeniths, {20.0, 70.0}},
                  {View::kValues, {0.01, 0.4, true}},
                  {View::kColours, {0.0, 0.3}},
@@ -101,7 +101,7 @@ TEST_F(ExploreFiles, Session_SavedAndOpened_IsTheSame) {
   EXPECT_EQ(b.marked().at("surface.k")->high, 2.0);
   EXPECT_EQ(b.view(), a.view());
   EXPECT_EQ(b.theta_deg(), 42.5);
-  // The file contains no path of this machine. Saving the opened session again gives the same text.
+  // The file must not contain a path of this machine. If the window opens and saves it again, its text stays the same.
   const std::string text = read_file(at("all.toml"));
   EXPECT_EQ(text.find(at("")), std::string::npos) << text;
   save_session(opened.session, at("again.toml"));
@@ -201,7 +201,7 @@ TEST(ExplorePlots, Json_HasTheVisibleCurvesAndTheMap) {
   EXPECT_EQ(plots["map"]["rows"].size(), field.count);
   EXPECT_EQ(plots["map"]["rows"][2][5], 100.0 * field.values[2 * field.count + 5]);
   EXPECT_TRUE(plots["map"]["colours"].is_null() && !plots["map"]["is_signed"]);
-  // The pin and the curve have the same surface, so the pin is named after its temperature.
+  // The surface of the pin is now also that of the curve. So the window names the pin after its temperature.
   driver.session.pins()[0].name = "";
   driver.session.set({{"surface.sigma", 0.15}, {"emission.temperature_K", 310.0}});
   driver.settle();
@@ -239,7 +239,6 @@ TEST_F(ExploreFiles, Preferences_KeepThemeZoomAndRecentFilesThatExist) {
   EXPECT_LT(second.zoom(), 2.2);
   second.zoom_by(-100);
   EXPECT_GT(second.zoom(), 0.45);
-  // Without a file nothing is saved, which is no error. A bad file is refused.
   second.load("");
   EXPECT_NO_THROW(second.save());
   put("bad.toml", "light = [\n");

@@ -52,8 +52,8 @@ TEST(ExploreSession, Minimum_IsVisitedInTheSceneThatWasFitted) {
 }
 
 TEST(ExploreSession, RangeOfAFit_IsTheSlidersAsFarAsTheSceneTakesIt_OrTyped) {
-  // Fits search k on a logarithmic scale, so its range begins at 0.001 instead of 0. The slider of q begins at 1.6; a
-  // smaller value of the scene extends the range.
+  // The range of k begins at 0.001 instead of 0, because fits search k on a logarithmic scale. The range of q begins at
+  // 1.6, as the slider does, or at the scene's q if that is smaller.
   for (const auto& [key, value, low, high, start] : {std::tuple{"surface.k", 0.0, 0.001, 100.0, 0.001},
                                                      {"surface.k", 0.22, 0.001, 100.0, 0.22},
                                                      {"surface.k", 200.0, 0.001, 200.0, 200.0},

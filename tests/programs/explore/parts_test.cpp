@@ -86,7 +86,6 @@ const std::vector<EditCase> kEditCases = {
     {{}, {"surface.sigma=99", "surface.sigma=0.2"}, {"surface.sigma=0.2"}},
     {{"surface.sigma=0.3"}, {"surface.sigma=0.5", "reset surface.sigma"}, {"surface.sigma=0.3"}},
     {{"surface.sigma=0.3"}, {"surface.sigma=0.5", "surface.n=2", "reset"}, {"surface.sigma=0.3", "surface.n=1.5"}},
-    // Setting one alternative removes the other.
     {{}, {"surface.material=gold (Ordal)"}, {"surface.material=gold (Ordal)", "surface.n=-"}},
     {{"surface.material=gold (Ordal)"}, {"surface.n=1.6;surface.k=0.2"}, {"surface.material=-", "surface.k=0.2"}},
     {{},
@@ -98,12 +97,11 @@ const std::vector<EditCase> kEditCases = {
      {"surface.n=1.5"},
      "known at 2 to 12.5 um",
      true},
-    // An effect can be removed and restored.
     {{}, {"surroundings=none"}, {"surroundings.temperature_K=-"}},
     {{"emission.bracket=true", "emission.temperature_K=310"},
      {"emission=none", "reset emission"},
      {"emission.temperature_K=310", "emission.bracket=true"}},
-    // A choice also changes other choices that it excludes.
+    // If a choice excludes other settings, these settings change, too.
     {{"surface.masking=smith", "emission.bracket=true"},
      {"surface.scattering=multiple"},
      {"surface.masking=v-cavity", "emission.bracket=false"},
@@ -114,13 +112,12 @@ const std::vector<EditCase> kEditCases = {
      {"emission=none", "surface.masking=integral", "reset emission"},
      {"emission.model=direct", "surface.masking=v-cavity"},
      "emission = as opened also sets surface.masking = v-cavity"},
-    // A wind determines sigma. A change of the distribution replaces the wind by the sigma that it determined.
+    // A wind determines sigma. If the distribution changes, the scene keeps this sigma instead of the wind.
     {{"surface.distribution=gaussian", "surface.wind_m_s=8"}, {"surface.wind_m_s=12"}, {"surface.wind_m_s=12"}},
     {{"surface.distribution=gaussian", "surface.wind_m_s=10"},
      {"surface.distribution=cauchy"},
      {"surface.wind_m_s=-", "surface.sigma=0.1646207763315433"},
      "surface.sigma = 0.16462"},
-    // Setting the coating replaces all films. Numbers and the material of one film can be set without the others.
     {{"surface.coating=[{n=1.4,thickness_um=2}]"},
      {"surface.coating.1.k=0.3", "surface.coating=[{n=1.6,thickness_um=3},{n=1.4,k=0.3,thickness_um=2}]",
       "surface.coating.2.thickness_um=5", "surface.coating.1.n=1.7"},
@@ -130,7 +127,6 @@ const std::vector<EditCase> kEditCases = {
      {"surface.coating.1.n=1.7", "surface.coating=none"},
      {"surface.coating.1.n=-", "surface.n=1.5"}},
     {{}, {"surface.coating=[{n=1.4,thickness_um=-2}]"}, {"surface.coating.1.n=-"}, "thickness_um", true},
-    // A sky and a temperature of the surroundings replace each other.
     {{}, {"surroundings.profile=clear-sky"}, {"surroundings.temperature_K=-", "surroundings.profile=clear-sky"}},
     {{"emission.bracket=true"}, {"surroundings.profile=overcast"}, {"emission.bracket=true"}},
     {{"surroundings.profile=overcast"}, {"surroundings.temperature_K=250"}, {"surroundings.profile=-"}},
@@ -211,7 +207,6 @@ TEST(Conflicts, EveryChoiceInEveryScene_IsTakenWithTheLeastThatItNeeds) {
         Changes needed = change_with_needed(changed, [&](SceneEdits& trial) { trial.set({chosen}); });
         EXPECT_EQ(needed.empty(), is_accepted(edits, {chosen})) << chosen.key << " = " << word;
         EXPECT_EQ(changed.scene().word(chosen.key), word);
-        // If any one of these changes is left out, the choice is refused.
         needed.push_back(chosen);
         for (std::size_t i = 0; i + 1 < needed.size(); ++i) {
           Changes fewer = needed;

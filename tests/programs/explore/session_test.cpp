@@ -44,7 +44,7 @@ TEST(ExploreSession, Results_AreStaleUntilTheSceneIsComputed_AndKeepTheirParamet
   expect_same(session.curve().points(), truth(session.scene(), session.curve().points()));
   EXPECT_LE(session.curve().worst_error(), 1e-3);
   EXPECT_GT(session.curve().worst_error(), 0.0);
-  // The overlay is a curve for the other slope distribution with the same density D(0) of horizontal facets.
+  // The overlay has the other slope distribution, with the same density D(0) of horizontal facets.
   EXPECT_EQ(session.overlay()->scene().word("surface.distribution"), "gaussian");
   EXPECT_DOUBLE_EQ(*session.overlay()->scene().number("surface.sigma"), 0.4 / std::sqrt(2.0));
   driver.session.set("surface.distribution", "gaussian");
@@ -53,7 +53,7 @@ TEST(ExploreSession, Results_AreStaleUntilTheSceneIsComputed_AndKeepTheirParamet
   EXPECT_NE(cursor_text(session).find("σ = 0.4:"), std::string::npos) << cursor_text(session);
 }
 
-/// Checks a point on display against accurate results for the scene that the window names beside the curve.
+/// Checks a point on display against accurate results for curve.shown_scene().
 void expect_point_of(const Curve& curve, std::size_t position) {
   if (curve.points().empty()) return;
   const Point& shown = curve.points()[position % curve.points().size()];
@@ -139,7 +139,7 @@ TEST(ExploreSession, Drag_GetsCoarseResultsInTurn_AndSaysSoOnce) {
     EXPECT_TRUE(curve_name(session).ends_with(", coarse"));
     EXPECT_NE(std::exchange(maps, session.map().version()), session.map().version());
   }
-  // After a result of the curve, results of the overlay or the map come next, even if the curve has changed again.
+  // After a result of the curve it is the turn of the overlay and the map, even if the curve has changed again.
   session.set("surface.sigma", 0.4);
   std::vector<Job> jobs = session.wanted();
   ASSERT_EQ(jobs.size(), 3U);
@@ -186,7 +186,7 @@ TEST(ExploreSession, UndoAndRedo_GoThroughGestures_AndASavedSceneIsUnchanged) {
   session.hold(false);
   session.note_saved();
   EXPECT_FALSE(session.edits().is_changed());
-  session.set("surface.sigma", -1.0);  // this value is refused, so undo must not count it
+  session.set("surface.sigma", -1.0);  // refused, so undo must not count this value
   session.hold(false);
   session.set("surroundings", Value{});
   EXPECT_TRUE(session.edits().is_changed());
@@ -279,7 +279,7 @@ TEST(ExploreSession, AllBounces_PeakIsComparedWithSingleScattering) {
   const auto named = [&](const std::string& name) {
     return std::ranges::find(peak.without(), name, &WithoutEffect::effect);
   };
-  // multiple bounces need this masking, so it cannot be left out
+  // no point without this masking, because multiple bounces need it
   EXPECT_EQ(named("masking"), peak.without().end());
   ASSERT_NE(named("scattering"), peak.without().end());
   const Point& result = named("scattering")->result.value();

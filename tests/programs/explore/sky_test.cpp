@@ -64,7 +64,7 @@ using namespace dolp;
 using namespace dolp::explore;
 using namespace dolp::explore_test;
 
-/// Tests of the list of skies. `entry` is how far a sky is below the top of the closed list, in heights of that list.
+/// `entry`: distance of a sky from the top of the closed list, divided by the height of the closed list.
 class Skies : public Window {
  protected:
   void choose(float entry) {

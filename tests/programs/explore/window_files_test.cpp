@@ -87,13 +87,11 @@ TEST_F(WindowFiles, OpenDialog_TakesAPathByKeyboard_AndRefusesAMissingOne) {
   keys("Return");
   settle();
   EXPECT_EQ(title(), "Other");
-  // If the scene does not come from a file, the dialog lists the current folder.
   session().go_to(SceneEdits(Scene::from_text(kEdited, {}, "built-in")));
   keys("ctrl+o");
   EXPECT_NO_THROW(app_->control_area("../"));
   keys("Escape");
   EXPECT_FALSE(session().message().is_error);
-  // A bad scene is refused in a line, and the scene stays.
   put("bad.toml", "[surface]\nsigma = -1\n");
   answer("ctrl+o", at("bad.toml").string());
   EXPECT_EQ(title(), "Painted");

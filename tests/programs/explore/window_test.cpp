@@ -104,7 +104,7 @@ TEST_F(Window, Legend_PinClicked_HidesIt) {
   drag_slider("surface.sigma", kPartOfSlider);
   const Area area = app_->curve_view().area();
   const float line = ImGui::GetTextLineHeight();
-  // The name of the pin is in one of the two lines above the plot. Clicking it hides the pin.
+  // The pin's name is in one of the two lines above the plot. A click on the name hides the pin.
   const auto is_visible = [&] { return session().pins()[0].is_visible; };
   ASSERT_TRUE(is_visible());
   for (float x = area.min.x; x < area.max.x && is_visible(); x += 3.0F * line) {
@@ -156,7 +156,6 @@ TEST_F(Window, Resized_DrawsAtTheNewSize) {
     frames(2 * kFrames);
     app_->save_picture(at("picture.png").string());
     frames();
-    // In a PNG file width and height are at bytes 16 and 20.
     const std::string png = content("picture.png");
     ASSERT_GT(png.size(), 24U);
     const auto number = [&](std::size_t first) {
@@ -204,7 +203,7 @@ TEST_F(Window, EventsBetweenTwoFrames_AllCount) {
   xdotool({"key", "--delay", "12", "ctrl+p", "ctrl+p"});
   frames();
   EXPECT_EQ(session().pins().size(), 2U);
-  // A click counts where it was made, even if the mouse moves away before the next frame.
+  // A click works at the place where it was made, even if the mouse moves away before the next frame.
   const ImVec2 box = app_->control_area("emission.bracket").at(0.5F, 0.5F);
   xdotool({"mousemove", "--window", window_, std::to_string(std::lround(box.x)), std::to_string(std::lround(box.y)),
            "click", "1", "mousemove", "--window", window_, "700", "300"});
@@ -245,7 +244,7 @@ TEST_F(Window, TypedNumber_IsTakenWhereverTypingEnds_AndStaysWhereItIsRefused) {
 TEST_F(Window, EndsOfABand_OfWhichOneWasRefused_AreTakenTogether) {
   click_control("field spectrum.band_um 0");
   xdotool({"type", "15"});
-  xdotool({"key", "Tab"});  // a separate call, because a key that stays down would move on to more fields
+  xdotool({"key", "Tab"});  // not keys(): it holds the key so long that it would skip a field
   EXPECT_TRUE(is_marked("field spectrum.band_um 0"));
   xdotool({"type", "20"});
   keys("Return");

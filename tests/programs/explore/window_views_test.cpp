@@ -17,7 +17,7 @@ using namespace dolp::explore;
 using namespace dolp::explore_test;
 
 double projected(const Scene& scene) {
-  // Midpoint rule in t, where tan(alpha) = m t / (1 - t). It covers all slopes, and the integrand is smooth.
+  // Midpoint rule in t = tan(alpha)/(m + tan(alpha)), which maps all slopes to [0, 1). The integrand is smooth in t.
   constexpr int kCount = 200'000;
   const double m = std::numbers::sqrt2 * *scene.number("surface.sigma");
   double sum = 0.0;
@@ -33,7 +33,7 @@ double projected(const Scene& scene) {
 }
 
 TEST(ExplorePanels, SlopeDensity_IsNormalised_AndTheOtherOneHasTheSameD0) {
-  constexpr double kRule = 1e-6;  // Error of the midpoint rule. Twice as many points change the integral by less.
+  constexpr double kRule = 1e-6;  // error of the midpoint rule; with twice as many points the integral changes less
   for (const char* distribution : {"cauchy", "gaussian"}) {
     for (const double sigma : {0.05, 0.3, 1.0}) {
       const Scene scene = paint().scene().with({{"surface.distribution", distribution}, {"surface.sigma", sigma}});
@@ -76,8 +76,8 @@ TEST(ExplorePanels, SmoothSurface_HasFresnelsReflectances_AndAQuarterWaveFilmRef
   EXPECT_NEAR(reflectance(kS, bare[0]), 0.04, 1e-12);
   EXPECT_NEAR(reflectance(kP, bare[1]), 0.0, 1e-12);
   EXPECT_NEAR(reflectance(kS, bare[1]), std::pow((1.0 - 2.25) / (1.0 + 2.25), 2), 1e-12);
-  // At normal incidence a film of index sqrt(n) reflects nothing if its optical thickness is 1/4 or 3/4 of a
-  // wavelength. At 1/2 of a wavelength it has no effect.
+  // A film of index sqrt(n) reflects nothing at normal incidence if it is 1/4 or 3/4 of a wavelength thick, and has no
+  // effect at 1/2. Here the wavelength is the one in the film.
   const double n = std::sqrt(1.5);
   const Scene coated = glass.with({coating_of({{{"n", n}, {"thickness_um", 2.0}}})});
   PointList list = points_at(coated, {0.0, 0.0, 0.0});
@@ -103,7 +103,7 @@ TEST(ExplorePanels, Spectrum_IsTheCurveOverWavelengthAtTheCursor_AndIsComputedWh
   session.set_theta(70.0);
   driver.settle();
   ASSERT_TRUE(session.spectrum().is_finished());
-  // from 4 um, half of the band's lower end, to the last wavelength of the material
+  // from 4 um (half of 8 um, where the band begins) to the last wavelength of the material
   EXPECT_EQ(session.wavelengths().scale, (Scale{4.0, 20.0}));
   const std::size_t at = 40;
   const Scene scene = session.spectral_scene().with("spectrum.wavelength_um", session.spectrum().at()[at]);
@@ -205,7 +205,7 @@ TEST_F(Window, Films_AreAddedOutside_ChangedRemovedAndSaved_AndUndoBringsThemBac
   save_scene(session(), at("coated.toml"));
   EXPECT_EQ(films_of(Scene::from_file(at("coated.toml"))), films());
   click_control("surface.coating.1.material");
-  click(app_->control_area("surface.coating.1.material").at(0.5F, 2.6F));  // the first material in the list
+  click(app_->control_area("surface.coating.1.material").at(0.5F, 2.6F));  // the first material of the list
   EXPECT_TRUE(word("surface.coating.1.material"));
   EXPECT_EQ(number("surface.coating.1.thickness_um"), before.number("surface.coating.1.thickness_um"));
   keys("ctrl+z");

@@ -1,4 +1,3 @@
-// Commands that list keys, materials and devices, and print the plan of a scene.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,7 +31,7 @@ void add_key(Report& report, Json& list, const Key& key) {
                   {"default", key.fallback}});
 }
 
-/// The scene key that is nearest to `wanted`; "q" matches "surface.q". Empty if more than half of the letters differ.
+/// The scene key that is most similar to `wanted`: "surface.q" for "q". Empty if more than half of the letters differ.
 std::string near_key(const std::string& wanted, const std::vector<std::string>& names) {
   const auto distance = [&](const std::string& name) {
     return std::min(edit_distance(wanted, name), edit_distance(wanted, name.substr(name.find('.') + 1)));

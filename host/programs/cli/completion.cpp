@@ -30,7 +30,7 @@ Words names_of(const CLI::Option& option) {  // for example "--output" and "-o"
 Words settings_for(const std::string& option) {
   Words all;
   for (const Key& key : dolp::keys()) {
-    if (key.layer > 1) continue;  // skips other films, because all films have the same keys
+    if (key.layer > 1) continue;  // films below the first have the same keys as the first
     if (option == "--vary" && key.type != Key::Type::kNumber) continue;
     if (option == "--compare" && key.words.empty()) continue;
     if (key.words.empty() || option == "--compare") {

@@ -120,7 +120,7 @@ int run_keys(const Options& options) {
   std::vector<std::string> names;
   for (const Key& key : dolp::keys()) {
     names.push_back(key.key);
-    const bool is_further_layer = key.layer > 1;  // not listed, because all films have the same keys
+    const bool is_further_layer = key.layer > 1;  // such films have the same keys as the first
     const bool is_wanted = (options.key.empty() && !is_further_layer) || key.key == options.key ||
                            (!options.key.empty() && key.key.starts_with(options.key + "."));
     if (is_wanted) add_key(report, list, key);

@@ -31,7 +31,7 @@ bool is_ended(const std::future<Result>& result) {  // true also for a future wi
   return !result.valid() || result.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
-/// Runs one piece of work at a time on a separate thread. The work may call set_phase(). Call all else from the window.
+/// Runs one piece of work at a time on a separate thread. The work itself may call only set_phase().
 class BackgroundTask {
  public:
   /// A function that finish() calls after the work, in the window's thread. Returns a message for the user. May throw.

@@ -81,8 +81,8 @@ struct WithoutEffect {
   std::optional<Point> result = {};  ///< empty until it is computed
 };
 
-/// Searches the peak of a finished curve at zeniths in steps of kStepDeg. Then removes each effect from the scene in
-/// turn, and computes the remaining scene at the zenith of the peak.
+/// Searches the peak of a finished curve at zeniths in steps of kStepDeg. Then computes, for each
+/// effect in turn, the scene without this effect at the zenith of the peak.
 class Peak {
  public:
   static constexpr double kStepDeg = 0.02;

@@ -28,8 +28,8 @@ struct MapAxis {
 /// The range is extended to contain the scene's value.
 std::vector<MapAxis> map_axes(const Scene& scene, double theta_max_deg);
 
-/// A part of the wavelength axis `axis` in which n and k are known, for a material from a file not always the largest
-/// part. Both ends are equal if n and k are known at one wavelength only.
+/// The part of the wavelength axis `axis` in which n and k are known. For a material from a file, the result may leave
+/// out some of that part. Both ends are equal if n and k are known at only one wavelength.
 Scale known_part(const Scene& scene, const MapAxis& axis);
 
 std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range);  ///< why an axis cannot have `range`
@@ -107,7 +107,7 @@ class HeatMap {
   const MapAxis& slower() const { return is_turned() ? x_ : y_; }
   const MapAxis& faster() const { return is_turned() ? y_ : x_; }
   std::size_t batch(std::size_t level) const { return slower().column().empty() ? 1 : kLevels[level].batch; }
-  PointList part(std::size_t level, std::size_t first) const;  ///< `first`: position on the slower axis
+  PointList part(std::size_t level, std::size_t first) const;  ///< from value number `first` of slower()
   const Point& point_at(std::size_t finest, std::size_t row, std::size_t column) const;
 
   std::string key_;
@@ -116,7 +116,7 @@ class HeatMap {
   MapAxis x_, y_{.name = "sigma"};
   double theta_deg_ = 0.0;
   std::string shown_key_;                                  ///< key of the map on display
-  std::array<std::vector<Point>, kLevels.size()> points_;  ///< by level; neighbours differ on faster()
+  std::array<std::vector<Point>, kLevels.size()> points_;  ///< one list per level; faster() changes first
   std::string arriving_key_;
   std::vector<Point> arriving_;  ///< points of the first level while it is incomplete
   std::size_t version_ = 0;

@@ -13,7 +13,7 @@ namespace dolp::explore {
 
 /// Points to compute: a grid with axes, or a list with columns. A column has a value per point, or one for all points.
 struct PointList {
-  std::vector<std::pair<std::string, std::vector<double>>> values;  ///< columns or axes, with the names of `dolp eval`
+  std::vector<std::pair<std::string, std::vector<double>>> values;  ///< columns or axes, named as in `dolp eval`
   /// True: `values` are axes, and the points are all combinations of their values, in the order of the table's entries.
   bool is_grid = false;
   std::vector<Setting> changes = {};  ///< settings of the scene that hold for all points

@@ -36,7 +36,7 @@ struct Scale {
   Scale including(double value) const {
     return is_log && !(value > 0.0) ? *this : Scale{std::min(from, value), std::max(to, value), is_log};
   }
-  /// This range as a linear or logarithmic one. If a logarithmic range would begin at or below 0, it begins at to/180.
+  /// This range as a linear or logarithmic one. A logarithmic range that would begin at or below 0 begins at to/180.
   Scale with_log(bool wants_log) const;
 
   /// At most `most` (at least 2) round values in the range. On a linear range: multiples of 1, 2 or 5 times a power of

@@ -81,7 +81,7 @@ class SceneEdits {
   std::vector<Setting> saved_;
 };
 
-/// The settings of a film: n and k, or material, or material_file; and thickness_um, which is last.
+/// The settings of a film: first n and k, or material, or material_file; then thickness_um.
 using Film = std::vector<Setting>;
 std::vector<Film> films_of(const Scene& scene);      ///< the outermost film first
 Setting coating_of(const std::vector<Film>& films);  ///< setting that gives a scene these films

@@ -104,7 +104,7 @@ class Session {
   void set_map_cursor(double x, double y);
   void load_measured(const std::string& path);
   void clear_measured() { residuals_.clear(); }
-  void mark(const std::string& key, bool varies) {  // `varies`: the number `key` varies in fits
+  void mark(const std::string& key, bool varies) {  // decides whether a number varies in fits
     if (varies) {
       state_.marked.try_emplace(key);
     } else {
@@ -135,11 +135,11 @@ class Session {
   const std::vector<Snapshot>& snapshots() const { return state_.snapshots; }
   const HeatMap& map() const { return map_; }
   const SourceSky& source_sky() const { return source_sky_; }
-  const Scene& spectral_scene() const { return spectral_scene_; }    ///< the scene at one wavelength
-  const MapAxis& wavelengths() const { return wavelengths_; }        ///< axis of the plots over wavelength
-  const Sweep& spectrum() const { return spectrum_; }                ///< over wavelength, at the cursor's zenith
-  const Sweep& smooth_spectrum() const { return smooth_spectrum_; }  ///< with sigma = 0, over wavelength
-  const Sweep& smooth() const { return smooth_; }                    ///< with sigma = 0, over zenith
+  const Scene& spectral_scene() const { return spectral_scene_; }  ///< the scene at one wavelength
+  const MapAxis& wavelengths() const { return wavelengths_; }      ///< axis of the plots over wavelength
+  const Sweep& spectrum() const { return spectrum_; }              ///< results at the cursor's zenith, over wavelength
+  const Sweep& smooth_spectrum() const { return smooth_spectrum_; }  ///< results for sigma = 0, over wavelength
+  const Sweep& smooth() const { return smooth_; }                    ///< results for sigma = 0, over zenith
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
   bool is_foreign(const Scene& other) const { return other.name() != scene().name() || other.text() != scene().text(); }
@@ -207,7 +207,7 @@ class Session {
   std::optional<SceneEdits> visited_;    ///< the fitted scene at the minimum that the user visited
   std::size_t minimum_ = 0;
   std::vector<Effect> effects_;
-  std::pair<std::string, double> influences_of_;  ///< key of the curve, and zenith, for which effects_ is
+  std::pair<std::string, double> influences_of_;  ///< key of the curve and zenith that effects_ belong to
   Message message_;
   std::vector<std::string> remarks_;  ///< remarks on the scene that message() has shown before
   bool is_changed_ = true;

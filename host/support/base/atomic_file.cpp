@@ -138,7 +138,7 @@ void sync_folder(const fs::path& folder, const fs::path& path) {
 
 }  // namespace
 
-// std::filesystem::canonical() would fail for an output that does not exist yet.
+// Does not use std::filesystem::canonical(), which fails for an output that does not exist yet.
 fs::path follow_links(fs::path path) {
   std::error_code error;
   for (int links = 0; fs::is_symlink(path, error); ++links) {

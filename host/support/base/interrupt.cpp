@@ -6,7 +6,7 @@
 namespace dolp {
 namespace {
 
-volatile std::sig_atomic_t is_interrupted = 0;  // a signal handler may change this type
+volatile std::sig_atomic_t is_interrupted = 0;  // a signal handler may change variables of this type
 
 }  // namespace
 

@@ -40,7 +40,7 @@ std::vector<Shown> shown_curves(const Session& session) {
   return curves;
 }
 
-const PeakAnswer* shown_peak(const Session& session) {  // null if the plot must not mark it
+const PeakAnswer* shown_peak(const Session& session) {  // null if the plot marks no peak
   const Plotted quantity = session.view().quantity;
   const bool is_marked = quantity == Plotted::kDolp || quantity == Plotted::kSignedDolp;
   const std::optional<PeakAnswer>& peak = session.peak().answer();
@@ -149,7 +149,7 @@ void draw_legend(const std::vector<Shown>& curves, Session& session) {
     add_entry("measured", "o  points measured for another scene", kDimColour);
 }
 
-/// Draws the legend and returns its height. The height does not depend on the entries, so that the plot below rests.
+/// Draws the legend and returns its height, which does not depend on the entries, so that the plot below stays still.
 float draw_legend_above(const std::vector<Shown>& curves, Session& session, ImVec2 size) {
   const float lines = size.y > kRoomForTwo * ImGui::GetTextLineHeight() ? 2.0F : 1.0F;
   const float height = lines * ImGui::GetTextLineHeightWithSpacing();

@@ -39,7 +39,7 @@ class Input {
   /// True if there were events since the last call of take_news().
   bool take_news() { return std::exchange(has_news_, false); }
   double rest_s() const { return std::chrono::duration<double>(Clock::now() - last_event_).count(); }
-  std::map<std::string, Area>& areas() { return areas_; }  ///< named areas of this frame, for tests
+  std::map<std::string, Area>& areas() { return areas_; }  ///< areas named in this frame, for tests
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -28,7 +28,7 @@ class Actions {
   void prefer(const std::function<void(Preferences&)>& change);  ///< changes and stores the preferences
   const Preferences& preferences() const { return preferences_; }
 
-  void finish();  ///< takes the results of finished work in the background
+  void finish();  ///< calls BackgroundTask::finish() of all tasks
   /// Path of the picture to save with this frame; empty if there is none, or if the dialog has not yet disappeared.
   std::string due_picture() const { return Clock::now() < picture_time_ ? "" : picture_path; }
   bool is_true_error_old() const;  ///< the true error belongs to an earlier curve

@@ -57,9 +57,9 @@ constexpr CommandRow kCommands[] = {
     {"completion", run_completion, "completions of a shell for this command line, or its manual page",
      "dolp completion bash > ~/.local/share/bash-completion/completions/dolp\n  dolp completion man | man -l -"}};
 
-/// An option, a flag, or (without hyphens) a positional argument.
+/// An option, a flag, or a positional argument. The name of a positional argument has no hyphens.
 struct OptionRow {
-  const char* commands;  ///< "table plan!": commands with this option; with "!" it is required
+  const char* commands;  ///< "table plan!": commands with this option; `plan` requires the option
   const char* name;
   std::variant<bool Options::*, std::string Options::*, std::size_t Options::*, std::vector<std::string> Options::*>
       value;
@@ -69,7 +69,7 @@ struct OptionRow {
 
 CLI::Validator range_to(std::size_t most) { return CLI::Range(std::size_t{1}, most); }
 
-/// Refuses values with a minus sign. Conversion to an unsigned type would turn them into huge numbers.
+/// Refuses values with a minus sign, which the conversion to an unsigned type would turn into huge numbers.
 CLI::Validator not_negative() {
   return {[](const std::string& value) {
             return value.starts_with('-') ? "must be a whole number from 0, not " + value : "";
@@ -157,7 +157,7 @@ std::vector<OptionRow> option_rows() {
        "exit 1 if any entry misses its tolerance"}};
 }
 
-/// Refuses an empty value, because in Options an empty text means that the option is missing.
+/// Refuses an empty value: an empty text in Options means that the user has not given the option.
 std::string not_empty(const std::string& value) { return value.empty() ? "must not be empty" : ""; }
 
 CLI::Option* add_option(CLI::App& command, const OptionRow& row, Options& options) {

@@ -34,7 +34,7 @@ std::size_t slurm_number(const char* variable) {
   return whole_number(text, variable);
 }
 
-/// The shard (part of a table) that --shard names: "2/8" is the second of eight. "auto": the number of the Slurm task.
+/// The part of a table that --shard names: "2/8" is the second of eight parts; "auto" takes both numbers from Slurm.
 Shard shard_of(const std::string& text) {
   if (text.empty()) return {};
   Shard shard;

@@ -1,4 +1,3 @@
-// The commands of dolp. command_line.cpp lists and describes the commands and their options.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -10,10 +9,10 @@
 
 namespace dolp::cli {
 
-/// The values of all options of the command line. If a text is empty, the user has not given the option.
+/// The values of all options of the command line. An empty text means that the user has not given the option.
 struct Options {
   int (*run)(const Options&) = nullptr;  ///< function of the command; null if there is no command
-  std::string command_line;              ///< as typed; tables contain it as their history
+  std::string command_line;              ///< the whole line as typed; becomes the history of a table
   std::string scene_path, points_path, table_path, output_path, measured_path, plot_path, screenshot_path;
   std::vector<std::string> overrides;  ///< the texts KEY=VALUE of --set
   std::string tolerance, precision, device;
@@ -27,7 +26,7 @@ struct Options {
   std::vector<std::string> data, vary, compare;
   std::size_t starts = 24;
   std::string loss = "squares", model_error = "none";
-  std::size_t frames = 0;  ///< frames that the window draws; 0: until it is closed
+  std::size_t frames = 0;  ///< number of frames to draw; 0: until the user closes the window
   std::string panel;
   std::string key, material, wavelength_um;
   std::string completion;
@@ -44,27 +43,27 @@ std::string allowed(const std::string& key);  ///< values that a scene key allow
 /// Reads the scene, and applies all_settings() and then `more`. Prints Scene::remarks() as warnings on stderr.
 Scene load_scene(const Options& options, const std::vector<Setting>& more = {});
 
-/// The evaluator that --evaluator and --device choose. Errors: InputError if this evaluator cannot choose a device.
+/// The evaluator of --evaluator and --device. Errors: InputError if --device is given for an evaluator without devices.
 Evaluator evaluator_of(const Options& options);
 
-/// Prints a report according to --json and --quiet: to stdout, or to stderr if the results themselves go to stdout.
+/// Prints a report as --json and --quiet demand: to stdout, or to stderr if stdout gets the results themselves.
 void print(const Report& report, const Options& options);
 
-/// Prints a report and its remarks. Returns kExitDone, or with --strict kExitAccuracy if Report::is_good is false.
+/// Prints a report and its remarks. Returns kExitAccuracy if --strict is given and Report::is_good is false.
 int finish(const Report& report, const Options& options);
 
 /// The parser of the command line. Parsing fills `options`, which must outlive the result.
 std::unique_ptr<CLI::App> command_line(Options& options);
 
-// Each command returns an exit status (terminal/exit_status.hpp), or throws an error, which guarded() converts.
+// Each command returns an exit status of terminal/exit_status.hpp, or throws an error, which guarded() converts to one.
 int run_table(const Options& options);
 int run_response(const Options& options);
 int run_merge(const Options& options);
 int run_eval(const Options& options);
 int run_mueller(const Options& options);
 int run_plan(const Options& options);
-/// Returns kExitAccuracy if a true error exceeds its stated bound, or if an entry misses its tolerance without a status
-/// bit that says so (kToleranceNotMet, kRhoToleranceNotMet).
+/// Returns kExitAccuracy if an error exceeds its error bound, or if an entry misses its tolerance and its status has
+/// neither the bit kToleranceNotMet nor kRhoToleranceNotMet.
 int run_verify(const Options& options);
 int run_lookup(const Options& options);
 int run_fit(const Options& options);  ///< kExitAccuracy if no minimum is found

@@ -26,11 +26,11 @@ Words names_of(const CLI::Option& option) {  // for example "--output" and "-o"
   return names;
 }
 
-/// Completions of the argument of --set, --vary or --compare: "KEY=WORD" for a key with words, "KEY=" for other keys.
+/// Completions of the argument of --set, --vary or --compare.
 Words settings_for(const std::string& option) {
   Words all;
   for (const Key& key : dolp::keys()) {
-    if (key.layer > 1) continue;  // skips other films, because all films have the same keys
+    if (key.layer > 1) continue;  // films below the first have the same keys as the first
     if (option == "--vary" && key.type != Key::Type::kNumber) continue;
     if (option == "--compare" && key.words.empty()) continue;
     if (key.words.empty() || option == "--compare") {
@@ -58,8 +58,8 @@ Words choices_of(const CLI::Option& option) {
   return words;
 }
 
-/// The words that may complete a command line, one per line, each with a tab and its description. `line` has the words
-/// after the program's name. Its last word is a colon with the part of the incomplete word that the user has typed.
+/// The words that may complete a command line, one per line, each with a tab and its description. `line` has the typed
+/// words after the program's name. The last one is incomplete and begins with a colon.
 std::string completing_words(const CLI::App& app, const Words& line) {
   const std::string current = line.empty() ? "" : line.back().substr(1);
   std::string found;

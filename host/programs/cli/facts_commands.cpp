@@ -1,4 +1,3 @@
-// Commands that list keys, materials and devices, and print the plan of a scene.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,7 +31,7 @@ void add_key(Report& report, Json& list, const Key& key) {
                   {"default", key.fallback}});
 }
 
-/// The scene key that is nearest to `wanted`; "q" matches "surface.q". Empty if more than half of the letters differ.
+/// The scene key that is most similar to `wanted`: "surface.q" for "q". Empty if more than half of the letters differ.
 std::string near_key(const std::string& wanted, const std::vector<std::string>& names) {
   const auto distance = [&](const std::string& name) {
     return std::min(edit_distance(wanted, name), edit_distance(wanted, name.substr(name.find('.') + 1)));
@@ -121,7 +120,7 @@ int run_keys(const Options& options) {
   std::vector<std::string> names;
   for (const Key& key : dolp::keys()) {
     names.push_back(key.key);
-    const bool is_further_layer = key.layer > 1;  // not listed, because all films have the same keys
+    const bool is_further_layer = key.layer > 1;  // such films have the same keys as the first
     const bool is_wanted = (options.key.empty() && !is_further_layer) || key.key == options.key ||
                            (!options.key.empty() && key.key.starts_with(options.key + "."));
     if (is_wanted) add_key(report, list, key);

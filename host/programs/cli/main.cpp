@@ -23,7 +23,7 @@
 namespace dolp::cli {
 namespace {
 
-/// A hint for an unknown option: a similar option, or --set for a key of a scene. Empty if there is no hint.
+/// A hint for an unknown option: a similar option, or --set if its name is a key of scenes. Empty if there is no hint.
 std::string option_hint(const CLI::App& command, const std::string& option) {
   constexpr std::size_t kMostMistakes = 2;
   const std::string given = option.substr(0, option.find('='));
@@ -75,16 +75,16 @@ int parse_and_run(int argc, char** argv) {
   return status;
 }
 
-/// C++ calls this if `new` finds no memory, also in a driver. Prints one line and ends the program, because with little
-/// memory nothing else is safe. No incomplete output remains, because an output has no name until it is complete.
+/// Prints a message and ends the program. `new` calls this function if there is no memory, because then nothing else is
+/// safe. No incomplete output remains: an output file has no name until it is complete.
 [[noreturn]] void end_out_of_memory() {
   static std::atomic_flag is_ending;
   while (is_ending.test_and_set()) ::pause();  // another thread is printing the message
   ::_exit(fail_out_of_memory("dolp"));
 }
 
-/// Makes free() keep memory for later use. Otherwise free() would return the memory of large lists and of a driver's
-/// pipelines to the system, and the program would request it again page by page.
+/// Makes free() keep memory for later use. Otherwise the program would return the memory of large lists and of Vulkan
+/// pipelines to the system, and request it again page by page.
 void keep_freed_memory() {
   mallopt(M_MMAP_MAX, 0);
   mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());

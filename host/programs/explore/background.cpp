@@ -90,7 +90,7 @@ void Worker::run() {
     try {
       part = advance(task);
     } catch (const Cancelled&) {
-      // The job stopped because it was no longer wanted. If it is wanted again now, the loop starts it again.
+      // want() dropped the job from the list, which cancelled it. If the list has it again, the loop repeats it.
     }
     lock.lock();
     is_running_ = false;

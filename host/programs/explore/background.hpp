@@ -31,8 +31,7 @@ bool is_ended(const std::future<Result>& result) {  // true also for a future wi
   return !result.valid() || result.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
-/// Runs one piece of work at a time on a separate thread. The user starts, watches and may cancel it. The work may call
-/// set_phase(). Only the window's thread may call the other functions.
+/// Runs one piece of work at a time on a separate thread. The work itself may call only set_phase().
 class BackgroundTask {
  public:
   /// A function that finish() calls after the work, in the window's thread. Returns a message for the user. May throw.
@@ -41,7 +40,7 @@ class BackgroundTask {
   using Work = std::function<Ending(const Progress&)>;
   enum class State { kNone, kRunning, kDone, kFailed, kCancelled };
 
-  /// The thread of the work calls `on_change` at each progress and at the end.
+  /// The thread of the work calls `on_change` when progress() changes, and when the work has ended.
   explicit BackgroundTask(std::function<void()> on_change) : on_change_(std::move(on_change)) {}
   ~BackgroundTask() { cancel(); }  ///< waits for the end of the work
 
@@ -51,8 +50,8 @@ class BackgroundTask {
 
   State state() const { return state_; }
   bool is_running() const { return state_ == State::kRunning; }
-  double progress() const { return progress_; }  ///< done part of the current phase, from 0 to 1
-  /// Name of the current phase; empty if the work has only one. Call set_phase() at its beginning.
+  double progress() const { return progress_; }  ///< finished share of the current phase, from 0 to 1
+  /// Name of the phase that the work announced last, by set_phase(); empty if the work announced no phase.
   std::string phase() const {
     const std::scoped_lock lock(mutex_);
     return phase_;
@@ -80,8 +79,8 @@ class BackgroundTask {
 struct Job {
   std::string key;  ///< jobs with the same key have the same content
   Scene scene;
-  std::vector<PointList> parts;  ///< computed one by one; between two, a more urgent job may run
-  double tolerance = 0.0;        ///< used if the scene has a lower tolerance
+  std::vector<PointList> parts;  ///< computed one by one; more urgent jobs may run in between
+  double tolerance = 0.0;        ///< replaces the scene's tolerance if that is lower
   bool keep_all = false;
   bool wants_effects = false;
   bool is_brief = false;  ///< once begun, the job runs to its end even if it is no longer wanted
@@ -94,20 +93,20 @@ struct JobPart {
   std::vector<Point> points = {};
   std::string csv = {};  ///< the points with the columns of `dolp eval`, if the job wants effects
   bool is_last = false;
-  // Effects and totals of the whole job. Only its last part has them.
+  // The members below belong to the whole job. Only the last part of a job has them.
   std::vector<Effect> effects = {};
   double wall_s = 0.0;
   double evaluations = 0.0;
 };
 
-/// The points of a job with one part. After follow(), the points of the earlier job stay until the new ones are there.
+/// The points of a job that has one part. Until the points of a new job arrive, points() returns those of the old job.
 class Sweep {
  public:
-  /// Switches to the points of `job`. `column` is the column in which these points differ.
+  /// Makes `job` the job of wanted(). Its points differ in `column`, a column of their PointList.
   void follow(Job job, const std::string& column = "theta_deg");
   std::optional<Job> wanted() const { return is_finished() ? std::nullopt : job_; }
   bool take(const JobPart& news);
-  bool is_finished() const { return job_ && shown_key_ == job_->key; }  ///< points() are of the last follow()
+  bool is_finished() const { return job_ && shown_key_ == job_->key; }  ///< points() are those of the last follow()
   const std::vector<Point>& points() const { return points_; }
   const std::vector<double>& at() const { return at_; }  ///< values of `column`, one per point
 
@@ -118,21 +117,21 @@ class Sweep {
   std::vector<double> at_;
 };
 
-/// A function that computes points, such as explore::evaluate(). Only the worker's thread calls it.
+/// A function that computes points, such as explore::evaluate(). Only the thread of the Worker calls this function.
 using Evaluate = std::function<Results(const Scene& scene, const PointList& list, const RunOptions& options)>;
 
-/// A thread that computes the wanted jobs in order. It stops a job that is no longer wanted when the evaluator reports
-/// progress, unless Job::is_brief is true.
+/// A thread that computes the jobs of want() in order. When the evaluator reports progress on a job that is no longer
+/// wanted, the thread cancels this job, unless Job::is_brief is true.
 class Worker {
  public:
-  /// The worker's thread calls `on_news` after each part and after a failure.
+  /// The thread of the worker calls `on_news` after each part of a job and after a failure.
   Worker(Evaluate evaluate, std::function<void()> on_news);
   ~Worker();
 
   /// Replaces the list of wanted jobs, the most urgent first. A running job continues if its key is in the new list.
   void want(std::vector<Job> jobs);
 
-  /// The parts computed since the last call. Errors: the exception that ended the worker, for example a DeviceError.
+  /// The parts of jobs that were computed since the last call. Errors: the exception that ended the worker.
   std::vector<JobPart> take_news() {
     if (end_.valid() && is_ended(end_)) end_.get();
     const std::scoped_lock lock(mutex_);
@@ -144,7 +143,7 @@ class Worker {
     arrived_.wait_for(lock, at_most, [this] { return !news_.empty() || is_ended(end_); });
   }
 
-  /// True if all wanted jobs are computed. take_news() may still have results of them.
+  /// True if all wanted jobs are computed, or if an error ended the worker. take_news() may still return results.
   bool is_idle() const {
     const std::scoped_lock lock(mutex_);
     return (!is_running_ && std::ranges::all_of(tasks_, &Task::is_done)) || is_ended(end_);

@@ -11,7 +11,7 @@
 namespace dolp::explore {
 namespace {
 
-constexpr std::size_t kStride = 10;  // the reference recomputes every tenth point, in steps of five degrees
+constexpr std::size_t kStride = 10;  // true_error() checks every tenth point: steps of five degrees
 
 double dolp_of(const Point& point) { return point[Quantity::kDolp]; }
 
@@ -20,7 +20,7 @@ double most_of(const Point& point) { return dolp_of(point) + point[Quantity::kEr
 struct Removal {
   const char* effect;
   bool radiates;
-  const char* key;  ///< is_in() looks at this key to tell whether a scene has the effect
+  const char* key;  ///< key whose value tells whether a scene has the effect
   Setting change;   ///< change of a scene that removes the effect
 
   bool is_in(const Scene& scene) const {
@@ -47,7 +47,7 @@ const std::vector<Removal>& removals() {
   return all;
 }
 
-/// The scene of `edits` without one effect, for each effect of `scene` that can be removed.
+/// For each effect that can be removed from `scene`: a copy of the scene without this effect.
 std::vector<WithoutEffect> without_each(const Scene& scene, const SceneEdits& edits) {
   std::vector<WithoutEffect> without;
   for (const Removal& removal : removals()) {
@@ -55,14 +55,13 @@ std::vector<WithoutEffect> without_each(const Scene& scene, const SceneEdits& ed
     try {
       without.push_back({removal.effect, removal.radiates, edits.scene().with({removal.change})});
     } catch (const InputError&) {
-      // The scene refuses the removal. Causes: nothing else radiates; the irradiance of the source is relative to the
-      // emission; or the emission model needs the masking.
+      // The scene needs this effect, for example because nothing else radiates.
     }
   }
   return without;
 }
 
-std::vector<Point>::const_iterator largest_of(const std::vector<Point>& points) {  // end() without a good point
+std::vector<Point>::const_iterator largest_of(const std::vector<Point>& points) {  // by DOLP; end() if no point is good
   const auto rank = [](const Point& point) {
     return std::pair(point.is_good(), point.is_good() ? dolp_of(point) : 0.0);
   };

@@ -7,7 +7,7 @@
 
 namespace dolp::explore {
 
-/// The results of a scene at zeniths from 0 to 90 degrees: first with few zeniths and a high tolerance, then fine.
+/// The results of a scene at zeniths from 0 to 90 degrees: first at few zeniths with a high tolerance, then at many.
 class Curve {
  public:
   enum class Stage { kCoarse, kFine };
@@ -16,28 +16,26 @@ class Curve {
   static constexpr std::size_t kCoarseCount = 46;
   static constexpr double kCoarseTolerance = 1e-2;
 
-  /// The keys of the curve's jobs begin with `name`.
   explicit Curve(const Scene& scene, std::string name = "curve")
       : name_(std::move(name)), scene_(scene), shown_{.scene = scene}, finished_{.scene = scene} {}
 
-  /// Switches to the curve of `scene`. `key` is a content_key(). Until newer points arrive, points() still returns the
-  /// points of the earlier scene, and is_stale() is true.
+  /// Switches to `scene`, whose content_key() is `key`. points() stay those of the earlier scene until new ones arrive.
   void follow(const std::string& key, const Scene& scene, bool keep_all);
 
-  std::optional<Job> wanted(Stage stage) const;  ///< empty if the stage is done
-  bool take(const JobPart& news);                ///< takes points of this curve; false for others
-  /// Takes coarse points of an earlier scene, unless points() are of the current one. Returns false for other results.
+  std::optional<Job> wanted(Stage stage) const;  ///< job that computes a stage; empty if the stage is done
+  bool take(const JobPart& news);                ///< takes results of the current scene; false for others
+  /// Takes coarse points of an earlier scene, unless points() belong to the current scene. False for other results.
   bool take_earlier(const JobPart& news);
 
   const Scene& scene() const { return scene_; }
   const std::string& key() const { return key_; }
   bool is_finished() const { return shown_.key == key_of(Stage::kFine); }
-  bool is_stale() const { return !points().empty() && !is_current(); }  ///< points() are of an earlier scene
+  bool is_stale() const { return !points().empty() && !is_current(); }  ///< points() belong to an earlier scene
   const Scene& shown_scene() const { return points().empty() ? scene_ : shown_.scene; }  ///< the scene of points()
   const std::vector<Point>& points() const { return shown_.points; }
-  std::vector<Point> drawn() const;  ///< points() and, once it is known, the maximum
+  std::vector<Point> drawn() const;  ///< points(), with the point of the maximum once it is known
   void set_peak(const Point& peak) { peak_ = peak; }
-  const JobPart& finished() const { return finished_; }  ///< last finished fine curve; first without points
+  const JobPart& finished() const { return finished_; }  ///< last finished fine curve; without points at first
 
   double worst_error() const {  // largest error bound of DOLP among good points
     double worst = 0.0;
@@ -61,21 +59,21 @@ class Curve {
   std::optional<Point> peak_;  ///< the maximum of the finished curve
 };
 
-/// Compares every tenth point of a finished curve with the evaluator "reference", which keeps all effects. Returns a
-/// text with the largest error of DOLP and the bound stated for it. Errors: Cancelled if `progress` returns false.
+/// Compares every tenth point of a finished curve with the evaluator "reference". Returns a text with the largest error
+/// of DOLP and the error bound of that point. Errors: Cancelled if `progress` returns false.
 std::string true_error(const Curve& curve, const Progress& progress);
 
 /// The peak of a curve: the largest DOLP of its good points (Point::is_good).
 struct PeakAnswer {
   Point at;
-  // Zeniths between which the maximum lies, if every DOLP may be wrong by its error bound.
+  // Range of zeniths around the peak in which the maximum may lie, because a DOLP may be wrong by its error bound.
   double theta_low_deg = 0.0;
   double theta_high_deg = 0.0;
   std::optional<double> rival_deg;  ///< zenith of another peak that may be higher, within the error bounds
   bool is_at_end = false;           ///< the next larger zenith has no good point, or is not searched
 };
 
-/// The point at the zenith of the peak, computed for the scene without one effect.
+/// A scene without one of its effects, and the result of this scene at the zenith of the peak.
 struct WithoutEffect {
   std::string effect;  ///< Effect::name, or "roughness"
   bool radiates;       ///< the effect is emission, source or surroundings, whose radiances add up
@@ -83,28 +81,28 @@ struct WithoutEffect {
   std::optional<Point> result = {};  ///< empty until it is computed
 };
 
-/// Searches the peak of a finished curve on a fine grid of zeniths. Then, for each effect of the scene, computes the
-/// point at the peak's zenith without this effect.
+/// Searches the peak of a finished curve at zeniths in steps of kStepDeg. Then computes, for each
+/// effect in turn, the scene without this effect at the zenith of the peak.
 class Peak {
  public:
-  static constexpr double kStepDeg = 0.02;  ///< step of this grid
+  static constexpr double kStepDeg = 0.02;
 
   explicit Peak(const Scene& scene) : scene_(scene) {}
 
-  /// Switches to the peak of a finished curve at zeniths up to `theta_max_deg`. `edits` is the curve's scene.
+  /// Switches to the peak of a finished curve, at zeniths up to `theta_max_deg`. `edits` holds the scene of the curve.
   void follow(const Curve& curve, const SceneEdits& edits, double theta_max_deg);
 
   std::vector<Job> wanted() const;
   bool take(const JobPart& news);
 
   const std::optional<PeakAnswer>& answer() const { return answer_; }     ///< empty: not known yet, or no point is good
-  const std::vector<WithoutEffect>& without() const { return without_; }  ///< one per effect of the scene
+  const std::vector<WithoutEffect>& without() const { return without_; }  ///< one per effect that can be removed
   bool is_complete() const {
     return answer_ &&
            std::ranges::all_of(without_, [](const WithoutEffect& removed) { return removed.result.has_value(); });
   }
 
-  /// The part of Q/I at the peak that one radiating effect causes. Exact, because Stokes parameters add up.
+  /// The part of Q/I at the peak that one radiating effect causes: Stokes parameters of radiating effects add up.
   double contribution(const WithoutEffect& removed) const {
     const Point& at = answer_->at;
     return (at[Quantity::kStokesQ] - (*removed.result)[Quantity::kStokesQ]) / at[Quantity::kStokesI];
@@ -118,7 +116,7 @@ class Peak {
   std::string key_;
   Scene scene_;
   std::vector<Point> curve_;
-  std::vector<double> theta_deg_;  ///< the fine grid; empty if no point of the curve is good
+  std::vector<double> theta_deg_;  ///< zeniths of the search; empty if no point of the curve is good
   std::optional<PeakAnswer> answer_;
   std::vector<WithoutEffect> without_;
 };

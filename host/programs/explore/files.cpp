@@ -30,7 +30,6 @@ constexpr std::array kFlags = {Flag{"log", &View::is_log}, Flag{"theta_log", &Vi
 
 using Node = toml::node_view<const toml::node>;
 
-/// Errors: InputError with one line that names file and line, if the file cannot be read or is not TOML.
 toml::table read_toml(const std::string& path) {
   const std::string text = read_named_file(path, path + ": ");
   try {
@@ -81,8 +80,8 @@ FitMarks marks_in(const std::vector<std::string>& texts, const std::string& loca
   return marks;
 }
 
-/// The settings as texts for the file `session`. The window deletes its sky files when it closes. So this function
-/// copies them to the folder of `session`, and the texts name the copies.
+/// The settings as texts for the file `session`. The sky files in `skies` are temporary. So this function copies a
+/// named one to the folder of `session`, and the text names the copy.
 toml::array lasting_texts(std::vector<Setting> settings, const SkyFiles& skies, const fs::path& scene,
                           const fs::path& session) {
   for (Setting& setting : settings) {
@@ -138,7 +137,7 @@ T need(Node node, const std::string& location) {
   return *value;
 }
 
-/// The position in `choices` of the choice whose name is the text of `node`. Errors: InputError if there is none.
+/// The position in `choices` of the choice whose name is the text of `node`. Errors: InputError if no choice has it.
 template <class Choices, class NameOf>
 std::size_t need_one_of(const Choices& choices, const NameOf& name_of, Node node, const std::string& location) {
   const auto name = need<std::string>(node, location);
@@ -162,7 +161,7 @@ Scale read_range(Node node, const std::string& location) {
   return range;
 }
 
-void read_ranges(View& view, Node node, const std::string& location) {  // missing ranges stay automatic
+void read_ranges(View& view, Node node, const std::string& location) {
   const toml::table* const table = node.as_table();
   if (!table) return;
   for (const auto& [axis, range] : *table)

@@ -7,13 +7,12 @@
 
 namespace dolp::explore {
 
-/// Writes scene, pins, snapshots, view, path of the measured points, and the parameters that vary in fits. Paths are
-/// relative to the folder of `path`. Copies sky files of Session::skies() into this folder as
-/// NAME_sky_ZENITH_HORIZON.csv, where NAME is the stem of `path`. Errors: IoError.
+/// Writes a session file. Its paths are relative to the folder of `path`. Copies the sky files of Session::skies() into
+/// this folder as NAME_sky_ZENITH_HORIZON.csv, where NAME is the stem of `path`. Errors: IoError.
 void save_session(const Session& session, const std::string& path);
 
-/// Writes the scene as TOML and calls Session::note_saved(). If the scene's sky is a file of Session::skies(), copies
-/// this file to NAME_sky.csv beside `path`, and the scene then names the copy. Errors: IoError.
+/// Writes the scene as TOML and calls Session::note_saved(). If the scene names a sky file of Session::skies(), copies
+/// this file to NAME_sky.csv in the folder of `path`, and writes the name of the copy. Errors: IoError.
 void save_scene(Session& session, const std::string& path);
 
 /// Writes the curve as CSV with the columns of `dolp eval`. Errors: InputError if the curve is not finished; IoError.
@@ -21,7 +20,7 @@ void save_curve(const Session& session, const std::string& path);
 
 bool is_session_file(const std::string& path);  ///< false also if the file cannot be read
 
-/// Shows the measured points (.csv), scene or session in a file. Errors: InputError; `session` then stays unchanged.
+/// Opens a file with measured points (.csv), a scene or a session. Errors: InputError; `session` then stays unchanged.
 void open_file(Session& session, const std::string& path);
 
 class Preferences {
@@ -31,20 +30,19 @@ class Preferences {
   /// $XDG_CONFIG_HOME/dolp/window.toml, otherwise $HOME/.config/dolp/window.toml; empty if neither variable is set.
   static std::filesystem::path default_path();
 
-  /// Reads `path` if this file exists. save() will write it, unless `path` is empty. Errors: InputError.
+  /// Reads the file `path` if it exists. save() will write `path`, unless `path` is empty. Errors: InputError.
   void load(const std::filesystem::path& path);
   void save() const;                                 ///< Errors: IoError
   void remember(const std::filesystem::path& file);  ///< puts a file at the head of the recent files
   std::vector<std::string> recent() const;           ///< absolute paths of the files that exist, the most recent first
 
   bool is_light = false;  ///< theme
-  double zoom() const {   // factor for the size of text and controls
+  double zoom() const {   // factor for the size of text and controls, in steps of 10 %
     constexpr double kStep = 1.1;
     return std::pow(kStep, zoom_steps_);
   }
-  /// Enlarges text and controls by `steps` of 10 %; a negative number makes them smaller.
   void zoom_by(int steps) {
-    constexpr int kMostSteps = 8;  // about twice or half the size: the text is readable, and the controls fit
+    constexpr int kMostSteps = 8;  // at 8 steps the size is about doubled or halved
     zoom_steps_ = std::clamp(zoom_steps_ + std::clamp(steps, -2 * kMostSteps, 2 * kMostSteps), -kMostSteps, kMostSteps);
   }
   void zoom_to_default() { zoom_steps_ = 0; }

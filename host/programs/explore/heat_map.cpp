@@ -35,7 +35,7 @@ const std::vector<AxisOfNumber>& axes_of_numbers() {
   return all;
 }
 
-/// The range of the axis's values in the scene's grid; if the grid has no such range, the range of the axis.
+/// The range of the values that the scene's grid has on an axis. If the grid has no values, returns axis.scale.
 Scale grid_range(const Scene& scene, const MapAxis& axis) {
   const std::vector<double> grid = axis.is_of_tables() ? scene.numbers("grid." + axis.column()) : std::vector<double>();
   if (grid.empty()) return axis.scale;
@@ -68,7 +68,7 @@ void add_lines(const MapField& field, double level, std::size_t column, std::siz
     };
     crossings.emplace_back(between(column, &Corner::x), between(row, &Corner::y));
   }
-  // If a level crosses the border of the square twice, it gives one line. Four crossings, around a saddle, give two.
+  // Two crossings on the border of the square give one line. Four crossings, around a saddle, give two lines.
   for (std::size_t i = 0; i + 1 < crossings.size(); i += 2)
     lines.push_back({crossings[i].first, crossings[i].second, crossings[i + 1].first, crossings[i + 1].second});
 }
@@ -164,7 +164,7 @@ PointList HeatMap::part(std::size_t level, std::size_t first) const {
     list[faster().column()] = fast;
     return list;
   }
-  // A table has no axis for films, so a list of all combinations is computed.
+  // A grid has no axis for films. So lists all combinations as single points.
   std::vector<double> all_slow, all_fast;
   for (const double value : slow) {
     all_fast.insert(all_fast.end(), fast.begin(), fast.end());

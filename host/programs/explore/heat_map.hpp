@@ -11,28 +11,28 @@ struct MapAxis {
   std::string key = {};  ///< scene key of the axis; empty for the zenith
   Scale scale = {0.0, 90.0};
 
-  /// Name of the column of a PointList for this axis. Empty for the temperature: each value of it is a changed scene.
+  /// Name of the axis in a PointList. Empty for the temperature, because a PointList sets it by PointList::changes.
   std::string column() const {
     if (key.empty()) return "theta_deg";
     if (key == "emission.temperature_K") return {};
     return key.starts_with("surface.coating") ? key : key.substr(key.find('.') + 1);
   }
-  /// In the list of a map's points, the axis with the smaller rank changes more slowly. 0: temperature; 1: number of a
-  /// film; from 2: the axes that tables can have, in the order of tables.
+  /// The map lists its points so that the axis with the smaller rank changes more slowly. Rank 0 is the temperature,
+  /// rank 1 a number of a film; from rank 2 the axes are those that tables can have, in the order of tables.
   std::size_t rank() const;
   bool is_of_tables() const { return rank() >= 2; }  ///< tables can have the axis
   friend bool operator==(const MapAxis&, const MapAxis&) = default;
 };
 
-/// The axes that maps of a scene can have. The range of an axis is the range of its values in the scene's grid, or else
-/// the range of its slider, extended so that it contains the scene's value.
+/// The axes that maps of a scene can have. The range of an axis comes from the scene's grid, otherwise from the slider.
+/// The range is extended to contain the scene's value.
 std::vector<MapAxis> map_axes(const Scene& scene, double theta_max_deg);
 
-/// The part of the wavelength axis `axis` in which n and k of the materials are known. For a material from a file, the
-/// result may be smaller than the known part. Both ends are equal if only one wavelength is known.
+/// The part of the wavelength axis `axis` in which n and k are known. For a material from a file, the result may leave
+/// out some of that part. Both ends are equal if n and k are known at only one wavelength.
 Scale known_part(const Scene& scene, const MapAxis& axis);
 
-std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range);  ///< why a map cannot have `range`
+std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range);  ///< why an axis cannot have `range`
 
 /// Values of one quantity on a map: `count` rows of `count` values. x grows along a row, y from row to row.
 struct MapField {
@@ -42,39 +42,39 @@ struct MapField {
   double max = 0.0;
 };
 
-/// A piece of a contour line. Positions are from 0 to 1 along both axes of the map.
+/// A straight piece of a contour line. Its coordinates are from 0 to 1 along both axes of the map.
 struct Segment {
   double x0, y0, x1, y1;
 };
 
-/// The contour lines of a field, by marching squares with linear interpolation. Squares with a NaN have no lines.
+/// The contour line of a field at `level`, by marching squares with linear interpolation. Skips squares with a NaN.
 std::vector<Segment> contour(const MapField& field, double level);
 
-/// A map over two numbers of a scene, or over the zenith and a number, computed from coarse to fine (kLevels).
+/// A map over two numbers of a scene, or over the zenith and one number. It is computed from coarse to fine (kLevels).
 class HeatMap {
  public:
   struct Level {
     std::size_t count;  ///< number of rows, and of columns
-    double tolerance;   ///< used if the scene's tolerance is lower
-    std::size_t batch;  ///< number of values of the slower axis (see slower()) in one JobPart
+    double tolerance;   ///< replaces the scene's tolerance if that is lower
+    std::size_t batch;  ///< number of values of slower() that are computed together, in one JobPart
   };
-  // During a drag the curve waits for a part of the first level. So this part has only two values of the slower axis.
+  // While the user drags a slider, the curve waits for a JobPart of the first level. So its batch is only 2.
   static constexpr std::array<Level, 3> kLevels = {{{16, 1e-2, 2}, {64, 1e-2, 8}, {128, 0.0, 4}}};
 
   explicit HeatMap(const Scene& scene) : scene_(scene) {}
 
-  /// Switches to the map over the axes `x` and `y`. `key` identifies the map. It must not depend on the scene's values
-  /// along these axes. If neither axis is the zenith, the map is for the zenith `theta_deg`.
+  /// Switches to the map over the axes `x` and `y`. `key` identifies the map, whatever the scene's values on these axes
+  /// are. If neither axis is the zenith, the map is for the zenith `theta_deg`.
   void follow(const std::string& key, const Scene& scene, bool keep_all, const MapAxis& x, const MapAxis& y,
               double theta_deg);
 
   std::optional<Job> wanted(std::size_t level) const;
-  /// Takes results of this map. Returns false for other results. The first level is shown when it is complete.
+  /// Takes results of this map; returns false for others. The map shows the first level only when it is complete.
   bool take(const JobPart& news);
   bool is_finished() const { return is_current() && is_complete(kLevels.size() - 1); }
   bool is_coarse_done() const { return is_current() && !points_[0].empty(); }
-  bool is_arriving() const { return arriving_key_ == key_ && !arriving_.empty(); }  ///< first level has begun
-  bool is_stale() const { return !shown_key_.empty() && !is_current(); }            ///< the map on display is older
+  bool is_arriving() const { return arriving_key_ == key_ && !arriving_.empty(); }  ///< a part of level 0 has arrived
+  bool is_stale() const { return !shown_key_.empty() && !is_current(); }            ///< displays an earlier map
 
   const MapAxis& x() const { return x_; }
   const MapAxis& y() const { return y_; }
@@ -95,7 +95,7 @@ class HeatMap {
   }
   std::size_t version() const { return version_; }  ///< changes whenever the field changes
 
-  /// The values at the finest level with a point. Where this level has no point yet, the nearest coarser point counts.
+  /// The values on the grid of the finest level with points. Missing points get the value of a coarser point nearby.
   MapField field(Plotted quantity) const;
 
  private:
@@ -107,8 +107,7 @@ class HeatMap {
   const MapAxis& slower() const { return is_turned() ? x_ : y_; }
   const MapAxis& faster() const { return is_turned() ? y_ : x_; }
   std::size_t batch(std::size_t level) const { return slower().column().empty() ? 1 : kLevels[level].batch; }
-  PointList part(std::size_t level, std::size_t first) const;  ///< `first`: position on the slower axis
-  /// The point at (row, column) of level `finest`. If it is missing, the nearest point of a coarser level.
+  PointList part(std::size_t level, std::size_t first) const;  ///< from value number `first` of slower()
   const Point& point_at(std::size_t finest, std::size_t row, std::size_t column) const;
 
   std::string key_;
@@ -117,7 +116,7 @@ class HeatMap {
   MapAxis x_, y_{.name = "sigma"};
   double theta_deg_ = 0.0;
   std::string shown_key_;                                  ///< key of the map on display
-  std::array<std::vector<Point>, kLevels.size()> points_;  ///< by level; the faster axis changes first
+  std::array<std::vector<Point>, kLevels.size()> points_;  ///< one list per level; faster() changes first
   std::string arriving_key_;
   std::vector<Point> arriving_;  ///< points of the first level while it is incomplete
   std::size_t version_ = 0;

@@ -66,7 +66,7 @@ std::optional<double> rms_of(const std::vector<Measurement>& residuals) {
 }
 
 FitRange fit_range(const FitMarks& marks, const Scene& scene, const Control& control, double value) {
-  constexpr double kLeastK = 1e-3;  // positive, so that the search is logarithmic in k and finds small values
+  constexpr double kLeastK = 1e-3;  // above 0, so that the fit can search k on a logarithmic scale
   const std::string& key = control.key->key;
   const auto marked = marks.find(key);
   if (marked != marks.end() && marked->second) {

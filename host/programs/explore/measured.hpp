@@ -29,7 +29,7 @@ class Residuals {
   const Scene& loaded_for() const { return loaded_for_; }
   bool is_known() const { return data_ && model_.is_finished(); }
   std::vector<Measurement> measured(Plotted quantity) const;
-  /// Measured values minus the scene's. Omits points at which the model gives no value. Empty before is_known().
+  /// Measured minus computed values. Omits points for which the model gives no value. Empty until is_known() is true.
   std::vector<Measurement> residuals(Plotted quantity) const;
 
  private:
@@ -41,29 +41,28 @@ class Residuals {
 
 std::optional<double> rms_of(const std::vector<Measurement>& residuals);  ///< root mean square; empty without residuals
 
-/// The scene keys that vary in fits, each with its range if the user typed one.
+/// The scene keys of the numbers that vary in fits. Each key has a range if the user typed one.
 using FitMarks = std::map<std::string, std::optional<FitRange>>;
 
-/// The range of a parameter in fits: the range that the user typed, or else range_in(), extended to include `value`.
-/// Without a typed range, k begins at 0.001. A fit starts in the range, as near as possible to `value`.
+/// The range of a number in fits: the typed range in `marks`, otherwise the range of the slider (range_in), extended to
+/// include `value`. A fit starts at the number in this range that is nearest to `value`.
 FitRange fit_range(const FitMarks& marks, const Scene& scene, const Control& control, double value);
 
-/// All inputs of a fit, so that it can run on a separate thread.
 struct FitJob {
   SceneEdits edits;
   MeasuredData data;
   std::vector<FitRange> vary;
 };
 
-/// Fits as `dolp fit` does. Errors: InputError if no minimum was found, or if the scene cannot have the points or the
-/// parameters; the other errors of Evaluator::fit; Cancelled.
+/// Fits as `dolp fit` does. Errors: InputError if no minimum was found, or if the scene does not allow the measured
+/// points or the varied numbers; the other errors of Evaluator::fit; Cancelled.
 Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress,
             const std::function<void(const std::string&)>& phase = {});
 
-/// The position of the minimum that is nearest to the start of `job`. FitRange::coordinate measures the distance.
+/// The position in Fit::minima of the minimum nearest to the scene of `job`, with distances in FitRange::coordinate.
 std::size_t nearest_minimum(const Fit& fit, const FitJob& job);
 
 std::string fit_text(const Fit& fit, std::size_t chosen);  ///< one line about the chosen minimum
-std::string interval_text(const FitInterval& interval);    ///< "1.2 to 1.5"; "open" for an empty end
+std::string interval_text(const FitInterval& interval);    ///< "1.2 to 1.5"; "open" for an end without a value
 
 }  // namespace dolp::explore

@@ -12,7 +12,7 @@
 namespace dolp::explore {
 namespace {
 
-constexpr double kSpecularAzimuth_deg = 180.0;  // azimuth between the source and its mirror reflection
+constexpr double kSpecularAzimuth_deg = 180.0;  // azimuth from the source to the mirror direction
 
 std::pair<double, double> known_um(const Scene& scene) {  // wavelengths of material_curve()
   const auto spectrum = spectrum_um(scene);
@@ -71,7 +71,7 @@ MaterialCurve material_curve(const Scene& scene, std::size_t count) {
       curve.n.push_back(n);
       curve.k.push_back(k);
     } catch (const InputError&) {
-      // The user's material file has no n and k at this wavelength, so the curve leaves it out.
+      // The file of the material has no n and k at this wavelength. So the curve leaves the wavelength out.
     }
   }
   return curve;

@@ -11,7 +11,7 @@ json axis_json(const std::string& label, const Scale& scale) {
   return {{"label", label}, {"from", scale.from}, {"to", scale.to}, {"is_log", scale.is_log}};
 }
 
-/// `style` is "curve", "overlay", or for a pin the position of its colour.
+/// `style` is "curve", "overlay", or the number of a pin's colour (Pin::colour).
 json curve_json(const Curve& curve, const std::string& name, const json& style, Plotted quantity) {
   const PlottedDescription& description = described(quantity);
   json theta = json::array(), values = json::array(), good = json::array(), low = json::array(), high = json::array();
@@ -33,8 +33,8 @@ json map_json(const Session& session) {
   if (session.view().panel != Panel::kMap || field.count == 0) return {};
   json rows(field.count, json::array());
   for (std::size_t i = 0; i < field.values.size(); ++i)
-    rows[i / field.count].push_back(description.scale() * field.values[i]);  // NaN becomes null
-  json colours;                                                              // null unless the user typed them
+    rows[i / field.count].push_back(description.scale() * field.values[i]);  // in JSON a NaN becomes null
+  json colours;                                                              // null unless the user typed a range
   if (const auto& typed = session.view().range(View::kColours)) {
     colours = {{"from", description.scale() * typed->from}, {"to", description.scale() * typed->to}};
   }

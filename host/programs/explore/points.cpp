@@ -8,7 +8,7 @@
 namespace dolp::explore {
 namespace {
 
-/// The scene with the axes of `list` in its grid. Each other axis gets a single value, the scene's.
+/// The scene with the axes of `list` as its [grid]. Any other axis of the grid gets the scene's number as only value.
 Scene with_grid(const Scene& scene, const PointList& list) {
   std::vector<Setting> axes;
   for (const auto& [name, values] : list.values) axes.push_back({name, values});
@@ -33,7 +33,7 @@ double value_of(const Point& point) {
 double rho_s(const Point& point) { return point[Quantity::kRhoI] + point[Quantity::kRhoQ]; }
 double rho_p(const Point& point) { return point[Quantity::kRhoI] - point[Quantity::kRhoQ]; }
 
-/// The emissivity by the scene's emission model. If the scene has no emission, 1 - rho by Kirchhoff's law.
+/// The computed emissivity. If the scene has no emission, returns 1 - rho (Kirchhoff's law).
 template <Quantity kQuantity, auto rho>
 double emissivity(const Point& point) {
   return std::isnan(point[kQuantity]) ? 1.0 - rho(point) : point[kQuantity];

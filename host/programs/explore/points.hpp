@@ -11,14 +11,14 @@
 
 namespace dolp::explore {
 
-/// Points to compute: a grid with axes, or a list with columns. A column has one value per point, or one for all.
+/// Points to compute: a grid with axes, or a list with columns. A column has a value per point, or one for all points.
 struct PointList {
-  std::vector<std::pair<std::string, std::vector<double>>> values;  ///< columns or axes, with the names of `dolp eval`
-  /// True: `values` are axes, and the points are all combinations, in the order of a table. Shared work is done once.
+  std::vector<std::pair<std::string, std::vector<double>>> values;  ///< columns or axes, named as in `dolp eval`
+  /// True: `values` are axes, and the points are all combinations of their values, in the order of the table's entries.
   bool is_grid = false;
-  std::vector<Setting> changes = {};  ///< changes of the scene for numbers that have no column
+  std::vector<Setting> changes = {};  ///< settings of the scene that hold for all points
 
-  std::vector<double>& operator[](const std::string& name);  ///< adds the column if it is missing
+  std::vector<double>& operator[](const std::string& name);  ///< adds a column or axis `name` if it is missing
   std::vector<Column> columns() const {
     std::vector<Column> columns;
     for (const auto& [name, column] : values) columns.push_back({name, column});
@@ -33,16 +33,15 @@ PointList points_at(const Scene& scene, std::vector<double> theta_deg);
 
 std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count);  ///< equal steps, both ends included
 
-/// Errors: the errors of Evaluator::evaluate and Evaluator::table.
 Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list, const RunOptions& options);
 
 /// The results at a point, in the units of a table.
 struct Point : PointResult {
-  double theta_deg = 0.0;  ///< without meaning if the point is part of a grid
+  double theta_deg = 0.0;  ///< not set if the point is part of a grid
 
   /// True if the status has no bit that makes DOLP meaningless or voids its error bound.
   bool is_good() const { return promises_dolp(status) && std::isfinite(values[Quantity::kDolp]); }
-  bool has_bracket() const {  // true if there are limits for the DOLP with all bounces
+  bool has_bracket() const {  // true if the result has dolp_low and dolp_high
     return std::isfinite(values[Quantity::kDolpLow]) && std::isfinite(values[Quantity::kDolpHigh]);
   }
 };
@@ -57,7 +56,7 @@ struct PlottedDescription {
   const char* name;               ///< name in UTF-8
   const char* meaning;            ///< text in UTF-8, with the equation
   bool in_percent;                ///< true: plots show 100 times the value
-  bool needs_rho;                 ///< true: needs rho, so a run must keep all effects
+  bool needs_rho;                 ///< true: computed from rho, so a run must keep all effects
   double (*value)(const Point&);  ///< NaN where the model gives no value
   bool is_signed = false;
 

@@ -23,8 +23,8 @@ struct Part {
   double q_over_i;  ///< contribution of the effect to Q/I at the peak
 };
 
-/// The contributions of all radiating effects, which add up to Q/I. If one effect cannot be removed from the scene, for
-/// example the only one, it contributes the rest.
+/// The contributions of emission, source and surroundings, which add up to Q/I at the peak. If one of them cannot be
+/// removed from the scene, for example because nothing else radiates, it gets the rest of Q/I.
 std::vector<Part> radiating_parts(const Session& session) {
   const Peak& peak = session.peak();
   double rest = peak.answer()->at[Quantity::kQOverI];
@@ -43,7 +43,7 @@ std::vector<Part> radiating_parts(const Session& session) {
   return parts;
 }
 
-const Point* point_without(const Session& session, const std::string& effect) {  // at the peak; null if not computed
+const Point* point_without(const Session& session, const std::string& effect) {  // at the peak
   if (!session.peak().answer()) return nullptr;
   const std::vector<WithoutEffect>& all = session.peak().without();
   const auto away = std::ranges::find(all, effect, &WithoutEffect::effect);
@@ -112,7 +112,7 @@ std::string peak_text(const Session& session) {
         fmt::format("the maximum is surely between {:.2f}° and {:.2f}°.", peak->theta_low_deg, peak->theta_high_deg);
   }
   if (peak->is_at_end) text += " Beyond it the model fails, or the range ends.";
-  // The bound contains only the numerical error. The albedo shows the error of the surface model itself.
+  // The error bound of DOLP contains only numerical errors. The albedo shows whether the surface model itself errs.
   const double albedo = at[Quantity::kAlbedo];
   if (albedo < kAlbedoMin) text += fmt::format(" The surface model loses energy there (albedo {:.2f}).", albedo);
   if (albedo > kAlbedoMax) text += fmt::format(" The surface model gains energy there (albedo {:.2f}).", albedo);

@@ -8,21 +8,21 @@ namespace dolp::explore {
 const char* remark(const Session& session, const Curve& curve);
 std::string curve_name(const Session& session);  ///< describes the surface of the curve on display
 std::string overlay_name(const Session& session);
-/// The typed name of a pin, or its material with the words that distinguish it from the curve on display.
+/// The name that the user typed for a pin. Without one: its material, and how its scene differs from the current scene.
 std::string pin_name(const Session& session, const Pin& pin);
 const char* stale_text(bool is_stale);           ///< ", the scene before" or ""
 std::string peak_text(const Session& session);   ///< position of the maximum, and its uncertainty
 std::string cause_text(const Session& session);  ///< the parts of Q/I at the maximum: emission, source, surroundings
-std::string no_residuals_text(const Session& session, const Scale& theta);  ///< why there are none, or ""
+std::string no_residuals_text(const Session& session, const Scale& theta);  ///< why the plot shows no residuals, or ""
 std::string cursor_text(const Session& session);
 /// Q/I at the maximum with all effects and without one, in percent: "-14.36 → -59.59 %". Empty if it is not known.
 std::string without_text(const Session& session, const std::string& effect);
-/// A sentence about the Q/I of without_text(). Empty if that is empty, or if the model fails without the effect.
+/// A sentence about the numbers of without_text(). Empty without numbers, or if the model fails without the effect.
 std::string without_words(const Session& session, const std::string& effect);
 std::vector<std::string> cost_lines(const Session& session);  ///< time, work and error of the finished curve
 std::string table_command(const SceneEdits& edits);           ///< a shell command that writes the scene's table
 /// JSON for tools/plot_view.py: the visible curves with the axes `x` and `y`, the measured points, and the map if the
-/// window shows it. The values have the units in the labels. They are null where the model gives no value.
+/// window shows it. Values are in the units of the labels; null where the model gives no value.
 std::string plot_json(const Session& session, const Scale& x, const Scale& y);
 
 }  // namespace dolp::explore

@@ -9,7 +9,7 @@
 namespace dolp::explore {
 namespace {
 
-constexpr double kRounding = 1e-9;  // share of a step by which a tick may lie outside the range
+constexpr double kRounding = 1e-9;  // a tick may lie outside the range by this share of the step between ticks
 
 std::vector<double> linear_ticks(double low, double high, std::size_t most) {
   const double rough = (high - low) / static_cast<double>(most);
@@ -44,7 +44,7 @@ std::vector<double> log_ticks(double low, double high, std::size_t a_decade) {
 }  // namespace
 
 std::string Scale::refusal() const {
-  constexpr double kLeastSpan = 1e-9;  // smallest span / larger end. On a smaller span, rounding moves the points.
+  constexpr double kLeastSpan = 1e-9;  // smallest (to - from)/max(|from|, |to|); below it, rounding errors move points
   if (!std::isfinite(to - from)) return "must be finite";
   if (!(from < to)) return "must be from < to";
   if (is_log && from <= 0.0) return "must be above 0 on a logarithmic axis";
@@ -60,7 +60,7 @@ double Scale::value(double position) const {
 
 double Scale::rounded(double position) const {
   const double exact = value(position);
-  // Rounds to four digits, so that saved scenes have short numbers, which read back unchanged.
+  // Rounds to four digits, so that saved scenes have short numbers.
   if (exact == 0.0) return exact;
   const double digit = std::pow(10.0, 3.0 - std::floor(std::log10(std::abs(exact))));
   return clamp(std::round(exact * digit) / digit);
@@ -95,7 +95,7 @@ Scale range_of(std::vector<double> values, bool is_log) {
   const auto [low, high] = std::ranges::minmax(values);
   if (is_log) {
     constexpr double kMostDecades = 1e6;
-    constexpr double kRoom = 4.0;  // the axis ends at kRoom times the largest value, so that its mark fits
+    constexpr double kRoom = 4.0;  // the axis ends at kRoom * largest value; the mark of the maximum fits above
     return {std::max(low / 1.5, kRoom * high / kMostDecades), kRoom * high, true};
   }
   const double room = 0.06 * std::max(high - low, 1e-9);

@@ -9,23 +9,21 @@
 
 namespace dolp::explore {
 
-/// A linear or logarithmic range of values. The position of a value is 0 at `from` and 1 at `to`. Domain: ranges for
-/// which refusal() is empty.
+/// A linear or logarithmic range of values. The position of a value is 0 at `from` and 1 at `to`. The functions other
+/// than refusal() need a range for which refusal() is empty.
 struct Scale {
   double from = 0.0;
   double to = 1.0;
   bool is_log = false;
 
-  std::string refusal() const;  ///< the reason why the range cannot be drawn; empty if it can
-  /// The value at a position, and the position of a value. Values and positions may lie outside the range.
-  double value(double position) const;
+  std::string refusal() const;          ///< the reason why the range cannot be drawn; empty if it can
+  double value(double position) const;  ///< `position` may lie outside [0, 1]
   double position(double value) const {
     return is_log ? std::log(value / from) / std::log(to / from) : (value - from) / (to - from);
   }
   double clamp(double value) const { return std::clamp(value, from, to); }
   double rounded(double position) const;                ///< value(position) with four digits, in the range
   std::vector<double> values(std::size_t count) const;  ///< `count` values at equal steps of position
-  /// The range between two positions, which may lie outside this range.
   Scale between(double first, double last) const { return {value(first), value(last), is_log}; }
   /// This range, shifted so that it lies in `all`. If this range is larger than `all`, returns `all`.
   Scale within(const Scale& all) const {
@@ -38,19 +36,19 @@ struct Scale {
   Scale including(double value) const {
     return is_log && !(value > 0.0) ? *this : Scale{std::min(from, value), std::max(to, value), is_log};
   }
-  /// This range as a linear or logarithmic one. If a logarithmic range would begin at or below 0, it begins at to/180.
+  /// This range as a linear or logarithmic one. A logarithmic range that would begin at or below 0 begins at to/180.
   Scale with_log(bool wants_log) const;
 
-  /// Round values in the range, at most `most` of them (at least 2). Linear: multiples of 1, 2 or 5 times a power of
-  /// ten. Logarithmic: powers of ten, with 2 and 5 times these if there is room; if the range contains fewer than three
-  /// such values, the values of a linear range.
+  /// At most `most` (at least 2) round values in the range. On a linear range: multiples of 1, 2 or 5 times a power of
+  /// ten. On a logarithmic range: powers of ten, and 2 and 5 times these if there is room. If a logarithmic range has
+  /// fewer than three such values, returns those of a linear range.
   std::vector<double> ticks(std::size_t most) const;
 
   friend bool operator==(const Scale&, const Scale&) = default;
 };
 
-/// A range for a plot of curves with these values, with space above the largest one. A linear range contains 0. Ignores
-/// values that are not finite and, for a logarithmic range, values that are not positive.
+/// A range for a plot of `values`, with space above the largest. A linear range contains 0. Ignores values that are not
+/// finite, and for a logarithmic range also values that are not positive.
 Scale range_of(std::vector<double> values, bool is_log);
 
 std::string tick_text(double value);  ///< label of a tick, with at most four digits

@@ -12,13 +12,13 @@
 
 namespace dolp::explore {
 
-/// The control of a scene key in the window: a slider for a number, a list for words, a box for a flag.
+/// The control of a scene key in the window: a slider for a number, a list for a word, a check box for a flag.
 struct Control {
   const Key* key;
   std::string label;     ///< symbol of a number, or name of a choice, in UTF-8
   const char* equation;  ///< formula or explanation for a tooltip, in UTF-8
   Scale slider = {};     ///< range of the slider; the user can also type other values
-  /// Returns false if the scene does not use the key; the window then hides the control. Null: it is never hidden.
+  /// Returns false if the scene does not use the key; the window then hides the control. Null: the control never hides.
   bool (*is_used)(const Scene& scene) = nullptr;
   std::optional<double> standard = {};  ///< default value of a number that a scene may omit
 
@@ -33,33 +33,30 @@ struct Control {
 
 const Key& described(const std::string& key);  ///< the key must exist
 
-/// The controls of all keys that the window can change, in the order of the scene keys. The numbers of films come last.
+/// The controls of all keys that the window can change. The keys of the films (n, k, thickness) come last.
 const std::vector<Control>& controls();
 
 const Control& control(const std::string& key);              ///< the key must have a control
-Scale range_in(const Scene& scene, const Control& control);  ///< range of its slider that the masking allows
+Scale range_in(const Scene& scene, const Control& control);  ///< the part of the slider's range that the masking allows
 std::string table_of(const std::string& key);                ///< "surface.coating.1" of "surface.coating.1.n"
 std::string unit_text(const Key& key);                       ///< unit for display: "°" for "degree", "" for "1"
 bool is_bistatic(const Scene& scene);
 
-/// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1". If `other` is given, the text omits
-/// words about the shape that also describe `other`. If shape and material of both scenes are equal, the text has the
-/// numbers that differ.
+/// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1". Omits words about the roughness that
+/// also describe the surface of `other`. If the surfaces are equal, adds other numbers in which the scenes differ.
 std::string surface_name(const Scene& scene, const Scene* other = nullptr);
 
 /// A scene file with changes. The results in the window are those of `dolp eval` with the changes as --set.
 class SceneEdits {
  public:
   explicit SceneEdits(const Scene& opened) : opened_(opened), scene_(opened), saved_(opened.settings()) {}
-  /// Errors: the errors of set().
   SceneEdits(const Scene& opened, const std::vector<Setting>& changes) : SceneEdits(opened) { become(changes); }
 
-  /// A table name with an empty value, such as "source", removes this effect. A later change of a key of the table
-  /// restores the effect. A change of a key removes the key's alternatives: `material` removes n and k, for example.
-  /// Errors: InputError; the scene then stays unchanged.
+  /// A change of a key removes the alternatives of this key: `material` removes n and k. A table name with an empty
+  /// value, such as "source", removes the table. Errors: InputError; the scene then stays unchanged.
   void set(const std::vector<Setting>& changes);
 
-  /// Restores a key, or a whole table, from the scene as opened. Errors: the errors of set().
+  /// Restores a key or a whole table of the opened scene. Errors: the errors of set().
   void reset(const std::string& key);
   void reset_all() { scene_ = opened_; }
 
@@ -67,11 +64,10 @@ class SceneEdits {
   const Scene& opened() const { return opened_; }
   bool is_changed() const { return changes() != saved_; }
   void note_saved() { saved_ = changes(); }  ///< makes is_changed() false until the next change
-  /// Becomes `other`, which may have the same scene file or another one. With the same file, is_changed() still
-  /// compares with the state that was saved last.
+  /// Becomes `other`. If both have the same scene file, keeps the record of the state saved last (note_saved()).
   void go_to(const SceneEdits& other);
   bool is_same_scene(const SceneEdits& other) const { return is_same_file(other) && changes() == other.changes(); }
-  const std::vector<Setting>& changes() const { return scene_.settings(); }  ///< with the settings of opened()
+  const std::vector<Setting>& changes() const { return scene_.settings(); }  ///< these include the settings of opened()
   std::vector<Setting> changes_without(const std::vector<std::string>& keys) const;
 
  private:
@@ -85,14 +81,14 @@ class SceneEdits {
   std::vector<Setting> saved_;
 };
 
-/// The settings of a film: n and k, or material, or material_file; and thickness_um, which is last.
+/// The settings of a film: first n and k, or material, or material_file; then thickness_um.
 using Film = std::vector<Setting>;
 std::vector<Film> films_of(const Scene& scene);      ///< the outermost film first
 Setting coating_of(const std::vector<Film>& films);  ///< setting that gives a scene these films
 std::string word_of(const Value& value);             ///< text of a value, without quotes
 
-/// Applies a change. If the scene refuses it, also changes other choices, as few as possible, to words that exclude
-/// nothing. Returns these choices. Errors: InputError if this does not help; the edits then stay unchanged.
+/// Applies a change. If the scene refuses it because of other choices, changes as few of them as possible, and returns
+/// their new values. Errors: InputError if the scene still refuses; the edits then stay unchanged.
 std::vector<Setting> change_with_needed(SceneEdits& edits, const std::function<void(SceneEdits&)>& change);
 
 /// A sky whose brightness temperature is a linear function of the zenith angle.
@@ -100,16 +96,16 @@ struct SkyPair {
   double zenith_K = 220.0;
   double horizon_K = 285.0;
 
-  std::string csv() const;  ///< text of a file for surroundings.profile: a row for the zenith and one for the horizon
+  std::string csv() const;  ///< text of a file for surroundings.profile: rows for zenith and horizon
   friend bool operator==(const SkyPair&, const SkyPair&) = default;
 };
 
-/// Reads a file with the text of SkyPair::csv. Empty if the file has another text or cannot be read.
+/// Reads a file that SkyPair::csv() made. Empty if the file has another text or cannot be read.
 std::optional<SkyPair> read_sky_pair(const std::filesystem::path& file);
 
 std::filesystem::path sky_file(const Scene& scene);  ///< empty if the scene has no sky or a built-in one
 
-/// Temporary files of the skies that the user edits, because a scene can name only a file. The destructor removes them.
+/// Temporary files for skies that the user edits, because a scene reads a sky from a file. The destructor removes them.
 class SkyFiles {
  public:
   /// Writes a file with `sky` and returns the path. If the writing fails, the scene will refuse the path.

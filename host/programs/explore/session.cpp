@@ -16,7 +16,7 @@ std::string text_of(const std::vector<Setting>& changes) {
   return join(texts);
 }
 
-/// True if `change` only gives a number of the scene another value. Other changes choose between alternatives.
+/// True if `change` gives a number of the scene another value, as a slider does.
 bool moves_number(const Scene& scene, const Setting& change) {
   return std::ranges::any_of(
       controls(), [&](const Control& control) { return control.key->key == change.key && control.value(scene); });
@@ -31,10 +31,10 @@ struct JobList {
   void add(std::vector<Job> more) { std::ranges::move(more, std::back_inserter(jobs)); }
 };
 
-/// Gives an axis the range that the user typed; otherwise limits a wavelength axis to known n and k. False: no range.
+/// Sets axis.scale to the range that the user typed, or to known_part() of a wavelength axis. False without a range.
 bool find_range(const Scene& scene, const View& view, MapAxis& axis) {
   const std::optional<Scale> typed = view.range(axis.label);
-  // The scene may have changed since the user typed the range, and may refuse this range now.
+  // The scene may have changed since the user typed the range, and may now refuse the range.
   if (typed && refusal(scene, axis, *typed).empty()) {
     axis.scale = *typed;
   } else if (axis.name == "wavelength") {
@@ -45,7 +45,7 @@ bool find_range(const Scene& scene, const View& view, MapAxis& axis) {
 
 constexpr const char* kWavelength = "spectrum.wavelength_um";
 
-/// The map axis called `name`. If the scene lacks this axis, returns another one, but not the axis `other`.
+/// The map axis called `name`. If the scene lacks this axis, returns an axis that is not called `other`.
 MapAxis axis_or_another(const Scene& scene, const View& view, const std::string& name, const std::string& other) {
   std::vector<MapAxis> axes = map_axes(scene, view.theta_max_deg);
   const auto named = std::ranges::find(axes, name, &MapAxis::name);
@@ -283,8 +283,7 @@ void Session::follow() {
 
 void Session::estimate_influences() {
   const JobPart& curve = curve_.finished();
-  // The estimate takes as long as a coarse curve. So a drag of a slider makes none: an estimate needs a new finished
-  // curve or a new zenith.
+  // The estimate takes as long as a coarse curve. So it is made only for a new finished curve or a new zenith.
   std::pair<std::string, double> wanted{curve.key, state_.theta_deg};
   if (influences_of_ == wanted) return;
   influences_of_ = std::move(wanted);
@@ -305,7 +304,7 @@ void Session::follow_overlay(const std::string& content) {
 }
 
 void Session::follow_map() {
-  if (is_dragged() && map_.is_arriving()) return;  // during a drag only complete maps are shown
+  if (is_dragged() && map_.is_arriving()) return;  // during a drag, finishes the map that has begun
   const MapAxis x = axis_or_another(scene(), state_.view, state_.view.map_x, state_.view.map_y);
   const MapAxis y = axis_or_another(scene(), state_.view, state_.view.map_y, x.name);
   std::string key = content_key(scene(), state_.edits.changes_without({x.key, y.key}), keeps_all());
@@ -317,7 +316,7 @@ void Session::follow_map() {
 
 void Session::follow_sweeps(const std::string& content) {
   constexpr std::size_t kSpectrum = 121;
-  constexpr std::size_t kSmooth = 901;  // shows the fringes of films; is fast, because a closed form gives the values
+  constexpr std::size_t kSmooth = 901;  // enough for the fringes of films; a smooth surface is computed fast
   constexpr double kWidth = 2.0;        // the axis begins at wavelength / kWidth and ends at kWidth * wavelength
   const bool is_spectrum = shows(Panel::kSpectrum);
   if (!is_spectrum && !shows(Panel::kSmooth)) return;

@@ -13,7 +13,7 @@ namespace dolp::explore {
 /// A curve that stays in the plot while the scene changes.
 struct Pin {
   std::string name = {};   ///< name that the user typed; if empty, the legend describes the surface
-  std::size_t colour = 0;  ///< number of the colour, see pin_style()
+  std::size_t colour = 0;  ///< argument of pin_style()
   bool is_visible = true;
   Curve curve;
 };
@@ -22,12 +22,12 @@ struct View {
   Plotted quantity = Plotted::kDolp;
   bool is_log = false;
   bool is_theta_log = false;    ///< true: the zenith axis of the curves is logarithmic
-  bool has_overlay = true;      ///< also draws the other slope distribution with an equal D(0)
+  bool has_overlay = true;      ///< also draws the curve of with_other_distribution()
   bool keeps_all = false;       ///< keeps effects that a run would drop as too small
   double theta_max_deg = 90.0;  ///< largest zenith of the plots and of the search for the maximum
   std::string map_x = "theta";  ///< name of the x axis; if the scene lacks this axis, the map takes another one
   std::string map_y = "sigma";
-  /// Ranges that the user chose, by the label of a map axis or by one of the names below. Other axes are automatic.
+  /// Ranges that the user chose. The text is the label of a map axis, or one of the three names below.
   std::map<std::string, Scale> ranges = {};
   Panel panel = Panel::kMap;
   std::size_t mueller_row = 0;  ///< row and column, from 0, of the Mueller element in the view "pBRDF"
@@ -35,7 +35,7 @@ struct View {
 
   static constexpr const char* kZeniths = "curve zenith";
   static constexpr const char* kValues = "curve values";
-  static constexpr const char* kColours = "map colours";  ///< range: value of the first colour to value of the last
+  static constexpr const char* kColours = "map colours";  ///< from the value of the first colour to the last
 
   std::optional<Scale> range(const std::string& axis) const;
   void set_range(const std::string& axis, const std::optional<Scale>& range);
@@ -62,7 +62,7 @@ struct SessionState {
   FitMarks marked = {};
 };
 
-/// State and commands of the window. A Worker computes the jobs of wanted(); the classes in window/ draw the state.
+/// State and commands of the window. A Worker computes the jobs of wanted(). The classes in window/ draw the state.
 class Session {
  public:
   static constexpr std::size_t kMostPins = 6;
@@ -70,8 +70,8 @@ class Session {
 
   explicit Session(SceneEdits edits);
 
-  // ---- Commands. If the scene refuses a command, nothing changes, and message() has the reason. If a choice needs
-  // further changes, the command makes them, and message() names them.
+  // Commands. If the scene refuses a command, message() has the reason and nothing else changes. If a choice requires
+  // other choices, the command changes these too, and message() names them.
   void set(const std::string& key, const Value& value) { set({{key, value}}); }
   void set(const std::vector<Setting>& changes);
   void reset(const std::string& key);
@@ -81,17 +81,17 @@ class Session {
   void go_to(const SceneEdits& edits) {
     attempt([&] { state_.edits.go_to(edits); });
   }
-  /// Replaces everything except the states for `undo`. The pins need no points, because wanted() requests their curves.
+  /// Replaces the state by a saved one, whose pins need no points. Keeps the states to which undo() goes.
   void restore(const SessionState& saved, const std::optional<MeasuredData>& measured);
   void undo() { step(done_, undone_, "nothing to undo"); }
   void redo() { step(undone_, done_, "nothing to redo"); }
   void take_snapshot();
-  /// While the mouse button is down, all changes form one step of `undo` and only coarse results are computed.
+  /// While `is_held` is true (the mouse button is down), all changes form one step of undo(), and results are coarse.
   void hold(bool is_held);
   void note_saved() { state_.edits.note_saved(); }
   void pin();
-  /// Changes the view. If View::quantity or View::is_log changes, removes the typed ranges of values and colours. If
-  /// View::is_theta_log changes, removes the typed range of zeniths. These ranges would no longer fit.
+  /// Changes the view. A new quantity or is_log removes the typed ranges of values and colours, and a new is_theta_log
+  /// removes the typed range of zeniths, because these ranges no longer fit.
   void set_view(const View& view);
   template <class T>
   void set_view(T View::*part, const std::type_identity_t<T>& value) {
@@ -100,22 +100,22 @@ class Session {
     set_view(view);
   }
   void set_theta(double theta_deg);
-  /// Moves the cursor of the map to a position from 0 to 1 on each axis, and gives the scene the values there.
+  /// Moves the cursor of the map, and sets the scene's numbers to the values there. `x` and `y` are from 0 to 1.
   void set_map_cursor(double x, double y);
   void load_measured(const std::string& path);
   void clear_measured() { residuals_.clear(); }
-  void mark(const std::string& key, bool varies) {  // `varies`: the number `key` varies in fits
+  void mark(const std::string& key, bool varies) {  // decides whether a number varies in fits
     if (varies) {
       state_.marked.try_emplace(key);
     } else {
       state_.marked.erase(key);
     }
   }
-  /// Lets a number vary in fits over a typed range. Returns the reason if the range is refused, otherwise nothing.
+  /// Lets a number vary in fits over a typed range. Returns the reason if the range is refused, otherwise "".
   std::string set_fit_range(const std::string& key, const std::string& low, const std::string& high);
-  /// Shows a fit and visits the minimum nearest to the start of `job`. Returns this minimum's position in Fit::minima.
+  /// Stores a fit and calls visit_minimum() for nearest_minimum(), whose position it returns.
   std::size_t take_fit(Fit fit, const FitJob& job);
-  /// Restores the scene of the last fit, with the parameters of one of its minima.
+  /// Sets the scene to the scene of the last fit, with the numbers of one minimum of this fit.
   void visit_minimum(std::size_t position);
   void tell(std::string text, bool is_error = false) { message_ = {std::move(text), is_error}; }
 
@@ -135,13 +135,11 @@ class Session {
   const std::vector<Snapshot>& snapshots() const { return state_.snapshots; }
   const HeatMap& map() const { return map_; }
   const SourceSky& source_sky() const { return source_sky_; }
-  /// The scene at one wavelength, and the axis of the plots over wavelength. If n and k are known at only one
-  /// wavelength, both ends of the axis are equal.
-  const Scene& spectral_scene() const { return spectral_scene_; }
-  const MapAxis& wavelengths() const { return wavelengths_; }
-  const Sweep& spectrum() const { return spectrum_; }                ///< results over wavelength at the cursor
-  const Sweep& smooth_spectrum() const { return smooth_spectrum_; }  ///< sigma = 0, over wavelength at the cursor
-  const Sweep& smooth() const { return smooth_; }                    ///< the surface with sigma = 0, over zenith
+  const Scene& spectral_scene() const { return spectral_scene_; }  ///< the scene at one wavelength
+  const MapAxis& wavelengths() const { return wavelengths_; }      ///< axis of the plots over wavelength
+  const Sweep& spectrum() const { return spectrum_; }              ///< results at the cursor's zenith, over wavelength
+  const Sweep& smooth_spectrum() const { return smooth_spectrum_; }  ///< results for sigma = 0, over wavelength
+  const Sweep& smooth() const { return smooth_; }                    ///< results for sigma = 0, over zenith
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
   bool is_foreign(const Scene& other) const { return other.name() != scene().name() || other.text() != scene().text(); }
@@ -150,29 +148,29 @@ class Session {
   SkyFiles& skies() { return skies_; }
   const SkyFiles& skies() const { return skies_; }
   bool has_unsaved_sky() const { return skies_.hold(sky_file(scene())); }
-  std::optional<FitJob> fit_job() const;  ///< empty without measured points or without a marked parameter
+  std::optional<FitJob> fit_job() const;  ///< empty without measured points, or if no number may vary
   const std::optional<Fit>& last_fit() const { return fit_; }
-  /// Position of the last fit's minimum that the scene shows; empty if the user has changed the scene since the fit.
+  /// Position in Fit::minima of the minimum whose numbers the scene has; empty if the user has changed the scene.
   std::optional<std::size_t> minimum() const {
     return fit_ && visited_->is_same_scene(state_.edits) ? std::optional(minimum_) : std::nullopt;
   }
-  /// The result of the last fit for the parameter `key`; null if the user has changed the scene since the fit.
+  /// The result of the last fit for the number `key`; null if the user has changed the scene since then.
   const FitParameter* fitted(const std::string& key) const;
   const Message& message() const { return message_; }
   bool is_dragged() const { return is_held_ && is_in_gesture_; }  ///< the mouse is down and has changed the scene
-  /// True if the points of a curve belong to an earlier scene; false during a drag, in which every curve lags behind.
+  /// True if a curve shows an earlier scene. False during a drag, because then every curve lags behind the slider.
   bool is_outdated(const Curve& curve) const { return curve.is_stale() && !is_dragged(); }
-  /// The effects of the last finished curve. Effect::influence of a kept effect is for the cursor's zenith.
+  /// The effects of the last finished curve. Effect::influence of a kept effect is for the zenith of the cursor.
   const std::vector<Effect>& effects() const { return effects_; }
-  /// The position, from 0 to 1, of the scene's value on an axis of the map.
+  /// The position, from 0 to 1 on an axis of the map, of the number that the scene has.
   double map_cursor(const MapAxis& axis) const {
     const double value = axis.key.empty() ? state_.theta_deg : scene().number(axis.key).value_or(axis.scale.from);
     return axis.scale.position(axis.scale.clamp(value));
   }
-  const Point* at_cursor() const;  ///< nearest point of the drawn curve; null if the curve has no points
+  const Point* at_cursor() const;  ///< point of the curve nearest to the cursor; null if it has none
 
  private:
-  /// Runs a command and records its changes for `undo`. If it throws InputError, the reason becomes the message.
+  /// Runs `command` and records the previous state for undo(). The reason of an InputError becomes the message.
   void attempt(const std::function<void()>& command);
   void step(std::vector<SceneEdits>& from, std::vector<SceneEdits>& to, const char* nothing);
   bool keeps_all() const { return state_.view.keeps_all || described(state_.view.quantity).needs_rho; }
@@ -192,7 +190,7 @@ class Session {
 
   SkyFiles skies_;
   SessionState state_;
-  std::vector<SceneEdits> done_, undone_;  ///< states to which `undo` and `redo` go, the next state last
+  std::vector<SceneEdits> done_, undone_;  ///< states to which undo() and redo() go, the next state last
   bool is_held_ = false;
   bool is_in_gesture_ = false;
   Curve curve_;
@@ -209,16 +207,16 @@ class Session {
   std::optional<SceneEdits> visited_;    ///< the fitted scene at the minimum that the user visited
   std::size_t minimum_ = 0;
   std::vector<Effect> effects_;
-  std::pair<std::string, double> influences_of_;  ///< curve's key and zenith of the influences in effects_
+  std::pair<std::string, double> influences_of_;  ///< key of the curve and zenith that effects_ belong to
   Message message_;
   std::vector<std::string> remarks_;  ///< remarks on the scene that message() has shown before
   bool is_changed_ = true;
-  // During a drag the worker computes in turn: the curve, the map (or sky), the curve, the overlay.
+  // While the user drags a slider, the worker computes in turn: the curve, the map (or sky), the curve, the overlay.
   bool is_curve_next_ = true;
   bool is_map_next_ = false;
 };
 
-/// A text that identifies results: two texts are equal if the scene files, the changes and `keep_all` are equal.
+/// A text that identifies results: it is equal for two scenes with the same file, the same changes and `keep_all`.
 std::string content_key(const Scene& scene, const std::vector<Setting>& changes, bool keep_all);
 
 }  // namespace dolp::explore

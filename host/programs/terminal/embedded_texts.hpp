@@ -5,11 +5,10 @@
 
 namespace dolp {
 
-std::string_view embedded_night_paint_toml();  ///< the scene for a first look
-std::string_view embedded_plot_view_py();      ///< draws the plots of the window
+std::string_view embedded_night_paint_toml();  ///< a scene for new users
+std::string_view embedded_plot_view_py();      ///< a script that draws the plots of the window
 
-// Completions of shells. Each script asks `dolp completion words -- WORD... :CURRENT` for the words that complete a
-// line.
+// Completion scripts of shells. Each calls `dolp completion words -- WORD... :CURRENT` to complete a command line.
 std::string_view embedded_dolp_bash();
 std::string_view embedded_dolp_fish();
 std::string_view embedded_dolp_zsh();

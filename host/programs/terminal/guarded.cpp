@@ -16,14 +16,14 @@
 namespace dolp {
 namespace {
 
-/// True if lack of memory caused `error`. std::thread throws such an error if there is no memory for its stack.
+/// True if lack of memory caused `error`. For example, std::thread throws such an error without memory for a stack.
 bool is_of_memory(const std::system_error& error) {
   return error.code() == std::errc::not_enough_memory || error.code() == std::errc::resource_unavailable_try_again;
 }
 
 }  // namespace
 
-// Uses fputs, because fmt::print throws if stderr cannot be written.
+// fputs instead of fmt::print, which would throw if stderr cannot be written.
 int fail(const std::string& program, int status, const std::string& message) {
   std::fputs((program + ": " + printable_line(message) + "\n").c_str(), stderr);
   return status;
@@ -39,7 +39,7 @@ int fail_out_of_memory(const char* program) noexcept {
   std::array<char, 128> line{};
   const int length = std::snprintf(line.data(), line.size(), "%.40s: out of memory: more than %ld MiB wanted\n",
                                    program, used.ru_maxrss / 1024);
-  // If even write() fails, no message is possible.
+  // Ignores a failure of write(), because there is no other way to tell the user.
   if (length > 0) static_cast<void>(!::write(STDERR_FILENO, line.data(), static_cast<std::size_t>(length)));
   return kExitMemory;
 }

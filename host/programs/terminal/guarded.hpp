@@ -1,4 +1,3 @@
-// Only these functions convert errors to exit statuses.
 #pragma once
 
 #include <functional>
@@ -7,12 +6,12 @@
 
 namespace dolp {
 
-/// Prints one line on stderr, with the program's name first. Returns `status`.
+/// Prints "PROGRAM: MESSAGE" as one line on stderr. Returns `status`.
 int fail(const std::string& program, int status, const std::string& message);
 
 void warn(const std::string& program, const std::vector<std::string>& remarks);
 
-/// Prints a line that memory is short; allocates no memory for it. Returns kExitMemory.
+/// Prints "out of memory" on stderr without allocating memory. Returns kExitMemory.
 int fail_out_of_memory(const char* program) noexcept;
 
 /// Returns the result of `body`. If `body` throws an error, prints one line and returns the exit status for this error.

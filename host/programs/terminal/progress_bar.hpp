@@ -7,9 +7,8 @@
 
 namespace dolp {
 
-/// A bar with rate and remaining time on stderr, if stderr is a terminal and `quiet` is false. While the program reads
-/// its inputs, SIGINT, SIGTERM and SIGHUP end it as usual. After the first call of callback()'s function, these signals
-/// only request the end of the run (base/interrupt.hpp).
+/// A bar with rate and remaining time on stderr, if stderr is a terminal and `quiet` is false. From the first call of
+/// the function of callback(), signals only request the end of the run (watch_for_interrupts).
 class ProgressBar {
  public:
   explicit ProgressBar(bool quiet);
@@ -17,11 +16,10 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// A function that draws the bar and returns false after an interrupt. The function refers to this object, which must
-  /// outlive it: in run(..., ProgressBar(quiet).callback()) the object lives until run() returns.
+  /// A function that draws the bar and returns false after an interrupt. This object must outlive the function.
   Progress callback();
 
-  /// Restarts the time measurement. From now on the bar names `what` (a plural) as the counted things, not "entries".
+  /// Restarts the time measurement. From now on the bar counts `what`, a plural, instead of "entries".
   void count(const std::string& what);
 
  private:

@@ -46,7 +46,7 @@ class File {
     if (descriptor_ >= 0) ::close(descriptor_);
   }
   int get() const { return descriptor_; }
-  // Some file systems report a failed write only when the file is closed.
+  // Returns false on failure: some file systems report a failed write only when the file is closed.
   bool close() { return ::close(std::exchange(descriptor_, -1)) == 0; }
 
  private:
@@ -93,7 +93,7 @@ fs::path temporary_name(const fs::path& target, int number) {
   return folder_of(target) / (".dolp-" + std::to_string(::getpid()) + "-" + std::to_string(number) + ".tmp");
 }
 
-/// Calls make(name) with names in the folder of `target` until a name is free (no EEXIST). Returns name and result.
+/// Calls make(name) with temporary names in the folder of `target`, until a name is free. Returns name and result.
 template <class Make>
 std::pair<fs::path, int> with_new_name(const fs::path& target, const Make& make) {
   for (int i = 0; i < kMostNames; ++i) {
@@ -138,7 +138,7 @@ void sync_folder(const fs::path& folder, const fs::path& path) {
 
 }  // namespace
 
-// std::filesystem::canonical() would fail for an output that does not exist yet.
+// Does not use std::filesystem::canonical(), which fails for an output that does not exist yet.
 fs::path follow_links(fs::path path) {
   std::error_code error;
   for (int links = 0; fs::is_symlink(path, error); ++links) {
@@ -168,7 +168,7 @@ void check_writable(const fs::path& path) {
   struct stat existing {};
   const bool exists = ::stat(target.c_str(), &existing) == 0;
   if (!exists && errno != ENOENT) fail_errno(path, "cannot create the file");
-  // Looks at the mode, because access() lets root write to read-only files. The user has protected this file.
+  // Looks at the mode, because access() lets root write even to files that the user has made read-only.
   if (exists && (existing.st_mode & kWriteBits) == 0) {
     fail(path, "is read-only; remove it first, or write to another file");
   }
@@ -179,7 +179,7 @@ struct AtomicFile::Impl {
   fs::path path;    // the argument of the constructor, for messages
   fs::path target;  // follow_links(path)
   File file;
-  fs::path name;         // temporary name of the incomplete file; empty: the file has no name yet
+  fs::path name;         // temporary name of the incomplete file; empty if it has no name
   bool is_kept = false;  // true: the destructor does not remove an incomplete file
   std::uint64_t size = 0;
 
@@ -203,7 +203,7 @@ struct AtomicFile::Impl {
            }).first;
   }
 
-  void copy_to_target() const {  // used if `target` is a device or pipe
+  void copy_to_target() const {  // `target` is a device or pipe
     File device(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
     if (device.get() < 0 && interrupted()) throw Cancelled();
     if (device.get() < 0) fail_errno(path, "cannot open for writing");
@@ -227,7 +227,7 @@ AtomicFile::AtomicFile(const fs::path& path) {
 
 AtomicFile::AtomicFile(const fs::path& path, const fs::path& under_way) {
   check_writable(path);
-  // The Impl is created before the file, so that no file remains if there is no memory for the Impl.
+  // Allocates memory before it creates the file, so that lack of memory leaves no file behind.
   impl_ = std::make_unique<Impl>(path, follow_links(path), std::pair(File(-1), under_way));
   impl_->is_kept = true;
   File& file = impl_->file;
@@ -237,7 +237,7 @@ AtomicFile::AtomicFile(const fs::path& path, const fs::path& under_way) {
   const bool is_locked = ::flock(file.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
   struct stat found {};
   if (::fstat(file.get(), &found) != 0 || !S_ISREG(found.st_mode)) fail(under_way, "is not a regular file");
-  // If `under_way` is no longer a name of this file, another run has just finished the file.
+  // If the opened file no longer has the name `under_way`, another run has just renamed it.
   if (!is_locked || !has_name(found, under_way)) throw InputError(under_way.string() + ": another run writes it");
   if (found.st_nlink > 1) fail(under_way, "is a file that has other names too; remove it");
   keep_permissions(file, impl_->target);
@@ -274,11 +274,11 @@ void AtomicFile::resize(std::uint64_t size) {
 
 void AtomicFile::commit() {
   if (is_device_or_pipe(impl_->target)) return impl_->copy_to_target();
-  const fs::path folder = folder_of(impl_->target);  // computed before the rename, because lack of memory may end it
+  const fs::path folder = folder_of(impl_->target);  // before the rename, because it needs memory
   if (interrupted()) throw Cancelled();
   if (::fsync(impl_->descriptor()) != 0) fail_errno(impl_->path, "cannot write");
   if (impl_->name.empty()) impl_->link();
-  // The file stays open and locked until it has its final name. So no other run takes it for an unfinished file.
+  // The file stays locked until it has its final name. So no other run can continue it as an unfinished file.
   if (::rename(impl_->name.c_str(), impl_->target.c_str()) != 0)
     fail_errno(impl_->path, "cannot rename the finished file");
   impl_->name.clear();

@@ -6,12 +6,12 @@
 namespace dolp {
 namespace {
 
-volatile std::sig_atomic_t is_interrupted = 0;  // of the type that a signal handler may change
+volatile std::sig_atomic_t is_interrupted = 0;  // a signal handler may change variables of this type
 
 }  // namespace
 
 void watch_for_interrupts() {
-  struct sigaction action {};  // without SA_RESTART, so that a signal ends waiting system calls
+  struct sigaction action {};  // no SA_RESTART, so a signal ends waiting system calls
   action.sa_handler = [](int number) {
     if (is_interrupted) {
       std::signal(number, SIG_DFL);

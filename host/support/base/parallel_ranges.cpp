@@ -33,7 +33,7 @@ void parallel_ranges(std::size_t count, std::size_t grain,
   try {
     for (std::size_t i = 1; i < std::min(cores, useful); ++i) threads.emplace_back(work);
   } catch (const std::system_error&) {
-    // The system refused to start another thread. The existing threads do all the work.
+    // The system refused to start another thread. The threads that have started do all the work.
   }
   work();
   threads.clear();  // waits until the threads have ended

@@ -5,7 +5,7 @@
 
 namespace dolp {
 
-const std::string& processor_name();  ///< as Linux reports it in /proc/cpuinfo, or "unknown processor"
+const std::string& processor_name();  ///< name in /proc/cpuinfo, or "unknown processor"
 std::size_t peak_resident_bytes();    ///< largest memory use of this process until now
 
 }  // namespace dolp

@@ -42,7 +42,7 @@ class MemoryFile {
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
 };
 
-/// Runs a Python script with one argument. Its stdin and stdout are `input` and `output`. Returns false if it fails.
+/// Runs a Python script that reads `input` from stdin and writes `output` to stdout. Returns false if the script fails.
 bool run_python(const char* script, std::string argument, const MemoryFile& input, const MemoryFile& output) {
   std::string program = "/usr/bin/python3", option = "-c", text = script;
   const std::array<char*, 5> arguments = {program.data(), option.data(), text.data(), argument.data(), nullptr};

@@ -134,7 +134,7 @@ std::string one_line(std::string_view text) {
     if (!is_space) line += c;
     if (is_space && !line.empty() && line.back() != ' ') line += ' ';
     if (line.size() > kMessageBytes) {
-      // Removes the last UTF-8 character, which may be incomplete: up to three continuation bytes and the first byte.
+      // Removes the last UTF-8 character, which may be incomplete: up to three continuation bytes, and its first byte.
       for (int i = 0; i < 3 && (static_cast<unsigned char>(line.back()) & 0xC0U) == 0x80U; ++i) line.pop_back();
       line.pop_back();
       return line + "...";
@@ -185,7 +185,7 @@ void check_named_file(const std::string& path, const std::string& prefix) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   const bool may_be_read =
-      // missing files and folders pass, because read_text() reports them
+      // missing files and folders pass here, and read_text() refuses them
       is_regular_file(status) || is_directory(status) || !exists(status);
   if (path == "-" || !may_be_read) throw InputError(prefix + "is not a regular file");
 }

@@ -17,24 +17,24 @@ std::vector<std::string_view> split_lines(std::string_view text);
 
 std::string lower_case(std::string_view text);  ///< changes only ASCII letters
 
-/// The finite decimal number in a text, which may have blanks around it but nothing else. Independent of the locale.
-/// Errors: nullopt for all other texts, for example nan, inf, 1e999 and 1e-999.
+/// The finite decimal number in a text, with a decimal point in every locale. The text may have blanks at both ends.
+/// Returns nullopt for all other texts, for example nan, inf, 1e999 and 1e-999.
 std::optional<double> parse_number(std::string_view text);
 
 /// The shortest text that reads back as this double; or "nan", "inf" or "-inf".
 std::string number_text(double value);
 void append_number(std::string& text, double value);  ///< appends number_text(value)
 
-/// The shortest text that reads back as this double, for messages and scenes: 100000 instead of number_text's 1e+05.
+/// The shortest text that reads back as this double, for messages and scenes: 100000, where number_text() has 1e+05.
 std::string format_number(double value);
 
-/// Number of insertions, deletions and replacements that turn `a` into `b`. Ignores case and the bytes after the 80th.
+/// Number of letters to insert, delete or replace to turn `a` into `b`. Ignores case and the bytes after the 80th.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// The first of the candidates with the smallest edit distance from `name`. `candidates` must not be empty.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
 
-/// The candidate that a mistyped or shortened name probably means. Empty if none is similar. Needs a candidate.
+/// The candidate that a mistyped or shortened name probably means; empty if no candidate is similar.
 std::optional<std::string> near_name(std::string_view name, const std::vector<std::string>& candidates);
 
 std::string one_line(std::string_view text);  ///< replaces line ends by blanks; cuts long texts for a message
@@ -51,11 +51,10 @@ inline constexpr std::size_t kMostTextBytes = 16U << 20U;  ///< size limit of a 
 /// is longer than `most_bytes` or contains a zero byte.
 std::string read_text(const std::string& path, const std::string& prefix, std::size_t most_bytes = kMostTextBytes);
 
-/// Checks the path of a file that a scene, another input or the user of the window names. Refuses "-", pipes and
-/// devices, because reading them could wait forever. Errors: InputError that begins with `prefix`.
+/// Refuses "-", pipes and devices as files that a scene or the user of the window names, because reading them could
+/// wait forever. Errors: InputError that begins with `prefix`.
 void check_named_file(const std::string& path, const std::string& prefix);
 
-/// Calls check_named_file() and then read_text(). Errors: the errors of both functions.
 std::string read_named_file(const std::string& path, const std::string& prefix,
                             std::size_t most_bytes = kMostTextBytes);
 

@@ -11,16 +11,16 @@ namespace dolp::vulkan {
 /// A Vulkan storage buffer with its memory.
 class Buffer {
  public:
-  /// Creates a buffer with at least `bytes`. If `texels` is a format, kernels can also read texels of this format.
+  /// Creates a buffer with at least `bytes`. If `texels` is a format, shaders can also read the buffer as texels of it.
   Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, VkFormat texels = VK_FORMAT_UNDEFINED);
 
   VkBuffer get() const { return buffer_.get(); }
   VkBufferView texels() const { return texels_.get(); }
   VkDeviceSize size() const { return size_; }
 
-  /// Writes bytes to the start of a mapped buffer. The next submission to the queue sees these bytes.
+  /// Writes bytes to the start of a mapped buffer. Work that is submitted to the queue later sees these bytes.
   void write(std::span<const std::byte> bytes);
-  /// Reads bytes from the start of a mapped buffer. The submission that wrote them must have a barrier and be done.
+  /// Reads bytes from the start of a mapped buffer. The work that wrote them must be complete and end with a barrier.
   void read(std::span<std::byte> bytes) const;
 
  private:
@@ -30,7 +30,7 @@ class Buffer {
   VkDevice device_ = VK_NULL_HANDLE;
   VkDeviceSize size_ = 0;
   VkMemoryPropertyFlags memory_flags_ = 0;
-  // The memory is declared before the buffer that is bound to it, so it is destroyed after the buffer.
+  // The destructor destroys members in reverse order: the memory last.
   UniqueMemory memory_;
   UniqueBuffer buffer_;
   UniqueBufferView texels_;

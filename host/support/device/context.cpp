@@ -15,15 +15,14 @@ constexpr std::array kValidationExtensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
 constexpr const char* kNoDriver =
     "no Vulkan driver was found (on Debian, mesa-vulkan-drivers has one that needs no GPU; VK_DRIVER_FILES and "
     "VK_ICD_FILENAMES override the search)";
-// Message for the error "out of memory" of the Vulkan loader. The true cause is a malformed driver file, because a
-// process that is really short of memory would have ended before.
+// The Vulkan loader reports "out of memory" for a malformed driver file, too. Real lack of memory shows up earlier.
 constexpr const char* kDriverNotLoaded =
     "no Vulkan driver could be loaded: its file (VK_DRIVER_FILES, VK_ICD_FILENAMES, vulkan/icd.d) is malformed";
 
 constexpr const char* kTooFewThreads =
     "out of memory: the system allows too few threads for a Vulkan driver (ulimit -u); the evaluator cpu needs one";
 
-/// Reports that there is no driver. The cause may be too little address space: then the Vulkan loader skips drivers.
+/// Throws the error for a missing driver. If too little address space is left, the Vulkan loader skips all drivers.
 [[noreturn]] void fail_without_driver() {
   if (lacks_addresses()) throw MemoryError("out of memory: too little is left to load a Vulkan driver");
   throw DeviceError(kNoDriver);
@@ -113,7 +112,7 @@ Instance::~Instance() {
 std::vector<VkPhysicalDevice> Instance::physical_devices() const {
   std::uint32_t count = 0;
   const VkResult result = vkEnumeratePhysicalDevices(instance_, &count, nullptr);
-  // The Vulkan loader has these two ways to report that no driver has found hardware.
+  // Both results mean that no driver has found hardware.
   if (result == VK_ERROR_INITIALIZATION_FAILED || (result == VK_SUCCESS && count == 0)) fail_without_driver();
   check(result, "listing the devices");
   std::vector<VkPhysicalDevice> devices(count);

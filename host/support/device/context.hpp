@@ -27,9 +27,8 @@ class ValidationLog {
 /// A Vulkan 1.2 instance.
 class Instance {
  public:
-  /// With `log` the Khronos validation layer checks all calls, including synchronization, and reports to `log` until
-  /// the instance is destroyed. Without `log` there is no validation.
-  /// Errors: DeviceError without a Vulkan driver, or if the validation layer is requested but not installed.
+  /// If `log` is not null, the Khronos validation layer checks all Vulkan calls and reports to `log`.
+  /// Errors: DeviceError without a Vulkan driver, or if the validation layer is needed but not installed.
   explicit Instance(ValidationLog* log);
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;
@@ -50,8 +49,7 @@ class Instance {
 /// A Vulkan instance with the one device that choose_device() selects.
 class Context {
  public:
-  /// Errors: DeviceError if no usable device matches `wish`, or if double precision or the validation layer is wanted
-  /// but missing.
+  /// Errors: DeviceError if no usable device matches `wish`, or if the validation layer is needed but not installed.
   explicit Context(const DeviceSelector& wish);
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;

@@ -65,7 +65,6 @@ std::string why_not_usable(const VkPhysicalDeviceProperties& properties, bool ha
   return {};
 }
 
-// Adds the driver's name and the subgroup size. VkPhysicalDeviceProperties does not contain them.
 void add_properties_1_2(VkPhysicalDevice physical, dolp::Device& description) {
   VkPhysicalDeviceDriverProperties driver{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
   VkPhysicalDeviceSubgroupProperties subgroup{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES,
@@ -77,7 +76,7 @@ void add_properties_1_2(VkPhysicalDevice physical, dolp::Device& description) {
   description.subgroup_size = subgroup.subgroupSize;
 }
 
-// On a CPU a workgroup has the size of a subgroup. In larger workgroups, small dispatches would waste invocations.
+// On a CPU a workgroup is one subgroup, because small dispatches would waste invocations of larger workgroups.
 std::uint32_t local_size_of(const dolp::Device& device) {
   if (device.type != dolp::Device::Type::kCpu || device.subgroup_size == 0) return kLocalSize;
   return std::min(device.subgroup_size, kLocalSize);
@@ -143,8 +142,7 @@ MemoryType Device::memory_type(std::uint32_t allowed, MemoryUse use) const {
   VkMemoryPropertyFlags required = 0;
   VkMemoryPropertyFlags preferred = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
   if (use != MemoryUse::kDeviceOnly) required = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT;
-  // For readback, memory that the host caches is preferred to fast device memory: the host reads uncached memory a
-  // hundred times slower.
+  // Without a cache of the host, reading results back would be a hundred times slower.
   if (use == MemoryUse::kReadback) preferred = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
 
   std::optional<MemoryType> best;

@@ -9,10 +9,10 @@
 
 namespace dolp::vulkan {
 
-/// Each kernel binds this many storage buffers and texel buffers. The texel buffers have the last binding numbers.
+/// Numbers of storage buffers and texel buffers of each kernel. The storage buffers have the first binding numbers.
 constexpr std::uint32_t kStorageCount = 7;
 constexpr std::uint32_t kTexelCount = 2;
-/// Largest number of invocations in a workgroup that dolp uses. Vulkan guarantees that every device allows 128.
+/// Largest number of invocations in a workgroup of dolp. Every Vulkan device allows at least 128.
 constexpr std::uint32_t kLocalSize = 64;
 
 /// Properties of a device. If dolp cannot run on the device, dolp::Device::why_not has the reason.

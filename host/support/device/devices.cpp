@@ -72,7 +72,7 @@ std::vector<Device> devices() { return list_devices().devices; }
 void require_device(const std::string& device) {
   const DeviceList list = list_devices();
   if (list.devices.empty()) throw DeviceError(list.why_empty);
-  choose_device(list.devices, device, false);  // throws if no device can be used
+  choose_device(list.devices, device, false);  // throws if no usable device matches
 }
 
 }  // namespace dolp

@@ -6,7 +6,7 @@
 
 namespace dolp {
 
-/// Whether Vulkan's validation layer checks all calls. It is for tests.
+/// Whether Vulkan's validation layer checks all calls, for tests.
 enum class ValidationMode {
   kFromEnvironment,  ///< used if the environment variable DOLP_VALIDATION is 1
   kOff,
@@ -26,11 +26,10 @@ struct DeviceList {
 
 DeviceList list_devices();  ///< does not throw if there are no devices
 
-/// Returns the position in `devices` of the device that `choice` names. If `choice` is a whole number below the number
-/// of devices, it is the position. Any other text matches the devices whose names contain it; case does not matter.
-/// Of the usable devices that match (with double precision if `float64` is true), takes the first in the order
-/// discrete GPU, integrated GPU, virtual GPU, CPU, other.
-/// Errors: DeviceError that lists the devices, if no device matches, is usable or has double precision.
+/// Returns the position in `devices` of the device that `choice` names: `choice` is this position, or a part of the
+/// device's name; case does not matter. If `float64` is true, the device must have double precision. Of several usable
+/// devices, prefers discrete GPU, integrated GPU, virtual GPU, CPU, other, in this order.
+/// Errors: DeviceError that lists the devices, if no usable device matches.
 std::size_t choose_device(const std::vector<Device>& devices, const std::string& choice, bool float64);
 
 }  // namespace dolp

@@ -43,7 +43,7 @@ std::string result_name(VkResult result) {
 }
 
 bool lacks_addresses() {
-  constexpr std::size_t kDriverBytes = 256U << 20U;  // address space that a driver with its compiler needs
+  constexpr std::size_t kDriverBytes = 256U << 20U;  // address space that a driver and its compiler need
   void* const room = ::mmap(nullptr, kDriverBytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (room == MAP_FAILED) return true;
   ::munmap(room, kDriverBytes);
@@ -51,8 +51,7 @@ bool lacks_addresses() {
 }
 
 bool lacks_threads() {
-  // The driver lavapipe starts two threads per core (for at most 32 cores), one thread for its queue, and two for its
-  // cache of kernels. If lavapipe cannot start a thread, it waits forever.
+  // Mesa's CPU driver lavapipe would wait forever if it cannot start two threads per core and three further threads.
   const std::size_t needed = 2 * std::clamp(std::thread::hardware_concurrency(), 1U, 32U) + 3;
   std::promise<void> end;
   const std::shared_future<void> ended = end.get_future().share();
@@ -73,7 +72,7 @@ bool lacks_threads() {
 void check(VkResult result, const std::string& action) {
   if (result == VK_SUCCESS) return;
   if (result == VK_ERROR_DEVICE_LOST) throw DeviceLost("the Vulkan device was lost while " + action);
-  // If a driver runs out of address space, `result` may be any error.
+  // A driver that runs out of address space may return any error.
   if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY || lacks_addresses()) {
     throw MemoryError("out of memory: Vulkan: " + action + " failed: " + result_name(result));
   }

@@ -1,4 +1,3 @@
-// Functions that convert results of Vulkan calls to exceptions, and owners of the objects that these calls create.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -9,13 +8,13 @@
 
 namespace dolp::vulkan {
 
-/// The driver did not finish a submission or a compilation within a time limit, or before the user interrupted it. The
-/// driver may still use Vulkan objects of the device, so the program must not destroy any of them.
+/// The driver did not finish a computation or compilation in time, or the user interrupted the waiting. The driver may
+/// still use Vulkan objects of the device, so the program must not destroy them.
 struct DeviceTimeout : DeviceError {
   explicit DeviceTimeout(const std::string& message);
 };
 
-/// True after a DeviceTimeout. The program must then end without destructors, because the driver's threads still run.
+/// True after a DeviceTimeout. The program must then end without destructors, because threads of the driver still run.
 bool driver_is_busy();
 
 /// The device became unusable. A new logical device may work, even on the same hardware.
@@ -53,7 +52,7 @@ class Handle {
   T object_ = VK_NULL_HANDLE;
 };
 
-/// Calls `create`, a function such as vkCreateBuffer. Returns an owner of the new object. Errors: those of check().
+/// Calls `create`, a function such as vkCreateBuffer. Returns the owner of the new object. Errors: as check().
 template <class Owner, class Info, class T>
 Owner created(VkDevice device, VkResult (*create)(VkDevice, const Info*, const VkAllocationCallbacks*, T*),
               const Info& info, const std::string& action) {

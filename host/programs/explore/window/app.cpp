@@ -14,8 +14,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kBlink_s = 0.3;  // period in which the text cursor blinks
-// Longest time that a frame waits for its curve during a drag. Tuned for frames of 33 ms, half of which is drawing.
-// Twice this time makes frames of slow scenes too long. With half of it, curves of bands lag behind the slider.
+// Longest wait of a frame for its curve while a slider is dragged. Tuned: twice this time makes frames of slow scenes
+// too long; after half of it, curves of scenes with a band are not ready.
 constexpr double kCatchUp_s = 0.03;
 constexpr std::size_t kFramesAfterEvent = 4;  // ImGui draws some effects, such as an open list, some frames later
 constexpr std::size_t kFramesAfterNews = 2;   // ImGui fits tables to their text one frame later
@@ -63,7 +63,7 @@ void App::catch_up() {
 
 void App::draw() {
   screen_.follow(actions_.preferences());
-  for (;;) {  // each event has a frame; the window shows only the last frame
+  for (;;) {  // one frame of ImGui per event; the window shows only the last frame
     input_.begin_frame();
     draw_all(ui_, [this] { catch_up(); });
     if (!input_.has_more()) break;
@@ -97,7 +97,7 @@ bool App::answer(const AfterFrame& after_frame) {
     if (after_frame) after_frame(seconds_since(start));
     if (!is_open) return false;
     const bool has_news = input_.take_news() || !actions_.picture_path.empty();
-    if (session_.is_dragged()) return true;  // draws once per mouse move, because curves need the processor
+    if (session_.is_dragged()) return true;  // one frame per mouse move leaves the processor to the curves
     left = has_news ? kFramesAfterEvent : left - 1;
   }
   return true;
@@ -112,7 +112,7 @@ void App::reopen() { glfwSetWindowShouldClose(screen_.window(), GLFW_FALSE); }
 
 void App::run(const AfterFrame& after_frame) {
   while (answer(after_frame)) {
-    // Draws once more when the mouse has rested for kTooltipDelay_s, because then a tooltip appears.
+    // Wakes up when the mouse has rested for kTooltipDelay_s, to draw a tooltip.
     constexpr double kNote_s = static_cast<double>(kTooltipDelay_s) + 0.05;
     if (ImGui::GetIO().WantTextInput) {
       glfwWaitEventsTimeout(kBlink_s);
@@ -125,12 +125,12 @@ void App::run(const AfterFrame& after_frame) {
 }
 
 std::string App::run_frames(std::size_t count, const std::string& screenshot_path) {
-  std::vector<double> all_s, computing_s;  // durations of all frames, and of those during a computation
+  std::vector<double> all_s, computing_s;  // durations: of all frames, and of frames during computations
   constexpr auto kPause = std::chrono::milliseconds(5);
   const bool wants_picture = !screenshot_path.empty();
   Clock::time_point start = Clock::now();
   for (std::size_t left = count; left > 0; --left) {
-    // Before each of the last frames, waits for all results. With several such frames, the layout becomes stable.
+    // Draws several last frames with all results, because ImGui adapts the layout over some frames.
     if (wants_picture && left <= kFramesAfterEvent) {
       for (exchange(); !is_idle(); exchange()) std::this_thread::sleep_for(kPause);
       start = Clock::now();
@@ -154,7 +154,7 @@ void run_program(const Scene& scene, const ProgramOptions& options) {
   }
   require_device(options.device);
   AppOptions app_options = options;
-  // With `frames` the window serves measurements and pictures for manuals, which must not depend on preferences.
+  // With `frames` the window makes measurements and pictures for manuals, which must not depend on preferences.
   if (options.frames == 0) app_options.preferences = Preferences::default_path();
   App app(SceneEdits(scene), app_options);
   Session& session = app.session();

@@ -9,12 +9,12 @@ namespace dolp::explore {
 struct AppOptions {
   std::string device;                      ///< position of the device, or a part of its name
   std::string command_line;                ///< text that tables contain as their history
-  std::filesystem::path preferences = {};  ///< file of the preferences; empty: preferences are not stored
+  std::filesystem::path preferences = {};  ///< file of Preferences; empty: no file
 };
 
 class App {
  public:
-  using AfterFrame = std::function<void(double frame_s)>;
+  using AfterFrame = std::function<void(double frame_s)>;  ///< gets the duration of each frame
 
   App(SceneEdits edits, const AppOptions& options);  ///< Errors: the errors of Screen()
 
@@ -28,32 +28,31 @@ class App {
   /// Takes input and results, and draws one frame. Returns false if the user has closed the window.
   /// Errors: DeviceError if no device can compute, or if the device is lost.
   bool frame();
-  /// Draws frames until the window shows the effect of all events. Returns false if the user has closed the window.
+  /// Draws frames until the window shows the effect of all input. Returns false if the user has closed the window.
   bool answer(const AfterFrame& after_frame = {});
   void close();   ///< ends run(); any thread may call it
   void reopen();  ///< lets run() continue after close()
-  /// Draws frames until the window is closed, and waits for events. `after_frame` gets the duration of each frame.
+  /// Draws frames until the window is closed, and between them waits for input or results.
   void run(const AfterFrame& after_frame = {});
-  /// Draws `count` frames. Returns a summary of their durations: for all frames, and for the frames during
-  /// computations. If `screenshot_path` is not empty, the last frames wait for all results.
+  /// Draws `count` frames. If `screenshot_path` is not empty, saves a last frame with all results. Returns a text with
+  /// the durations of all frames, and of the frames during computations.
   std::string run_frames(std::size_t count, const std::string& screenshot_path);
 
   /// True if nothing remains to be computed and the session has all results.
   bool is_idle() { return worker_.is_idle() && is_all_taken_ && !actions_.fit_task.is_running(); }
   void settle();  ///< draws frames until is_idle() is true
-  /// Writes a picture of the window with its next frame. Errors: IoError.
   void save_picture(const std::string& path) { actions_.picture_path = path; }
 
  private:
   void exchange();  ///< passes results to the session and wanted jobs to the worker
-  /// During a drag, waits briefly for the coarse curve, so that slider and curve move in the same frame.
+  /// While the user drags a slider, waits briefly for the coarse curve, so that slider and curve move together.
   void catch_up();
   void draw();
 
   Session session_;
   Screen screen_;
   Evaluator evaluator_;
-  std::atomic<bool> is_catching_up_ = false;  ///< true while catch_up() waits; no event need then wake the window
+  std::atomic<bool> is_catching_up_ = false;  ///< true: catch_up() waits, so results wake no frame
   Worker worker_;
   Actions actions_;
   Input input_;
@@ -61,7 +60,6 @@ class App {
   bool is_all_taken_ = false;
 };
 
-/// Options of run_program(), which sets `preferences` itself.
 struct ProgramOptions : AppOptions {
   std::string measured_path;           ///< CSV of measured points; empty: none
   std::size_t frames = 0;              ///< number of frames to draw; 0: until the window is closed
@@ -71,7 +69,7 @@ struct ProgramOptions : AppOptions {
   std::vector<Setting> settings = {};  ///< --set: changes of the scene in the session
 };
 
-/// Shows the window. If `frames` is given, prints the durations of the frames. Errors: the errors of dolp/errors.hpp.
+/// Shows the window. If `frames` is given, prints the durations of the frames. Errors: those of dolp/errors.hpp.
 void run_program(const Scene& scene, const ProgramOptions& options);
 
 }  // namespace dolp::explore

@@ -123,7 +123,7 @@ namespace {
 
 using Path = const std::string&;
 
-/// A path named after the scene's file: in the folder last chosen for this file, otherwise in the file's folder.
+/// A path with the name of the scene's file, in the folder in which this file was saved last, or in the file's folder.
 std::string suggested_path(const Ui& ui, const std::string& ending) {
   const std::filesystem::path file = ui.session.scene().name();
   const std::filesystem::path folder = file == ui.saved.first ? ui.saved.second : file.parent_path();
@@ -188,7 +188,7 @@ struct Command {
     if (keys.empty()) return false;
     const char key = keys.back();
     if (keys.starts_with("Ctrl+Shift") != is_shift && key != '+') return false;  // some keyboards need Shift for +
-    if (key == 'Z' && ImGui::GetIO().WantTextInput) return false;                // the text field with the focus undoes
+    if (key == 'Z' && ImGui::GetIO().WantTextInput) return false;                // a text field uses Ctrl+Z itself
     using explore::is_pressed;
     if (key == '+') return is_pressed('=') || is_pressed(GLFW_KEY_KP_ADD);
     if (key == '-') return is_pressed(key) || is_pressed(GLFW_KEY_KP_SUBTRACT);
@@ -244,8 +244,7 @@ constexpr Command kCommands[] = {
     {"Help", "Shortcuts and hints", "Ctrl+H", [](Ui& ui) { ui.shows_help = true; }},
 };
 
-/// Names the area of the menu, or of the menu entry, that is drawn next. It must be called before the drawing:
-/// afterwards ImGui's last item may be an open menu.
+/// Names the area of the menu or menu entry that is drawn next. Afterwards ImGui's last item could be an open menu.
 void name_next(const std::string& name, const char* text) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   name_area(name, {corner, {corner.x + ImGui::CalcTextSize(text).x, corner.y + ImGui::GetTextLineHeight()}});
@@ -283,7 +282,7 @@ void draw_menus(Ui& ui) {
       const bool is_checked = command.is_checked && command.is_checked(ui);
       const bool is_enabled = !command.is_enabled || command.is_enabled(ui);
       if (ImGui::MenuItem(command.text, command.shortcut, is_checked, is_enabled)) command.run(ui);
-      if (&command == kCommands) draw_recent(ui.actions);  // below "Open"
+      if (&command == kCommands) draw_recent(ui.actions);  // the list of recent files follows "Open"
     }
     ImGui::EndMenu();
   }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kSkyProfile = "surroundings.profile";
 constexpr const char* kUniformSky = "surroundings.temperature_K";
-constexpr double kUniformSky_K = 250.0;    // for a new uniform sky, if the opened scene has none
+constexpr double kUniformSky_K = 250.0;    // temperature of a new uniform sky
 constexpr Scale kSkySlider{150.0, 350.0};  // range in K; the user can type other values
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
@@ -25,7 +25,7 @@ void heading(const char* text) {
   ImGui::Separator();
 }
 
-/// Draws the pieces of a fitted interval as bars at the bottom of the last slider. An open end is at the slider's end.
+/// Draws the parts of a fitted interval as bars at the foot of the last slider. An open end reaches the slider's end.
 void draw_interval(const Control& control, const FitInterval& interval) {
   const ImVec2 corner = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
   const auto at = [&](const std::optional<double>& value, double otherwise) {
@@ -59,7 +59,7 @@ bool has_effect(const Scene& scene, const std::string& table) {
   return scene.number(table + ".temperature_K").has_value();
 }
 
-/// n and k at the start of the spectrum, for the material of the surface or of the film that `table` names.
+/// n and k of the surface or film whose keys are in `table`, at the first wavelength of the scene's spectrum.
 std::pair<double, double> index_of(const Scene& scene, const std::string& table) {
   Scene bare = scene.without("surface.coating");
   for (const char* name : {"material", "material_file"}) {
@@ -68,7 +68,7 @@ std::pair<double, double> index_of(const Scene& scene, const std::string& table)
   return bare.refractive_index(spectrum_um(scene).first);
 }
 
-/// The typed text as a value. If the text is not a number, the scene will refuse it and list the allowed values.
+/// The number in a typed text. If the text is not a number, returns a value that the scene will refuse with a reason.
 Value value_of(const std::string& text) {
   const std::optional<double> number = parse_number(text);
   return number ? Value(*number) : Value(TomlText{text});
@@ -78,7 +78,7 @@ struct Controls {
   Session& session;
   NumberFields& fields;
 
-  struct Slider {  // a slider with a text field beside it
+  struct Slider {  // with a text field beside it
     std::string id, label;
     std::string note;
     std::string reset_key;  ///< key that a Ctrl-click resets
@@ -91,7 +91,7 @@ struct Controls {
     return session.message().is_error ? session.message().text : "";
   }
 
-  /// Calls `draw`. If a refused text of field `id` is then gone, also removes the session's message about this text.
+  /// Calls `draw`. If this ends the refusal of the text in the field `id`, also removes the session's message about it.
   void draw_fields(const std::string& id, const std::function<void()>& draw) {
     const std::string before = fields.reason(id);
     draw();
@@ -165,7 +165,7 @@ struct Controls {
     }
   }
 
-  // Both loops read each value from the session, because an earlier control may have changed the scene.
+  // The next two functions read each value when its control is drawn: an earlier control may have changed the scene.
   void draw_choices(const std::string& table) {
     for (const Control& control : controls()) {
       if (table_of(control.key->key) != table) continue;
@@ -179,13 +179,13 @@ struct Controls {
     }
   }
 
-  /// Draws the list of materials for the surface or a film. If the user chooses one, returns its settings.
+  /// Draws the list of materials for the surface or a film. Returns the settings of the material that the user chooses.
   std::vector<Setting> draw_material(const std::string& table) {
     static const std::vector<BuiltInMaterial> known = materials();
     const Scene& scene = session.scene();
     const bool is_typed = control(table + ".n").value(scene).has_value();
     const std::string current = is_typed ? "n and k as below" : scene.word(table + ".material").value_or("file");
-    // Entry 0 is "n and k as below", and the built-in materials follow. A material from a file has no entry.
+    // Entry 0 is "n and k as below". Then come the built-in materials. A material from a file has no entry.
     const auto now = std::ranges::find(known, current, &BuiltInMaterial::name);
     std::optional<std::size_t> chosen;
     if (is_typed || now != known.end()) chosen = is_typed ? 0 : static_cast<std::size_t>(now - known.begin()) + 1;
@@ -247,7 +247,7 @@ struct Controls {
     if (const auto clicked = draw_list("source kind", -1.0F, kinds[now].text, "", now, kinds)) set(changes[*clicked]);
   }
 
-  /// Draws a box that removes an effect from the scene, or restores it from the opened scene or with default values.
+  /// Draws a check box that removes an effect, or restores it from the opened scene or with default values.
   void draw_effect_box(const std::string& table) {
     bool wanted = has_effect(session.scene(), table);
     if (!ImGui::Checkbox(table.c_str(), &wanted)) return;
@@ -295,7 +295,7 @@ struct Controls {
   void draw_sky_temperature(const std::string& name, SkyPair sky, double SkyPair::*temperature_K) {
     const auto change = [&](const std::string& text) {
       const std::optional<double> typed = parse_number(text);
-      // If the text is not a temperature, returns a setting that the scene will refuse, for its error message.
+      // If the text is no temperature, returns a setting that the scene will refuse with an error message.
       if (!typed || !described(kUniformSky).range.contains(*typed)) return Setting{kUniformSky, TomlText{text}};
       sky.*temperature_K = *typed;
       return Setting{kSkyProfile, session.skies().path(sky)};

@@ -11,7 +11,7 @@ namespace dolp::explore {
 namespace {
 
 constexpr float kCurveWidth = 2.0F;
-// Heights of the curve view, in lines of text.
+// Heights in lines of text.
 constexpr float kRoomForTwo = 18.0F;        // if the view is higher, the legend has two lines
 constexpr float kRoomForResiduals = 17.0F;  // if the view is higher, residuals are below the curve
 constexpr float kLeastResiduals = 7.0F;
@@ -21,7 +21,7 @@ struct Shown {
   CurveStyle style;
 };
 
-bool is_dim(const Session& session, const Curve& curve) {  // true if the curve is not of the current scene
+bool is_dim(const Session& session, const Curve& curve) {  // true if the curve shows another scene
   return session.is_outdated(curve) || session.is_foreign(curve.scene());
 }
 
@@ -40,7 +40,7 @@ std::vector<Shown> shown_curves(const Session& session) {
   return curves;
 }
 
-const PeakAnswer* shown_peak(const Session& session) {  // null if the plot marks no maximum
+const PeakAnswer* shown_peak(const Session& session) {  // null if the plot marks no peak
   const Plotted quantity = session.view().quantity;
   const bool is_marked = quantity == Plotted::kDolp || quantity == Plotted::kSignedDolp;
   const std::optional<PeakAnswer>& peak = session.peak().answer();
@@ -65,15 +65,14 @@ std::vector<double> values_to_show(const Session& session, const std::vector<Sho
   return values;
 }
 
-/// Fills the area between the limits of the DOLP with all bounces. Used only for the current curve, because overlapping
-/// areas are unreadable.
+/// Fills the area between dolp_low and dolp_high, only for the current curve, because overlapping areas are unreadable.
 void draw_bracket(const Plot& plot, const Shown& shown) {
   const std::vector<Point> points = shown.curve->drawn();
   const ImU32 colour = band_colour(shown.style);
   const auto at = [&](const Point& point, Quantity limit) {
     return plot.at(point.theta_deg, std::max(described(Plotted::kDolp).scale() * point[limit], plot.y().from));
   };
-  // Turns off anti-aliasing, which would make the edges between the quads visible.
+  // Turns off anti-aliasing, which would show the edges between the quadrilaterals.
   const ImDrawListFlags flags = std::exchange(plot.list()->Flags, ImDrawListFlags_None);
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const Point& a = points[i];
@@ -103,7 +102,7 @@ void draw_curve(const Plot& plot, const Shown& shown, Plotted quantity) {
   draw_line(plot.list(), good, shown.style, kCurveWidth);
 }
 
-/// Adds a name to the legend, in a new line if needed. Returns the area beside the name, for a sample of the line.
+/// Adds a name to the legend, in a new line if needed. Returns the area beside the name, for a piece of the curve.
 Area add_entry(const char* id, const std::string& name, ImU32 colour = kTextColour) {
   const float line = ImGui::GetTextLineHeight();
   const float width = 2.3F * line + ImGui::CalcTextSize(shown(name).c_str()).x;
@@ -115,7 +114,6 @@ Area add_entry(const char* id, const std::string& name, ImU32 colour = kTextColo
   return {at, {at.x + 2.0F * line, at.y + line}};
 }
 
-/// Adds an entry for a line to the legend. Returns true if the entry was clicked.
 bool add_curve(const char* id, const std::string& name, const CurveStyle& style, ImU32 colour = kTextColour) {
   const Area sample = add_entry(id, name, colour);
   const bool is_clicked = ImGui::IsItemClicked();
@@ -151,8 +149,7 @@ void draw_legend(const std::vector<Shown>& curves, Session& session) {
     add_entry("measured", "o  points measured for another scene", kDimColour);
 }
 
-/// Draws the legend and returns its height, which does not depend on the entries, so that the plot does not move. If
-/// the entries need more height, there is a scroll bar, but not during a drag, when names are longer for a short time.
+/// Draws the legend and returns its height, which does not depend on the entries, so that the plot below stays still.
 float draw_legend_above(const std::vector<Shown>& curves, Session& session, ImVec2 size) {
   const float lines = size.y > kRoomForTwo * ImGui::GetTextLineHeight() ? 2.0F : 1.0F;
   const float height = lines * ImGui::GetTextLineHeightWithSpacing();
@@ -188,7 +185,7 @@ void draw_peak(const Plot& plot, const Session& session) {
   const float side = is_low ? 1.0F : -1.0F;
   plot.list()->AddTriangleFilled({at.x, at.y + side * scaled(3.0F)}, {at.x - scaled(5.0F), at.y + side * scaled(12.0F)},
                                  {at.x + scaled(5.0F), at.y + side * scaled(12.0F)}, kTextColour);
-  // The label of the maximum is on the side towards the middle, so that the label stays inside the plot.
+  // The label is on the side of the mark towards the middle of the plot, so that it stays inside the plot.
   const bool is_right = at.x > 0.5F * (plot.min().x + plot.max().x);
   const float line = ImGui::GetTextLineHeight();
   const float beside = std::max(std::min(at.y + side * scaled(8.0F), plot.max().y - line), plot.min().y + line);
@@ -196,7 +193,6 @@ void draw_peak(const Plot& plot, const Session& session) {
              fmt::format("{:.2f} % at {:.2f}°", value, peak->at.theta_deg));
 }
 
-/// Draws measured points or residuals, with error bars of one standard deviation.
 void draw_points(const Plot& plot, const std::vector<Measurement>& points, double scale, bool is_filled, ImU32 colour) {
   const auto line = [&](ImVec2 from, ImVec2 to) { plot.list()->AddLine(from, to, colour, scaled(1.0F)); };
   const float cap = scaled(3.0F);
@@ -262,11 +258,11 @@ void CurveView::choose_axes(const Session& session, Zoom& zoom, const Scale& zen
   if (has_zeniths) zoom.x = zoom.x->within(zeniths);
   x_ = has_zeniths ? *zoom.x : zeniths;
   const bool is_same = quantity_ == session.view().quantity && y_.is_log == values.is_log;
-  // Without a curve `values` is linear. A logarithmic range that the user chose is not used until there is a curve.
+  // Without a curve `values` is linear; then a logarithmic range that the user chose does not apply yet.
   if (zoom.y && zoom.y->is_log == values.is_log) {
     values = *zoom.y;
   } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left) && is_same) {
-    // During a drag of a slider the axis may grow but not shrink, so that the curve moves and the axis rests.
+    // While the user drags a slider, the axis only grows, so that the curve moves and not the axis.
     values = {std::min(y_.from, values.from), std::max(y_.to, values.to), y_.is_log};
   }
   quantity_ = session.view().quantity;

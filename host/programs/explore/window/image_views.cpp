@@ -1,4 +1,3 @@
-// Views of directions and images: the pBRDF, a sphere and a plate, the sky of source directions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +17,7 @@ struct Disc {
   ImVec2 middle;
   float radius;
 
-  /// The point at `share` times the radius, at an angle that counts counterclockwise from the right.
+  /// The point at `share` times the radius from the middle. The angle counts counterclockwise from the right.
   ImVec2 at(double share, double angle_deg) const {
     const double angle = angle_deg * kDegree;
     return {middle.x + radius * static_cast<float>(share * std::cos(angle)),
@@ -34,7 +33,7 @@ double largest_magnitude(const ScatteringCut& cut, std::size_t element) {
   return largest;
 }
 
-/// Draws the grid of a polar plot above a surface: half rings of equal magnitude and rays of equal zenith.
+/// Draws the grid of a polar plot: half circles of equal magnitude, and rays of equal zenith.
 void draw_polar_grid(ImDrawList* list, const Disc& disc, const Scale& magnitude) {
   for (const double tick : magnitude.ticks(4)) {
     const double part = magnitude.position(tick);
@@ -78,7 +77,7 @@ struct Colours {
   }
 };
 
-/// The range of the points' DOLP. It begins at 0, or if `from_least` is true at the smallest value.
+/// The range of DOLP of the points. It begins at 0, or at the smallest DOLP if `from_least` is true.
 Scale dolp_range(const std::vector<Point>& points, double theta_max_deg, bool from_least) {
   constexpr double kLeastRange = 1e-6;
   Scale range{1.0, 0.0};
@@ -108,7 +107,7 @@ void draw_sphere(const Session& session, ImVec2 middle, float radius, const Colo
   }
 }
 
-/// Draws a square plate as seen from far away, with a line along the polarisation of its light.
+/// Draws a tilted square plate as seen from far away, with a line along the electric field of its light.
 void draw_plate(const Session& session, ImVec2 middle, float radius, double azimuth_deg, const Colours& colours) {
   const std::optional<ImagePolarisation> polarisation =
       polarisation_at(session.curve().points(), session.theta_deg(), azimuth_deg);
@@ -150,7 +149,7 @@ void draw_bar(ImVec2 corner, float width, const Colours& colours) {
 
 void draw_rings(const SourceSky& sky, const Disc& disc, const Colours& colours) {
   ImDrawList* const list = ImGui::GetWindowDrawList();
-  // Turns off anti-aliasing, which would make the edges between the cells visible.
+  // Turns off anti-aliasing, which would show the edges between the cells.
   const ImDrawListFlags flags = std::exchange(list->Flags, ImDrawListFlags_None);
   const double half_deg = 0.5 * SourceSky::azimuth_deg(1);
   for (std::size_t i = 0; i < SourceSky::kAzimuths; ++i) {
@@ -168,7 +167,7 @@ void draw_rings(const SourceSky& sky, const Disc& disc, const Colours& colours) 
   list->Flags = flags;
 }
 
-/// Draws circles at some zeniths, a ring at the direction of the source, and a square at the direction of the view.
+/// Draws circles at three zeniths, a ring at the direction of the source, and a square at the direction of the view.
 void draw_sky_marks(const Scene& scene, double source_zenith_deg, const Disc& disc) {
   ImDrawList* const list = ImGui::GetWindowDrawList();
   for (const double zenith_deg : {30.0, 60.0, 90.0}) {

@@ -13,7 +13,7 @@ namespace dolp::explore {
 namespace {
 
 #if IMGUI_VERSION_NUM < 18700
-// Does nothing: ImGui's GLFW backend of this version takes the state of Ctrl, Shift and Alt from the last event it got.
+// Nothing to do: in this version ImGui's GLFW backend takes Ctrl, Shift and Alt from the last event that it got.
 void set_modifiers(int, int, int) {}
 
 void set_mouse(ImVec2 position, const std::array<bool, 5>& buttons) {
@@ -22,9 +22,9 @@ void set_mouse(ImVec2 position, const std::array<bool, 5>& buttons) {
   std::ranges::copy(buttons, io.MouseDown);
 }
 #else
-// ImGui's GLFW backend would use the current state of Ctrl, Shift and Alt, which events in the queue may have changed.
+// Sets Ctrl, Shift and Alt as they were at this event. ImGui's GLFW backend would use their current state.
 void set_modifiers(int key, int action, int modifiers) {
-  // on X11 `modifiers` describes the state before the event
+  // On X11 `modifiers` does not contain the key of this event yet.
   if (key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER) {
     const int modifier = 1 << (key - GLFW_KEY_LEFT_SHIFT) % 4;
     modifiers = action == GLFW_RELEASE ? modifiers & ~modifier : modifiers | modifier;
@@ -37,7 +37,7 @@ void set_modifiers(int key, int action, int modifiers) {
 
 void set_mouse(ImVec2 position, const std::array<bool, 5>& buttons) {
   ImGuiIO& io = ImGui::GetIO();
-  io.ConfigInputTrickleEventQueue = false;  // ImGui must not spread these over several frames
+  io.ConfigInputTrickleEventQueue = false;  // all these events belong to one frame
   io.AddMousePosEvent(position.x, position.y);
   for (int i = 0; i < 5; ++i) io.AddMouseButtonEvent(i, buttons[static_cast<std::size_t>(i)]);
 }
@@ -105,8 +105,8 @@ void Input::begin_frame() {
   }
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
-  // Replaces the current position of the mouse, which events in the queue may have changed, by the position at this
-  // event. While the window has the focus, a position outside it counts too, because a drag may leave the window.
+  // Sets the mouse to its position at this event. If the window has the focus, the position may be outside the window,
+  // because the user may drag beyond the edge.
   constexpr float kNowhere = std::numeric_limits<float>::lowest();
   const bool is_seen = is_inside_ || glfwGetWindowAttrib(window_, GLFW_FOCUSED) != 0;
   set_mouse(is_seen ? mouse_ : ImVec2(kNowhere, kNowhere), buttons_);

@@ -14,7 +14,7 @@ struct GLFWwindow;
 
 namespace dolp::explore {
 
-/// A rectangle in pixels of the window, y downwards.
+/// A rectangle in pixels of the window; y grows downwards.
 struct Area {
   ImVec2 min, max;
 
@@ -24,11 +24,11 @@ struct Area {
   ImVec2 at(float x, float y) const { return {min.x + x * width(), min.y + y * height()}; }
 };
 
-/// A queue of the events of a window. ImGui reads the state of keys and buttons once per frame, and would miss a key
-/// that goes down and up between two frames. So each event gets its ImGui frame. The window shows only some of them.
+/// A queue of the events of a window. ImGui reads keys and buttons once per frame, and would miss a key that goes down
+/// and up between two frames. So each event gets a frame of ImGui, and the window shows only the last frame.
 class Input {
  public:
-  /// Sets GLFW's user pointer of `window` to this object. `on_drop` gets the path of each file dropped on the window.
+  /// Uses GLFW's user pointer of `window`. `on_drop` gets the path of each file that the user drops on the window.
   Input(GLFWwindow* window, std::function<void(const std::string&)> on_drop);
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
@@ -36,10 +36,10 @@ class Input {
   void begin_frame();  ///< begins a frame of ImGui with the next event, if any
   bool has_more() const { return !events_.empty(); }
   int pressed_key() const { return pressed_key_; }  ///< GLFW's number of the key that goes down in this frame
-  /// True if events since the last call may have changed the window.
+  /// True if there were events since the last call of take_news().
   bool take_news() { return std::exchange(has_news_, false); }
   double rest_s() const { return std::chrono::duration<double>(Clock::now() - last_event_).count(); }
-  std::map<std::string, Area>& areas() { return areas_; }  ///< named areas of this frame, for tests
+  std::map<std::string, Area>& areas() { return areas_; }  ///< areas named in this frame, for tests
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -56,15 +56,14 @@ class Input {
   bool has_news_ = false;
   Clock::time_point last_event_;
   std::map<std::string, Area> areas_;
-  // State of keyboard and mouse after the events that left the queue so far.
+  // State of keyboard and mouse after the last event that begin_frame() took from the queue.
   int pressed_key_ = 0;
   bool is_inside_ = false;
   ImVec2 mouse_;
   std::array<bool, 5> buttons_{};
 };
 
-/// True in the frame in which this key of GLFW goes down. ImGui's key codes depend on its version: up to 1.86 they
-/// equal GLFW's, and ImGui::IsKeyPressed(ImGuiKey_Escape) would check a different key.
+/// True in the frame in which a key of GLFW goes down. ImGui::IsKeyPressed() has key codes that depend on its version.
 bool is_pressed(int key);
 
 void name_item(const std::string& name);  ///< names the item that was drawn last

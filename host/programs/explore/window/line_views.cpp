@@ -1,4 +1,3 @@
-// Views of lines: slopes, n and k, the spectrum, and the smooth surface.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -58,7 +57,7 @@ void mark_spectrum(const Plot& plot, const Scene& scene) {
   plot.unclip();
 }
 
-/// A line of a quantity along a sweep, with gaps where the model fails. It is dim while newer points are computed.
+/// The line of a quantity along a sweep, with gaps where the model fails. Dim while newer points are being computed.
 NamedLine line_of(const Sweep& sweep, Plotted quantity, const CurveStyle& style, const std::string& name) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   NamedLine line{name, sweep.is_finished() ? style : stale(style), {}};

@@ -10,7 +10,7 @@
 namespace dolp::explore {
 namespace {
 
-constexpr double kMostContrast = 1e3;  // largest ratio of last to first value of a logarithmic colour scale
+constexpr double kMostContrast = 1e3;  // at most this ratio of last to first value on a logarithmic colour scale
 constexpr std::size_t kMostLines = 7;
 constexpr ImU32 kLightLine = IM_COL32(255, 255, 255, 190);  // lines on the colours of viridis()
 constexpr ImU32 kDarkLine = IM_COL32(0, 0, 0, 170);         // lines on the colours of diverging()
@@ -58,7 +58,6 @@ Scale MapView::colour_range() const {
     const double largest = std::max(std::abs(field_.min), std::abs(field_.max));
     return {-largest, largest};
   }
-  // A logarithmic colour scale begins at the smallest value, or at the largest value / kMostContrast if that is larger.
   const double low = is_log_ && field_.max > 0.0 ? std::max(field_.min, field_.max / kMostContrast) : field_.min;
   return {low, field_.max, is_log_ && low > 0.0};
 }
@@ -76,7 +75,7 @@ void MapView::update(const Session& session) {
   is_log_ = is_log;
   typed_colours_ = session.view().range(View::kColours);
   field_ = session.map().field(quantity);
-  // During a drag the colour scale stays fixed, so that equal values keep their colours.
+  // While the user drags a slider, the colour scale stays, so that equal values keep their colours.
   const bool is_held = session.is_dragged() && is_same && colour_scale_.from < colour_scale_.to;
   if (!is_held) colour_scale_ = typed_colours_.value_or(colour_range());
   std::vector<ImU32> colours;

@@ -91,7 +91,7 @@ Plot::Plot(const char* id, ImVec2 size, PlotAxis x, PlotAxis y, float right, boo
 
 void Plot::follow_mouse(Zoom& zoom, const Scale& all_x) const {
   constexpr float kPerNotch = 1.25F;
-  constexpr double kLeastPart = 1e-4;  // shortest range after zooming, relative to the range without zoom
+  constexpr double kLeastPart = 1e-4;  // the zoomed range is at least this share of `all_x`
   const ImGuiIO& io = ImGui::GetIO();
   if (is_hovered_ && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) zoom = {};
   if (is_shifted_ && (io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F)) {
@@ -135,7 +135,7 @@ void Plot::draw_y_axis(bool has_grid) const {
     list_->AddLine({min().x - 0.25F * line, at}, {min().x, at}, kDimColour);
     draw_text(list_, {min().x - 0.4F * line, at}, {1.0F, 0.5F}, kDimColour, tick_text(tick));
   }
-  // The label is above the y axis, so that its text need not be rotated.
+  // The label is above the y axis, where its text need not be rotated.
   draw_text(list_, {min().x - 2.6F * line, min().y - 0.6F * line}, {0.0F, 1.0F}, kTextColour, y_.label);
 }
 

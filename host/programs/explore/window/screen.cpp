@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kWidth = 1440;
 constexpr int kHeight = 900;
-constexpr int kLeastWidth = 800;  // in a smaller window, labels of controls would be cut off
+constexpr int kLeastWidth = 800;  // a smaller window would cut off labels
 constexpr int kLeastHeight = 560;
 
 std::string glfw_error() {
@@ -59,13 +59,13 @@ GLFWwindow* open_window() {
   return window;
 }
 
-/// A function of OpenGL. The program is not linked to OpenGL, so that its commands for tables run without OpenGL.
+/// A function of OpenGL. `dolp` is not linked to OpenGL, so that its other commands run without OpenGL.
 template <class Function>
 Function* opengl(const char* name) {
   return reinterpret_cast<Function*>(glfwGetProcAddress(name));
 }
 
-std::string picture(int width, int height) {  // the last drawn frame as a PNG file; errors: IoError
+std::string picture(int width, int height) {  // the last frame as a PNG file
   constexpr int kChannels = 4;
   std::vector<std::uint8_t> rgba(static_cast<std::size_t>(kChannels * width * height));
   opengl<decltype(glReadPixels)>("glReadPixels")(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());

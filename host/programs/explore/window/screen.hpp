@@ -1,4 +1,3 @@
-// The window on the display: GLFW opens it, OpenGL shows what Dear ImGui draws.
 #pragma once
 
 #include <imgui.h>
@@ -12,7 +11,7 @@ struct GLFWwindow;
 
 namespace dolp::explore {
 
-/// An image that ImGui draws. Needs an open screen.
+/// An image that ImGui draws. It may exist only while a Screen exists.
 class Texture {
  public:
   Texture() = default;
@@ -20,9 +19,9 @@ class Texture {
   Texture& operator=(const Texture&) = delete;
   ~Texture();
 
-  /// Replaces the image by `count` rows of `count` colours. The first row is the lowest; a row begins on the left.
+  /// Replaces the image by `count` rows of `count` colours, the lowest row first; a row begins on the left.
   void set(const std::vector<ImU32>& colours, std::size_t count);
-  /// Draws the image between two corners. Each colour fills a cell; the cells at the edges are only half as large.
+  /// Draws the image between two corners. The middles of the outermost colours lie on the edges of the image.
   void draw(ImDrawList* list, ImVec2 min, ImVec2 max) const;
 
  private:
@@ -40,11 +39,11 @@ class Screen {
 
   GLFWwindow* window() const { return window_; }
   void follow(const Preferences& wanted);  ///< applies theme and size of the text; call it between two frames
-  /// Shows ImGui's frame, unless the window has no area. If `wants_picture`, returns the frame as a PNG file.
+  /// Shows ImGui's frame, unless the window is empty. If `wants_picture` is true, returns the frame as a PNG file.
   std::string show(bool wants_picture) const;
 
  private:
-  struct Library {  // starts GLFW; the destructor ends GLFW, which closes the window
+  struct Library {  // starts GLFW, and ends GLFW in the destructor
     Library();
     ~Library();
   };

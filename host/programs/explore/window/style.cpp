@@ -23,7 +23,7 @@ constexpr std::array kRedBlue = {Rgb{5, 48, 97},     Rgb{33, 102, 172},  Rgb{67,
                                  Rgb{209, 229, 240}, Rgb{247, 247, 247}, Rgb{253, 219, 199}, Rgb{244, 165, 130},
                                  Rgb{214, 96, 77},   Rgb{178, 24, 43},   Rgb{103, 0, 31}};
 
-// Colours of curves: the first is for the dark theme; the second, mostly darker, is for the light theme.
+// Colours of curves: first for the dark theme, then for the light theme.
 constexpr Themed kOrange{IM_COL32(230, 159, 0, 255), IM_COL32(196, 124, 0, 255)};
 constexpr Themed kSkyBlue{IM_COL32(86, 180, 233, 255), IM_COL32(0, 114, 178, 255)};
 constexpr Themed kGreen{IM_COL32(0, 158, 115, 255), IM_COL32(0, 134, 98, 255)};
@@ -90,8 +90,7 @@ ImU32 band_colour(const CurveStyle& style) { return with_alpha(style.colour, (st
 void load_font(float pixels) {
   ImGuiIO& io = ImGui::GetIO();
   if (std::filesystem::exists(kFontFile)) {
-    // Pairs of first and last code point: Latin letters and signs, Greek, punctuation, super- and subscripts, arrows,
-    // mathematics, shapes.
+    // Ranges of code points: Latin, Greek, punctuation, super- and subscripts, arrows, mathematics, shapes.
     static constexpr std::array<ImWchar, 15> kRanges = {0x20,   0xFF,   0x370,  0x3FF,  0x2010, 0x2027, 0x2070, 0x209F,
                                                         0x2190, 0x21FF, 0x2200, 0x22FF, 0x25A0, 0x25FF, 0};
     if (io.Fonts->AddFontFromFileTTF(kFontFile, pixels, nullptr, kRanges.data())) return;
@@ -133,7 +132,7 @@ std::string in_lines(std::string text, float width) {
 
 void coloured_text(ImU32 colour, const std::string& text) {
   ImGui::PushStyleColor(ImGuiCol_Text, colour);
-  ImGui::PushTextWrapPos(0.0F);  // lets ImGui wrap a word that is longer than a line
+  ImGui::PushTextWrapPos(0.0F);  // lets ImGui break words longer than a line
   ImGui::TextUnformatted(in_lines(shown(text), ImGui::GetContentRegionAvail().x).c_str());
   ImGui::PopTextWrapPos();
   ImGui::PopStyleColor();
@@ -147,7 +146,7 @@ void tooltip(const std::string& text) {
   const bool is_still = io.MouseDelta.x == 0.0F && io.MouseDelta.y == 0.0F && !ImGui::IsAnyMouseDown();
   if (!is_still) still_since_s = now_s;
   if (now_s - still_since_s < kTooltipDelay_s) return;
-  // The tooltip is beside the panel or above the item, because below the item it would hide other values.
+  // The tooltip is beside the panel or above the item. Below the item it would hide other values.
   const float width = 28.0F * ImGui::GetFontSize();
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const ImVec2 first = ImGui::GetItemRectMin(), last = ImGui::GetItemRectMax();

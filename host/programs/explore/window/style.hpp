@@ -1,4 +1,3 @@
-// The window's look: colours that people with any colour vision can distinguish, and the font.
 #pragma once
 
 #include <imgui.h>
@@ -14,7 +13,7 @@ void set_theme(bool light);
 
 struct Themed {
   ImU32 dark, light;
-  // NOLINTNEXTLINE(google-explicit-constructor): for ImGui it is a colour
+  // NOLINTNEXTLINE(google-explicit-constructor): a Themed is an ImU32 for ImGui
   operator ImU32() const { return is_light() ? light : dark; }
 };
 
@@ -33,7 +32,7 @@ struct CurveStyle {
   float gap;
 };
 
-/// The styles of the current curve, of the overlay, and of a pin with the colour number `pin` (Pin::colour).
+/// The styles of the current curve, of the overlay, and of a pin with Pin::colour = `pin`.
 /// Source: M. Okabe, K. Ito, Color Universal Design (2008).
 CurveStyle current_style();
 CurveStyle overlay_style();
@@ -47,10 +46,9 @@ inline constexpr Themed kGridColour{IM_COL32(62, 66, 72, 255), IM_COL32(214, 217
 inline constexpr Themed kPlotColour{IM_COL32(20, 21, 24, 255), IM_COL32(255, 255, 255, 255)};
 inline constexpr Themed kBackground{IM_COL32(28, 31, 33, 255), IM_COL32(240, 241, 243, 255)};
 inline constexpr Themed kLabelGround{IM_COL32(20, 21, 24, 215), IM_COL32(255, 255, 255, 215)};
-/// Colour where the status of an entry is bad.
 inline constexpr Themed kBadColour{IM_COL32(110, 112, 116, 255), IM_COL32(150, 152, 156, 255)};
 inline constexpr Themed kErrorColour{IM_COL32(255, 150, 110, 255), IM_COL32(178, 40, 0, 255)};
-inline constexpr Themed kRefusedColour{IM_COL32(110, 48, 34, 255), IM_COL32(255, 200, 186, 255)};  // fill
+inline constexpr Themed kRefusedColour{IM_COL32(110, 48, 34, 255), IM_COL32(255, 200, 186, 255)};  // of a field
 inline constexpr Themed kStaleVeil{IM_COL32(20, 21, 24, 150), IM_COL32(255, 255, 255, 150)};
 inline constexpr Themed kIntervalColour{IM_COL32(90, 205, 130, 255), IM_COL32(0, 130, 60, 255)};
 inline constexpr Themed kHeadingColour{IM_COL32(230, 179, 0, 255), IM_COL32(148, 98, 0, 255)};
@@ -60,11 +58,11 @@ inline constexpr Themed kCursorColour{IM_COL32(255, 255, 255, 200), IM_COL32(40,
 void load_font(float pixels);
 inline constexpr float kFontPixels = 15.0F;  ///< default size of the font
 
-float scaled(float pixels);                ///< `pixels` times the ratio of current to default text size
-std::string shown(std::string_view text);  ///< for display: without DejaVu Sans, names replace Greek letters and signs
+float scaled(float pixels);                ///< `pixels` for text of kFontPixels, converted to the current text size
+std::string shown(std::string_view text);  ///< `text`, or ascii(text) if the font has no Greek
 std::string ascii(std::string_view text);  ///< names replace Greek letters and signs
 
-/// Breaks the lines of a text only at spaces, so that numbers and paths stay whole if they fit in a line.
+/// Breaks a text into lines of at most `width`, at spaces. A longer word stays whole.
 std::string in_lines(std::string text, float width);
 
 void coloured_text(ImU32 colour, const std::string& text);  ///< draws text at ImGui's cursor, in lines

@@ -1,4 +1,3 @@
-// Views of tables: the effects, and the result of a fit.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +13,7 @@ void cell(const std::string& text, ImU32 colour = kTextColour) {
   coloured_text(colour, text);
 }
 
-/// The influence of an effect on DOLP in percentage points: a bound for a dropped effect, an estimate for a kept one.
+/// The influence of an effect on DOLP in percentage points: a bound for a dropped effect, an estimate for others.
 std::string influence_text(const Effect& row) {
   if (!row.bound && !row.influence) return "";
   const double points = 100.0 * row.bound.value_or(row.influence.value_or(0.0));
@@ -28,7 +27,7 @@ bool is_stale(const Session& session) { return !session.effects().empty() && !se
 void draw_row(const Session& session, const Effect& row) {
   const bool is_absent = row.state == EffectState::kAbsent;
   const ImU32 colour = is_absent || is_stale(session) ? kDimColour : kTextColour;
-  const bool is_slopes = row.name == "distribution";  // the surface without slope distribution is smooth
+  const bool is_slopes = row.name == "distribution";  // removing it removes the roughness
   const std::string removed = is_slopes ? "roughness" : row.name;
   const std::string without = is_absent ? "" : without_text(session, removed);
   cell(row.name, colour);
@@ -67,7 +66,7 @@ std::optional<std::size_t> draw_minima(const Fit& fit, std::optional<std::size_t
   return clicked;
 }
 
-/// Draws the lines of the fit's report that explain the result. The numbers are in the table of draw_minima().
+/// Draws lines of the fit's report that explain the table of draw_minima().
 void draw_words(const Fit& fit) {
   constexpr std::array<std::string_view, 9> kShown = {"minimum",    "misfit",     "scale",  "scaled", "pieces",
                                                       "correlated", "degenerate", "status", "model"};

@@ -22,7 +22,7 @@ void label(const char* text) {
   ImGui::SameLine();
 }
 
-/// Continues beside the last item, or in a new line if the room is narrower than `width` times the font size.
+/// Puts the next item beside the last one, or in a new line if `width` times the font size does not fit there.
 void continue_row(float width) {
   ImGui::SameLine();
   if (ImGui::GetContentRegionAvail().x < width * ImGui::GetFontSize()) ImGui::NewLine();
@@ -72,7 +72,7 @@ void draw_map_axes(const Session& session, View& view) {
   for (const auto& [id, axis, other] : {std::tuple{"map x", &x, &y}, {"map y", &y, &x}}) {
     const auto position = static_cast<std::size_t>(std::ranges::find(axes, axis->name, &MapAxis::name) - axes.begin());
     if (const auto clicked = draw_list(id, 5.5F * ImGui::GetFontSize(), axis->label, "", position, entries)) {
-      // If the user chose the name of the other axis, the axes swap.
+      // If the user chose the other axis of the map, the two axes swap.
       const std::string& name = axes[*clicked].name;
       const std::string& left = name == other->name ? axis->name : other->name;
       view.map_x = axis == &x ? name : left;
@@ -118,7 +118,7 @@ void draw_view_controls(Session& session, NumberFields& fields) {
 void draw_fit(const Session& session, Actions& actions) {
   if (!session.residuals().data()) return;
   ImGui::Spacing();
-  // The progress bar is in the place of the button, so that the sliders below do not move.
+  // The progress bar replaces the button, so that the sliders below do not move.
   if (actions.fit_task.is_running()) return draw_task("fit", actions.fit_task);
   const bool is_ready = session.fit_job().has_value();
   ImGui::BeginDisabled(!is_ready);
@@ -197,7 +197,7 @@ void draw_panel_tabs(Ui& ui) {
 void draw_panel(Ui& ui, ImVec2 size) {
   using Draw = void (*)(Ui&, ImVec2);
   constexpr std::array<Draw, kPanelNames.size()> kDraw = {
-      // the order is that of the enum Panel
+      // in the order of the enum Panel
       [](Ui& u, ImVec2 room) { u.map.draw(u.session, u.axis_editor, room); },
       [](Ui& u, ImVec2 room) { draw_slopes(u.session, room); },
       [](Ui& u, ImVec2 room) { draw_material(u.session, room); },
@@ -276,7 +276,7 @@ void draw_all(Ui& ui, const std::function<void()>& catch_up) {
   ImGui::SetNextWindowPos(viewport->WorkPos);
   ImGui::SetNextWindowSize(viewport->WorkSize);
   ImGui::Begin("dolp", nullptr, kFixed);
-  ImGui::PushItemFlag(ImGuiItemFlags_NoTabStop, true);  // the Tab key goes only to text fields, which undo this flag
+  ImGui::PushItemFlag(ImGuiItemFlags_NoTabStop, true);  // Tab goes only to text fields, which undo this flag
   const ImVec2 all = ImGui::GetContentRegionAvail();
   const float em = ImGui::GetFontSize();
   const float left = std::clamp(0.36F * all.x, 19.0F * em, 22.0F * em);

@@ -5,23 +5,22 @@
 
 namespace dolp::explore {
 
-/// The commands that do more than change the session: they read and write files, and start work in the background.
+/// Commands of the user that read and write files, or start work in the background.
 class Actions {
   using Clock = std::chrono::steady_clock;
 
  public:
-  /// `preferences` is the file of the preferences; if this path is empty, no file stores them. The threads of the tasks
-  /// call `on_change` when they have news. The session must outlive this object.
+  /// `preferences` is the file of Preferences; empty: no file. Background threads call `on_change` when they have news.
+  /// The session must outlive this object.
   Actions(Session& session, const std::string& device, std::string command_line,
           const std::filesystem::path& preferences, const std::function<void()>& on_change);
 
-  /// Runs `body`. Then sets the session's message to `done` or to the reason of the failure.
+  /// Runs `body`. Then Session::message() is `done`, or the reason why `body` failed.
   void attempt(const std::string& done, const std::function<void()>& body);
   void open(const std::string& path);  ///< opens a scene, a session or measured points
-  /// Saves a picture of the window shortly afterwards, when the dialog for its path has disappeared. Errors: IoError.
+  /// Saves a picture of the window when the dialog has disappeared in which the user chose `path`. Errors: IoError.
   void save_picture(const std::string& path);
-  // The next four functions start work in the background. Afterwards Session::message() has the outcome of a plot or a
-  // fit. save_plot() writes the curves with the axes `x` and `y`, and the map, as .svg, .pdf or .png.
+  // The next four functions start work in the background. save_plot() writes curves and map as .svg, .pdf or .png.
   void save_plot(const std::string& path, const Scale& x, const Scale& y);
   void export_table(const std::string& path);
   void find_true_error();
@@ -29,12 +28,12 @@ class Actions {
   void prefer(const std::function<void(Preferences&)>& change);  ///< changes and stores the preferences
   const Preferences& preferences() const { return preferences_; }
 
-  void finish();  ///< takes the results of finished work in the background
-  /// Path of the picture that must be saved with this frame; empty if none is due.
+  void finish();  ///< calls BackgroundTask::finish() of all tasks
+  /// Path of the picture to save with this frame; empty if there is none, or if the dialog has not yet disappeared.
   std::string due_picture() const { return Clock::now() < picture_time_ ? "" : picture_path; }
-  bool is_true_error_old() const;  ///< the true error is for a curve that is no longer on display
+  bool is_true_error_old() const;  ///< the true error belongs to an earlier curve
 
-  std::string picture_path;  ///< file for a picture of the next frame; empty: no picture
+  std::string picture_path;  ///< file of the picture to save; empty: no picture
   bool is_quitting = false;
   BackgroundTask table_task, true_error_task, fit_task;
 
@@ -42,7 +41,7 @@ class Actions {
   Session& session_;
   std::string command_line_;
   Preferences preferences_;
-  // Table and fit have separate Vulkan devices, so that neither waits for the other.
+  // Table and fit have separate evaluators, so that neither waits for the other.
   Evaluator table_evaluator_, fit_evaluator_;
   BackgroundTask plot_task_;
   std::string true_error_key_;  ///< key of the curve whose true error is known or being computed
@@ -59,16 +58,14 @@ struct Ui {
   ShapeView shape_view = {};
   CurveView curves = {};
   PathDialog dialog = {};
-  std::pair<std::string, std::filesystem::path> saved = {};  ///< scene file, and folder last chosen for it
+  std::pair<std::string, std::filesystem::path> saved = {};  ///< scene file, and the folder in which it was saved last
   bool is_narrow = false;
-  std::string page = "curve";  ///< in a narrow window the only view; empty: View::panel
+  std::string page = "curve";  ///< what a narrow window shows; empty: the view of View::panel
   bool shows_help = false;
 };
 
-/// Draws everything. Call it between ImGui's NewFrame and Render. It calls `catch_up` after the controls and before the
-/// plots, so that the plots show the changes by the controls. For tests it names areas (Input::areas): "panel NAME" is
-/// a tab, "cancel NAME" the button of a task, "menu NAME" a menu; others are "snapshot NUMBER", "recent PATH", and the
-/// text of a menu's entry. draw_controls() and PathDialog name more.
+/// Draws everything. Call this function between ImGui's NewFrame and Render. It calls `catch_up` after it has drawn the
+/// controls, so that the plots, drawn last, show what the user changed by the controls.
 void draw_all(Ui& ui, const std::function<void()>& catch_up);
 
 void run_shortcuts(Ui& ui);

@@ -7,24 +7,20 @@
 
 namespace dolp::explore {
 
-// Each view fills the current ImGui window, or the area `size` in it.
+// Each view fills the current ImGui window, or an area of the given size.
 
-/// Fills the current ImGui window with the controls of a scene. Tests find these areas by name (Input::areas): "KEY" is
-/// the slider, list or box of a scene key; "vary KEY" the box that lets a number vary in fits; "field KEY" the text
-/// field beside a slider; "field fit KEY 0" and "field fit KEY 1" the fields for the ends of its range in fits; "sky"
-/// the list of skies; "sky zenith" and "sky horizon" the sliders of their temperatures.
 void draw_controls(Session& session, NumberFields& fields);
 void draw_accuracy_controls(Session& session, NumberFields& fields);  ///< draws tolerance and precision
 
-/// A line of a plot with several lines. The x values of all these lines are equal.
+/// The y values of a line in a plot. All lines of the plot have the same x values.
 struct NamedLine {
   std::string name;
   CurveStyle style;
   std::vector<double> values;
 };
 
-/// The current curve, the overlay, pins and measured points. A click in the legend hides the overlay, and hides or
-/// shows a pin. A click or drag in the plot moves the cursor. The mouse controls the zoom (Plot::follow_mouse).
+/// Draws the current curve, the overlay, pins and measured points. A click or drag in the plot moves the cursor. In the
+/// legend, a click hides the overlay, or hides or shows a pin.
 class CurveView {
  public:
   void draw(Session& session, AxisEditor& editor, ImVec2 size);
@@ -33,7 +29,7 @@ class CurveView {
   const Scale& y() const { return y_; }
 
  private:
-  /// Sets x_ and y_ to the zoom. Without a zoom, sets them to the automatic ranges `zeniths` and `values`.
+  /// Sets x_ and y_ to the ranges of `zoom`; where that is empty, to the automatic ranges `zeniths` and `values`.
   void choose_axes(const Session& session, Zoom& zoom, const Scale& zeniths, Scale& values);
   void edit_axes(View& view, AxisEditor& editor, const Plot& plot, const std::string& values);
 
@@ -51,7 +47,7 @@ void draw_spectrum(Session& session, AxisEditor& editor, ImVec2 size);
 /// Draws the reflectances R_s and R_p of a facet over the local angle of incidence, and over wavelength at one angle.
 void draw_smooth(Session& session, AxisEditor& editor, ImVec2 size);
 
-/// One element of the Mueller pBRDF in the plane of incidence, as a polar plot. Light comes from the cursor's zenith.
+/// Draws an element of the Mueller pBRDF in the plane of incidence, for light from the zenith of the cursor.
 class ScatteringView {
  public:
   void draw(Session& session, ImVec2 size);
@@ -65,24 +61,24 @@ class ScatteringView {
   std::string reason_;  ///< reason why cut_ is empty
 };
 
-/// Images of a sphere and a tilted plate with the scene's surface. They show DOLP and angle of polarisation.
+/// Draws a sphere and a tilted plate with the scene's surface, in the colours of DOLP and angle of polarisation.
 class ShapeView {
  public:
   void draw(Session& session, ImVec2 size);  ///< a drag sets azimuth and zenith of the plate's normal
 
  private:
-  double azimuth_deg_ = 30.0;  ///< direction of the tilt from the image's horizontal
+  double azimuth_deg_ = 30.0;  ///< direction of the plate's tilt, from the right
 };
 
-/// Draws the last fit: minima, intervals, explanations. A click visits a minimum. The areas are "minimum 1" and so on.
+/// Draws minima, intervals and explanations of the last fit. A click on a minimum calls Session::visit_minimum().
 void draw_fit_result(Session& session);
 
 void draw_sky(const Session& session, ImVec2 size);  ///< DOLP over the directions of the source, as a polar map
 
-/// Stores in the session's view a range that the user typed for a wavelength axis or a map axis.
+/// Stores a range that the user typed for a wavelength axis or a map axis in View::ranges.
 void set_range(Session& session, const MapAxis& axis, const AxisEditor::Change& change);
 
-/// Map, contour lines, colour bar and cursor. A click or drag moves the cursor and gives the scene the values there.
+/// Draws map, contour lines, colour bar and cursor. A click or drag calls Session::set_map_cursor().
 class MapView {
  public:
   void draw(Session& session, AxisEditor& editor, ImVec2 size);
@@ -103,7 +99,7 @@ class MapView {
   void draw_contours(const Plot& plot) const;
   void draw_bar(const Plot& plot) const;
 
-  // The inputs from which update() computed the members below.
+  // The inputs of the last update(), which computed the members below.
   std::size_t version_ = 0;
   Plotted quantity_ = Plotted::kDolp;
   bool is_log_ = false;

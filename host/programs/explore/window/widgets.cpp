@@ -20,7 +20,7 @@ constexpr const char* kPopup = "###path";
 constexpr const char* kUp = "../";
 constexpr float kListLines = 12.0F;
 
-/// Sets the ends of `range` to the numbers in two texts. Returns the reason if they are refused, otherwise "".
+/// Sets the ends of `range` to the numbers in two texts. Returns the reason if a text is refused, otherwise "".
 std::string parse_range(const std::string& low, const std::string& high, Scale& range) {
   const std::optional<double> from = parse_number(low), to = parse_number(high);
   if (!from || !to) return fmt::format("{}: must be a number", one_line(from ? high : low));
@@ -33,7 +33,7 @@ std::string parse_range(const std::string& low, const std::string& high, Scale& 
 
 void NumberFields::draw(const std::string& id, double value, const Apply& apply) {
   const auto found = typed_.find(id);
-  // Drops a refused text if the value has changed since the user typed the text.
+  // Drops a refused text if the number has changed since the user typed the text.
   if (found != typed_.end() && !found->second.is_active && found->second.value != value) typed_.erase(found);
   const std::string unedited = fmt::format("{:.6g}", value);
   const bool is_refused = !reason(id).empty();
@@ -80,7 +80,7 @@ std::optional<std::size_t> draw_list(const std::string& id, float width, const s
                                      const std::string& note, std::optional<std::size_t> chosen,
                                      const std::vector<ListEntry>& entries) {
   ImGui::SetNextItemWidth(width);
-  const ImVec2 corner = ImGui::GetCursorScreenPos();  // not from ImGui's last item, which may be the open list
+  const ImVec2 corner = ImGui::GetCursorScreenPos();  // taken before, because ImGui's last item may be the open list
   name_area(id, {corner, {corner.x + ImGui::CalcItemWidth(), corner.y + ImGui::GetFrameHeight()}});
   std::optional<std::size_t> clicked;
   if (!ImGui::BeginCombo(("##" + id).c_str(), shown(current).c_str(), ImGuiComboFlags_HeightLarge)) {
@@ -99,7 +99,7 @@ std::optional<std::size_t> draw_list(const std::string& id, float width, const s
 void row_label(const std::string& text) {
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(shown(text).c_str());
-  // The column of labels is wide enough for the longest label that must not be cut off.
+  // The labels form a column that is wide enough for the longest of them.
   const float longest = ImGui::CalcTextSize(shown("λ1, λ2 [µm]").c_str()).x;
   ImGui::SameLine(std::max(6.2F * ImGui::GetTextLineHeight(), longest + 2.0F * ImGui::GetStyle().ItemSpacing.x));
 }

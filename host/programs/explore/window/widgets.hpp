@@ -7,18 +7,18 @@
 
 namespace dolp::explore {
 
-/// Text fields for numbers. Enter, Tab, a click elsewhere or the loss of the window's focus apply the text of a field.
-/// If the text is refused, the field keeps and marks it until the user corrects it or Escape restores the value.
+/// Text fields for numbers. A field applies its text after Enter, Tab, a click elsewhere, or when the window loses the
+/// focus. A refused text stays in the field, in red, until the user corrects it or presses Escape.
 class NumberFields {
  public:
   /// Applies a text. Returns one line with the reason if the text is refused, otherwise "".
   using Apply = std::function<std::string(const std::string& text)>;
   using ApplyEnds = std::function<std::string(const std::string& low, const std::string& high)>;
 
-  /// Draws a field at ImGui's cursor. It shows `value` or what the user types. The name of its area is "field ID".
+  /// Draws a field with `value`, or with the text that the user types. The name of the field's area is "field ID".
   void draw(const std::string& id, double value, const Apply& apply);
-  /// Draws the field for one end of a range: `end` is 0 or 1, and the field's ID is `id` with " 0" or " 1". Both texts
-  /// are applied together, so a refused text is tried again when the other end changes.
+  /// Draws the field for one end of a range. `end` is 0 or 1; the ID of the field is `id` with " 0" or " 1". Applies
+  /// the texts of both ends together, because a text may be refused only until the other end changes.
   void draw_end(const std::string& id, std::size_t end, const std::array<double, 2>& ends, const ApplyEnds& apply);
   std::string text(const std::string& id) const {  // text that is typed but not applied; "" if none
     const auto typed = typed_.find(id);
@@ -46,18 +46,18 @@ struct ListEntry {
   bool is_enabled = true;
 };
 
-/// Draws a list that opens on a click. While it is closed, it shows `current`, and `note` as a tooltip. `width` is for
-/// ImGui::SetNextItemWidth, and `id` names the area. Returns the entry that the user clicks, unless it is `chosen`.
+/// Draws a list that opens on a click. The closed list shows `current`, and `note` as a tooltip. `id` names its area.
+/// Returns the entry that the user clicks, unless this is the entry `chosen`.
 std::optional<std::size_t> draw_list(const std::string& id, float width, const std::string& current,
                                      const std::string& note, std::optional<std::size_t> chosen,
                                      const std::vector<ListEntry>& entries);
 
 void row_label(const std::string& text);  ///< draws a label, and the next control beside it
 
-/// Draws a text field for a name. A right click on the last item opens it. Returns the name if the user changes it.
+/// Draws a text field for a name, which a right click on the last item opens. Returns a name that the user has changed.
 std::optional<std::string> typed_name(std::string name, const std::string& hint = {});
 
-/// A small window to type the range of an axis. A double click on the numbers beside the axis opens it.
+/// A small window in which the user types the range of an axis. A double click on the numbers of the axis opens it.
 class AxisEditor {
  public:
   struct Change {
@@ -66,7 +66,7 @@ class AxisEditor {
   };
   using Check = std::function<std::string(const Scale& range)>;  ///< why the range is refused, or ""
 
-  /// Draws the small window if the user opened it for the axis `label`. `numbers` is the area of this axis's numbers.
+  /// Draws the small window if the user opened it for the axis `label`. `numbers` is the area of the numbers beside it.
   std::optional<Change> draw(const std::string& label, const Area& numbers, const Scale& now, const Check& check);
 
   bool is_open() const { return !shown_.empty(); }
@@ -90,7 +90,6 @@ class PathDialog {
   };
 
   void open(Request request);
-  /// Draws the dialog if it is open. The areas (Input::areas) have the names of the files, and of the folders with "/".
   void draw();
 
  private:

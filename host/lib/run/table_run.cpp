@@ -29,7 +29,7 @@ constexpr std::array kCutAxes = {Axis::kTheta,       Axis::kMaterial, Axis::kBan
                                  Axis::kTemperature, Axis::kN,        Axis::kK};
 using Cuts = std::array<std::size_t, kCutAxes.size()>;
 
-/// Cuts the axes into `count` parts in all, first axes into as many parts as possible. False if this is impossible.
+/// Finds how many parts to make of each axis, `count` in all. The first axes get the most. False if none fit.
 bool find_cuts(const PerAxis& counts, std::size_t count, std::size_t number, Cuts& cuts) {
   if (number == kCutAxes.size()) return count == 1;
   for (std::size_t parts = std::min(count, counts[kCutAxes[number]]); parts > 0; --parts) {
@@ -52,7 +52,7 @@ std::string identity_of(const SceneValues& scene, const TableJob& job) {
   return identity_of(scene, job.evaluator, job.options.keep_all);
 }
 
-/// The identity of a file with its device: all parts of a file must come from one device, but shards may differ.
+/// What all parts of a file must share: the identity, the shard and the device. Shards may come from other devices.
 std::string identity_of_file(const std::string& identity, const Shard& shard, const EvaluationReport& evaluation) {
   return fmt::format("{}; shard {}; device {}, {}", identity, shard_text(shard), one_line(evaluation.device),
                      one_line(evaluation.driver));
@@ -88,7 +88,6 @@ class TableSink final : public Sink {
                            note = so_far.text()]() mutable { output_.write(std::move(values), first, note); });
   }
 
-  /// Waits until the last part is written. Errors: errors of the writing.
   void finish() {
     const auto start = std::chrono::steady_clock::now();
     if (pending_.valid()) pending_.get();
@@ -163,7 +162,7 @@ void add_run(RunRecord& whole, const TableHead& shard) {
   if (devices.find(device) == std::string::npos) devices += (devices.empty() ? "" : "; ") + device;
 }
 
-/// The attributes of a shard, except those that hold only for this shard or its run.
+/// The attributes of a shard without those that hold only for this shard or its run.
 std::vector<Attribute> without_run(std::vector<Attribute> attributes) {
   const std::vector<Attribute> run = RunRecord().attributes("");
   std::erase_if(attributes, [&](const Attribute& attribute) {

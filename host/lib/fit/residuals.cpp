@@ -9,14 +9,14 @@
 namespace dolp::fit {
 namespace {
 
-/// Two offsets from a coordinate to neighbours, both of which lie in [0, 1] too.
+/// Two offsets from a coordinate to neighbours that lie in [0, 1] too.
 std::array<double, 2> offsets_at(double at, double step) {
   const double inward = at + step > 1.0 ? -step : step;
   const bool has_both_sides = at - step >= 0.0 && at + step <= 1.0;
   return {inward, has_both_sides ? -step : 2.0 * inward};
 }
 
-/// The derivative at a point: the slope of a line through it and one neighbour, or of a parabola through it and two.
+/// The derivative from one neighbour (slope of a line), or from two neighbours (slope of a parabola).
 Eigen::MatrixX2d derivative(const Eigen::MatrixX2d& centre, const Prediction* beside, std::size_t count,
                             const std::array<double, 2>& offsets) {
   const auto [a, b] = offsets;
@@ -99,12 +99,13 @@ void Residuals::linearise(const std::vector<Linearisation*>& points) {
   }
 }
 
-/// Sets column j of the Jacobian from the predictions at the neighbours. Sets the step of the next finite differences.
+/// Sets column j of the Jacobian from the predictions at the neighbours (`beside`), and the step of the next
+/// differences.
 void Residuals::differentiate(Linearisation& point, Eigen::Index j, const Prediction* beside, std::size_t count) const {
   const Eigen::MatrixX2d& centre = point.components;
   const Eigen::MatrixX2d slopes = derivative(centre, beside, count, offsets_at(point.at[j], point.steps[j]));
   for (Eigen::Index i = 0; i < slopes.rows(); ++i) {
-    // DOLP is the length of (Q, U)/I. It has a kink where these components change their sign; the components have none.
+    // DOLP is the length of (Q, U)/I. Where Q and U change their sign, DOLP has a kink, but Q and U have none.
     const double length = is_length_[static_cast<std::size_t>(i)] ? centre.row(i).norm() : 0.0;
     const double slope = length > 0.0 ? centre.row(i).dot(slopes.row(i)) / length : slopes(i, 0);
     point.jacobian(i, j) = weights_[i] * slope;
@@ -112,14 +113,13 @@ void Residuals::differentiate(Linearisation& point, Eigen::Index j, const Predic
   point.steps[j] = next_step(point.steps[j], point, *beside);
 }
 
-// The error of a central difference with step s has two parts: e/s if the values have the error e, and s^2 F/(6 L^3) if
-// the function has the size F and varies over the length L. The sum is smallest if the step changes the function by
-// (3 e F^2)^(1/3). If the values are far more accurate than an uncertainty, a change of a fifth of an uncertainty is enough.
+// The error of a central difference has two parts. A numerical error e of the function adds e/s at the step s. If the
+// function has the size F and varies over the length L, its curvature adds s^2 F/(6 L^3). The sum is smallest if the
+// step changes the function by (3 e F^2)^(1/3).
 double Residuals::next_step(double step, const Linearisation& point, const Prediction& beside) const {
   const double change = (beside.components - point.components).cwiseAbs().maxCoeff();
   if (!std::isfinite(change) || change <= 0.0) return step;
   const double largest = point.components.cwiseAbs().maxCoeff();
-  // The numerical error counts as at least a thousandth of the tolerance, even if its bound is smaller.
   const double error = std::clamp(beside.error.maxCoeff(), 1e-3 * tolerance_, tolerance_);
   const double balanced = std::cbrt(3.0 * error * largest * largest);
   const double seen = std::max(kSeenShare / weights_.maxCoeff(), kErrorsOfAChange * error);

@@ -62,7 +62,7 @@ SceneEntries spread_entries(const SceneEntries& entries) {
 struct Sample {
   SceneValues scene;
   SceneEntries entries;  ///< each entry occurs once for each of the wavelengths
-  std::vector<double> weights;  ///< weights of the wavelengths in the integral over the band; {1} if there is one wavelength
+  std::vector<double> weights;  ///< weights of the wavelengths in the integral over a band; {1} without a band
 };
 
 Sample sample_of(const SceneValues& scene, const SceneEntries& entries) {

@@ -41,8 +41,8 @@ std::vector<std::uint32_t> compact_used_values(const std::vector<double>& values
 
 // Chosen. Smallest number of entries per index for which responses pay, because the sums for an index cost work too.
 constexpr std::size_t kLeastEntries = 24;
-// Responses give the moments of every index for every direction and slope distribution. Points need only some of these
-// combinations. The run uses responses if there are at most so many times more combinations than moments to compute.
+// Responses cover all combinations of direction, slope distribution and index. Points need only some of these. The run
+// uses responses if there are at most so many times more combinations than moments to compute.
 constexpr std::size_t kMostOfPoints = 2;
 
 std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const SceneEntries& entries) {

@@ -47,7 +47,7 @@ double least_gap_ratio(const std::vector<double>& wavelength_um) {
   return std::clamp(std::exp(kUsualSpacings * *median), kNoGapRatio, kGapRatio);
 }
 
-/// The widest gap between rows of a file that holds used wavelengths. There, n and k are interpolated linearly.
+/// The widest gap between rows of a file that holds used wavelengths. A straight line bridges it.
 std::optional<Interval> bridged_gap(const SpectralTable& table, const std::vector<Interval>& used) {
   const std::vector<double>& um = table.wavelength_um;
   if (um.size() < 2 || table.formula.number != 0) return std::nullopt;

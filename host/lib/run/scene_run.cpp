@@ -28,7 +28,7 @@ constexpr std::size_t kPointsAtOnce = 1U << 17U;
 // again. Tuned. Evaluations per entry with smith masking, at half this value, at this value and at double: 1.71, 1.81,
 // 1.99.
 constexpr std::size_t kWholeDirectionMissRatio = 8;
-constexpr std::size_t kEntriesAtOnce = 4096;  // number of entries for one thread; with fewer entries, starting the thread costs too much
+constexpr std::size_t kEntriesAtOnce = 4096;  // number of entries per thread that outweighs the start of a thread
 
 struct Spectra {
   Spectra(const SceneValues& scene, const EffectPlan& plan, const std::vector<SceneVariant>& variants) {
@@ -188,8 +188,7 @@ bool is_better(const PointResult& a, const PointResult& b) {
                                       std::max(b[Quantity::kErrorEstimate], b[Quantity::kRhoErrorEstimate]);
 }
 
-/// True if computing an entry at `level` can make it more accurate. A beam gets more accurate only in another
-/// precision.
+/// True if `level` can make an entry more accurate. It makes a beam more accurate only if the precision changes.
 bool would_improve(const RunContext& context, const RefinementLevel& level, const RefinementLevel& last,
                    const SceneEntry& entry) {
   return wants_moments(context.scene, entry, context.plan) ||

@@ -120,7 +120,7 @@ std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spe
 /// number.
 std::size_t spectral_samples(const SceneValues& scene, const SceneEntries& entries);
 
-/// Calls progress(0, total) unless `progress` is empty. To call after all inputs are read. Errors: Cancelled.
+/// Calls progress(0, total), unless `progress` is empty. For use when all inputs are read. Errors: Cancelled.
 void report_start(const Progress& progress, std::size_t total);
 
 /// Does the work of Run::compute for a given plan and evaluator. The evaluator may be null if the plan needs none.

@@ -79,8 +79,8 @@ struct Evaluator::Impl {
     return [this, &scene] { return begin(scene); };
   }
 
-  /// Calls `body` while no other thread uses this object. After a DeviceError it makes a new evaluator at the next
-  /// call. Errors: InputError if the call comes from a callback of this object.
+  /// Calls `body` while no other thread uses this object. After a DeviceError, the next call makes a new evaluator.
+  /// Errors: InputError if the call comes from a callback of this object.
   template <class Options, class Body>
   auto exclusively(const Scene& scene, Options of_call, const Body& body) {
     if (in_callback == std::this_thread::get_id())

@@ -40,8 +40,7 @@ bool is_variable(std::string_view name) {
          std::ranges::any_of(kAllAxes, is_described) || std::ranges::any_of(kAllQuantities, is_described);
 }
 
-/// Refuses attributes that a file cannot have. The name must be unique: as a long text, an attribute becomes a
-/// variable.
+/// Refuses attributes that a file cannot have. Long ones become variables, so their names must be unique.
 void check_attributes(const std::vector<Attribute>& attributes, const std::string& name) {
   std::set<std::string_view> names;
   for (const Attribute& attribute : attributes) {

@@ -52,7 +52,7 @@ inline constexpr int kMostRounds = 15;             // 1417, 1421, 1421
 inline constexpr double kCoarseGain = 0.1;  // 1358, 1421, 1416
 /// The search does not refine minima that are higher than the lowest one by more than this times the scale.
 inline constexpr double kFarAbove = 30.0;  // 1413, 1421, 1428
-inline constexpr int kPointsOfALine = 8;  // 1386, 1421, 1489
+inline constexpr int kPointsOfALine = 8;   // 1386, 1421, 1489
 
 /// Largest relative error of the square root of the growth of the objective at an end of an interval.
 inline constexpr double kRootTolerance = 5e-3;  // 1435, 1421, 1404
@@ -74,7 +74,6 @@ inline constexpr double kBeyond = 0.02;  // 1425, 1421, 1410
 /// A point beyond an end of an interval lies on another branch if its growth is below this share of the growth at the
 /// end. Proved: by kRootTolerance, the growth at the end can be too small only by the share 0.01.
 inline constexpr double kClearlyLower = 0.97;  // 1421, 1421, 1793
-
 
 /// A descent to a grid point of the contours ends when derivatives predict a decrease below this times the scale.
 inline constexpr double kNodeGain = 1e-2;

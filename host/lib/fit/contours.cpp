@@ -61,8 +61,7 @@ class GrowthMap {
   Eigen::Vector2d position(const GridNode& node) const {
     return result_.valley_points.front().where.at(pair_) + steps_ * Eigen::Vector2d(node.first, node.second);
   }
-  /// True for a node in the ranges of both parameters or about one step outside. Such a node outside is moved to the
-  /// bound.
+  /// True for a node in the range of both parameters, or about one step outside. The latter moves to the bound.
   bool is_near_range(const GridNode& node) const {
     const Eigen::Vector2d at = position(node);
     return (steps_.inverse() * (at - at.cwiseMax(0.0).cwiseMin(1.0))).norm() < 1.5;
@@ -116,8 +115,7 @@ class GrowthMap {
     return true;
   }
 
-  /// The growth on a finer grid. It interpolates residuals, not the growth, because valleys may be narrower than a
-  /// cell.
+  /// The growth on a finer grid. It interpolates residuals, because valleys may be narrower than a cell.
   Contours drawn() const {
     GridNode low, high;
     for (const auto& [node, point] : nodes_) {
@@ -143,7 +141,6 @@ class GrowthMap {
     return contours;
   }
 
-  /// Fills a cell of the finer grid. `row` and `column` are the position of its first corner.
   void fill(Contours& contours, Eigen::Index row, Eigen::Index column,
             const std::vector<const Linearisation*>& corners) const {
     for (int i = 0; i <= kPartsOfACell; ++i) {

@@ -69,7 +69,7 @@ Eigen::VectorXd bounded_step(const Linearisation& where, Eigen::VectorXd step, c
   return step;
 }
 
-/// The point `to` with the Jacobian of `near`, to which Broyden's update is applied. The residuals of `to` are known.
+/// The point `to` with the Jacobian of `near` after Broyden's update. The residuals of `to` are known.
 Linearisation moved(const Linearisation& near, Linearisation to) {
   to.jacobian = near.jacobian;
   to.steps = near.steps;
@@ -237,7 +237,7 @@ std::pair<Eigen::VectorXd, double> predict_step(const Neighbour& neighbour, doub
   step = bounded_step(near, step, neighbour.held, scale / kRadiusOfNeighbours,
                       Eigen::VectorXd::Ones(near.residuals.size()));
   // If the model is an even function of a parameter (as of k at k = 0), a descent cannot leave the bound. So a
-  // parameter that is not held goes at most half the way to its bound.
+  // parameter that is not held goes at most half the way.
   for (Eigen::Index j = 0; j < step.size(); ++j) {
     const bool is_held = std::ranges::find(neighbour.held, j) != neighbour.held.end();
     const double to = near.at[j] + step[j];

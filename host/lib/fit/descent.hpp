@@ -33,8 +33,8 @@ struct DescentOptions {
   int most_steps = 40;
   /// The descent ends when derivatives predict a decrease of the objective below this times `scale`.
   double least_gain = 1e-5;
-  /// If set, Broyden's updates replace new derivatives as long as they predict the steps well. A descent may end with
-  /// updated derivatives if its objective is below this value; above it, the derivatives are computed anew.
+  /// If set, Broyden's updates may replace computed derivatives while they predict steps well. Above this objective, a
+  /// descent does not end with updated derivatives: they are computed.
   std::optional<double> secant_below = {};
 };
 

@@ -207,7 +207,7 @@ class Fit {
     return std::pow(std::max(0.01 * largest, fine_.tolerance()), 2);
   }
 
-  /// The scale at a minimum: 1 with uncertainties, else the mean squared residual, but at least the squared tolerance.
+  /// The scale at a minimum: 1 with uncertainties, otherwise the mean squared residual, at least the squared tolerance.
   double find_scale(const Minimum& minimum) const {
     if (model_.has_uncertainties()) return 1.0;
     const double mean = freedom() > 0 ? minimum.objective / static_cast<double>(freedom()) : 0.0;
@@ -286,7 +286,7 @@ class Fit {
     descend(fine_, bottoms, {options_.loss, result_.scale});
     Minimum& bottom = bottoms.front();
     if (!bottom.has_converged || bottom.objective >= minima_.front().objective) return false;
-    // If the bottom is lower by less than one standard deviation, it is the best minimum, found better; so replaces it.
+    // A bottom that is lower by less than one standard deviation is the best minimum, found better. So it replaces it.
     if (bottom.objective > minima_.front().objective - result_.scale) minima_.erase(minima_.begin());
     minima_.insert(minima_.begin(), std::move(bottom));
     return true;

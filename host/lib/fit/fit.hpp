@@ -23,18 +23,17 @@ struct FitResult : FitNumbers {
   /// Rise of chi_square one standard deviation from a minimum: 1 or, if uncertainties lack, the mean squared residual.
   double scale = 1.0;
   std::size_t determined = 0;          ///< rank of the Jacobian: number of parameters that the data determine
-  double numerical_error = 0.0;  ///< largest error bound of the model's values, divided by the uncertainty
+  double numerical_error = 0.0;        ///< largest error bound of the model's values, divided by the uncertainty
   double tolerance = 0.0;              ///< tolerance of the model's values
   std::uint32_t status = 0;            ///< status bits of all points, combined by OR
-  Eigen::VectorXd residuals;  ///< (measured - model) / uncertainty; if uncertainties lack, measured - model
+  Eigen::VectorXd residuals;           ///< (measured - model) / uncertainty; if uncertainties lack, measured - model
   Eigen::VectorXd predicted;           ///< the model's values
   std::size_t evaluations = 0;         ///< parameter sets for which the model was computed
   std::vector<Minimum> valley_points;  ///< the best minimum, then the computed points of the profile likelihoods
-  double aic = 0.0;  ///< Akaike's information criterion, without a term that depends only on the data
-  double bic = 0.0;  ///< Bayes' information criterion, without a term that depends only on the data
+  double aic = 0.0;                    ///< Akaike's information criterion, without a term that depends only on the data
+  double bic = 0.0;                    ///< Bayes' information criterion, without a term that depends only on the data
 };
 
-/// "good", "doubtful" or "bad", from the p-value of a fit; empty without a p-value.
 std::string fit_quality(const std::optional<double>& p_value);
 
 /// Finds the minima of the objective and the intervals of the parameters. For a doubtful or bad fit, it also computes
@@ -47,8 +46,8 @@ std::optional<FitResult> fit(const Model& model, ModelEvaluator& evaluator, cons
 struct Contours {
   std::array<std::size_t, 2> parameters{};  ///< positions of the two parameters in FitOptions::vary
   std::array<Eigen::MatrixXd, 2> values;    ///< values of the two parameters at each point of the grid
-  Eigen::MatrixXd growth;  ///< this excess in squared standard deviations; NaN far outside the outer contour
-  std::size_t evaluations = 0;              ///< number of parameter sets that were computed
+  Eigen::MatrixXd growth;       ///< this excess in squared standard deviations; NaN far outside the outer contour
+  std::size_t evaluations = 0;  ///< number of parameter sets that were computed
 };
 /// Levels of `growth`. Their contours contain 68.27 % and 95 % of all pairs: chi^2 with two degrees of freedom.
 inline constexpr std::array kContourLevels = {2.2957, 5.9915};

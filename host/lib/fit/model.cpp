@@ -19,8 +19,7 @@
 namespace dolp::fit {
 namespace {
 
-// Scattered points can differ in these keys. So parameter sets that differ only in these take one call of the
-// evaluator.
+// Parameter sets that differ only in these keys become scattered points of one call of the evaluator.
 constexpr std::array<std::string_view, 5> kPointKeys = {"surface.n", "surface.k", "surface.sigma", "surface.wind_m_s",
                                                         "surface.q"};
 

@@ -13,11 +13,10 @@
 
 namespace dolp::fit {
 
-/// Checks a range. Errors: InputError that begins with `origin` if the key is unknown or no number, if low >= high, if
-/// the start lies outside the range, or if the scene does not allow the key to have one of these values.
+/// Checks a range. Errors: InputError that begins with `origin` if the scene does not allow the key, the limits or the
+/// start.
 void check_range(const FitRange& range, const std::string& origin);
 
-/// What the model predicts for all measurements, in the order of the data.
 struct Prediction {
   /// One row per measurement: the predicted observable and 0. For DOLP: the signed Q/I and U/I, so that DOLP is the
   /// length of the row. With a bracket as model error: the value in the bracket that is nearest to the measured value,
@@ -60,7 +59,7 @@ class Model {
     SceneValues scene;  ///< scene of the data set, at the shortest wavelength in the data if they have wavelengths
     std::optional<EmissionModel> other_end;  ///< emission model at the bracket's other end; empty without model error
     std::vector<double> wavelength_um;       ///< wavelengths in the data, ascending; empty if the data have none
-    std::vector<OpticalConstants> indices;  ///< n and k of a tabulated material at each of wavelength_um
+    std::vector<OpticalConstants> indices;   ///< n and k of a tabulated material at each of wavelength_um
   };
 
   void check() const;

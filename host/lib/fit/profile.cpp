@@ -91,8 +91,7 @@ class Side {
     for (; !is_done(); ++rise_, tries_ = 0) {
       const PointPosition above = first_above();
       if (above == points_.cbegin()) continue;
-      // If the start is just below a rise, it is no end. So only points that are clearly higher than the start count as
-      // ends.
+      // A start just below a rise is not an end. So an end must be clearly higher than the start.
       const double least = std::min(wanted(), points_.front().root + kRootTolerance * wanted());
       const auto met = std::find_if(points_.cbegin() + 1, points_.cend(), [&](const ProfilePoint& p) {
         return p.root >= least && std::abs(p.root - wanted()) <= kRootTolerance * wanted();
@@ -165,7 +164,7 @@ void merge(std::vector<Stretch>& all, Stretch stretch) {
   all.insert(std::ranges::find_if(all, [&](const Stretch& other) { return other.low > stretch.low; }), stretch);
 }
 
-/// An end of an interval of a parameter, as far as the profile is known.
+/// An end of an interval, as far as the profile of the parameter is known.
 struct ProfileEnd {
   Eigen::Index parameter;
   std::size_t rise;

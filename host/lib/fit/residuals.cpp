@@ -99,8 +99,7 @@ void Residuals::linearise(const std::vector<Linearisation*>& points) {
   }
 }
 
-/// Sets column j of the Jacobian from the predictions at the neighbours (`beside`), and the step of the next
-/// differences.
+/// Sets column j of the Jacobian and the next step, from the predictions at the neighbours (`beside`).
 void Residuals::differentiate(Linearisation& point, Eigen::Index j, const Prediction* beside, std::size_t count) const {
   const Eigen::MatrixX2d& centre = point.components;
   const Eigen::MatrixX2d slopes = derivative(centre, beside, count, offsets_at(point.at[j], point.steps[j]));

@@ -33,8 +33,7 @@ class Residuals {
   double tolerance() const { return tolerance_; }
   std::size_t evaluations() const { return evaluations_; }  ///< number of parameter sets computed so far
 
-  /// at() computes the residuals at all points. linearise() adds their derivatives. Each takes one call of the
-  /// evaluator.
+  /// Both take one call of the evaluator for all points: at() for the residuals, linearise() for derivatives.
   std::vector<Linearisation> at(const std::vector<Eigen::VectorXd>& points);
   void linearise(const std::vector<Linearisation*>& points);
 

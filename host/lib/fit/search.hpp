@@ -13,7 +13,7 @@ namespace dolp::fit {
 
 struct SearchOptions {
   std::size_t starts = 24;  ///< largest number of descents
-  std::uint64_t seed = 1;  ///< 1: the Sobol sequence itself; other seeds shift the sequence by a random vector
+  std::uint64_t seed = 1;   ///< 1: the Sobol sequence itself; other seeds shift the sequence by a random vector
   Loss loss = Loss::kSquares;
   bool has_uncertainties = true;  ///< false: the residuals at a minimum determine the standard deviation
   double scale = 1.0;  ///< how much the objective rises one standard deviation from a minimum; may be a guess
@@ -35,7 +35,7 @@ struct Stretch {
 
 struct ProfileOptions {
   std::array<double, 2> rises{};  ///< growths at the ends of the 68 % and 95 % intervals, divided by the scale
-  double from = 0.0;  ///< the growth is the objective minus this: the objective of the best minimum, or 0
+  double from = 0.0;              ///< the growth is the objective minus this: the objective of the best minimum, or 0
   double scale = 1.0;             ///< rise of the objective one standard deviation from a minimum
   Loss loss = Loss::kSquares;
   std::function<void(std::size_t done, std::size_t total)> count;  ///< counts the finished sides of all profiles
@@ -46,8 +46,7 @@ struct Profiles {
   /// the rise, if all other parameters minimise the objective. They are disjoint and ascending.
   std::vector<std::array<std::vector<Stretch>, 2>> stretches;
   std::vector<Minimum> points = {};  ///< computed points of the profiles
-  /// A point that is lower than the best minimum. It shows that the search missed a minimum; the profiles are
-  /// incomplete.
+  /// A point below the best minimum, if one was found. It shows that the search missed a minimum.
   std::optional<Minimum> lower = {};
 };
 

@@ -69,7 +69,6 @@ Json parameter_json(const FitParameter& parameter) {
   return json;
 }
 
-/// Adds lines about a parameter that do not fit into the table of parameters.
 void add_remarks(ReportBuilder& report, const FitParameter& parameter, const FitResult& result) {
   report.row_if(!parameter.standard_error, "no error", "{}: {}", parameter.key, parameter.why_no_error);
   for (const auto& [key, name, interval] : intervals_of(parameter)) {

@@ -22,7 +22,7 @@ struct PlannedRun {
   SceneValues scene;
   EffectPlan plan;
   std::vector<Effect> effects;
-  Looked looked;              ///< entries and wavelengths for which influences were computed
+  Looked looked;  ///< entries and wavelengths for which influences were computed
   double model_change = 0.0;
   RunPrediction run;
   double rule_digits = 0.0;
@@ -30,7 +30,7 @@ struct PlannedRun {
   std::vector<std::string> pipelines;  ///< Vulkan pipelines of the first refinement level; may be empty
   vulkan::DispatchCount dispatches;    ///< dispatches of the first refinement level
   std::vector<AxisForecast> lookup;
-  std::string device;                  ///< name of the device; empty if there is none
+  std::string device;  ///< name of the device; empty if there is none
   std::string why_no_device;
 };
 
@@ -99,8 +99,7 @@ PlannedRun planned_run(const SceneValues& scene, const std::string& device, Effe
                             {[&](const MomentsRequest& request) { add_request(planned, request, limits); },
                              [&](const ScatteringRequest& request) { add_request(planned, request, limits); }});
   if (planned.dispatches.row_width > 1) {
-    // The prediction counts the nodes of single entries. A device gives all entries of a row the largest number in the
-    // row.
+    // The prediction counts nodes of single entries. A device gives all entries of a row the largest number.
     planned.run.first_evaluations *=
         static_cast<double>(planned.dispatches.rows) / static_cast<double>(planned.run.moments);
     planned.run.is_exact = false;

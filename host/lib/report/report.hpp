@@ -69,7 +69,6 @@ class ReportBuilder {
 
   void values(const Json& object) { json_.update(object); }
 
-  /// Adds the lines of another report, but not its JSON.
   void show(const ReportBuilder& part) {
     text_ += part.text_;
     rows_.insert(rows_.end(), part.rows_.begin(), part.rows_.end());

@@ -16,8 +16,7 @@ namespace dolp {
 inline constexpr const char* kModelInaccurateText =
     "single scattering, or a masking that creates light, changes I by an estimated more than 5 %";
 
-/// The report of a run that wrote the file `path`. `gap` is the result of scattering_gap(). `shape` is the shape of the
-/// grid, or the number of points as "200 points".
+/// The report of a run that wrote `path`. `gap`: result of scattering_gap(). `shape`: for example "200 points".
 ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, const std::optional<ScatteringGap>& gap,
                          const std::string& shape, const std::string& path);
 
@@ -30,7 +29,6 @@ ReportBuilder plan_report(const SceneValues& scene, const std::string& device, E
 
 std::string grid_text(const Axes& grid);
 
-/// The names and reasons of all effects, in four lists: kept, dropped, not needed and absent effects.
 ReportBuilder::Json effects_json(const std::vector<Effect>& effects, const EffectPlan& plan);
 
 }  // namespace dolp

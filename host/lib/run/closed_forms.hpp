@@ -7,8 +7,8 @@
 
 namespace dolp {
 
-/// The moments of a mirror, or the limits of moments that diverge at 90 degrees. With `sky`, also the moments that are
-/// weighted with the functions of the sky. Domain: a direction whose treatment is not kIntegrated.
+/// The moments of a mirror, or limits of moments that diverge at 90 degrees. With `sky`, also the moments weighted with
+/// the functions of the sky. Domain: a direction whose treatment is not kIntegrated.
 Moments closed_form(const Surface& surface, const Direction& direction, const SlopeShape& shape,
                     const FacetOptics& index, const SkyBasis* sky);
 

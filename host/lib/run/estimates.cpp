@@ -32,7 +32,6 @@ std::size_t most_values(Axis axis) {
   return axis == Axis::kWavelength ? 3 : 2;
 }
 
-/// Up to `most` positions on an axis of `size` values, spread evenly, including both ends of the axis.
 std::vector<std::size_t> spread_positions(std::size_t size, std::size_t most) {
   std::vector<std::size_t> positions;
   const std::size_t count = std::min(size, most);
@@ -61,7 +60,7 @@ SceneEntries spread_entries(const SceneEntries& entries) {
 
 struct Sample {
   SceneValues scene;
-  SceneEntries entries;  ///< each entry occurs once for each of the wavelengths
+  SceneEntries entries;         ///< each entry occurs once for each of the wavelengths
   std::vector<double> weights;  ///< weights of the wavelengths in the integral over a band; {1} without a band
 };
 
@@ -130,8 +129,7 @@ double polarisation_change(const PointResult& a, const PointResult& b) {
                     a[kStokesU] / a[kStokesI] - b[kStokesU] / b[kStokesI]);
 }
 
-/// The largest change(a, b) among the entries at which both DOLP have a known accuracy. Empty if there is no such
-/// entry.
+/// The largest change(a, b) among entries for which promises_dolp() holds in `a` and in `b`. Empty if there is none.
 template <class Change>
 std::optional<double> largest_change(const std::vector<PointResult>& a, const std::vector<PointResult>& b,
                                      const Change& change) {

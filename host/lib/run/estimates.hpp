@@ -1,5 +1,5 @@
 // Estimates how much effects of a scene change DOLP, and how wrong the model may be. For this, the CPU computes a few
-// entries that are spread over the axes. In a wide band it uses only a few wavelengths.
+// entries that are spread over the axes, in a wide band at a few wavelengths.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +29,6 @@ struct Looked {
 /// entries (tests Estimates_*).
 Looked add_influences(std::vector<Effect>& rows, const SceneValues& scene, const SceneEntries& entries);
 
-/// An estimate of how wrong DOLP may be because the model follows only one reflection.
 struct ScatteringGap {
   double dolp = 0.0;
   Looked looked;
@@ -41,8 +40,7 @@ struct ScatteringGap {
 std::optional<ScatteringGap> scattering_gap(const SceneValues& scene, const SceneEntries& entries,
                                             const EffectPlan& plan);
 
-/// The largest PointResult::model_change of a few entries. Entries at which the accuracy of DOLP is unknown are left
-/// out.
+/// The largest PointResult::model_change of a few entries for which promises_dolp() holds.
 double estimated_model_change(const SceneValues& scene, const SceneEntries& entries);
 
 }  // namespace dolp

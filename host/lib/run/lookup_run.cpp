@@ -112,9 +112,9 @@ void check_index(const TableLookup& lookup, const SceneValues& scene, const Poin
   }
 }
 
-constexpr std::size_t kLines = 3;  // number of lines along an axis; each line has other values of the other axes
+constexpr std::size_t kLines = 3;        // number of lines along an axis; each line has other values of the other axes
 constexpr std::size_t kParts = 4;        // number of parts of an axis; one cell at each end of a part is examined
-constexpr std::size_t kStretch = 8;  // number of values around a cell on which a lookup in the cell depends
+constexpr std::size_t kStretch = 8;      // number of values around a cell on which a lookup in the cell depends
 constexpr std::size_t kLeastValues = 4;  // smallest number of values for which a lookup states an error
 // A lookup reads six values along theta, sigma and q, and four along each other axis. In dense grids the error that it
 // states is proportional to the spacing to the power kOrderOfSix or kOrderOfFour. Errors of the values that it reads
@@ -126,7 +126,6 @@ constexpr double kWeightsOfFour = 20.0 / 16.0;
 
 bool is_read_with_four(Axis axis) { return axis < Axis::kTheta; }
 
-/// The value at a fraction of an axis (0 at its beginning, 1 at its end), interpolated linearly.
 double value_at(const std::vector<double>& values, double share) {
   const double position = share * static_cast<double>(values.size() - 1);
   const auto below = std::min(static_cast<std::size_t>(position), values.size() - 2);

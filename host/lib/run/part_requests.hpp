@@ -33,12 +33,11 @@ double moment_zenith_deg(const SceneValues& scene, double theta_deg);
 
 bool wants_moments(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
-/// True if an evaluator must compute the beam of an entry. Not for a mirror, and not if source and view are at 90
-/// degrees.
+/// True if an evaluator must compute the beam of an entry; false if beam_without_evaluator() gives its pBRDF.
 bool wants_beam(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
-/// The pBRDF of an entry if wants_beam() is false. It is NaN in the specular direction of a mirror, and if source and
-/// view are both at 90 degrees. Otherwise it is 0.
+/// The pBRDF of an entry that needs no evaluator: NaN in the specular direction of a mirror, and if source and view are
+/// both at 90 degrees; otherwise 0.
 Scattered beam_without_evaluator(const SceneValues& scene, double theta_deg);
 
 /// For each variant (material, band, wavelength or temperature) of the entries: n and k at each spectral sample.
@@ -69,7 +68,7 @@ class PartRequests {
   MomentsSpan moments_of(std::size_t member) const;
   /// For a grid: the position in moments() of the direction whose moments a member uses.
   std::size_t direction_of(std::size_t member) const;
-  /// The position in beams() of the first beam of a member. A member has one beam for each spectral sample.
+  /// The position in beams() of the first beam of a member. A member has one beam per wavelength.
   std::size_t beams_of(std::size_t member) const { return first_beam_[member]; }
 
  private:

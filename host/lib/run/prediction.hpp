@@ -20,8 +20,8 @@ struct RunPrediction {
   std::size_t entries = 0;
   std::size_t spectral_samples = 0;
   std::size_t moments = 0;         ///< moments that kernels compute in the first refinement level, without repetition
-  std::size_t interpolated = 0;  ///< moments that the first refinement level interpolates instead
-  std::size_t beams = 0;  ///< beams of the first refinement level
+  std::size_t interpolated = 0;    ///< moments that the first refinement level interpolates instead
+  std::size_t beams = 0;           ///< beams of the first refinement level
   RefinementLevel first;           ///< precision and tolerance of the first level
   double first_evaluations = 0.0;  ///< integrand evaluations of the first level
   double again_share = 0.0;        ///< ratio of moments and beams in later refinement levels to those in the first

@@ -38,7 +38,6 @@ constexpr std::size_t kColumnsAtOnce = std::size_t{1} << 20U;  // number of colu
 /// The variable x of the Chebyshev polynomials: -1 at cos(beta) = 0, 1 at cos(beta) = 1.
 double abscissa(double cosine) { return 2.0 * std::asinh(cosine / kResponseC0) / std::asinh(1.0 / kResponseC0) - 1.0; }
 
-/// The values T_m(x) of the Chebyshev polynomials with m < kBetaAngles. Domain: x in [-1, 1].
 Eigen::VectorXd chebyshev_at(double x) {
   const double angle = std::acos(std::clamp(x, -1.0, 1.0));
   return Eigen::VectorXd::LinSpaced(kBetaAngles, 0.0, kBetaAngles - 1.0).unaryExpr([=](double m) {

@@ -40,8 +40,7 @@ struct ResponseOutcome {
   std::vector<Attribute> attributes = {};  ///< attributes of the table that are known after the run
 };
 
-/// Computes a response table, a few directions at a time. `take` receives each part, and the position of the part on
-/// each axis.
+/// Computes a response table, a few directions at a time. `take` gets each part and its position on each axis.
 using TakePart = std::function<void(TableValues part, const PerAxis& first)>;
 ResponseOutcome run_responses(const SceneValues& scene, const TableLayout& layout, const RunOptions& options,
                               ModelEvaluator& evaluator, const TakePart& take);

@@ -45,7 +45,6 @@ void add_range(EnergyRange& range, const EnergyRange& other) {
   range.entries += other.entries;
 }
 
-/// Calls use(number) for each number of a summary, in the order in which text() writes them.
 template <class Summary, class Use>
 void for_each_number(Summary& s, const Use& use) {
   use(s.entries);

@@ -24,9 +24,8 @@ namespace {
 // Largest number of moments in a part of a grid, and in a part of a list of points. Both limits keep the memory small.
 constexpr std::size_t kMomentsAtOnce = 1U << 20U;
 constexpr std::size_t kPointsAtOnce = 1U << 17U;
-// If more than one in so many entries of a direction misses the tolerance, all entries of the direction are computed
-// again. Tuned. Evaluations per entry with smith masking, at half this value, at this value and at double: 1.71, 1.81,
-// 1.99.
+// If more than one in so many entries of a direction misses the tolerance, all of them are computed again. Tuned.
+// Evaluations per entry with smith masking, at half this value, at this value and at double: 1.71, 1.81, 1.99.
 constexpr std::size_t kWholeDirectionMissRatio = 8;
 constexpr std::size_t kEntriesAtOnce = 4096;  // number of entries per thread that outweighs the start of a thread
 
@@ -57,8 +56,7 @@ struct EvaluatorResults {
 /// The first column of the Mueller matrix of a pBRDF: Stokes parameters of the reflection of unpolarised light.
 Scattered scattered(const ScatteringMatrix& f) { return {f.m[0], f.m[4], f.m[8], f.m[12], f.error}; }
 
-/// Computes the results of the selected entries, one after another. A member is the number of an entry in the
-/// selection.
+/// Computes the results of the selected entries. A member is the number of an entry in the selection.
 class MemberResults {
  public:
   MemberResults(const RunContext& context, const Selection& selection, const PartRequests& requests,
@@ -89,8 +87,7 @@ class MemberResults {
   }
 
  private:
-  /// The direction for which an entry needs moments. It is cached, because neighbouring entries mostly have the same
-  /// one.
+  /// The direction for which an entry needs moments. Neighbouring entries mostly share it, so it is cached.
   const Direction& view_direction(const SceneEntry& entry) {
     const Surface& surface = context_.scene.surface;
     const double theta_deg = moment_zenith_deg(context_.scene, entry.theta_deg);
@@ -198,9 +195,8 @@ bool would_improve(const RunContext& context, const RefinementLevel& level, cons
 /// For each refinement level: the entries to compute again at this level.
 using EntriesByLevel = std::map<RefinementLevel, std::vector<std::size_t>>;
 
-/// Adapts the refinement level `next` to a whole direction. With responses it uses double, because float rounding
-/// disturbs responses more than moments. It also lowers the tolerance by whole decades, so that more indices share
-/// responses.
+/// Adapts the refinement level `next` to a whole direction. With responses, it uses double, because float rounding
+/// disturbs them, and lowers the tolerance by whole decades, so that more indices share them.
 RefinementLevel level_of_direction(RefinementLevel next, const RunContext& context) {
   next.may_interpolate = true;
   if (!context.basis) return next;
@@ -211,9 +207,8 @@ RefinementLevel level_of_direction(RefinementLevel next, const RunContext& conte
   return next;
 }
 
-/// Queues entries of one direction (`members`) that must be computed again after the refinement level `last`. If many
-/// miss the tolerance, queues all of them, with interpolation. Otherwise queues only those that miss it, without
-/// interpolation.
+/// Queues entries of a direction (`members`) for the next refinement levels. If many miss the tolerance, queues all
+/// entries, with interpolation. Otherwise queues only those that miss it, without interpolation.
 void queue_refinement(const RunContext& context, const SceneEntries& part, const RefinementLevel& last,
                       std::span<const std::size_t> members, std::span<const PointResult> results,
                       EntriesByLevel& by_level) {
@@ -252,7 +247,7 @@ FirstResults first_results(const RunContext& context, const SceneEntries& part, 
   return first;
 }
 
-/// Computes again the entries that miss the tolerance. `progress` counts the whole part as done, but can still cancel.
+/// Computes again the entries that miss the tolerance. `progress` counts them as done, but can still cancel.
 void refine(const RunContext& context, const SceneEntries& part, FirstResults& first, const Progress& progress) {
   const Progress is_wanted = [&](std::size_t, std::size_t) { return progress(1, 1); };
   const std::size_t entries_per_direction = part.is_grid() ? part.entries_per_direction() : 1;
@@ -293,8 +288,7 @@ std::vector<PointResult> recompute_for_check(const RunContext& context, const Sc
   return computed_at(context, {part, positions}, check_level(first), none);
 }
 
-/// Converts positions in the whole table (`checked`) to positions in `part`, for entries that are in it and have
-/// moments.
+/// Converts positions of entries in the table (`checked`) to positions in `part`. Skips entries without moments.
 std::vector<std::size_t> positions_in(const RunContext& context, const SceneEntries& part,
                                       std::span<const std::size_t> checked) {
   std::vector<std::size_t> positions;

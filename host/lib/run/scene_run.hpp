@@ -48,7 +48,6 @@ class Sink {
 
 class CollectedResults final : public Sink {
  public:
-  /// `entries` must outlive the object.
   explicit CollectedResults(const SceneEntries& entries) : entries_(entries) {}
   void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary& so_far) override;
   std::vector<PointResult> take() { return std::move(results_); }
@@ -94,7 +93,6 @@ class Run {
   const EffectPlan& plan() const { return outcome_.plan; }
   /// Describes the evaluator and its work. If the run needs no evaluator, the device and the other texts are "none".
   const EvaluationReport& evaluation() const { return outcome_.evaluation; }
-  /// The parts of the entries. The run computes them one after another to limit its memory.
   std::vector<SceneEntries> parts() const;
 
   /// Computes all parts and passes their results to `sink`. Results that miss the tolerance are computed again.
@@ -116,14 +114,13 @@ class Run {
 
 std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spectral_samples);
 
-/// The number of wavelengths at which an entry is computed. If bands, materials or films differ in it, the largest
-/// number.
+/// Largest number of wavelengths at which an entry is computed, over all bands, materials and films.
 std::size_t spectral_samples(const SceneValues& scene, const SceneEntries& entries);
 
-/// Calls progress(0, total), unless `progress` is empty. For use when all inputs are read. Errors: Cancelled.
+/// Calls progress(0, total), unless `progress` is empty. Errors: Cancelled.
 void report_start(const Progress& progress, std::size_t total);
 
-/// Does the work of Run::compute for a given plan and evaluator. The evaluator may be null if the plan needs none.
+/// Does what Run::compute does, with a given plan and evaluator. The evaluator may be null if the plan needs none.
 RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
                      ModelEvaluator* evaluator, Sink& sink, const Progress& progress);
 

@@ -17,8 +17,7 @@
 namespace dolp {
 namespace {
 
-/// The material that a table stores. If the table has an axis of wavelengths, it stores all rows of the material's
-/// file.
+/// The material that a table stores. If the table has an axis of wavelengths: with all rows of its file.
 const Material& recorded_material(const Axes& axes, const SceneValues& scene) {
   const Material& material = scene.surface.material;
   return material.tabulated && !axes[Axis::kWavelength].empty() ? *material.tabulated : material;

@@ -40,7 +40,6 @@ struct RunRecord {
   std::vector<Attribute> attributes(const std::string& command_line) const;
 };
 std::vector<Attribute> attributes_of(const SceneValues& scene, const RunOutcome& run, const std::string& command_line);
-/// The value of the attribute "history": the time and the command line.
 std::string history_text(const std::string& command_line);
 
 /// Describes the quadrature and the interpolation in words, for reports and the attribute "rule".

@@ -64,7 +64,6 @@ std::vector<TableBox> boxes_of(const SceneEntries& entries, const std::vector<Sc
   return boxes;
 }
 
-/// A sink that writes each part to the table file while the next part is computed.
 class TableSink final : public Sink {
  public:
   TableSink(const SceneEntries& entries, const TableLayout& layout, TableOutput& output)
@@ -129,7 +128,6 @@ std::string text_of(const TableHead& head, const char* name) {
   return text ? *text : "";
 }
 
-/// The value of a numeric attribute; 0 if the table lacks the attribute or if it is negative.
 double number_of(const TableHead& head, const char* name) {
   const auto* number = find_attribute<double>(head, name);
   return number && *number >= 0.0 ? *number : 0.0;

@@ -40,13 +40,11 @@ class ShardSet {
   /// Errors: InputError that names a missing shard, a duplicate, or a shard of another table; errors of TableReader.
   explicit ShardSet(const std::vector<std::string>& paths);
 
-  /// Joins the shards into one table. Returns the number of its entries. Errors: those of the constructor; of
-  /// TableOutput.
+  /// Joins the shards into one table. Returns the number of its entries. Errors: of TableReader and TableOutput.
   std::size_t merge(const std::filesystem::path& path, const std::string& command_line) const;
 
  private:
   void begin(const TableReader& first, const std::string& path);
-  /// The number of an open shard. Throws InputError if the shard does not belong to this table.
   std::size_t checked_number(const TableReader& reader, const std::string& path) const;
 
   SceneValues scene_;

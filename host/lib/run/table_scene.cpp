@@ -40,7 +40,6 @@ SpectralTable checked_table(const Curve& curve, const NamedValue& value, const s
   return table;
 }
 
-/// The data of the scene that its table stores: n, k, E0, films, reflectances and sky.
 KnownData known_data(const TableHead& table, const std::string& name) {
   const std::string where = name + ": ";
   KnownData known;

@@ -39,8 +39,7 @@ SceneValues table_scene(const TableHead& table, const std::string& name, NamedDa
 double scene_position(const TableHead& table, Axis axis, double value, const SceneValues& scene,
                       const std::string& name);
 
-/// Converts the values on all axes with labels to positions in the scene's lists of labels. Errors: InputError that
-/// begins with `name` if the scene lacks a label.
+/// Converts the values on all axes with labels to positions in the scene's lists. Errors: as scene_position().
 void use_scene_labels(TableHead& table, const SceneValues& scene, const std::string& name);
 
 /// The n and k of materials as CSV, with the columns number (from 1), quantity (name, n, k or formula), wavelength_um
@@ -51,13 +50,11 @@ std::string materials_text(const std::vector<const Material*>& materials, bool h
 std::string coating_text(const Surface& surface, bool has_wavelength_axis);
 std::string axis_materials_text(const SceneModel& scene, bool has_wavelength_axis);
 
-/// Reads a text that materials_text() wrote. Errors: InputError that begins with `name`.
 std::vector<std::optional<Material>> parse_materials(const std::string& text, const std::string& name);
 
 /// The measured reflectances of a surface, in the format of read_reflectance_file(). Empty if the surface has none.
 std::string reflectance_text(const Surface& surface);
 
-/// The number of a dispersion formula and its coefficients, separated by spaces.
 std::string formula_text(const Dispersion& formula);
 
 Dispersion parse_formula(const std::string& text, const std::string& where);

@@ -43,7 +43,7 @@ struct PointIntegral {
   std::vector<double> breaks;  ///< wavelengths in um at which the integrand is not smooth
   std::vector<BandPiece> intervals;
   std::size_t first_new = 0;  ///< position of the first interval that is not integrated yet
-  PointResult last;  ///< result at the wavelength that was computed last, for values that are not integrated
+  PointResult last;           ///< result at the wavelength that was computed last, for values that are not integrated
 };
 
 std::vector<double> band_breaks_um(const SceneModel& scene) {
@@ -80,8 +80,7 @@ Integrals integrand(const PointResult& at, double weight) {
   return value;
 }
 
-/// A node of the quadrature: its offset in an interval (-1 to 1), and its weights in the Kronrod rule and the Gauss
-/// rule.
+/// A node of the quadrature: its offset in an interval (-1 to 1), and its Kronrod and Gauss weights.
 struct KronrodNode {
   double offset;
   double kronrod;

@@ -74,7 +74,6 @@ double relative(double error, double value) {
   return value > 0.0 ? error / value : kInfinity;
 }
 
-/// Error bound of a quotient of two stored values that have errors.
 double quotient_error(double above_error, double quotient, double below, double below_error) {
   const double margin = std::abs(below) - below_error;
   return margin > 0.0

@@ -21,7 +21,7 @@ struct StoredCase {
   SlopeShape shape;
   OpticalConstants index;
   Moments moments;     ///< reference moments, times cos(theta), with bounds of their errors
-  std::string name;  ///< name of the case, which all distributions and maskings share
+  std::string name;    ///< name of the case, which all distributions and maskings share
   std::string origin;  ///< source of the reference moments
 };
 
@@ -43,7 +43,6 @@ struct ErrorCheck {
   /// The part of `error` that the reference does not explain, over `estimate`. Above 1, the stated bound is wrong.
   double ratio() const;
   bool is_within_estimate() const { return ratio() <= 1.0; }
-  /// True if the true error certainly exceeds the tolerance.
   bool is_above(double tolerance) const { return error > tolerance + reference; }
 };
 
@@ -53,8 +52,7 @@ struct CaseOutcome {
   ErrorCheck dolp;             ///< absolute error of DOLP
   bool promises_dolp = false;  ///< the accuracy of the DOLP is known
   std::uint32_t status = 0;
-  /// What is wrong: an error above its stated bound, or a missed tolerance without its status bit. Empty if all is
-  /// right.
+  /// What is wrong: an error above its bound, or a missed tolerance without its status bit. Empty if nothing.
   std::string complaint;
   double worst_ratio() const;
   bool misses_tolerance() const { return (status & kAnyToleranceNotMet) != 0; }

@@ -226,7 +226,7 @@ class DOLP_EXPORT Evaluator {
   /// Reads geometries from a CSV, computes Mueller matrices and writes a CSV like that of write_points.
   Report write_mueller(const Scene& scene, const std::filesystem::path& points, const std::filesystem::path& path,
                        const RunOptions& options = {});
-  /// Fits numbers of the scene to measured data and computes profile-likelihood intervals. Errors: also IoError.
+  /// Fits numbers of the scene to measured data and computes profile-likelihood intervals. This call may throw IoError.
   Fit fit(const Scene& scene, const std::vector<MeasuredData>& data, const FitOptions& options);
 
  private:

@@ -72,7 +72,7 @@ inline constexpr double kFirstProbe = 0.01;   // 1411, 1421, 1415
 /// Other branches of a valley are searched at this share of the interval's width beyond an end of the interval.
 inline constexpr double kBeyond = 0.02;  // 1425, 1421, 1410
 /// A point beyond an end of an interval lies on another branch if its growth is below this share of the growth at the
-/// end. Proved: by kRootTolerance, the growth at the end can be too small only by the share 0.01.
+/// end. Proved: kRootTolerance allows the growth at the end to be too small by a share of 0.01 at most.
 inline constexpr double kClearlyLower = 0.97;  // 1421, 1421, 1793
 
 /// A descent to a grid point of the contours ends when derivatives predict a decrease below this times the scale.

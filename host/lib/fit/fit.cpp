@@ -196,7 +196,7 @@ class Fit {
 
   bool has_scale() const { return model_.has_uncertainties() || freedom() > 0; }
 
-  /// A guess before the search of the scale (rise of the objective one standard deviation from a minimum): 1 with
+  /// The scale (rise of the objective one standard deviation from a minimum) as guessed before the search: 1 with
   /// uncertainties, otherwise the square of a hundredth of the largest measured value.
   double guess_scale() const {
     if (model_.has_uncertainties()) return 1.0;

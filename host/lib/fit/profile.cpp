@@ -114,7 +114,8 @@ class Side {
     for (; !is_done(); ++rise_) ends_[rise_] = coordinate(distance);
   }
 
-  /// The distance where a secant reaches wanted(): through the points around it or, if all are lower, the last two.
+  /// The distance where a line through two points meets wanted(): the points around it or, if all lie below, the last
+  /// two.
   double next_distance() const {
     if (points_.size() == 1) return first_distance();
     const PointPosition above = first_above();

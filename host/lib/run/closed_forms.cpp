@@ -42,7 +42,7 @@ double critical_angle(const FacetOptics& optics) {
 constexpr double kHorizon_deg = 90.0;
 constexpr double kMirrorSpread_deg = 2.0 * kMirrorSlope * 180.0 / std::numbers::pi;  // spread of the reflected rays
 
-/// Adds the moments with the functions in `sky`, for rays that leave within `spread_deg` of the zenith `zenith_deg`.
+/// Adds the moments with the functions of the sky, for rays that leave within `spread_deg` of the zenith `zenith_deg`.
 void add_sky(Moments& moments, const SkyBasis& sky, double zenith_deg, double spread_deg) {
   const Eigen::RowVectorXd at = sky.at(zenith_deg);
   const Eigen::RowVectorXd above = sky.at(std::max(zenith_deg - spread_deg, 0.0));

@@ -39,7 +39,7 @@ std::vector<std::uint32_t> compact_used_values(const std::vector<double>& values
   return positions;
 }
 
-// Chosen. Smallest number of entries per index for which responses pay, because the sums for an index cost work too.
+// Chosen. Fewest entries per index for which responses are used, because the sums for an index cost time too.
 constexpr std::size_t kLeastEntries = 24;
 // Responses cover all combinations of direction, slope distribution and index. Points need only some of these. The run
 // uses responses if there are at most so many times more combinations than moments to compute.

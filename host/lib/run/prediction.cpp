@@ -35,7 +35,7 @@ SceneEntries entries_of_drawn_directions(const SceneEntries& grid, bool has_resp
 /// The work of all requests for moments, or of all requests for beams. Those of the first refinement level come first.
 struct Count {
   std::size_t first_requests = 0;  ///< number of requests of the first level that are still to come
-  std::size_t first = 0;           ///< number of moments or beams in the first level
+  std::size_t first = 0;           ///< number of moments or beams in the first refinement level
   std::size_t again = 0;
   double first_evaluations = 0.0;
   double again_evaluations = 0.0;

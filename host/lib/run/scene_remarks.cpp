@@ -22,7 +22,7 @@ constexpr double kHotSky = 2.0;  // a sky hotter than this times the surface tem
 constexpr double kGapRatio = 2.0;
 constexpr double kNoGapRatio = 1.5;
 constexpr double kUsualSpacings = 10.0;
-// Rows are coarse from this CoarseRows::change. Reflectances below kLeastPart count as kLeastPart in it.
+// Rows are coarse if CoarseRows::change is at least kCoarseChange. The divisor in it is at least kLeastPart.
 constexpr double kCoarseChange = 0.05;
 constexpr double kLeastPart = 0.01;
 
@@ -47,7 +47,7 @@ double least_gap_ratio(const std::vector<double>& wavelength_um) {
   return std::clamp(std::exp(kUsualSpacings * *median), kNoGapRatio, kGapRatio);
 }
 
-/// The widest gap between rows of a file that holds used wavelengths. A straight line bridges it.
+/// The widest gap between rows of a file in which the scene uses wavelengths. A straight line bridges it.
 std::optional<Interval> bridged_gap(const SpectralTable& table, const std::vector<Interval>& used) {
   const std::vector<double>& um = table.wavelength_um;
   if (um.size() < 2 || table.formula.number != 0) return std::nullopt;

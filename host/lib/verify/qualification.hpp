@@ -1,4 +1,4 @@
-// Compares reference moments that are stored in a file with the moments of an evaluator, and the DOLP of both.
+// Compares stored reference moments with the moments of an evaluator, and the DOLP of both.
 #pragma once
 
 #include <cstdint>

@@ -44,7 +44,7 @@ auto interruptible(const Body& body) {
       const py::gil_scoped_release end_of_call;
       result.wait();
     }
-    throw interrupt;  // the object must exist before the call ends
+    throw interrupt;  // made before the call ended, because it holds the exception that Python has set
   }
   return result.get();
 }
@@ -286,7 +286,7 @@ py::tuple responses_of(const dolp::TableValues& table) {
 
 std::vector<double> vector_of(const Array& values) { return {values.data(), values.data() + values.size()}; }
 
-/// The names of materials and bands that the numbers in a column of points mean, by the name of the column.
+/// For each column of points that has numbers of materials or bands: the names that these numbers mean.
 py::dict labels_of(const dolp::AxisLabels& labels) {
   py::dict all;
   for (const dolp::Axis axis : dolp::kAllAxes) {

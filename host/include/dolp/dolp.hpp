@@ -75,7 +75,7 @@ class DOLP_EXPORT Scene {
   /// Reads a scene file (TOML); "-" is stdin. Applies the settings in their order.
   /// Errors: InputError with file, line, key, value and allowed range.
   static Scene from_file(const std::filesystem::path& path, const std::vector<Setting>& settings = {});
-  /// Reads a scene from text. Its files are in the folder of the path `name`, with which error messages begin too.
+  /// Reads a scene from text. Error messages begin with the path `name`; files in the text are relative to its folder.
   static Scene from_text(const std::string& text, const std::vector<Setting>& settings = {},
                          const std::string& name = "scene");
   /// A copy in which a key has another value, for example with("surface.sigma", 0.2). Errors: InputError.
@@ -98,7 +98,7 @@ class DOLP_EXPORT Scene {
   std::optional<double> number(std::string_view key) const;
   /// Like number(), for a key with a word, a text or a flag ("true", "false"). Empty also if the text is empty.
   std::optional<std::string> word(std::string_view key) const;
-  /// The values of a key with an axis or a pair of numbers; empty if the scene lacks the key.
+  /// The values of a key that has an axis or a pair of numbers. Empty if the scene lacks the key.
   std::vector<double> numbers(std::string_view key) const;
   /// The names of the materials and bands in [grid]. Columns of points choose among them by positions in these lists.
   const AxisLabels& labels() const;
@@ -119,7 +119,7 @@ class DOLP_EXPORT Scene {
   std::shared_ptr<const Impl> impl_;
 };
 
-/// Settings that remove a scene's material, radiation and all else on which a response table does not depend.
+/// Settings that remove all on which a response table does not depend, such as the material and the radiation.
 DOLP_EXPORT std::vector<Setting> surface_settings();
 
 /// The text of an example scene: bare stainless steel at 10.6 um.
@@ -183,7 +183,8 @@ class DOLP_EXPORT Table {
 struct Fit : FitNumbers {
   Report report;             ///< report on parameters, intervals, correlations, minima and residuals
   bool has_minimum = false;  ///< true if any descent of the fit converged to a minimum
-  Scene scene;               ///< scene with the best compared words and the fitted values; unchanged without a minimum
+  Scene scene;  ///< scene with the best of the compared words and with the fitted values; unchanged if has_minimum is
+                ///< false
 };
 
 /// An Evaluator computes results. It sets up the device and kernels at first need, and keeps them until its
@@ -225,7 +226,7 @@ class DOLP_EXPORT Evaluator {
   /// Reads geometries from a CSV, computes Mueller matrices and writes a CSV like that of write_points.
   Report write_mueller(const Scene& scene, const std::filesystem::path& points, const std::filesystem::path& path,
                        const RunOptions& options = {});
-  /// Fits numbers of the scene to measured data and computes profile-likelihood intervals. Errors: also IoError.
+  /// Fits numbers of the scene to measured data and computes profile-likelihood intervals. This call may throw IoError.
   Fit fit(const Scene& scene, const std::vector<MeasuredData>& data, const FitOptions& options);
 
  private:
@@ -243,10 +244,10 @@ DOLP_EXPORT Report write_lookup(const std::filesystem::path& table, const std::f
 DOLP_EXPORT Report merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& path,
                          const std::string& history = {});
 
-/// All effects for these points, in the order of a scene file. The CPU computes their influences with tolerance 1e-3.
+/// All effects of the scene, and what a run at these points does with them. Effect::influence has the tolerance 1e-3.
 DOLP_EXPORT std::vector<Effect> effects(const Scene& scene, const std::vector<Column>& points, bool keep_all = false);
 
-/// For a table over the scene's grid: the kept and dropped effects with reasons, and the cost as estimated on the CPU.
+/// The effects that a table over the scene's grid keeps or drops, with reasons, and the cost as estimated on the CPU.
 DOLP_EXPORT Report plan(const Scene& scene, const std::string& device = {}, bool keep_all = false);
 
 /// Checks a table file: computes some of its entries again by adaptive quadrature, which shares no formula with the

@@ -10,7 +10,7 @@ enum class EffectState : std::uint8_t {
   kAbsent,     ///< the scene does not have the effect
   kKept,       ///< computed
   kDropped,    ///< the run leaves the effect out, because a bound shows that the result hardly changes
-  kNotNeeded,  ///< a choice of the model on which no kept effect depends
+  kNotNeeded,  ///< the effect is a choice of the model, and no kept effect depends on it
 };
 
 constexpr const char* name_of(EffectState state) {
@@ -35,11 +35,11 @@ struct Effect {
   std::string name;
   EffectState state = EffectState::kKept;
   std::string reason = {};
-  std::string needs = {};         ///< what must be computed for the effect, in words; empty if the effect is not kept
+  std::string needs = {};  ///< what the run must compute for the effect, in words; empty if the effect is not kept
   std::optional<Part> part = {};  ///< contribution that the effect adds; empty for choices of the model
-  /// For a dropped effect: bound of the change of (Q/I, U/I) because the effect is dropped, at the worst entry.
+  /// For a dropped effect: bound of the change of (Q/I, U/I) that dropping it causes, at the worst entry.
   std::optional<double> bound = {};
-  /// For a kept effect: the largest change of (Q/I, U/I) at a few entries if the effect were dropped.
+  /// For a kept effect: the largest change of (Q/I, U/I) that dropping it would cause at a few examined entries.
   std::optional<double> influence = {};
 };
 

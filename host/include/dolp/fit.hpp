@@ -83,8 +83,8 @@ DOLP_EXPORT const std::vector<std::string>& loss_names();
 enum class ModelError {
   kNone,
   /// At each point the truth may lie anywhere between the two ends of the model's bracket (emission.bracket). A
-  /// residual is the distance of the measured value to the bracket. An interval contains the values of a parameter for
-  /// which chi^2, not its growth, is below its quantile with as many degrees of freedom as there are points.
+  /// residual is the distance of the measured value to the bracket. An interval contains the parameter's values at
+  /// which chi^2 itself is below the quantile of its distribution; the degrees of freedom are the number of points.
   kBracket,
 };
 
@@ -111,7 +111,7 @@ struct FitOptions {
 /// exclude. `low` or `high` is empty if the data do not exclude the values up to that end of the parameter's range.
 struct FitInterval {
   std::optional<double> low, high;
-  /// The pieces of the interval in ascending order: several if the data exclude values in its middle.
+  /// The pieces of the interval in ascending order. There are several if the data exclude values between them.
   std::vector<std::pair<std::optional<double>, std::optional<double>>> pieces = {};
   bool is_empty = false;  ///< the data exclude all values, even with the model's bracket
 };
@@ -119,7 +119,7 @@ struct FitInterval {
 struct FitParameter {
   std::string key;
   double value = 0.0;
-  std::optional<double> standard_error;  ///< from the covariance with the parameters at a bound held fixed
+  std::optional<double> standard_error;  ///< from the covariance matrix; parameters at a bound are held fixed
   /// Intervals at 68.27 % and 95 %. Their ends are empty if the data have no uncertainties and no degrees of freedom.
   FitInterval interval_68, interval_95;
   /// Only if the fit is doubtful or bad: the intervals with all uncertainties multiplied by sqrt(reduced chi^2).

@@ -24,7 +24,7 @@ struct EvaluatorOptions {
   std::string evaluator = "vulkan";  ///< vulkan, cpu (kernel source compiled as C++) or reference (adaptive quadrature)
   /// For the evaluator "vulkan": position in devices(), or a part of the name of a device. Empty means the best device.
   std::string device = {};
-  /// Makes dispatches short. So a call ends soon after Progress returns false, and other programs can draw meanwhile.
+  /// Makes dispatches short. Then a call ends soon after Progress returns false, and other programs can draw meanwhile.
   bool is_interactive = false;
 };
 

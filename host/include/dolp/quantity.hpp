@@ -28,7 +28,7 @@ enum class Quantity : std::uint8_t {
   kRhoI,         ///< reflectance, with the specular weight k_s and the diffuse part
   kRhoQ,         ///< polarised part of the reflectance, with k_s and the diffuse part
   kAlbedo,       ///< A(theta): specular reflectance if all facets reflect perfectly, without the weight k_s
-  kEmissivityS,  ///< emissivity in the computed emission; over a band a mean weighted by pi B(T)
+  kEmissivityS,  ///< emissivity that the emission model gives; over a band, its mean with the weight pi B(T)
   kEmissivityP,
   kDolpLow,  ///< kDolpLow and kDolpHigh bound the DOLP that all bounces of light would give
   kDolpHigh,
@@ -55,7 +55,7 @@ struct QuantityDescription {
   const char* ancillary;  ///< names of the variables with the quantity's error bound and status; "" if none
   QuantityNeeds needs;
 
-  /// True if results at points lack this column when the scene does not meet `needs`.
+  /// True if results at points omit the quantity when the scene lacks what the quantity needs.
   constexpr bool is_optional() const { return needs == QuantityNeeds::kEmission || needs == QuantityNeeds::kBracket; }
 };
 

@@ -11,14 +11,12 @@
 namespace dolp {
 
 /// A variable of a response table. The table has weights at local angles of incidence beta. Let R = (R_s + R_p) / 2 and
-/// D = (R_s - R_p) / 2 be reflectances of a facet at beta. Sums over beta of weights times R or D are the moments for
-/// k_s = 1 without a diffuse part.
-/// Accuracy: let x = 2 asinh(cos(beta) / c0) / asinh(1 / c0) - 1, where c0 is an attribute of the table. Interpolate R
-/// (for emission 1 - R) at the angles beta by a sum of Chebyshev polynomials T_m(x), m < beta.size(), with the
-/// coefficients a_m. Interpolate D / sin^2(beta) in the same way, with the coefficients b_m. Let h be the largest of
-/// all 2^m |a_m| and 2^m |b_m|. For bare materials h is 0.7 to 1.3, and more if total reflection begins at some beta.
-/// The error of a sum is at most response_error times h. To this adds an error because R and D differ from their
-/// interpolation between the angles beta: at most the largest difference times the albedo (for emission times 1).
+/// D = (R_s - R_p) / 2 be reflectances of a facet at beta. Sums over beta of weights times R or D are rho_I or rho_Q of
+/// a surface with the specular weight k_s = 1 and no diffuse part.
+/// Accuracy: the error of a sum has two parts. One is at most response_error times a number h, which follows from R and
+/// D as host/programs/cli/README.md explains. For bare materials h is 0.7 to 1.3, and more if total reflection begins
+/// at some beta. The other part arises because R and D are known only at the angles beta: it is at most the largest
+/// difference between R or D and their interpolation, times the albedo (for emission times 1).
 enum class ResponseVariable : std::uint8_t { kResponseI, kResponseQ, kEmissionI, kEmissionQ, kResponseError };
 inline constexpr std::size_t kResponseVariableCount = static_cast<std::size_t>(ResponseVariable::kResponseError) + 1;
 

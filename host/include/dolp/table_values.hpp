@@ -41,7 +41,7 @@ struct TableHead {
   Curve index_k;
   Curve irradiance;                         ///< E0 before multiplication by source.scale
   std::string stokes_units = "W m-2 um-1";  ///< for UDUNITS; "W m-2" over a band, with " sr-1" if bistatic
-  /// Attributes in the order of the file. A file has further ones, which only Table::file_attributes() returns.
+  /// Attributes in the order of the file. The file has more attributes, which only Table::file_attributes() returns.
   std::vector<Attribute> attributes;
 
   /// Number of values of each axis, 1 for an axis that the table lacks.

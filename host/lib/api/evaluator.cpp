@@ -45,7 +45,6 @@ ReportBuilder response_report(const SceneValues& scene, const TableHead& head, c
   return report;
 }
 
-/// Applies surface_settings() to a scene, unless they are already the last settings of the scene.
 SceneValues surface_of(const SceneValues& scene) {
   const std::vector<Setting> settings = surface_settings();
   const auto last = std::span(scene.settings).last(std::min(scene.settings.size(), settings.size()));
@@ -88,7 +87,7 @@ Evaluator::Evaluator(Evaluator&&) noexcept = default;
 Evaluator& Evaluator::operator=(Evaluator&&) noexcept = default;
 
 Evaluator::~Evaluator() {
-  // A forked process lacks the threads of the Vulkan driver, and the device's destructor would wait for them forever.
+  // A forked process lacks the threads of the Vulkan driver. The destructor of the device would wait for them forever.
   if (impl_ && impl_->owner != getpid()) static_cast<void>(impl_.release());
 }
 

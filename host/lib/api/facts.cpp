@@ -25,7 +25,7 @@
 namespace dolp {
 namespace {
 
-/// The precisions in which to check. If "auto" omits a precision, sets `left_out` to the reason.
+/// The precisions to check. If "auto" leaves a precision out, sets `left_out` to the reason.
 std::vector<Precision> precisions_of(const DeviceCheckOptions& options, std::string& left_out) {
   const std::optional<Precision> wanted = named<Precision>(options.precision);
   if (!wanted) throw InputError("precision " + one_line(options.precision) + ": must be auto, float or double");

@@ -27,7 +27,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Reads the points of a file, without columns of results. Refuses an `output` that would overwrite any of the inputs.
+/// Reads the points in a file, without columns of results. Errors: InputError if `output` would overwrite an input.
 Points load_points(const std::filesystem::path& path, PointsKind kind, std::vector<std::string> inputs,
                    const std::filesystem::path& output) {
   inputs.push_back(path.string());
@@ -52,7 +52,6 @@ void add_left_out(ReportBuilder& report, const Points& points) {
   report.value("left_out", points.left_out);
 }
 
-/// A CSV for results. Each line begins with the cells of a point as they stand in the file of the points.
 ResultCsv csv_of(const std::filesystem::path& path, const Points& points, const Quantities& quantities) {
   return {path, points.header, quantities,
           [&points](std::string& text, std::size_t row) { (text += points.rows[row]) += ','; }};

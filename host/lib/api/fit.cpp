@@ -60,7 +60,7 @@ void check_comparison(const Comparison& comparison, const FitOptions& options) {
   }
 }
 
-/// All combinations of the words in FitOptions::compare, each as a list of settings. If it is empty, one empty list.
+/// All combinations of the words in FitOptions::compare, as lists of settings. Without words, one empty list.
 std::vector<Settings> combinations(const FitOptions& options) {
   std::vector<Settings> all = {{}};
   for (const Comparison& comparison : options.compare) {
@@ -115,7 +115,6 @@ void check_outputs(const FitOptions& options, const SceneValues& scene, const st
   }
 }
 
-/// The zenith angles for the model's curves in a picture: from the smallest to the largest one of the data.
 std::vector<double> fine_zeniths(const MeasuredData& data) {
   constexpr int kSteps = 120;
   const auto [least, largest] = std::ranges::minmax(data.measurements, {}, &Measurement::theta_deg);
@@ -127,7 +126,7 @@ std::vector<double> fine_zeniths(const MeasuredData& data) {
 }
 
 /// The values of the fitted model at the measurements. With `error` kBracket: the values in the bracket that are
-/// nearest to the measured ones. Empty if the scene has no bracket or, for this data set, refuses an end of a range.
+/// nearest to the measured values. Empty if this data set and its scene allow no model.
 std::vector<double> model_values(const Best& best, MeasuredData data, const FitOptions& options, ModelError error,
                                  ModelEvaluator& evaluator) {
   const std::size_t count = data.measurements.size();
@@ -148,8 +147,8 @@ struct Bracketed {
   double model, low, high;
 };
 
-/// The quantity of one data set at these zenith angles, with its bracket. Empty if the scene has no bracket, if the
-/// data are emissivities, or if the measurements have their own wavelengths.
+/// The quantity that a data set contains, at these zenith angles, with its bracket. Empty if the scene has no bracket,
+/// or if the data are emissivities or have wavelengths.
 std::vector<Bracketed> bracketed(const Best& best, MeasuredData data, const std::vector<double>& theta_deg,
                                  const FitOptions& options, ModelEvaluator& evaluator) {
   const Measurement first = data.measurements.front();
@@ -184,7 +183,7 @@ Json brackets(const Best& best, const FitOptions& options, ModelEvaluator& evalu
   return all;
 }
 
-/// The model against the zenith angle: a curve for each data set, quantity and wavelength.
+/// The curves of the model against the zenith angle: one for each data set, quantity and wavelength.
 Json curves(const Best& best, const FitOptions& options, ModelEvaluator& evaluator) {
   Json all = Json::array();
   for (const MeasuredData& data : best.model->data()) {
@@ -208,7 +207,6 @@ Json curves(const Best& best, const FitOptions& options, ModelEvaluator& evaluat
   return all;
 }
 
-/// Adds to the report how wrong the model itself may be: the largest distance from the fit to an end of its bracket.
 void add_model_gap(ReportBuilder& report, const Best& best, const FitOptions& options, ModelEvaluator& evaluator) {
   std::optional<double> gap, share;
   for (const MeasuredData& data : best.model->data()) {
@@ -230,8 +228,8 @@ void add_model_gap(ReportBuilder& report, const Best& best, const FitOptions& op
   report.value("model_gap_in_uncertainties", share);
 }
 
-/// Fits the scene with each combination of compared settings that it accepts. Adds all combinations to `models`, the
-/// best first. `begin` makes the evaluator for the first scene. Errors: InputError if the scene accepts no combination.
+/// Fits the scene with each combination of compared settings. Adds all combinations to `models`, the best first.
+/// `begin` makes the evaluator for the first scene. Errors: InputError if the scene refuses all combinations.
 Best best_of(std::vector<ComparedModel>& models, const SceneValues& scene, const std::vector<MeasuredData>& data,
              const FitOptions& options, const std::function<ModelEvaluator*(const SceneValues&)>& begin) {
   ModelEvaluator* evaluator = nullptr;

@@ -30,7 +30,7 @@ struct Scene::Impl {
 
 struct Table::Impl {
   Impl(TableValues values, std::string of_messages) : table(std::move(values)), name(std::move(of_messages)) {}
-  /// The object that looks up points in the table; the first call makes it. Errors: of table_scene and TableLookup.
+  /// The object that looks up points. The first call makes it. Errors: errors of table_scene and TableLookup.
   const TableLookup& lookup() const;
 
   const TableValues table;
@@ -48,11 +48,10 @@ std::vector<std::string> files_of(const SceneValues& scene);
 /// Refuses an output file that would overwrite an input file; "-" (stdin, stdout) is no file. Errors: InputError.
 void check_output_is_no_input(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
-/// Results at points. `head`: head of the table of a run over the points, or of the table where they were looked up.
+/// Results at points. `head` is the head of the table of the run, or of the table in which the points were looked up.
 Results results_of(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head);
 
-/// Makes points from columns. A column with one value has this value at all points. Errors: InputError for a column
-/// with an unknown name, another number of values, or a value out of range.
+/// Makes points from columns. A column with one value has it at all points. Errors: InputError for a wrong column.
 Points points_of_columns(const std::vector<Column>& columns, PointsKind kind);
 
 /// Refuses Vulkan in a process that was forked from one that has used Vulkan. A fork does not copy the threads of the
@@ -66,7 +65,7 @@ std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, b
 struct Evaluator::Impl {
   explicit Impl(EvaluatorOptions given) : options(std::move(given)) {}
 
-  /// The evaluator for a run, with an empty report. It has double precision if the scene needs it.
+  /// Makes the evaluator ready for a run, with an empty report. It has double precision if the scene needs it.
   ModelEvaluator* begin(const SceneValues& scene) {
     const bool needs_double = scene.accuracy.precision == Precision::kDouble;
     if (evaluator && (evaluator->has_double() || !needs_double)) {
@@ -80,8 +79,8 @@ struct Evaluator::Impl {
     return [this, &scene] { return begin(scene); };
   }
 
-  /// Calls `body` with the scene and the options of the call, while no other thread uses this object. After a
-  /// DeviceError the evaluator is not used again. Errors: InputError if the call comes from a callback of this object.
+  /// Calls `body` while no other thread uses this object. After a DeviceError, the next call makes a new evaluator.
+  /// Errors: InputError if the call comes from a callback of this object.
   template <class Options, class Body>
   auto exclusively(const Scene& scene, Options of_call, const Body& body) {
     if (in_callback == std::this_thread::get_id())
@@ -98,7 +97,7 @@ struct Evaluator::Impl {
     }
   }
 
-  /// Wraps a callback so that exclusively() refuses calls from inside the callback, which would wait forever.
+  /// Wraps a callback, so that exclusively() refuses calls from inside the callback instead of waiting forever.
   template <class Result, class... Arguments>
   std::function<Result(Arguments...)> guard_reentry(const std::function<Result(Arguments...)>& callback) {
     if (!callback) return callback;

@@ -15,7 +15,6 @@ namespace {
 
 using Type = Key::Type;
 
-/// The value of a key in a scene. Errors: InputError if the key is unknown or has none of `types`.
 std::optional<KeyValue> value_of(const SceneValues& scene, std::string_view key, std::initializer_list<Type> types) {
   const SceneKey* const known = find_scene_key(key);
   if (!known) {

@@ -14,7 +14,7 @@
 namespace dolp::fit {
 namespace {
 
-using GridNode = std::pair<int, int>;  // numbers of steps along both axes from the best minimum to a node
+using GridNode = std::pair<int, int>;  // position of a node: steps along both axes from the best minimum
 
 std::optional<std::array<Eigen::Index, 2>> most_correlated(const Eigen::MatrixXd& correlation) {
   const auto strength_of = [](double r) { return std::isnan(r) ? 0.0 : 1.0 + std::abs(r); };
@@ -24,7 +24,6 @@ std::optional<std::array<Eigen::Index, 2>> most_correlated(const Eigen::MatrixXd
   return largest > 0.0 ? std::optional(pair) : std::nullopt;
 }
 
-/// Computes how much the objective exceeds its minimum (the growth) at the nodes of a regular grid.
 class GrowthMap {
  public:
   GrowthMap(const Model& model, ModelEvaluator& evaluator, const FitResult& result, const FitOptions& options,
@@ -49,7 +48,6 @@ class GrowthMap {
   }
 
  private:
-  /// Steps of the first grid: kStepOfDeviation standard deviations along both principal axes of the covariance.
   Eigen::Matrix2d first_steps() const {
     const Eigen::MatrixXd& jacobian = result_.valley_points.front().where.jacobian;
     Eigen::MatrixXd information = jacobian.transpose() * jacobian / result_.scale;
@@ -63,7 +61,7 @@ class GrowthMap {
   Eigen::Vector2d position(const GridNode& node) const {
     return result_.valley_points.front().where.at(pair_) + steps_ * Eigen::Vector2d(node.first, node.second);
   }
-  /// True for a node in the range of both parameters or about a step outside. Nodes outside are moved to the bound.
+  /// True for a node in the range of both parameters, or about one step outside. The latter moves to the bound.
   bool is_near_range(const GridNode& node) const {
     const Eigen::Vector2d at = position(node);
     return (steps_.inverse() * (at - at.cwiseMax(0.0).cwiseMin(1.0))).norm() < 1.5;
@@ -76,7 +74,7 @@ class GrowthMap {
     return neighbour;
   }
 
-  /// Nodes to compute. Each has the known point from which a descent to the node begins.
+  /// The nodes to compute. Each has the known point where its descent begins.
   using Wanted = std::map<GridNode, const Minimum*>;
 
   Wanted first_nodes() const {
@@ -89,7 +87,7 @@ class GrowthMap {
     return wanted;
   }
 
-  /// Nodes still to compute beside computed nodes with low growth. Each begins at its lowest computed neighbour.
+  /// Nodes beside computed nodes with low growth. The descent to each node begins at its lowest computed neighbour.
   Wanted next_nodes() const {
     Wanted wanted;
     for (const auto& [node, point] : nodes_) {
@@ -104,7 +102,7 @@ class GrowthMap {
     return wanted;
   }
 
-  /// Computes nodes until they enclose the higher level. False if this takes more than `most_evaluations` in all.
+  /// Computes nodes until they enclose the outer contour. False if this takes more than `most_evaluations` in all.
   bool spread(std::size_t most_evaluations) {
     for (Wanted wanted = first_nodes(); !wanted.empty(); wanted = next_nodes()) {
       if (residuals_.evaluations() >= most_evaluations) return false;
@@ -117,7 +115,7 @@ class GrowthMap {
     return true;
   }
 
-  /// The growth on a finer grid. Interpolating the residuals between nodes shows valleys that are narrower than a cell.
+  /// The growth on a finer grid. It interpolates residuals, because valleys may be narrower than a cell.
   Contours drawn() const {
     GridNode low, high;
     for (const auto& [node, point] : nodes_) {
@@ -143,7 +141,6 @@ class GrowthMap {
     return contours;
   }
 
-  /// Fills the points of a cell of the finer grid. The first corner of the cell is at this row and column.
   void fill(Contours& contours, Eigen::Index row, Eigen::Index column,
             const std::vector<const Linearisation*>& corners) const {
     for (int i = 0; i <= kPartsOfACell; ++i) {

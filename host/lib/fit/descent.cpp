@@ -8,8 +8,8 @@
 namespace dolp::fit {
 namespace {
 
-/// A loss and its derivative with respect to the squared residual. For normally distributed errors, fits with these
-/// widths of the losses have 95 % of the efficiency of least squares.
+/// A loss and its derivative with respect to the squared residual. With these widths of the losses, fits to normally
+/// distributed errors have 95 % of the efficiency of least squares.
 std::pair<double, double> loss_of(double square, Loss loss) {
   switch (loss) {
     case Loss::kSquares:
@@ -37,13 +37,13 @@ std::pair<double, double> loss_of(double square, Loss loss) {
   return {square, 1.0};
 }
 
-/// True if a coordinate is at its bound, 0 or 1, also if rounding has put it slightly beside the bound.
+/// True if a coordinate is at its bound (0 or 1), perhaps apart from rounding.
 bool is_on_bound(double coordinate) {
   constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
   return coordinate <= kRounding || coordinate >= 1.0 - kRounding;
 }
 
-/// Completes `step`, which has the moves of held coordinates. The others minimise the damped sum of squares in bounds.
+/// Sets the components of `step` not in `held`, to minimise the damped sum of squares within the ranges of parameters.
 Eigen::VectorXd bounded_step(const Linearisation& where, Eigen::VectorXd step, const std::vector<Eigen::Index>& held,
                              double damping, const Eigen::VectorXd& weights) {
   std::vector<Eigen::Index> free;
@@ -57,7 +57,7 @@ Eigen::VectorXd bounded_step(const Linearisation& where, Eigen::VectorXd step, c
     Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
     normal.diagonal().array() += damping;
     step(free) = -principal_axes(normal).inverse() * (jacobian.transpose() * residuals);
-    // A parameter whose step would leave the range goes to its bound. Then the steps of the others are computed again.
+    // A parameter that would leave its range goes to the bound instead. Then the other parameters are computed again.
     const auto leaves = [&](Eigen::Index j) {
       const double to = where.at[j] + step[j];
       if (to >= 0.0 && to <= 1.0) return false;
@@ -69,7 +69,7 @@ Eigen::VectorXd bounded_step(const Linearisation& where, Eigen::VectorXd step, c
   return step;
 }
 
-/// The point `to`, whose residuals are known. Its Jacobian follows from the Jacobian of `near` by Broyden's update.
+/// The point `to` with the Jacobian of `near` after Broyden's update. The residuals of `to` are known.
 Linearisation moved(const Linearisation& near, Linearisation to) {
   to.jacobian = near.jacobian;
   to.steps = near.steps;
@@ -84,19 +84,19 @@ struct Walk {
   Minimum* minimum;
   bool is_stale;        ///< the derivatives were computed at an earlier point
   bool is_updated;      ///< the derivatives were updated from steps
-  double shrink = 2.0;  ///< the next step that fails divides the radius by this
+  double shrink = 2.0;  ///< if the next step fails, it divides the radius by this
   bool is_done = false;
   double promised = 0.0;
   Eigen::VectorXd point = {};
 
-  /// Chooses the next point to try. The descent is done if derivatives promise too small a decrease at that point.
+  /// Chooses the next point to try, or ends the descent if derivatives predict too small a decrease.
   void aim(const DescentOptions& options) {
     const Linearisation& where = minimum->where;
     if (!where.jacobian.allFinite()) minimum->objective = std::numeric_limits<double>::infinity();
     is_done = !std::isfinite(minimum->objective);
     if (is_done) return;
-    // A parameter at its bound stays there until the other parameters are done. The model can be an even function of a
-    // parameter, as of k at k = 0. Then finite differences at the bound promise a decrease that does not exist.
+    // A parameter at its bound stays there until the others are done: if the model is an even function of it (as of k
+    // at k = 0), finite differences at the bound predict a decrease that does not exist.
     std::vector<Eigen::Index> held = minimum->held;
     for (Eigen::Index j = 0; j < where.at.size(); ++j) {
       if (is_on_bound(where.at[j])) held.push_back(j);
@@ -118,8 +118,7 @@ struct Walk {
     is_done = !(promised >= options.least_gain * options.scale) || step.norm() <= kLeastStepLength;
   }
 
-  /// Moves to the tried point if the objective is lower there; otherwise the next step is shorter (Nielsen 1999). The
-  /// damping is Levenberg's: Marquardt's would allow leaps along directions that the data hardly determine.
+  /// Moves to the tried point if the objective is lower there. Otherwise the next step is shorter (Nielsen 1999).
   void judge(Linearisation tried, const DescentOptions& options) {
     constexpr double kLeastRadius = 1e-8, kMostRadius = 1e8;
     constexpr double kLeastDecrease = 1e-8;  // relative to the objective
@@ -142,7 +141,6 @@ struct Walk {
   }
 };
 
-/// Computes derivatives for all walks whose derivatives are stale. These walks then choose their next points.
 void refresh(Residuals& residuals, std::vector<Walk>& walks, const DescentOptions& options) {
   std::vector<Linearisation*> stale;
   for (Walk& walk : walks) {
@@ -156,7 +154,7 @@ void refresh(Residuals& residuals, std::vector<Walk>& walks, const DescentOption
   }
 }
 
-/// Computes derivatives for walks that ended with stale or updated ones, if their objective is above secant_below.
+/// Computes the derivatives where descents ended without new ones, if their objective is above secant_below.
 void finish(Residuals& residuals, std::vector<Walk>& walks, const DescentOptions& options) {
   std::vector<Linearisation*> guessed;
   for (Walk& walk : walks) {
@@ -238,8 +236,8 @@ std::pair<Eigen::VectorXd, double> predict_step(const Neighbour& neighbour, doub
   if (near.jacobian.size() == 0) return {near.at + step, std::numeric_limits<double>::infinity()};
   step = bounded_step(near, step, neighbour.held, scale / kRadiusOfNeighbours,
                       Eigen::VectorXd::Ones(near.residuals.size()));
-  // If the model is an even function of a parameter, as of k at k = 0, the bound is a stationary point, which no
-  // descent leaves. So a parameter that is not held goes at most half the way to its bound.
+  // If the model is an even function of a parameter (as of k at k = 0), a descent cannot leave the bound. So a
+  // parameter that is not held goes at most half the way.
   for (Eigen::Index j = 0; j < step.size(); ++j) {
     const bool is_held = std::ranges::find(neighbour.held, j) != neighbour.held.end();
     const double to = near.at[j] + step[j];

@@ -10,7 +10,7 @@
 
 namespace dolp::fit {
 
-/// Eigenvalues and orthonormal eigenvectors of a positive semidefinite matrix, the largest eigenvalue first.
+/// Eigenvalues (the largest first) and orthonormal eigenvectors of a positive semidefinite matrix.
 struct PrincipalAxes {
   Eigen::VectorXd values;
   Eigen::MatrixXd directions;  ///< one eigenvector per column
@@ -21,51 +21,51 @@ struct PrincipalAxes {
 
 PrincipalAxes principal_axes(const Eigen::MatrixXd& symmetric);
 
-/// The sum of the losses of all residuals, which is chi^2 with Loss::kSquares. Infinite if a residual is not finite.
+/// The sum of the losses of all residuals; with Loss::kSquares it is chi^2. Infinite if a residual is not finite.
 double objective(const Eigen::VectorXd& residuals, Loss loss);
 
-/// The weight of each residual in the normal equations, which a loss reduces below 1 for outliers.
+/// The weight of each residual in the normal equations. It is below 1 for residuals that the loss treats as outliers.
 Eigen::VectorXd loss_weights(const Eigen::VectorXd& residuals, Loss loss);
 
 struct DescentOptions {
   Loss loss = Loss::kSquares;
-  double scale = 1.0;  ///< rise of the objective one standard deviation from a minimum, perhaps guessed
+  double scale = 1.0;  ///< rise of the objective one standard deviation from a minimum; may be a guess
   int most_steps = 40;
-  /// A descent ends when derivatives promise that the objective falls by less than this times `scale`.
+  /// The descent ends when derivatives predict a decrease of the objective below this times `scale`.
   double least_gain = 1e-5;
-  /// If set, Broyden's updates replace new derivatives as long as they predict the steps well. A descent may end with
-  /// updated derivatives if its objective is below this value; above it, the derivatives are computed anew.
+  /// If set, Broyden's updates may replace computed derivatives while they predict steps well. Above this objective, a
+  /// descent does not end with updated derivatives: they are computed.
   std::optional<double> secant_below = {};
 };
 
-/// The point where a descent begins and, after descend(), the point where it has ended.
+/// A point where a descent begins. descend() moves it to the point where the descent ends.
 struct Minimum {
   Linearisation where;                  ///< coordinates of the point; also residuals and Jacobian if known
-  std::vector<Eigen::Index> held = {};  ///< positions of parameters whose coordinates are held fixed
+  std::vector<Eigen::Index> held = {};  ///< parameters whose coordinates the descent must not change
   double objective = 0.0;               ///< infinite if the model has no value at the point
   bool has_converged = false;
-  double radius = 0.1;  ///< radius of the trust region; 1: a move across a range costs a standard deviation
+  double radius = 0.1;  ///< radius of the trust region, which limits the length of a step
 };
 
 /// Descends from all points at the same time by Levenberg-Marquardt within the bounds. Each step takes one call of the
 /// evaluator for the points to try, and one for the finite differences. Errors: errors of the evaluator; Cancelled.
 void descend(Residuals& residuals, std::vector<Minimum>& all, const DescentOptions& options);
 
-/// A point to find near a known point. Some of its coordinates are given and held fixed; a descent finds the others.
+/// A point to find. Its coordinates in `held` are given; a descent finds the other coordinates.
 struct Neighbour {
   const Minimum* near;
   std::vector<Eigen::Index> held;
-  Eigen::VectorXd to;  ///< coordinates of the new point; only those in `held` are used
+  Eigen::VectorXd to;  ///< coordinates of the new point; only the coordinates in `held` are used
 };
 
-/// Finds, for each neighbour, the lowest objective at its held coordinates. The derivatives at the known point predict
-/// the other coordinates; a descent from there finds the minimum.
+/// Finds the lowest objective of each neighbour at its held coordinates. The descent begins where the derivatives at
+/// the point `near` predict the minimum.
 std::vector<Minimum> follow(Residuals& residuals, const std::vector<Neighbour>& all, const DescentOptions& options);
 
-/// The coordinates that the derivatives at the known point predict for a neighbour, and the sum of squares there.
+/// What the derivatives at the point `near` predict for a neighbour: its coordinates, and the sum of squares there.
 std::pair<Eigen::VectorXd, double> predict_step(const Neighbour& neighbour, double scale);
 
-/// True if the derivatives at `from` predict the residuals at `to` well (see kBent).
+/// True if the derivatives at `from` predict the residuals at `to` well; kBent is the limit.
 bool is_straight(const Linearisation& from, const Linearisation& to, double scale);
 
 }  // namespace dolp::fit

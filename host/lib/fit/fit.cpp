@@ -46,20 +46,19 @@ bool is_at_bound(double coordinate) { return coordinate < kAtBound || coordinate
 /// A direction in the space of the coordinates that the data do not determine. Its largest component is 1 or -1.
 struct Direction {
   Eigen::VectorXd along;
-  /// True if no residual changes along it; otherwise residuals change, but by less than one standard deviation.
+  /// True if no residual changes along this direction. Else residuals change by less than one standard deviation.
   bool is_null = false;
 };
 
 struct Covariance {
-  /// Covariance matrix. Variances are infinite for parameters in a null direction, and NaN for parameters at a bound.
   Eigen::MatrixXd of_coordinates;
   std::vector<Direction> unconstrained;
   std::size_t rank = 0;
 };
 
 Covariance covariance_of(const Minimum& minimum, Loss loss, double scale) {
-  constexpr double kNullShare = 1e-4;  // a direction with a singular value below this share of the largest is null
-  // A parameter is ignored if a move through its range changes the residuals by less than so many standard deviations.
+  constexpr double kNullShare = 1e-4;  // singular values below this share of the largest belong to null directions
+  // A parameter is ignored if residuals change by less than this many standard deviations over its range.
   constexpr double kLeastDeviations = 1e-3;
   Eigen::MatrixXd jacobian =
       loss_weights(minimum.where.residuals, loss).cwiseSqrt().asDiagonal() * minimum.where.jacobian;
@@ -99,7 +98,6 @@ Covariance covariance_of(const Minimum& minimum, Loss loss, double scale) {
   return result;
 }
 
-/// The correlation matrix of a covariance matrix; NaN for parameters whose variance is not finite.
 Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance) {
   const auto known = [](double variance) { return variance > 0.0 && std::isfinite(variance) ? variance : kNaN; };
   const Eigen::VectorXd inverses = covariance.diagonal().unaryExpr(known).cwiseSqrt().cwiseInverse();
@@ -191,16 +189,15 @@ class Fit {
     total_ = total;
   }
 
-  /// Degrees of freedom. With a model error every point counts, because the parameters only choose the bracket.
+  /// Degrees of freedom. A model error subtracts no parameters, because they only choose the bracket.
   std::size_t freedom() const {
     return model_.observation_count() - (model_.has_model_error() ? 0 : model_.parameters().size());
   }
 
-  /// True if a scale is known from uncertainties or follows from the residuals.
   bool has_scale() const { return model_.has_uncertainties() || freedom() > 0; }
 
-  /// The scale (rise of the objective one standard deviation from a minimum) before the search: 1 with uncertainties,
-  /// otherwise the square of a hundredth of the largest measured value.
+  /// The scale (rise of the objective one standard deviation from a minimum) as guessed before the search: 1 with
+  /// uncertainties, otherwise the square of a hundredth of the largest measured value.
   double guess_scale() const {
     if (model_.has_uncertainties()) return 1.0;
     double largest = 0.0;
@@ -210,7 +207,7 @@ class Fit {
     return std::pow(std::max(0.01 * largest, fine_.tolerance()), 2);
   }
 
-  /// The scale at a minimum: 1 with uncertainties, else the mean squared residual, but at least the squared tolerance.
+  /// The scale at a minimum: 1 with uncertainties, otherwise the mean squared residual, at least the squared tolerance.
   double find_scale(const Minimum& minimum) const {
     if (model_.has_uncertainties()) return 1.0;
     const double mean = freedom() > 0 ? minimum.objective / static_cast<double>(freedom()) : 0.0;
@@ -227,7 +224,7 @@ class Fit {
     return std::pow(boost::math::quantile(t, 0.5 * (1.0 + level)), 2);
   }
 
-  /// The covariance matrix. With a model error it is NaN, because the residuals are constant (0) inside a bracket.
+  /// The covariance matrix. With a model error it is NaN, because residuals are 0 inside of a bracket.
   Covariance find_covariance() const {
     if (!model_.has_model_error()) return covariance_of(minima_.front(), options_.loss, result_.scale);
     const Eigen::Index count = minima_.front().where.at.size();
@@ -253,7 +250,7 @@ class Fit {
     result_.valley_points = {best};
   }
 
-  /// Sets the intervals. False if a profile led to a lower minimum; this is then the first of minima_.
+  /// Sets the intervals. False if a profile led to a lower minimum, which is then the first of minima_.
   bool find_intervals(double scale, bool may_restart, bool is_scaled) {
     const std::optional<Profiles> profiles = find_profiles(scale, may_restart);
     if (!profiles) return false;
@@ -268,7 +265,6 @@ class Fit {
     return true;
   }
 
-  /// The profiles of all parameters. Empty if a profile led to a lower minimum; this is then the first of minima_.
   std::optional<Profiles> find_profiles(double scale, bool may_restart) {
     ProfileOptions options{{rise_at(kLevel68), rise_at(kLevel95)}, 0.0, scale, options_.loss, {}};
     if (!model_.has_model_error()) options.from = minima_.front().objective;
@@ -284,14 +280,13 @@ class Fit {
     return profiles;
   }
 
-  /// Descends from a point that a profile found. True if this gives a new best minimum.
   bool take(const Minimum& lower) {
     std::vector<Minimum> bottoms(1);
     bottoms.front().where.at = lower.where.at;
     descend(fine_, bottoms, {options_.loss, result_.scale});
     Minimum& bottom = bottoms.front();
     if (!bottom.has_converged || bottom.objective >= minima_.front().objective) return false;
-    // A bottom that is lower by less than one standard deviation is the same minimum as the best one, and replaces it.
+    // A bottom that is lower by less than one standard deviation is the best minimum, found better. So it replaces it.
     if (bottom.objective > minima_.front().objective - result_.scale) minima_.erase(minima_.begin());
     minima_.insert(minima_.begin(), std::move(bottom));
     return true;
@@ -324,8 +319,8 @@ class Fit {
     add_criteria();
   }
 
-  /// Names parameters that the data do not determine. A direction that is not null counts only if the interval of one
-  /// of its parameters is open at both ends.
+  /// Names the parameters that the data do not determine. If a direction is not null, one of its parameters must have
+  /// an interval that is open at both ends.
   void name_degeneracies() {
     result_.determined = covariance_.rank;
     for (const Direction& direction : covariance_.unconstrained) {

@@ -91,7 +91,7 @@ std::vector<std::string> remarks_on(const MeasuredData& data) {
   return remarks;
 }
 
-/// Position of the colon in "FILE:KEY=VALUE". Between this colon and the next equals sign is no slash, space or colon.
+/// Position of the colon in "FILE:KEY=VALUE". KEY has no slash, space or colon; FILE may have some.
 std::size_t keys_begin(const std::string& argument) {
   for (std::size_t colon = argument.find(':'); colon != std::string::npos; colon = argument.find(':', colon + 1)) {
     const std::string_view rest = std::string_view(argument).substr(colon + 1);
@@ -101,7 +101,6 @@ std::size_t keys_begin(const std::string& argument) {
   return std::string::npos;
 }
 
-/// The parts of "KEY=VALUE,KEY=VALUE". A comma inside brackets or quotes does not separate parts.
 std::vector<std::string> pieces_of(std::string_view text) {
   std::vector<std::string> pieces(1);
   int depth = 0;
@@ -121,7 +120,7 @@ std::vector<std::string> pieces_of(std::string_view text) {
 
 constexpr const char* kForm = "must be KEY=LOW:HIGH or KEY=LOW:HIGH:START";
 
-/// The keys of a scene that a fit may vary: keys of numbers, except those of [accuracy], which do not change the model.
+/// The keys that a fit may vary: keys of numbers, except in [accuracy], because these do not change the model.
 std::vector<std::string> number_keys() {
   std::vector<std::string> keys;
   for (const Key& description : dolp::keys()) {

@@ -19,7 +19,7 @@
 namespace dolp::fit {
 namespace {
 
-// Scattered points can differ in these keys. So the evaluator computes sets that differ only in these keys together.
+// Parameter sets that differ only in these keys become scattered points of one call of the evaluator.
 constexpr std::array<std::string_view, 5> kPointKeys = {"surface.n", "surface.k", "surface.sigma", "surface.wind_m_s",
                                                         "surface.q"};
 
@@ -36,7 +36,6 @@ Eigen::VectorXd starts_of(const std::vector<FitRange>& parameters) {
   return each(parameters, [](const FitRange& range) { return range.start.value_or(range.at(0.5)); });
 }
 
-/// The row of Prediction::components for an observable at a point.
 Eigen::RowVector2d components_of(Observable observable, const PointResult& point) {
   const Eigen::RowVector2d q_u(point[Quantity::kStokesQ] / point[Quantity::kStokesI],
                                point[Quantity::kStokesU] / point[Quantity::kStokesI]);
@@ -64,7 +63,7 @@ EmissionModel other_end_of(const SceneValues& scene) {
   return scene.emission->model == EmissionModel::kDirect ? EmissionModel::kMoments : EmissionModel::kDirect;
 }
 
-/// The value in the bracket `end` to `other` nearest to the measured one. DOLP = |Q/I| is 0 where Q/I changes sign.
+/// The value between `end` and `other`, the ends of the bracket, that is nearest to the measured value.
 double nearest_between(const Eigen::RowVector2d& end, const Eigen::RowVector2d& other, const Measurement& measured) {
   if (std::isnan(end[0] + other[0])) return end[0] + other[0];
   const auto [low, high] = std::minmax(end[0], other[0]);
@@ -154,7 +153,7 @@ Model::Group Model::group_of(const SceneValues& scene, const MeasuredData& data,
   if (!wavelengths.empty() && (std::ranges::any_of(data.settings, sets_spectrum) || varies("spectrum.wavelength_um"))) {
     throw InputError(data.name + ": column \"wavelength_um\" and a spectrum key contradict each other");
   }
-  // Checks that the scene accepts the longest and the shortest wavelength. The group keeps the scene at the shortest.
+  // Checks that the scene accepts the longest and the shortest wavelength. group.scene keeps the shortest.
   for (const double at_um : group.wavelength_um | std::views::reverse) {
     if (at_um != group.wavelength_um.back() && at_um != group.wavelength_um.front()) continue;
     const Setting wavelength{"spectrum.wavelength_um", at_um,

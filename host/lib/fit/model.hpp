@@ -13,24 +13,24 @@
 
 namespace dolp::fit {
 
-/// Checks a range. Errors: InputError that begins with `origin` if the key is unknown or no number, if low >= high, if
-/// the start lies outside the range, or if the scene does not allow the key to have one of these values.
+/// Checks a range. Errors: InputError that begins with `origin` if the scene does not allow the key, the limits or the
+/// start.
 void check_range(const FitRange& range, const std::string& origin);
 
-/// What the model predicts for all measurements, in the order of the data.
 struct Prediction {
-  /// One row per measurement: the predicted observable and 0. For DOLP, the row is the signed Q/I and U/I, and DOLP is
-  /// its length. With the bracket as model error: the value in the bracket nearest to the measured one, and 0.
+  /// One row per measurement: the predicted observable and 0. For DOLP: the signed Q/I and U/I, so that DOLP is the
+  /// length of the row. With a bracket as model error: the value in the bracket that is nearest to the measured value,
+  /// and 0.
   Eigen::MatrixX2d components;
   Eigen::VectorXd error;     ///< bound of the numerical error of each predicted observable
   std::uint32_t status = 0;  ///< status bits of all points, combined by OR
 };
 
-/// The model at the measurements of several data sets, as a function of the parameters (the varied keys).
+/// The model at the measurements of all data sets, as a function of the parameters (the keys that the fit varies).
 class Model {
  public:
-  /// Errors: InputError if scene, data and parameters do not fit together, for example if a parameter occurs twice, if
-  /// only some data sets have uncertainties, or if the scene refuses an end of a range.
+  /// Errors: InputError if scene, data and parameters do not fit together, for example if a parameter occurs twice or
+  /// if the scene refuses an end of a range.
   Model(const SceneValues& scene, std::vector<MeasuredData> data, std::vector<FitRange> parameters,
         ModelError error = ModelError::kNone);
 
@@ -45,8 +45,8 @@ class Model {
   bool has_model_error() const { return error_ != ModelError::kNone; }
   bool has_uncertainties() const { return data_.front().has_uncertainties; }
 
-  /// The predictions for each set of parameter values. One call of the evaluator serves all sets that differ only in n,
-  /// k, sigma (or wind speed) and q, with all angles and wavelengths of a data set.
+  /// The prediction for each of several sets of parameter values. Sets that differ only in n, k, sigma (or wind speed)
+  /// and q take one call of the evaluator per data set.
   std::vector<Prediction> predict(const std::vector<Eigen::VectorXd>& values, double tolerance,
                                   ModelEvaluator& evaluator, const Progress& progress) const;
 
@@ -56,10 +56,10 @@ class Model {
   struct Group {
     const MeasuredData* data = nullptr;
     Eigen::Index first_row = 0;  ///< row of the first measurement of the data set in Prediction::components
-    SceneValues scene;           ///< scene of the data set, at the shortest wavelength of the data if they have any
+    SceneValues scene;  ///< scene of the data set, at the shortest wavelength in the data if they have wavelengths
     std::optional<EmissionModel> other_end;  ///< emission model at the bracket's other end; empty without model error
     std::vector<double> wavelength_um;       ///< wavelengths in the data, ascending; empty if the data have none
-    std::vector<OpticalConstants> indices;   ///< n and k of a tabulated material at these wavelengths
+    std::vector<OpticalConstants> indices;   ///< n and k of a tabulated material at each of wavelength_um
   };
 
   void check() const;
@@ -67,7 +67,7 @@ class Model {
   Group group_of(const SceneValues& scene, const MeasuredData& data, Eigen::Index first_row) const;
   void check_group(const Group& group) const;
   void add_points(std::vector<SceneEntry>& points, const Group& group, const SceneValues& scene) const;
-  /// The scene with settings of the data, `extra` and parameters. Errors: InputError that names the refused setting.
+  /// The scene with settings of the data, `extra` settings and parameters. Errors: InputError that names the setting.
   SceneValues scene_of(const SceneValues& scene, const MeasuredData& data, const std::vector<Setting>& extra,
                        const Eigen::VectorXd& values) const;
   SceneValues with(const SceneValues& scene, const Eigen::VectorXd& values) const;

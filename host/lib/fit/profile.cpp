@@ -14,12 +14,12 @@ namespace dolp::fit {
 namespace {
 
 struct ProfilePoint {
-  double distance = 0.0;  ///< distance from the start, in the coordinate of the parameter
+  double distance = 0.0;  ///< distance from the start along the coordinate of the parameter
   double root = 0.0;      ///< square root of (objective - ProfileOptions::from) / scale
   Minimum found;
 };
 
-/// One side of a profile likelihood: from a minimum in one direction of the parameter.
+/// One side of a profile likelihood. It goes from a minimum towards one end of the parameter's range.
 class Side {
  public:
   Side(Minimum start, Eigen::Index parameter, int direction, double most, double least, const ProfileOptions& options)
@@ -33,7 +33,7 @@ class Side {
   std::size_t parameter() const { return static_cast<std::size_t>(parameter_); }
   const std::vector<ProfilePoint>& points() const { return points_; }
   const std::optional<Minimum>& lower() const { return lower_; }
-  /// The coordinate where the growth meets a rise, or the last coordinate. Empty if the start lies above the rise.
+  /// The coordinate where the growth meets the rise, or the last coordinate. Empty if the start lies above the rise.
   const std::optional<double>& end(std::size_t rise) const { return ends_[rise]; }
   const Minimum* last_below(std::size_t rise) const {
     const double most = (1.0 + kRootTolerance) * std::sqrt(options_->rises[rise]);
@@ -42,7 +42,7 @@ class Side {
     return last == points_.rend() ? nullptr : &last->found;
   }
 
-  /// The next point of the profile to compute: a neighbour of the nearest known point.
+  /// The next point to compute for the profile, as a neighbour of the nearest known point.
   Neighbour next() {
     ++tries_;
     distance_ = std::clamp(next_distance(), 0.0, most_);
@@ -56,7 +56,7 @@ class Side {
   }
 
   void add(Minimum found) {
-    // A point that is lower than the best minimum by more than this times the scale belongs to another minimum.
+    // A point that lies below the best minimum by more than this times the scale belongs to another minimum.
     constexpr double kLowerMinimum = 0.01;
     if (found.objective < least_ - kLowerMinimum * options_->scale) {
       lower_ = std::move(found);
@@ -86,12 +86,12 @@ class Side {
     return std::ranges::find_if(points_, [&](const ProfilePoint& point) { return point.root >= wanted(); });
   }
 
-  /// Sets ends_ for each rise that the growth meets or cannot meet.
+  /// Sets ends_ for each rise that the profile has met, or cannot meet.
   void settle() {
     for (; !is_done(); ++rise_, tries_ = 0) {
       const PointPosition above = first_above();
       if (above == points_.cbegin()) continue;
-      // A start just below a rise is no end. So only points that are clearly higher than the start can meet the rise.
+      // A start just below a rise is not an end. So an end must be clearly higher than the start.
       const double least = std::min(wanted(), points_.front().root + kRootTolerance * wanted());
       const auto met = std::find_if(points_.cbegin() + 1, points_.cend(), [&](const ProfilePoint& p) {
         return p.root >= least && std::abs(p.root - wanted()) <= kRootTolerance * wanted();
@@ -110,12 +110,12 @@ class Side {
     }
   }
 
-  /// Sets ends_ for all remaining rises to this distance.
   void finish(double distance) {
     for (; !is_done(); ++rise_) ends_[rise_] = coordinate(distance);
   }
 
-  /// Where a line through two points meets the wanted root: the points around it or, if all are lower, the last two.
+  /// The distance where a line through two points meets wanted(): the points around it or, if all lie below, the last
+  /// two.
   double next_distance() const {
     if (points_.size() == 1) return first_distance();
     const PointPosition above = first_above();
@@ -156,7 +156,6 @@ class Side {
   std::optional<Minimum> lower_;
 };
 
-/// Adds a stretch to a sorted list. Stretches that touch or overlap become one.
 void merge(std::vector<Stretch>& all, Stretch stretch) {
   std::erase_if(all, [&](const Stretch& other) {
     if (other.high < stretch.low || stretch.high < other.low) return false;
@@ -166,7 +165,7 @@ void merge(std::vector<Stretch>& all, Stretch stretch) {
   all.insert(std::ranges::find_if(all, [&](const Stretch& other) { return other.low > stretch.low; }), stretch);
 }
 
-/// An end of the known part of the profile of a parameter.
+/// An end of an interval, as far as the profile of the parameter is known.
 struct ProfileEnd {
   Eigen::Index parameter;
   std::size_t rise;
@@ -193,7 +192,7 @@ class Profiler {
 
   Profiles run() {
     constexpr int kMostSearches = 4;
-    // Points with a growth up to this times the second rise are returned, for contours, whose higher level is above it.
+    // Returns points with a growth up to this times the second rise, because contours reach beyond the second rise.
     constexpr double kKeptRise = 1.6;
     complete(0);
     for (int i = 0; i < kMostSearches && !result_.lower && search_other_branches(); ++i) {
@@ -207,7 +206,6 @@ class Profiler {
   }
 
  private:
-  /// Computes points until all sides from sides_[first] are done. Sides come in pairs that begin at the same minimum.
   void complete(std::size_t first) {
     const auto is_done = [](const Side& side) { return side.is_done(); };
     for (;;) {
@@ -236,7 +234,7 @@ class Profiler {
     }
   }
 
-  /// The ends inside of the parameters' ranges beyond which no search for other branches was made yet.
+  /// The ends beyond which no search for other branches was made yet. Ends at a bound of the range are left out.
   std::vector<ProfileEnd> new_ends() {
     std::vector<ProfileEnd> ends;
     for (std::size_t j = 0; j < result_.stretches.size(); ++j) {
@@ -255,7 +253,6 @@ class Profiler {
 
   double objective_at(double rise) const { return options_.from + rise * options_.scale; }
 
-  /// Searches for other branches of the valley beyond new_ends(). True if it finds any.
   bool search_other_branches() {
     std::vector<Neighbour> ways;
     std::vector<ProfileEnd> end_of_way;
@@ -284,8 +281,8 @@ class Profiler {
     return first < sides_.size();
   }
 
-  /// Where to search beyond an end: from the ends of other sides, unless a straight path joins both ends, and from
-  /// points of other sides that lie beyond this end and clearly below the rise.
+  /// Where to search beyond an end: from the ends of other sides that no straight path joins to it, and from points of
+  /// other sides that lie beyond the end and clearly below the rise.
   std::vector<Neighbour> ways_beyond(const ProfileEnd& end) const {
     if (result_.stretches.size() == 1) return {};  // the profile of a single parameter has no other branch
     const std::vector<Stretch>& all = result_.stretches[static_cast<std::size_t>(end.parameter)][end.rise];

@@ -11,7 +11,7 @@ namespace dolp::fit {
 /// The residuals at a point, and their derivatives with respect to its coordinates.
 struct Linearisation {
   Eigen::VectorXd at;  ///< coordinates of the point: 0 to 1 over the range of each parameter
-  /// (model - measured) / uncertainty; model - measured without uncertainties. Empty before at(); NaN without a value.
+  /// (model - measured) / uncertainty; if uncertainties lack, model - measured. NaN if the model has no value.
   Eigen::VectorXd residuals = {};
   Eigen::MatrixXd jacobian = {};     ///< measurements x parameters; empty before it is computed
   Eigen::MatrixX2d components = {};  ///< Prediction::components at the point
@@ -23,10 +23,9 @@ enum class Differences {
   kCentral,  ///< two neighbours per parameter, on both sides if the range allows it
 };
 
-/// The residuals of a model as a function of the coordinates of its parameters.
 class Residuals {
  public:
-  /// The model and the evaluator must outlive the object. `tolerance`: tolerance of the values that the model computes.
+  /// The model and the evaluator must outlive the object. `tolerance` is the tolerance of the model's values.
   Residuals(const Model& model, double tolerance, Differences differences, ModelEvaluator& evaluator,
             Progress progress);
 
@@ -34,15 +33,15 @@ class Residuals {
   double tolerance() const { return tolerance_; }
   std::size_t evaluations() const { return evaluations_; }  ///< number of parameter sets computed so far
 
-  /// at() computes residuals at all points in one call of the evaluator; linearise() adds derivatives in another call.
+  /// Both take one call of the evaluator for all points: at() for the residuals, linearise() for derivatives.
   std::vector<Linearisation> at(const std::vector<Eigen::VectorXd>& points);
   void linearise(const std::vector<Linearisation*>& points);
 
   Eigen::VectorXd values(const Eigen::VectorXd& point) const;
   std::vector<Prediction> predict(const std::vector<Eigen::VectorXd>& points);
-  /// The values of the observables in the rows of Prediction::components.
+  /// The observables that belong to rows of Prediction::components.
   Eigen::VectorXd observed(const Eigen::MatrixX2d& components) const;
-  const Eigen::VectorXd& weights() const { return weights_; }  ///< 1 / uncertainty, or 1 without uncertainties
+  const Eigen::VectorXd& weights() const { return weights_; }  ///< 1 / uncertainty; 1 if uncertainties lack
 
  private:
   void differentiate(Linearisation& point, Eigen::Index j, const Prediction* beside, std::size_t count) const;
@@ -54,7 +53,7 @@ class Residuals {
   ModelEvaluator& evaluator_;
   Progress progress_;
   Eigen::VectorXd measured_, weights_;
-  std::vector<bool> is_length_;  ///< true for each measurement of DOLP, which is the length of a row of components
+  std::vector<bool> is_length_;  ///< true for measurements of DOLP, the length of a row in components
   std::size_t evaluations_ = 0;
 };
 

@@ -12,7 +12,6 @@
 namespace dolp::fit {
 namespace {
 
-/// Points of the Sobol sequence. A random vector shifts all of them modulo 1, unless the seed is 1.
 std::vector<Eigen::VectorXd> sobol_points(std::size_t count, Eigen::Index dimensions, std::uint64_t seed) {
   boost::random::sobol sequence(static_cast<std::size_t>(dimensions));
   std::mt19937_64 engine(seed);
@@ -31,7 +30,7 @@ std::vector<Eigen::VectorXd> sobol_points(std::size_t count, Eigen::Index dimens
   return points;
 }
 
-/// The starting points of the descents: the given start, then points with the lowest objective, none close to another.
+/// Where descents begin: at the given start, then at points with the lowest objective that are not close to each other.
 std::vector<Minimum> choose_starts(Residuals& residuals, const SearchOptions& options) {
   const std::vector<FitRange>& parameters = residuals.model().parameters();
   const auto dimensions = static_cast<Eigen::Index>(parameters.size());
@@ -70,19 +69,19 @@ double scale_of(const SearchOptions& options, const Minimum& minimum) {
   return minimum.objective / std::max(1.0, freedom);
 }
 
-/// Moves a point perpendicular to a line, to where its residuals become smallest according to the derivatives.
+/// Moves a point perpendicular to `line` to where, by the derivatives, the sum of the squared residuals is smallest.
 Eigen::VectorXd on_floor(const Eigen::VectorXd& point, const Eigen::VectorXd& residuals,
                          const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& line) {
   const Eigen::VectorXd along = line.normalized();
   const Eigen::MatrixXd across = jacobian - jacobian * along * along.transpose();
-  // Principal axes with an eigenvalue below this share count as flat. The rounding of a normal matrix is far smaller.
+  // Principal axes with an eigenvalue below this share of the largest count as flat. Rounding errors are far smaller.
   constexpr double kFlatShare = 1e-12;
   const PrincipalAxes axes = principal_axes(across.transpose() * across);
   const Eigen::VectorXd moved = point - axes.inverse(kFlatShare) * across.transpose() * residuals;
   return moved.cwiseMax(0.0).cwiseMin(1.0);
 }
 
-/// True if the objective falls from point to point. It may rise by at most `scale` above its lowest value so far.
+/// True if the objective falls from point to point, except for rises of at most `scale` above its lowest value so far.
 bool falls(double from, std::span<const Linearisation> points, Loss loss, double scale) {
   double least = from;
   return std::ranges::all_of(points, [&](const Linearisation& point) {
@@ -112,7 +111,7 @@ bool leads_down(Residuals& residuals, const Minimum& from, const Minimum& to, co
   return falls(from.objective, residuals.at(points), options.loss, scale);
 }
 
-/// The minima in ascending order, without any minimum from which a path leads down to a lower one.
+/// The minima in ascending order, without minima from which a path leads down to a lower minimum.
 std::vector<Minimum> distinct(std::vector<Minimum> all, Residuals& residuals, const SearchOptions& options) {
   std::erase_if(all, [](const Minimum& minimum) { return !std::isfinite(minimum.objective); });
   std::ranges::stable_sort(all, {}, &Minimum::objective);
@@ -128,8 +127,8 @@ std::vector<Minimum> distinct(std::vector<Minimum> all, Residuals& residuals, co
   return kept;
 }
 
-/// Descends from several points, in rounds of a few steps, and returns where the descents end. After a round, a descent
-/// is dropped if derivatives lead from it to a point of a lower descent, because it would take the same path.
+/// Descends from several points, a few steps per round, and returns where the descents end. After a round, drops each
+/// descent whose derivatives lead to a point of a lower descent.
 std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> starts, const SearchOptions& options,
                                    const DescentOptions& descent) {
   std::vector<Minimum> arrived, passed;

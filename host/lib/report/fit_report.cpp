@@ -18,8 +18,8 @@ using Json = ReportBuilder::Json;
 
 constexpr double kStrongCorrelation = 0.9;
 constexpr double kTooGood = 0.999;  // above this p-value, the uncertainties look too large
-// Limits for Akaike's criterion of a model minus that of the best model. The data cannot distinguish models up to
-// kAlike from the best; models up to kPossible may be true.
+// Limits for Akaike's criterion of a model minus the criterion of the best model. Up to kAlike the data cannot tell the
+// model from the best one. Up to kPossible the model may be true.
 constexpr double kAlike = 1.3;
 constexpr double kPossible = 4.0;
 
@@ -69,7 +69,6 @@ Json parameter_json(const FitParameter& parameter) {
   return json;
 }
 
-/// Adds lines about a parameter that do not fit in its row of the table of parameters.
 void add_remarks(ReportBuilder& report, const FitParameter& parameter, const FitResult& result) {
   report.row_if(!parameter.standard_error, "no error", "{}: {}", parameter.key, parameter.why_no_error);
   for (const auto& [key, name, interval] : intervals_of(parameter)) {
@@ -146,7 +145,7 @@ void add_misfit(ReportBuilder& report, const fit::Model& model, const FitResult&
                 "as many parameters as points: no interval can be given");
 }
 
-/// With a model error, adds how much of each parameter's range the 95 % interval covers, and a model that narrows it.
+/// With a model error, adds which share of the parameters' ranges the 95 % intervals cover, and how to narrow them.
 void add_model_error(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   if (!model.has_model_error()) return;
   const auto is_empty_95 = [](const auto& parameter) { return parameter.interval_95.is_empty; };
@@ -226,7 +225,7 @@ std::string why_no_contours(const FitResult& result, const std::optional<fit::Co
                      fmt::join(reasons, "; "));
 }
 
-/// The smallest interval that contains the intervals of all models. An end is open (empty) if it is open for a model.
+/// The smallest interval that contains the interval of each model. An end is open if it is open for any model.
 FitInterval hull(const std::vector<const FitResult*>& results, std::size_t j, FitInterval FitParameter::*interval) {
   std::optional<FitInterval> hull;
   for (const FitResult* const result : results) {
@@ -239,8 +238,8 @@ FitInterval hull(const std::vector<const FitResult*>& results, std::size_t j, Fi
   return hull.value_or(FitInterval{.is_empty = true});
 }
 
-/// Adds the models that the data cannot distinguish from the best, and for each parameter the smallest interval that
-/// contains its intervals of all models that may be true.
+/// Adds the models that the data cannot distinguish from the best one. For each parameter, adds the smallest interval
+/// that contains the intervals of all models that may be true.
 void add_alike(ReportBuilder& report, const std::vector<ComparedModel>& models, double least_aic) {
   std::vector<const FitResult*> possible;
   Json alike = Json::array(), ranges = Json::array();

@@ -22,19 +22,19 @@ struct PlannedRun {
   SceneValues scene;
   EffectPlan plan;
   std::vector<Effect> effects;
-  Looked looked;              ///< entries and wavelengths for which influences were computed
-  double model_change = 0.0;  ///< result of estimated_model_change()
+  Looked looked;  ///< entries and wavelengths for which influences were computed
+  double model_change = 0.0;
   RunPrediction run;
   double rule_digits = 0.0;
   int most_nodes = 0;                  ///< largest number of nodes on a slope interval or an arc; 0 without moments
   std::vector<std::string> pipelines;  ///< Vulkan pipelines of the first refinement level; may be empty
   vulkan::DispatchCount dispatches;    ///< dispatches of the first refinement level
-  std::vector<AxisForecast> lookup;    ///< forecasts of lookup_forecast()
-  std::string device;                  ///< name of the device; empty if there is none
+  std::vector<AxisForecast> lookup;
+  std::string device;  ///< name of the device; empty if there is none
   std::string why_no_device;
 };
 
-/// The device that a run would use. Without any, a device whose limits are the lowest that Vulkan allows.
+/// The device that a run would use. If there is none, a device with the lowest limits that Vulkan allows.
 Device device_of(const std::string& choice, const SceneValues& scene, PlannedRun& planned) {
   const bool in_double = scene.accuracy.precision == Precision::kDouble;
   const DeviceList list = list_devices();
@@ -61,7 +61,6 @@ void add_dispatches(PlannedRun& planned, const vulkan::DispatchCount& of_request
   planned.dispatches.device_bytes = std::max(planned.dispatches.device_bytes, of_request.device_bytes);
 }
 
-/// Adds the name of a pipeline if it is new. `more`: further properties in the name.
 void add_pipeline(PlannedRun& planned, const char* kernel, Precision precision, const std::string& more = {}) {
   const Surface& surface = planned.scene.surface;
   const std::string text = fmt::format("{}, {}: distribution {}, masking {}{}", kernel, name_of(precision),
@@ -100,7 +99,7 @@ PlannedRun planned_run(const SceneValues& scene, const std::string& device, Effe
                             {[&](const MomentsRequest& request) { add_request(planned, request, limits); },
                              [&](const ScatteringRequest& request) { add_request(planned, request, limits); }});
   if (planned.dispatches.row_width > 1) {
-    // Predicted evaluations hold for single entries. A device gives all entries of a row the nodes of the hardest one.
+    // The prediction counts nodes of single entries. A device gives all entries of a row the largest number.
     planned.run.first_evaluations *=
         static_cast<double>(planned.dispatches.rows) / static_cast<double>(planned.run.moments);
     planned.run.is_exact = false;

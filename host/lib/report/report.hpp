@@ -17,7 +17,7 @@ inline constexpr double kMebibyte = 1048576.0;
 inline constexpr double kPoints = 100.0;  ///< converts DOLP to points: one point is 0.01
 inline constexpr double kPercent = 100.0;
 
-/// A value with its position in the JSON: a path of keys, separated by slashes.
+/// A value, and its path in the JSON: keys separated by slashes.
 template <class T>
 struct Keyed {
   const char* path;
@@ -29,12 +29,11 @@ Keyed<T> key(const char* path, const T& value) {
   return {path, value};
 }
 
-/// Builds a report as text and JSON from lines. A Keyed argument of a line is also stored in the JSON.
+/// Builds a report as text and JSON. The JSON gets those arguments of a line that are Keyed.
 class ReportBuilder {
  public:
   using Json = nlohmann::ordered_json;
 
-  /// Rows begin with a label in a column of `label_width` characters.
   explicit ReportBuilder(int label_width = 10) : label_width_(label_width) {}
 
   template <class... Args>
@@ -43,13 +42,12 @@ class ReportBuilder {
     (record(args), ...);
   }
 
-  /// Adds a row, that is, a line with a label.
   template <class... Args>
   void row(std::string_view label, fmt::format_string<const Args&...> text, const Args&... args) {
     row_if(true, label, text, args...);
   }
 
-  /// Adds a row to the text if `is_shown`. The JSON gets the Keyed arguments of the row in any case.
+  /// Adds a row to the text if `is_shown`. Adds its Keyed arguments to the JSON in any case.
   template <class... Args>
   void row_if(bool is_shown, std::string_view label, fmt::format_string<const Args&...> text, const Args&... args) {
     if (is_shown) {
@@ -59,7 +57,7 @@ class ReportBuilder {
     (record(args), ...);
   }
 
-  /// Adds a value only to the JSON. NaN, infinity and missing values become null.
+  /// Adds a value to the JSON but not to the text. NaN, infinity and missing values become null.
   template <class T>
   void value(const char* path, const T& value) {
     json_[Json::json_pointer(std::string("/") + path)] = value;
@@ -71,19 +69,17 @@ class ReportBuilder {
 
   void values(const Json& object) { json_.update(object); }
 
-  /// Adds the lines of another report, but not its JSON.
   void show(const ReportBuilder& part) {
     text_ += part.text_;
     rows_.insert(rows_.end(), part.rows_.begin(), part.rows_.end());
   }
 
-  /// Adds the lines of another report, and its JSON under `path`.
   void add(const char* path, const ReportBuilder& part) {
     show(part);
     value(path, part.json_);
   }
 
-  /// Adds the lines of several reports (or none), and an array of their JSON under `path`.
+  /// Adds the lines of several reports. Adds an array of their JSON under `path`, even if it is empty.
   void add(const char* path, const std::vector<ReportBuilder>& parts) {
     Json list = Json::array();
     for (const ReportBuilder& part : parts) {
@@ -94,7 +90,7 @@ class ReportBuilder {
   }
 
   const Json& json() const { return json_; }
-  /// The JSON in ASCII, which is safe on any terminal. Bytes of file names that are not UTF-8 are replaced.
+  /// The JSON in ASCII, which any terminal can show. Bytes of file names that are not UTF-8 are replaced.
   std::string json_text() const { return json_.dump(2, ' ', true, Json::error_handler_t::replace); }
   const std::string& text() const { return text_; }
   const std::vector<std::pair<std::string, std::string>>& rows() const { return rows_; }

@@ -19,7 +19,6 @@ ReportBuilder range_report(const char* what, double limit, const EnergyRange& ra
   return report;
 }
 
-/// Adds the range of the albedo, and the ranges of theta and sigma in which the surface model loses or gains energy.
 void add_energy(ReportBuilder& report, const RunSummary& summary, bool is_computed) {
   if (summary.albedos == 0) {
     report.row("albedo", "{}", is_computed ? "not given for any entry" : "not computed: nothing kept depends on it");

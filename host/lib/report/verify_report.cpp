@@ -17,7 +17,6 @@ namespace {
 
 constexpr std::size_t kMostFailureLines = 20;
 
-/// The position of a value in a table, for example "theta 60, sigma 0.1, q 3.5".
 std::string position_text(const CheckedValue& value) {
   std::vector<std::string> texts;
   for (const auto& [axis, number, label] : value.position)
@@ -140,7 +139,6 @@ std::string hard_case_verdict(const HardCaseReport& report) {
 /// The tolerance with which ordinary cases are computed: near the best accuracy that float or double can reach.
 double tolerance_in(Precision precision) { return precision == Precision::kDouble ? 1e-9 : 1e-6; }
 
-/// The results of ordinary cases in one precision, or the reason why they were not computed.
 struct Quality {
   Precision precision;
   std::string why_not;

@@ -13,14 +13,12 @@ namespace dolp {
 ReportBuilder table_report(const TableCheck& check, const std::string& path, const std::string& title,
                            std::uint64_t seed, double wall_s);
 
-/// The hard cases, computed on one device in one precision.
 struct PrecisionReport {
   EvaluationReport evaluation;
   std::vector<CaseOutcome> outcomes;
   std::size_t failures() const;
 };
 
-/// The hard cases, computed on one device in each precision that was checked.
 struct HardCaseReport {
   double tolerance = 0.0;
   std::size_t cases = 0;
@@ -28,7 +26,7 @@ struct HardCaseReport {
   std::string left_out;  ///< why a precision is missing; empty if none is missing
   std::size_t failures() const;
 };
-/// The report: a line for each precision, distribution and masking, and for each failing or (with `all`) every case.
+/// A line for each precision, distribution and masking, and a line for each failing case or, with `all`, for each case.
 ReportBuilder hard_case_report(const HardCaseReport& cases, bool all);
 
 ReportBuilder device_report(const DeviceList& list);

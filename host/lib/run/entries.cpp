@@ -38,7 +38,6 @@ void check_columns(const SceneValues& scene, const Points& points) {
   }
 }
 
-/// The columns of points that choose a variant (such as material or wavelength): each with its axis and its values.
 std::vector<std::pair<Axis, std::vector<double>>> variant_columns(const SceneValues& scene, const Points& points) {
   std::vector<std::pair<Axis, std::vector<double>>> columns;
   for (const Axis axis : kVariantAxes) {

@@ -25,14 +25,13 @@ constexpr double kTolerance = 1e-3;
 constexpr std::size_t kBandWavelengths = 8;
 constexpr std::size_t kDrawnPoints = 24;  // number of points that an estimate computes if the entries are points
 
-/// Largest number of values of an axis in an estimate. Two are enough for sigma and q: effects are largest at an end.
+/// Largest number of values of an axis in an estimate. For sigma and q both ends are enough: effects are largest there.
 std::size_t most_values(Axis axis) {
   if (axis == Axis::kMaterial) return 64;
   if (axis == Axis::kTheta || axis == Axis::kBand) return 8;
   return axis == Axis::kWavelength ? 3 : 2;
 }
 
-/// Up to `most` positions on an axis of `size` values, spread evenly, including both ends of the axis.
 std::vector<std::size_t> spread_positions(std::size_t size, std::size_t most) {
   std::vector<std::size_t> positions;
   const std::size_t count = std::min(size, most);
@@ -59,16 +58,15 @@ SceneEntries spread_entries(const SceneEntries& entries) {
   return entries.chosen(positions);
 }
 
-/// A few entries of a scene with a few wavelengths of the band.
 struct Sample {
   SceneValues scene;
-  SceneEntries entries;         ///< each entry is repeated, once at the wavelength of each weight
+  SceneEntries entries;         ///< each entry occurs once for each of the wavelengths
   std::vector<double> weights;  ///< weights of the wavelengths in the integral over a band; {1} without a band
 };
 
 Sample sample_of(const SceneValues& scene, const SceneEntries& entries) {
   Sample sample{scene, spread_entries(entries), {1.0}};
-  // Float is enough for an estimate. In double, entries for which no nodes meet the tolerance cost more than the table.
+  // Float is enough for an estimate. In double, entries that cannot meet the tolerance would cost more than the table.
   sample.scene.accuracy = {.tolerance = kTolerance, .precision = Precision::kFloat};
   if (sample.scene.emission) sample.scene.emission->has_bracket = false;
   if (spectral_samples(scene, entries) <= kBandWavelengths) return sample;
@@ -131,7 +129,7 @@ double polarisation_change(const PointResult& a, const PointResult& b) {
                     a[kStokesU] / a[kStokesI] - b[kStokesU] / b[kStokesI]);
 }
 
-/// The largest change(a, b) among entries for which promises_dolp() holds in `a` and `b`. Empty if there is none.
+/// The largest change(a, b) among entries for which promises_dolp() holds in `a` and in `b`. Empty if there is none.
 template <class Change>
 std::optional<double> largest_change(const std::vector<PointResult>& a, const std::vector<PointResult>& b,
                                      const Change& change) {

@@ -32,8 +32,8 @@ std::optional<double> value_of(const SceneValues& scene, Axis axis) {
   return values[axis];
 }
 
-/// How messages name the values of an axis. They name wind speeds instead of sigma if the points give wind speeds, or
-/// if the scene does and the points do not give sigma.
+/// How messages name the values of an axis. Wind speeds replace sigma if the points give them, or if the scene gives
+/// them and the points do not give sigma.
 struct AxisWords {
   bool is_wind = false;
   const char* name = "";
@@ -53,7 +53,7 @@ AxisWords words_of(Axis axis, const SceneValues& scene, const Points& points) {
   return {false, description_of(axis).column};
 }
 
-/// The coordinate of each point on one axis: from the column, else the only value of the axis, else the scene's.
+/// The coordinate of each point on an axis: from the column, else the only value of the axis, else from the scene.
 std::vector<double> values_of(Axis number, const TableLookup& lookup, const SceneValues& scene, const Points& points) {
   const LookupAxis& axis = *lookup.axis(number);
   const AxisWords words = words_of(number, scene, points);
@@ -85,15 +85,14 @@ std::vector<TableLookup::Point> coordinates(const TableLookup& lookup, const Sce
   return result;
 }
 
-/// Refuses columns of points with the thickness, n or k of a film, because a table has no axis for these.
 void check_no_films(const Points& points) {
   if (points.films.empty()) return;
   throw InputError(fmt::format("{}: column of layer {}: the table is of one coating; dolp eval computes other ones",
                                points.where(), points.films.begin()->first.first + 1));
 }
 
-/// Refuses a column for an axis that the table lacks if a value in it differs from the scene of the table. If the
-/// material of the scene depends on the wavelength, refuses columns of n and k altogether.
+/// Refuses a column for an axis that the table lacks, if a value in it differs from the value in the table's scene.
+/// Refuses columns of n and k if the material of the scene depends on the wavelength.
 void check_index(const TableLookup& lookup, const SceneValues& scene, const Points& points) {
   const Material& material = scene.surface.material;
   for (const Axis axis : {Axis::kMaterial, Axis::kBand, Axis::kN, Axis::kK, Axis::kWavelength, Axis::kTemperature}) {
@@ -117,9 +116,9 @@ constexpr std::size_t kLines = 3;        // number of lines along an axis; each 
 constexpr std::size_t kParts = 4;        // number of parts of an axis; one cell at each end of a part is examined
 constexpr std::size_t kStretch = 8;      // number of values around a cell on which a lookup in the cell depends
 constexpr std::size_t kLeastValues = 4;  // smallest number of values for which a lookup states an error
-// A lookup reads six values along theta, sigma and q, and four along each other axis. In dense grids its stated error
-// is proportional to the spacing to the power kOrderOfSix or kOrderOfFour. In the middle of a cell, the absolute values
-// of its weights add up to kWeightsOfSix or kWeightsOfFour. Errors from the other axes grow by this factor.
+// A lookup reads six values along theta, sigma and q, and four along each other axis. In dense grids the error that it
+// states is proportional to the spacing to the power kOrderOfSix or kOrderOfFour. Errors of the values that it reads
+// grow by up to kWeightsOfSix or kWeightsOfFour, the sum of the absolute weights in the middle of a cell.
 constexpr double kOrderOfSix = 5.0;
 constexpr double kOrderOfFour = 3.0;
 constexpr double kWeightsOfSix = 356.0 / 256.0;
@@ -127,7 +126,6 @@ constexpr double kWeightsOfFour = 20.0 / 16.0;
 
 bool is_read_with_four(Axis axis) { return axis < Axis::kTheta; }
 
-/// The value at a fraction (0 to 1) of an axis, interpolated linearly between its neighbours on the axis.
 double value_at(const std::vector<double>& values, double share) {
   const double position = share * static_cast<double>(values.size() - 1);
   const auto below = std::min(static_cast<std::size_t>(position), values.size() - 2);
@@ -159,7 +157,7 @@ class Forecast {
   }
 
  private:
-  /// The number of values of the axis for which the error is about `wanted`; 0 if even kMostForecastValues are too few.
+  /// The number of values for which the error is about `wanted`; 0 if it exceeds kMostForecastValues.
   std::size_t needed(Axis axis, double wanted, std::size_t lines) {
     const double order = is_read_with_four(axis) ? kOrderOfFour : kOrderOfSix;
     for (std::size_t values = 2 * kLeastValues; values <= kMostForecastValues; values *= 2) {
@@ -171,7 +169,6 @@ class Forecast {
     return 0;
   }
 
-  /// The largest error that lookups state in the middles of the examined cells; infinite if a lookup cannot state any.
   double error_with(Axis axis, std::size_t values, std::size_t lines) {
     if (values < kLeastValues) return kInfinity;
     const auto value = [&](std::size_t position) {
@@ -203,7 +200,6 @@ class Forecast {
     return largest < 0.0 ? kInfinity : largest;
   }
 
-  /// One value of each axis for a line. Different lines have different values.
   Axes values_of_line(std::size_t line) const {
     Axes axes;
     for (const Axis axis : kAllAxes) {
@@ -214,7 +210,7 @@ class Forecast {
     return axes;
   }
 
-  /// The table over scene_.grid with error estimates 0, so that lookups state only the error of the interpolation.
+  /// The table over scene_.grid. Its error estimates are 0, so that lookups state only the error of the interpolation.
   TableValues computed_table() {
     const SceneEntries entries = grid_entries(scene_);
     TableValues table = table_part(table_layout(scene_, plan_, scene_.grid), entries,

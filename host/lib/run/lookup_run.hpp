@@ -13,31 +13,29 @@
 
 namespace dolp {
 
-/// Looks up points in a table. A missing column takes the only value of its axis, or else the value in the table's
-/// scene, `scene`. If the table lacks an axis of n, k or wavelength, a column of it must have the value of that scene.
-/// Errors: InputError that names the point, the column, the value and what the table has; Cancelled.
+/// Looks up points in a table, whose scene is `scene`. A missing column takes the only value of its axis, or else the
+/// value in the scene. If the table lacks an axis, a column for this axis must have the value in the scene. Errors:
+/// InputError that names the point, the column, the value and what the table has; Cancelled.
 std::vector<PointResult> lookup_points(const TableLookup& lookup, const SceneValues& scene, const Points& points,
                                        const Progress& progress);
 
-/// A forecast of the error of lookups that interpolate along one axis of a grid.
 struct AxisForecast {
   Axis axis = Axis::kTheta;
   std::size_t values = 0;  ///< number of values of the axis in the grid
-  /// Largest absolute error of DOLP that lookups state at the examined positions if only this axis is interpolated.
-  /// Infinite with fewer than four values.
+  /// Largest error of DOLP at the examined positions if lookups interpolate only along this axis. Infinite with fewer
+  /// than four values.
   double error = 0.0;
-  double wanted = 0.0;  ///< largest acceptable `error`: the share of the tolerance for this axis
+  double wanted = 0.0;  ///< largest acceptable `error`: the part of the tolerance that this axis may use
   /// Number of values of the axis for which the error is at most `wanted`; 0 if it is above kMostForecastValues.
   std::size_t needed_values = 0;
 };
 inline constexpr std::size_t kMostForecastValues = 10'000;
 
-/// Forecasts for the axes of the scene's grid that have more than one value. For each axis, the CPU computes the table
-/// values around a few cells, and a lookup in the middle of each cell states its error. This is repeated with 8, 16,
-/// 32, ... values of the axis, spaced as in the grid, until the error is at most `wanted`. The order of the
-/// interpolation then gives the number of values that is needed.
-/// Accuracy: half of needed_values is too few for most points (test LookupForecast_TablesOfTheAdvisedDensity_*). The
-/// forecast misses features that are narrower than the distance of the examined cells.
+/// A forecast for each axis of the grid that has more than one value. The CPU computes the table around a few cells of
+/// the axis. A lookup in the middle of each cell states its error. This is repeated with 8, 16, 32, ... values of the
+/// axis until the error is at most `wanted`. The forecast misses features that are narrower than the distance between
+/// the cells. Accuracy: half of needed_values is too few for most points (test
+/// LookupForecast_TablesOfTheAdvisedDensity_*).
 std::vector<AxisForecast> lookup_forecast(const SceneValues& scene, const EffectPlan& plan);
 
 }  // namespace dolp

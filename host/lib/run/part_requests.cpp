@@ -39,10 +39,10 @@ std::vector<std::uint32_t> compact_used_values(const std::vector<double>& values
   return positions;
 }
 
-// Chosen. Fewest entries per index for which responses are used: the sums for an index cost as much as some entries.
+// Chosen. Fewest entries per index for which responses are used, because the sums for an index cost time too.
 constexpr std::size_t kLeastEntries = 24;
-// Responses give the moments of every index for every direction and slope distribution. Points need only some of these
-// combinations. The run uses responses if there are at most so many times more combinations than moments to compute.
+// Responses cover all combinations of direction, slope distribution and index. Points need only some of these. The run
+// uses responses if there are at most so many times more combinations than moments to compute.
 constexpr std::size_t kMostOfPoints = 2;
 
 std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const SceneEntries& entries) {
@@ -208,7 +208,7 @@ void PartRequests::request_grid(const Selection& selection) {
   if (!is_whole) mark_wanted(selection);
 }
 
-/// Adds the indices of the used sets to the request. Equal consecutive sets share their indices.
+/// Adds the indices of the used index sets to the request for moments. Equal consecutive sets share their indices.
 void PartRequests::request_indices(const SceneEntries& grid, const std::vector<char>& is_used) {
   index_set_offset_.assign(is_used.size(), 0);
   std::vector<FacetOptics> last;
@@ -266,7 +266,7 @@ void PartRequests::request_points(const Selection& selection) {
     const double zenith_deg =
         zenith_before_limit_deg(scene_.surface.masking, moment_zenith_deg(scene_, entry.theta_deg));
     const SlopeShape shape = normalised(scene_, entry.shape);
-    // An entry without its own index gets its variant as key, with k = -1, which no index has.
+    // An entry without its own n and k gets the number of its variant as key, with k = -1, which no real index has.
     const OpticalConstants key = entry.index.value_or(OpticalConstants{static_cast<double>(entry.variant), -1.0});
     const double films_at = has_films() ? entry.variant : -1.0;
     const auto [known_span, is_new] =

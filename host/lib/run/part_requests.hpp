@@ -18,7 +18,7 @@
 
 namespace dolp {
 
-/// Some or all entries of a part of a run: the members of the selection.
+/// Some or all entries of a part of a run. A member is the number of an entry in the selection.
 struct Selection {
   const SceneEntries& part;
   std::span<const std::size_t> chosen = {};  ///< positions of the members in the part; empty: all entries
@@ -33,26 +33,25 @@ double moment_zenith_deg(const SceneValues& scene, double theta_deg);
 
 bool wants_moments(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
-/// True if an evaluator must compute the beam of an entry: not for a mirror or with source and view both at 90 degrees.
+/// True if an evaluator must compute the beam of an entry; false if beam_without_evaluator() gives its pBRDF.
 bool wants_beam(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
-/// The pBRDF of an entry whose beam the evaluator need not compute. It is undefined (NaN) in the specular direction of
-/// a mirror, and with source and view both at 90 degrees; otherwise it is 0.
+/// The pBRDF of an entry that needs no evaluator: NaN in the specular direction of a mirror, and if source and view are
+/// both at 90 degrees; otherwise 0.
 Scattered beam_without_evaluator(const SceneValues& scene, double theta_deg);
 
 /// For each variant (material, band, wavelength or temperature) of the entries: n and k at each spectral sample.
 using SpectralIndices = std::vector<std::vector<FacetOptics>>;
 SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& entries);
 
-/// The samples, with `index` as the medium under their films. Without films all samples are then equal, so the result
-/// has one. If `index` is empty, the result is `samples`.
+/// Replaces n and k of the surface by `index`, below the films. Without films the result has one sample, because all
+/// would be equal. If `index` is empty, the result is `samples`.
 std::vector<FacetOptics> with_index(const std::vector<FacetOptics>& samples,
                                     const std::optional<OpticalConstants>& index);
 
-/// What an evaluator must compute for a selection at one level of refinement. For a grid, the request for moments is a
-/// grid too: the directions (in bistatic mode the view) and the indices of the selection, with all slope distributions
-/// of the part. So the result of an entry does not depend on which entries of other directions are selected. For
-/// points, one request serves all points that differ only in values on which moments do not depend.
+/// What an evaluator must compute for a selection at one level of refinement. In a grid, the request for moments has
+/// all slope distributions of the part. So the result of an entry does not depend on which other entries are selected.
+/// In a list of points, points with the same direction, slope distribution and index share their moments.
 class PartRequests {
  public:
   PartRequests(const SceneValues& scene, const SpectralIndices& samples, const EffectPlan& plan,
@@ -61,15 +60,15 @@ class PartRequests {
   const MomentsRequest& moments() const { return moments_; }
   const ScatteringRequest& beams() const { return beams_; }
 
-  /// Where the answer to moments() has the moments of a member: for spectral sample j at `first + j * stride`.
+  /// Where the evaluator returns the moments of a member: at `first + j * stride` for the wavelength with the number j.
   struct MomentsSpan {
     std::size_t first = 0;
     std::size_t stride = 0;
   };
   MomentsSpan moments_of(std::size_t member) const;
-  /// The position in moments(), for a grid, of the direction whose moments a member uses.
+  /// For a grid: the position in moments() of the direction whose moments a member uses.
   std::size_t direction_of(std::size_t member) const;
-  /// The position in beams() of the first beam of a member. A member has one beam for each spectral sample.
+  /// The position in beams() of the first beam of a member. A member has one beam per wavelength.
   std::size_t beams_of(std::size_t member) const { return first_beam_[member]; }
 
  private:
@@ -88,17 +87,16 @@ class PartRequests {
   const Selection selection_;
   MomentsRequest moments_;
   ScatteringRequest beams_;
-  // For a grid: the positions in moments_ of each theta, sigma and q of the part, and of the first index of each index
-  // set. An index set has the indices of one variant, or one index from the axes n and k.
+  // For a grid: the position in moments_ of each theta, sigma and q of the part, and of the first index of each index
+  // set. An index set has the indices of one variant (such as a band), or one index from the axes n and k.
   std::vector<std::uint32_t> theta_at_, sigma_at_, q_at_, index_set_offset_;
-  std::vector<MomentsSpan> spans_of_points_;  ///< for points: where the answer has the moments of each point
+  std::vector<MomentsSpan> spans_of_points_;  ///< for points: where the evaluator returns the moments of each point
   std::vector<std::size_t> first_beam_;
 };
 
 /// The responses (moments with polynomials instead of reflectances) from which a run combines the moments of many
-/// indices. Their error meets the tolerance of the scene, so finer levels refine only the quadrature. They are chosen
-/// for the whole grid, even in a run of a part of it. Null if they save nothing: for a grid with few entries per index,
-/// points that mostly differ in direction or slope distribution, few indices, several bounces, or no interpolation.
+/// indices. They are chosen for the whole grid, even in a run of a part of it. Null if responses would save nothing,
+/// for example with few indices or if several bounces count.
 std::shared_ptr<const ResponseBasis> run_basis(const SceneValues& scene, const SceneEntries& entries,
                                                const EffectPlan& plan);
 

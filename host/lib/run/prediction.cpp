@@ -14,8 +14,8 @@
 namespace dolp {
 namespace {
 
-/// The entries of a few directions of a grid: the middle directions of equal parts of the grid. If `has_responses`,
-/// they have all wavelengths and indices, which share responses; otherwise one wavelength and one index.
+/// The entries of a few directions, spread evenly over the grid. With `has_responses` they have all wavelengths and
+/// indices, because these share responses. Otherwise they have one wavelength and one index.
 SceneEntries entries_of_drawn_directions(const SceneEntries& grid, bool has_responses) {
   Axes axes = grid.axes();
   std::vector<double>& theta_deg = axes[Axis::kTheta];
@@ -32,10 +32,10 @@ SceneEntries entries_of_drawn_directions(const SceneEntries& grid, bool has_resp
   return SceneEntries::of_grid(axes, grid.index());
 }
 
-/// The work of all requests for moments (or beams). Requests of the first refinement level come first.
+/// The work of all requests for moments, or of all requests for beams. Those of the first refinement level come first.
 struct Count {
   std::size_t first_requests = 0;  ///< number of requests of the first level that are still to come
-  std::size_t first = 0;           ///< number of moments or beams in the first level
+  std::size_t first = 0;           ///< number of moments or beams in the first refinement level
   std::size_t again = 0;
   double first_evaluations = 0.0;
   double again_evaluations = 0.0;
@@ -85,7 +85,6 @@ double scale_of(std::size_t all, const Count& counted) {
   return counted.first == 0 ? 0.0 : static_cast<double>(all) / static_cast<double>(counted.first);
 }
 
-/// The requests of the first refinement level for a part of a run, with the plan of the moments.
 struct FirstLevel {
   FirstLevel(const SceneValues& scene, const SceneEntries& part, const EffectPlan& plan, const RefinementLevel& level)
       : indices(spectral_indices(scene, part)),
@@ -156,7 +155,7 @@ RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries,
     }
     run.beams += beams;
     if (beams > 0) visit.beams(first.requests.beams());
-    // Memory of this part: results, its columns, and the columns of the previous part, which is still being written.
+    // Memory of this part: its results and columns, and the columns of the previous part, which is still being written.
     const std::size_t columns = part.size() * (kQuantityCount * sizeof(double) + sizeof(std::uint32_t));
     largest = std::max(largest, part.size() * sizeof(PointResult) + columns + columns_before +
                                     first.moments.size() * sizeof(Moments) + largest_step +

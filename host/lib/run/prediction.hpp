@@ -10,18 +10,18 @@
 
 namespace dolp {
 
-/// Number of entries whose work the prediction counts. If the run has more entries, these represent all of them.
+/// Largest number of entries that the prediction computes. If the run has more entries, these represent all of them.
 inline constexpr std::size_t kCountedEntries = 256;
 
-/// Number of directions that the prediction counts instead, if the entries of a direction share work.
+/// Largest number of directions that it computes instead, if the entries of a direction share work.
 inline constexpr std::size_t kCountedDirections = 6;
 
 struct RunPrediction {
   std::size_t entries = 0;
   std::size_t spectral_samples = 0;
   std::size_t moments = 0;         ///< moments that kernels compute in the first refinement level, without repetition
-  std::size_t interpolated = 0;    ///< moments that the first refinement level interpolates
-  std::size_t beams = 0;           ///< beams of the first level; a beam has one geometry and one index
+  std::size_t interpolated = 0;    ///< moments that the first refinement level interpolates instead
+  std::size_t beams = 0;           ///< beams of the first refinement level
   RefinementLevel first;           ///< precision and tolerance of the first level
   double first_evaluations = 0.0;  ///< integrand evaluations of the first level
   double again_share = 0.0;        ///< ratio of moments and beams in later refinement levels to those in the first
@@ -39,12 +39,10 @@ struct RequestVisitor {
   std::function<void(const ScatteringRequest&)> beams;
 };
 
-/// Counts the work of some entries: up to kCountedEntries entries, which a fixed sequence spreads evenly, or all
-/// entries of up to kCountedDirections directions. To count it, the CPU computes these entries with the code of a run.
-/// `has_double`: the device of the run supports double precision.
-/// Accuracy: exact for scenes with up to kCountedEntries entries, except where the float arithmetic of a device rounds
-/// differently, so that it needs other numbers of nodes. Larger runs: a few percent; a fifth if directions are counted
-/// (tests Plan.FewEntries_*, Plan.ManyEntries_*, Plan.Device_*).
+/// Predicts the work of a run. For this, the CPU computes some entries with the code of a run: up to kCountedEntries
+/// entries, or all entries of up to kCountedDirections directions. `has_double`: the device of the run supports double.
+/// Accuracy: exact for up to kCountedEntries entries, if the device rounds like the CPU. For more entries, a few
+/// percent, or a fifth if directions are counted (tests Plan.FewEntries_*, Plan.ManyEntries_*, Plan.Device_*).
 RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
                           bool has_double, const RequestVisitor& visit);
 

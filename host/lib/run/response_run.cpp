@@ -38,7 +38,6 @@ constexpr std::size_t kColumnsAtOnce = std::size_t{1} << 20U;  // number of colu
 /// The variable x of the Chebyshev polynomials: -1 at cos(beta) = 0, 1 at cos(beta) = 1.
 double abscissa(double cosine) { return 2.0 * std::asinh(cosine / kResponseC0) / std::asinh(1.0 / kResponseC0) - 1.0; }
 
-/// The values T_m(x) of the Chebyshev polynomials with m < kBetaAngles. Domain: x in [-1, 1].
 Eigen::VectorXd chebyshev_at(double x) {
   const double angle = std::acos(std::clamp(x, -1.0, 1.0));
   return Eigen::VectorXd::LinSpaced(kBetaAngles, 0.0, kBetaAngles - 1.0).unaryExpr([=](double m) {
@@ -46,7 +45,7 @@ Eigen::VectorXd chebyshev_at(double x) {
   });
 }
 
-/// The angles beta of a response table, at which x is a zero of T_24, and functions of these angles.
+/// The angles of incidence beta at which a response table has weights, and functions of these angles.
 struct Nodes {
   Eigen::MatrixXd polynomials;  ///< T_m(x_j), one row per polynomial, one column per angle
   Eigen::ArrayXd sin2;          ///< sin^2 of beta
@@ -68,15 +67,15 @@ const Nodes& nodes() {
   return known;
 }
 
-/// Weights of an entry, times cos(theta). `error` bounds errors of sums with curves of Chebyshev coefficients <= 2^-m.
+/// Weights of an entry, times cos(theta). `error` is in the measure of response_distance().
 struct Weights {
   Eigen::ArrayXd i, q;
   double error = 0.0;
 };
 
-/// `whole_error`: error bound of the moment with 1 instead of a polynomial. It adds up absolute differences between
-/// both quadrature rules, while differences in `columns` may cancel by chance. It also bounds the error for each
-/// polynomial, because the absolute value of a polynomial is at most 1.
+/// The weights that follow from the moments with Chebyshev polynomials, `columns`. `whole_error` is the error bound of
+/// the moment with 1 instead of a polynomial. It also bounds the error with any of the polynomials, whose absolute
+/// value is at most 1. It is used because differences between quadrature rules in `columns` may cancel by chance.
 Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error) {
   Weights own{Eigen::ArrayXd::Zero(kBetaAngles), Eigen::ArrayXd::Zero(kBetaAngles)};
   for (std::size_t m = 0; m < columns.size(); ++m) {
@@ -85,7 +84,7 @@ Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error
         (m == 0 ? 1.0 : 2.0) / kBetaAngles * nodes().polynomials.row(static_cast<Eigen::Index>(m));
     own.i += sum.i * share;
     own.q += sum.q * share / nodes().sin2;
-    // The difference for q may cancel by chance too. So the bound of i is added to the bound of q.
+    // The difference of the quadrature rules for q may cancel by chance too. So the bound of i is added to that of q.
     const double of_i = std::abs(sum.i_apart) + sum.relative_error * std::abs(sum.i) + sum.error;
     const double of_q = std::abs(sum.q_apart) + sum.relative_error * std::abs(sum.q) + sum.error;
     own.error += std::ldexp(std::max(of_i, whole_error) + of_q, -static_cast<int>(m));
@@ -93,7 +92,7 @@ Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error
   return own;
 }
 
-/// The moments of a mirror. Its columns need no integral: they contain the values of the polynomials at beta = theta.
+/// The moments of a mirror. The columns in it are the values of the polynomials at beta = theta, without an integral.
 Moments mirror_of(const MomentsRequest& request, const Direction& direction, const SlopeShape& shape) {
   Surface surface;
   surface.distribution = request.distribution;
@@ -108,7 +107,7 @@ Moments mirror_of(const MomentsRequest& request, const Direction& direction, con
 
 bool has_emission(Masking masking) { return keeps_projected_area(masking); }
 
-/// Stores the weights of an entry in `to` if their error bound is below the one that `to` has for this entry.
+/// Stores the weights of an entry in `to` if their error bound is smaller than that of the weights in `to`.
 void take_better(const Moments& reflected, const Moments* direct, double cosine, std::size_t entry,
                  EntryResponses& to) {
   const Weights weights = weights_of(reflected.columns, reflected.albedo_error);
@@ -141,7 +140,7 @@ EntryResponses nothing_of(const MomentsRequest& request) {
   return none;
 }
 
-/// Sets the weights of mirrors; without a value of rho they stay NaN. Returns 1 for entries that need the evaluator.
+/// Sets the weights of mirrors, or leaves them NaN if rho has no value. Returns 1 for entries that need the evaluator.
 std::vector<char> set_closed_forms(const MomentsRequest& request, EntryResponses& to) {
   std::vector<char> wanted(request.size(), 1);
   for (std::size_t i = 0; i < wanted.size(); ++i) {

@@ -14,22 +14,17 @@ namespace dolp {
 /// The layout of the response table over the scene's grid. Errors: InputError if the scene has no response table.
 TableLayout response_layout(const SceneValues& scene);
 
-/// The weights of the entries of a request. Shape: each vector has the order of a table with these entries.
+/// The weights of a response table for the entries of a request. The entries have the order of a table.
 struct EntryResponses {
   ResponseArray<std::vector<double>> responses;
   std::vector<double> albedo;
 };
 
-/// Computes the weights of the entries of a request and their error bounds; NaN where rho has no value (tests
-/// Responses_*). Uses only the surface, layout, directions and shapes of the request. Entries whose response_error
-/// exceeds the tolerance times the albedo are computed again with more nodes.
-/// Equation: w_j = (2 / K) (C_0 / 2 + sum over 0 < m < K of C_m T_m(x_j)) / cos(theta). C_m is the moment with the
-/// Chebyshev polynomial T_m(x) instead of reflectances, x = 2 asinh(cos(beta) / c0) / asinh(1 / c0) - 1. The x_j are
-/// the zeros of T_K, K = 24, c0 = 0.01.
+/// Computes the weights of a response table and their error bounds. Weights are NaN where rho has no value. Entries
+/// whose response_error exceeds the tolerance times the albedo are computed again with more nodes.
 EntryResponses responses_of(MomentsRequest request, const Accuracy& accuracy, ModelEvaluator& evaluator,
                             const Progress& progress);
 
-/// A request for responses_of() with a surface, still without directions and shapes.
 MomentsRequest response_request(const Surface& surface);
 
 /// Sum over m of 2^-m |sum over j of T_m(x_j) (a_j - b_j)|: a distance of weights a and b of an entry, which are
@@ -45,7 +40,7 @@ struct ResponseOutcome {
   std::vector<Attribute> attributes = {};  ///< attributes of the table that are known after the run
 };
 
-/// Computes a response table, a few directions at a time. `take` receives each part and its position along each axis.
+/// Computes a response table, a few directions at a time. `take` gets each part and its position on each axis.
 using TakePart = std::function<void(TableValues part, const PerAxis& first)>;
 ResponseOutcome run_responses(const SceneValues& scene, const TableLayout& layout, const RunOptions& options,
                               ModelEvaluator& evaluator, const TakePart& take);

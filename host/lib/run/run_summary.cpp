@@ -14,10 +14,9 @@ namespace dolp {
 namespace {
 
 constexpr std::size_t kMostChecked = 64;
-// The check recomputes kMostChecked more moments for each kManyMoments moments of a table.
+// For each kManyMoments moments of a table, the check computes kMostChecked more of them again.
 constexpr std::size_t kManyMoments = std::size_t{1} << 22U;
-// The check costs at most 1 / kShare of the run. The second computation of an entry takes about kCostOfOne times as
-// long as the first: it is a hundred times more accurate and shares no work with neighbours.
+// The check costs at most 1 / kShare of the run. Computing an entry again takes about kCostOfOne times as long.
 constexpr std::size_t kShare = 50;
 constexpr std::size_t kCostOfOne = 4;
 
@@ -30,7 +29,7 @@ double rho_bound(const PointResult& result) {
   return result[Quantity::kRhoErrorEstimate] * std::abs(result[Quantity::kRhoI]);
 }
 
-constexpr std::size_t kSummaryEntriesAtOnce = 65536;  // number of entries that a thread takes at a time
+constexpr std::size_t kSummaryEntriesAtOnce = 65536;
 
 using Range = std::pair<double, double>;
 
@@ -46,7 +45,6 @@ void add_range(EnergyRange& range, const EnergyRange& other) {
   range.entries += other.entries;
 }
 
-/// Calls use(number) for each number of a summary, in the order in which text() writes the numbers.
 template <class Summary, class Use>
 void for_each_number(Summary& s, const Use& use) {
   use(s.entries);

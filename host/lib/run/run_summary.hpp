@@ -27,16 +27,15 @@ struct SelfCheck {
   void add(const SelfCheck& other);
 };
 
-/// Number of moments of a table that the check computes again. They cost at most a fiftieth of the run.
+/// Number of moments that the check of a table computes again. They cost at most a fiftieth of the run.
 std::size_t checked_count(std::size_t moments);
 
-/// `count` random positions below `size`, in ascending order. They depend only on the seed.
 std::vector<std::size_t> checked_positions(std::size_t size, std::size_t count, std::uint64_t seed);
 
 inline constexpr double kAlbedoMin = 0.95;
 inline constexpr double kAlbedoMax = 1.05;
 
-/// The entries with an albedo below kAlbedoMin (or above kAlbedoMax), and the ranges of theta and sigma around them.
+/// The entries with an albedo below kAlbedoMin (or above kAlbedoMax), and their ranges of theta and sigma.
 struct EnergyRange {
   std::size_t entries = 0;
   std::pair<double, double> theta_deg;  ///< zenith angle of the view in bistatic mode, otherwise theta

@@ -17,18 +17,18 @@ namespace {
 
 constexpr double kLikelyNanometresOfFilm = 100.0;
 constexpr double kHotSky = 2.0;  // a sky hotter than this times the surface temperature gets a remark
-// Two neighbouring rows of a file leave a gap if the ratio of their wavelengths exceeds a limit: ten times the median
-// spacing of the file on a logarithmic scale, but at least kNoGapRatio and at most kGapRatio.
+// A file has a gap if the wavelengths of two neighbouring rows have a ratio above a limit. The limit is kUsualSpacings
+// times the median spacing of the file in ln(wavelength), but at least kNoGapRatio and at most kGapRatio.
 constexpr double kGapRatio = 2.0;
 constexpr double kNoGapRatio = 1.5;
 constexpr double kUsualSpacings = 10.0;
-// Rows are coarse if CoarseRows::change is at least kCoarseChange. A reflectance below kLeastPart counts as kLeastPart.
+// Rows are coarse if CoarseRows::change is at least kCoarseChange. The divisor in it is at least kLeastPart.
 constexpr double kCoarseChange = 0.05;
 constexpr double kLeastPart = 0.01;
 
 using Interval = std::pair<double, double>;
 
-/// The wavelengths that a scene uses, as intervals: single wavelengths (of length 0), or bands.
+/// The wavelengths that a scene uses, as intervals. A single wavelength is an interval of length 0.
 std::vector<Interval> used_um(const SceneValues& scene) {
   const std::vector<double>& grid = scene.grid[Axis::kWavelength];
   std::vector<Interval> used;
@@ -47,7 +47,7 @@ double least_gap_ratio(const std::vector<double>& wavelength_um) {
   return std::clamp(std::exp(kUsualSpacings * *median), kNoGapRatio, kGapRatio);
 }
 
-/// The widest gap between rows of a file that contains used wavelengths. The program bridges it by a straight line.
+/// The widest gap between rows of a file in which the scene uses wavelengths. A straight line bridges it.
 std::optional<Interval> bridged_gap(const SpectralTable& table, const std::vector<Interval>& used) {
   const std::vector<double>& um = table.wavelength_um;
   if (um.size() < 2 || table.formula.number != 0) return std::nullopt;
@@ -73,8 +73,8 @@ double normal_reflectance(const OpticalConstants& index) {
   return (std::pow(index.n - 1.0, 2) + std::pow(index.k, 2)) / (std::pow(index.n + 1.0, 2) + std::pow(index.k, 2));
 }
 
-/// The rows with the largest `change`. A line between two rows is wrong by about a quarter of this distance: from a row
-/// to the line that joins the rows before and after it.
+/// Finds the rows with the largest `change`. It takes the error of the interpolation as a quarter of a distance: from a
+/// row to the line that joins the rows before and after it.
 CoarseRows coarsest_rows(const Material& material, const std::vector<Interval>& used) {
   CoarseRows worst;
   const std::vector<double>& um = material.n.wavelength_um;
@@ -187,7 +187,7 @@ class Remarks {
 
   void add_hot_sky(const SkyProfile* profile) {
     const double surface_K = scene_.emission ? scene_.emission->temperature_K : 0.0;
-    if (surface_K < kLikelyCelsius_K) return;  // there is no emission, or another remark is about its temperature
+    if (surface_K < kLikelyCelsius_K) return;  // no emission, or a temperature about which another remark is
     bool is_hot = !profile && scene_.surroundings->temperature_K > kHotSky * surface_K;
     const std::vector<Interval> used = used_um(scene_);
     for (const double um : {used.front().first, used.back().second}) {

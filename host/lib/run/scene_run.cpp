@@ -21,13 +21,13 @@
 namespace dolp {
 namespace {
 
-// Largest number of moments in a part of a grid or of points, to limit the memory. Points share nothing and need more.
+// Largest number of moments in a part of a grid, and in a part of a list of points. Both limits keep the memory small.
 constexpr std::size_t kMomentsAtOnce = 1U << 20U;
 constexpr std::size_t kPointsAtOnce = 1U << 17U;
-// A direction is computed again as a whole if more than one in so many of its entries misses the tolerance. Tuned.
-// Evaluations per entry with smith masking at half, this and double: 1.71, 1.81, 1.99 (see plan/constants.hpp).
+// If more than one in so many entries of a direction misses the tolerance, all of them are computed again. Tuned.
+// Evaluations per entry with smith masking, at half this value, at this value and at double: 1.71, 1.81, 1.99.
 constexpr std::size_t kWholeDirectionMissRatio = 8;
-constexpr std::size_t kEntriesAtOnce = 4096;  // number of entries per thread that outweighs the start of the thread
+constexpr std::size_t kEntriesAtOnce = 4096;  // number of entries per thread that outweighs the start of a thread
 
 struct Spectra {
   Spectra(const SceneValues& scene, const EffectPlan& plan, const std::vector<SceneVariant>& variants) {
@@ -45,7 +45,7 @@ struct RunContext {
   const Spectra& spectra;
   ModelEvaluator* evaluator;
   std::shared_ptr<const ResponseBasis> basis;
-  RunSummary& summary;  ///< summary of the run so far; each step adds its work on the host
+  RunSummary& summary;  ///< summary of the run so far
 };
 
 struct EvaluatorResults {
@@ -56,7 +56,7 @@ struct EvaluatorResults {
 /// The first column of the Mueller matrix of a pBRDF: Stokes parameters of the reflection of unpolarised light.
 Scattered scattered(const ScatteringMatrix& f) { return {f.m[0], f.m[4], f.m[8], f.m[12], f.error}; }
 
-/// Computes results for members of a selection, one by one. The object keeps its buffers from member to member.
+/// Computes the results of the selected entries. A member is the number of an entry in the selection.
 class MemberResults {
  public:
   MemberResults(const RunContext& context, const Selection& selection, const PartRequests& requests,
@@ -87,7 +87,7 @@ class MemberResults {
   }
 
  private:
-  /// The direction of the moments of an entry. It is kept, because neighbouring entries mostly have the same direction.
+  /// The direction for which an entry needs moments. Neighbouring entries mostly share it, so it is cached.
   const Direction& view_direction(const SceneEntry& entry) {
     const Surface& surface = context_.scene.surface;
     const double theta_deg = moment_zenith_deg(context_.scene, entry.theta_deg);
@@ -99,7 +99,7 @@ class MemberResults {
     return direction_;
   }
 
-  /// The moments of a member: from the evaluator, from closed forms, or zeros if the plan needs no moments.
+  /// The moments of an entry: from the evaluator, from closed forms, or zeros if the plan needs no moments.
   std::span<const Moments> moments_of(std::size_t member, const SceneEntry& entry, const Direction& direction,
                                       std::span<const FacetOptics> indices) {
     if (!context_.plan.kept.moments) return moments_;  // all zero: nothing else writes to moments_ in this case
@@ -140,12 +140,11 @@ class MemberResults {
   bool has_direction_ = false;
 };
 
-/// Progress of one step of a larger task. `before` of `total` items are done when the step starts.
+/// Progress of a step within a larger task of `total` items. `before` items are done when the step starts.
 Progress part_of(const Progress& progress, std::size_t before, std::size_t total) {
   return [&progress, before, total](std::size_t done, std::size_t) { return progress(before + done, total); };
 }
 
-/// Computes the moments and beams of one refinement level, all in one precision.
 EvaluatorResults run_requests(const RunContext& context, const PartRequests& requests, const MomentsPlan& plan,
                               const Progress& progress) {
   const std::size_t moments = requests.moments().wanted_count();
@@ -186,18 +185,18 @@ bool is_better(const PointResult& a, const PointResult& b) {
                                       std::max(b[Quantity::kErrorEstimate], b[Quantity::kRhoErrorEstimate]);
 }
 
-/// True if `level` can improve an entry. A new tolerance does not improve a beam, but a new precision does.
+/// True if `level` can make an entry more accurate. It makes a beam more accurate only if the precision changes.
 bool would_improve(const RunContext& context, const RefinementLevel& level, const RefinementLevel& last,
                    const SceneEntry& entry) {
   return wants_moments(context.scene, entry, context.plan) ||
          (wants_beam(context.scene, entry, context.plan) && level.precision != last.precision);
 }
 
-/// The members that must be computed again, by the refinement level. Those of one level are computed together.
+/// For each refinement level: the entries to compute again at this level.
 using EntriesByLevel = std::map<RefinementLevel, std::vector<std::size_t>>;
 
-/// The next refinement level of a whole direction. With responses it is in double: responses have more float noise than
-/// moments of one index. Its tolerance is lower by whole decades, so that more indices share responses.
+/// Adapts the refinement level `next` to a whole direction. With responses, it uses double, because float rounding
+/// disturbs them, and lowers the tolerance by whole decades, so that more indices share them.
 RefinementLevel level_of_direction(RefinementLevel next, const RunContext& context) {
   next.may_interpolate = true;
   if (!context.basis) return next;
@@ -208,8 +207,8 @@ RefinementLevel level_of_direction(RefinementLevel next, const RunContext& conte
   return next;
 }
 
-/// Queues entries of one direction, `members`, which were computed at `last`. If many of them miss the tolerance, all
-/// are computed again, with interpolation. Otherwise only those that miss it are, without interpolation.
+/// Queues entries of a direction (`members`) for the next refinement levels. If many miss the tolerance, queues all
+/// entries, with interpolation. Otherwise queues only those that miss it, without interpolation.
 void queue_refinement(const RunContext& context, const SceneEntries& part, const RefinementLevel& last,
                       std::span<const std::size_t> members, std::span<const PointResult> results,
                       EntriesByLevel& by_level) {
@@ -231,7 +230,7 @@ void queue_refinement(const RunContext& context, const SceneEntries& part, const
 struct FirstResults {
   RefinementLevel level;
   std::vector<PointResult> results;
-  std::vector<char> is_interpolated;  ///< one flag per direction, which has part.entries_per_direction() entries
+  std::vector<char> is_interpolated;  ///< one flag per direction of the part
 };
 
 FirstResults first_results(const RunContext& context, const SceneEntries& part, const Progress& progress) {
@@ -248,7 +247,7 @@ FirstResults first_results(const RunContext& context, const SceneEntries& part, 
   return first;
 }
 
-/// Computes entries that miss the tolerance again. `progress` counts the part as done already, but can still cancel.
+/// Computes again the entries that miss the tolerance. `progress` counts them as done, but can still cancel.
 void refine(const RunContext& context, const SceneEntries& part, FirstResults& first, const Progress& progress) {
   const Progress is_wanted = [&](std::size_t, std::size_t) { return progress(1, 1); };
   const std::size_t entries_per_direction = part.is_grid() ? part.entries_per_direction() : 1;
@@ -282,7 +281,6 @@ void refine(const RunContext& context, const SceneEntries& part, FirstResults& f
   }
 }
 
-/// Computes some entries of a grid again, by another kind of quadrature than in the first refinement level.
 std::vector<PointResult> recompute_for_check(const RunContext& context, const SceneEntries& part,
                                              const RefinementLevel& first, std::span<const std::size_t> positions) {
   if (positions.empty()) return {};
@@ -290,7 +288,7 @@ std::vector<PointResult> recompute_for_check(const RunContext& context, const Sc
   return computed_at(context, {part, positions}, check_level(first), none);
 }
 
-/// Positions in this part of those entries in `checked` that have moments. `checked` has positions in the whole table.
+/// Converts positions of entries in the table (`checked`) to positions in `part`. Skips entries without moments.
 std::vector<std::size_t> positions_in(const RunContext& context, const SceneEntries& part,
                                       std::span<const std::size_t> checked) {
   std::vector<std::size_t> positions;
@@ -307,7 +305,6 @@ bool wants_evaluator(const SceneValues& scene, const SceneEntries& entries, cons
   });
 }
 
-/// Computes the results of a part. `checked`: positions in the whole grid of the entries to check; empty for points.
 std::vector<PointResult> part_results(const RunContext& context, const SceneEntries& part,
                                       std::span<const std::size_t> checked, SelfCheck& check,
                                       const Progress& progress) {

@@ -1,4 +1,4 @@
-// What every front end runs: from the entries of a scene to moments and beams, then to results, which a sink receives.
+// The run of a scene, which all front ends use. It computes the results of many entries and passes them to a sink.
 #pragma once
 
 #include <chrono>
@@ -21,37 +21,33 @@ namespace dolp {
 /// The entries of the scene's grid. Errors: InputError for more than kMostTableEntries.
 SceneEntries grid_entries(const SceneValues& scene);
 
-/// The entries of scattered points. Values that a point lacks come from the scene. Points that give only theta form a
-/// grid. Errors: InputError that names file and line of the point, column, value and what is allowed. It refuses points
-/// without theta_deg if the grid has several values of theta, points with only one of n and k if the material depends
-/// on the wavelength, and points that check_surface() refuses.
+/// The entries of scattered points. Values that a point lacks come from the scene. Points whose only column is
+/// theta_deg form a grid. Errors: InputError that names the file and line of the point, the column, and what is
+/// allowed.
 SceneEntries point_entries(const SceneValues& scene, const Points& points);
 
-/// Refuses points that do not fit the scene's surface: q <= 3/2 with smith masking and the cauchy distribution; wind
-/// speeds without the gaussian distribution; values of films that the scene lacks; n or k of a film for which the scene
-/// names a material. Errors: InputError as for point_entries().
+/// Refuses points whose slope distribution or films do not fit the scene's surface, for example wind speeds without the
+/// gaussian distribution. Errors: InputError, as for point_entries().
 void check_surface(const SceneValues& scene, const Points& points);
 
-/// Refuses points without a column of materials (or bands) if the scene's grid has several materials (or bands).
-/// Without points, as for a Mueller matrix or a fit, refuses every such grid. Errors: InputError that tells what to do.
+/// Throws InputError if the scene's grid has several materials, or several bands, and no column of the points chooses
+/// among them.
 void check_labels_chosen(const SceneValues& scene, const Points& points = {});
 
 /// A receiver of the results of a run, part by part.
 class Sink {
  public:
   virtual ~Sink() = default;
-  /// The number of parts that an earlier run finished, and their summary. They come first, and this run skips them.
+  /// Number of leading parts that an earlier run finished, and the summary of these parts. The new run skips them.
   virtual std::size_t parts_done() const { return 0; }
   virtual RunSummary summary_of_done() const { return {}; }
-  /// Receives the results of `part`. Parts of a list of points come in the order of the points; a part of a grid knows
-  /// its position in the grid. `so_far`: summary of all parts up to this one.
+  /// Receives the results of `part`. Parts of a list of points come in the order of the points. `so_far` is the summary
+  /// of all parts up to this one.
   virtual void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary& so_far) = 0;
 };
 
-/// A sink that collects all results in memory, in the order of the entries.
 class CollectedResults final : public Sink {
  public:
-  /// `entries` must outlive the object.
   explicit CollectedResults(const SceneEntries& entries) : entries_(entries) {}
   void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary& so_far) override;
   std::vector<PointResult> take() { return std::move(results_); }
@@ -80,13 +76,13 @@ struct RunOutcome {
   EffectPlan plan;
   std::vector<Effect> effects;
   RunSummary summary;           ///< summary of all parts, also of those that an earlier run finished
-  EvaluationReport evaluation;  ///< device, precision and work of all parts
+  EvaluationReport evaluation;  ///< device, precision, and number of integrand evaluations of all parts
   double wall_s = 0.0;
-  double file_s = 0.0;  ///< time of waiting for the table to be written, a part of wall_s
+  double file_s = 0.0;  ///< time in s in which the run waited for the table to be written; a part of wall_s
 };
 
-/// A run of a scene over a grid, a part of a grid, or points. The constructor decides what the run computes. It decides
-/// for the whole grid, even if the run is of a part of the grid.
+/// A run of a scene over a grid, a part of a grid, or points. The constructor decides which effects are computed. For a
+/// part of a grid, it decides as for the whole grid.
 class Run {
  public:
   /// `scene` must outlive the object. Calls `options.progress` when all inputs are read, then makes the evaluator if
@@ -95,16 +91,14 @@ class Run {
 
   const SceneEntries& entries() const { return entries_; }
   const EffectPlan& plan() const { return outcome_.plan; }
-  /// The report of the evaluator. If the run needs no evaluator, the device and the other texts in it are "none".
+  /// Describes the evaluator and its work. If the run needs no evaluator, the device and the other texts are "none".
   const EvaluationReport& evaluation() const { return outcome_.evaluation; }
-  /// The parts that the run computes one after another to limit its memory: whole directions of a grid if they fit.
   std::vector<SceneEntries> parts() const;
 
-  /// Computes all parts and passes them to `sink`. Quantities that the plan drops are NaN. Results that miss the
-  /// tolerance are computed again. Progress counts entries. Some entries of a grid are checked; if an error bound turns
-  /// out wrong, all entries of that direction get the status of a missed tolerance. The result of an entry depends on
-  /// its direction, its index and the slope distributions of the grid, not on the parts. Errors: errors of the
-  /// evaluator, Radiometry and the sink; Cancelled.
+  /// Computes all parts and passes their results to `sink`. Results that miss the tolerance are computed again.
+  /// Progress counts entries. Some entries of a grid are computed a second time to check the error bounds. If a bound
+  /// is wrong, all entries of that direction get the status bit of a missed tolerance. Errors: errors of the evaluator,
+  /// Radiometry and the sink; Cancelled.
   RunOutcome compute(Sink& sink);
 
   double wall_s() const;  ///< time in s since the object was made
@@ -120,13 +114,13 @@ class Run {
 
 std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spectral_samples);
 
-/// The number of spectral samples of an entry. If it differs between bands, materials or films, the largest number.
+/// Largest number of wavelengths at which an entry is computed, over all bands, materials and films.
 std::size_t spectral_samples(const SceneValues& scene, const SceneEntries& entries);
 
-/// Tells `progress`, unless it is empty, that no item is finished but all inputs are read. Errors: Cancelled.
+/// Calls progress(0, total), unless `progress` is empty. Errors: Cancelled.
 void report_start(const Progress& progress, std::size_t total);
 
-/// Does what Run::compute does, for a given plan and evaluator. The evaluator may be null if the plan needs none.
+/// Does what Run::compute does, with a given plan and evaluator. The evaluator may be null if the plan needs none.
 RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
                      ModelEvaluator* evaluator, Sink& sink, const Progress& progress);
 

@@ -17,7 +17,7 @@
 namespace dolp {
 namespace {
 
-/// The material that a table records. With an axis of wavelengths, it has n and k at all wavelengths of its file.
+/// The material that a table stores. If the table has an axis of wavelengths: with all rows of its file.
 const Material& recorded_material(const Axes& axes, const SceneValues& scene) {
   const Material& material = scene.surface.material;
   return material.tabulated && !axes[Axis::kWavelength].empty() ? *material.tabulated : material;
@@ -43,7 +43,7 @@ void fill_curves(TableHead& head, const SceneValues& scene) {
   fill_used(head, scene);
 }
 
-/// The text of the scene's sky profile. Empty without a profile, and for a built-in sky, which needs only its name.
+/// The sky profile of the scene as text. Empty for a built-in sky, for which the table stores only the name.
 std::string profile_text(const SceneValues& scene) {
   if (scene.names.profile.empty() || built_in_sky(scene.names.profile)) return {};
   if (scene.surroundings->profile) return scene.surroundings->profile->text();
@@ -58,7 +58,6 @@ std::string stokes_units(const SceneValues& scene) {
   return units;
 }
 
-/// A hash of all data behind the names in the scene: n, k, E0, films, reflectances and the sky.
 std::uint64_t data_hash(const SceneValues& scene) {
   std::uint64_t hash = kHashStart;
   const auto add = [&hash](const SpectralTable& table) {

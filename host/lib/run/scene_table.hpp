@@ -15,13 +15,13 @@ namespace dolp {
 
 inline constexpr const char* kModelChange = "model_change";  ///< attribute: largest PointResult::model_change
 
-/// The quantities that results of a scene have. With a plan: only those that a run computes; at points the rest is NaN.
+/// The quantities in the results of a scene. With a plan: only the quantities that the run computes.
 Quantities quantities_of(const SceneValues& scene, const EffectPlan* plan = nullptr);
 
 /// The layout of the table over `axes` (a grid or a part of it), with all attributes that are known before the run.
 TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const Axes& axes);
 
-/// Sets Curve::used of each curve of `head` to the curve's values at the wavelengths of the table.
+/// Sets Curve::used of each curve of `head` (n, k and E0) to the values of this curve at the wavelengths of the table.
 void fill_used(TableHead& head, const SceneValues& scene);
 
 /// Attribute that lists all on which a table's values depend, except the device. difference() compares two such lists.
@@ -40,7 +40,6 @@ struct RunRecord {
   std::vector<Attribute> attributes(const std::string& command_line) const;
 };
 std::vector<Attribute> attributes_of(const SceneValues& scene, const RunOutcome& run, const std::string& command_line);
-/// The value of the attribute "history": the time and the command line.
 std::string history_text(const std::string& command_line);
 
 /// Describes the quadrature and the interpolation in words, for reports and the attribute "rule".

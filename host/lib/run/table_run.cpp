@@ -29,7 +29,7 @@ constexpr std::array kCutAxes = {Axis::kTheta,       Axis::kMaterial, Axis::kBan
                                  Axis::kTemperature, Axis::kN,        Axis::kK};
 using Cuts = std::array<std::size_t, kCutAxes.size()>;
 
-/// Cuts the axes into `count` parts in all, first axes into as many parts as possible. False if this is impossible.
+/// Finds how many parts to make of each axis, `count` in all. The first axes get the most. False if none fit.
 bool find_cuts(const PerAxis& counts, std::size_t count, std::size_t number, Cuts& cuts) {
   if (number == kCutAxes.size()) return count == 1;
   for (std::size_t parts = std::min(count, counts[kCutAxes[number]]); parts > 0; --parts) {
@@ -52,7 +52,7 @@ std::string identity_of(const SceneValues& scene, const TableJob& job) {
   return identity_of(scene, job.evaluator, job.options.keep_all);
 }
 
-/// The identity of a file with its device: all parts of a file must come from one device, but shards may differ.
+/// What all parts of a file must share: the identity, the shard and the device. Shards may come from other devices.
 std::string identity_of_file(const std::string& identity, const Shard& shard, const EvaluationReport& evaluation) {
   return fmt::format("{}; shard {}; device {}, {}", identity, shard_text(shard), one_line(evaluation.device),
                      one_line(evaluation.driver));
@@ -64,7 +64,6 @@ std::vector<TableBox> boxes_of(const SceneEntries& entries, const std::vector<Sc
   return boxes;
 }
 
-/// A sink that writes each part to the table file while the next part is computed.
 class TableSink final : public Sink {
  public:
   TableSink(const SceneEntries& entries, const TableLayout& layout, TableOutput& output)
@@ -88,7 +87,6 @@ class TableSink final : public Sink {
                            note = so_far.text()]() mutable { output_.write(std::move(values), first, note); });
   }
 
-  /// Waits until the last part is written. Errors: errors of the writing.
   void finish() {
     const auto start = std::chrono::steady_clock::now();
     if (pending_.valid()) pending_.get();
@@ -130,7 +128,6 @@ std::string text_of(const TableHead& head, const char* name) {
   return text ? *text : "";
 }
 
-/// The value of a numeric attribute; 0 if the table lacks the attribute or if it is negative.
 double number_of(const TableHead& head, const char* name) {
   const auto* number = find_attribute<double>(head, name);
   return number && *number >= 0.0 ? *number : 0.0;
@@ -163,7 +160,7 @@ void add_run(RunRecord& whole, const TableHead& shard) {
   if (devices.find(device) == std::string::npos) devices += (devices.empty() ? "" : "; ") + device;
 }
 
-/// The attributes of a shard, except those that hold only for this shard or its run.
+/// The attributes of a shard without those that hold only for this shard or its run.
 std::vector<Attribute> without_run(std::vector<Attribute> attributes) {
   const std::vector<Attribute> run = RunRecord().attributes("");
   std::erase_if(attributes, [&](const Attribute& attribute) {

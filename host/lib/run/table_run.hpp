@@ -17,9 +17,8 @@ namespace dolp {
 /// The path of the file of a shard: "table.2-of-8.nc" for "table.nc". Without a shard, `path` itself.
 std::filesystem::path shard_path(const std::filesystem::path& path, const Shard& shard);
 
-/// The entries of a shard: some of the values of theta or, if theta has too few values, also of the axes before theta.
-/// All values of sigma and q stay together, because their entries share work. Errors: InputError if the number of the
-/// shard is out of range or if the axes have too few values for so many shards.
+/// The entries of a shard. Shards divide the values of theta and, if these are too few, of the axes before theta. They
+/// keep all sigma and q, whose entries share work. Errors: InputError for a wrong shard number or too many shards.
 SceneEntries shard_entries(const SceneValues& scene, const Shard& shard);
 
 struct TableJob {
@@ -33,22 +32,19 @@ struct TableJob {
 /// Errors: errors of Run and TableOutput; Cancelled. Their messages tell which parts are already on disk.
 RunOutcome write_table(const SceneValues& scene, const TableJob& job, const EvaluatorMaker& make_evaluator);
 
-/// True if the file of the job exists, is undamaged, and holds the entries of the same shard with the same kIdentity.
+/// True if the file of the job is complete and undamaged, and has the entries of this shard and the same kIdentity.
 bool is_there(const SceneValues& scene, const TableJob& job);
 
-/// All shards of a table. Only one shard file is open at a time.
 class ShardSet {
  public:
   /// Errors: InputError that names a missing shard, a duplicate, or a shard of another table; errors of TableReader.
   explicit ShardSet(const std::vector<std::string>& paths);
 
-  /// Joins the shards into one table. Returns the number of its entries. Errors: errors of the constructor, because a
-  /// file may have been replaced since; errors of TableOutput.
+  /// Joins the shards. Returns the number of entries. Errors: those of the constructor, because files may have changed.
   std::size_t merge(const std::filesystem::path& path, const std::string& command_line) const;
 
  private:
   void begin(const TableReader& first, const std::string& path);
-  /// The number of an open shard. Throws InputError if the shard does not belong to this table.
   std::size_t checked_number(const TableReader& reader, const std::string& path) const;
 
   SceneValues scene_;

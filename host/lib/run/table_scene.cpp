@@ -23,7 +23,7 @@ constexpr double kMostMaterials = 1e4;
 
 enum Column : std::size_t { kNumber, kQuantity, kWavelength, kValue, kColumns };
 
-/// True if the line begins a setting: before an equals sign it has a key of a scene or the name of a TOML table.
+/// True if a setting begins in this line: it has a key of a scene, or the name of a TOML table, before an equals sign.
 bool begins_setting(std::string_view line) {
   const std::string_view key = trim(line.substr(0, line.find('=')));
   if (line.find('=') == std::string_view::npos) return false;
@@ -40,7 +40,6 @@ SpectralTable checked_table(const Curve& curve, const NamedValue& value, const s
   return table;
 }
 
-/// The data of the scene (n, k, E0, films, reflectances, sky) that are stored in its table.
 KnownData known_data(const TableHead& table, const std::string& name) {
   const std::string where = name + ": ";
   KnownData known;

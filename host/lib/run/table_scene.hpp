@@ -10,8 +10,8 @@
 
 namespace dolp {
 
-/// The text of the attribute "scene_overrides" of a table: one setting KEY=VALUE per line. A value may contain line
-/// ends, because a new setting begins only at a line that starts with a key of a scene.
+/// The text of the attribute "scene_overrides" of a table: one setting KEY=VALUE per line, which may have line ends in
+/// VALUE.
 std::string settings_text(const std::vector<Setting>& settings);
 std::vector<Setting> settings_of(const std::string& text);
 
@@ -19,10 +19,9 @@ std::vector<Setting> settings_of(const std::string& text);
 std::string scene_hash(const SceneValues& scene);
 std::uint64_t scene_seed(const SceneValues& scene);  ///< the same hash as a number
 
-/// Refuses a file that does not exist or whose format does not store the scene of the table. Errors: InputError.
 void check_may_hold_scene(const std::string& path);
 
-/// Reads a table file that stores its scene. Errors: errors of check_may_hold_scene and read_table.
+/// Reads a table. Errors: InputError if the file does not exist or its format does not store the scene; as read_table.
 TableValues load_table(const std::string& path);
 
 /// Where table_scene() gets data that a scene refers to by name, such as n, k and E0.
@@ -40,8 +39,7 @@ SceneValues table_scene(const TableHead& table, const std::string& name, NamedDa
 double scene_position(const TableHead& table, Axis axis, double value, const SceneValues& scene,
                       const std::string& name);
 
-/// Converts the values of the table on axes with labels to positions in the scene's lists of labels. Parts of a table
-/// may number their labels differently. Errors: InputError that begins with `name` if the scene lacks a label.
+/// Converts the values on all axes with labels to positions in the scene's lists. Errors: as scene_position().
 void use_scene_labels(TableHead& table, const SceneValues& scene, const std::string& name);
 
 /// The n and k of materials as CSV, with the columns number (from 1), quantity (name, n, k or formula), wavelength_um
@@ -52,16 +50,13 @@ std::string materials_text(const std::vector<const Material*>& materials, bool h
 std::string coating_text(const Surface& surface, bool has_wavelength_axis);
 std::string axis_materials_text(const SceneModel& scene, bool has_wavelength_axis);
 
-/// Reads a text that materials_text() wrote. Errors: InputError that begins with `name`.
 std::vector<std::optional<Material>> parse_materials(const std::string& text, const std::string& name);
 
-/// The measured reflectances of a surface as CSV for read_reflectance_file(). Empty if the surface has none.
+/// The measured reflectances of a surface, in the format of read_reflectance_file(). Empty if the surface has none.
 std::string reflectance_text(const Surface& surface);
 
-/// The number of a dispersion formula and its coefficients, separated by spaces.
 std::string formula_text(const Dispersion& formula);
 
-/// Reads a text that formula_text() wrote. Errors: InputError that begins with `where`.
 Dispersion parse_formula(const std::string& text, const std::string& where);
 
 }  // namespace dolp

@@ -20,11 +20,11 @@ constexpr std::size_t kFirstIntervals = 4;
 constexpr std::size_t kMostIntervals = 32;  // largest number of intervals per point, which gives 480 wavelengths
 constexpr double kQuadratureShare = 0.01;   // the quadrature stops at an error of this times the tolerance
 
-// Quantities that are integrated over the wavelength, and quantities that are means with the weight of the reflectance.
+// Quantities that are integrated over the wavelength, and quantities that are averaged over it with a weight.
 constexpr std::array kIntegrated = {kStokesI, kStokesQ, kStokesU, kStokesV};
 constexpr std::array kMeans = {kRhoI, kRhoQ, kEmissivityS, kEmissivityP};
 
-/// Positions in an array of integrals. Its order: radiation, weight, means times weight, errors of DOLP and of rho.
+/// Positions in an array of integrals. The order is: radiation, weight, weighted means, error of DOLP, error of rho.
 constexpr std::size_t kWeight = kIntegrated.size();
 constexpr std::size_t kDolpError = kWeight + 1 + kMeans.size();
 constexpr std::size_t kRhoError = kDolpError + 1;
@@ -43,7 +43,7 @@ struct PointIntegral {
   std::vector<double> breaks;  ///< wavelengths in um at which the integrand is not smooth
   std::vector<BandPiece> intervals;
   std::size_t first_new = 0;  ///< position of the first interval that is not integrated yet
-  PointResult last;           ///< result of the point at one of the wavelengths
+  PointResult last;           ///< result at the wavelength that was computed last, for values that are not integrated
 };
 
 std::vector<double> band_breaks_um(const SceneModel& scene) {
@@ -73,14 +73,14 @@ Integrals integrand(const PointResult& at, double weight) {
   for (const Quantity quantity : kIntegrated) value[i++] = at[quantity];
   value[i++] = weight;
   for (const Quantity quantity : kMeans) value[i++] = std::isnan(at[quantity]) ? 0.0 : weight * at[quantity];
-  // The error estimate is infinite where nothing is emitted. The error of the radiation is then at most the radiation.
+  // Where nothing is emitted, the error estimate is infinite. Then the error is at most the radiation itself.
   const double error = std::abs(at[kStokesI]) * at[kErrorEstimate];
   value[i++] = std::isfinite(error) ? error : std::abs(at[kStokesI]);
   value[i] = std::abs(weight * at[kRhoI]) * at[kRhoErrorEstimate];
   return value;
 }
 
-/// A node of the quadrature: its position in an interval (-1 to 1), and its weights in the Kronrod and the Gauss rule.
+/// A node of the quadrature: its offset in an interval (-1 to 1), and its Kronrod and Gauss weights.
 struct KronrodNode {
   double offset;
   double kronrod;
@@ -102,7 +102,7 @@ Integrals total_of(const std::vector<BandPiece>& intervals, Integrals BandPiece:
   return sum;
 }
 
-/// The larger of two errors from the quadrature: in DOLP, and in the means over the band.
+/// The largest error that the quadrature causes: the error in DOLP, or the error in the means over the band.
 double quadrature_error(const Integrals& value, const Integrals& error) {
   const double of_means = error.segment(kWeight + 1, 2).sum() / std::abs(value[kWeight + 1]);
   return std::max(error.head(kWeight).sum() / std::abs(value[0]), of_means + error[kWeight] / value[kWeight]);
@@ -123,7 +123,6 @@ void split_worst(PointIntegral& point) {
   point.intervals.push_back({at_um, old.to_um});
 }
 
-/// Integrates the new intervals of several points, with one call of the evaluator.
 void integrate_new(const SceneValues& scene, std::vector<PointIntegral*>& points, ModelEvaluator& evaluator,
                    const Progress& progress) {
   static const std::vector<KronrodNode> kNodes = kronrod_nodes();

@@ -57,10 +57,9 @@ StoredCase parse_case(const CsvReader& row) {
   return stored;
 }
 
-// Bound of the relative rounding error of r / cos(theta) and of other quotients of stored values.
+// Largest relative rounding error of a quotient of stored values.
 constexpr double kQuotientRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
-/// rho and DOLP that follow from the reference moments of a case.
 struct Expected {
   double rho_i = 0.0;
   double rho_q = 0.0;
@@ -75,7 +74,6 @@ double relative(double error, double value) {
   return value > 0.0 ? error / value : kInfinity;
 }
 
-/// Error bound of a quotient of two stored values, each with its own error.
 double quotient_error(double above_error, double quotient, double below, double below_error) {
   const double margin = std::abs(below) - below_error;
   return margin > 0.0

@@ -21,10 +21,10 @@
 namespace dolp {
 namespace {
 
-// The reference gets a hundredth of the tolerance of the table, but at least this.
+// The tolerance of the reference is a hundredth of the tolerance of the table, but at least this.
 constexpr double kReferenceTolerance = 1e-11;
 
-/// How the error bound of a quantity follows from error_estimate (of DOLP) and rho_error_estimate of a table.
+/// How the error bound of a quantity follows from the columns error_estimate and rho_error_estimate of a table.
 enum class Bound { kDolp, kReflectance, kPolarisedRadiation, kRadiation, kEmissivity, kAlbedo };
 
 struct Compared {
@@ -47,11 +47,10 @@ constexpr std::array<Compared, 13> kCompared{{
     {Quantity::kEmissivityP, Bound::kEmissivity},
 }};
 
-/// Tables state no error for some quantities. Relative to its terms, such an error may be this times the largest of
-/// both stated errors and the tolerance.
+/// For some quantities tables state no error. It may be this times the largest of both stated errors and the tolerance.
 constexpr double kUnstatedOverStated = 10.0;
 
-/// Properties of the scene of a variant (one material, wavelength, ...) on which the error bounds depend.
+/// Properties of a scene with one material, wavelength and so on. The error bounds of its entries depend on them.
 struct BoundTerms {
   double tolerance = 0.0;
   double radiation = 0.0;  ///< emitted radiation, plus reflected radiation if rho were 1, in the unit of Stokes I
@@ -72,7 +71,7 @@ std::vector<BoundTerms> bound_terms(const SceneValues& scene, const std::vector<
   return terms;
 }
 
-/// The error bound of a quantity, in its unit. Both estimates are those of the table, or those of the reference.
+/// The error bound of a quantity. Both estimates are from the table, or both are from the reference.
 double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const PointResult& reference,
                 const BoundTerms& terms) {
   const double radiation = dolp_estimate * std::abs(reference[Quantity::kStokesI]);
@@ -96,7 +95,7 @@ double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const Po
   return kInfinity;
 }
 
-/// Tells what is wrong with a value. `allowed`: largest error within the tolerance; infinite if no tolerance holds.
+/// Tells what is wrong with a value. `allowed` is the largest error within the tolerance; infinite without a tolerance.
 std::string complaint_about(const CheckedValue& value, double allowed) {
   if (std::isnan(value.stored) && std::isnan(value.reference)) return {};
   if (std::isnan(value.stored)) return "is NaN in the table";
@@ -136,7 +135,7 @@ CheckedValue compare(const TableSample& sample, const Compared& compared, std::s
   value.stated = bound_of(compared.bound, dolp_estimate, rho_estimate, reference, terms);
   value.reference_error = bound_of(compared.bound, reference[Quantity::kErrorEstimate],
                                    reference[Quantity::kRhoErrorEstimate], reference, {0.0, terms.radiation});
-  // If neither the table nor the reference has an error estimate (an intensity may overflow), no bound is stated.
+  // If neither the table nor the reference has an error estimate (the intensity I may overflow), no bound is stated.
   if (std::isnan(value.stated) && !std::isfinite(value.reference_error))
     value.stated = value.reference_error = kInfinity;
   const std::uint32_t status = table.status.empty() ? kAnyToleranceNotMet : table.status[i];
@@ -202,8 +201,8 @@ std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckO
     for (std::size_t i = 0; i < entries; ++i) chosen.insert(i);
     return {chosen.begin(), chosen.end()};
   }
-  // Floyd's sampling: R. Floyd, J. Bentley, Programming Pearls, Comm. ACM 30, 1987. std::sample may give other entries
-  // with other standard libraries. The remainder of a 64-bit number by at most 2^24 entries is uniform to 1e-12.
+  // Floyd's sampling (Bentley, Programming Pearls, Comm. ACM 30, 1987). std::sample may give other entries with other
+  // standard libraries. The remainder of a 64-bit number by at most 2^24 entries is uniform to 1e-12.
   std::mt19937_64 engine(options.seed);
   for (std::size_t last = entries - options.samples; last < entries; ++last) {
     const std::size_t candidate = engine() % (last + 1);

@@ -13,7 +13,6 @@
 
 namespace dolp {
 
-/// The value of an axis, with its label if the axis has labels.
 struct AxisValue {
   Axis axis;
   double value;
@@ -29,7 +28,7 @@ struct CheckedValue {
   double reference_error = 0.0;  ///< error bound of `reference`, in the same unit
   std::string complaint;         ///< what is wrong; empty if nothing is wrong
   double error() const;
-  /// Ratio of error() to `stated` plus `reference_error`; 0 if the table states no bound.
+  /// error() divided by the sum of `stated` and `reference_error`; 0 if the table states no bound.
   double ratio() const;
 };
 
@@ -43,7 +42,7 @@ struct QuantityCheck {
 struct TableCheck {
   std::size_t entries = 0;
   std::size_t checked = 0;
-  std::size_t missed = 0;  ///< checked entries with status bit 2 (DOLP) or 16 (rho): tolerance missed
+  std::size_t missed = 0;  ///< checked entries whose status says that DOLP or rho misses its tolerance
   double tolerance = 0.0;
   std::vector<QuantityCheck> quantities;
   std::vector<CheckedValue> failures;
@@ -52,37 +51,33 @@ struct TableCheck {
 
 std::vector<AxisValue> position_of(std::size_t entry, const TableHead& table);
 
-/// `options.samples` different positions below `entries`, in ascending order. They depend only on the seed.
+/// Positions of options.samples different entries, in ascending order. They depend only on the seed.
 std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckOptions& options);
 
-/// Some entries of a table. Each column of `table` has one value for each of `positions`, which are in ascending order.
+/// Some entries of a table. `table` has only these entries; `positions` are their positions in the whole table.
 struct TableSample {
   TableValues table;
   std::vector<std::size_t> positions;
 };
 
-/// Compares a sample of a table with results for the table's scene that ReferenceEvaluator and the radiometry give, or
-/// integrate_band over a band.
-/// A value is wrong in three cases: its error exceeds the stated bound plus the bound of the reference; only one of
-/// stored value and reference is a number; rho or DOLP misses the tolerance, but the status has no bit for it. The
-/// stated bound is rho_error_estimate rho_I for rho, error_estimate for DOLP, error_estimate |I| for Q, U and V, and
-/// error_estimate |I| / DOLP for I. For emissivities, for the albedo and for I near DOLP = 0, it is ten times the
-/// largest of both estimates and the tolerance, relative to the terms that add up to the value. Closed forms of mirrors
-/// and limits are not checked independently: every evaluator takes them from the same code.
-/// Errors: InputError that begins with `name` if the table has nothing to compare or has axes out of range; Cancelled.
+/// Compares a sample of a table with results from the adaptive quadrature of ReferenceEvaluator (over a band, of
+/// integrate_band). A value is wrong in three cases: its error exceeds the stated bound plus the bound of the
+/// reference; only one of table and reference has a number; or rho or DOLP misses the tolerance without a status bit.
+/// bound_of() gives the stated bound of each quantity. Closed forms of mirrors and limits are not checked
+/// independently, because every evaluator takes them from the same code. Errors: InputError that begins with `name` if
+/// the table has nothing to compare or has axes out of range; Cancelled.
 TableCheck check_table(const TableSample& sample, const SceneValues& scene, const std::string& name,
                        const Progress& progress);
 
-/// Compares the weights in a sample of a response table with weights of ReferenceEvaluator. Weights of an entry are
-/// wrong if their response_distance() exceeds the sum of response_error in the table and in the reference. Errors:
-/// InputError that begins with `name` if the table has no response_error; Cancelled.
+/// Compares the weights in a sample of a response table with weights from ReferenceEvaluator. They are wrong if their
+/// response_distance() exceeds the sum of both response_error. Errors: InputError that begins with `name` if the table
+/// has no response_error; Cancelled.
 TableCheck check_responses(const TableSample& sample, const SceneValues& scene, const std::string& name,
                            const Progress& progress);
 
-/// Results at some points of a scene with a band. Instead of the spectral rule, an adaptive Gauss-Kronrod quadrature
-/// integrates results at single wavelengths. Its first intervals begin and end at wavelengths in the data of material,
-/// source and sky. A point has at most kMostIntervals intervals; the remaining error is part of the error estimates.
-/// Results that are no integral over the wavelength (bracket, limit at 90 degrees) use the spectral rule.
+/// Results at points of a scene with a band. An adaptive Gauss-Kronrod quadrature integrates over the wavelength. The
+/// remaining error is part of the error estimates. Results that are no integral over the wavelength (such as the
+/// bracket) come from the spectral rule that a run uses.
 std::vector<PointResult> integrate_band(const SceneValues& scene, const SceneEntries& points, ModelEvaluator& evaluator,
                                         const Progress& progress);
 

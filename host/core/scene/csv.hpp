@@ -66,7 +66,7 @@ class CsvColumns {
 
   /// For a file without a header, whose rows have all known columns in this order.
   explicit CsvColumns(std::vector<CsvColumn> known);
-  /// Reads the first line of a text as a header. Errors: also InputError for a text without lines.
+  /// Reads the first line of a text as a header. Errors: those of CsvColumns, and InputError for a text without lines.
   static CsvColumns first_of(CsvReader& reader, std::vector<CsvColumn> known,
                              const std::vector<std::string>& ignored = {});
 

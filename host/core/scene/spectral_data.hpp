@@ -26,7 +26,7 @@ struct NamedValue {
   NumberRange range;
 };
 
-/// Appends a row if both numbers are in range and the wavelength ascends. Otherwise a message begins with `where`.
+/// Appends a row. Errors: InputError that begins with `where`, for a number out of range or a descending wavelength.
 void append_row(SpectralTable& table, double wavelength_um, const NamedValue& value, const std::string& where);
 
 struct SpectralRow {

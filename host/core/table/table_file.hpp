@@ -12,7 +12,7 @@
 
 namespace dolp {
 
-/// Appends to `text` the cells with which a row begins, each with a comma after it. The results of the row follow them.
+/// Appends the first cells of a row to `text`, each with a comma after it. The results of the row follow.
 using RowStart = std::function<void(std::string& text, std::size_t row)>;
 
 /// Names of the quantities and, if `has_status`, of the status, separated by commas.

@@ -22,9 +22,9 @@ class TableOutput {
     std::filesystem::path path;
     TableLayout layout;
     std::vector<TableBox> parts = {};  ///< parts that write() gets, in this order; empty: any parts, in any order
-    std::string identity = {};  ///< names and values that all parts share, for difference(); empty: not resumable
-    bool is_resumed = false;    ///< continues PATH.partial if this file exists
-    Progress progress = {};     ///< called while finished parts are read, with 0 as the number of done entries
+    std::string identity = {};         ///< names and values that a resumed run must share; empty: not resumable
+    bool is_resumed = false;           ///< continues PATH.partial if this file exists
+    Progress progress = {};            ///< called while finished parts are read, with 0 as the number of done entries
   };
   /// If `is_resumed`, reuses the finished parts of an earlier run, up to the first part that is missing or changed.
   /// Errors: errors of check_output_path; InputError if the partial file has another identity or is in use by another

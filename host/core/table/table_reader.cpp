@@ -26,7 +26,7 @@ constexpr std::size_t kMostAngles = 1024;                      // most angles of
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostShrinking = 1032;  // deflate, which other tools may use, leaves at least a 1032nd
+constexpr std::size_t kMostShrinking = 1032;  // deflate, which other tools may use, compresses at most by this factor
 constexpr std::size_t kMostStoredTextBytes = 64U << 20U;  // the longest text, the scene, has at most 16 MiB
 
 constexpr const char* kPartHint =

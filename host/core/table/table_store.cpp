@@ -131,9 +131,8 @@ class Writer {
     put_text(object, "flag_meanings", fmt::format("{}", fmt::join(meanings, " ")));
   }
 
-  /// Reserves the space of the variable in the file. The values are not compressed, because zlib would save half of the
-  /// file but take longer than the rest of writing a table. They are contiguous, because pointers to chunks have no
-  /// checksum.
+  /// Reserves space for the variable in the file. Values are not compressed, because that takes longer than writing.
+  /// They are contiguous, because pointers to chunks have no checksum.
   Hdf5Handle define(const char* name, hid_t type, const std::vector<hsize_t>& shape, const void* fill,
                     H5D_alloc_time_t allocation = H5D_ALLOC_TIME_EARLY) const {
     const Hdf5Handle creation = take(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
@@ -201,8 +200,7 @@ void put_attributes(const Writer& writer, const TableHead& head) {
   if (const std::string data = spectral_data_of(head); !data.empty()) put_more(writer, {{kSpectralData, data}});
 }
 
-/// Writes a coordinate. `along`: its dimension, or an empty handle for a single value; null if it is a dimension
-/// itself.
+/// Writes a coordinate. `along`: its dimension (an empty handle for a single value); null if it is itself a dimension.
 template <class Described>
 Hdf5Handle put_coordinate(const Writer& writer, const Described& described, const std::vector<double>& values,
                           const Hdf5Handle* along = nullptr) {
@@ -271,7 +269,7 @@ std::uint64_t offset_of(const Writer& writer, const Hdf5Handle& variable) {
   return offset;
 }
 
-/// Returns the offset of the variable's values. `qualifiers`: names of the variables with its error and status, or "".
+/// Defines a variable. Returns the offset of its values. `qualifiers`: names of its error and status variables, or "".
 template <class Described>
 std::uint64_t put_variable(const Writer& writer, const TableHead& head, const AxisVariables& axes,
                            const Described& described, const std::string& units, const char* qualifiers,

@@ -39,7 +39,6 @@ struct EvaluationReport : Work {
   double pipelines_s = 0.0;        ///< the part of setup_s that creates pipelines
 };
 
-/// Adds the precision of a computation to `used`, which is an EvaluationReport::precision.
 inline void note_precision(std::string& used, bool in_double) {
   const char* name = in_double ? "double" : "float";
   if (used.empty()) used = name;

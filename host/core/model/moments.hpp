@@ -52,10 +52,9 @@ struct MomentsRequest {
   bool wants_direct = false;                    ///< requests also direct_i and direct_q; only with v-cavity or smith
   double tolerance = 1e-4;                      ///< tolerance of the integrals, relative to r_i
   Precision precision = Precision::kAuto;       ///< kAuto means float
-  bool may_interpolate = true;    ///< allows interpolation between slope distributions, within `tolerance`
-  bool has_extra_splits = false;  ///< integrates with more panels, to check a computation that has fewer
-  std::shared_ptr<const ResponseBasis>
-      basis;  ///< computes the moments of all optics from these responses; null: without responses
+  bool may_interpolate = true;                 ///< allows interpolation between slope distributions, within `tolerance`
+  bool has_extra_splits = false;               ///< integrates with more panels, to check a computation that has fewer
+  std::shared_ptr<const ResponseBasis> basis;  ///< responses from which all moments are computed; null: none
   std::shared_ptr<const SkyBasis> sky;  ///< fills Moments::columns, one for each function of this sky; null: no sky
   std::optional<Response> response;     ///< fills Moments::columns with responses
   Layout layout = Layout::kGrid;

@@ -16,8 +16,7 @@ namespace {
 constexpr std::array<double, 5> kScales = {1.0, 0.3, 0.1, 0.03, 0.01};
 constexpr Eigen::Index kCoefficients = 65;  // Chebyshev coefficients that are computed for a reflectance curve
 constexpr Eigen::Index kLastOfCurve = 4;
-constexpr double kReach =
-    0.25;  // largest error of a reflectance curve as a sum of polynomials, as a share of the tolerance
+constexpr double kReach = 0.25;           // error of a reflectance curve as a sum, as a share of the tolerance
 constexpr double kTimeOfResponse = 0.08;  // time that one response adds to a kernel pass, relative to a pass without
 constexpr double kLeastGain = 1.25;       // least speed-up over separate indices with which a run uses responses
 // Allowed numbers of responses. They are few because a driver compiles separate kernels for each of them.

@@ -21,7 +21,6 @@ struct BeamAngles {
 /// True if there is a facet that reflects one beam into the other. There is none if both beams are at 90 degrees.
 inline bool has_facet(const BeamAngles& a) { return a.theta_i_deg < 90.0 || a.theta_r_deg < 90.0; }
 
-/// True if a mirror reflects one beam into the other.
 inline bool is_specular(const BeamAngles& a) {
   const bool is_forward = std::abs(a.delta_phi_deg) == 180.0;
   return a.theta_i_deg == a.theta_r_deg && (is_forward || a.theta_i_deg == 0.0);

@@ -60,7 +60,6 @@ struct SceneVariant {
 /// The axes whose values are in SceneVariant. They are the first axes of a table, which vary slowest.
 inline constexpr std::array kVariantAxes = {Axis::kMaterial, Axis::kBand, Axis::kWavelength, Axis::kTemperature};
 
-/// Stores a value of `axis` in the variant. Does nothing for an axis that is not in kVariantAxes.
 void set_value(SceneVariant& variant, Axis axis, double value);
 
 std::vector<SceneVariant> variants_of(const Axes& axes);

@@ -13,8 +13,7 @@
 namespace dolp {
 namespace {
 
-constexpr Eigen::Index kPoints =
-    17;  // Chebyshev points in each part of the zenith; enough if the temperature is linear in the zenith
+constexpr Eigen::Index kPoints = 17;  // Chebyshev points in each part of the zenith
 
 // Between the nodes, a sum of functions differs from a sky by at most this times the largest difference at the nodes.
 constexpr double kBetweenNodes = 1.5;

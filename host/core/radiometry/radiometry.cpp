@@ -94,7 +94,6 @@ bool is_known(const Moments& moments) {
   return !std::isnan(moments.r_i) && !std::isnan(moments.r_q) && !std::isnan(moments.deficit);
 }
 
-// True if rho has no limit at 90 degrees.
 bool reflectance_diverges(const Surface& surface, const Direction& direction, std::span<const Moments> moments) {
   if (direction.theta_deg != kRightAngle_deg) return false;
   if (direction.cos_theta == 0.0 || diffuse_diverges(surface)) return true;
@@ -128,7 +127,6 @@ bool is_isothermal(const SpectralRule& rule) {
                              [](const SpectralSample& sample) { return sample.excess == 0.0 && sample.sky.empty(); });
 }
 
-/// The result at 90 degrees if rho diverges there.
 PointResult grazing_limit(const SceneModel& scene, const SpectralRule& rule, std::span<const SkyWeights> sky,
                           const Direction& direction, std::span<const Moments> moments) {
   const Surface& surface = scene.surface;

@@ -68,7 +68,6 @@ void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance
 Bracket bracket(const SceneModel& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,
                 std::span<const Emissivity> direct, const Stokes& sky, double cos_theta);
 
-/// Bound of the relative error of `value`, which has an absolute error of at most `error`.
 double relative_bound(double error, double value);
 
 }  // namespace dolp

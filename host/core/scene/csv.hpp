@@ -16,9 +16,8 @@ struct CsvForm {
   std::size_t first_line = 1;
 };
 
-/// Goes through a text line by line: `for (CsvReader row(text, name); row.next();)`. Accepts the line ends and byte
-/// order mark that split_lines accepts. A cell in double quotes may contain separators; its value is the text between
-/// the quotes. Leaves out lines at the end of the text that have no value. All views point into `text`.
+/// Goes through a text line by line: `for (CsvReader row(text, name); row.next();)`. A cell in double quotes may
+/// contain separators. Leaves out lines at the end of the text that have no value. All views point into `text`.
 class CsvReader {
  public:
   CsvReader(std::string_view text, std::string name, CsvForm form = {});

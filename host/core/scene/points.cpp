@@ -96,7 +96,6 @@ const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_vi
   return *found;
 }
 
-/// Adds the column of `rule`, without values. Errors: InputError if the points have this column already.
 std::vector<double>& add_column(Points& points, const ColumnRule& rule) {
   if (rule.of(points)) {
     const bool is_other = rule.is_wind != points.has_winds && std::holds_alternative<Axis>(rule.column) &&

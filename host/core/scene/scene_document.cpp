@@ -70,7 +70,6 @@ std::size_t list_position(std::string_view part) {
 
 std::string last_part(std::string_view key) { return std::string(key.substr(key.find_last_of('.') + 1)); }
 
-/// The table's name in a dotted key; empty for a key outside of tables.
 std::string_view table_part(std::string_view key) {
   const std::size_t dot = key.find_last_of('.');
   return dot == std::string_view::npos ? std::string_view{} : key.substr(0, dot);

@@ -66,7 +66,6 @@ Key described(const std::string& key, Type type, const char* unit, const NumberR
   return {key, type, unit, range, std::move(words), fallback, meaning};
 }
 
-/// Replaces the setter of a key that changes more of a scene than one number.
 SceneKey with_set(SceneKey key, std::function<void(SceneValues& scene, const KeyValue& value)> set) {
   key.set = std::move(set);
   return key;

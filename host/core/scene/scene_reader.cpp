@@ -203,7 +203,6 @@ auto read_file_of(SceneValues& scene, const std::string& file, const std::string
   }
 }
 
-/// The range from the shortest to the longest wavelength of a scene's spectrum and axes.
 Spectrum all_wavelengths(const SceneValues& scene) {
   Spectrum all = scene.spectrum;
   for (const double wavelength_um : scene.grid[Axis::kWavelength]) {
@@ -445,7 +444,6 @@ void check_radiation(const SceneValues& scene, const SceneDocument& document) {
   }
 }
 
-/// Applies a setting. Errors: InputError, also for a setting that removes an unknown key.
 void apply(SceneDocument& document, const Setting& setting) {
   const std::vector<std::string> tables = scene_tables();
   const bool is_known =

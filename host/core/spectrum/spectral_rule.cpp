@@ -39,8 +39,7 @@ constexpr int kMostNodes = 24;
 // and at critical angles. The error bound is kProbeSafety times the largest error.
 constexpr double kProbeSafety = 10.0;
 constexpr std::array<double, 7> kProbeCosines = {1.0, 0.5, 0.25, 0.15, 0.1, 0.07, 0.04};
-constexpr std::array<double, 7> kCriticalShares = {
-    0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};  // positions in a segment whose critical angles are probes
+constexpr std::array<double, 7> kCriticalShares = {0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};  // of probes in a segment
 // If kMostNodes nodes leave an error above kShareOfTolerance of the tolerance, the segment is cut into panels. Their
 // number grows until the error is below kPanelShareOfTolerance of the tolerance, or until the band has about
 // kMostPanels. Mirrors may have more panels, because their moments are cheap.
@@ -194,7 +193,6 @@ std::vector<double> gauss_wavelengths(double from_um, double to_um, int count) {
   return wavelengths_um;
 }
 
-/// The value at `wavelength_um` of the Lagrange polynomial of each node.
 std::vector<double> lagrange(const std::vector<double>& nodes_um, double wavelength_um) {
   std::vector<double> values(nodes_um.size(), 1.0);
   for (std::size_t j = 0; j < nodes_um.size(); ++j)

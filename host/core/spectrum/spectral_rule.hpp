@@ -23,13 +23,12 @@ struct KeptEffects {
 
 /// Integrals of radiation times a weight function. Units: W m-2 over a band, W m-2 um-1 at a single wavelength.
 struct SpectralFactors {
-  double emitted = 0.0;       ///< pi B(T); 0 without [emission]
-  double surroundings = 0.0;  ///< pi B(T_surr), or pi times the mean of a sky profile; 0 without [surroundings]
-  double excess = 0.0;        ///< surroundings - emitted; exactly 0 if both have the same temperature
-  double irradiance = 0.0;    ///< E0 at normal incidence; 0 without [source]
-  double width = 0.0;         ///< integral of the weight function in um; 1 at a single wavelength
-  std::vector<double> sky =
-      {};  ///< pi times the sky profile minus `surroundings`, at the nodes of SkySampler; empty without profile
+  double emitted = 0.0;          ///< pi B(T); 0 without [emission]
+  double surroundings = 0.0;     ///< pi B(T_surr), or pi times the mean of a sky profile; 0 without [surroundings]
+  double excess = 0.0;           ///< surroundings - emitted; exactly 0 if both have the same temperature
+  double irradiance = 0.0;       ///< E0 at normal incidence; 0 without [source]
+  double width = 0.0;            ///< integral of the weight function in um; 1 at a single wavelength
+  std::vector<double> sky = {};  ///< pi times sky profile, minus `surroundings`, at the nodes of SkySampler
 
   void add(const SpectralFactors& more, double factor);
 };

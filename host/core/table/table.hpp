@@ -22,13 +22,11 @@ inline constexpr const char* kConventionsOfFiles = "CF-1.8";
 /// Attribute with the scene's n, k and E0. Each line of its text has a name, a wavelength in um and a value.
 inline constexpr const char* kSpectralData = "spectral_data";
 
-/// The text of the attribute kSpectralData, from the curves of n, k and E0 in `head`; empty without curves.
 std::string spectral_data_of(const TableHead& head);
 
 /// Parses the attribute kSpectralData into the curves of n, k and E0, and removes it. Errors: InputError about `name`.
 void take_spectral_data(TableHead& head, const std::string& name);
 
-/// The value of an attribute; null if the head has no attribute of this name and type.
 template <class Content>
 const Content* find_attribute(const TableHead& head, std::string_view name) {
   const auto found = std::ranges::find(head.attributes, name, &Attribute::name);

@@ -330,7 +330,6 @@ struct TableLookup::Lines {
     }
   }
 
-  /// Estimate of the error of interpolating `column`, a quantity of the table, along the axis.
   double error(const std::vector<double>& column) const {
     if (!has_error) return 0.0;
     if (is_unknown) return kInfinity;

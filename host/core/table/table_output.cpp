@@ -35,7 +35,6 @@ std::optional<std::string_view> first_text(std::string_view lines, std::uint64_t
   return line == progress_line(hash, text) ? std::optional(text) : std::nullopt;
 }
 
-/// Removes from `text` everything up to the first separator, and returns what was before the separator.
 std::string_view next_piece(std::string_view& text, std::string_view separator) {
   const std::size_t end = text.find(separator);
   const std::string_view piece = text.substr(0, end);

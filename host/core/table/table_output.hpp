@@ -13,9 +13,8 @@
 
 namespace dolp {
 
-/// Writes a table file part by part. If the table is resumable and has several parts, its values are in PATH.partial
-/// until it is complete, and PATH.partial.txt has a line for each finished part, with a hash of its values. Any other
-/// table is in a file without a name until it is complete. A .csv or .npy is made from the values at the end.
+/// Writes a table file part by part. A resumable table with several parts is in PATH.partial until it is complete, and
+/// PATH.partial.txt lists the finished parts. Any other table is in a file without a name until it is complete.
 class TableOutput {
  public:
   struct Job {

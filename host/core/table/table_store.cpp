@@ -107,7 +107,6 @@ class Writer {
     put(object, name, type.id(), type.id(), take(H5Screate(text.empty() ? H5S_NULL : H5S_SCALAR), H5Sclose),
         text.empty() ? nullptr : text.data());
   }
-  /// The HDF5 type of texts with `width` bytes. H5T_VARIABLE as the width means any length.
   Hdf5Handle text_type(std::size_t width) const {
     Hdf5Handle type = take(H5Tcopy(H5T_C_S1), H5Tclose);
     check(H5Tset_size(type.id(), width));
@@ -168,7 +167,6 @@ class Writer {
   Hdf5Handle file_;
 };
 
-/// Stores a text as a variable of characters, whose dimension is the length of the text.
 void put_long_text(const Writer& writer, const std::string& name, const std::string& text) {
   const std::vector<hsize_t> shape = {text.size()};
   const Hdf5Handle length =  // this variable is never written, so that it takes no space
@@ -362,7 +360,6 @@ struct TableStore::Impl {
     });
   }
 
-  /// Writes all bytes of the file except those of the values.
   void write_gaps() {
     writer.check(H5Fflush(writer.file().id(), H5F_SCOPE_GLOBAL));
     std::vector<std::pair<std::uint64_t, std::uint64_t>> values;

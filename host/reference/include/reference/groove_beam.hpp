@@ -40,7 +40,6 @@ class GrooveBeam {
   const Real& flux() const { return flux_; }
   /// Direction toward the current facet or, when all light has left, away from the groove.
   const Vector<Real>& direction() const { return k_; }
-  /// Outward normal of the current facet.
   Vector<Real> normal() const { return {-side_ * groove_.sin_alpha, Real(0), groove_.cos_alpha}; }
 
   /// Reflects the beam into `k_out`, toward the other facet. Returns the flux that misses that facet and leaves.

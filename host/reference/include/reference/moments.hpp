@@ -26,7 +26,6 @@ struct SkyFunction {
 inline constexpr std::size_t kCurves = 24;
 using Curves = std::function<std::array<double, kCurves>(double cos_beta)>;
 
-/// The result is exact at 0 and 90 degrees.
 Zenith zenith_from_deg(double theta_deg);
 
 /// The moments of a rough surface (sigma > 0) with k_s = 1; with `sky`, also those with this function of the sky.
@@ -41,7 +40,6 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
 std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking masking, double theta_deg,
                                                 const Curves& curves, double bend, const Refinement& refinement);
 
-/// The moments and the direct emission of a mirror (sigma = 0).
 Moments mirror_moments(double theta_deg, const FacetOptics& constants);
 
 /// The moments of a surface of symmetric V-grooves (sigma > 0) with all bounces, for k_s = 1.
@@ -74,10 +72,9 @@ GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zeni
                             const SkyFunction* sky = nullptr);
 
 /// The direct emission of a rough surface (sigma > 0): direct_i, direct_q and their errors. All other moments are 0.
-/// Equation: cos(theta) eps = int P t dt dphi e G_1 (1 - |r|^2) in the view's frame, over all facets with e =
-/// cos(theta) + sin(theta) t cos(phi) > 0. G_1 is the masking of the view, P the slope density.
-/// Domain: masking smith or v-cavity; theta in [0, 90] degrees; at 90 degrees both moments are 0, which is the limit.
-/// Accuracy: the tolerance of `refinement`, relative to direct_i.
+/// Equation: cos(theta) eps = int P t dt dphi e G_1 (1 - |r|^2) over the facets of slope t and azimuth phi with e =
+/// cos(theta) + sin(theta) t cos(phi) > 0. G_1 is the masking of the view, P the slope density. Domain: masking smith
+/// or v-cavity; theta in [0, 90] degrees. At 90 degrees both moments are 0.
 Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
                         const Refinement& refinement);
 

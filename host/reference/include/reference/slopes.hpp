@@ -63,7 +63,6 @@ double smith_lambda(const Slopes& slopes, const Zenith& zenith);
 /// min(pi/2, pi - 2 theta + alpha). Source: Wang, Li, Wang 2025, eqs. (9)-(12). Accuracy: `tolerance`, absolute.
 class IntegralMasking {
  public:
-  /// Integrates the part of G_1 that does not depend on alpha.
   IntegralMasking(const Slopes& slopes, const Zenith& zenith, double tolerance);
   double operator()(double alpha_rad) const;
 

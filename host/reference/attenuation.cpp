@@ -77,7 +77,7 @@ Attenuation::Attenuation(const Slopes& slopes, Masking masking, const Zenith& a,
   if (masking == Masking::kSmith) {
     smith_ = std::min(a.cos, b.cos) > 0.0 ? 1.0 / (1.0 + smith_lambda(slopes, a) + smith_lambda(slopes, b)) : 0.0;
   }
-  // G is the smaller G_1 of both directions. This is the G_1 of the lower direction.
+  // G is the smaller of the masking functions G_1 of both directions, which is that of the lower direction.
   if (masking == Masking::kIntegral) integral_.emplace(slopes, a.elevation_rad < b.elevation_rad ? a : b, tolerance);
 }
 

@@ -30,9 +30,8 @@ class Radiometry {
   /// The spectral samples of the scene. `point` needs Moments for the index of each sample, in this order.
   const SpectralRule& rule() const { return rule_; }
 
-  /// Domain: NaN moments are outside the model's domain. Then the status is 4, and every quantity NaN. If rho diverges
-  /// at 90 degrees, rho and Stokes parameters are NaN, the status is 1 | 4 (1: rho outside [0, 1]), and dolp is the
-  /// limit.
+  /// Domain: for NaN moments the status is 4 (outside the model's domain), and every quantity NaN. If rho diverges at
+  /// 90 degrees, the status is 1 | 4 (1: rho outside [0, 1]), rho and Stokes parameters are NaN, and dolp is its limit.
   PointResult point(const Direction& direction, std::span<const Moments> moments) const;
 
   /// Facet optics of each spectral sample, and the diffuse reflection of a surface with these optics.

@@ -44,7 +44,6 @@ using enum Quantity;
 constexpr std::array kSmooth = {kStokesI, kStokesQ,     kStokesU,     kStokesV, kRhoI,    kRhoQ,
                                 kAlbedo,  kEmissivityS, kEmissivityP, kDolpLow, kDolpHigh};
 
-/// True if the error of `quantity` contributes to a stated error.
 bool has_error(Quantity quantity) {
   constexpr std::array kWithout = {kStokesV, kAlbedo, kEmissivityS, kEmissivityP};
   return std::ranges::find(kWithout, quantity) == kWithout.end();
@@ -231,7 +230,7 @@ struct TableLookup::Rows {
 
 /// Estimates the interpolation error along one axis, on lines of entries through the corners of the point's cell.
 struct TableLookup::Lines {
-  /// Change of the result if the interpolation uses one more value at either end, as factors of a divided difference.
+  /// Change of the result if the interpolation uses one more value at either end: a divided difference.
   struct Change {
     std::size_t first = 0;  ///< position on the line of the first value that the change uses
     std::size_t count = 0;

@@ -31,7 +31,7 @@ Zenith zenith_from_deg(double theta_deg);
 /// The moments of a rough surface (sigma > 0) with k_s = 1; with `sky`, also those with this function of the sky.
 /// Equation: r = cos(theta) int f cos(theta_r) sin(theta_r) dtheta_r dDelta_phi, eqs. (7), (15), (16) of Wang, Li, Wang
 /// 2025. The outer integral is over theta_r, the inner one over delta = pi - Delta_phi.
-/// Domain: theta in [0, 90] degrees. At 90 degrees the moments are limits. They are infinite for cauchy with q <= 3/2.
+/// Domain: theta in [0, 90] degrees. At 90: zero for v-cavity and smith; else finite, but infinite for cauchy q <= 3/2.
 Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
                            const Refinement& refinement, const SkyFunction* sky = nullptr);
 

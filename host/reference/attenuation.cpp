@@ -77,7 +77,7 @@ Attenuation::Attenuation(const Slopes& slopes, Masking masking, const Zenith& a,
   if (masking == Masking::kSmith) {
     smith_ = std::min(a.cos, b.cos) > 0.0 ? 1.0 / (1.0 + smith_lambda(slopes, a) + smith_lambda(slopes, b)) : 0.0;
   }
-  // G is the smaller of both G_1. G_1 falls with the zenith angle, so it is the G_1 of the lower direction.
+  // G is the smaller of the masking functions G_1 of both directions, which is that of the lower direction.
   if (masking == Masking::kIntegral) integral_.emplace(slopes, a.elevation_rad < b.elevation_rad ? a : b, tolerance);
 }
 
@@ -86,7 +86,7 @@ double Attenuation::operator()(double tan2_alpha, double cos2_beta) const {
     case Masking::kNone:
       return 1.0;
     case Masking::kVCavity:
-      // G = 2 cos(alpha) cos(theta) / cos(beta) for the lower direction; cos(alpha) = (cos a + cos b) / (2 cos(beta)).
+      // G = 2 cos(alpha) cos(zenith) / cos(beta) of the lower direction; cos(alpha) = (cos a + cos b) / (2 cos(beta)).
       return std::min(1.0, v_cavity_ / cos2_beta);
     case Masking::kIntegral:
       return (*integral_)(std::atan(std::sqrt(tan2_alpha)));

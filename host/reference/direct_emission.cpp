@@ -65,8 +65,8 @@ class Facets {
   }
 
  private:
-  // e: the area of a facet as the viewer sees it, divided by the facet's horizontal projection. `side` is 1 for facet
-  // A, at the azimuth phi, and -1 for facet B, at phi + 180 degrees.
+  // Area of a facet as the viewer sees it, per horizontal area. `side`: 1 for the azimuth phi, -1 for phi + 180
+  // degrees.
   double facing(const SlopePoint& point, double side) const {
     return view_.cos + side * point.t * view_.sin * point.sin_chi;
   }
@@ -116,7 +116,7 @@ class Facets {
     return std::min(vertical, slopes_.quantile(kNoShare));
   }
 
-  // Emission of the facets steeper than t. There e G_1 is proportional to the slope (smith) or constant (v-cavity).
+  // Emission of the facets steeper than t. There visible area times masking is proportional to t (smith) or constant.
   Emitted tail(double t, const Refinement& refinement) {
     const double share = masking_ == Masking::kVCavity ? slopes_.share_above(t) : slopes_.length_above(t) / t;
     if (share < kNoShare) return {};

@@ -23,7 +23,7 @@ using Vector3 = Vector<double>;
 
 constexpr double kRounding = 256.0 * std::numeric_limits<double>::epsilon();
 constexpr double kDark = 1e-24;  // light of lower intensity is not followed
-// Most bounces of a beam that are followed. How much of the remaining light leaves the groove stays unknown.
+// Most bounces of a beam that are followed. The light that remains then may or may not leave the groove.
 constexpr int kMostFollowed = 2000;
 constexpr double kSteepest = 1e15;
 constexpr double kSteeper = 1.5;
@@ -31,7 +31,7 @@ constexpr double kSteeper = 1.5;
 // jumps. So they are assumed to reflect at most kTailRoom times as much.
 constexpr double kTailRoom = 2.0;
 constexpr double kTailShare = 0.01;  // share of the tolerance for the error due to grooves that are not integrated
-// Steps of the scan per half-angle gamma of the groove. Over angles of about gamma the number of bounces changes.
+// See ScanSteps::per_gamma. Over angles of about gamma, the half-angle of a groove, the number of bounces changes.
 constexpr double kStepsPerGamma = 3.0;
 // Bends of the integrand are searched up to the slope kSteepestBends, or up to the slope beyond which the share
 // kBendShare of the integral remains, if it is smaller. Steeper grooves have many small bends.
@@ -46,7 +46,7 @@ constexpr double kThinWeight = 0.02;   // SlopeTask::thin_weight
 constexpr double kNegligible = 1e-12;  // smaller integrals, relative to the albedo, are only rounding errors
 // Factor from the difference of two quadrature rules to the error, which is larger in panels that still have bends.
 constexpr double kBentErrors = 6.0;
-// The first estimate uses kLookShares quantiles of the slopes, none above kLookSteepest, and kLookAzimuths azimuths.
+// A first rough estimate of the moments uses kLookShares slopes, none above kLookSteepest, and kLookAzimuths azimuths.
 constexpr int kLookShares = 16;
 constexpr int kLookAzimuths = 16;
 constexpr double kLookSteepest = 50.0;
@@ -170,7 +170,6 @@ class Surveyor {
     const Integral<2 * kCount> integral = integrate_slopes_of<kCount>(
         task, slopes_, scan, {refinement_.relative_tolerance / kBentErrors, refinement_.subdivisions}, expected);
 
-    // Grooves steeper than `end` reflect a share of their light between 0 and kTailRoom times the share at slope `end`.
     const double share = slopes_.share_above(end);
     const double tail_weight = share * view_.cos;
     const GrooveValues at_end = look(end);

@@ -24,15 +24,13 @@ namespace {
 
 constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Below this share of the albedo, the absorbed part, which is added to cos(theta) - albedo, needs no relative accuracy.
+// An absorbed part below this share of the albedo need not be accurate relative to itself.
 constexpr double kSmallAbsorbed = 1e-2;
-// Elevations above the horizon, and quantities proportional to them, have a relative error of a few ulps even if they
-// are tiny (test ReferenceMoments_NextToGrazing_KeepTheirDigits).
+// Relative error of elevations above the horizon, even tiny ones (test ReferenceMoments_NextToGrazing_KeepTheirDigits).
 constexpr double kElevationRounding = 32.0 * std::numeric_limits<double>::epsilon();
-// At theta = 90 degrees the integral over u ends this far from the horizon. A power law gives the rest.
+// At theta = 90 degrees the integral over theta_r ends this far from the horizon. A power law gives the rest.
 constexpr double kHorizonGap = 1e-30;
-// If the fixed direction is closer to the horizon than this, the masking changes where theta_r is about as close to it.
-// Panels could step over this layer, so there are more break points towards the horizon.
+// If theta is closer to the horizon than this, the masking varies in a thin layer of theta_r, which gets break points.
 constexpr double kNearHorizon_rad = 1e-3;
 constexpr double kLayerGrowth = 10.0;
 constexpr double kInnerShare = 0.02;  // error of an inner integral, relative to the error of the outer integral
@@ -40,8 +38,7 @@ constexpr double kInnerShare = 0.02;  // error of an inner integral, relative to
 constexpr double kInnerFloor = 4e-15;
 constexpr double kNegligible = 1e-12;  // smaller integrals, relative to the albedo, are only rounding errors
 
-// Tolerance of the masking G, which is of order 1. It is above rounding. To the integral over the azimuth, errors below
-// this tolerance do not look like structure of the integrand.
+// Tolerance of the masking G: above rounding, but too small to disturb the integral over the azimuth.
 double masking_tolerance_for(const Refinement& refinement) {
   return std::max(1e-14, 1e-3 * kInnerShare * refinement.relative_tolerance);
 }
@@ -61,8 +58,8 @@ Values<N> moment_scales(const Values<N>& value) {
 template <std::size_t K>
 class Hemisphere {
  public:
-  // Components of the integrals: moments and responses, then the two moments with a function of the sky. The same
-  // number follows again, for the errors of the integrals over the azimuth; the outer integral only sums these errors.
+  // Components: moments and responses, then the two moments with a function of the sky. As many components follow for
+  // the errors of the integrals over the azimuth, which the outer integral sums.
   static constexpr std::size_t kAzimuthCount = kMomentCount + 2 * K;
   static constexpr std::size_t kSkyReflected = kAzimuthCount;
   static constexpr std::size_t kSkyPolarised = kAzimuthCount + 1;
@@ -235,8 +232,7 @@ class Hemisphere {
     return both;
   }
 
-  // cos(theta) f cos(theta_r) = D G M / 4, with 1, R or 1 - R in the Mueller matrix M. Its M00 and M01, eq. (7), need
-  // only squared lengths of columns of the Jones matrix, eq. (4), which the rotation by eta_r keeps.
+  // cos(theta) f cos(theta_r) = D G M / 4 with the Mueller matrix M. The needed M00 and M01 do not depend on eta_r.
   AzimuthValues integrand(const Row& row, double delta) const {
     const double sin_half = std::sin(0.5 * delta);
     const double cos_half = std::cos(0.5 * delta);

@@ -105,8 +105,7 @@ Jones<Complex> jones_matrix(const BeamFrame& in, const BeamFrame& out, const ref
   return jones;
 }
 
-// Element (a, b) is half the trace of sigma_a J sigma_b J^+. The matrices sigma, here `basis`, turn the coherency
-// matrix <E E^+> into the Stokes parameters I, Q, U = 2 Re(E_s* E_p), V = 2 Im(E_s* E_p).
+// Element (a, b) is half the trace of sigma_a J sigma_b J^+, with the matrices sigma of I, Q, U and V in `basis`.
 template <class Number>
 ReferenceMueller mueller_from_jones(const Jones<Number>& jones) {
   using Matrix = Jones<Number>;
@@ -154,8 +153,7 @@ struct GroovePlane {
     psi_r = atan2(dot(out.k, u), out.k[2]);
   }
   Vector in_groove(const Vector& a) const { return {dot(a, u), dot(a, v), a[2]}; }
-  /// The half-angle of the groove that reflects one beam into the other with `bounces` bounces, the first one at facet
-  /// A. In the unfolded groove the ray turns by 2 * bounces * gamma, from omega_i to -omega_r or to its mirror image.
+  /// Half-angle of the groove that reflects one beam into the other with `bounces` bounces, the first one at facet A.
   Real gamma(int bounces) const {
     const Real turn = bounces % 2 == 1 ? Real(psi_i + psi_r) : Real(psi_i - psi_r);
     return (boost::math::constants::pi<Real>() - turn) / (2 * bounces);
@@ -227,8 +225,7 @@ struct GroovePair {
     add(total, in_plane(slopes, constants, in, out, against, bounces));
     return total;
   }
-  /// True if no ray can leave at psi_r after `bounces` or more bounces. In the unfolded groove the ray passes the apex
-  /// at a distance from cos(gamma) sin(|psi| - gamma) to sin(|psi| + gamma), for both psi.
+  /// True if no ray can leave at the angle psi_r after `bounces` or more bounces.
   bool is_beyond(int bounces) const {
     const Real widest = std::max(toward.gamma(bounces), against.gamma(bounces));
     return abs(Real(abs(toward.psi_i) - abs(toward.psi_r))) > 4 * widest;

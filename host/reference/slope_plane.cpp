@@ -9,13 +9,13 @@ namespace {
 constexpr int kBisections = 60;
 constexpr int kMostSteps = 150;
 constexpr int kPlainSteps = 12;
-// If there are more bends, each is so small that refinement copes without break points.
+// If the integrand has more bends, each is so small that it needs no break point.
 constexpr std::size_t kMostBends = 40;
-// The scan of t has equal steps of log t, and equal steps of 1/gamma, in which bends of grooves are equally spaced.
+// The scan of the slope t has equal steps of log t, and equal steps of 1 / gamma, with the groove's half-angle gamma.
 constexpr double kStepInverse = 0.04;
 constexpr double kMostInverse = 10.0;
 constexpr int kStepsPerDecade = 16;
-constexpr double kSmallestShare = 1e-7;  // relative to the width; smaller slopes contribute less than rounding
+constexpr double kSmallestShare = 1e-7;  // smallest scanned slope, relative to the width of the distribution
 // Integrands may vary in a layer next to chi = 0 or t = 0. If this layer is thinner than kThinLayer, it gets break
 // points whose distances grow by the factor kPlaneLayerGrowth.
 constexpr double kThinLayer = 0.05;
@@ -65,7 +65,7 @@ std::vector<double> RegimeScan::chi_breaks(double t) const {
   const int steps = static_cast<int>(exact_steps) + 1;
   std::vector<double> points;
   for (int i = 0; i <= kPlainSteps; ++i) points.push_back(0.5 * pi * i / kPlainSteps);
-  // Steps that are equal in the view's angle psi in the plane across the groove, tan(psi) = tan(theta) sin(chi).
+  // Equal steps of psi, the angle of the view projected on the plane across the groove: tan(psi) = tan(theta) sin(chi).
   for (int i = 1; i < steps; ++i) {
     const double psi = theta_rad_ * i / steps;
     points.push_back(std::asin(std::min(1.0, std::tan(psi) * layer)));

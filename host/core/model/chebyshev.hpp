@@ -9,10 +9,10 @@ namespace dolp {
 /// The points cos(pi i / (count - 1)) on [-1, 1], descending. Domain: count >= 2.
 std::vector<double> lobatto_points(Eigen::Index count);
 
-/// Weights of the values at lobatto_points in the polynomial through them, at x in [-1, 1]. Their sum is 1.
+/// At x in [-1, 1], the polynomial through values at lobatto_points is the sum of these weights times the values.
 Eigen::RowVectorXd cardinal_values(const std::vector<double>& points, double x);
 
-/// Matrix from values at lobatto_points(count) to the coefficients of Chebyshev polynomials of degree 0 to count - 1.
+/// Matrix that turns values at lobatto_points(count) into Chebyshev coefficients of degree 0 to count - 1.
 Eigen::MatrixXd chebyshev_coefficients(Eigen::Index count);
 
 }  // namespace dolp

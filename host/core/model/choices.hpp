@@ -11,19 +11,18 @@ namespace dolp {
 
 enum class Distribution : std::uint32_t { kCauchy = 0, kGaussian = 1 };
 enum class Masking : std::uint32_t { kNone = 0, kVCavity = 1, kIntegral = 2, kSmith = 3 };
-/// True if the facets visible from a direction have together the projected area of the surface. Then no more light is
-/// reflected than arrives, and rho and f have limits at 90 degrees. Direct emission needs such a masking.
+/// True if, in every direction, the visible facets together have the projected area of the mean surface.
 constexpr bool keeps_projected_area(Masking masking) {
   return masking == Masking::kVCavity || masking == Masking::kSmith;
 }
-/// How far light is followed: until it leaves its first facet, or through all bounces in a V-groove.
+/// Single scattering ends at the first facet. Multiple scattering follows all bounces in a V-groove.
 enum class Scattering : std::uint32_t { kSingle = 0, kMultiple = 1 };
 enum class EmissionModel { kMoments, kFresnel, kDirect };
 enum class DiffusePolarisation { kNone, kTransmission };
 enum class Mode { kHemispherical, kBistatic };
 enum class Precision { kAuto, kFloat, kDouble };
 
-/// The words that name the enumerators in scene files, reports and case files, in the order of the enumerators.
+/// The names of the enumerators in scene files and reports, in the order of declaration.
 constexpr auto words_of(Distribution) { return std::array{"cauchy", "gaussian"}; }
 constexpr auto words_of(Masking) { return std::array{"none", "v-cavity", "integral", "smith"}; }
 constexpr auto words_of(Scattering) { return std::array{"single", "multiple"}; }
@@ -38,7 +37,6 @@ constexpr const char* name_of(Choice choice) requires requires {
 }
 { return words_of(choice)[static_cast<std::size_t>(choice)]; }
 
-/// The enumerator that a word names; nullopt for an unknown word.
 template <class Choice>
 constexpr std::optional<Choice> named(std::string_view word) {
   const auto words = words_of(Choice{});

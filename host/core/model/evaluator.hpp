@@ -15,8 +15,8 @@ struct Work {
   double kernel_s = 0.0;     ///< time of the kernels: timestamps of the device, or time of the loop on the CPU
   double sums_s = 0.0;       ///< host time to sum over slopes, interpolate, and combine responses (response_basis.hpp)
   std::uint64_t dispatches = 0;
-  std::uint64_t interpolated = 0;         ///< entries whose moments come from other moments, not from a kernel
-  std::uint64_t interpolation_nodes = 0;  ///< moments that a kernel computes in order to interpolate those entries
+  std::uint64_t interpolated = 0;         ///< entries whose moments are interpolated or combined from other moments
+  std::uint64_t interpolation_nodes = 0;  ///< moments that a kernel computes so that other moments can be interpolated
 
   Work& operator+=(const Work& other) {
     evaluations += other.evaluations;
@@ -39,14 +39,13 @@ struct EvaluationReport : Work {
   double pipelines_s = 0.0;        ///< the part of setup_s that creates pipelines
 };
 
-/// Adds float or double to `used`, the value of EvaluationReport::precision so far.
 inline void note_precision(std::string& used, bool in_double) {
   const char* name = in_double ? "double" : "float";
   if (used.empty()) used = name;
   if (used != name) used = "float and double";
 }
 
-/// Computes the moments or Mueller matrices of a request, in the order of the request's entries and in its precision.
+/// Computes moments or Mueller matrices, in the order of the request's entries and with the request's precision.
 class ModelEvaluator {
  public:
   virtual ~ModelEvaluator() = default;

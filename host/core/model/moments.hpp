@@ -28,16 +28,16 @@ struct MomentsPoint {
   friend bool operator==(const MomentsPoint&, const MomentsPoint&) = default;
 };
 
-/// Requests responses (response_basis.hpp): moments with polynomials of the local angle instead of the reflectances.
+/// Requests responses: moments in which polynomials of the local angle replace the reflectances (response_basis.hpp).
 struct Response {
   enum class Of : std::uint8_t {
     kReflected,  ///< r_i and r_q with these polynomials
-    kSky,        ///< r_i and r_q with these polynomials, times the only function of the request's sky
+    kSky,        ///< r_i and r_q with these polynomials, weighted with the single function in MomentsRequest::sky
     kDirect      ///< direct_i and direct_q with these polynomials
   };
   std::size_t count = 0;
   double c0 = 1.0;
-  double bend = 1.0;  ///< distance of the singularity that the quadrature must resolve (ResponseBasis::bend)
+  double bend = 1.0;  ///< see ResponseBasis::bend
   Of of = Of::kReflected;
 };
 
@@ -52,11 +52,11 @@ struct MomentsRequest {
   bool wants_direct = false;                    ///< requests also direct_i and direct_q; only with v-cavity or smith
   double tolerance = 1e-4;                      ///< tolerance of the integrals, relative to r_i
   Precision precision = Precision::kAuto;       ///< kAuto means float
-  bool may_interpolate = true;    ///< allows interpolation between slope distributions, within `tolerance`
-  bool has_extra_splits = false;  ///< splits the integrals more finely, to check a computation without this
-  std::shared_ptr<const ResponseBasis> basis;  ///< responses that give the moments of all optics; null: none
-  std::shared_ptr<const SkyBasis> sky;         ///< adds one of Moments::columns per function of this sky; null: none
-  std::optional<Response> response;            ///< fills Moments::columns with responses instead
+  bool may_interpolate = true;                 ///< allows interpolation between slope distributions, within `tolerance`
+  bool has_extra_splits = false;               ///< integrates with more panels, to check a computation that has fewer
+  std::shared_ptr<const ResponseBasis> basis;  ///< responses from which all moments are computed; null: none
+  std::shared_ptr<const SkyBasis> sky;  ///< fills Moments::columns, one for each function of this sky; null: no sky
+  std::optional<Response> response;     ///< fills Moments::columns with responses
   Layout layout = Layout::kGrid;
   std::vector<double> theta_deg;
   std::vector<FacetOptics> optics;  ///< bare facets, or facets with films
@@ -67,7 +67,7 @@ struct MomentsRequest {
   std::size_t size() const;
   bool is_wanted(std::size_t entry) const { return wanted.empty() || wanted[entry] != 0; }
   std::size_t wanted_count() const;
-  /// `share` times the tolerance, but in float at least kLeastFloatTolerance or, if it is smaller, the tolerance.
+  /// `share` times the tolerance. In float it is at least kLeastFloatTolerance, unless the tolerance itself is smaller.
   double finer_tolerance(double share) const;
   std::size_t shapes() const { return sigma.size() * q.size(); }
   MomentsPoint operator[](std::size_t entry) const;
@@ -83,16 +83,16 @@ struct ColumnMoments {
   double i = 0.0;
   double q = 0.0;
   double error = 0.0;  ///< bound of the absolute errors of i and q; a response has more errors, below
-  // Only for a response. i_apart and q_apart are signed differences between the results of two quadrature rules. The
-  // error of a weighted sum of responses is at most |weighted sum of i_apart| + relative_error |weighted sum of i| +
-  // the weighted sum of `error`; for q with q_apart.
+  // The other members are for responses. i_apart and q_apart are differences between the results of two quadrature
+  // rules. A weighted sum of responses has the error |sum of i_apart| + relative_error |sum of i| + sum of `error`, all
+  // weighted.
   double i_apart = 0.0;
   double q_apart = 0.0;
   double relative_error = 0.0;
 };
 
-/// The moments of one entry for k_s = 1. Each moment is rho times cos(theta), which keeps it finite at theta = 90
-/// degrees. For s and p polarisation, rho_s = rho_I + rho_Q and rho_p = rho_I - rho_Q.
+/// The moments of one entry if all reflection is specular (k_s = 1). A moment is a reflectance rho times cos(theta), so
+/// it is finite at theta = 90 degrees. For s and p polarisation, rho_s = rho_I + rho_Q and rho_p = rho_I - rho_Q.
 struct Moments {
   double r_i = 0.0;      ///< rho_I cos(theta)
   double r_q = 0.0;      ///< rho_Q cos(theta)

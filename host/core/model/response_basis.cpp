@@ -12,12 +12,11 @@
 namespace dolp {
 namespace {
 
-// Choices of c0, the cosine below which the polynomials resolve most finely. Metals need the smallest c0, because R_p
-// has a pole near grazing incidence; dielectrics need the largest.
+// Choices of the cosine c0, below which polynomials resolve finest. Metals need the smallest, dielectrics the largest.
 constexpr std::array<double, 5> kScales = {1.0, 0.3, 0.1, 0.03, 0.01};
 constexpr Eigen::Index kCoefficients = 65;  // Chebyshev coefficients that are computed for a reflectance curve
 constexpr Eigen::Index kLastOfCurve = 4;
-constexpr double kReach = 0.25;           // largest error of a curve in few polynomials, as a share of the tolerance
+constexpr double kReach = 0.25;           // error of a reflectance curve as a sum, as a share of the tolerance
 constexpr double kTimeOfResponse = 0.08;  // time that one response adds to a kernel pass, relative to a pass without
 constexpr double kLeastGain = 1.25;       // least speed-up over separate indices with which a run uses responses
 // Allowed numbers of responses. They are few because a driver compiles separate kernels for each of them.
@@ -39,8 +38,7 @@ CurveCoefficients coefficients_of(const FacetOptics& index, double c0) {
   return transform * values;
 }
 
-/// Bounds of the errors of the two columns of `all` if only the first `count` coefficients are kept. Sums the other
-/// computed coefficients, and kCoefficients unknown ones as large as the largest of the last kLastOfCurve.
+/// Bounds of the errors of both reflectance curves if only the first `count` coefficients are kept.
 Eigen::RowVector2d errors_of(const CurveCoefficients& all, Eigen::Index count) {
   return all.bottomRows(kCoefficients - count).cwiseAbs().colwise().sum() +
          kCoefficients * all.bottomRows<kLastOfCurve>().cwiseAbs().colwise().maxCoeff();
@@ -55,7 +53,6 @@ std::size_t needed(const FacetOptics& index, double c0, double tolerance) {
   return count;
 }
 
-/// At most `most` of the indices, evenly spaced in `indices`, without repetitions.
 std::vector<FacetOptics> candidates_of(const std::vector<FacetOptics>& indices, std::size_t most) {
   std::vector<FacetOptics> candidates;
   const std::size_t count = std::min(indices.size(), most);
@@ -109,7 +106,7 @@ std::shared_ptr<const ResponseBasis> ResponseBasis::of(const std::vector<FacetOp
   for (const FacetOptics& index : candidates_of(indices, kMostCandidates)) {
     if (needed(index, basis->c0_, tolerance) > basis->count_) continue;
     basis->bend_ = std::min(basis->bend_, distance_of_bend(index));
-    // No reference has total reflection: the kink of its reflectances would add to the errors of the responses.
+    // No index with total reflection is the reference: the kink of its reflectances would add errors to the responses.
     if (critical_cosine(index) > 0.0 || reflectance_level(index) >= lowest) continue;
     lowest = reflectance_level(index);
     basis->reference_ = index;

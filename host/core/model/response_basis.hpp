@@ -1,8 +1,6 @@
-// Computes the moments of many indices from the moments of one index and from responses.
-// The moments of single scattering are linear in the Fresnel reflectances as functions of c, the cosine of the local
-// angle of incidence. A response is a moment with a Chebyshev polynomial of 2 u - 1, u = asinh(c / c0) / asinh(1 / c0),
-// instead of the reflectances. The moments of an index are weighted sums of responses. The weights are the Chebyshev
-// coefficients of its reflectances, for every direction, slope distribution and masking.
+// Moments of many refractive indices as weighted sums of responses. A response is a moment in which a Chebyshev
+// polynomial of 2 u - 1 replaces the Fresnel reflectances. Here u = asinh(c / c0) / asinh(1 / c0), and c is the cosine
+// of the local angle of incidence. The weights are the Chebyshev coefficients of the reflectances of an index.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,20 +14,20 @@ namespace dolp {
 
 struct ResponseWeights {
   Eigen::VectorXd absorbed;     ///< coefficients of 1 - (R_s + R_p) / 2
-  Eigen::VectorXd split;        ///< coefficients of (R_s - R_p) / (2 sin^2)
+  Eigen::VectorXd split;        ///< coefficients of (R_s - R_p) / (2 sin^2(beta))
   double absorbed_error = 0.0;  ///< bound of the error of the truncated series, at any angle
   double split_error = 0.0;
 };
 
 class ResponseBasis {
  public:
-  /// The reflectances of an index, as sums of polynomials, have errors below `tolerance` times its reflectance_level.
-  /// `passes`: kernel passes that compute responses. Null if they would take longer than integrating each index.
+  /// Approximates the reflectances of each index to `tolerance` times its reflectance_level. `passes`: number of kernel
+  /// passes that compute responses. Null if responses would take longer than integrating each index.
   static std::shared_ptr<const ResponseBasis> of(const std::vector<FacetOptics>& indices, double tolerance,
                                                  std::size_t passes);
 
-  /// The index that a kernel pass integrates besides the responses: the one with the lowest reflectance_level. Another
-  /// index may have the moments of this index plus a sum over responses, which is smaller and has less error.
+  /// The index with the lowest reflectance_level. Kernels integrate it besides the responses. The moments of another
+  /// index may be its moments plus a sum over responses, which is smaller and has less error.
   const FacetOptics& reference() const { return reference_; }
   std::size_t count() const { return count_; }
   double c0() const { return c0_; }

@@ -21,13 +21,12 @@ struct BeamAngles {
 /// True if there is a facet that reflects one beam into the other. There is none if both beams are at 90 degrees.
 inline bool has_facet(const BeamAngles& a) { return a.theta_i_deg < 90.0 || a.theta_r_deg < 90.0; }
 
-/// True if a mirror reflects one beam into the other, so that the reflecting facet is parallel to the surface.
 inline bool is_specular(const BeamAngles& a) {
   const bool is_forward = std::abs(a.delta_phi_deg) == 180.0;
   return a.theta_i_deg == a.theta_r_deg && (is_forward || a.theta_i_deg == 0.0);
 }
 
-/// One pair of beams, slope distribution and index: positions in the lists of a ScatteringRequest.
+/// Positions in the lists of a ScatteringRequest: one pair of beams, one slope distribution and one index.
 struct ScatteringEntry {
   std::uint32_t angles = 0;
   std::uint32_t shape = 0;
@@ -62,7 +61,7 @@ struct Scattered {
   double error = 0.0;  ///< bound of the absolute error of i, q, u and v
 };
 
-/// Bounds of the error of a ScatteringMatrix, relative to its first element. Rounding is included (MuellerAccuracy.*).
+/// Bounds of the error of a ScatteringMatrix with rounding, relative to its first element (tests MuellerAccuracy.*).
 constexpr double kScatteringErrorFloat = 1e-5;
 constexpr double kScatteringErrorDouble = 1e-11;
 

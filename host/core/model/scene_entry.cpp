@@ -6,8 +6,7 @@
 namespace dolp {
 namespace {
 
-// Axes in the order in which a grid is cut into parts. All materials, wavelengths and indices of a direction stay in
-// one part as long as possible, so that the kernels compute what they share only once.
+// A grid is cut along theta first, because the other entries of a direction share work of the kernels.
 constexpr std::array kCuttingOrder = {Axis::kTheta, Axis::kMaterial,    Axis::kBand,  Axis::kWavelength, Axis::kN,
                                       Axis::kK,     Axis::kTemperature, Axis::kSigma, Axis::kQ};
 static_assert(kCuttingOrder.size() == kAxisCount);
@@ -190,7 +189,7 @@ std::vector<SceneEntries> SceneEntries::parts(std::size_t most) const {
 
 void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& whole,
                   const std::function<void(const GridRun&)>& use) {
-  // The last axis varies fastest. A run covers the last axes of which the part has all values, and one axis more.
+  // A run covers the last axes of which the part has all values, and one axis more. The last axis varies fastest.
   std::size_t slowest = count.size() - 1;
   while (slowest > 0 && count[slowest] == whole[slowest]) --slowest;
   const auto from = static_cast<std::ptrdiff_t>(slowest);

@@ -25,7 +25,7 @@ Axes axes_of(std::vector<double> theta_deg, std::vector<double> sigma, std::vect
 /// The axes of a part: only the values first[axis], ..., first[axis] + count[axis] - 1. Empty axes stay empty.
 Axes part_of(const Axes& axes, const PerAxis& first, const PerAxis& count);
 
-/// Position on each axis of the entry at `position` in a table that has `counts` values on its axes.
+/// The position on each axis of entry number `position` in a table. `counts`: number of values on each axis.
 PerAxis positions_on_axes(std::size_t position, const PerAxis& counts);
 
 /// counts_of: number of values on each axis, where an empty axis counts as 1. size_of: the product of these numbers.
@@ -39,7 +39,7 @@ struct SceneEntry {
   std::uint32_t variant = 0;              ///< position in SceneEntries::variants
 };
 
-/// A number of one film of the coating that an entry uses instead of the number in the scene.
+/// The n, k or thickness of one film, which an entry uses instead of the scene's value.
 struct FilmValue {
   enum class Part : std::uint8_t { kN, kK, kThickness };
   std::size_t layer = 0;  ///< counts from 0, from the outside in
@@ -48,7 +48,7 @@ struct FilmValue {
   friend auto operator<=>(const FilmValue&, const FilmValue&) = default;
 };
 
-/// How an entry differs from the scene, besides direction, slope shape and index. Each variant needs a Radiometry.
+/// Values that an entry uses instead of the scene's, besides direction, slope shape and index.
 struct SceneVariant {
   std::optional<double> wavelength_um = {};               ///< nullopt: the scene's spectrum
   std::optional<std::uint32_t> material = {}, band = {};  ///< positions in SceneModel::materials and bands
@@ -57,15 +57,14 @@ struct SceneVariant {
   friend auto operator<=>(const SceneVariant&, const SceneVariant&) = default;
 };
 
-/// The axes whose values make variants, in the order of tables. In a table the entries of a variant follow each other.
+/// The axes whose values are in SceneVariant. They are the first axes of a table, which vary slowest.
 inline constexpr std::array kVariantAxes = {Axis::kMaterial, Axis::kBand, Axis::kWavelength, Axis::kTemperature};
 
-/// Writes a value of `axis` into the variant, or nothing if the axis is none of kVariantAxes.
 void set_value(SceneVariant& variant, Axis axis, double value);
 
 std::vector<SceneVariant> variants_of(const Axes& axes);
 
-/// Entries that follow each other both in a part of a grid and in the whole grid: first positions, and number.
+/// Entries that are consecutive both in a part of a grid and in the whole grid: first position in each, and number.
 struct GridRun {
   std::size_t in_part = 0;
   std::size_t in_whole = 0;
@@ -91,7 +90,7 @@ class SceneEntries {
     return std::views::iota(std::size_t{0}, size()) |
            std::views::transform([this](std::size_t i) { return (*this)[i]; });
   }
-  /// The variants, at least one. A grid has all combinations of kVariantAxes; a list has the variants of its points.
+  /// At least one variant. A grid has all combinations of the values on kVariantAxes; a list has those of its points.
   const std::vector<SceneVariant>& variants() const { return variants_; }
 
   // The next functions need a grid.
@@ -111,12 +110,10 @@ class SceneEntries {
 
   /// A list of the entries at `positions`, with only the variants that these entries use.
   SceneEntries chosen(std::span<const std::size_t> positions) const;
-  /// Cuts the entries into parts of at most `most` entries. Parts of a grid are grids; if `most` allows it, they
-  /// contain all wavelengths and indices of their directions. Parts of a list have consecutive points.
+  /// Cuts the entries into parts of at most `most` entries. The parts of a grid are grids, too.
   std::vector<SceneEntries> parts(std::size_t most) const;
-  /// The part of a grid with only the values first[i], ..., first[i] + count[i] - 1 of each axis.
   SceneEntries part(const PerAxis& first, const PerAxis& count) const;
-  /// In a part of a grid: the position of its first value on each axis; the counts and the axes of the whole grid.
+  /// first(): where this part begins on the axes of the whole grid. whole(): number of values on the whole grid's axes.
   const PerAxis& first() const { return first_; }
   PerAxis first_in(const SceneEntries& whole) const;
   const PerAxis& whole() const { return whole_; }
@@ -136,7 +133,7 @@ class SceneEntries {
   std::vector<SceneEntry> points_;
 };
 
-/// Calls `use` for each run of a part. The part has `count` of the `whole` values of each axis, from position `first`.
+/// Calls `use` for each GridRun of a part with `count` of the `whole` values of each axis, from position `first`.
 void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& whole,
                   const std::function<void(const GridRun&)>& use);
 

@@ -13,19 +13,17 @@
 namespace dolp {
 namespace {
 
-constexpr Eigen::Index kPoints = 17;  // points per part; enough if the temperature is linear in the zenith
+constexpr Eigen::Index kPoints = 17;  // Chebyshev points in each part of the zenith
 
-// At any zenith a weighted sum of functions misses a sky by at most this times the largest error at the nodes.
+// Between the nodes, a sum of functions differs from a sky by at most this times the largest difference at the nodes.
 constexpr double kBetweenNodes = 1.5;
 constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
-// With enough points in a part, the Chebyshev coefficients of a function fall at least geometrically. Then the sum of
-// the omitted coefficients is less than kBeyondLast times the sum of the last kLastCoefficients.
+// The omitted Chebyshev coefficients sum to less than kBeyondLast times the sum of the last kLastCoefficients.
 constexpr Eigen::Index kLastCoefficients = 4;
 constexpr double kBeyondLast = 2.0;
 
-// In the last part, which ends at the horizon, the integral runs over y in [0, 1], where cos(zenith) = c_0 y^4 and c_0
-// is the cosine at the start of the part. So fractional powers of the cosine are smooth in y.
+// Near the horizon the integral runs over y with cos(zenith) proportional to y^4, so fractional powers are smooth.
 constexpr double kHorizonPower = 4.0;
 
 }  // namespace
@@ -67,7 +65,7 @@ Eigen::RowVectorXd SkyNodes::at(double zenith_deg, const Eigen::MatrixXd& values
   const double start = *(above - 1);
   const double x = std::clamp((end - zenith_deg + (start - zenith_deg)) / (end - start), -1.0, 1.0);
   const Eigen::Index first = (above - ends_deg_.begin() - 1) * kPoints;
-  // This loop does the work of cardinal_values without its allocations, because a table of a sky needs 10,000 zeniths.
+  // Like cardinal_values, but without allocations, because a table of a sky needs 10,000 zeniths.
   Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(values.cols());
   double total = 0.0;
   for (Eigen::Index i = 0; i < kPoints; ++i) {

@@ -32,15 +32,14 @@ class SkyNodes {
   const std::vector<double>& ends_deg() const { return ends_deg_; }
   const std::vector<double>& zenith_deg() const { return zenith_deg_; }
 
-  /// The values of functions at `zenith_deg`. Shape: `values`, the values at the nodes, are nodes x functions.
+  /// Interpolates functions to `zenith_deg`. `values`: the functions at the nodes. Shape: nodes x functions.
   Eigen::RowVectorXd at(double zenith_deg, const Eigen::MatrixXd& values) const;
 
   /// Estimate of the largest distance between a function and the polynomials through `values`, its values at the nodes.
   double error(const Eigen::VectorXd& values) const;
 
-  /// Weights with which a function's values at the nodes add up to its mean over the sky. In the mean a zenith has the
-  /// weight cos^(power + 1) sin, times `factor` of the cosine: a surface receives this mean if its reflectance is
-  /// proportional to cos^power times `factor`. Domain: power > -1.
+  /// Weights for a function's values at the nodes. The weighted sum is the mean over the sky that a surface receives if
+  /// its reflectance is proportional to cos^power times `factor` of the cosine of the zenith. Domain: power > -1.
   Eigen::VectorXd mean_weights(double power, const std::function<double(double)>& factor = {}) const;
 
  private:
@@ -58,8 +57,8 @@ struct SkyWeights {
 /// A few functions of the zenith with absolute values up to 1. Their weighted sums give a sky at each wavelength.
 class SkyBasis {
  public:
-  /// Chooses some of `functions`, given at the nodes. Adds the function with the largest error until weighted sums
-  /// approximate each one to `tolerance` of its largest value, or until kMostSkyFunctions are chosen.
+  /// Chooses some of `functions`, given at the nodes: always the one with the largest error, until weighted sums
+  /// approximate each function to `tolerance` of its largest value, or until kMostSkyFunctions are chosen.
   SkyBasis(SkyNodes nodes, const std::vector<Eigen::VectorXd>& functions, double tolerance);
 
   const SkyNodes& nodes() const { return nodes_; }

@@ -37,7 +37,7 @@ ReflectedAmplitudes interface_amplitudes(const Wave& above, const Wave& below) {
 using Complex = std::complex<double>;
 
 SmoothAbsorptance bare_absorptance(const OpticalConstants& index, double cosine) {
-  // If n and k are smaller, fourth powers of N underflow. As the medium absorbs less than 4e-75, kLeast may replace n.
+  // If n and k are smaller, N^4 underflows. Then the medium absorbs less than 4e-75, so kLeast may replace n.
   constexpr double kLeast = 1e-75;
   const double n = index.k < kLeast ? std::max(index.n, kLeast) : index.n;
   const double k = index.k;

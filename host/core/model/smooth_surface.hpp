@@ -13,13 +13,13 @@ struct ReflectedAmplitudes {
 };
 
 /// Amplitude reflection coefficients of a medium under films.
-/// Equation: the recursion r = (r_j + r e^(2 i delta)) / (1 + r_j r e^(2 i delta)) from the medium outward, with the
-/// coefficient r_j of interface j, delta = 2 pi d q / lambda and q = sqrt(N^2 - sin^2 beta) of the film below it.
+/// Equation: the recursion r = (r_j + r e^(2 i delta)) / (1 + r_j r e^(2 i delta)) from the medium outward. r_j is the
+/// coefficient of interface j, delta = 2 pi d sqrt(N^2 - sin^2 beta) / lambda of the film below it.
 /// Source: Born and Wolf, Principles of Optics, section 1.6. Conventions: r_p = -r_s at normal incidence.
 /// Domain: cosine in (0, 1].
 ReflectedAmplitudes film_amplitudes(const FacetOptics& optics, double cosine);
 
-/// Fringes between grazing and normal incidence, summed over the films. A fringe is a period of e^(2 i delta).
+/// Number of interference fringes between grazing and normal incidence, summed over the films.
 double fringe_count(const FacetOptics& optics);
 
 /// Absorptances of a smooth surface, s = 1 - R_s and p = 1 - R_p.
@@ -36,15 +36,14 @@ struct SmoothAbsorptance {
 /// and the relative error of `split` is 1e-10.
 SmoothAbsorptance smooth_absorptance(const FacetOptics& optics, double cosine);
 
-/// The smaller of reflectance and absorptance, to which errors of reflectances are relative. For a bare medium both are
-/// at normal incidence; otherwise both are means over four angles, because films may reflect nothing at one.
+/// Errors of reflectances are relative to this level, the smaller of reflectance and absorptance. A bare medium has it
+/// at normal incidence. Otherwise it is a mean over four angles, because films may reflect nothing at one angle.
 double reflectance_level(const FacetOptics& optics);
 
 /// Cosine sqrt(1 - Re N^2) of the incidence at which total reflection begins. 0 if the reflectances have no sharp kink.
 double critical_cosine(const FacetOptics& optics);
 
-/// Moments of a mirror, the limit of every surface for sigma -> 0: R_s and R_p at the incidence `cosine`.
-/// Domain: cosine in (0, 1]. Accuracy: see smooth_absorptance.
+/// Moments of a mirror, the limit of every surface for sigma -> 0. Domain: cosine of incidence in (0, 1].
 Moments mirror_moments(const FacetOptics& optics, double cosine);
 
 }  // namespace dolp

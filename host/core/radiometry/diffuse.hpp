@@ -16,8 +16,8 @@ struct DiffuseLight {
 
 /// The diffuse part of a pBRDF.
 /// Equation: f = k_d / pi (cos theta_i cos theta_r)^c. With diffuse_polarisation "transmission" the light enters the
-/// body, loses its polarisation there and leaves. Then f has also the factor t(theta_r) t(theta_i)^T / t_+(0)^2, where
-/// t = (t_+, t_-, 0, 0) and t_+- = (T_s +- T_p) / 2 of the smooth surface; angle 0 is normal incidence.
+/// body, loses its polarisation there and leaves. Then f also has the factor t(theta_r) t(theta_i)^T / t_+(0)^2, where
+/// t = (t_+, t_-, 0, 0), and t_+- = (T_s +- T_p) / 2 with the transmittances T_s, T_p of the smooth surface.
 /// Source: Baek, Jeon, Tong, Kim 2018, Simultaneous acquisition of polarimetric SVBRDF and normals, section 4.
 /// Domain: a bare medium.
 class DiffuseReflection {

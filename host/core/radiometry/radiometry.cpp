@@ -59,9 +59,8 @@ std::uint32_t tolerance_status(const PointResult& result, double tolerance) {
   return (dolp_missed ? std::uint32_t{kToleranceNotMet} : 0U) | (rho_missed ? std::uint32_t{kRhoToleranceNotMet} : 0U);
 }
 
-/// Estimated error of I in single scattering: light that a second facet would reflect is lost, or a masking adds light.
-/// With direct emission the error is the light that is neither emitted nor reflected. Otherwise it is the difference of
-/// rho_I and rho_I / A: dividing by the albedo A counts every facet once.
+/// Estimates the error of I in single scattering, where later bounces are lost. With direct emission, it is the light
+/// that is neither emitted nor reflected. Otherwise, it is the change of I if rho_I is divided by the albedo A.
 double change_by_model(const SceneModel& scene, const SpectralRule& rule, std::span<const Moments> moments,
                        std::span<const Reflectance> reflectances, std::span<const Emissivity> emissivities,
                        double cos_theta) {
@@ -95,7 +94,6 @@ bool is_known(const Moments& moments) {
   return !std::isnan(moments.r_i) && !std::isnan(moments.r_q) && !std::isnan(moments.deficit);
 }
 
-// True if rho has no limit at 90 degrees. The specular part has a limit for a mirror or n = 1; then rho stays below 2.
 bool reflectance_diverges(const Surface& surface, const Direction& direction, std::span<const Moments> moments) {
   if (direction.theta_deg != kRightAngle_deg) return false;
   if (direction.cos_theta == 0.0 || diffuse_diverges(surface)) return true;
@@ -104,9 +102,7 @@ bool reflectance_diverges(const Surface& surface, const Direction& direction, st
   });
 }
 
-/// The terms of I and Q that grow fastest as cos(theta) -> 0, times a factor that makes them finite.
-/// Equation: let D be the exitance of the surroundings, minus pi B unless the emission is fresnel. If D is not 0, the
-/// terms are D r_i and D r_q. If D is 0, they are E0 r_i, E0 r_q, the path and, unless the emission is fresnel, pi B.
+/// The terms of I and Q that grow fastest as theta -> 90 degrees, times a factor that makes them finite.
 Stokes grazing_stokes(const SceneModel& scene, const SpectralRule& rule, std::span<const SkyWeights> sky,
                       std::span<const Moments> moments) {
   const Surface& surface = scene.surface;
@@ -131,7 +127,6 @@ bool is_isothermal(const SpectralRule& rule) {
                              [](const SpectralSample& sample) { return sample.excess == 0.0 && sample.sky.empty(); });
 }
 
-/// The result at 90 degrees if rho diverges there.
 PointResult grazing_limit(const SceneModel& scene, const SpectralRule& rule, std::span<const SkyWeights> sky,
                           const Direction& direction, std::span<const Moments> moments) {
   const Surface& surface = scene.surface;

@@ -16,25 +16,22 @@ namespace dolp {
 
 /// Converts moments to the quantities that a sensor measures.
 /// Equation: I = pi B (1 - rho_I) + X rho_I and Q = (X - pi B) rho_Q, with the incident X = E0 cos(theta) + pi
-/// B(T_surr). Then the path is applied. With emission.model = "fresnel" the surface emits with 1 - R_s(theta) and 1 -
-/// R_p(theta) of the smooth surface instead of 1 - rho_s and 1 - rho_p, for any k_s and diffuse part. In bistatic mode
-/// X has no E0, I and Q are divided by pi, and E0 cos(theta_i) f is added, with the pBRDF f from the source to the
-/// view. With emission.bracket the error estimate bounds also the errors of dolp_low and dolp_high.
-/// Source: shaders/physics/README.md, section 4; Wang, Li, Wang 2025, eqs. (16), (18).
+/// B(T_surr). Then the path is applied. With emission.model = "fresnel" the surface emits 1 - R_s(theta) and 1 -
+/// R_p(theta) of the smooth surface instead of 1 - rho_s and 1 - rho_p. In bistatic mode X has no E0, I and Q are
+/// divided by pi, and E0 cos(theta_i) f is added, with the pBRDF f from the source to the view.
 class Radiometry {
  public:
-  /// `kept`: effects that contribute. If it lacks the moments, the specular part of rho counts as 0, `point` ignores
-  /// the numbers in its Moments, and quantities that need them are NaN. `dropped`: bound of the change of DOLP by the
-  /// other effects; the error estimates include it. `sky`: sky functions of the moments; null: those of the scene.
+  /// `kept`: effects that contribute. Without the moments, the specular part of rho counts as 0, and quantities that
+  /// need it are NaN. `dropped`: bound of the change of DOLP by the other effects, which the error estimates include.
+  /// `sky`: functions of the sky in the Moments; null: those of the scene.
   explicit Radiometry(const SceneModel& scene, const KeptEffects& kept = {}, double dropped = 0.0,
                       const std::shared_ptr<const SkyBasis>& sky = nullptr);
 
   /// The spectral samples of the scene. `point` needs Moments for the index of each sample, in this order.
   const SpectralRule& rule() const { return rule_; }
 
-  /// Domain: a moment is NaN outside the model's domain. Then the status is 4 (kOutsideModelDomain) and every quantity
-  /// NaN. At 90 degrees rho diverges with masking none or integral, or with an unpolarised diffuse part with c < 0.
-  /// Then rho and the Stokes parameters are NaN, the status is 1 | 4 (1: rho outside [0, 1]), and dolp is the limit.
+  /// Domain: for NaN moments the status is 4 (outside the model's domain), and every quantity NaN. If rho diverges at
+  /// 90 degrees, the status is 1 | 4 (1: rho outside [0, 1]), rho and Stokes parameters are NaN, and dolp is its limit.
   PointResult point(const Direction& direction, std::span<const Moments> moments) const;
 
   /// Facet optics of each spectral sample, and the diffuse reflection of a surface with these optics.
@@ -61,7 +58,7 @@ class Radiometry {
 
   PointResult finished(PointResult result) const;
 
-  SceneModel scene_;  ///< its surface lacks the specular or the diffuse part if this part is dropped
+  SceneModel scene_;  ///< the scene, without a dropped specular or diffuse part
   double beam_specular_;
   KeptEffects kept_;
   double dropped_;

@@ -12,7 +12,6 @@ namespace {
 // Relative rounding error of a reflectance, which takes fewer than 8 operations on positive terms.
 constexpr double kReflectanceRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
-/// Weight of a sample in a mean: its emission if the scene emits, else the incident light, else the width of its band.
 double mean_weight(const SpectralSample& sample, double total_emitted, double total_incident, double cos_theta) {
   if (total_emitted != 0.0) return sample.emitted;
   if (total_incident != 0.0) return sample.irradiance * cos_theta + sample.surroundings;

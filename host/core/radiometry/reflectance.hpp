@@ -25,7 +25,7 @@ struct Emissivity {
   double q = 0.0;
   double i_error = 0.0;
   double q_error = 0.0;
-  double terms = 0.0;  ///< larger sum of |terms|, of i or of q; rounding errors are relative to it
+  double terms = 0.0;  ///< sum of |terms| of i or of q, whichever is larger; rounding errors are relative to it
 };
 
 struct MeanReflectance {
@@ -39,7 +39,7 @@ Reflectance reflectance(const Surface& surface, const Moments& moments, double c
 /// True if rho_s or rho_p is outside [0, 1] by more than its error.
 bool is_unphysical(const Reflectance& r);
 
-/// Mean of rho over the spectral samples. The weights are the emission, else the incident light, else the width.
+/// Mean of rho over the spectral samples. Weights: emission; if nothing emits, incident light; else the width.
 MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances, double cos_theta);
 
 Emissivity fresnel_emissivity(const FacetOptics& index, double cos_theta);

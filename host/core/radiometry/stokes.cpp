@@ -21,9 +21,7 @@ struct Intensity {
   double error = 0.0;  ///< error of `value` due to the errors of the moments
 };
 
-/// Equation: I = pi B (1 - rho_I) + X rho_I = pi B + (X - pi B) rho_I. The form with the smaller terms is used: the
-/// first keeps digits for a metal; the second for equal temperatures and for a reflectance far above 1. As rho_I + (1 -
-/// rho_I) is 1 up to `mismatch`, the error of one of them, plus the mismatch, bounds the error of the other.
+/// Computes I = pi B (1 - rho_I) + X rho_I or pi B + (X - pi B) rho_I, whichever has the smaller terms.
 Intensity moments_intensity(double emitted, double incident, double net, double net_terms, const Reflectance& r) {
   const double split_terms = std::abs(emitted * r.absorbed) + std::abs(incident * r.rho_i);
   const double whole_terms = std::abs(emitted) + net_terms * std::abs(r.rho_i);

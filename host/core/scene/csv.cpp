@@ -38,7 +38,6 @@ std::vector<std::string_view> split_cells(std::string_view line, char separator)
   return cells;
 }
 
-/// Names of `columns` with their units, as messages show them: "wavelength_um, irradiance (W m-2 um-1)".
 std::string names_of(const std::vector<CsvColumn>& columns) {
   std::vector<std::string> names;
   for (const CsvColumn& column : columns)

@@ -16,9 +16,8 @@ struct CsvForm {
   std::size_t first_line = 1;
 };
 
-/// Goes through a text line by line: `for (CsvReader row(text, name); row.next();)`. Accepts the line ends and byte
-/// order mark that split_lines accepts. A cell in double quotes may contain separators; its value is the text between
-/// the quotes. Leaves out lines at the end of the text that have no value. All views point into `text`.
+/// Goes through a text line by line: `for (CsvReader row(text, name); row.next();)`. A cell in double quotes may
+/// contain separators. Leaves out lines at the end of the text that have no value. All views point into `text`.
 class CsvReader {
  public:
   CsvReader(std::string_view text, std::string name, CsvForm form = {});
@@ -66,7 +65,7 @@ class CsvColumns {
 
   /// For a file without a header, whose rows have all known columns in this order.
   explicit CsvColumns(std::vector<CsvColumn> known);
-  /// Reads the first line of a text as a header. Errors: also InputError for a text without lines.
+  /// Reads the first line of a text as a header. Errors: those of CsvColumns, and InputError for a text without lines.
   static CsvColumns first_of(CsvReader& reader, std::vector<CsvColumn> known,
                              const std::vector<std::string>& ignored = {});
 

@@ -21,7 +21,6 @@ constexpr int kFormulaSteps = 1000;
 
 enum IndexColumn : std::size_t { kIndexName = 0, kWavelength = 1, kN = 2, kK = 3, kIndexColumns = 4 };
 
-/// Columns of materials_sources.csv: name, rii_path, from_um, to_um, points_in_table, points_kept, source.
 enum SourceColumn : std::size_t { kName = 0, kSource = 6, kSourceColumns = 7 };
 
 std::vector<Material> read_sources() {
@@ -83,7 +82,6 @@ const Material* match_name(std::string_view name) {
   return beginning.size() == 1 ? beginning.front() : nullptr;
 }
 
-/// Suggests the materials whose names contain or begin with `name`, else those with the most similar name or word.
 std::string name_hint(std::string_view name) {
   std::vector<std::string> alike;
   for (const Material* material : materials_with(trim(name))) alike.push_back(material->name);

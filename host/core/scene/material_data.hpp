@@ -20,11 +20,9 @@ const Material& named_material(std::string_view name, const std::string& prefix)
 Material find_material(std::string_view name, const Spectrum& spectrum, const std::string& prefix);
 
 /// Reads a user's file with n and k over wavelength in um, and fits it to `spectrum`. Between rows n and k are linear.
-/// A file `.yml` or `.yaml` is a "full database record" of refractiveindex.info. Each item of its list DATA has
-/// tabulated nk, n or k, or one of the formulas 1 to 9 for n. A formula may stand beside an item with k.
+/// A .yml or .yaml file is a "full database record" of refractiveindex.info: tabulated nk, n or k, or a formula for n.
 /// Any other file is a CSV with the columns `wavelength_um` (or `wl`) and n, k or both. Another line of names begins
-/// another table, as in the CSV that refractiveindex.info exports. A line that begins with # is a comment.
-/// If the file has no k, k is 0. A k from -1e-5 to 0 is noise and counts as 0.
+/// another table. If the file has no k, k is 0. A k from -1e-5 to 0 is noise and counts as 0.
 /// Errors: InputError with file and line; if the file cannot be opened, the message begins with `prefix`; errors of
 /// append_rows and fit_to_spectrum.
 Material read_material_file(const std::string& path, const Spectrum& spectrum, const std::string& prefix);
@@ -52,7 +50,7 @@ Material fit_to_spectrum(const Material& material, const Spectrum& spectrum, con
 /// Errors: InputError with file and line; if the file cannot be opened, the message begins with `prefix`.
 ReflectanceTable read_reflectance_file(const std::string& path, const std::string& prefix);
 
-/// Reads the text of a file for read_reflectance_file. Errors: InputError that begins with `name` and the line.
+/// Like read_reflectance_file, for a text in memory. Errors: InputError that begins with `name` and the line.
 ReflectanceTable parse_reflectances(const std::string& text, const std::string& name);
 
 }  // namespace dolp

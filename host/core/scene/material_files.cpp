@@ -82,7 +82,6 @@ std::string where(const Material& material, const YAML::Mark& mark) {
   throw InputError(where(material, node.Mark()) + what);
 }
 
-/// The value of `key` in an item of the list DATA. Errors: InputError if the item lacks the key.
 YAML::Node text_of(const Material& material, const YAML::Node& item, const char* key) {
   const YAML::Node text = item[key];
   if (!text || !text.IsScalar()) fail(material, item, fmt::format("{}: missing; a DATA item must have it", key));
@@ -137,7 +136,6 @@ void read_formula(Material& material, const YAML::Node& item, int number) {
   material.n.formula = formula;
 }
 
-/// The number of the formula that `type` names, or 0 if `type` does not name a formula.
 int formula_of(std::string_view type) {
   int number = kDispersionFormulas;
   while (number > 0 && type != fmt::format("formula {}", number)) --number;
@@ -187,7 +185,6 @@ std::string kind_without_data(const YAML::Node& root) {
   return "it has no list DATA";
 }
 
-/// Reads the items of the list DATA of a record, and ignores the rest of the record.
 void parse_yaml(Material& material, IndexRows& rows, const std::string& text) {
   try {
     const YAML::Node record = YAML::Load(text);

@@ -53,7 +53,7 @@ void append_film_rules(std::vector<ColumnRule>& rules, const std::vector<std::st
   }
 }
 
-/// Rules for the columns that points may have. Of the films, only those columns that `names` contains get a rule.
+/// Rules for the columns that points may have. Films have rules only for the columns in `names`.
 std::vector<ColumnRule> column_rules(PointsKind kind, const std::vector<std::string>& names) {
   std::vector<ColumnRule> rules;
   const bool has_pairs = kind == PointsKind::kGeometries;
@@ -89,7 +89,6 @@ std::size_t end_of_header(std::string_view text) {
   }
 }
 
-/// The rule for the column `name`. Errors: InputError for an unknown column.
 const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_view name, const Points& points) {
   const auto found = std::ranges::find(rules, name, &ColumnRule::name);
   if (found == rules.end())
@@ -97,7 +96,6 @@ const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_vi
   return *found;
 }
 
-/// Adds the column of `rule`, without values. Errors: InputError if the points have this column already.
 std::vector<double>& add_column(Points& points, const ColumnRule& rule) {
   if (rule.of(points)) {
     const bool is_other = rule.is_wind != points.has_winds && std::holds_alternative<Axis>(rule.column) &&

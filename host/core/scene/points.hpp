@@ -15,9 +15,9 @@
 namespace dolp {
 
 enum class PointsKind {
-  /// For `eval` and `lookup`. At least one column: axes (theta_deg, sigma, q, n, k, ...) or numbers of films.
+  /// For the commands `eval` and `lookup`. At least one column: axes (theta_deg, sigma, n, ...) or numbers of films.
   kDirections,
-  /// For `mueller`. Columns: theta_i_deg, theta_r_deg, delta_phi_deg, and any of sigma, q, n, k and numbers of films.
+  /// For the command `mueller`. Columns: theta_i_deg, theta_r_deg, delta_phi_deg; any of sigma, q, n, k, film numbers.
   kGeometries,
 };
 
@@ -57,12 +57,11 @@ inline double value_or(const Points::Column& column, std::size_t row, double fal
 /// no other label contains this part. Errors: InputError that lists the known labels.
 std::vector<double> label_positions(const Points& points, Axis axis, const AxisLabels& known);
 
-/// Points from arrays. Errors: InputErrors of read_points, and InputError if a length is neither 1 nor `count`.
+/// Points from arrays. Errors: those of read_points, and InputError if a column's length is neither 1 nor `count`.
 Points points_of(std::span<const Column> columns, std::size_t count, PointsKind kind);
 
 /// Reads the points in the CSV file at `path` ("-" is stdin). A header without rows is a valid list of no points.
-/// Accepts CRLF line ends, a UTF-8 byte order mark, blanks and double quotes around cells, lines that begin with #, and
-/// empty lines at the end of the file. Leaves out columns whose names are in `results`.
+/// Accepts what CsvReader accepts. Leaves out columns whose names are in `results`.
 /// Units: angles in degrees. delta_phi_deg is in [-360, 360], and 180 is the specular side.
 /// Errors: InputError that names file, line, column, value and allowed range, or a file that cannot be opened.
 Points read_points(const std::string& path, PointsKind kind, const std::vector<std::string>& results = {});

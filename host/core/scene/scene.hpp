@@ -15,8 +15,7 @@
 
 namespace dolp {
 
-/// A quantity over strictly ascending wavelengths, interpolated between them or given by a `formula`. The scene reader
-/// ensures that `at` is only called between the first and the last wavelength.
+/// A quantity over strictly ascending wavelengths, interpolated between them or given by a `formula`.
 struct SpectralTable {
   enum class Interpolation { kLinear, kLogLog };
   std::vector<double> wavelength_um;
@@ -43,7 +42,7 @@ struct Layer {
   double thickness_um = 0.0;
 };
 
-/// Reflectances at ascending wavelengths. A single element of `measured` is for every wavelength.
+/// Reflectances at ascending wavelengths. If `measured` has only one element, it holds for every wavelength.
 struct ReflectanceTable {
   std::vector<double> wavelength_um;
   std::vector<std::shared_ptr<const MeasuredReflectance>> measured;
@@ -64,7 +63,7 @@ struct Surface {
   double diffuse = 0.0;            ///< k_d in [0, 1]
   double diffuse_exponent = -0.5;  ///< c in (-1, 0]
   DiffusePolarisation diffuse_polarisation = DiffusePolarisation::kNone;
-  /// True if the masking needs a finite mean slope. The cauchy distribution has one only for q in kSmithCauchyQRange.
+  /// True if the masking needs a finite mean slope, which cauchy has only for q in kSmithCauchyQRange.
   bool needs_mean_slope() const { return masking == Masking::kSmith && distribution == Distribution::kCauchy; }
   bool is_bare() const { return coating.empty() && !reflectance; }
   bool has_constant_optics() const;
@@ -86,7 +85,7 @@ struct Source {
   double irradiance = 0.0;           ///< for kFlat: W m-2 um-1, constant over a band
   double relative_irradiance = 0.0;  ///< for kRelative: E0 / (pi B(T)) at each wavelength, with T of the emission
   SpectralTable table;               ///< for kTabulated: W m-2 um-1
-  double scale = 1.0;                ///< factor of E0, for each kind
+  double scale = 1.0;                ///< E0 is multiplied by this
 };
 
 struct Surroundings {
@@ -156,7 +155,7 @@ struct SceneValues : SceneModel {
   std::vector<double> wind_m_s;    ///< winds from which the grid's sigmas follow; empty if the scene gives sigmas
   std::string path_name;           ///< path of the scene as the user gave it, for messages
   std::string text;                ///< text of the scene file, unchanged
-  std::vector<std::string> files;  ///< paths of the files that the scene names, as the process opens them
+  std::vector<std::string> files;  ///< paths with which the process opens the files that the scene names
   std::vector<Setting> settings;   ///< settings that were applied to the text
   std::shared_ptr<const SceneDocument> document;  ///< text and settings as TOML; null without a text
 };
@@ -166,7 +165,7 @@ SceneModel at_wavelength(const SceneModel& scene, double wavelength_um);
 
 void set_films(Surface& surface, const std::vector<FilmValue>& films);
 
-/// The changed scene. Domain: it has the films that the variant changes. Errors: errors of at_wavelength.
+/// The scene with the values of `variant`, whose films it must have. Errors: errors of at_wavelength.
 SceneModel with_variant(const SceneModel& scene, const SceneVariant& variant);
 
 }  // namespace dolp

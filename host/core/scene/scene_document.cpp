@@ -60,7 +60,7 @@ std::size_t line_of_deep_nesting(std::string_view text) {
   return 0;
 }
 
-/// The position of a list element in C++. Keys count elements from 1. For any other text: a position beyond every list.
+/// The position of the list element that a key names, counting from 1. Other texts: a position beyond every list.
 std::size_t list_position(std::string_view part) {
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
@@ -70,7 +70,6 @@ std::size_t list_position(std::string_view part) {
 
 std::string last_part(std::string_view key) { return std::string(key.substr(key.find_last_of('.') + 1)); }
 
-/// The table's name in a dotted key; empty for a key outside of tables.
 std::string_view table_part(std::string_view key) {
   const std::size_t dot = key.find_last_of('.');
   return dot == std::string_view::npos ? std::string_view{} : key.substr(0, dot);
@@ -168,7 +167,7 @@ void SceneDocument::apply(const Setting& setting) {
 
 toml::table& SceneDocument::create_table(const std::vector<std::string_view>& path, const std::string& origin) {
   toml::table* table = &root_;
-  toml::array* list = nullptr;  // the list of which the next part of the path is an element; null if it is none
+  toml::array* list = nullptr;  // the list whose element the next part of the path names, or null
   std::string key;
   for (const std::string_view part : path) {
     if (list) {
@@ -246,8 +245,7 @@ unsigned SceneDocument::line_of(std::string_view key) const {
 
 std::string SceneDocument::prefix(std::string_view key) const {
   const toml::node* node = find(key);
-  // If a key is missing in a table that a setting created, the message does not name this setting. Exception: a setting
-  // that created an axis without a required key is named.
+  // Blames a missing key on the setting that created its table only if the table is an axis.
   const bool is_of_value = node != nullptr || find_scene_key(table_part(key)) != nullptr;
   if (const std::string* origin = is_of_value ? origin_of(key) : nullptr; origin)
     return *origin + ": " + (node ? "" : last_part(key) + ": ");

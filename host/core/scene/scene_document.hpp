@@ -33,10 +33,10 @@ class SceneDocument {
   /// The key to blame if `keys` contradict each other: the first of them that a setting gave, else the first.
   std::string first_set(std::initializer_list<std::string> keys) const;
 
-  /// Throws an InputError with the key's line or setting, its value, and `what`. An absent key: the line of its table.
+  /// Throws an InputError with the key's line or setting, its value, and `what`.
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
 
-  /// The text with which the message of fail() begins, without `what`.
+  /// The beginning of the message of fail(), before `what`.
   std::string prefix(std::string_view key) const;
 
   /// The line of a key's value. If the key is absent, the line of the innermost table around it, or 1.

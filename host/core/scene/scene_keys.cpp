@@ -54,7 +54,7 @@ std::optional<KeyValue> value_at(const Content* at) {
 
 bool always(const SceneValues&) { return true; }
 
-/// A key whose value is stored at `address(scene)`, which may be null. If not `is_there`, a scene lacks the value.
+/// Makes a key. `address(scene)`: the stored value, or null. `is_there(scene)`: true if the scene has the value.
 template <class Address, class IsThere>
 SceneKey key_at(Key description, Address address, IsThere is_there) {
   return {std::move(description), [address](SceneValues& s, const KeyValue& v) { assign(*address(s), v); },
@@ -66,7 +66,6 @@ Key described(const std::string& key, Type type, const char* unit, const NumberR
   return {key, type, unit, range, std::move(words), fallback, meaning};
 }
 
-/// Replaces the setter of a key that changes more of a scene than one number.
 SceneKey with_set(SceneKey key, std::function<void(SceneValues& scene, const KeyValue& value)> set) {
   key.set = std::move(set);
   return key;
@@ -135,7 +134,7 @@ SceneKey source_number(const char* key, const char* unit, const char* meaning, S
       set);
 }
 
-/// Makes a key of the air of a built-in sky. In a scene that was read, its setter also changes the sky.
+/// Makes a key for a number of SkyAir. If the scene was read from a text, its setter also computes the sky again.
 SceneKey air_number(const char* key, const char* unit, const NumberRange& range, const char* meaning,
                     std::optional<double> SkyAir::*number_of) {
   const auto set = [=](SceneValues& s, const KeyValue& v) {
@@ -161,7 +160,7 @@ SceneKey wind_axis() {
                   set);
 }
 
-/// A layer of the coating; `layer` counts from 1. Adds the missing layers of a scene that is not const.
+/// Layer number `layer` of the coating, counted from 1. Adds missing layers if the scene is not const.
 template <class Scene>
 auto& layer_of(Scene& s, std::size_t layer) {
   if constexpr (!std::is_const_v<Scene>) {

@@ -43,7 +43,7 @@ struct KeyChoice {
   bool is_of_layer = false;  ///< `table` is a layer of a coating, so it may be absent
 };
 
-inline constexpr std::size_t kMostLayers = 16;  ///< of a coating
+inline constexpr std::size_t kMostLayers = 16;  ///< most layers of a coating
 
 const std::vector<SceneKey>& scene_key_table();
 const std::vector<KeyChoice>& key_choices();

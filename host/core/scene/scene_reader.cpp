@@ -19,8 +19,7 @@
 namespace dolp {
 namespace {
 
-/// The known key or table with the fewest differences from `key`. Another table or an incomplete name is one
-/// difference.
+/// The known key or table that is most similar to `key`.
 std::string key_hint(const std::string& key) {
   std::vector<std::string> known = scene_tables();
   for (const Key& description : dolp::keys()) known.push_back(description.key);
@@ -75,7 +74,7 @@ std::vector<std::string> document_keys(const SceneDocument& document) {
   return keys;
 }
 
-/// The head that the document has; null if it has none. Two heads are an error, and so is a companion without a head.
+/// The key in KeyAlternative::heads that the document has, or null. Refuses two heads, and a companion without a head.
 const std::string* chosen_key(const SceneDocument& document, const KeyChoice& choice) {
   const auto first_of = [&](const std::vector<std::string>& keys) -> const std::string* {
     const auto found = std::ranges::find_if(keys, [&](const std::string& key) { return document.find(key); });
@@ -181,7 +180,7 @@ SceneValues read_keys(const SceneDocument& document) {
   return scene;
 }
 
-/// The path by which the process opens `file`: absolute as it is, else relative to the folder of the scene.
+/// The path with which the process opens `file`. A relative `file` is relative to the folder of the scene.
 std::string resolve_path(const std::string& file, const std::string& scene_path) {
   const std::size_t slash = scene_path.find_last_of('/');
   const bool is_as_given = file.starts_with('/') || slash == std::string::npos;
@@ -199,12 +198,11 @@ auto read_file_of(SceneValues& scene, const std::string& file, const std::string
   }
   try {
     return read(path);
-  } catch (const InputError&) {  // this message quotes the file, and a table may name any file on this machine
+  } catch (const InputError&) {  // hides the original message, which quotes the file
     throw InputError(prefix + "cannot be read, or holds nothing of the kind");
   }
 }
 
-/// The range from the shortest to the longest wavelength of a scene's spectrum and axes.
 Spectrum all_wavelengths(const SceneValues& scene) {
   Spectrum all = scene.spectrum;
   for (const double wavelength_um : scene.grid[Axis::kWavelength]) {
@@ -446,7 +444,6 @@ void check_radiation(const SceneValues& scene, const SceneDocument& document) {
   }
 }
 
-/// Applies a setting. Errors: InputError, also for a setting that removes an unknown key.
 void apply(SceneDocument& document, const Setting& setting) {
   const std::vector<std::string> tables = scene_tables();
   const bool is_known =

@@ -19,7 +19,7 @@ SceneValues read_scene(const std::string& path, const std::vector<Setting>& sett
 /// The scene after further settings. Domain: a scene that was read. Errors: InputErrors as those of read_scene.
 SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& settings);
 
-/// Data in a table file from which the table was computed. They replace data files and built-in data.
+/// Data from a table file, with which the table was computed. They replace data files and built-in data.
 struct KnownData {
   std::optional<Material> material = {};
   std::vector<std::optional<Material>> layers = {};  ///< layers of a coating

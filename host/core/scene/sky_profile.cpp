@@ -22,8 +22,7 @@ namespace {
 
 constexpr std::size_t kMostZeniths = 1000;
 
-// Zeniths at which a sky is divided further, even where it is smooth. Near the horizon a sky may be as flat as
-// exp(-1/cos); there polynomials through Chebyshev points need short parts.
+// Zeniths that also divide a sky. Near the horizon, where it may be as flat as exp(-1/cos), parts must be short.
 constexpr std::array<double, 2> kDivisions_deg = {60.0, 85.0};
 constexpr std::array<double, 11> kLayerDivisions_deg = {0.0,  30.0, 60.0,  75.0,  82.0, 86.0,
                                                         88.0, 89.0, 89.75, 89.94, 90.0};
@@ -63,12 +62,11 @@ double vapour_pressure(const SkyAir& air, double air_K, const std::string& prefi
   if (*air.vapour_cm <= most_cm) return vapour_hPa;
   throw InputError(fmt::format("{}air at {} K holds at most {:.3g} cm of water vapour", prefix, air_K, most_cm));
 }
-// Band of carbon dioxide in which a few metres of air are opaque. Real edges are not sharp.
+// Band of carbon dioxide in which a few metres of air are opaque.
 constexpr double kOpaqueFrom_um = 4.17;
 constexpr double kOpaqueTo_um = 4.45;
-// A black cloud with its base at 1 km. Below the cloud the temperature falls by 6.5 K per km, and the vapour to 1 / e
-// in 2 km, as in the standard atmosphere. Low clouds are black at the temperature of their base (Martin and Berdahl,
-// Solar Energy 33, 321 (1984)).
+// A black cloud with its base at 1 km, at the temperature of the air there (Martin and Berdahl, Solar Energy 33, 321
+// (1984)). Below it the temperature falls by 6.5 K per km, and the vapour to 1 / e in 2 km.
 constexpr double kCloudBase_km = 1.0;
 constexpr double kLapse_K_km = 6.5;
 constexpr double kVapourHeight_km = 2.0;

@@ -10,7 +10,7 @@
 namespace dolp {
 
 /// A sky as temperatures or radiances at zeniths, linear between them, or as a layer of air before a black background.
-/// Equation: the air has L = t^(1 / cos(zenith)) B(beyond_K) + (1 - t^(1 / cos(zenith))) B(air_K), t = 1 - emissivity.
+/// Equation: the air radiates t^(1 / cos(zenith)) B(beyond_K) + (1 - t^(1 / cos(zenith))) B(air_K), t = 1 - emissivity.
 /// Source: Granqvist and Hjortsberg, J. Appl. Phys. 52, 4205 (1981), for a plane-parallel atmosphere of one
 /// temperature. Idso, Water Resources Research 17, 295 (1981), for the vertical emissivities of clear air: the mean
 /// over 8-14 um, and the value in the window at 10.5-12.5 um. The rest of 8-14 um has the emissivity that leads to this
@@ -36,7 +36,7 @@ struct SkyProfile {
   };
   Emission at(double wavelength_um, double zenith_deg) const;
 
-  /// If the temperature between the rows of an interval changes by more than a factor of two: zeniths that divide it.
+  /// Zeniths that divide an interval between two rows if the temperature changes by more than a factor of two in it.
   std::vector<double> temperature_divisions_deg(std::size_t interval) const;
   /// Zeniths from 0 to 90 between which the profile is a smooth function of zenith.
   std::vector<double> ends_deg() const;

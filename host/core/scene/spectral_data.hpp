@@ -15,9 +15,8 @@ namespace dolp {
 SpectralTable sun_irradiance();
 
 /// Reads a user's CSV with the columns wavelength_um and irradiance (W m-2 um-1), interpolated linearly. A file without
-/// column names has these columns in this order. Skips blank lines and lines that begin with #.
-/// Domain: irradiance >= 0, at least one row.
-/// Errors: InputError; if the file cannot be opened, the message begins with `prefix`; errors of append_rows.
+/// column names has these columns in this order. Errors: InputError for a negative irradiance or no rows; if the file
+/// cannot be opened, the message begins with `prefix`.
 SpectralTable read_irradiance_file(const std::string& path, const std::string& prefix);
 
 struct NamedValue {
@@ -26,7 +25,7 @@ struct NamedValue {
   NumberRange range;
 };
 
-/// Appends a row if both numbers are in range and the wavelength ascends. Otherwise a message begins with `where`.
+/// Appends a row. Errors: InputError that begins with `where`, for a number out of range or a descending wavelength.
 void append_row(SpectralTable& table, double wavelength_um, const NamedValue& value, const std::string& where);
 
 struct SpectralRow {

@@ -13,7 +13,7 @@ namespace dolp {
 /// The radiance of a scene's profile at a wavelength. Units: W m-2 sr-1 um-1.
 double sky_radiance(const SkyProfile& profile, double wavelength_um, double zenith_deg);
 
-/// Exitances pi L of a sky at the nodes; L is its radiance. A uniform sky with their mean gives the same irradiance.
+/// Values of pi times a sky's radiance at the nodes. A uniform sky with their mean() gives the same irradiance.
 class SkySampler {
  public:
   explicit SkySampler(const SkyProfile& profile);
@@ -27,10 +27,10 @@ class SkySampler {
   Eigen::VectorXd mean_weights_;
 };
 
-/// Functions of the zenith that give the difference of each variant's sky from its mean. Null if all differences are 0.
+/// Functions whose weighted sums are the skies of all variants, minus their means. Null if all skies are uniform.
 std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, const std::vector<SceneVariant>& variants);
 
-/// Weights of the functions of `basis` in the sky's difference from its mean, for each sample. Empty without a basis.
+/// For each sample of `rule`, weights of the functions whose sum is the sky minus its mean. Empty without a basis.
 std::vector<SkyWeights> sky_weights(const SpectralRule& rule, const SkyBasis* basis);
 
 }  // namespace dolp

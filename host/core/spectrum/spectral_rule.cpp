@@ -28,23 +28,21 @@ constexpr double kPieceWavelengthRatio = 1.5;
 // h c / k_B in um K, with which the exponent is computed, and the exponent beyond which Planck's function underflows.
 constexpr double kExponentScale_umK = 14388.0;
 constexpr double kLargestPlanckExponent = 750.0;
-constexpr double kPieceRelativeError = 1e-12;  // of sums over pieces, each of which is accurate to rounding
+constexpr double kPieceRelativeError = 1e-12;  // relative error of a sum over pieces
 
-// A segment gets so many nodes that the absorptances of the smooth surface have at most this error. It is relative to
-// the smaller of reflectance and absorptance, but at least to kSmallestPart. With n = 1 the reflectance is 0.
+// Each segment gets enough nodes that the absorptances of the smooth surface have at most this error. It is relative to
+// the smaller of reflectance and absorptance, but at least to kSmallestPart.
 constexpr double kNodesRelativeError = 1e-10;
 constexpr double kSmallestPart = 1e-4;
 constexpr int kMostNodes = 24;
-// At these angles, the probes, the absorptances of the smooth surface test the nodes of a segment. They represent a
-// rough surface, whose absorptances are averages over angles. Other probes are the critical angles at some wavelengths,
-// where an absorptance has a square root in wavelength. The error bound is kProbeSafety times the largest error.
+// The nodes of a segment are tested with the absorptances of the smooth surface at these angles of incidence (probes),
+// and at critical angles. The error bound is kProbeSafety times the largest error.
 constexpr double kProbeSafety = 10.0;
 constexpr std::array<double, 7> kProbeCosines = {1.0, 0.5, 0.25, 0.15, 0.1, 0.07, 0.04};
-constexpr std::array<double, 7> kCriticalShares = {0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};  // positions in a segment
-// If kMostNodes nodes leave a segment with an error above kShareOfTolerance of the tolerance, the segment is cut into
-// panels. Their number grows until the error at the probes is below kPanelShareOfTolerance of the tolerance, or until
-// the whole band would have about kMostPanels. Mirrors may have more panels, because their moments are cheap and no
-// roughness smooths their square roots. panel_error estimates the remaining error.
+constexpr std::array<double, 7> kCriticalShares = {0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};  // of probes in a segment
+// If kMostNodes nodes leave an error above kShareOfTolerance of the tolerance, the segment is cut into panels. Their
+// number grows until the error is below kPanelShareOfTolerance of the tolerance, or until the band has about
+// kMostPanels. Mirrors may have more panels, because their moments are cheap.
 constexpr double kShareOfTolerance = 0.005;
 constexpr double kPanelShareOfTolerance = 0.03;
 constexpr int kLeastPanels = 4;
@@ -195,7 +193,6 @@ std::vector<double> gauss_wavelengths(double from_um, double to_um, int count) {
   return wavelengths_um;
 }
 
-/// The value at `wavelength_um` of the Lagrange polynomial of each node.
 std::vector<double> lagrange(const std::vector<double>& nodes_um, double wavelength_um) {
   std::vector<double> values(nodes_um.size(), 1.0);
   for (std::size_t j = 0; j < nodes_um.size(); ++j)
@@ -243,7 +240,7 @@ std::vector<double> probe_cosines(const Surface& surface, double from_um, double
   return cosines;
 }
 
-/// The integral of one spectral factor, and its integrals with the absorptances s and p of the smooth surface.
+/// Integrals of one spectral factor: alone, and times the absorptances s and p of the smooth surface.
 struct ProbeSum {
   double whole = 0.0;
   double s = 0.0;
@@ -272,8 +269,8 @@ std::vector<ProbeSums> exact_sums(const Surface& surface, const std::vector<Fine
   return sums;
 }
 
-/// Largest error of the integrals s and p that `samples` give at the probes. It is relative to the integral of the
-/// reflectance or of the absorptance, whichever is smaller, but at least to `least` times the integral `whole`.
+/// Largest error of ProbeSum::s and p if computed from `samples`. It is relative to the integral of the reflectance or
+/// of the absorptance, whichever is smaller, but at least to `least` times ProbeSum::whole.
 double nodes_error(const std::vector<SpectralSample>& samples, const std::vector<ProbeSums>& exact,
                    const std::vector<double>& cosines, double least) {
   double worst = 0.0;
@@ -313,9 +310,9 @@ SegmentRule smooth_segment(const SceneModel& scene, double from_um, double to_um
                            const std::vector<double>& cosines) {
   if (scene.surface.has_constant_optics()) return {samples_at(scene, gauss_wavelengths(from_um, to_um, 1), fine), 0.0};
   SegmentRule rule;
-  // The interference fringes of films need many nodes, so films get only as many as the tolerance requires.
+  // Because of their interference fringes, films would need many nodes. So the tolerance of the scene decides.
   const double enough = scene.surface.coating.empty() ? kNodesRelativeError : enough_for_tolerance(scene);
-  // The exact integrals use the halves of the segment. So they share no node with the samples that they test.
+  // The exact integrals have nodes in both halves of the segment, and share no node with the samples that they test.
   const std::vector<ProbeSums> exact = exact_sums(scene.surface, finer_nodes(scene, from_um, to_um), cosines);
   for (int count = 1; count <= kMostNodes; ++count) {
     rule.samples = samples_at(scene, gauss_wavelengths(from_um, to_um, count), fine);
@@ -342,7 +339,7 @@ SegmentRule segment_of_panels(const SceneModel& scene, double from_um, double to
   return rule;
 }
 
-/// Adds the samples of one segment of the material to `rule`; if the segment needs panels, to `panels`.
+/// Adds the samples of a segment between two rows of the material's table to `rule`, or to `panels` if it needs panels.
 void append_segment(const SceneModel& scene, double from_um, double to_um, SpectralRule& rule,
                     std::vector<SpectralSample>& panels) {
   const std::vector<FineNode> fine = fine_nodes(scene, from_um, to_um);

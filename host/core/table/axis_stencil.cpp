@@ -62,7 +62,7 @@ Stencil LookupAxis::stencil(const Location& location, std::size_t count, int shi
       std::clamp<std::ptrdiff_t>(centred + shift, next + 1 - wanted, next - 1), 0, size - wanted);
   Stencil stencil{static_cast<std::size_t>(first), static_cast<std::size_t>(wanted), {}};
   const std::array<double, kMostStencil>& factors = factors_[stencil.count][stencil.first];
-  // For value i, the product of its distances from all values before it, then from all values after it.
+  // The weight of value i is factors[i] times the distances of the location from all other values.
   double before = 1.0;
   for (std::size_t i = 0; i < stencil.count; ++i) {
     stencil.weights[i] = before * factors[i];

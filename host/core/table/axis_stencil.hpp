@@ -10,7 +10,7 @@ namespace dolp {
 /// Most values of an axis that an interpolation and its error estimate use.
 inline constexpr std::size_t kMostStencil = 7;
 
-/// Neighbouring values of an axis, from rank `first` in ascending order, with interpolation weights that add up to 1.
+/// Neighbouring values of an axis, with weights for interpolation. `first`: rank of the first one in ascending order.
 struct Stencil {
   std::size_t first = 0;
   std::size_t count = 0;
@@ -51,8 +51,8 @@ class LookupAxis {
   /// contains the location. Domain: count from 2 to kMostStencil.
   Stencil stencil(const Location& location, std::size_t count, int shift = 0) const;
 
-  /// The factor of each of `count` values in their divided difference, from rank `first`: 1 / product of (x_i - x_j), j
-  /// != i. Domain: count from 2 to kMostStencil, first + count <= size().
+  /// The factors of the values x_i of ranks first, ..., first + count - 1 in their divided difference: 1 / product of
+  /// (x_i - x_j) over j != i. Domain: count from 2 to kMostStencil.
   std::span<const double> divided_difference(std::size_t first, std::size_t count) const {
     return std::span(factors_[count][first]).first(count);
   }

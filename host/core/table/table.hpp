@@ -22,13 +22,11 @@ inline constexpr const char* kConventionsOfFiles = "CF-1.8";
 /// Attribute with the scene's n, k and E0. Each line of its text has a name, a wavelength in um and a value.
 inline constexpr const char* kSpectralData = "spectral_data";
 
-/// The text of the attribute kSpectralData, from the curves of n, k and E0 in `head`; empty without curves.
 std::string spectral_data_of(const TableHead& head);
 
-/// Parses the attribute kSpectralData, puts n, k and E0 into `head`, and removes it. Errors: InputError about `name`.
+/// Parses the attribute kSpectralData into the curves of n, k and E0, and removes it. Errors: InputError about `name`.
 void take_spectral_data(TableHead& head, const std::string& name);
 
-/// The value of an attribute; null if the head has no attribute of this name and type.
 template <class Content>
 const Content* find_attribute(const TableHead& head, std::string_view name) {
   const auto found = std::ranges::find(head.attributes, name, &Attribute::name);
@@ -79,8 +77,7 @@ TableHead head_of(const TableHead& whole, const TableBox& box);
 /// Name of the attribute with the hash of a table's values, by which a reader detects damage.
 inline constexpr const char* kValuesHash = "values_hash";
 
-/// A checksum for each variable, in the order of for_each_variable. The bits of each value are multiplied by an odd
-/// number that depends on its position, so another value or position changes the sum. Parts may come in any order.
+/// One checksum per variable, in the order of for_each_variable. The sums of all parts add up to the sums of the table.
 using ValueSums = std::vector<std::uint64_t>;
 
 /// The checksums of a part of a table that begins at the positions `first`.
@@ -88,7 +85,7 @@ ValueSums sums_of(const TableValues& part, const TableLayout& layout, const PerA
 
 void add(ValueSums& sums, const ValueSums& of_part);
 
-/// The hash of a table: of the checksums of all values, and of the axes and curves of its head.
+/// Hash of the checksums of all values, and of the axes and curves in the head of the table.
 std::string values_hash(const TableLayout& layout, const ValueSums& sums);
 
 }  // namespace dolp

@@ -28,7 +28,6 @@ std::vector<Axis> present_axes(const Axes& axes) {
   return present;
 }
 
-/// Calls use(axis, value) for each axis of the table, with the value of the entry on this axis.
 template <class Use>
 void each_coordinate(const Axes& axes, std::size_t position, const Use& use) {
   const PerAxis on_axes = positions_on_axes(position, counts_of(axes));

@@ -12,10 +12,9 @@
 
 namespace dolp {
 
-/// Appends to `text` the cells with which a row begins, each with a comma after it. The results of the row follow them.
+/// Appends the first cells of a row to `text`, each with a comma after it. The results of the row follow.
 using RowStart = std::function<void(std::string& text, std::size_t row)>;
 
-/// Names of the quantities and, if `has_status`, of the status, separated by commas.
 std::string result_header(const Quantities& quantities, bool has_status = true);
 
 /// CSV rows. Each row has the cells that `start` appends, then the quantities in the given order, then the status.
@@ -50,20 +49,15 @@ enum class TableFormat { kNetcdf, kCsv, kNpy };
 /// Errors: InputError for an unknown suffix.
 TableFormat format_of(const std::filesystem::path& path);
 
-/// Refuses an output path that a table cannot have, before the table is computed.
-/// Domain: suffix .nc, .csv or .npy in a folder that can be written to, or "-" (CSV on standard output).
-/// Errors: InputError for another suffix, IoError for a folder or file that cannot be written.
+/// Refuses an output path that a table cannot have, before the table is computed. Errors: InputError for a suffix other
+/// than .nc, .csv and .npy, IoError for a folder or file that cannot be written. "-" is standard output.
 void check_output_path(const std::filesystem::path& path);
 
 /// The suffix of the path chooses the format.
-/// .nc: NetCDF-4 with the conventions CF-1.8. Its coordinates are wavelength, n and k if the table has these axes, and
-/// theta, sigma, q. The status is an int, because CF-1.8 has no unsigned int. Nothing is compressed.
+/// .nc: NetCDF-4 with the conventions CF-1.8, not compressed. The status is an int, because CF-1.8 has no unsigned int.
 /// .csv and "-": one row per entry, with the columns `wavelength_um,n,k,theta_deg,sigma,q` and the variables. Each
-/// attribute is a line `# name: value` before the header. After a newline inside a value the next line begins with `#`
-/// and three blanks. Each number is the shortest text that reads back as the same double.
-/// .npy: a structured array with the shape of the axes, without attributes. Its fields have the names of the columns in
-/// a .csv, so `t["dolp"][i, j, k]` and `t["theta_deg"][:, 0, 0]` work.
-/// Errors: errors of check_output_path; IoError if writing fails, and then the target is unchanged.
+/// attribute is a line `# name: value` before the header; further lines of a value begin with `#` and three blanks.
+/// .npy: a structured array with the shape of the axes and the column names of a .csv, such as `t["dolp"][i, j, k]`.
 void write_table(const TableValues& table, const std::filesystem::path& path);
 
 /// The texts of a .csv or .npy file: its beginning, and the rows of a part. The parts follow in the order of the table.

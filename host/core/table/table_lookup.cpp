@@ -24,21 +24,18 @@ constexpr std::size_t kMostRows =
     std::size_t{4} * 4 * 4 * 4 * 6 * 6;  // most rows along q that an interpolation reads; axes with labels count once
 constexpr int kMostShift = 3;            // values by which the window of read values may move away from unknown entries
 constexpr std::size_t kLeastValues = 4;  // an axis with fewer values gives no reliable error estimate
-// Tuned. An interpolation error is estimated as kInside times the change of the result by one more value of the axis,
-// or as kAtEnds times this change in the first and the last interval of the axis and if no more value exists. Of
-// 581,000 bistatic lookups, 147, 2 and 0 err by more than the stated error with half, this and double. The medians of
-// the stated errors are 1.56e-4, 3.02e-4 and 6.00e-4.
+// Tuned. An interpolation error is estimated as kInside times the change of the result by one more value of the axis.
+// In the first and last interval, and without a further value, it is kAtEnds times this change. Of 581,000 bistatic
+// lookups, 147, 2 and 0 err by more than the stated error with half, this and double.
 constexpr double kInside = 16.0;
 constexpr double kAtEnds = 37.0;
-// Tuned. A small change may be chance, so the change by one more value counts as at least kFastestFall times the change
-// with one value fewer and, on a short axis, kFastestFallOfTwo times the change with two values fewer. With half, this
-// and double, 44, 2 and 0 of these lookups err by more than the stated error; the medians of the stated errors are
-// 2.65e-4, 3.02e-4 and 3.95e-4.
+// Tuned. A small change may be chance. So it counts as at least kFastestFall times the change with one value fewer and,
+// on a short axis, kFastestFallOfTwo times the change with two values fewer. With half, this and double, 44, 2 and 0 of
+// these lookups err by more than the stated error.
 constexpr double kFastestFall = 0.2;
 constexpr double kFastestFallOfTwo = 0.25;
-// Tuned. At a kink the stated error is this times the interpolation error of a ramp that begins at the kink. With no
-// error for kinks, and with half, this and double, 38, 4, 2 and 2 of these lookups err by more than the stated error;
-// the medians of the stated errors are 2.99e-4, 3.01e-4, 3.02e-4 and 3.04e-4.
+// Tuned. A kink of the masking adds this factor times the interpolation error of a ramp that begins at the kink. With
+// 0, half, this and double, 38, 4, 2 and 2 of these lookups err by more than the stated error.
 constexpr double kKinkMargin = 2.0;
 
 using enum Quantity;
@@ -47,7 +44,6 @@ using enum Quantity;
 constexpr std::array kSmooth = {kStokesI, kStokesQ,     kStokesU,     kStokesV, kRhoI,    kRhoQ,
                                 kAlbedo,  kEmissivityS, kEmissivityP, kDolpLow, kDolpHigh};
 
-/// True if the error of `quantity` contributes to a stated error.
 bool has_error(Quantity quantity) {
   constexpr std::array kWithout = {kStokesV, kAlbedo, kEmissivityS, kEmissivityP};
   return std::ranges::find(kWithout, quantity) == kWithout.end();
@@ -105,7 +101,7 @@ std::vector<double> masking_kinks(const SceneModel& scene) {
   if (masking != Masking::kVCavity) return {};
   const CosSin view = cos_sin_deg(view_deg);
   const double cos_azimuth = cos_sin_deg(scene.geometry.relative_azimuth_deg).cos;
-  // (1 - G) cos^2(beta) for a masking G without its limit 1, from 2 cos(alpha) cos(beta) = theta.cos + view.cos.
+  // (1 - G) cos^2(beta) of v-cavity, if its G were not limited to 1. It changes its sign at the kink.
   const auto hidden = [&](double theta_deg) {
     const CosSin theta = cos_sin_deg(theta_deg);
     const double cos2_beta = 0.5 * (1.0 + theta.cos * view.cos + theta.sin * view.sin * cos_azimuth);
@@ -142,7 +138,7 @@ struct TableLookup::Window {
     return locations[axis].is_value ? locations[axis].next : locations[axis].next - 1;
   }
 
-  /// Positions in the table of the corners of the point's cell, without the step along the axis `without`.
+  /// Table positions of the corners of the cell around the point. They leave out the position on the axis `without`.
   using Corners = boost::container::static_vector<std::size_t, std::size_t{1} << kAxisCount>;
   Corners corners(const TableLookup& lookup, std::size_t without) const {
     Corners corners = {0};
@@ -160,7 +156,7 @@ struct TableLookup::Window {
   }
 };
 
-/// The entries of a window as rows along q. Each row has a weight and its first position. They serve all columns.
+/// The entries that an interpolation reads, as rows along q. They are the same for all quantities.
 struct TableLookup::Rows {
   struct Row {
     std::size_t begin = 0;
@@ -186,7 +182,7 @@ struct TableLookup::Rows {
     for (std::size_t k = 0; k < q.count; ++k) along[k] = lookup.position(kQ, q.first + k);
   }
 
-  /// The sum of weight x value(position) or, with `kOfSizes`, of |weight| x value(position).
+  /// Sum over the entries of weight x value(position). With `kOfSizes`, |weight| replaces weight.
   template <bool kOfSizes = false, class Value>
   double sum(const Value& value) const {
     bool is_dense = true;  // true if the values of a row are neighbours in memory
@@ -208,7 +204,7 @@ struct TableLookup::Rows {
   static double used(double weight) {
     return kOfSizes ? std::abs(weight) : weight;
   }
-  /// sum() with loops whose length the compiler knows. The CPU can compute the two partial sums at the same time.
+  /// sum() with loops whose length the compiler knows. The CPU can compute the two partial sums in parallel.
   template <std::size_t kCount, bool kOfSizes, class Value>
   double sum_dense(const Value& value) const {
     std::array<double, kCount> weights;
@@ -232,13 +228,13 @@ struct TableLookup::Rows {
   }
 };
 
-/// Changes of the result by one more value of an axis, on the lines along it through the corners of the point's cell.
+/// Estimates the interpolation error along one axis, on lines of entries through the corners of the point's cell.
 struct TableLookup::Lines {
-  /// The change of an interpolation if one more value, before or after its values, is used: a divided difference.
+  /// Change of the result if the interpolation uses one more value at either end: a divided difference.
   struct Change {
     std::size_t first = 0;  ///< position on the line of the first value that the change uses
     std::size_t count = 0;
-    /// 0: uses the window and one more value, or the whole axis. Each next level uses one value fewer. kLevels: a kink.
+    /// Level 0 uses the window and one more value, or the whole axis; each next level one value fewer. kLevels: a kink.
     std::size_t level = 0;
   };
   static constexpr std::size_t kLevels = 3;  // levels of changes on a short axis; other axes have one level fewer
@@ -295,8 +291,7 @@ struct TableLookup::Lines {
     }
   }
 
-  /// Adds a change for a kink of the masking inside the window. The kink is modelled as a ramp that begins at it and is
-  /// as steep as the second difference there. Of several kinks, only the one with the largest error is added.
+  /// Adds a change for the kink of the masking with the largest error. A ramp that begins at the kink stands for it.
   void add_kink(const LookupAxis& axis, double theta_deg, const Stencil& stencil, std::size_t start,
                 const std::vector<double>& kinks_deg) {
     const std::size_t last = stencil.first + stencil.count - 1;
@@ -334,7 +329,6 @@ struct TableLookup::Lines {
     }
   }
 
-  /// Estimate of the error of interpolating `column`, a quantity of the table, along the axis.
   double error(const std::vector<double>& column) const {
     if (!has_error) return 0.0;
     if (is_unknown) return kInfinity;
@@ -365,7 +359,7 @@ struct TableLookup::Lines {
     }
     if (largest[0] < 0.0) return kInfinity;
     if (largest[0] == 0.0) return 0.0;
-    // On a coarse axis the level-0 changes of all lines may pass through 0 together, but not those of the next levels.
+    // On a coarse axis the level-0 changes of all lines may be small by chance, but not those of the next levels, too.
     largest[0] = std::max(largest[0], kFastestFall * largest[1]);
     if (is_short) largest[0] = std::max(largest[0], kFastestFallOfTwo * largest[2]);
     return factor * (largest[0] + std::max(largest[kLevels], 0.0));
@@ -447,7 +441,7 @@ PointResult TableLookup::at(const Point& point) const {
   }
   const double error =
       rows.sum<true>([bounds = table_[kErrorEstimate].data()](std::size_t position) { return bounds[position]; });
-  double rho_error = 0.0;  // absolute
+  double rho_error = 0.0;  // absolute error of rho
   if (table_.has(kRhoErrorEstimate)) {
     const std::vector<double>& rho = table_[kRhoI];
     const std::vector<double>& bounds = table_[kRhoErrorEstimate];

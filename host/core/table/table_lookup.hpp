@@ -11,24 +11,17 @@
 
 namespace dolp {
 
-/// Zenith angles of the source, in degrees, at which the masking of a bistatic beam has a kink for all sigma and q.
-/// Method: masking `integral` and v-cavity depend on the lower of source and view, so there is a kink where both have
-/// the same zenith. V-cavity has another kink where G reaches 1 (shaders/physics/README.md, section 2).
-/// Domain: kinks due to further bounces and to total reflection are not included.
+/// Zeniths of the source, in degrees, at which the masking in bistatic mode has a kink for all sigma and q. Kinks due
+/// to further bounces and total reflection are not included.
 std::vector<double> masking_kinks(const SceneModel& scene);
 
 /// Interpolates the results of a table at points between its entries.
-/// Method: a product of polynomials, one for each axis. Along theta, ln sigma and ln(q - 1) they have degree five,
-/// through the six values around the point; along the logarithms of wavelength, temperature, n and k they have degree
-/// three, through four values. The degree is lower if an axis has fewer values. On an axis with labels a point must be
-/// at a value. DOLP follows from the interpolated Stokes parameters, which are smooth even where DOLP has a kink.
-/// Stated errors: the error bound of each entry that is read, times the magnitude of its weight, plus an interpolation
-/// error for each axis. The latter is kInside or kAtEnds times the change of the result by one more value of the axis,
-/// on the lines along the axis through the corners of the point's cell. If the axis has no further value, it is the
-/// change by the last value. Along theta a kink of the masking adds the error that it causes. The interpolation error
-/// is an estimate: it misses structure that is narrower than the grid. On an axis with fewer than four values it is
-/// infinite between the values.
-/// Accuracy: tests LookupEstimates.
+/// Method: a product of polynomials, one for each axis. They have degree five along theta, ln sigma and ln(q - 1),
+/// degree three along the logarithms of wavelength, temperature, n and k, and less on axes with few values. On an axis
+/// with labels a point must be at a value. DOLP follows from the interpolated Stokes parameters.
+/// Stated errors: the errors of the entries that are read, plus an interpolation error for each axis. This is estimated
+/// from the change of the result if one more value of the axis is used, so it misses structure that is narrower than
+/// the grid. On an axis with fewer than four values it is infinite between the values.
 class TableLookup {
  public:
   /// `table` must outlive the object. Errors: InputError that begins with `name`, for an axis with equal values, and
@@ -72,7 +65,7 @@ class TableLookup {
   std::vector<double> kinks_deg_;  ///< zeniths of the source at which the masking has a kink
   std::vector<LookupAxis> axes_;   ///< axes in the table's order; an absent axis has one value
   PerAxis strides_ = {};           ///< step in the table from one value of an axis to the next
-  Quantities interpolated_;        ///< the kSmooth quantities that are not 0 everywhere
+  Quantities interpolated_;        ///< the quantities that are smooth functions of the axes and not 0 everywhere
   std::vector<char> is_known_;     ///< for each theta, ascending: true if I is finite in all of its entries
 };
 

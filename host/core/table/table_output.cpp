@@ -26,7 +26,7 @@ std::string progress_line(std::uint64_t hash, std::string_view text) {
   return fmt::format("{:016x} {}\n", hashed(hash, text), text);
 }
 
-/// The text of the first line of `lines`; nullopt if progress_line did not make this line from the text and `hash`.
+/// The text of the first line of `lines`; nullopt if the hash in this line is not that of the text.
 std::optional<std::string_view> first_text(std::string_view lines, std::uint64_t hash) {
   constexpr std::size_t kHashSize = 17;
   const std::string_view line = lines.substr(0, lines.find('\n') + 1);
@@ -35,7 +35,6 @@ std::optional<std::string_view> first_text(std::string_view lines, std::uint64_t
   return line == progress_line(hash, text) ? std::optional(text) : std::nullopt;
 }
 
-/// Removes from `text` everything up to the first separator, and returns what was before the separator.
 std::string_view next_piece(std::string_view& text, std::string_view separator) {
   const std::size_t end = text.find(separator);
   const std::string_view piece = text.substr(0, end);
@@ -152,7 +151,7 @@ void TableOutput::finish(const std::vector<Attribute>& more) {
 }
 
 void TableOutput::write_rows() {
-  std::optional<AtomicFile> target;  // none for standard output
+  std::optional<AtomicFile> target;  // nullopt for standard output
   if (job_.path != "-") target.emplace(job_.path);
   const auto put = [&](const std::string& bytes) {
     target ? target->append(bytes) : write_text_atomically("-", bytes);

@@ -13,18 +13,17 @@
 
 namespace dolp {
 
-/// Writes a table file part by part. If the table is resumable and has several parts, its values are in PATH.partial
-/// until it is complete, and PATH.partial.txt has a line for each finished part, with a hash of its values. Any other
-/// table is in a file without a name until it is complete. A .csv or .npy is made from the values at the end.
+/// Writes a table file part by part. A resumable table with several parts is in PATH.partial until it is complete, and
+/// PATH.partial.txt lists the finished parts. Any other table is in a file without a name until it is complete.
 class TableOutput {
  public:
   struct Job {
     std::filesystem::path path;
     TableLayout layout;
     std::vector<TableBox> parts = {};  ///< parts that write() gets, in this order; empty: any parts, in any order
-    std::string identity = {};  ///< names and values that all parts share, for difference(); empty: not resumable
-    bool is_resumed = false;    ///< continues PATH.partial if this file exists
-    Progress progress = {};     ///< called while finished parts are read, with 0 as the number of done entries
+    std::string identity = {};         ///< names and values that a resumed run must share; empty: not resumable
+    bool is_resumed = false;           ///< continues PATH.partial if this file exists
+    Progress progress = {};            ///< called while finished parts are read, with 0 as the number of done entries
   };
   /// If `is_resumed`, reuses the finished parts of an earlier run, up to the first part that is missing or changed.
   /// Errors: errors of check_output_path; InputError if the partial file has another identity or is in use by another

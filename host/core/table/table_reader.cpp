@@ -26,7 +26,7 @@ constexpr std::size_t kMostAngles = 1024;                      // most angles of
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostShrinking = 1032;  // deflate, which other tools may use, leaves at least a 1032nd
+constexpr std::size_t kMostShrinking = 1032;  // deflate, which other tools may use, compresses at most by this factor
 constexpr std::size_t kMostStoredTextBytes = 64U << 20U;  // the longest text, the scene, has at most 16 MiB
 
 constexpr const char* kPartHint =
@@ -58,7 +58,6 @@ class Reader {
     if (code < 0) fail(what + ": cannot be read; the file is damaged");
   }
 
-  /// Takes over an HDF5 object. Errors: InputError that names `name`, if HDF5 gave no object.
   Hdf5Handle take(hid_t id, Hdf5Handle::Close close, const std::string& name) const {
     check(id < 0 ? -1 : 0, name);
     return {id, close};
@@ -181,7 +180,6 @@ std::optional<std::variant<std::string, double>> read_value(const Reader& reader
   return value;
 }
 
-/// A text attribute of the file or of a variable; nullopt if there is no such attribute.
 std::optional<std::string> find_text(const Reader& reader, const Hdf5Handle& object, const char* name) {
   const htri_t exists = H5Aexists(object.id(), name);
   reader.check(exists, name);

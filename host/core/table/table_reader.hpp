@@ -25,7 +25,6 @@ class TableReader {
   /// Reads the entries at `positions`, which ascend, and checks the hash of the whole table. Errors: also Cancelled.
   TableValues read_entries(std::span<const std::size_t> positions, const Progress& progress) const;
 
-  /// The checksums of a part that was read, for check_hash.
   ValueSums sums_of(const TableValues& part, const TableBox& box) const;
   /// Refuses a file without a hash, or whose values differ from those that dolp wrote. `sums`: checksums of all parts.
   void check_hash(const ValueSums& sums) const;

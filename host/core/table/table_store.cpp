@@ -107,7 +107,6 @@ class Writer {
     put(object, name, type.id(), type.id(), take(H5Screate(text.empty() ? H5S_NULL : H5S_SCALAR), H5Sclose),
         text.empty() ? nullptr : text.data());
   }
-  /// The HDF5 type of texts with `width` bytes. H5T_VARIABLE as the width means any length.
   Hdf5Handle text_type(std::size_t width) const {
     Hdf5Handle type = take(H5Tcopy(H5T_C_S1), H5Tclose);
     check(H5Tset_size(type.id(), width));
@@ -131,9 +130,8 @@ class Writer {
     put_text(object, "flag_meanings", fmt::format("{}", fmt::join(meanings, " ")));
   }
 
-  /// Reserves the space of the variable in the file. The values are not compressed, because zlib would save half of the
-  /// file but take longer than the rest of writing a table. They are contiguous, because pointers to chunks have no
-  /// checksum.
+  /// Reserves space for the variable in the file. Values are not compressed, because that takes longer than writing.
+  /// They are contiguous, because pointers to chunks have no checksum.
   Hdf5Handle define(const char* name, hid_t type, const std::vector<hsize_t>& shape, const void* fill,
                     H5D_alloc_time_t allocation = H5D_ALLOC_TIME_EARLY) const {
     const Hdf5Handle creation = take(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
@@ -169,7 +167,6 @@ class Writer {
   Hdf5Handle file_;
 };
 
-/// Stores a text as a variable of characters, whose dimension is the length of the text.
 void put_long_text(const Writer& writer, const std::string& name, const std::string& text) {
   const std::vector<hsize_t> shape = {text.size()};
   const Hdf5Handle length =  // this variable is never written, so that it takes no space
@@ -201,8 +198,7 @@ void put_attributes(const Writer& writer, const TableHead& head) {
   if (const std::string data = spectral_data_of(head); !data.empty()) put_more(writer, {{kSpectralData, data}});
 }
 
-/// Writes a coordinate. `along`: its dimension, or an empty handle for a single value; null if it is a dimension
-/// itself.
+/// Writes a coordinate. `along`: its dimension (an empty handle for a single value); null if it is itself a dimension.
 template <class Described>
 Hdf5Handle put_coordinate(const Writer& writer, const Described& described, const std::vector<double>& values,
                           const Hdf5Handle* along = nullptr) {
@@ -271,7 +267,7 @@ std::uint64_t offset_of(const Writer& writer, const Hdf5Handle& variable) {
   return offset;
 }
 
-/// Returns the offset of the variable's values. `qualifiers`: names of the variables with its error and status, or "".
+/// Defines a variable. Returns the offset of its values. `qualifiers`: names of its error and status variables, or "".
 template <class Described>
 std::uint64_t put_variable(const Writer& writer, const TableHead& head, const AxisVariables& axes,
                            const Described& described, const std::string& units, const char* qualifiers,
@@ -364,7 +360,6 @@ struct TableStore::Impl {
     });
   }
 
-  /// Writes all bytes of the file except those of the values.
   void write_gaps() {
     writer.check(H5Fflush(writer.file().id(), H5F_SCOPE_GLOBAL));
     std::vector<std::pair<std::uint64_t, std::uint64_t>> values;

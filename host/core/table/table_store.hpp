@@ -9,9 +9,8 @@
 
 namespace dolp {
 
-/// Writes a NetCDF-4 table whose values may come in any order. Checksums of HDF5 protect names, shapes and attributes;
-/// the table's hash protects the values. HDF5 makes everything except the values in memory, because it crashes if a
-/// disk is full. A text that is too long for an attribute becomes a variable of characters with the attribute's name.
+/// Writes a NetCDF-4 table whose values may come in any order. Everything except the values is made in memory first,
+/// because HDF5 crashes if a disk is full. A text that is too long for an attribute becomes a variable.
 class TableStore {
  public:
   /// `file` must outlive the object. The constructor writes nothing to it.

@@ -24,7 +24,7 @@ struct Integral {
 struct Goal {
   double relative = 1e-9;        ///< required error of each integral, divided by its scale
   std::size_t max_panels = 400;  ///< at this number of panels the quadrature stops and returns the error reached
-  int subdivisions = 1;          ///< panels between two break points at first; more panels make another, finer rule
+  int subdivisions = 1;          ///< number of panels between two break points at the start
 };
 
 /// The ends of the first panels: both ends of the interval, and all break points between them.
@@ -44,8 +44,7 @@ class Breaks {
   std::vector<double> points_;
 };
 
-/// 21-point Kronrod rule. The error is the difference from the 10-point Gauss rule in it, plus rounding. It is far too
-/// large for smooth integrands, but the usual sharper estimate fails for others. Source: Boost.Math.
+/// 21-point Kronrod rule. Its error is pessimistic: the difference from the 10-point Gauss rule, plus rounding.
 template <std::size_t N, class Integrand>
 Integral<N> kronrod_panel(const Integrand& integrand, double low, double high) {
   using Kronrod = boost::math::quadrature::gauss_kronrod<double, 21>;

@@ -8,7 +8,6 @@
 
 namespace dolp::reference {
 
-/// Complex reflection amplitudes, and absorptances that lose no digits by cancellation.
 struct FresnelCoefficients {
   std::complex<double> r_s;
   std::complex<double> r_p;

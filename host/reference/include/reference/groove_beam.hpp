@@ -17,10 +17,9 @@ struct Groove {
 
 enum class Facet { kA, kB };
 
-/// The part of a parallel beam that enters through the whole aperture and meets facet `first` first.
-/// Its flux is per unit of length along the groove. Together with the part for the other facet it is 2 cos(alpha)
-/// cos(theta). On a facet the beam covers an interval, whose end nearer to the apex is followed as a ray, the edge. The
-/// other end is flux / cos(beta) away, because reflection keeps the flux. Light above the rim misses it.
+/// The part of a parallel beam that enters through the whole aperture and meets facet `first` first. On a facet the
+/// beam covers an interval of the length flux / cos(beta). The end of this interval nearer to the apex is the edge of
+/// the beam, which is followed as a ray. Light beyond the rim of a facet leaves the groove.
 template <class Real>
 class GrooveBeam {
  public:
@@ -37,11 +36,10 @@ class GrooveBeam {
     if (land() <= 0) flux_ = 0;
   }
 
-  /// Flux on the current facet; 0 when all light has left the groove.
+  /// Flux on the current facet, per unit of length along the groove; 0 when all light has left.
   const Real& flux() const { return flux_; }
   /// Direction toward the current facet or, when all light has left, away from the groove.
   const Vector<Real>& direction() const { return k_; }
-  /// Outward normal of the current facet.
   Vector<Real> normal() const { return {-side_ * groove_.sin_alpha, Real(0), groove_.cos_alpha}; }
 
   /// Reflects the beam into `k_out`, toward the other facet. Returns the flux that misses that facet and leaves.
@@ -54,7 +52,7 @@ class GrooveBeam {
   }
 
  private:
-  // Follows the edge of the beam, along k_, to the facet on `side_`. Returns the flux that fits between edge and rim.
+  // Follows the beam's edge to the facet on `side_`. Returns the largest flux that fits between this edge and the rim.
   Real land() {
     const Vector<Real> n = normal();
     const Real cos_beta = -dot(k_, n);

@@ -22,18 +22,16 @@ struct SkyFunction {
   std::vector<double> corners_deg;
 };
 
-/// Number of functions of cos(beta) that replace (R_s + R_p) / 2 and (R_s - R_p) / (2 sin^2). |function| <= 1.
+/// Curves are functions of cos(beta), |curve| <= 1, that replace (R_s + R_p) / 2 and (R_s - R_p) / (2 sin^2(beta)).
 inline constexpr std::size_t kCurves = 24;
 using Curves = std::function<std::array<double, kCurves>(double cos_beta)>;
 
-/// The result is exact at 0 and 90 degrees.
 Zenith zenith_from_deg(double theta_deg);
 
 /// The moments of a rough surface (sigma > 0) with k_s = 1; with `sky`, also those with this function of the sky.
 /// Equation: r = cos(theta) int f cos(theta_r) sin(theta_r) dtheta_r dDelta_phi, eqs. (7), (15), (16) of Wang, Li, Wang
 /// 2025. The outer integral is over theta_r, the inner one over delta = pi - Delta_phi.
-/// Domain: theta in [0, 90] degrees. At 90 degrees the moments are limits: 0 for v-cavity and smith, else finite. For
-/// the Cauchy distribution with q <= 3/2, which has too many vertical facets, they are infinite.
+/// Domain: theta in [0, 90] degrees. At 90: zero for v-cavity and smith; else finite, but infinite for cauchy q <= 3/2.
 Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
                            const Refinement& refinement, const SkyFunction* sky = nullptr);
 
@@ -42,29 +40,26 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
 std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking masking, double theta_deg,
                                                 const Curves& curves, double bend, const Refinement& refinement);
 
-/// The moments and the direct emission of a mirror (sigma = 0).
 Moments mirror_moments(double theta_deg, const FacetOptics& constants);
 
 /// The moments of a surface of symmetric V-grooves (sigma > 0) with all bounces, for k_s = 1.
-/// Equation: r = int P t dt dphi sum_k w_k |E_k|^2 over the facets that the light meets first, with the slope density
-/// P. w_k is the flux that leaves a groove after k bounces, over half of the groove's width. |E_k|^2 is the mean
-/// intensity of s and p light after k bounces. The absorbed part is the sum over what all bounces absorb.
+/// Equation: r = int P t dt dphi sum_k w_k |E_k|^2 over the facets that the light meets first. P is the density of the
+/// slopes t. w_k is the flux that leaves a groove after k bounces, divided by half the groove's width. |E_k|^2 is the
+/// intensity after k bounces, averaged over s and p light.
 /// Domain: theta in [0, 90] degrees; at 90 degrees all moments are 0, which is the limit.
-/// Accuracy: the returned errors. They meet `refinement`, unless many steep grooves reflect so much that this is too
-/// much work: metals reach 1e-8 to 1e-4 of r_i, total reflection at q close to 1 reaches no accuracy. Grooves steeper
-/// than the last one that is integrated reflect 0 to 2 times its share of the light (test
-/// ReferenceGrooves.CoarseQuadrature_StaysWithinItsErrors).
+/// Accuracy: the returned errors. They exceed `refinement` if many steep grooves reflect much: 1e-8 to 1e-4 of r_i for
+/// metals.
 Moments groove_moments(const Slopes& slopes, double theta_deg, const FacetOptics& constants,
                        const Refinement& refinement, const SkyFunction* sky = nullptr);
 
-/// What becomes of the light that enters one groove, per width of its aperture. It is the sum over both facets that the
-/// light may meet first, so the albedo is cos(theta).
+/// Where the light goes that enters one groove, per width of its aperture, summed over both facets that it may meet
+/// first.
 struct GrooveLight {
-  double albedo = 0.0;          ///< flux that leaves if the facets absorb nothing
-  double reflected = 0.0;       ///< I that leaves if unpolarised light enters
-  double polarised = 0.0;       ///< Q: half of the difference of what leaves if s light and if p light enters
-  double absorbed = 0.0;        ///< absorbed by all bounces
-  double lost = 0.0;            ///< I after the last followed bounce, neither in `reflected` nor in `absorbed`
+  double albedo = 0.0;     ///< flux that leaves if the facets absorb nothing
+  double reflected = 0.0;  ///< I that leaves if unpolarised light enters
+  double polarised = 0.0;  ///< Q: half of the difference between what leaves if s light enters and if p light enters
+  double absorbed = 0.0;   ///< absorbed by all bounces
+  double lost = 0.0;       ///< I after the last followed bounce, neither in `reflected` nor in `absorbed`
   double once_reflected = 0.0;  ///< I that leaves after one bounce
   double once_absorbed = 0.0;   ///< absorbed by the first bounce
   double sky_reflected = 0.0;   ///< `reflected`, times the function of the sky
@@ -72,15 +67,14 @@ struct GrooveLight {
   double bounces = 0.0;         ///< number of followed bounces
 };
 
-/// chi is 90 degrees minus the azimuth phi of the facets, so sin_chi = cos(phi). Domain: t > 0; cos(theta) > 0.
+/// chi is 90 degrees minus the azimuth phi of the facets; sin_chi = cos(phi). Domain: slope t > 0; cos(theta) > 0.
 GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zenith& view, const FacetOptics& constants,
                             const SkyFunction* sky = nullptr);
 
 /// The direct emission of a rough surface (sigma > 0): direct_i, direct_q and their errors. All other moments are 0.
-/// Equation: cos(theta) eps = int P t dt dphi e G_1 (1 - |r|^2) in the view's frame, over all facets with e =
-/// cos(theta) + sin(theta) t cos(phi) > 0. G_1 is the masking of the view, P the slope density.
-/// Domain: masking smith or v-cavity; theta in [0, 90] degrees; at 90 degrees both moments are 0, which is the limit.
-/// Accuracy: the tolerance of `refinement`, relative to direct_i.
+/// Equation: cos(theta) eps = int P t dt dphi e G_1 (1 - |r|^2) over the facets of slope t and azimuth phi with e =
+/// cos(theta) + sin(theta) t cos(phi) > 0. G_1 is the masking of the view, P the slope density. Domain: masking smith
+/// or v-cavity; theta in [0, 90] degrees. At 90 degrees both moments are 0.
 Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
                         const Refinement& refinement);
 

@@ -9,25 +9,21 @@
 namespace dolp {
 
 struct ReferenceOptions {
-  /// Tolerance of the integrals. r_i and r_q have it relative to r_i; albedo and absorbed part, relative to themselves.
+  /// Tolerance of each integral, relative to the integral. For r_q it is relative to r_i.
   double relative_tolerance = 1e-9;
-  /// Panels between two break points of a quadrature at first. With 2, a computation is repeated with other nodes.
+  /// Number of panels between two break points of a quadrature at the start. Another number gives other nodes.
   int subdivisions = 1;
 };
 
 /// An evaluator that is slow and independent of the shaders. It computes moments by nested adaptive Gauss-Kronrod
-/// quadrature in double, over zenith and azimuth of reflection. At every point it integrates the masking `integral`
-/// over the facet tilt. V-grooves with all bounces and the direct emission it integrates over the slopes of the facets.
+/// quadrature in double, over zenith and azimuth of reflection. For V-grooves with all bounces and for direct emission,
+/// it integrates over the slopes of the facets.
 /// Equation: (4), (7), (9)-(13), (15), (16) of Wang, Li, Wang 2025.
-/// Accuracy: the tolerance of the integrals is ReferenceOptions::relative_tolerance, or a hundredth of the request's
-/// tolerance if that is larger. It is at most half of the request's tolerance, unless that is 0. With all bounces in
-/// steep metal grooves the quadratures may end earlier, with larger errors. The returned errors are the errors of the
-/// quadratures plus rounding (test ReferenceMoments_CoarseQuadrature_StaysWithinItsErrors).
+/// Accuracy: the returned errors, which are those of the quadratures plus rounding. The tolerance of the integrals is
+/// the larger of ReferenceOptions::relative_tolerance and a hundredth of the request's tolerance, but at most half of
+/// the request's tolerance (test ReferenceMoments_CoarseQuadrature_StaysWithinItsErrors).
 /// Domain: theta in [0, 90] degrees; sigma >= 0; cauchy q > 1, with smith masking q > 3/2; n > 0, k >= 0. Multiple
-/// scattering needs v-cavity masking, direct emission v-cavity or smith. At 90 degrees the moments are limits: 0 for
-/// v-cavity and smith, else finite. For cauchy with q <= 3/2 they are infinite with infinite errors, and r_q and the
-/// absorbed part are negative.
-/// Errors: InputError outside the domain; Cancelled when `progress` returns false.
+/// scattering needs v-cavity masking, direct emission v-cavity or smith. At 90 degrees the moments are limits.
 class ReferenceEvaluator final : public ModelEvaluator {
  public:
   explicit ReferenceEvaluator(ReferenceOptions options = {}) : options_(options) {}

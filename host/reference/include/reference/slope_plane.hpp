@@ -1,8 +1,6 @@
-// Integrals over the slopes of the facets, for integrands that bend sharply along unknown curves.
-// A slope is given by its length t and by the angle chi from the normal of the plane of incidence; sin(chi) = cos(phi).
-// An integrand covers two facets: A at the azimuth phi, and B at phi + 180 degrees. The plane of incidence is a plane
-// of symmetry, so chi runs only from 0 to pi/2. The bends of the integrand are detected: a number `regime` encodes on
-// which side of each bend a slope lies, and bisection finds where this number changes.
+// Integrals over the slopes of the facets. A slope has the length t. Its angle chi is measured from the normal of the
+// plane of incidence, so chi is 90 degrees minus the azimuth phi. An integrand covers two facets: A at phi, B at phi +
+// 180 degrees. By symmetry chi runs only from 0 to pi/2. Integrals are split where the integrand bends sharply.
 #pragma once
 
 #include <algorithm>
@@ -76,12 +74,12 @@ class SpecialAngles {
   double critical_;
 };
 
-/// A number for each slope. Slopes on different sides of a bend of the integrand have different numbers.
+/// A number that changes where the integrand bends: slopes on different sides of a bend have different numbers.
 using Regime = std::function<std::uint64_t(const SlopePoint&)>;
 
 /// Steps of a scan of chi that are added to a dozen equal steps.
 struct ScanSteps {
-  /// Steps, equal in the view's zenith in the plane across the groove; their number per half-angle gamma of the groove.
+  /// Further steps have the size gamma / per_gamma in psi (slope_plane.cpp). gamma: half-angle of the groove.
   double per_gamma = 0.0;
   int halvings = 0;  ///< steps toward chi = 0, each half as long as the previous one
 };
@@ -109,8 +107,8 @@ struct SlopeTask {
   std::function<Values<N>(const Values<N>&)> scales;  ///< scales of the errors, see Goal::relative
   double steepest;                                    ///< upper end of the integral over t
   double bends_end;                                   ///< bends are searched up to this t, which is at most `steepest`
-  /// Where the weight of v is below this, the integral over chi may have the same weighted error as at this weight. 0
-  /// if the integral over chi may grow with t.
+  /// At slopes with a smaller weight than this, the integral over chi may have a larger error, up to the same weighted
+  /// error.
   double thin_weight = 0.0;
   std::function<double()> work = [] { return 0.0; };  ///< work done so far, in any unit
   double most_work = 1.0;                             ///< after this much work no integral is refined

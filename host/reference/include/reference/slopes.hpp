@@ -18,7 +18,7 @@ class Slopes {
   /// p(t), the density of the slopes t = tan(gamma) in one vertical plane.
   double in_plane_density(double slope) const;
 
-  /// Share of the slopes in one vertical plane above `slope`. Domain: slope >= 1e8 m, where p follows a power law.
+  /// Share of the slopes in one vertical plane above `slope`. Domain: slope >= 1e8 m(), where p follows a power law.
   double in_plane_tail(double slope) const;
 
   /// Share of all facets that are steeper than t, at any azimuth.
@@ -26,10 +26,10 @@ class Slopes {
 
   double quantile(double share) const;
 
-  /// int 2 pi P t^2 dt above t, with the slope density P. Domain: cauchy q > 3/2; t >= 1e8 m, where P is a power law.
+  /// int 2 pi P t^2 dt above t, with the slope density P. Domain: cauchy q > 3/2; t >= 1e8 m(), where P is a power law.
   double length_above(double t) const;
 
-  /// at(v) is t = width sinh(v), coordinate_of() its inverse, density_at() 2 pi P t dt/dv, whose integral over v is 1.
+  /// Integrals over slopes t run over v: t = width() sinh(v) is at(v). density_at(v) is 2 pi P t dt/dv.
   double at(double v) const { return width_ * std::sinh(v); }
   double coordinate_of(double t) const { return std::asinh(t / width_); }
   double density_at(double v) const;
@@ -63,7 +63,6 @@ double smith_lambda(const Slopes& slopes, const Zenith& zenith);
 /// min(pi/2, pi - 2 theta + alpha). Source: Wang, Li, Wang 2025, eqs. (9)-(12). Accuracy: `tolerance`, absolute.
 class IntegralMasking {
  public:
-  /// Integrates the part of G_1 that does not depend on alpha.
   IntegralMasking(const Slopes& slopes, const Zenith& zenith, double tolerance);
   double operator()(double alpha_rad) const;
 

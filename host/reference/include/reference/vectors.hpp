@@ -44,7 +44,7 @@ struct Bounce {
   Vector<Real> k_out;
 };
 
-/// At normal incidence s is `s_at_normal`, a unit vector in the facet. Any other would do, because r_p = -r_s.
+/// At normal incidence s is `s_at_normal`, a unit vector in the facet. Any such vector works, because r_p = -r_s.
 template <class Real>
 Bounce<Real> bounce(const Vector<Real>& k, const Vector<Real>& normal, const Vector<Real>& s_at_normal) {
   constexpr double kNormal = 1e-30;  // below this sin^2 beta the direction of s is only rounding error

@@ -19,7 +19,7 @@ bool is_finite(const Moments& m) {
          std::isfinite(m.r_i_error + m.r_q_error + m.albedo_error + m.deficit_error);
 }
 
-/// Interpolates the pairs of direction and index whose nodes have finite moments. Returns 1 for other wanted entries.
+/// Interpolates each pair of direction and index whose node moments are finite. The result is 1 for all other entries.
 std::vector<char> interpolate_all(const ShapePlan& plan, std::span<const Moments> nodes, const MomentsRequest& request,
                                   std::span<Moments> moments) {
   const std::size_t of_nodes = plan.nodes_of_a_direction();

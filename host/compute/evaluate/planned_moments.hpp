@@ -7,9 +7,8 @@
 
 namespace dolp {
 
-/// Computes the moments of the request of `plan`. If the moments at the interpolation nodes of a direction are not
-/// finite, the entries of this direction are computed one by one. Adds to `work` how many entries were interpolated or
-/// combined from responses, how many moments were computed for them, and the time. `progress` counts entries.
+/// Computes the moments of the plan's request. A direction with an interpolation node whose moments are not finite is
+/// computed entry by entry. `work` receives counts and times. `progress` counts entries.
 /// Errors: the evaluator's errors, and Cancelled if `progress` returns false.
 std::vector<Moments> planned_moments(const MomentsPlan& plan, ModelEvaluator& evaluator, const Progress& progress,
                                      Work& work);

@@ -23,18 +23,17 @@ using std::numbers::pi;
 
 constexpr int kLargestOrder = 16;  // must equal kInPlaneOrder of physics/in_plane.glsl
 
-// The integral for G leaves out the share exp(-kCutExponent) of the in-plane slopes, far below a double's rounding.
+// The masking G is an integral over slopes. It leaves out the steepest, a share exp(-kCutExponent) of all slopes.
 constexpr double kCutExponent = 45.0;
 
-// For G, smoother surfaces get this sigma, because squares of slope / m would overflow. This matters only for q < 1.1.
+// Least sigma with which the masking G is computed. For a smaller one, squares of slope / m would overflow.
 constexpr double kSmallestMaskingSigma = 1e-15;
 
-// If N^2 - sin^2(beta) is below this share of its terms, the difference has lost digits that its square root needs.
+// If N^2 - sin^2(beta) is below this share of the larger of its two terms, the difference has lost too many digits.
 constexpr double kCritical = 1e-6;
 constexpr double kSmallestSquare = 1e-300;
 constexpr double kSmallestFacetCosine = 1e-12;
 
-// ln(1 + x^2), where x^2 may overflow.
 double log1p_square(double x) { return x > 1e8 ? 2.0 * std::log(x) : std::log1p(x * x); }
 
 kernel::ShapeNode masking_shape(Distribution distribution, const SlopeShape& shape) {
@@ -61,15 +60,15 @@ double exact_w_squared(const BeamAngles& angles, const OpticalConstants& index) 
   return static_cast<double>((n - k) * (n + k) - (1 - cos_2beta) / 2);
 }
 
-// Mueller matrix of a facet in its frame: (R_s + R_p) / 2, (R_s - R_p) / 2 and r_s* r_p.
+// Elements of a facet's Mueller matrix in the facet's frame: (R_s + R_p) / 2, (R_s - R_p) / 2 and conj(r_s) r_p.
 struct FacetReflection {
   double m00 = 0.0;
   double m01 = 0.0;
   std::complex<double> cross;
 };
 
-// Equations: with c = cos(beta) and w = sqrt(N^2 - sin^2(beta)), the forms of shaders/physics/fresnel.glsl, in which
-// nothing cancels, and r_s* r_p = a (sin^2(beta) - c w) / (conj(c + w) (N^2 c + w)) with a = |N^2 - 1|^2 / |c + w|^2.
+// R_s and R_p as in shaders/physics/fresnel.glsl. With c = cos(beta), w = sqrt(N^2 - sin^2(beta)) and a = |N^2 - 1|^2 /
+// |c + w|^2, r_s* r_p = a (sin^2(beta) - c w) / (conj(c + w) (N^2 c + w)).
 FacetReflection bare_reflection(const BeamAngles& angles, const BeamGeometry& geometry, const OpticalConstants& index) {
   using Complex = std::complex<double>;
   const double n2_re = (index.n - index.k) * (index.n + index.k);
@@ -108,7 +107,7 @@ CosSin double_angle(double x, double y) {
   return {(u - v) * (u + v) / (u * u + v * v), 2.0 * u * v / (u * u + v * v)};
 }
 
-// (cos, sin) of the mean zenith. Near the horizon it is computed from elevations: a sum of zeniths would lose digits.
+// (cos, sin) of the mean of the two zeniths. Near the horizon it is computed from elevations, which keep more digits.
 CosSin mean_zenith(double theta_i_deg, double theta_r_deg) {
   if (theta_i_deg + theta_r_deg <= 90.0) return cos_sin_deg(0.5 * (theta_i_deg + theta_r_deg));
   const CosSin elevation = cos_sin_deg(0.5 * ((90.0 - theta_i_deg) + (90.0 - theta_r_deg)));
@@ -120,7 +119,7 @@ CosSin mean_zenith(double theta_i_deg, double theta_r_deg) {
 BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_phi_deg) {
   const CosSin i = cos_sin_deg(theta_i_deg);
   const CosSin r = cos_sin_deg(theta_r_deg);
-  // In [-180, 180], without rounding: near the specular and the retro direction the half angle keeps all digits.
+  // In [-180, 180], without rounding, so that the half angle keeps all digits near 0 and 180 degrees.
   const double azimuth_deg = std::remainder(delta_phi_deg, 360.0);
   const CosSin half = cos_sin_deg(0.5 * std::abs(azimuth_deg));
   const CosSin mean = mean_zenith(theta_i_deg, theta_r_deg);
@@ -142,7 +141,7 @@ BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_
   node.cos_beta = 0.5 * std::sqrt(height_sum * height_sum + flat_sum);
   geometry.sin2_beta = 0.25 * (cos_difference * cos_difference + flat_difference);
 
-  // Inserts cos(dphi) = 1 - 2 sin^2(dphi/2) or cos(dphi) = 2 cos^2(dphi/2) - 1, whichever has the smaller square.
+  // Replaces cos(dphi) by 1 - 2 sin^2(dphi/2) or 2 cos^2(dphi/2) - 1, whichever has the smaller square.
   const bool forward = std::abs(half.cos) < std::abs(half.sin);
   const double sin_sum = 2.0 * mean.sin * mean.cos;
   const double sin_of_difference = 2.0 * difference.sin * difference.cos;

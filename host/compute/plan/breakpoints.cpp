@@ -16,14 +16,13 @@ namespace {
 using std::numbers::pi;
 
 constexpr unsigned kRoots = kRootAbove | kRootBelow;
-constexpr double kNoEnd = 1e30;  // a finite slope beyond every cut
+constexpr double kNoEnd = 1e30;  // a finite slope that is larger than every other slope
 
 constexpr double kCoincident = 1e-9;  // breakpoints within this relative distance differ only by rounding
 
 constexpr std::size_t kMostSkyBreakpoints = 60;  // most breakpoints of a direction with a sky
 
-// In grazing directions, slopes reach far beyond 1 before they meet the horizon. These breakpoints divide a heavy tail
-// into pieces of about ten units of X = asinh(t / ShapeNode::scale).
+// Long ranges of slopes, as in grazing directions, are also divided at these slopes.
 constexpr std::array kPlainBreakpoints = {30.0, 3e5};
 constexpr std::array kSteepBreakpoints = {1e5, 3e8, 1e12};  // for grooves, which have no horizon
 
@@ -32,8 +31,8 @@ double tan_deg(double angle_deg) {
   return a.sin / a.cos;
 }
 
-// Slopes at which the line of total reflection, cos(beta) = critical, meets phi = 0 or pi, the horizon, theta_r =
-// theta, or the lines of v-cavity, e = 2 c and e = 2 cos(theta_r).
+// Slopes at which the azimuth where total reflection begins, cos(beta) = critical, meets another split line
+// (arcs.glsl).
 void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, Masking masking,
                               double critical) {
   const double critical_deg = std::acos(critical) * 180.0 / pi;
@@ -46,12 +45,12 @@ void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   add(a.cos / (2.0 * critical), 0.0);
   add(a.cos / critical, 0.0);
   if (masking != Masking::kVCavity || a.cos <= 0.0) return;
-  const double at_slope_1 = std::sqrt(0.5);  // cos(alpha) at slope 1, where the lines of v-cavity end
+  const double at_slope_1 = std::sqrt(0.5);  // cos(alpha) at slope 1, where the split lines of v-cavity masking end
   add(0.5 * critical / a.cos, at_slope_1);
   add(critical / (std::hypot(a.cos, 2.0 * critical) - a.cos), at_slope_1);
 }
 
-// With `integral`, slopes where the line b = pi/2 (eq. 11) meets phi = 0, pi or theta_r = theta. With smith, the cusp.
+// Slopes at the kink of `integral` or smith masking, at which only some shapes need a split (needs_line() in rule.hpp).
 void add_line_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, Masking masking) {
   if (masking == Masking::kSmith) {
     points.push_back({tan_deg(0.5 * theta_deg), kRoots});
@@ -65,8 +64,7 @@ void add_line_breakpoints(std::vector<Breakpoint>& points, double theta_deg, con
   points.push_back({a.cos > 0.0 ? tan_deg(30.0 + theta_deg * 2.0 / 3.0) : kNoEnd, kRootBelow});
 }
 
-// Facets beyond the horizon line, theta_r = 90 degrees, also emit directly, up to the line e = 0 at which they turn
-// away. With v-cavity masking there is also the line e = 2 c, which meets the horizon line at slope sqrt(3).
+// Facets whose reflected ray does not leave the surface still emit directly, until they face away from the viewer.
 void add_direct_breakpoints(std::vector<Breakpoint>& points, const CosSin& a, Masking masking, double& last) {
   last = kNoEnd;
   points.push_back({last, 0});
@@ -85,8 +83,7 @@ void add_v_cavity_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   }
 }
 
-// Slopes at which total reflection begins, at phi = 0 or pi, for a bounce after the first (if theta = 0, at all phi).
-// At these phi, cos(beta) of a bounce is the sine of the bounce's angle in the unfolded groove (groove.glsl).
+// Slopes at which total reflection begins for a bounce after the first, in the plane of incidence (phi = 0 or pi).
 void add_critical_bounces(std::vector<Breakpoint>& points, double theta_deg, double critical) {
   const double critical_deg = std::asin(critical) * 180.0 / pi;
   for (int k = 2; k <= kCriticalBounces; ++k) {
@@ -99,7 +96,7 @@ void add_critical_bounces(std::vector<Breakpoint>& points, double theta_deg, dou
   }
 }
 
-// Slopes at which the lines of groove_lines (arcs.glsl) meet each other, phi = 0 or phi = pi.
+// Slopes at which the split lines of grooves (groove_lines() in arcs.glsl) meet each other or the plane of incidence.
 void add_groove_breakpoints(std::vector<Breakpoint>& points, double theta_deg, int splits) {
   const auto add = [&](double gamma_deg, unsigned roots) {
     if (gamma_deg > 0.0 && gamma_deg <= 90.0) points.push_back({tan_deg(90.0 - gamma_deg), roots});
@@ -122,7 +119,6 @@ void add_groove_breakpoints(std::vector<Breakpoint>& points, double theta_deg, i
   for (const double slope : kSteepBreakpoints) points.push_back({slope, 0});
 }
 
-// Merges breakpoints that differ only by rounding. A merged breakpoint has the root flags of all of them.
 std::vector<Breakpoint> without_coincident(const std::vector<Breakpoint>& points) {
   std::vector<Breakpoint> distinct;
   for (const Breakpoint& point : points) {
@@ -133,8 +129,7 @@ std::vector<Breakpoint> without_coincident(const std::vector<Breakpoint>& points
   return distinct;
 }
 
-// Slopes at which a corner (kink) of the sky meets phi = 0 or pi. A sky that is linear in the zenith near 0 has a cusp
-// there. Beside such a slope, the sum over the azimuths has a term (distance from the slope)^(3/2).
+// Slopes at which the ray reflected in the plane of incidence points at a kink of the radiance of the sky.
 void add_sky_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const SkyTable& sky) {
   if (sky.has_cusp) points.push_back({tan_deg(0.5 * theta_deg), kRoots});
   for (const double corner_deg : sky.corners_deg) {
@@ -146,7 +141,7 @@ void add_sky_breakpoints(std::vector<Breakpoint>& points, double theta_deg, cons
 
 // Splits each piece once more, so that its rules get other nodes.
 void add_extra_splits(std::vector<Breakpoint>& points) {
-  constexpr double kShare = 0.43;  // no rule has a node at this fraction of its interval
+  constexpr double kShare = 0.43;
   const std::size_t count = points.size();
   for (std::size_t i = 0; i + 1 < count && points.size() <= DOLP_MAX_PIECES; ++i) {
     const double start = std::asinh(points[i].slope);
@@ -158,10 +153,7 @@ void add_extra_splits(std::vector<Breakpoint>& points) {
 
 }  // namespace
 
-// Slopes, starting with 0, at which the set of smooth arcs changes, because a split line of the azimuth (arcs.glsl)
-// meets phi = 0, phi = pi or another line. Horizon: t1 = c / (1 + s) and t2 = (1 + s) / c. theta_r = theta: tan(theta).
-// Limit b = pi/2: tan(30 -+ 2/3 theta) and, on theta_r = theta, tan(2 theta - 90). Lines of v-cavity: tan(30 -+
-// theta/3), cot(theta), 1 and tan(theta). Cusp of smith: tan(theta/2).
+// Breakpoints are the slopes at which a split line of the azimuth (arcs.glsl) meets another one, phi = 0 or phi = pi.
 std::vector<Breakpoint> breakpoints(double theta_deg, const MomentsRequest& request, const DirectionVariant& variant,
                                     const SkyTable& sky, int splits) {
   const CosSin a = cos_sin_deg(theta_deg);

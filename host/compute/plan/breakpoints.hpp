@@ -18,11 +18,11 @@ struct Breakpoint {
 /// The split lines of a direction that depend on the index or on the slope distribution.
 struct DirectionVariant {
   double critical_cos = 0.0;  ///< cos(beta) at which total reflection begins; 0 without it
-  bool has_line = false;      ///< true if the line b = pi/2 (eq. 11) of `integral` or smith's cusp splits pieces
+  bool has_line = false;      ///< true if a kink of `integral` or smith masking splits the pieces, see needs_line()
 };
 
-/// Ascending slopes, starting with 0, that divide the slope axis into pieces with a smooth integrand. With all bounces,
-/// the ends of the beams of up to `splits` bounces split the azimuths.
+/// Ascending slopes, starting with 0, that divide the slope axis into pieces with a smooth integrand. In grooves, up to
+/// `splits` bounces are considered.
 std::vector<Breakpoint> breakpoints(double theta_deg, const MomentsRequest& request, const DirectionVariant& variant,
                                     const SkyTable& sky, int splits);
 

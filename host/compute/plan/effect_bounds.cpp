@@ -28,8 +28,7 @@ bool KeptEffects::*flag(Part part) { return kFlags[static_cast<std::size_t>(part
 
 double or_infinite(double bound) { return std::isnan(bound) ? kInfinity : bound; }
 
-/// Upper bound of Smith's Lambda = E[max(t_x - mu, 0)] / mu, with mu = cot(theta), the in-plane slope t_x and the mean
-/// E. This bound is E|t_x| / (2 mu).
+/// Upper bound of Smith's Lambda: half the mean absolute slope in one plane, divided by cot(theta).
 double most_lambda(Distribution distribution, const SlopeShape& shape, const CosSin& a) {
   if (shape.sigma == 0.0 || a.sin == 0.0) return 0.0;
   double mean = slope_width(shape) / kRootPi;
@@ -37,8 +36,7 @@ double most_lambda(Distribution distribution, const SlopeShape& shape, const Cos
   return a.cos > 0.0 ? 0.5 * mean * a.sin / a.cos : kInfinity;
 }
 
-/// Upper bound of the albedo A. `v-cavity` and `smith` reflect at most all incident light. For the other maskings, G <=
-/// 1 gives c A <= E[max(c + s t_x, 0)] <= c + s E|t_x| / 2: t_x is the slope in the plane of incidence, E the mean.
+/// Upper bound of the albedo. With v-cavity and smith masking it is 1. With other maskings it follows from G <= 1.
 double most_albedo(const Surface& surface, const CosSin& a, const SlopeShape& roughest) {
   return keeps_projected_area(surface.masking) ? 1.0 : 1.0 + most_lambda(surface.distribution, roughest, a);
 }
@@ -48,7 +46,6 @@ struct Range {
   double most = kInfinity;
 };
 
-/// Range of (R_s + R_p) / 2 over the indices.
 Range reflectance(const std::vector<FacetOptics>& indices, double cosine) {
   Range range{1.0, 0.0};
   for (const FacetOptics& index : indices) {
@@ -61,8 +58,7 @@ Range reflectance(const std::vector<FacetOptics>& indices, double cosine) {
 }
 
 /// Range of the slope density P at `slope`, over all sigma and q of an extent. As a function of m^2, P rises to a
-/// maximum at t^2 (Gaussian) or (q - 1) t^2 (Cauchy), and then falls. The factors q - 1 and (1 + t^2 / m^2)^-q are
-/// monotonic in q.
+/// maximum (`peak`) and then falls. As a function of q, P has only monotonic factors.
 Range slope_density(Distribution distribution, const EntriesExtent& extent, double slope) {
   const bool is_gaussian = distribution == Distribution::kGaussian;
   const double m2_low = std::pow(slope_width(extent.smoothest), 2);
@@ -79,9 +75,8 @@ Range slope_density(Distribution distribution, const EntriesExtent& extent, doub
           (is_gaussian ? 1.0 : q_high - 1.0) * density(std::clamp(peak, m2_low, m2_high), q_low)};
 }
 
-/// Range of f_00 cos(theta_i) cos(theta_r) = P (1 + t^2)^2 G M00 / 4 for k_s = 1, in 1/sr, with the slope density P and
-/// M00 = (R_s + R_p) / 2. The masking G is known for `none` and `v-cavity`; it is in [1/2, 1] for `integral`; for
-/// `smith` in [1 / (1 + L_i + L_r), 1], where L_i and L_r are upper bounds of Lambda.
+/// Range of the element f_00 of the pBRDF times cos(theta_i) cos(theta_r), for k_s = 1, in 1/sr. It follows from ranges
+/// of the slope density, of the reflectance (R_s + R_p) / 2 and of the masking G.
 Range beam_range(const Surface& surface, const BeamAngles& angles, const EntriesExtent& extent,
                  const std::vector<FacetOptics>& indices) {
   if (!has_facet(angles)) return {};
@@ -115,7 +110,7 @@ EntriesExtent extent_of_grid(const SceneEntries& entries) {
   return extent;
 }
 
-/// The indices of the wavelengths, and the indices of the entries, each under the films of each wavelength.
+/// The indices of the wavelengths, and the indices of the entries combined with the films of each wavelength.
 std::vector<FacetOptics> indices_of(const SpectralRule& rule, const EntriesExtent& extent) {
   std::vector<FacetOptics> indices = rule.indices();
   const std::vector<FacetOptics> samples = indices;
@@ -152,10 +147,9 @@ KeptEffects without(KeptEffects kept, Part part) {
   return kept;
 }
 
-/// Bounds of the Stokes parameters, summed over some parts of a scene.
 struct EffectBounds::Sums {
   double least_i = 0.0;
-  double most_qu = 0.0;  ///< upper bound of the length of (Q, U)
+  double most_qu = 0.0;  ///< upper bound of sqrt(Q^2 + U^2)
   double most_polarisation = kInfinity;
 };
 
@@ -240,7 +234,7 @@ EffectBounds::Sums EffectBounds::sums(const KeptEffects& kept) const {
   return sum;
 }
 
-/// Upper bounds of |I| and of the length of (Q, U) of a part.
+/// Upper bounds of |I| and sqrt(Q^2 + U^2) of the light that `part` adds.
 std::array<double, 2> EffectBounds::added_by(Part part, const KeptEffects& kept) const {
   const double rho = most_rho(kept);
   const double all_rho = rho + most_diffuse_;

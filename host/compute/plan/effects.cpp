@@ -29,8 +29,8 @@ bool add_nothing(const std::vector<EffectBounds>& bounds, Part part, const KeptE
       bounds, [&](const EffectBounds& variant_bounds) { return variant_bounds.adds_nothing(part, kept); });
 }
 
-/// The largest bound of `part` over all variants. Except for moments and profile, it is at least the bound in the whole
-/// scene. So a part that matters there is kept, even if the parts that it multiplies have been dropped.
+/// The largest bound of `part` over all variants, with the effects `kept` and, except for moments and profile, also
+/// with all effects.
 double worst_bound(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
   double worst = 0.0;
   for (const EffectBounds& variant_bounds : bounds) {
@@ -67,7 +67,7 @@ void drop_effects(EffectPlan& plan, const SceneValues& scene, const std::vector<
   const double allowed = kDroppedShare * scene.accuracy.tolerance;
   for (const Part part : kDroppingOrder) {
     if (!is_kept(plan.kept, part)) continue;
-    if (part == Part::kMoments && scene.emission && scene.emission->has_bracket) continue;  // the bracket needs them
+    if (part == Part::kMoments && scene.emission && scene.emission->has_bracket) continue;  // the bracket needs moments
     const double bound = worst_bound(bounds, part, plan.kept);
     if (bound > allowed - plan.bound) continue;
     plan.kept = without(plan.kept, part);
@@ -84,7 +84,6 @@ void set_needs(EffectPlan& plan, const SceneValues& scene, const std::vector<Eff
   plan.gives_rho = plan.kept.moments || scene.surface.specular == 0.0;
 }
 
-/// The reason why a plan without moments gives exact results.
 std::string why_no_moments(const SceneValues& scene, const KeptEffects& kept) {
   const bool has_emission = scene.emission && kept.emission;
   const bool has_surroundings = scene.surroundings && kept.surroundings;

@@ -29,26 +29,17 @@ struct EntriesExtent {
 std::vector<EntriesExtent> extents_of(const SceneEntries& entries);
 
 /// Bounds of the change that each part of a scene causes at any of the entries.
-///
 /// Derivation: a part adds (dI, dQ, dU) to the Stokes parameters. Let q = (Q, U) / I, and let a prime mark values
-/// without the part. Then q - q' = ((dQ, dU) - q dI) / I'. The bounds of |dI| and |(dQ, dU)| follow from the bounds of
-/// a bistatic beam and, with the albedo A, from 0 <= rho_I <= A and |rho_Q| <= A / 2. Let E, S and X be the exitances
-/// of emission, surroundings and source; X is 0 in bistatic mode. With Kirchhoff's law I = E + (S - E + X) rho_I >= E -
-/// (|S - E| + X) A, and Q = (S - E + X) rho_Q. So the moments have the weight |S - E| + X. It is 0 if emission and
-/// surroundings have the same temperature and no source illuminates the hemisphere. A profile of the sky changes S by
-/// at most its largest distance from its mean. Other emissions have no lower bound here. A path multiplies the Stokes
-/// parameters by its transmittance, and adds to I. If A <= 1, every part has a degree of polarisation of at most 1, so
-/// |q| <= 1. Bistatic radiances count times pi.
+/// without the part. Then q - q' = ((dQ, dU) - q dI) / I'. The terms are bounded with Kirchhoff's law: I = E + (S - E +
+/// X) rho_I and Q = (S - E + X) rho_Q, where E, S and X are the exitances of emission, surroundings and source.
 class EffectBounds {
  public:
   EffectBounds(const SceneModel& scene, const EntriesExtent& extent);
 
-  /// Bound of the change of (Q/I, U/I), at any entry, if `part` is dropped from `kept`. The bound is exactly 0 if the
-  /// part contributes nothing. Otherwise it is infinite if no bound is known, and always for moments, further bounces,
-  /// profile, diffuse part and a source of the hemisphere, whose bounds would save no work in any known case.
+  /// Bound of the change of (Q/I, U/I), at any entry, if `part` is dropped from `kept`. The bound is 0 if the part
+  /// contributes nothing, and infinite if no bound is known.
   double bound(Part part, const KeptEffects& kept) const;
 
-  /// True if the part contributes exactly nothing at every entry.
   bool adds_nothing(Part part, const KeptEffects& kept) const;
 
  private:
@@ -63,33 +54,31 @@ class EffectBounds {
   SceneModel scene_;
   bool is_bistatic_;
   SpectralSample total_;       ///< sums of |factor| over the spectral samples; `emitted` keeps its sign
-  double sky_apart_ = 0.0;     ///< the largest distance of a profile from its mean
-  bool has_negative_ = false;  ///< a spectral weight is negative, as in the interpolation of a steep factor
+  double sky_apart_ = 0.0;     ///< largest difference between a sky profile and its mean
+  bool has_negative_ = false;  ///< true if a spectral weight is negative, as interpolation may give
   double path_;
   double most_specular_ = 0.0;  ///< upper bound of the specular rho_I
   double most_diffuse_ = 0.0;   ///< upper bound of the diffuse rho
-  double most_beam_ = 0.0;      ///< upper bound of pi times the radiance into the view, for E0 = 1
-  double most_beam_qu_ = 0.0;   ///< upper bound of the length of (Q, U) of this light
+  double most_beam_ = 0.0;      ///< upper bound of pi times the radiance toward the viewer, for irradiance 1
+  double most_beam_qu_ = 0.0;   ///< upper bound of sqrt(Q^2 + U^2) of this light
   double least_beam_ = 0.0;
 };
 
 struct EffectPlan {
   bool keep_all = false;
   KeptEffects kept;
-  std::map<Part, double> dropped;       ///< for parts of the scene: bounds of the change of (Q/I, U/I)
+  std::map<Part, double> dropped;       ///< dropped parts, with bounds of the changes of (Q/I, U/I)
   double bound = 0.0;                   ///< bound of the change by all dropped parts together
   bool needs_direct = false;            ///< the run needs the moments of the direct emission
-  bool needs_beams = false;             ///< the run needs f from the source's direction into the view
+  bool needs_beams = false;             ///< the run needs the pBRDF from the source to the viewer
   std::shared_ptr<const SkyBasis> sky;  ///< functions of the sky, set by with_sky; null without a profile
   bool gives_rho = true;  ///< rho_i, rho_q and rho_error_estimate are known; the albedo only with the moments
 };
 
-/// The effects that the scene's output needs. A part is dropped if the bounds of all dropped parts (EffectBounds) sum
-/// to at most kDroppedShare of the tolerance. The source is tried first, then the surroundings, their profile, the
-/// emission, the path, the moments, and the further bounces. Each bound is for the scene without the parts dropped
-/// before, so the sum bounds the whole change. Except for moments and profile, each bound is at least the bound of the
-/// part in the whole scene. A part that adds exactly nothing is always dropped. Model choices (distribution, masking,
-/// k) and the diffuse part are never dropped. `keep_all` keeps everything.
+/// Drops parts as long as their bounds (EffectBounds) sum to at most kDroppedShare of the tolerance. The order is:
+/// source, surroundings, their profile, emission, path, moments, further bounces. Each bound is for the scene without
+/// the parts dropped before. Choices of the model (distribution, masking, absorption index k) and the diffuse part are
+/// never dropped.
 EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, bool keep_all);
 
 EffectPlan plan_to_keep(const SceneValues& scene, const KeptEffects& kept);
@@ -99,7 +88,7 @@ EffectPlan keep_everything(const SceneValues& scene);
 /// Adds the basis of the sky at the wavelengths of these entries, if the moments need one and the plan has none.
 EffectPlan with_sky(EffectPlan plan, const SceneValues& scene, const SceneEntries& entries);
 
-/// True if the scene has an emission that does not need dropped moments.
+/// True if the emissivity is known: the scene has an emission, and the plan keeps the moments that it needs.
 bool gives_emissivity(const SceneValues& scene, const EffectPlan& plan);
 
 std::vector<Effect> effects_of(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan);

@@ -16,11 +16,10 @@ using std::numbers::pi;
 
 constexpr double kCosineRounding = 2.0 * std::numeric_limits<double>::epsilon();
 
-constexpr double kGrazingCosine = 1e-9;  // directions with a smaller cosine count as this one
+constexpr double kGrazingCosine = 1e-9;  // smaller cosines of theta count as this one
 
-// Rounding error in unit roundoffs, relative to the integral of absolute values. The masking tables of `integral` with
-// q near 1, and of smith with q near 3/2, are sums of hundreds of nearly equal terms. The critical line of total
-// reflection follows from a difference of angles, which loses digits if the surface is smooth or the direction grazing.
+// Relative rounding error of a sum, in unit roundoffs. It is large for heavy tails, where the masking table is a sum of
+// many nearly equal terms, and at the critical line of total reflection, whose position loses digits.
 double roundings(const KernelData& data, const kernel::ThetaNode& theta, const kernel::ShapeNode& shape,
                  const kernel::IndexNode& index) {
   if (index.critical_cos > 0.0) {
@@ -34,14 +33,13 @@ double roundings(const KernelData& data, const kernel::ThetaNode& theta, const k
   return shape.q_minus_1 < heavy_tail_q - 1.0 ? kHeavyTailRoundings : kRoundings;
 }
 
-// Mean of |t_x|, the slope in one plane. Domain: q > 1.5 for the cauchy.
+// Mean absolute slope in one plane. Domain: q > 1.5 for the cauchy.
 double mean_slope(Distribution distribution, const kernel::ShapeNode& shape) {
   const double gaussian = shape.m * shape.m * shape.marginal_norm;
   return distribution == Distribution::kGaussian ? gaussian : 2.0 * gaussian / shape.two_q_minus_3;
 }
 
-// Upper bound of G; v-cavity needs none (e G <= 2 c). With smith masking the projections e of the visible facets sum to
-// c, so G <= G1(theta) = c / (integral of e over e > 0). This integral is at least half of c + s mean|t_x|.
+// Upper bound of the masking G. With smith masking it is a bound of G1(theta), which is small in grazing directions.
 double masking_bound(Distribution distribution, Masking masking, const kernel::ThetaNode& theta,
                      const kernel::ShapeNode& shape) {
   if (masking != Masking::kSmith) return 1.0;
@@ -52,8 +50,7 @@ double share_beyond(Distribution distribution, const kernel::ShapeNode& shape, d
   return steeper_share(distribution, {shape.m / std::numbers::sqrt2, shape.q_minus_1 + 1.0}, slope);
 }
 
-// Upper bound of the albedo times cos(theta) from the slopes beyond the cut T, which the kernel leaves out. Without
-// masking, e <= c + s t gives the bound c * (share of facets beyond T) + 2 s * (integral of P t^2 over t > T).
+// Upper bound of cos(theta) times the albedo of facets steeper than ShapeNode::cut, which the kernel leaves out.
 double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::ShapeNode& shape) {
   const double reached = std::min(shape.cut, theta.end[DOLP_MAX_PIECES]);
   const double tail = share_beyond(data.distribution, shape, reached);
@@ -70,7 +67,7 @@ double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const k
   return masking_bound(data.distribution, data.masking, theta, shape) * (theta.c * tail + theta.s * slopes);
 }
 
-// Error of G relative to the albedo. With smith and Cauchy slopes it grows like the mean slope, infinite at q = 3/2.
+// Error of the masking G, relative to the albedo. With smith masking and Cauchy slopes it is infinite at q = 3/2.
 double masking_error(const KernelData& data, const MomentsEntry& entry, double unit_roundoff) {
   if (!data.needs_masking_table()) return 0.0;
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
@@ -89,9 +86,8 @@ double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
   return std::min(1.0, std::norm((cos_beta - w) / (cos_beta + w)));
 }
 
-// Upper bound, at most `most`, of the share of light that is left after `bounces` bounces with cos(beta) >= a/2, where
-// a is the length of the ray's direction projected across the groove. a is at least `level`, except at azimuths with
-// sin(theta) |cos(phi)| < sqrt(level^2 - c^2). The share of light there is at most twice the share of azimuths.
+// Upper bound of the share of light left after `bounces` bounces with cos(beta) >= a/2. Here a is the length of the
+// ray's direction across the groove. It is at least `level`, except at few azimuths (their share: `missed`).
 double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double bounces, double most) {
   double least = most;
   for (double level = 1.0; level > 1e-6; level *= 0.5) {
@@ -104,10 +100,9 @@ double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index
   return least;
 }
 
-// Upper bound of the share of incident light that the facets steeper than the cut (ShapeNode::cut) reflect. A ray that
-// leaves after one bounce has cos(theta_r) > 0, so cos(beta) > c sqrt(1 + t^2) / 2, and M00 is at most R_s at this
-// cosine. In grooves of half-angle gamma, with cot(gamma) = slope, the bounces of a ray are at the angles psi + gamma,
-// psi + 3 gamma ... of the unfolded groove. At least slope * min(pi/3, pi/2 - theta) - 1 of them have cos(beta) >= a/2.
+// Upper bound of the share of light that facets steeper than ShapeNode::cut reflect. With one bounce, a ray that leaves
+// the surface has cos(beta) > c sqrt(1 + t^2) / 2. In grooves, at least slope * min(pi/3, pi/2 - theta) - 1 bounces of
+// a ray have cos(beta) >= a/2, with a as in left_after().
 double steep_reflectance(const KernelData& data, const kernel::IndexNode& index, const kernel::ThetaNode& theta,
                          const kernel::ShapeNode& shape) {
   if (data.scattering == Scattering::kSingle) {
@@ -118,10 +113,8 @@ double steep_reflectance(const KernelData& data, const kernel::IndexNode& index,
   return left_after(theta, index, std::max(std::min(pi / 3.0, elevation) * slope - 1.0, 0.0), 1.0);
 }
 
-// Bound of the error in grooves with more than DOLP_MOST_BOUNCES bounces, several of which the kernel treats as one.
-// `reflected` is the light of these grooves as computed; below `least` it is negligible. Treating several bounces as
-// one changes the logarithm of the remaining light by less than a hundredth, so a small value is small in truth, except
-// under total reflection, where some bounces have no loss. After DOLP_LAST_BOUNCES bounces the kernel assumes no light.
+// Bound of the error in grooves with more than DOLP_MOST_BOUNCES bounces, where the kernel treats several bounces as
+// one. `reflected` is the light of these grooves as computed; light below `least` is negligible.
 double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::IndexNode& index,
                           const kernel::ShapeNode& shape, double reflected, double least) {
   const auto beyond = [&](double bounces, double most) {
@@ -136,22 +129,21 @@ double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta
   return last + std::min(many + very_many, reflected);
 }
 
-// Factor from the difference between the results of two rules to the error of the finer rule. It allows for slower
-// convergence than expected: at the cusps and lines of a tabulated G the rules converge only algebraically.
+// Factor by which the difference between two rules is multiplied to bound the error of the finer rule.
 double pair_factor(const KernelData& data, const kernel::IndexNode& index) {
   const bool is_multiple = data.scattering == Scattering::kMultiple;
   const double smooth = is_multiple ? kGroovePairFactor : data.needs_masking_table() ? kTablePairFactor : kPairFactor;
   return index.critical_cos > 0.0 ? kCriticalFactor * smooth : smooth;
 }
 
-// Error of a function of a sky: from its table, from its corners (kinks) at which pieces are not split, and from
-// rounding. Rounding is large near the zenith, where 1 - cos(theta_r) loses digits.
+// Error of a function of a sky: from its table, from corners (kinks) at which the azimuths are not split, and from
+// rounding. Near the zenith, rounding is large because 1 - cos(theta_r) loses digits.
 double sky_error(const KernelData& data, std::size_t function, double unit_roundoff) {
   return data.sky.error[function] + kUnsplitBends * data.sky.bends[function] + kSkyRoundings * unit_roundoff +
          data.sky.steepness[function] * std::sqrt(kSkyCosineRoundings * unit_roundoff);
 }
 
-// Rounding error of T_degree(x): the error of x times the largest slope, degree^2, plus the error of the recurrence.
+// Rounding error of the Chebyshev polynomial T_degree(x), whose slope is at most degree^2.
 double response_rounding(std::size_t degree, double unit_roundoff) {
   return kResponseRoundings * unit_roundoff * static_cast<double>(1 + degree * degree);
 }
@@ -163,7 +155,7 @@ struct Shares {
   double masking = 0.0;        ///< relative error of G
   double rounding = 0.0;       ///< relative rounding error
   double least = 0.0;          ///< least error bound of a sum, relative to the sum
-  double pair = 1.0;           ///< factor from the difference of two rules to the bound
+  double pair = 1.0;           ///< error bound divided by the difference of two rules
   // Two rules with few nodes may agree by chance, so the bound of a sum is at least a share of the tolerance.
   double of_rule() const { return least + rounding; }
   double of_masked() const { return of_rule() + masking; }

@@ -16,19 +16,18 @@ namespace {
 using std::numbers::pi;
 using Complex = std::complex<double>;
 
-/// Two beams in the frame of a groove.
 struct Across {
   double a = 0.0;                                  ///< length of omega_i projected into the plane across the groove
-  double psi_i = 0.0;                              ///< zenith of omega_i in this plane, positive toward u
+  double psi_i = 0.0;                              ///< zenith of omega_i in this plane, positive on one side
   double psi_r = 0.0;                              ///< zenith of omega_r in this plane
   double along = 0.0;                              ///< component of omega_i along the groove
-  Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< unit vectors of the azimuths: across and along the groove
+  Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< unit vectors of the beams' azimuths: (across, along) the groove
   Eigen::Vector2d to = Eigen::Vector2d::Zero();
   double cos_i = 1.0;
   double cos_r = 1.0;
 };
 
-/// A Jones matrix: (E_s, E_p) after the bounces for each of (E_s, E_p) before.
+/// A Jones matrix, which maps the fields (E_s, E_p) before some bounces to the fields after them.
 using Jones = Eigen::Matrix2cd;
 
 /// Converts fields to a frame that is rotated from s toward p by the angle of the vector (x, y).
@@ -39,8 +38,8 @@ Eigen::Matrix2d turned(double x, double y) {
   return Eigen::Matrix2d{{cosine, sine}, {-sine, cosine}};
 }
 
-/// The Jones matrix of a bounce at cos(beta) = c, if the facet's frame is rotated by the angle of the vector (x, y). In
-/// the unfolded groove r_p equals r_s at normal incidence. Roots and quotients of std::complex would be slow.
+/// The Jones matrix of one bounce. Arguments: c = cos(beta), and a vector (x, y) whose angle is the rotation of the
+/// frame of the facet. The sign of r_p is such that r_p = r_s at normal incidence.
 class Facet {
  public:
   explicit Facet(const OpticalConstants& index)
@@ -85,8 +84,8 @@ Eigen::Matrix4d mueller(const Jones& j) {
       {(of_s + of_p).imag(), (of_s - of_p).imag(), (straight + crossed).imag(), (straight - crossed).real()}};
 }
 
-/// Mueller matrix of a beam with `bounces` bounces. The fields go from facet to facet of the unfolded groove. An odd
-/// number of bounces makes the unfolded groove a mirror image, which reverses one axis of the frame.
+/// Mueller matrix of a beam that bounces `bounces` times in an unfolded groove (shaders/physics/groove.glsl). If
+/// `bounces` is odd, the last frame is a mirror image.
 Eigen::Matrix4d chain(const Across& at, const Facet& facet, double gamma, int bounces) {
   Jones fields = turned(-at.from.x(), at.from.y() * at.cos_i).transpose().cast<Complex>();
   const Complex turn = std::polar(1.0, 2.0 * gamma);
@@ -110,7 +109,6 @@ double beam_width(const Across& at, double gamma, int bounces) {
   return std::max(std::min(edge(0), edge(bounces - 1)) - low, 0.0);
 }
 
-/// The beams of two and more bounces that meet one side of the groove first.
 struct FurtherBeams {
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
   double unfollowed = 0.0;  ///< bound of m00 of the bounces that are left out
@@ -130,7 +128,7 @@ FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, c
   const Facet facet(request.optics[entry.index].index);
   const double least_gamma = 0.49 * std::abs(std::abs(at.psi_i) - std::abs(at.psi_r));
   FurtherBeams beams;
-  // Two bounds: for all further even numbers of bounces, and for all further odd ones. The two follow different laws.
+  // Bounds of the light of all further beams, separately for even and for odd numbers of bounces.
   std::array<double, 2> beyond = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (int k = 2; k <= kMostBouncesOfBeam; ++k) {
     const double gamma = (pi - at.psi_i + (k % 2 == 1 ? -at.psi_r : at.psi_r)) / (2.0 * k);

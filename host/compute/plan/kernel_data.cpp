@@ -49,7 +49,7 @@ double turns_of(double bounces) {
   return turns;
 }
 
-// With cot(gamma) = slope a vertical ray bounces pi / (2 gamma) times. Steep grooves have no lines in |psi| < gamma.
+// Loops for grooves with cot(gamma) = slope, in which a vertical ray bounces pi / (2 gamma) times.
 Loops groove_loops(const KernelData& data, double start, double end) {
   const double most = pi / (2.0 * std::atan(1.0 / end));
   const double splits = data.rule.split_bounces;
@@ -77,10 +77,9 @@ Loops loops_of(const KernelData& data, double critical, double start, double end
 // The driver lavapipe stops an invocation after 65,535 iterations, without an error.
 constexpr double kMostIterations = 64'000.0;
 constexpr double kMostArcs = 2.0 * DOLP_MAX_ARCS;
-constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // iterations that search for the lines of a groove
+constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // iterations that search for the split lines of a groove
 
-// Upper bound of the loop iterations of one invocation: loops over two rules, slopes, arcs and azimuths, or for a slope
-// sample over arcs, azimuths and bounces. In lockstep every invocation takes as long as the one with the most work.
+// Upper bound of the loop iterations of one invocation, with at most `most_nodes` nodes on an arc.
 double iterations(const KernelData& data, const Loops& loops, double most_nodes) {
   const double arcs = loops.arcs + loops.corners;
   const double idle = data.sky.count == 0 ? 0.0 : 2.0 * loops.arcs * (1.0 + loops.corners);  // corners outside an arc
@@ -91,7 +90,7 @@ double iterations(const KernelData& data, const Loops& loops, double most_nodes)
   return of_rule(1.0) + of_rule(kCoarseShare + 1.0 / data.rule_order);
 }
 
-// Most nodes of an arc for an invocation below kMostIterations loop turns. If too few, the error bound shows it.
+// The largest number of nodes of an arc for which no invocation exceeds kMostIterations.
 std::uint8_t most_nodes(const KernelData& data, const Loops& loops) {
   int most = data.rule_order;
   while (iterations(data, loops, most) > kMostIterations) --most;
@@ -148,8 +147,6 @@ kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& sh
   return node;
 }
 
-// The pole of R_p in cos(beta) gets an imaginary part >= 0, the branch point of the amplitudes two parts >= 0. Films
-// add no branch points: their amplitudes are even functions of the wave number in each film.
 kernel::IndexNode index_node(const FacetOptics& optics) {
   const auto [n, k] = optics.index;
   const std::complex<double> n_complex(n, k);
@@ -190,7 +187,7 @@ void add_curves(KernelData& data, const MomentsRequest& request) {
 }
 
 // Adds the directions of the grid: once without total reflection, and once for each critical line of an index. If a
-// shape needs a split at a line or cusp of the masking, adds all of these directions also with this split.
+// shape needs a split at the kink of its masking, adds all of these directions also with this split.
 void add_grid_directions(KernelData& data, const MomentsRequest& request) {
   const bool any_line = std::ranges::find(data.needs_line, 1) != data.needs_line.end();
   const std::uint32_t lines = any_line ? 2 : 1;
@@ -217,7 +214,7 @@ void add_shape(KernelData& data, const MomentsRequest& request, const SlopeShape
 
 static_assert(kMostResponses == DOLP_COLUMNS);
 
-/// Plans the rules as if the integrand had a pole at cos(beta) = i * bend, unless an index has a pole nearer to 0.
+/// Chooses the rules as if the integrand had a pole at cos(beta) = i * bend, unless a pole of an index is nearer to 0.
 void take_responses(KernelData& data, const Response& response) {
   data.response = response;
   data.rule.response_scale = 1.0 / response.c0;

@@ -23,7 +23,6 @@ using real = double;
 #include "interface.glsl"  // NOLINT: one source for host and shaders
 }  // namespace kernel
 
-/// Converts structures with only FromReal members to their counterparts with only ToReal members.
 template <class ToReal, class To, class FromReal, class From>
 To convert_reals(const From& from) {
   constexpr std::size_t kCount = sizeof(From) / sizeof(FromReal);
@@ -45,7 +44,7 @@ struct Pieces {
   std::array<std::uint8_t, DOLP_MAX_PIECES + 1> most_nodes{};  ///< largest number of nodes of an arc, per piece
   /// One number per piece. Pieces with equal numbers have equal loop bounds, so they may run in lockstep.
   std::array<std::uint16_t, DOLP_MAX_PIECES> lockstep{};
-  bool has_split_line = false;  ///< pieces end at the line b = pi/2 (eq. 11) of `integral`, or at smith's cusp
+  bool has_split_line = false;  ///< a kink of the masking splits the pieces (DirectionVariant::has_line)
 };
 
 /// Positions of one entry in three lists of KernelData.
@@ -55,16 +54,15 @@ struct MomentsEntry {
   std::uint32_t index = 0;
 };
 
-/// Error bounds that hold for each quantity in the reflectance table of an index.
+/// Error bounds of the reflectance table (ReflectanceCurve) of one refractive index.
 struct CurveError {
   double absolute = 0.0;
   double per_roundoff = 0.0;  ///< error divided by the unit roundoff of the kernel's precision
 };
 
 /// Inputs of one run of the kernel. For a grid, `indices` and `shapes` (sigma x q, q fastest) follow the axes of the
-/// grid. `thetas` has all directions of the grid once per variant (DirectionVariant). Variants differ in split lines:
-/// total reflection has lines that depend on the index, and some shapes need one more line. For points, each point has
-/// a direction and an index; neighbouring points with equal shapes share one shape.
+/// grid, and `thetas` has all directions once per DirectionVariant. For points, each point has a direction and an
+/// index; neighbouring points with equal shapes share one shape.
 struct KernelData {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
@@ -82,11 +80,11 @@ struct KernelData {
   std::vector<kernel::ThetaNode> thetas;
   std::vector<Pieces> pieces;  ///< one for each of `thetas`
   std::vector<kernel::ShapeNode> shapes;
-  std::vector<char> needs_line;  ///< for each shape: 1 if it needs splits at a line or cusp of the masking
+  std::vector<char> needs_line;  ///< for each shape: 1 if pieces must be split at the kink of its masking
   std::vector<kernel::IndexNode> indices;
   std::vector<std::uint32_t> index_variant;  ///< for each index of a grid: number of its first DirectionVariant
   std::vector<std::uint32_t> shape_of;
-  /// Nodes of the rules, then cells of the sky and of reflectance tables.
+  /// Nodes of the rules, then the tables of the sky (SkyTable) and of the reflectances; two numbers per element.
   std::vector<std::array<double, 2>> rule_nodes;
   SkyTable sky;
   std::optional<Response> response;  ///< set if the columns are responses; null if they belong to functions of a sky
@@ -94,7 +92,6 @@ struct KernelData {
   std::size_t column_count() const { return response ? response->count : sky.count; }
   bool needs_masking_table() const { return masking == Masking::kIntegral || masking == Masking::kSmith; }
   std::size_t size() const { return is_grid ? directions * indices.size() * shapes.size() : directions; }
-  /// The position of a direction in `thetas`, for an index and a shape.
   std::uint32_t theta_of(std::uint32_t direction, std::uint32_t index, std::uint32_t shape) const {
     if (!is_grid) return direction;
     const std::uint32_t variant = index_variant[index] + (needs_line[shape] != 0 ? 1U : 0U);
@@ -108,15 +105,15 @@ struct KernelData {
 
 struct RuleModel;
 
-/// The data of a request. Without `model`, they use the fitted numbers (RuleModel) of its masking. Pure function.
+/// The data of a request. Without `model`, the rules use the numbers of rule_model(). Pure function.
 KernelData kernel_data(const MomentsRequest& request);
 KernelData kernel_data(const MomentsRequest& request, const RuleModel& model);
 
 /// How many numbers for columns follow each MomentsNode and each AzimuthNode.
 inline std::size_t column_sums(const KernelData& data) { return DOLP_COLUMN_PARTS * data.column_count(); }
 inline std::size_t column_azimuths(const KernelData& data) { return 2 * data.column_count(); }
-/// Adds the columns of a piece to `sums`, which has DOLP_COLUMN_PARTS numbers per column: i and q of the finer rule,
-/// and their differences from the coarser rule. Functions of a sky have only the larger of the two differences.
+/// Adds the columns of a piece to `sums`: for each column, i and q of the finer rule, and their differences from the
+/// coarser rule. Functions of a sky have only the larger of the two differences.
 template <class Real>
 void add_columns(const KernelData& data, std::span<const Real> piece, std::span<double> sums) {
   for (std::size_t first = 0; first < piece.size(); first += DOLP_COLUMN_PARTS) {
@@ -134,10 +131,9 @@ inline std::uint32_t column_kind(const KernelData& data) {
   return data.response ? DOLP_COLUMNS_RESPONSE + static_cast<std::uint32_t>(data.response->of) : DOLP_COLUMNS_SKY;
 }
 
-/// The task word of interface.glsl for one piece of a row of `members` entries.
 std::uint32_t task_word(const Pieces& pieces, std::uint32_t piece, std::uint32_t members);
 
-/// Pieces of the slope axis up to the slope cut of `shape`, which the kernel has to compute; at least one.
+/// Number of pieces of the slope axis that begin below the slope cut of `shape`; at least one.
 std::uint32_t piece_count(const KernelData& data, std::uint32_t theta, const kernel::ShapeNode& shape);
 
 /// The slope of V-grooves in which a vertical ray bounces `bounces` times.
@@ -152,8 +148,7 @@ void take_complement(Moments& moments, double cosine);
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
                             double unit_roundoff, std::span<const double> columns = {});
 
-/// False if the masking table is too coarse to resolve G: table_scale exceeds the width m of the slope distribution,
-/// and cot(theta) is below table_scale.
+/// False if the masking table is too coarse for the width m of the slope distribution in this direction.
 bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin_theta);
 
 /// Most loop iterations of one invocation. Drivers may stop it after 65,535, without an error and with wrong sums.

@@ -19,7 +19,6 @@ struct MomentsStep {
   std::optional<ResponsePlan> responses;
 
   const MomentsRequest& nodes() const { return shapes ? shapes->nodes : request; }
-  /// True if the kernels compute fewer moments than the step returns.
   bool saves_work() const { return shapes || responses; }
   std::vector<const MomentsRequest*> kernel_requests() const;
 };

@@ -16,7 +16,7 @@ bool may_use_double(const Accuracy& accuracy, bool has_double) {
   return has_double && accuracy.precision != Precision::kFloat;
 }
 
-// Rounds up to half decades, so that many entries share a level.
+// Rounds a number of decades up to a multiple of 1/2, so that many entries share a level.
 double half_decades(double decades) { return 0.5 * std::ceil(2.0 * decades); }
 
 }  // namespace
@@ -40,7 +40,7 @@ RefinementLevel check_level(const RefinementLevel& first) {
 std::optional<RefinementLevel> next_level(const RefinementLevel& last, const PointResult& result,
                                           const Accuracy& accuracy, bool has_double) {
   if ((result.status & kAnyToleranceNotMet) == 0) return std::nullopt;
-  // Outside the model's domain the DOLP may have a limit. If it has no limit, no level helps.
+  // Outside the model's domain, DOLP may still have a limit. If it has none, no tighter level helps.
   const bool is_outside = (result.status & kOutsideModelDomain) != 0;
   if (is_outside && std::isnan(result[Quantity::kErrorEstimate])) return std::nullopt;
   const double rho_error = is_outside ? 0.0 : result[Quantity::kRhoErrorEstimate];

@@ -26,7 +26,7 @@ struct RefinementLevel {
 /// Uses float if the tolerance is well above the rounding of float, unless the scene sets the precision.
 RefinementLevel first_level(const Accuracy& accuracy, bool has_double);
 
-/// The level that checks results: with other splits than `first`, and a hundredth of its tolerance.
+/// The level that checks the results of `first`: other pieces of the slope axis, and a hundredth of the tolerance.
 RefinementLevel check_level(const RefinementLevel& first);
 
 /// A level tighter than `last` by the factor by which `result` misses the tolerance, in steps of half a decade, and in

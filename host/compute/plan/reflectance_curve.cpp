@@ -36,7 +36,6 @@ double at(const std::array<double, 4>& cubic, double x) {
   return cubic[0] + x * (cubic[1] + x * (cubic[2] + x * cubic[3]));
 }
 
-/// Adds the cubics of a cell, and updates error and steepness of the curve.
 void add_cell(ReflectanceCurve& curve, const FacetOptics& optics, double start, double width) {
   std::array<Values, 7> values;  // at sixths of the cell
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -57,7 +56,7 @@ void add_cell(ReflectanceCurve& curve, const FacetOptics& optics, double start, 
   }
 }
 
-/// The pole c + i b in cos(beta) that explains the steepest slope, where R would change by its whole range over 2 b.
+/// The pole c + i b in cos(beta) of a reflectance that is as steep as the steepest part of R_s and R_p.
 std::complex<double> steepest_pole(const FacetOptics& optics, std::size_t cells) {
   std::complex<double> pole(0.0, 1.0);
   for (const double SmoothAbsorptance::*part : {&SmoothAbsorptance::s, &SmoothAbsorptance::p}) {

@@ -18,7 +18,7 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// MomentsRequest::wanted for a grid of other indices: `needed_by` lists the request's indices that need each of them.
+/// The mask `wanted` for a grid of other indices: needed_by[i] lists the request's indices that need the other index i.
 std::vector<char> wanted_of(const MomentsRequest& request, const std::vector<std::vector<std::size_t>>& needed_by) {
   const std::size_t of_index = request.theta_deg.size() * request.shapes();
   std::vector<char> wanted;
@@ -76,7 +76,7 @@ struct Sums {
     for (Eigen::Index shape = 0; shape < error.cols(); ++shape)
       error.col(shape) += responses.relative_error[static_cast<std::size_t>(shape)] * value.col(shape).cwiseAbs();
   }
-  /// Sums for the difference of two curves, which may change its sign: relative errors refer to the largest magnitude.
+  /// Sums for a difference of reflectance curves. It may change its sign, so relative errors refer to its largest size.
   static Sums of_difference(const Responses& responses, Responses::Part of, Responses::Part apart,
                             const RowMajor& weights) {
     Sums sums(responses, of, apart, weights);
@@ -112,7 +112,7 @@ class Combination {
     if (rows > 0) reflected_.col(0).array() += 1.0;
   }
 
-  /// `passes` has, for each pass, the moments of all shapes at one direction; `moments` gets those of all indices.
+  /// `passes` has the moments of all shapes at one direction for each pass; `moments` receives those of all indices.
   void operator()(double cosine, std::span<const std::span<const Moments>> passes, std::span<Moments> moments) const {
     add_reflected(cosine, passes.front(), moments);
     std::size_t pass = 1;
@@ -135,8 +135,8 @@ class Combination {
     const Responses all(reference, request_.basis->count());
     const Sums i(all, Responses::kI, Responses::kIApart, reflected_);
     const Sums q(all, Responses::kQ, Responses::kQApart, split_);
-    // The moments of the reference index plus a sum for the difference of the curves are more accurate than a sum for
-    // the whole curve, if the curves are similar or little light is absorbed.
+    // If reflectance curves are similar or little light is absorbed, the moments of the reference index plus a sum for
+    // the difference of the curves are more accurate than a sum for the whole curve.
     const Sums more_absorbed = Sums::of_difference(all, Responses::kI, Responses::kIApart, absorbed_apart_);
     const Sums more_split = Sums::of_difference(all, Responses::kQ, Responses::kQApart, split_apart_);
     const ResponseWeights& of_reference = request_.basis->of_reference();
@@ -159,8 +159,8 @@ class Combination {
         sum.r_q_error = from.r_q_error + more_split.error(index, shape) + more_absorbed.error(index, shape) +
                         (own.split_error + of_reference.split_error) * albedo;
       }
-      // In a sum the differences of the two rules may cancel by chance. The bound of the reference index adds the
-      // magnitudes of the differences. So no bound may be smaller than this one, relative to r_i.
+      // In a sum, differences of the two rules may cancel by chance. So no bound may be smaller, relative to r_i, than
+      // the bound of the reference index.
       const double whole_error = from.r_i_error * std::max(sum.r_i / from.r_i, 0.0);
       sum.r_i_error = std::max(sum.r_i_error, whole_error);
       sum.r_q_error = std::max(sum.r_q_error, whole_error);
@@ -232,7 +232,6 @@ std::vector<ResponsePlan::Source> sources_of(const ResponseBasis& basis, std::sp
   return sources;
 }
 
-/// Adds the passes, the requests for responses. `reference` has the entries of a pass, at the reference index.
 void add_passes(ResponsePlan& plan, const MomentsRequest& request, MomentsRequest reference) {
   const ResponseBasis& basis = *request.basis;
   reference.basis = nullptr;

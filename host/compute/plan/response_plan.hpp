@@ -18,8 +18,8 @@ struct ResponsePlan {
     std::optional<ResponseWeights> weights;  ///< weights of the responses; empty if the index is computed directly
     std::size_t other = 0;                   ///< position in the indices of `others`, if there are no weights
   };
-  /// A point's positions in three lists: the points of each pass, which all differ in direction or slope distribution;
-  /// `sources`; and the points of `others`, if the source has no weights.
+  /// Positions of a point in three lists: the points of each pass, `sources`, and, if the source has no weights, the
+  /// points of `others`.
   struct PointSource {
     std::uint32_t pass = 0;
     std::uint32_t source = 0;

@@ -17,7 +17,7 @@ bool belongs(const KernelData& data, std::uint32_t first, std::uint32_t next) {
          data.shapes[next].q_minus_1 <= kMostRowSpread * a.q_minus_1 && data.needs_line[first] == data.needs_line[next];
 }
 
-// Unites the members that the kernel reads only from a chunk's first shape.
+// The kernel reads some members only from a chunk's first shape, so all shapes get the most demanding values.
 void unite(std::span<kernel::ShapeNode> chunk) {
   kernel::ShapeNode common = chunk.front();
   for (const kernel::ShapeNode& shape : chunk) {

@@ -10,7 +10,7 @@
 
 namespace dolp {
 
-/// Largest number of members of a row. The kernel is compiled for rows of one member and of this many.
+/// Most entries in a kernel row. Kernels exist for rows of one entry and of this many entries.
 inline constexpr std::uint32_t kRowWidth = DOLP_ROW_WIDTH;
 
 /// Consecutive shapes with one sigma, in ascending order of q, which share Gauss nodes. For points, a single shape.
@@ -39,7 +39,6 @@ struct Rows {
   std::vector<Chunk> chunks;
   std::vector<Row> rows;  ///< ordered by chunk, index and direction
 
-  /// The position of a row's direction in the data's `thetas`.
   std::uint32_t theta_of(const KernelData& data, const Row& row) const {
     return data.theta_of(row.direction, row.index, shape_of[chunks[row.chunk].first]);
   }
@@ -49,7 +48,7 @@ struct Rows {
 /// only on the shapes, not on directions, indices and wanted entries.
 Rows rows_of(const MomentsRequest& request, const KernelData& data);
 
-/// Invocations of `count` rows from row `first`. Neighbouring ones take equal time: mostly only the direction differs.
+/// The pieces of `count` rows from row `first`, one per invocation. Neighbouring invocations take about equal time.
 std::vector<RowPiece> pieces_of(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count);
 
 }  // namespace dolp

@@ -44,18 +44,18 @@ constexpr std::array<RuleModel, 5> kModels = {{
 
 constexpr double kNone = -1000.0;
 
-// log10 of the number of nodes within 1/m of a line or cusp, the distance over which the share of steep facets varies.
+// log10 of the number of nodes near a kink of the masking, within a distance of 1/m (at most 1).
 double decades_per_node(const SlopeShape& shape, double digits) {
   const double width = std::max(1.0, slope_width(shape));
   return std::log10(std::max(kNodesPerDigit * digits / width, 1.5));
 }
 
-// log10 of the error of smith's cusp at theta_r = 0 in rules that do not split there. Near the cusp Smith's Lambda is C
-// (m tan(theta_r))^(2q-2). The cusp is a point of the slope plane, so n nodes per dimension leave an error of n^-2q.
+// log10 of the error of rules that are not split at smith's cusp, theta_r = 0. Near the cusp Smith's Lambda is
+// proportional to tan(theta_r)^(2q-2), and n nodes leave an error of n^-2q.
 double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double digits) {
   const double per_node = decades_per_node(shape, digits);
   if (distribution == Distribution::kGaussian) {
-    // All derivatives vanish at theta_r = 0; at 45 degrees Lambda is about exp(-1/m^2).
+    // All derivatives of Lambda vanish at theta_r = 0; at 45 degrees Lambda is about exp(-1/m^2).
     return -0.5 / (shape.sigma * shape.sigma * std::numbers::ln10) - kGaussianCuspPower * per_node;
   }
   const double from_integer = std::abs(shape.q - std::round(shape.q));
@@ -66,7 +66,7 @@ double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double d
   return size - 2.0 * shape.q * per_node;
 }
 
-// log10 of the error of the line b = pi/2 of `integral` (eq. 11) without a split: G has a part (distance)^(2q-1).
+// log10 of the error of rules that are not split at the kink of `integral`, where G has a part (distance)^(2q-1).
 double unsplit_line(Distribution distribution, const SlopeShape& shape, double digits) {
   if (distribution == Distribution::kGaussian) {
     return shape.sigma > (digits > kTightDigits ? kTightLineSigma : kLineSigma) ? 0.0 : kNone;
@@ -77,7 +77,6 @@ double unsplit_line(Distribution distribution, const SlopeShape& shape, double d
 
 using Rules = std::map<int, RuleNodes>;  // by order
 
-// Adds rules of the orders 1 to `largest_order`, and of twice these orders.
 void add_gauss_rules(Rules& rules, int largest_order) {
   std::vector<Rules::value_type*> missing;
   for (int i = 1; i <= largest_order; ++i) {

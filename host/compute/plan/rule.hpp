@@ -16,7 +16,7 @@ struct RuleModel {
   double t_fall = 0.0;
   double phi_nodes = 0.0;
   double phi_digits = 0.0;
-  double cluster_stretch = 1.0;  ///< smith: nodes per digit from which a cluster at the cusp pays
+  double cluster_stretch = 1.0;  ///< see kernel::RuleNode
 };
 
 /// The fitted numbers of a masking or, for kMultiple, of grooves with all bounces.
@@ -32,11 +32,11 @@ int split_bounces(double digits);
 
 int largest_order(double digits);
 
-/// True if the error without a split at the line b = pi/2 (eq. 11) of `integral` or at smith's cusp exceeds kLineShare
-/// of `tolerance`.
+/// True if the error without a split at the kink of the masking exceeds kLineShare of `tolerance`. The kink is smith's
+/// cusp, or the line b = pi/2 of `integral` (shaders/physics/arcs.glsl).
 bool needs_line(Distribution distribution, Masking masking, const SlopeShape& shape, double digits, double tolerance);
 
-/// log10 of the error without a split at smith's cusp, relative to Smith's Lambda. Below -100 without a cusp.
+/// log10 of the error without a split at smith's cusp, relative to Smith's Lambda. Below -100 if there is no cusp.
 double cusp_digits(Distribution distribution, Masking masking, const SlopeShape& shape, double digits);
 
 using RuleNodes = std::vector<std::array<double, 2>>;  // (abscissa, weight) of each node

@@ -13,7 +13,6 @@ namespace {
 
 using Values = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// value_of(node) at each node. Shape: nodes of sigma x nodes of q.
 template <class ValueOf>
 Values at_nodes(const ShapePlan& plan, std::span<const Moments> nodes, const ValueOf& value_of) {
   Values values(static_cast<Eigen::Index>(plan.sigma.nodes.size()), static_cast<Eigen::Index>(plan.q.nodes.size()));
@@ -55,7 +54,6 @@ class Interpolation {
   Values q_;
 };
 
-/// Interpolates column `k` of the moments. The whole error bound of the result is in ColumnMoments::error.
 void interpolate_column(const ShapePlan& plan, const Interpolation& interpolated, std::span<const Moments> nodes,
                         std::size_t k, std::span<Moments> moments) {
   for (Moments& of_entry : moments) of_entry.columns.resize(k + 1);
@@ -84,14 +82,9 @@ bool wants_whole_directions(const MomentsRequest& request) {
   return true;
 }
 
-/// The moments are analytic in ln(x - origin) within `strip` of the real axis, where x is sigma or q. A polynomial
-/// through n nodes in the logarithm has an error of rho^-n, rho = exp(asinh(strip / half length)), where the length is
-/// the range of the logarithm.
-///
-/// For sigma: with the slope in units of m, sigma enters only P(u) = (1 + u^2)^-q, which is analytic for |Im ln m| <
-/// pi/2. Near this limit P grows like the distance to the power -q, so a narrower strip is used. For q: P is analytic
-/// for Re q > 1. The mean slope, which smith masking needs, is analytic for Re q > 3/2; so is the projected area of
-/// facets at grazing incidence, if the masking does not limit it (shaders/physics/README.md, section 2).
+/// The moments are analytic functions of ln(x - origin) up to the distance `strip` from the real axis. x is sigma or q.
+/// The larger `strip` is, the fewer nodes an interpolation needs. For q, the origin is the value at which the slope
+/// density or, if the masking depends on it, the mean slope becomes infinite.
 struct ShapeParameter {
   double origin = 0.0;
   double strip = 1.0;

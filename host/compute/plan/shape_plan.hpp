@@ -19,7 +19,7 @@ std::vector<std::vector<std::size_t>> split_grazing_directions(const MomentsRequ
 struct ShapeAxis {
   std::vector<double> nodes;     ///< equal to the values if interpolation gains nothing
   Eigen::MatrixXd cardinal;      ///< values x nodes: weights of the moments at the nodes
-  Eigen::MatrixXd coefficients;  ///< nodes x nodes: makes Chebyshev coefficients from node values; else empty
+  Eigen::MatrixXd coefficients;  ///< nodes x nodes: node values to Chebyshev coefficients; or empty
   bool is_interpolated() const { return coefficients.size() > 0; }
 };
 

@@ -25,7 +25,6 @@ double u_at(double zenith_deg) { return std::numbers::sqrt2 * std::sin(0.5 * zen
 
 Eigen::RowVectorXd values_at(const SkyBasis& basis, double u) { return basis.at(zenith_deg_at(u)); }
 
-/// Values of the functions at the ends of the cells. Shape: (cells + 1) x functions.
 Eigen::MatrixXd at_ends(const SkyBasis& basis, std::uint32_t cells) {
   Eigen::MatrixXd ends(cells + 1, static_cast<Eigen::Index>(basis.size()));
   for (std::uint32_t i = 0; i <= cells; ++i) ends.row(i) = values_at(basis, static_cast<double>(i) / cells);
@@ -61,7 +60,7 @@ struct Corner {
   Eigen::RowVectorXd bend;  // change of the slope of each function in u
 };
 
-/// The corners (kinks) of the functions; the sharpest come first.
+/// The corners (kinks) of the functions, the sharpest first.
 std::vector<Corner> corners_of(const SkyBasis& basis) {
   constexpr double kStep = 1e-4;
   std::vector<Corner> corners;

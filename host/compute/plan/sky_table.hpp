@@ -12,12 +12,12 @@ namespace dolp {
 struct SkyTable {
   std::uint32_t count = 0;
   std::uint32_t log2_cells = 0;     ///< log2 of the cells of each function
-  std::uint32_t corners = 0;        ///< corners that split the azimuths; their cosines follow the cells
+  std::uint32_t corners = 0;        ///< number of corners that split the azimuths; cosines follow the cells
   std::uint32_t start = 0;          ///< position of the first cell among the rule nodes
   bool has_cusp = false;            ///< a function has a cusp at the zenith
   std::vector<double> corners_deg;  ///< zeniths of the corners that split, the sharpest first
-  std::vector<double> error;        ///< bound of the table's distance from each function
-  /// For each function: root of the sum of squares of its changes of slope in u, at the corners that do not split.
+  std::vector<double> error;        ///< bound of the difference between each function and its table
+  /// For each function: root of the sum of squares of its bends (changes of slope) at corners that do not split.
   std::vector<double> bends;
   std::vector<double> steepness;  ///< largest slope of each function in u at the zenith, where 1 - cos loses digits
 

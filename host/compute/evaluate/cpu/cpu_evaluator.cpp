@@ -19,7 +19,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kTablesAtOnce = 4096;  // masking tables in memory at a time, of 4 KiB in float, 58 KiB in double
+constexpr std::size_t kTablesAtOnce = 4096;  // most masking tables in memory; each has 4 KiB in float, 58 KiB in double
 
 std::unique_ptr<CpuKernel> make_kernel(const KernelData& data, bool in_double) {
   return in_double ? make_cpu_kernel_double(data) : make_cpu_kernel_float(data);

@@ -6,7 +6,7 @@
 
 namespace dolp {
 
-/// The evaluator "cpu". It runs the kernel source, compiled as C++, with the Gauss rules of the Vulkan evaluator.
+/// The evaluator "cpu". It runs the kernel source (shaders/physics/), compiled as C++.
 class CpuEvaluator final : public ModelEvaluator {
  public:
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;

@@ -63,7 +63,6 @@ struct KernelSource {
   std::vector<real2> rule_nodes;
   std::vector<real4> masking_table;
 
-  /// The kernel source with the model and the rules of `data`, but without masking tables.
   static KernelSource of(const KernelData& data) {
     KernelSource source;
     source.kDistribution = static_cast<uint>(data.distribution);
@@ -91,7 +90,6 @@ struct KernelSource {
   real4 masking_node(uint i) const { return masking_table[i]; }
   void store_masking_node(uint i, real4 node) { masking_table[i] = node; }
   void store_column(uint position, real value) { columns_out()[position] = value; }
-  /// The columns of the piece that this thread computed last.
   std::span<real> columns_out() const {
     thread_local std::vector<real> columns;
     columns.resize(DOLP_COLUMN_PARTS * std::size_t{kColumnCount});

@@ -16,15 +16,13 @@ using sampling_kernel::KernelSource;
 
 namespace {
 
-// Spacing, in e-folds of slope, of more ends of pieces between the narrowest and the widest of several distributions.
-// Tuned. Evaluations in thousands for the grid of plan/constants.hpp, at half this value, this and double: masking none
-// 27.4, 24.0, 22.1; v-cavity 54.2, 50.9, 49.2.
+// Several slope distributions share slope samples. From the narrowest to the widest of them, pieces of the slope axis
+// end at this spacing of ln(slope). Tuned: half the value needs up to 14 % more evaluations.
 constexpr double kWidthStep = 1.3;
-constexpr double kNodeWidthStep = 0.4;  // the number of nodes is determined for widths at this spacing, in e-folds
+constexpr double kNodeWidthStep = 0.4;  // the number of nodes is computed for widths m at this spacing of ln(m)
 
 constexpr double kNoFacets = 80.0;  // a share of the facets below exp(-kNoFacets) counts as zero
 
-// The digits that one shape of corners_of() needs on a piece.
 struct SampleRequest {
   double all = 0.0;  // estimated albedo, weight_of_shape() of orders.glsl
   double digits = 0.0;
@@ -33,19 +31,18 @@ struct SampleRequest {
 struct End {
   double slope = 0.0;
   std::uint32_t direction_piece = 0;  // number of the last breakpoint at or before this end
-  bool is_breakpoint = false;         // true if this end is that breakpoint itself
+  bool is_breakpoint = false;         // true if this end is itself a breakpoint
 };
 
-// Factors of the weights of the sampled slopes, for all shapes of one width m. The weight of a slope is common *
-// exp(-exponent_factor(shape) * exponent). Constant factors are left out: the normalisation cancels them.
+// The weight of a slope in the moments of a shape is common * exp(-exponent_factor(shape) * exponent), up to a constant
+// factor. Shapes with equal width m share these arrays.
 struct SlopeWeights {
   double m = 0.0;
   Eigen::ArrayXd exponent;  // common_exponent() of slope.glsl
   Eigen::ArrayXd common;
 };
 
-// Shapes that enclose all wanted shapes: widths from the narrowest to the widest, each with the heaviest and with the
-// lightest tail. All have the smallest scale and the largest cut of the wanted shapes.
+// Shapes that enclose all wanted shapes: widths m from narrowest to widest, each with the heaviest and lightest tail.
 std::vector<kernel::ShapeNode> corners_of(const KernelData& data, std::span<const std::uint32_t> shapes) {
   kernel::ShapeNode corner = data.shapes[shapes.front()];
   double widest = corner.m, lightest = corner.q_minus_1;
@@ -85,8 +82,7 @@ struct SlopeSampling::Impl {
   explicit Impl(const KernelData& of)
       : data(of), source(KernelSource::of(of)), rule(std::bit_cast<KernelSource::RuleNode>(of.rule)) {}
 
-  // The ends of the pieces: the direction's breakpoints up to the first at or beyond the cut of `corners`, and more
-  // ends between the narrowest and the widest shape of `corners`.
+  // The ends of the pieces of the slope axis: breakpoints of the direction, and further ends every kWidthStep.
   std::vector<End> ends_of(std::uint32_t theta, std::span<const kernel::ShapeNode> corners) {
     const kernel::ThetaNode& node = data.thetas[theta];
     const double cut = corners.front().cut;
@@ -127,7 +123,6 @@ struct SlopeSampling::Impl {
     return task;
   }
 
-  // The piece for the shape of `corners` that needs the most nodes. `requests` receives the digits for each shape.
   KernelSource::Piece hardest_piece(const KernelSource::ThetaNode& theta, const KernelSource::IndexNode& index,
                                     std::span<const kernel::ShapeNode> corners, const KernelSource::Task& task,
                                     std::vector<SampleRequest>& requests) {
@@ -154,7 +149,7 @@ struct SlopeSampling::Impl {
       slope.t = scale * hyperbolic.x;
       slope.dt = 2.0 * node.y * scale * hyperbolic.y * piece.extent * on_piece.y;
       for (std::size_t j = 0; j < corners.size(); ++j) {
-        if (requests[j].digits <= slope.digits) continue;  // an earlier shape requires as many
+        if (requests[j].digits <= slope.digits) continue;  // an earlier shape needs as many digits
         const auto shape = std::bit_cast<KernelSource::ShapeNode>(corners[j]);
         const double u = slope.t / shape.m;
         const double mass =
@@ -179,8 +174,8 @@ struct SlopeSampling::Impl {
     return weights;
   }
 
-  // Sum of a rule over a piece with `share` of the facets. The weights are normalised to this known share. This cancels
-  // the error of the density and every factor that all weights have in common.
+  // Sum of a rule over a piece of the slope axis. The weights are scaled to sum to `share`, the exact share of the
+  // facets on this piece. This cancels the error of the rule in the slope density.
   static kernel::AzimuthNode sum_of(std::uint32_t first, std::uint32_t count, const Eigen::ArrayXd& shape_weights,
                                     double share, std::span<const kernel::AzimuthNode> azimuths) {
     using Azimuths = Eigen::Matrix<double, sizeof(kernel::AzimuthNode) / sizeof(double), Eigen::Dynamic>;
@@ -193,7 +188,7 @@ struct SlopeSampling::Impl {
     return std::bit_cast<kernel::AzimuthNode>(sums);
   }
 
-  // Adds to `sums`, per column, the sums of the finer rule over a piece and their differences from the coarser rule.
+  // Adds to `sums`, for each column, the sums of the finer rule and their differences from the coarser rule.
   void add_columns(const SampledPiece& piece, const Eigen::ArrayXd& shape_weights, double share,
                    std::span<const double> azimuths, std::span<double> sums) {
     const auto functions = static_cast<Eigen::Index>(sums.size() / DOLP_COLUMN_PARTS);
@@ -216,7 +211,6 @@ struct SlopeSampling::Impl {
     }
   }
 
-  // The moments of one shape, without the facets beyond the slope cut. `columns` receives the sums of the columns.
   kernel::MomentsNode moments_of(const SlopeSamples& samples, const KernelSource::ShapeNode& shape,
                                  const SlopeWeights& weights, std::span<const kernel::AzimuthNode> azimuths,
                                  std::span<const double> of_columns, Eigen::ArrayXd& shape_weights,

@@ -31,7 +31,7 @@ struct SampledSlope {
   double digits = 0.0;  ///< digits that the sum over the azimuths needs
 };
 
-/// A piece of the slope axis: in SlopeSamples::slopes `fine` slopes of the finer rule from `first`, then `coarse` ones.
+/// A piece of the slope axis: from `first`, `fine` slopes of the finer rule, then `coarse` ones of the coarser rule.
 struct SampledPiece {
   double start = 0.0;
   double end = 0.0;
@@ -41,7 +41,7 @@ struct SampledPiece {
   std::uint32_t direction_piece = 0;  ///< number of the direction's piece (KernelData::pieces) that contains this piece
 };
 
-/// The slopes at which the kernel samples a direction and an index for all wanted shapes. Other pairs do not matter.
+/// The slopes at which the kernel samples one direction and one index, for all wanted shapes.
 struct SlopeSamples {
   SampledEntries entries;
   double cut = 0.0;  ///< slopes above this one are left out
@@ -59,7 +59,7 @@ struct SampledAzimuths {
   std::vector<double> columns;  ///< two sums for each column of each slope, slope by slope
 };
 
-/// Plans the slope samples of a request and integrates over them, in any thread. `data` must outlive the object.
+/// Plans slope samples and integrates over them. Any thread may use it. `data` must outlive the object.
 class SlopeSampling {
  public:
   explicit SlopeSampling(const KernelData& data);
@@ -67,11 +67,9 @@ class SlopeSampling {
 
   SlopeSamples plan(SampledEntries entries) const;
   void append(const SlopeSamples& samples, std::vector<kernel::SlopeNode>& nodes) const;
-  /// Writes the moments of all shapes of `samples` to `moments`, at the positions of their entries in the request. The
-  /// kernel's results for these samples begin at position `first` of `azimuths`.
+  /// Writes the moments of the entries of `samples`. The results of their slopes begin at azimuths.nodes[first].
   void integrate(const SlopeSamples& samples, const SampledAzimuths& azimuths, std::size_t first, double unit_roundoff,
                  std::span<Moments> moments) const;
-  /// Plans, computes and integrates samples on the CPU.
   void compute(SampledEntries entries, CpuKernel& kernel, double unit_roundoff, std::span<Moments> moments) const;
 
  private:

@@ -85,7 +85,7 @@ constexpr auto kInterruptInterval = std::chrono::milliseconds(20);
 constexpr double kDefaultCompilationLimitS = 120.0;  // SwiftShader on an idle processor needs at most 7 s
 constexpr const char* kCompilationLimit = "DOLP_COMPILATION_LIMIT_S";
 
-/// Seconds that a driver may take for one kernel. InputError if the variable kCompilationLimit is no number above 0.
+/// Seconds that a driver may take to compile a kernel, from the environment variable kCompilationLimit.
 double compilation_limit_s() {
   const char* const wish = std::getenv(kCompilationLimit);
   if (wish == nullptr) return kDefaultCompilationLimitS;
@@ -205,7 +205,7 @@ VkPipeline Kernels::pipeline(const KernelVariant& variant) {
 
 UniquePipeline Kernels::create(std::span<const std::uint32_t> spirv, const KernelVariant& variant) const {
   const double limit_s = compilation_limit_s();
-  // A driver may never finish a compilation, and nothing can stop it. So a thread compiles that can be abandoned.
+  // A compilation may never end, and nothing can stop it. So it runs in a thread that the program can abandon.
   std::packaged_task<UniquePipeline()> compilation(
       [device = device_.get(), layout = layout_.get(), local_size = local_size(), spirv, variant] {
         return compile(device, layout, local_size, spirv, variant);

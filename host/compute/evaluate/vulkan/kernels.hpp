@@ -49,7 +49,7 @@ class Kernels {
     std::array<VkBuffer, kStorageCount> buffers{};
     std::array<VkBufferView, kTexelCount> texels{};  ///< texels[0] is bound to DOLP_BINDING_RULE_NODES
   };
-  /// A missing buffer or view is replaced by another: nothing reads it, but it must not refer to a destroyed buffer.
+  /// Replaces a missing buffer by another one: no kernel reads it, but Vulkan forbids bindings to destroyed buffers.
   void bind(const Bindings& bindings);
 
   VkPipeline pipeline(const KernelVariant& variant);
@@ -58,7 +58,7 @@ class Kernels {
   VkPipelineLayout layout() const { return layout_.get(); }
   VkDescriptorSet descriptor_set() const { return set_; }
 
-  /// Creates a pipeline from any SPIR-V module with the interface of interface.glsl.
+  /// Creates a pipeline from any SPIR-V module that has the bindings and constants of interface.glsl.
   UniquePipeline create(std::span<const std::uint32_t> spirv, const KernelVariant& variant) const;
 
  private:

@@ -15,7 +15,6 @@
 
 namespace dolp::vulkan {
 
-/// Number of `real` members of a structure that has no other members.
 template <class Node>
 constexpr std::size_t real_count() {
   static_assert(std::is_standard_layout_v<Node> && alignof(Node) == alignof(double));
@@ -31,7 +30,7 @@ class Packing {
   std::size_t node_bytes() const {
     return real_count<Node>() * real_bytes();
   }
-  /// Bytes of a Node and of `numbers` numbers that belong to this Node. In a buffer all numbers follow all Nodes.
+  /// Bytes of the result of one invocation: a Node and `numbers` further numbers. In the buffer all Nodes come first.
   template <class Node>
   std::size_t output_bytes(std::size_t numbers) const {
     return node_bytes<Node>() + numbers * real_bytes();
@@ -46,8 +45,8 @@ class Packing {
   std::size_t texels_of_table() const { return masking_nodes() * (float64_ ? 2 : 1); }
   double unit_roundoff() const { return float64_ ? kDoubleRoundoff : kFloatRoundoff; }
 
-  /// Fills `bytes` with node_of(0), ..., node_of(count - 1), called by all cores in any order. Numbers beyond the range
-  /// of float become infinite.
+  /// Fills `bytes` with node_of(0), ..., node_of(count - 1). All cores call node_of, in any order. Numbers beyond the
+  /// range of float become infinite.
   template <class NodeOf>
   void pack(std::size_t count, const NodeOf& node_of, std::vector<std::byte>& bytes) const {
     constexpr std::size_t kNodesAtOnce = 8192;
@@ -64,7 +63,6 @@ class Packing {
     return float64_ ? read_as<double, Node>(source) : read_as<float, Node>(source);
   }
 
-  /// Reads `numbers` from `bytes`, beginning at byte `offset`.
   void read_numbers(std::span<const std::byte> bytes, std::size_t offset, std::span<double> numbers) const {
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       const std::span<const std::byte> source = bytes.subspan(offset + i * real_bytes(), real_bytes());

@@ -72,7 +72,6 @@ class RowRun final : public Run<Moments> {
     return invocations * rows_.width * packing_.output_bytes<kernel::MomentsNode>(column_sums(data_));
   }
 
-  /// Begins the submission of the block's first tile, with the inputs that all tiles of the block share.
   void begin_block(const Block& block) {
     CommandStream& stream = context_.stream;
     stream.begin();
@@ -159,7 +158,7 @@ class RowRun final : public Run<Moments> {
   const KernelData& data_;
   const Rows& rows_;
   Renumbering thetas_, indices_;
-  std::vector<double> column_results_;  ///< DOLP_COLUMN_PARTS sums for each column of each entry
+  std::vector<double> column_results_;  ///< DOLP_COLUMN_PARTS sums per column and entry (physics/columns.glsl)
   std::optional<Buffer> masking_buffer_;
 };
 

@@ -44,14 +44,13 @@ class TiledRun {
   }
   /// Creates the buffer for the results and the buffers of the Gauss rules, then binds all buffers.
   void add_results(std::uint32_t binding, std::size_t bytes, const KernelData& data, const KernelVariant& variant);
-  /// Records the upload of node_of(0), ..., node_of(count - 1).
   template <class NodeOf>
   void upload(std::uint32_t binding, std::size_t count, const NodeOf& node_of) {
     packing_.pack(count, node_of, scratch_);
     inputs_[binding]->write(scratch_, context_.stream);
   }
   void upload_rule(const KernelData& data);
-  /// `share` is the part of the wanted entries that is done. Returns false if the caller cancels the run.
+  /// `share` is the finished share of the wanted entries. Returns false if the caller cancels the run.
   static bool goes_on(const Progress& progress, double share, std::size_t wanted) {
     return !progress || progress(static_cast<std::size_t>(share * static_cast<double>(wanted)), wanted);
   }
@@ -71,7 +70,7 @@ class TiledRun {
 template <class Result>
 class Run : public TiledRun {
  public:
-  /// Returns the results at the positions of their entries; nothing if `progress` returned false. Errors: DeviceError.
+  /// Returns one result per entry of the request, or nothing if `progress` returned false. Errors: DeviceError.
   virtual std::optional<std::vector<Result>> compute(const Progress& progress) = 0;
 
  protected:
@@ -83,7 +82,6 @@ std::unique_ptr<Run<Moments>> row_run(const KernelContext& context, const Moment
 /// Computes slope samples, which serve all slope distributions, for some directions at a time.
 std::unique_ptr<Run<Moments>> slope_run(const KernelContext& context, const MomentsRequest& request,
                                         const VulkanOptions& options);
-/// A BeamNode contains its shape and needs no masking table, so only the size of a tile determines the memory.
 std::unique_ptr<Run<ScatteringMatrix>> scattering_run(const KernelContext& context, const ScatteringRequest& request,
                                                       const VulkanOptions& options);
 

@@ -20,7 +20,6 @@ std::uint32_t at_least_one(std::uint64_t count) {
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(count, 1, UINT32_MAX));
 }
 
-/// Sizes that the device supports, but at most `invocations` and `shapes`.
 TileSizes sizes_on(const dolp::Device& device, const TileCosts& costs, std::uint64_t invocations,
                    std::uint64_t shapes = 1) {
   // The costs are sums over buffers, so they also bound the size of each buffer.
@@ -37,7 +36,7 @@ std::uint64_t rule_bytes(const Packing& packing, const KernelData& data) {
 
 std::uint64_t tiles_in(std::uint64_t invocations, std::uint32_t tile) { return (invocations + tile - 1) / tile; }
 
-// Orders the slopes so that groups in lockstep have equal loop bounds. Copies of a slope fill incomplete groups.
+// Orders the slopes so that each group of kLockstep slopes has equal loop bounds. Copies fill incomplete groups.
 std::vector<std::uint32_t> in_lockstep(const SlopeBatch& batch, const KernelData& data) {
   std::map<std::uint16_t, std::vector<std::uint32_t>> by_bound;
   for (std::size_t i = 0; i < batch.samples.size(); ++i) {

@@ -31,8 +31,8 @@ struct TileSizes {
   std::uint32_t shapes = 1;
 };
 
-/// Number of invocations that may run in lockstep: lavapipe's widest vector has this many lanes. On a device with a
-/// limit of loop iterations, all invocations of such a group iterate as often as the longest of them.
+/// Number of invocations that run in lockstep in the driver lavapipe, which limits loop iterations. All of them iterate
+/// as often as the one with the most iterations.
 inline constexpr std::uint32_t kLockstep = 16;
 
 /// Consecutive chunks of shapes (plan/rows.hpp) whose masking tables are bound together, and the rows that need them.
@@ -48,7 +48,7 @@ struct SlopeBatch {
   std::vector<SlopeSamples> samples;
   std::vector<std::size_t> first;  ///< for each of `samples`, the position of its first slope in `slopes`
   std::vector<kernel::SlopeNode> slopes;
-  std::vector<std::uint32_t> in_lockstep;  ///< positions in `slopes`, in groups of kLockstep; repeated ones fill groups
+  std::vector<std::uint32_t> in_lockstep;  ///< positions in `slopes`, in groups of kLockstep; copies fill groups
 };
 
 struct DispatchCount {
@@ -64,7 +64,7 @@ struct DispatchCount {
 /// The dispatches of a request for moments by kernel rows.
 struct RowTiles {
   RowTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options);
-  /// A block has at most sizes.shapes shapes. A chunk is never divided.
+  /// Blocks of at most sizes.shapes shapes. No block divides a chunk.
   std::vector<Block> blocks() const;
   DispatchCount count() const;
 
@@ -91,7 +91,7 @@ struct SlopeTiles {
   std::uint32_t slopes = 0;  ///< slopes per dispatch: a multiple of kLockstep, so that no lockstep group is divided
 };
 
-/// The dispatches of a request for pBRDFs. They need no blocks of masking tables, because a BeamNode has its ShapeNode.
+/// The dispatches of a request for pBRDFs, which need no masking tables.
 struct BeamTiles {
   BeamTiles(const ScatteringRequest& request, const dolp::Device& device, const VulkanOptions& options);
   DispatchCount count() const;
@@ -108,7 +108,6 @@ class Renumbering {
  public:
   explicit Renumbering(std::size_t list_size) : number_(list_size, kUnused) {}
   std::uint32_t operator()(std::uint32_t member);
-  /// The numbered members, in the order of their numbers.
   std::span<const std::uint32_t> used() const { return used_; }
   void clear();
 

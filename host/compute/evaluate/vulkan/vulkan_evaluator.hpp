@@ -25,10 +25,9 @@ struct VulkanOptions {
   double tile_timeout_s = 600.0;
 };
 
-/// If the device is a processor, dispatches get fewer invocations: a call must end within a second of a cancel.
+/// On a processor, dispatches get fewer invocations, so that a call ends within a second after it is cancelled.
 VulkanOptions for_device(VulkanOptions options, const dolp::Device& device, Precision precision);
 
-/// The device and the pipelines live as long as the object.
 class VulkanEvaluator : public ModelEvaluator {
  public:
   /// Errors: DeviceError if no device matches or has the required precision, or if the validation layer is missing.
@@ -50,11 +49,10 @@ class VulkanEvaluator : public ModelEvaluator {
 
   bool has_double() const override;
 
-  /// Totals since clear_report().
   EvaluationReport report() const override;
   void clear_report() override;
 
-  /// Warnings and errors so far; empty after a tile that did not finish in time.
+  /// Messages of the validation layer so far; empty after a tile that did not finish in time.
   std::vector<std::string> validation_messages() const;
 
  private:

@@ -1,5 +1,4 @@
-// Parts of the speed studies: grids, the kernel source compiled for the CPU, counted operations, the peak of the
-// device.
+// Parts of the speed studies: grids, the kernel source compiled for the CPU, counted operations, peak of the device.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,8 +38,7 @@ double largest_difference(const std::vector<Answer>& a, const std::vector<Answer
 }
 
 // The native build computes neighbouring directions together, with the largest quadrature order that any of them needs.
-// The directions of this grid need very different orders. So the native build uses up to four times as many evaluations
-// as the device.
+// On this grid the orders differ much, so the native build needs up to four times the device's evaluations.
 TEST(BenchNative, Grid_HasTheDevicesNodesOrMoreAndItsMoments) {
   constexpr double kTolerance = 1e-4;
   const std::unique_ptr<Solver> native = solver_of("native-float");
@@ -77,8 +75,7 @@ TEST(BenchOperations, WholeRequest_CountsWhatTheKernelDoes) {
   const KernelWork work = count_operations(request, 1'000'000, 8);
   const Solution solution = solver_of("vulkan-float")->solve(request, request.tolerance);
   EXPECT_NEAR(work.evaluations / *solution.evaluations, 1.0, 1e-3);
-  // An evaluation takes three square roots and about 40 products in Fresnel's formulas, and more for integration
-  // limits.
+  // Fresnel's formulas take three square roots and about 40 products. Integration limits take further operations.
   EXPECT_GT(static_cast<double>(work.counts.square_root), 3.0 * work.evaluations);
   EXPECT_GT(static_cast<double>(work.counts.multiply), 40.0 * work.evaluations);
   EXPECT_LT(static_cast<double>(work.counts.flops()), 5000.0 * work.evaluations);

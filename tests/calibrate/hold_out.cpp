@@ -19,8 +19,7 @@ constexpr std::size_t kAtOnce = 2000;  // entries per call of an evaluator, whic
 constexpr std::size_t kClimbSteps = 40;
 constexpr std::size_t kNeighbours = 16;
 
-/// Moments of some entries, computed twice: by the rule under test, with the errors that it states, and far more
-/// accurately.
+/// Moments of some entries: by the rule under test, with the errors that it states, and by a far more accurate rule.
 struct Answers {
   std::vector<Moments> stated;
   std::vector<Moments> exact;

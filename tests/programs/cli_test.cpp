@@ -217,8 +217,7 @@ TEST_F(CommandLine, Evaluators_SamePoints_AgreeWithinTheirStatedErrors) {
       const auto sum = [&](const char* name) { return vulkan.at(name)[i] + other->at(name)[i]; };
       const auto difference = [&](const char* name) { return std::abs(vulkan.at(name)[i] - other->at(name)[i]); };
       EXPECT_LE(difference("dolp"), sum("error_estimate")) << i;
-      // rho_error_estimate is relative to rho_i: (sum of the two estimates) * (mean of the two rho_i) bounds the
-      // difference.
+      // rho_error_estimate is relative to rho_i. So the bound is the sum of the estimates times the mean of both rho_i.
       EXPECT_LE(difference("rho_i"), sum("rho_error_estimate") * 0.5 * sum("rho_i")) << i;
       EXPECT_LE(difference("rho_q"), sum("rho_error_estimate") * 0.5 * sum("rho_i")) << i;
     }
@@ -416,8 +415,7 @@ TEST_F(CommandLine, Materials_List_HasNameRangeAndSource) {
 }
 
 TEST_F(CommandLine, Materials_OneAtAWavelength_HasNAndKOfItsTable) {
-  // The values are from a row of host/data/materials.csv. A user may write only the first words of a material's name,
-  // in upper or lower case.
+  // Values of host/data/materials.csv. The first words of a material's name suffice, in upper or lower case.
   constexpr double kWaterN = 1.218;
   constexpr double kWaterK = 0.0508;
   const Outcome text = dolp({"materials", "WATER", "--at", "10"});

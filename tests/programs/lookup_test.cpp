@@ -103,8 +103,7 @@ TEST_F(Lookup, CoarseTable_SaysThatItMissesTheTolerance) {
   make_table({});
   put("points.csv", "theta_deg,sigma,q\n70,0.2,2.5\n");
   const Columns found = looked_up();
-  // Status bits. 2: DOLP misses the tolerance. 16: rho misses it. 32: single scattering is not enough, as the table
-  // states.
+  // Status bits. 2: DOLP misses the tolerance. 16: rho misses it. 32: single scattering is not enough.
   EXPECT_EQ(found.at("status")[0], 2.0 + 16.0 + 32.0);
   EXPECT_GT(found.at("error_estimate")[0], 1e-3);
   EXPECT_EQ(lookup({"--strict"}).status, 1);

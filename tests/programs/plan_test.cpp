@@ -86,8 +86,7 @@ TEST_F(Plan, Memory_IsAboutThatOfTheTable) {
   const std::string peak =
       "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True); "
       "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)";
-  // Largest ratio of real to predicted memory. Drivers differ, and a busy machine may hold several parts of a table at
-  // a time.
+  // Largest ratio of real to predicted memory. It depends on the driver, and on how many parts are in memory at a time.
   constexpr double kAbout = 1.7;
   // These tables have one, two and six parts. With more parts the memory stays constant.
   for (const char* count : {"200", "1200", "6000"}) {

@@ -304,8 +304,7 @@ TEST_F(Resume, AfterCtrlC_SaysHowToGoOn_AndGivesTheSameBits) {
   EXPECT_NE(resumed.out.find("2621440"), std::string::npos) << resumed.out;
 }
 
-// An interrupted run leaves values (t.nc.partial) and its progress (t.nc.partial.txt). They are damaged before it
-// resumes.
+// The files of an interrupted run are damaged before it resumes: values (t.nc.partial), progress (t.nc.partial.txt).
 TEST_F(Resume, OverADamagedPartialFile_GivesTheSameBits) {
   make_whole();
   ASSERT_EQ(interrupted(SIGINT).status, 130);

@@ -394,8 +394,7 @@ TEST_F(Verify, HardCases_OneLinePerModelAndAllRowsOnRequest) {
     const std::string out = dolp(arguments).out;
     return static_cast<std::size_t>(std::ranges::count(out, '\n'));
   };
-  // The report has lines for title, device and verdict, and one for each distribution with each masking. Failures add
-  // lines.
+  // The report has a line for the title, the device, the verdict, and each distribution with each masking.
   constexpr std::size_t kFrame = 3 + 8;
   EXPECT_EQ(lines(command), kFrame + static_cast<std::size_t>(failed));
   std::vector<std::string> with_all = command;

@@ -80,8 +80,8 @@ TEST(ReferenceBounces, EachNumber_IsReciprocal) {
   for (const int bounces : {1, 2, 3, 4, 5}) EXPECT_GT(largest.at(static_cast<std::size_t>(bounces)), 0.0) << bounces;
 }
 
-// Smallest eigenvalue of Cloude's coherency matrix, divided by the largest. If it is negative, the Mueller matrix is
-// not realisable.
+// Smallest over largest eigenvalue of Cloude's coherency matrix. A realisable Mueller matrix has no negative
+// eigenvalue.
 double smallest_eigenvalue(const ReferenceMueller& m) {
   using Complex = std::complex<double>;
   const Complex i(0.0, 1.0);
@@ -114,8 +114,7 @@ TEST(ReferenceBounces, Sum_IsPhysical) {
   }
 }
 
-// Grooves of every azimuth send light into the mirror direction after two bounces. At zenith 0 only right-angled
-// grooves do.
+// After two bounces, light in the mirror direction comes from all grooves; at zenith 0 only from right-angled ones.
 TEST(ReferenceBounces, MirrorDirection_IsWhereTwoBouncesDiverge) {
   const Surface surface = grooves(Distribution::kCauchy, 0.4, 2.0);
   const auto twice = [&](double theta_r_deg, double delta_phi_deg) {

@@ -256,7 +256,7 @@ TEST(ReferenceDirect, Vacuum_EmitsAll) {
   }
 }
 
-// Integrates over the facets as the viewer sees them: over the angle of incidence beta and the azimuth eta around the
+// Integrates over facets in polar coordinates around the view: angle of incidence beta, and azimuth eta around the
 // view.
 TEST(ReferenceDirect, PlainQuadratureAroundTheView_Agrees) {
   constexpr double kPlainTolerance = 1e-6;

@@ -122,8 +122,7 @@ TEST(ReferenceMoments, GrazingWithHeavyTails_DivergesBelowThreeHalves) {
     const Moments heavy = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5}, kSteel);
     EXPECT_EQ(heavy.r_i, std::numeric_limits<double>::infinity());
     EXPECT_EQ(heavy.r_q, -std::numeric_limits<double>::infinity());
-    // For q just above 3/2, r_i is proportional to 1/(2q - 3). So `near` is twice `far`, with a relative error of up to
-    // 100 kDistance.
+    // For q just above 3/2, r_i is proportional to 1/(2q - 3), with a relative error of up to 100 times q - 3/2.
     constexpr double kDistance = 1e-5;
     const double near = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5 + kDistance}, kSteel).r_i;
     const double far = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5 + 2.0 * kDistance}, kSteel).r_i;
@@ -162,8 +161,7 @@ double bend_deg(double theta_i_deg, double theta_r_deg) {
 }
 
 TEST(ReferenceMoments, PlainQuadratureOfTheMuellerMatrix_Agrees) {
-  // Tolerances relative to r_i: kInner for integrals over the azimuth, kOuter for the integral of these over the
-  // zenith.
+  // Tolerances relative to r_i: kInner for integrals over the azimuth, kOuter for integrals of these over the zenith.
   constexpr double kInner = 1e-6;
   constexpr double kOuter = 5e-6;
   constexpr unsigned kDepth = 8;

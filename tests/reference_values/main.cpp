@@ -34,7 +34,7 @@ constexpr double kNegligible = 1e-12;
 // Relative rounding error of a closed form, which has fewer than 16 operations.
 constexpr double kClosedFormRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
-/// Two settings of the reference. A file gets the values of `fine`; the stated errors are at least the difference from
+/// Two settings of the reference. Files get the values of `fine`. Stated errors are at least the difference from
 /// `coarse`.
 struct Refinements {
   dolp::ReferenceOptions coarse;

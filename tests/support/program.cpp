@@ -60,8 +60,7 @@ class Image {
 };
 
 pid_t start(const Command& command, const Descriptor& in, const Descriptor& out, const Descriptor& err) {
-  // Allocates memory before the fork. After it the child must not, as another thread may have held the allocator's
-  // lock.
+  // Allocates memory before the fork. The child must not allocate: another thread may have held the allocator's lock.
   const Image image(command);
   const pid_t process = ::fork();
   require(process >= 0, "cannot fork");

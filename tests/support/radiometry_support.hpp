@@ -92,8 +92,7 @@ inline PrintedStokes printed_stokes(const SceneValues& scene, Real wavelength_um
   return stokes;
 }
 
-/// Integral of `f` over the ascending `points`, from the first to the last. Between them the slope of `f` must not
-/// jump.
+/// Integral of `f` over the range of the ascending `points`. The slope of `f` may jump at these points, nowhere else.
 inline Real integral(const std::vector<double>& points, const std::function<Real(Real)>& f) {
   boost::math::quadrature::tanh_sinh<Real> rule;
   Real sum = 0.0L;

@@ -18,8 +18,7 @@ namespace dolp::explore_test {
 using explore::App;
 using explore::Area;
 
-// The point to which drag_slider drags, as a share of the slider's length. A click moves the slider's handle to the
-// mouse.
+// Where drag_slider ends, as a share of the slider's length. A click moves the slider's handle to the mouse.
 inline constexpr float kPartOfSlider = 0.7F;
 // Frames that ImGui needs to process an event.
 inline constexpr int kFrames = 4;

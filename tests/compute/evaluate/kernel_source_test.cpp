@@ -303,8 +303,7 @@ TYPED_TEST(FresnelSource, NormalIncidence_HasTheLimitOfTheQuotient) {
   for (const OpticalConstants& optical : {OpticalConstants{1.508, 0.0}, OpticalConstants{27.0, 90.0}}) {
     const kernel::IndexNode index = rounded_index<TypeParam>(optical);
     const auto f = source.fresnel(index_in<TypeParam>(index), Real(1));
-    // cos(beta) = 1 - 1e-20 gives the limit of (R_s - R_p)/sin^2(beta) within 1e-20. Cancellation leaves 30 of 50
-    // digits.
+    // At cos(beta) = 1 - 1e-20 the quotient is within 1e-20 of its limit. Cancellation leaves 30 of 50 digits.
     const Wide c = 1 - Wide(1e-20);
     const Wide sin2 = 1 - c * c;
     const WideComplex n2(Wide(index.n2m1_re) + 1, Wide(index.n2m1_im));

@@ -172,8 +172,7 @@ TEST(MuellerLimits, CornersOfTheDomain_AreFiniteAndTheSameInBothPrecisions) {
   }
 }
 
-// The moments are integrals of the first row of the Mueller pBRDF. One kernel computes moments and another one pBRDFs,
-// so this compares the two kernels.
+// The kernel for moments must agree with the kernel for pBRDFs: moments are integrals of the pBRDF's first row.
 TEST(Mueller, HemisphericalSum_GivesTheMoments) {
   constexpr int kZeniths = 400;
   constexpr int kAzimuths = 400;

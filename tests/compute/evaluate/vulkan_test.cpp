@@ -268,8 +268,7 @@ constexpr double kSentinel = -12'345.0;
 constexpr std::uint32_t kFirst = 3;   // first entry that run.run computes
 constexpr std::uint32_t kCount = 70;  // number of entries: more than a workgroup, but no multiple of it
 
-// Buffers of a request. In each output buffer, sentinels for a whole workgroup follow the results; they must not
-// change.
+// Buffers of a request. After the results, an output buffer has sentinels for a workgroup, which must not change.
 class SentinelRun {
  public:
   SentinelRun(Session& session, const MomentsRequest& request) : session_(session), data_(kernel_data(request)) {

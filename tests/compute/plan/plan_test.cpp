@@ -98,8 +98,7 @@ TEST(GaussLegendre, Orders_IntegratePolynomialsOfDegree2nMinus1AndNoMore) {
 
 double tan_deg(double angle_deg) { return std::tan(angle_deg * std::numbers::pi / 180.0); }
 
-// The comment above breakpoints() lists the slopes. c = cos(theta) and s = sin(theta) give c / (1 + s) = tan(45 -
-// theta/2).
+// The comment above breakpoints() lists the slopes. There c / (1 + s) = tan(45 - theta/2).
 TEST(Breakpoints, Directions_AreAtTheAnglesWhereLinesMeet) {
   constexpr unsigned kBoth = kRootAbove | kRootBelow;
   struct Case {

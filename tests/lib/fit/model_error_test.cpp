@@ -36,8 +36,7 @@ TEST_F(FitTest, ModelErrorOfTheBracket_ResidualIsTheDistanceFromTheInterval) {
   }
 }
 
-// The ends of n's interval are where chi^2, minimised over sigma, equals the quantile of its distribution with 20
-// degrees of freedom.
+// At the ends of n's interval, chi^2 minimised over sigma is a quantile of its distribution with 20 degrees of freedom.
 TEST_F(FitTest, ModelErrorOfTheBracket_IntervalsEndAtTheQuantileOfChiSquared) {
   const SceneValues scene = parse_scene(kScene, "scene");
   const FitRange sigma = number("surface.sigma", 0.05, 0.5);

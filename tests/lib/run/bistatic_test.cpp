@@ -106,8 +106,7 @@ TEST_P(BistaticByEvaluator, RandomScenes_AgreeWithTheModelWrittenOut) {
     const SlopeShape shape{scene.surface.sigma, scene.surface.q};
     const PointResult r = evaluate_scene(scene, {{theta_i_deg, shape, {}}}, *evaluator, {}).front();
     const Radiance l = model_radiance(scene, theta_i_deg);
-    // The stated error of DOLP covers the errors of Q and U, both relative to I. The factor 2 covers the error of I,
-    // too.
+    // The stated error of DOLP covers the errors of Q/I and U/I. The factor 2 covers the error of I, too.
     const double bound = 2.0 * r[Quantity::kErrorEstimate] + 1e-9;
     EXPECT_NEAR(r[Quantity::kStokesQ] / l.i, l.q / l.i, bound) << n;
     EXPECT_NEAR(r[Quantity::kStokesU] / l.i, l.u / l.i, bound) << n;

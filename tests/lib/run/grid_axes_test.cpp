@@ -104,7 +104,7 @@ TEST(GridAxes, FileReadBack_HasItsLabelsAndVerifiesWithoutTheMaterials) {
   EXPECT_TRUE(check.passed());
   EXPECT_EQ(check.checked, 6U);
 
-  // The file of a shard lists only its own materials. use_scene_labels turns positions in this list into those in the
+  // The file of a shard lists only its materials. use_scene_labels replaces positions in this list by those in the
   // scene.
   TableHead part = reader.head();
   part.axes[Axis::kMaterial] = {0.0};

@@ -1,5 +1,4 @@
-// Runs at limits of the model or the arithmetic (90 degrees, normal incidence, extreme slopes, metals), and their
-// status.
+// Runs at limits of the model or the arithmetic: 90 degrees, normal incidence, extreme slopes, metals. Their status.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -36,8 +36,8 @@ SkyProfile profile_of(std::vector<double> zenith_deg, std::vector<double> values
   return profile;
 }
 
-/// The sky of shaders/physics/README.md, section 11, at zeniths in equal steps: T = 290 - 80 mu + 10 mu^2, mu =
-/// cos(zenith).
+/// The sky of shaders/physics/README.md, section 11: T = 290 - 80 mu + 10 mu^2, mu = cos(zenith), in equal steps of
+/// zenith.
 SkyProfile quadratic_sky(int steps) {
   SkyProfile sky;
   for (int i = 0; i <= steps; ++i) {

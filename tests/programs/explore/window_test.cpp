@@ -156,6 +156,7 @@ TEST_F(Window, Resized_DrawsAtTheNewSize) {
     frames(2 * kFrames);
     app_->save_picture(at("picture.png").string());
     frames();
+    // In a PNG file width and height are at bytes 16 and 20.
     const std::string png = content("picture.png");
     ASSERT_GT(png.size(), 24U);
     const auto number = [&](std::size_t first) {

@@ -72,7 +72,7 @@ class BackgroundTask {
   State state_ = State::kNone;
   std::string message_;
   std::future<Ending> result_;
-  std::jthread thread_;  ///< last member, so it ends before the members that it uses
+  std::jthread thread_;  ///< declared last: its destructor waits for the thread before other members disappear
 };
 
 /// A request of the window: points of a scene, to be computed as `dolp eval` computes them.
@@ -180,7 +180,7 @@ class Worker {
   std::vector<JobPart> news_;
   bool is_stopping_ = false;
   std::future<void> end_;  ///< holds the exception that ended the worker
-  std::jthread thread_;    ///< last member, so it ends before the members that it uses
+  std::jthread thread_;    ///< declared last: its destructor waits for the thread before other members disappear
 };
 
 }  // namespace dolp::explore

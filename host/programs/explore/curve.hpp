@@ -56,7 +56,7 @@ class Curve {
   bool keep_all_ = false;
   JobPart shown_;
   JobPart finished_;
-  std::optional<Point> peak_;  ///< the maximum of the finished curve
+  std::optional<Point> peak_;  ///< point of the maximum, from set_peak()
 };
 
 /// Compares every tenth point of a finished curve with the evaluator "reference". Returns a text with the largest error
@@ -70,7 +70,7 @@ struct PeakAnswer {
   double theta_low_deg = 0.0;
   double theta_high_deg = 0.0;
   std::optional<double> rival_deg;  ///< zenith of another peak that may be higher, within the error bounds
-  bool is_at_end = false;           ///< the next larger zenith has no good point, or is not searched
+  bool is_at_end = false;           ///< true if no good point of the search has the next larger zenith
 };
 
 /// A scene without one of its effects, and the result of this scene at the zenith of the peak.
@@ -95,7 +95,7 @@ class Peak {
   std::vector<Job> wanted() const;
   bool take(const JobPart& news);
 
-  const std::optional<PeakAnswer>& answer() const { return answer_; }     ///< empty: not known yet, or no point is good
+  const std::optional<PeakAnswer>& answer() const { return answer_; }     ///< empty until known, or if no point is good
   const std::vector<WithoutEffect>& without() const { return without_; }  ///< one per effect that can be removed
   bool is_complete() const {
     return answer_ &&

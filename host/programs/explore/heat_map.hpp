@@ -20,7 +20,7 @@ struct MapAxis {
   /// The map lists its points so that the axis with the smaller rank changes more slowly. Rank 0 is the temperature,
   /// rank 1 a number of a film; from rank 2 the axes are those that tables can have, in the order of tables.
   std::size_t rank() const;
-  bool is_of_tables() const { return rank() >= 2; }  ///< tables can have the axis
+  bool is_of_tables() const { return rank() >= 2; }  ///< true if tables can have this axis
   friend bool operator==(const MapAxis&, const MapAxis&) = default;
 };
 
@@ -34,7 +34,7 @@ Scale known_part(const Scene& scene, const MapAxis& axis);
 
 std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range);  ///< why an axis cannot have `range`
 
-/// Values of one quantity on a map: `count` rows of `count` values. x grows along a row, y from row to row.
+/// Values of one quantity on a map: `count` rows of `count` values. x grows along a row, and y from row to row.
 struct MapField {
   std::size_t count = 0;
   std::vector<double> values;  ///< NaN where there is no value, and for entries with a bad status

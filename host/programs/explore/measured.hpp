@@ -7,7 +7,7 @@
 
 namespace dolp::explore {
 
-Plotted plotted(Observable observable);  ///< the quantity that a plot draws for this observable
+Plotted plotted(Observable observable);  ///< the plotted quantity that equals a measured one
 
 /// Reads measured points. Accepts only a regular file, because the window must not wait for a pipe. Errors: InputError.
 MeasuredData read_measured(const std::string& path);

@@ -46,7 +46,7 @@ bool is_bistatic(const Scene& scene);
 /// also describe the surface of `other`. If the surfaces are equal, adds other numbers in which the scenes differ.
 std::string surface_name(const Scene& scene, const Scene* other = nullptr);
 
-/// A scene file with changes. The results in the window are those of `dolp eval` with the changes as --set.
+/// A scene file with changes. `dolp eval` gives the results of the window if --set makes these changes.
 class SceneEdits {
  public:
   explicit SceneEdits(const Scene& opened) : opened_(opened), scene_(opened), saved_(opened.settings()) {}

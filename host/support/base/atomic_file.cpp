@@ -196,7 +196,7 @@ struct AtomicFile::Impl {
 
   int descriptor() const { return file.get(); }
 
-  void link() {  // gives a temporary name to a file without a name
+  void link() {  // gives a temporary name to the file
     const std::string open_file = std::string(kOpenFiles) + '/' + std::to_string(descriptor());
     name = with_new_name(target, [&](const fs::path& free_name) {
              return ::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, free_name.c_str(), AT_SYMLINK_FOLLOW);

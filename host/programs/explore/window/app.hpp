@@ -8,7 +8,7 @@ namespace dolp::explore {
 
 struct AppOptions {
   std::string device;                      ///< position of the device, or a part of its name
-  std::string command_line;                ///< text that tables contain as their history
+  std::string command_line;                ///< history that the window writes into tables
   std::filesystem::path preferences = {};  ///< file of Preferences; empty: no file
 };
 

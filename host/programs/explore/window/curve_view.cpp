@@ -12,8 +12,8 @@ namespace {
 
 constexpr float kCurveWidth = 2.0F;
 // Heights in lines of text.
-constexpr float kRoomForTwo = 18.0F;        // if the view is higher, the legend has two lines
-constexpr float kRoomForResiduals = 17.0F;  // if the view is higher, residuals are below the curve
+constexpr float kRoomForTwo = 18.0F;        // in a higher view the legend has two lines
+constexpr float kRoomForResiduals = 17.0F;  // in a higher view a plot of residuals is below the curve
 constexpr float kLeastResiduals = 7.0F;
 
 struct Shown {

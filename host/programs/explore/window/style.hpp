@@ -38,7 +38,7 @@ CurveStyle current_style();
 CurveStyle overlay_style();
 CurveStyle pin_style(std::size_t pin);
 CurveStyle stale(const CurveStyle& style);   ///< for a curve of an earlier scene
-ImU32 band_colour(const CurveStyle& style);  ///< for the area between the limits of a DOLP
+ImU32 band_colour(const CurveStyle& style);  ///< for the area between dolp_low and dolp_high
 
 inline constexpr Themed kTextColour{IM_COL32(225, 228, 232, 255), IM_COL32(24, 26, 30, 255)};
 inline constexpr Themed kDimColour{IM_COL32(150, 156, 163, 255), IM_COL32(96, 101, 108, 255)};

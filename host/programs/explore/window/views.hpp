@@ -39,7 +39,7 @@ class CurveView {
 };
 
 void draw_effects(const Session& session);
-void draw_slopes(const Session& session, ImVec2 size);    ///< D of the scene, and of with_other_distribution()
+void draw_slopes(const Session& session, ImVec2 size);    ///< slope distributions D
 void draw_material(const Session& session, ImVec2 size);  ///< n and k over wavelength
 
 /// Draws the plotted quantity over wavelength at the cursor's zenith. A drag changes the scene's wavelength.

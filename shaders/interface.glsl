@@ -11,10 +11,8 @@
 #define DOLP_BINDING_RULE 6           // RuleNode: one for all tasks
 #define DOLP_BINDING_RULE_NODES 7     // real2[]: nodes of the Gauss rules, see physics/quadrature.glsl
 #define DOLP_BINDING_MASKING_NODES 8  // the masking tables as texels, from which moments.comp reads
-// slopes.comp has other buffers at the bindings of the tasks and the moments.
 #define DOLP_BINDING_SLOPES DOLP_BINDING_TASKS      // SlopeNode[]: the input, one node per invocation
 #define DOLP_BINDING_AZIMUTHS DOLP_BINDING_MOMENTS  // AzimuthNode[]: the output, one node per invocation
-// mueller.comp has other buffers at the bindings of the directions and the moments.
 #define DOLP_BINDING_BEAMS DOLP_BINDING_THETAS      // BeamNode[]: the input, one node per entry
 #define DOLP_BINDING_MUELLERS DOLP_BINDING_MOMENTS  // MuellerNode[]: the output, one node per entry
 
@@ -36,18 +34,17 @@
 #define DOLP_MASKING_INTEGRAL 2u
 #define DOLP_MASKING_SMITH 3u
 #define DOLP_COLUMNS_SKY 0u           // moments times functions of a sky, see physics/columns.glsl
-#define DOLP_COLUMNS_RESPONSE 1u      // responses: moments of reflected light, with polynomials as reflectances
+#define DOLP_COLUMNS_RESPONSE 1u      // responses: moments of reflected light, with polynomials instead of reflectances
 #define DOLP_COLUMNS_SKY_RESPONSE 2u  // responses times a function of a sky
 #define DOLP_COLUMNS_DIRECT 3u        // responses of the direct emission
 
 // ---- Push constants of all entry points -----------------------------------------------------------------------------
-// count: number of tasks (moments.comp), slopes (slopes.comp), entries (mueller.comp) or shapes (masking_table.comp).
-// first: position of the first task, slope, entry or shape. Output i of slopes.comp and mueller.comp belongs to input
-// first + i. In moments.comp the outputs from i * DOLP_WIDTH to (i + 1) * DOLP_WIDTH - 1 belong to task first + i.
+// first, count: position of the first task (moments.comp), slope (slopes.comp), entry (mueller.comp) or shape
+// (masking_table.comp), and their number. The outputs of the first three begin at position 0.
 // largest_order: largest order of the rules in DOLP_BINDING_RULE_NODES.
-// sky: log2 of the number of cells in the table of each function of the sky (from bit 0), number of corners of the sky
-// (from bit DOLP_SKY_CORNERS_SHIFT), position of the first cell among the rule nodes (from bit DOLP_SKY_START_SHIFT).
-// The cosines of the corners follow the cells. A corner is a zenith at which the radiance has a kink.
+// sky: from bit 0, log2 of the number of cells in the table of each function of the sky; from bit
+// DOLP_SKY_CORNERS_SHIFT, the number of corners (kinks of the radiance over the zenith); from bit DOLP_SKY_START_SHIFT,
+// the position of the first cell among the rule nodes. The cosines of the corners follow the cells.
 #define DOLP_PUSH_CONSTANTS uint first; uint count; uint largest_order; uint sky;
 #define DOLP_SKY_CORNERS_SHIFT 5
 #define DOLP_SKY_START_SHIFT 10
@@ -60,7 +57,7 @@
 #define DOLP_TASK_ROOT_AT_END 12u    // bit: square root at the end of the piece
 #define DOLP_TASK_ROOT_BEFORE_START 13u // bit: square root at the start of the preceding piece
 #define DOLP_TASK_ROOT_AFTER_END 14u // bit: square root at the end of the next piece
-#define DOLP_TASK_SPLIT_LINE 15u     // bit: pieces end at smith's cusp, or where the limit b of `integral` is pi/2
+#define DOLP_TASK_SPLIT_LINE 15u     // bit: a kink of `integral` or smith masking splits the pieces
 #define DOLP_TASK_AZIMUTHS_SHIFT 16u // from this bit: largest number of azimuth nodes on an arc; bounds the loops
 
 // ---- Sizes ---------------------------------------------------------------------------------------------------------
@@ -101,10 +98,10 @@ struct RuleNode {
   real t_fall;            // slope axis: nodes for each factor e by which the density falls over a piece
   real phi_nodes;         // azimuth: nodes per radian of an arc, in addition to the nodes for digits
   real phi_digits;        // azimuth: digits added to the required ones because of the strength of singularities
-  real cluster_stretch;   // smith: an arc that needs more nodes per digit clusters its nodes at the cusp
+  real cluster_stretch;   // smith: an arc clusters nodes at the cusp if it needs more nodes per digit than this
   real split_bounces;     // all bounces: azimuths are split where the number of bounces changes, up to this number
   real dimmest;           // all bounces: a ray is followed until less than this share of its light is left
-  real cluster_below_q;   // `integral`: for q below this, arcs cluster their nodes where the limit b is pi/2
+  real cluster_below_q;   // `integral`: arcs cluster nodes at the kink of G if q is below this
   real response_scale;    // for responses: 1 / c0 of chebyshev_at() in physics/columns.glsl
   real response_norm;     // for responses: 2 / asinh(1 / c0)
 };
@@ -114,7 +111,7 @@ struct RuleNode {
 struct ThetaNode {
   real c;                         // cos(theta)
   real s;                         // sin(theta)
-  // The ends of the pieces, as ascending slopes. Elements after the last end repeat it. It may exceed ShapeNode::cut.
+  // The ends of the pieces, as ascending slopes. Elements after the last end repeat it. Ends may exceed ShapeNode::cut.
   real end[DOLP_MAX_PIECES + 1];
 };
 
@@ -164,8 +161,7 @@ struct GeometryNode {
   real sin_2eta_r;
 };
 
-// One pair of directions. The host computes in double what would lose digits or overflow in a float: the geometry, the
-// reflection of the facet and the density.
+// One pair of directions. The host computes the geometry, the reflection of the facet and the density in double.
 struct BeamNode {
   GeometryNode g;
   ShapeNode shape;  // with the scale and the cut that physics/in_plane.glsl needs
@@ -197,7 +193,7 @@ struct AzimuthNode {
   real evaluations;
 };
 
-// Moments times cos(theta) (physics/README.md, section 3), by the finer of two rules, and how far both rules differ.
+// Moments (physics/README.md, section 3) by the finer of two rules, and differences between the two rules.
 struct MomentsNode {
   real r_i;
   real r_q;
@@ -207,9 +203,9 @@ struct MomentsNode {
   real many;                 // part of r_i from grooves with more bounces than DOLP_MOST_BOUNCES
   real direct_i;             // direct emission
   real direct_q;
-  real reflected_difference; // larger difference between both rules: of r_i or of r_q
+  real reflected_difference; // the larger difference between the two rules: of r_i or of r_q
   real albedo_difference;
   real deficit_difference;
-  real direct_difference;    // larger difference between both rules: of direct_i or of direct_q
+  real direct_difference;    // the larger difference between the two rules: of direct_i or of direct_q
   real evaluations;
 };

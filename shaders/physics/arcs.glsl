@@ -23,8 +23,8 @@ real2 clamp_half_angle(real2 phi, real2 from, real2 to) {
   return is_before(above, to) ? above : to;
 }
 
-// An arc of azimuths with a smooth integrand: phi = centre + psi with psi = 4 atan(extent * abscissa). The centre may
-// be the middle, the beginning or the end of the arc. The extent is negative if a square root lies at the end.
+// An arc of azimuths with a smooth integrand. A rule node lies at phi = centre + 4 atan(extent * abscissa). The centre
+// may be the middle, the beginning or the end of the arc. The extent is negative if a square root lies at the end.
 struct Arc {
   real2 from;
   real2 to;
@@ -35,7 +35,7 @@ struct Arc {
   real origin;      // phi where the rule is symmetric (0 or pi) or has a cluster; else phi at the beginning of the arc
   real span;        // length in phi
   int section;      // section of the rule nodes, kSection*
-  bool is_critical; // true if w of fresnel.glsl vanishes at or near the centre (total reflection)
+  bool is_critical; // true if total reflection begins at or near the centre
   real resolution;  // relative width of the smoothed square root at the centre, see critical_arc(); or 0
 };
 
@@ -84,9 +84,8 @@ struct Azimuth {
   real weight;
 };
 
-// Returns `node` of an arc's rule. If absorption smooths the square root at the centre of the arc, the node is moved: a
-// cluster has the abscissae v^2, which become (sinh(a v) / sinh(a))^2 with a = asinh(1 / sqrt(resolution)). Then the
-// distances of nodes from the centre grow geometrically beyond the resolution, and like v^2 below it.
+// Moves `node` of an arc's rule if absorption smooths the square root at the centre of the arc. Then the distances of
+// nodes from the centre grow geometrically beyond Arc::resolution.
 real2 place_on_arc(Arc arc, real2 node) {
   if (!kTotalReflection) return node;
   real scale = real(1.0) / sqrt(arc.resolution);  // sinh(a)
@@ -119,7 +118,7 @@ struct SplitLines {
   real2 critical;  // beginning of total reflection, cos(beta) = critical_cos: a square root on both sides
 };
 
-// The azimuth with cos(phi) = level / (s t), as a half angle.
+// The azimuth with cos(phi) = level / st, as a half angle.
 real2 line_at(real level, real st) { return half_angle((st + level) / st, (st - level) / st); }
 
 SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines lines) {
@@ -133,8 +132,8 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
     lines.arcs = 2;
   }
   if (kMasking == DOLP_MASKING_INTEGRAL) {
-    // The limit b of eq. (11) (README.md beside this file, section 2) reaches pi/2 at theta_r = pi/4 + alpha/2, where
-    // cos^2(theta_r) = (1 - sin(alpha)) / 2. Without cancellation, 1 - sin(alpha) = cos^2(alpha) / (1 + sin(alpha)).
+    // `integral` masking has a kink at the line b = pi/2, where the limit b of an integral (README.md beside this file,
+    // section 2) reaches pi/2. On this line theta_r = pi/4 + alpha/2, so cos^2(theta_r) = (1 - sin(alpha)) / 2.
     real sec = sqrt(sec2);
     real cos_limit = sqrt(real(0.5) / (sec * (sec + t)));
     bool is_beyond = cos_limit < c;
@@ -146,9 +145,8 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
     lines.leaving = 3;
   }
   if (kMasking == DOLP_MASKING_V_CAVITY) {
-    // For t < 1, G = 1 between the line `shaded`, at which 2 cos(alpha) cos(theta) = cos(beta), and the line at which 2
-    // cos(alpha) cos(theta_r) = cos(beta). They meet at t = 1. The G1 of the direct emission has a corner at `shaded`
-    // for every t; beyond t = sqrt(3) this line lies below the horizon.
+    // For t < 1, G = 1 between the line `shaded`, where 2 cos(alpha) cos(theta) = cos(beta), and the line where 2
+    // cos(alpha) cos(theta_r) = cos(beta). The masking G1 of the direct emission has a kink at `shaded`.
     real2 shaded = line_at(c, st);
     real level = c * (real(3.0) * t * t - real(1.0)) / (real(3.0) - t * t);
     lines.end[0] = t < real(1.0) ? shaded : same_zenith;
@@ -170,20 +168,15 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
   return lines;
 }
 
-// The split lines of a groove: azimuths at which the number of bounces, or the formula for the width of the beam,
-// changes. With gamma = pi/2 - alpha, let psi be the zenith of the direction theta, projected into the plane across the
-// groove, tan(psi) = tan(theta) cos(phi). The lines, in ascending order of phi, are
-//   psi = pi/2 - j gamma for j = 1, 2, ... as long as psi >= gamma, but only up to j = RuleNode::split_bounces;
-//   psi = gamma;
-//   psi = pi/2 - j gamma, pi - (2j + 1) gamma and pi/2 - (j + 1) gamma with the next j, unless split_bounces ended
-//     the first lines;
-//   psi = -gamma, beyond which facets face away.
+// A split line of a groove: an azimuth at which the number of bounces, or the formula for the width of the beam,
+// changes. psi is the zenith of the direction theta, projected into the plane across the groove: tan(psi) = tan(theta)
+// cos(phi). The lines are at psi = +-gamma, where gamma = pi/2 - alpha, and, for some integers j, at psi = pi/2 - j
+// gamma and psi = pi - (2j + 1) gamma.
 real2 groove_line(ThetaNode theta, real cos_psi, real sin_psi) {
   return line_at(theta.c * sin_psi / max(cos_psi, real(1e-30)), max(theta.s, real(1e-30)));
 }
 
-// If a slope needs no more digits than this, its azimuths are split only at psi = -gamma, where facets turn away from
-// the ray. Above DOLP_STEEPEST_SPLIT they are split only at psi = +-gamma, or there would be too many splits.
+// If a slope needs no more digits than this, its azimuths are split only where facets turn away from the ray.
 CONST real kDigitsOfLines = real(3.0);
 
 SplitLines groove_lines(RuleNode rule, ThetaNode theta, real t, real digits, SplitLines lines) {

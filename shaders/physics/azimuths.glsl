@@ -6,7 +6,7 @@ struct Slope {
   int most_azimuths;
   bool is_coarse;
   SkyPlace sky;
-  real weight[DOLP_WIDTH];  // weight of this slope in the columns, for each entry of the row
+  real weight[DOLP_WIDTH];  // weight of this slope in the columns, for each entry of the kernel row
 };
 
 // `member` and `columns` have an element for each entry of a row.
@@ -40,7 +40,7 @@ real sine_of_ray(ThetaNode theta, Row row, Facet f, real t, Azimuth at) {
   return sqrt(along * along + across * across);
 }
 
-// A column has two sums, like r_i and r_q. Each sums the column's function times one of these two factors.
+// The two factors that multiply the function of a column: in the sum like r_i, and in the sum like r_q.
 real2 column_factors(Slope slope, Facet f) {
   if (kColumns == DOLP_COLUMNS_SKY) return real2(f.m00, f.m01);
   real sky = (kColumns == DOLP_COLUMNS_SKY_RESPONSE) ? sky_function(slope.sky, 0, f.cos_r) : real(1.0);
@@ -115,8 +115,7 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
     for (int corner = 0; corner <= slope.sky.corners; ++corner) {
       real2 stop = to;
       if (corner < slope.sky.corners) stop = clamp_half_angle(corner_line(theta, slope, corner), start, to);
-      // Devices with lockstep compute both branches of an `if`, but skip a loop of one turn if no invocation needs it.
-      // The turn counts as an iteration, see worst_iterations of host/compute/plan/kernel_data.hpp.
+      // A loop of one turn is faster than an `if`: in lockstep, devices run both branches of an `if`, but skip a loop.
       for (bool run_once = is_before(start, stop); run_once; run_once = false) {
         bool is_first = !is_before(from, start);
         Arc arc = masked_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits,

@@ -4,10 +4,8 @@
 //   responses: the moments with Chebyshev polynomials of the local angle of incidence instead of the reflectances.
 //     The moments of every index are weighted sums of responses (section 8). There are responses of the reflected
 //     light, of the reflected light times the first function of a sky, and of the direct emission.
-//
 // A function g is stored as straight lines over u = sqrt(1 - cos(theta_r)), in cells of equal width. A cell stores the
-// value at its start and the change over the cell. A sky that has a slope at the zenith is smooth in u, but not in
-// cos(theta_r). The buffer has the cells behind the nodes of the rules (host/compute/plan/sky_table.cpp).
+// value at its start and the change over the cell (host/compute/plan/sky_table.cpp).
 
 // Copies of push constants about the tables of a sky: devices would read push constants again in each turn of a loop.
 struct SkyPlace {
@@ -53,7 +51,7 @@ ColumnValues sky_at(SkyPlace table, real cos_r) {
   return values;
 }
 
-// The polynomials T_k(2 asinh(c / c0) / asinh(1 / c0) - 1), k = 0, 1, ..., with c = cos(beta), c0 = 1 / response_scale.
+// Chebyshev polynomials T_k(2 asinh(c / c0) / asinh(1 / c0) - 1), with c = cos(beta) and c0 = 1 / response_scale.
 ColumnValues chebyshev_at(RuleNode rule, real cos_beta) {
   real x = asinh_real(cos_beta * rule.response_scale) * rule.response_norm - real(1.0);
   ColumnValues values;

@@ -12,7 +12,6 @@ CONST real kSqrtHalf = real(0.70710678118654752440);
 real choose(bool condition, real yes, real no) { return condition ? yes : no; }
 real2 choose(bool condition, real2 yes, real2 no) { return condition ? yes : no; }
 
-// The product of two complex numbers.
 real2 multiply(real2 a, real2 b) { return real2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x); }
 
 // Sum of r^j / (j+2)!, so that e^r = 1 + r + r^2 * sum, for |r| <= ln(2)/2.

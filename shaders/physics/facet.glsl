@@ -53,7 +53,6 @@ struct Projection {
   real hidden;
 };
 
-// The integrand of (r_i, r_q, albedo, deficit) per radian of azimuth.
 real4 reflected(Facet f, Projection part) {
   return real4(part.visible * f.m00, part.visible * f.m01, part.visible, part.hidden + part.visible * f.absorbed);
 }
@@ -63,8 +62,8 @@ real seen_directly(ThetaNode theta, Facet f) {
   return (kMasking == DOLP_MASKING_V_CAVITY) ? min(f.e, real(2.0) * theta.c) : f.e;
 }
 
-// Direct emission (I, Q) per radian of azimuth: e G1 (1 - M00) and -e G1 M01, with the masking G1 toward the viewer at
-// theta. G1 of smith is equal for all facets, and moments.glsl applies it later.
+// Direct emission (I, Q) per radian of azimuth: e G1 (1 - M00) and -e G1 M01. G1 is the masking toward the viewer at
+// theta; moments.glsl applies it later for smith masking.
 real2 emitted(ThetaNode theta, Facet f) {
   real visible = seen_directly(theta, f);
   return real2(visible * f.absorbed, -visible * f.m01);

@@ -7,9 +7,9 @@
 // a = sqrt(c^2 + (s x)^2) and the zenith psi; along the groove it has the component b = s sin(phi). The ray meets facet
 // k at the angle chi_k = psi + (2k - 1) gamma. With (X_k, Y_k) = a (sin(chi_k), cos(chi_k)):
 //   cos(beta_k) = X_k,   the plane of incidence is turned by eta_k, (cos(eta_k), sin(eta_k)) ~ (Y_k, b X_k).
-// If the fields are mirrored at each facet, they stay in one frame. A bounce is then Fresnel's matrix between two turns
-// by eta_k. The beam that meets the facet first has the width min(e, 2c). Its share (min(X_k, X_1) - X_0) / (X_1 - X_0)
-// goes on to bounce k, with X_0 = max(a sin(psi - gamma), 0).
+// If the fields are mirrored at each facet, a bounce is Fresnel's matrix between two turns by eta_k. The beam that
+// meets the facet of slope t first has the width min(e, 2c). Let X_0 = max(a sin(psi - gamma), 0). Then the share
+// (min(X_k, X_1) - X_0) / (X_1 - X_0) of the beam goes on to bounce k.
 
 // A ray on its way through the fan. Groups of 2, 4, 8 ... bounces in the middle of its path count as one bounce; near
 // the first and last bounce, which may be grazing, groups are smaller (error: host/compute/plan/error_bounds.cpp).
@@ -38,7 +38,7 @@ Fan fan(real t, real c, real u) {
   f.doublings = 0;
   f.is_steep = false;
   f.is_black = false;
-  // At most pi/gamma < pi t + 2 bounces. The loop of one turn is an `if` that devices skip if no ray needs it.
+  // A ray has at most pi/gamma < pi t + 2 bounces. Devices skip this loop of one turn if no ray needs it, unlike an `if`.
   for (bool may_be = t > real(DOLP_MOST_BOUNCES) / kPi; may_be; may_be = false) {
     real to_horizon = arc_tangent(c / max(abs(u), real(1e-30)));
     f.gamma = arc_tangent(real(1.0) / t);
@@ -126,7 +126,7 @@ real2 doubled_angle(real x, real y) {
   return real2((x - y) * (x + y) * inverse, real(2.0) * x * y * inverse);
 }
 
-// Turns `at`, which is a (sin, cos) of an angle, by the angle with (cos, sin) = `step`.
+// Adds angles: `at` is (sin, cos) of the first, `step` (cos, sin) of the second, the result (sin, cos) of the sum.
 real2 further_on(real2 at, real2 step) {
   return real2(at.x * step.x + at.y * step.y, at.y * step.x - at.x * step.y);
 }
@@ -148,8 +148,7 @@ GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index,
   real inverse_a2 = real(1.0) / max(c * c + u * u, kSmallestSquare);
   Fan f = fan(t, c, u);
   real first = c * f.turn.y + u * f.turn.x;  // X_1
-  // Near the horizon X_1 - X_0 and X_k - X_1 would lose digits. So X_(k+1) - X_k is computed as 2 sin(gamma) times a
-  // cos(psi + 2 k gamma).
+  // Near the horizon, differences of X would lose digits. So X_(k+1) - X_k is 2 sin(gamma) a cos(psi + 2 k gamma).
   real width = (u * f.turn.x > c * f.turn.y) ? real(2.0) * c * f.turn.y : first;
   real inverse_width = real(1.0) / max(width, real(1e-30));
   real rise = real(0.0);        // X_k - X_1

@@ -3,9 +3,8 @@
 //   smith, height-correlated:  Lambda(theta) = (1 / mu) int_mu^inf p(tau) (tau - mu) dtau.
 //   `integral`:  1 - G1 = int_mu^inf p(tau) min(1, kappa (tau - mu) / sqrt(1 + tau^2)) dtau, eqs. (9)-(12)
 //   of the paper with tau = tan(gamma). masking.glsl defines kappa and the slope tb at which the minimum switches.
-// The rules run over X = asinh(tau / scale), with scale = min(m / sqrt(q), 1), for the gaussian min(m, 1). Then all
-// singularities are at least pi/2 away from the real axis. At large X the cauchy's p is a power law, and the rest of
-// the integral has a closed form. All terms are positive.
+// The rules run over X = asinh(tau / scale). At large X, p of the cauchy is a power law, and the rest of the integral
+// has a closed form.
 
 #ifdef DOLP_DOUBLE
 CONST int kInPlaneOrder = 16;  // order of the Gauss rule on a panel, whose length in X is at most 1

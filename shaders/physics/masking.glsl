@@ -1,6 +1,5 @@
 // Geometric attenuation G (README.md beside this file, section 2). v-cavity has a closed form. `integral` and smith use
 // a table of one-dimensional integrals of the in-plane slope density p, one table per shape.
-//
 // The integrals are Pt(x) = int_x^inf p, C(x) = int_x^inf g p and l(x) = int_x^inf g(tau) p(tau) (tau - x) dtau, where
 // g = 1 for smith and 1 / sqrt(1 + tau^2) for `integral`. Their derivatives are l' = -C, C' = -g p and Pt' = -p. With
 // mu = cot(theta):
@@ -42,9 +41,8 @@ real weight_decay(real tau) {
   return (kMasking == DOLP_MASKING_SMITH) ? real(0.0) : tau / (real(1.0) + tau * tau);
 }
 
-// The cell that contains tau, at the same place in all tables with one table_scale. The weights of quintic Hermite
-// interpolation at both ends are f for the values, d and e for the first and second derivatives. Beyond its end a table
-// continues with its last value, which matters only within 1e-5 of the line d = 0 and 2e-5 of the normal.
+// The cell of a table that contains tau. In the quintic Hermite interpolation between the ends of the cell, f are the
+// weights of the values, d and e the weights of the first and second derivatives.
 struct TableCell {
   uint node;  // the last node at or before tau
   real f0;
@@ -89,10 +87,10 @@ real masking_height(TableCell cell, uint table) {
          (cell.e0 * cell.g0 * n0.w + cell.e1 * cell.g1 * n1.w);
 }
 
-// The arguments at which tables are read for 1 - G1(theta, alpha). They are equal for all tables with one table_scale.
+// The arguments at which the masking tables are read for 1 - G1(theta, alpha).
 struct ShadowRange {
   real kappa;
-  bool is_limited;  // true if d > 0, so that tb limits the integral
+  bool is_limited;  // true if d > 0 (head of this file): the integral of 1 - G1 ends at tb
   real far;         // tb
   real gap;         // tb - mu
 };
@@ -115,9 +113,8 @@ ShadowRange shadow_range(ShapeNode shape, real cos_theta, real sin_theta, real t
   return range;
 }
 
-// 1 - G1 is kappa l(mu) plus, if d > 0, the term Pt(tb) - kappa [l(tb) + (tb - mu) C(tb)]. The term is a sum of these
-// factors times the table's values at both ends of the cell of tb. The factors use C'' = g p (-p'/p - g'/g) and Pt'' =
-// p (-p'/p), in which only p and -p'/p depend on the shape.
+// 1 - G1 is kappa l(mu) plus, if d > 0 (head of this file), the term Pt(tb) - kappa [l(tb) + (tb - mu) C(tb)]. This
+// term is a sum of these factors times values of the table at both ends of the cell that contains tb.
 struct LimitTerms {
   real l0;
   real l1;

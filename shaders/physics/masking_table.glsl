@@ -21,8 +21,8 @@ real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
   return real4(h * beyond.y + height, first, probability, marginal_density(shape, tau0));
 }
 
-// (l, C, Pt, p) at the end of the table, by the power law p ~ tau^(1-2q) of the cauchy; for `integral` g ~ 1 / tau. If
-// the end is below slope 1, almost no facets are left beyond it. The integrals of the Gaussian are negligible.
+// (l, C, Pt, p) at the end of the table: by the power law p ~ tau^(1-2q) of the cauchy. For the gaussian, l = C = Pt =
+// 0.
 real4 masking_table_end(ShapeNode shape, real tau) {
   real p = marginal_density(shape, tau);
   if (kDistribution == DOLP_GAUSSIAN) return real4(real(0.0), real(0.0), real(0.0), p);

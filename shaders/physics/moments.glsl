@@ -44,7 +44,6 @@ Piece make_piece(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task 
   return piece;
 }
 
-// Position y on the piece for the abscissa v of the piece's rule, and dy/dv; struct Piece explains the map.
 real2 position_on_piece(Piece piece, real v) {
   bool has_both = piece.root_at_a && piece.root_at_b;
   real2 both = real2(v * v * (real(3.0) - real(2.0) * v), real(6.0) * v * (real(1.0) - v));

@@ -23,8 +23,7 @@ real attenuation(GeometryNode g, ShapeNode shape) {
   return real(1.0) - in_plane_shadowed(shape, lower_cos, lower_sin, g.slope);
 }
 
-// f cos(theta_i) cos(theta_r) for k_s = 1 [1/sr], row by row, divided by the power of two that BeamNode::density leaves
-// out. The product with the cosines is finite at grazing incidence.
+// The pBRDF times cos(theta_i) cos(theta_r) for k_s = 1, row by row, divided by the power of two in BeamNode::density.
 MuellerNode mueller(BeamNode beam) {
   GeometryNode g = beam.g;
   real scale = beam.density * attenuation(g, beam.shape);

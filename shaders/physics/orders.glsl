@@ -1,14 +1,12 @@
 // The number of nodes for a piece of the slope axis or an arc of azimuths. It affects only accuracy and work.
-//
-// Let y0 be the singularity of the integrand that is nearest to [0, 1]. A Gauss rule of n nodes then has an error of
-// about e^(-2 n mu), with cosh(mu) = |y0| + |y0 - 1| (Trefethen 2013, chapter 19). So a decimal digit costs ln(10) / (2
-// mu) nodes. The positions of the singularities in the azimuth are known exactly. The fitted numbers of RuleNode scale
-// the law (host/compute/plan/rule.hpp). The less a piece contributes, the fewer digits it needs.
+// Let y0 be the singularity of the integrand that is nearest to [0, 1]. A Gauss rule of n nodes has an error of about
+// e^(-2 n mu), with cosh(mu) = |y0| + |y0 - 1| (Trefethen 2013, chapter 19). So a decimal digit costs ln(10) / (2 mu)
+// nodes. The fitted numbers of RuleNode scale this law.
 
 CONST real kHalfLn10 = real(1.15129254649702284);
 CONST real kLn10 = real(2.30258509299404568402);
 CONST real kInverseLn10 = real(0.43429448190325182765);
-// If a square root beside an arc has a larger Arc::resolution, the arc gets no cluster of nodes.
+// If the square root beside an arc is smoothed over a larger Arc::resolution than this, it gets no cluster of nodes.
 CONST real kWideResolution = real(0.1);
 CONST real kSharpResolution = real(1e-6);
 CONST real kMoreDigits = real(0.3);  // digits added on the slope axis for each required digit beyond kPlainDigits
@@ -18,7 +16,7 @@ CONST real kLeastWeight = real(1e-20);  // least weight of a slope; gives all sl
 // acosh(1 + gap), without cancellation.
 real acosh_above_1(real gap) { return log1p_real(gap + sqrt(gap) * sqrt(gap + real(2.0))); }
 
-// |y| + |y - 1| - 1 for y = a + i b, without cancellation: the distance of y from [0, 1].
+// |y| + |y - 1| - 1 for y = a + i b. It is 0 on [0, 1], and constant on each ellipse with the foci 0 and 1.
 real gap_beside_unit(real a, real b) {
   real to_0 = sqrt(a * a + b * b);
   real to_1 = sqrt((a - real(1.0)) * (a - real(1.0)) + b * b);
@@ -82,14 +80,13 @@ real digits_of_share(RuleNode rule, real share) {
   return max(rule.digits + kInverseLn10 * log_unit(min(share, real(1.0))), real(0.0));
 }
 
-// Digits required of the slopes in [a, b], which have the share `mass` of the facets.
 real digits_of_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, real a, real b, real mass) {
   real typical = weight_of_slope(theta, clamp(shape.m, a, b));
   return digits_of_share(rule, mass * typical / weight_of_shape(theta, shape));
 }
 
-// Digits of the sum over the azimuths at slope t, which stands for the share `mass` of the facets: at most `digits` of
-// the piece, fewer if the slope contributes less than 1/order of the piece. `all` is weight_of_shape.
+// Digits that the sum over the azimuths at slope t needs. This slope stands for the share `mass` of the facets, on a
+// piece with `order` slopes that needs `digits`. `all` is weight_of_shape().
 real digits_of_slope(RuleNode rule, ThetaNode theta, real all, real digits, int order, real t, real mass) {
   return min(digits_of_share(rule, real(order) * mass * weight_of_slope(theta, t) / all), digits);
 }
@@ -106,7 +103,7 @@ real piece_cost(Piece piece, real re, real im) {
   return nodes_per_digit(acosh_above_1(gap_beside_unit(y.x, y.y)));
 }
 
-// Nodes for a singularity exp(-1/x^2) at an end: a quarter of the square of the digits for which it matters.
+// Nodes for a singularity exp(-1/x^2) at an end: a quarter of the square of the digits that it affects.
 real essential_nodes(ShapeNode shape, real digits) {
   real wanted = max(digits - kInverseLn10 / (shape.m * shape.m), real(0.0));
   return real(0.25) * wanted * wanted;
@@ -124,9 +121,8 @@ real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, 
   return piece_cost(piece, choose(x < real(0.0), -bent, bent), im / (unit * max(abs(x), real(1.0))));
 }
 
-// Nodes per digit on a piece because of Fresnel's branch point, cos(beta) = b, on a line at which arcs end. On the
-// horizon it lies at sec(alpha) = 2 b / c, on the line theta_r = theta at sec(alpha) = b / c; `ratio` is this 2 or 1.
-// Under total reflection these slopes are breakpoints.
+// Nodes per digit on a piece because of the branch point cos(beta) = b of Fresnel's coefficients, where it meets a line
+// at which arcs end: the horizon (`ratio` is 2) or theta_r = theta (`ratio` is 1). There sec(alpha) = ratio * b / c.
 real line_piece_cost(ThetaNode theta, ShapeNode shape, IndexNode index, Piece piece, real ratio) {
   real stretch = ratio / max(theta.c, real(1e-12));
   real2 sec = real2(stretch * index.branch_re, stretch * index.branch_im);
@@ -136,9 +132,8 @@ real line_piece_cost(ThetaNode theta, ShapeNode shape, IndexNode index, Piece pi
   return piece_cost(piece, x.im, x.re - real(0.5) * kPi);
 }
 
-// Nodes of a piece beside smith's cusp if q is just above 3/2. Lambda is then about m tan(theta) / (pi (2q - 3)).
-// Beside theta_r = 0, G falls within the distance tan(theta) + pi (2q - 3) / m, as if there were a pole at this
-// distance beyond the cusp. The contribution of the pole is proportional to the distance.
+// Nodes of a piece beside smith's cusp if q is just above 3/2. There G falls steeply, as if it had a pole at the
+// distance tan(theta) + pi (2q - 3) / m from the cusp.
 real diverging_nodes(ThetaNode theta, ShapeNode shape, Piece piece) {
   real t = theta.s / (real(1.0) + theta.c);
   real cusp = asinh_real(t / shape.scale);
@@ -149,10 +144,9 @@ real diverging_nodes(ThetaNode theta, ShapeNode shape, Piece piece) {
   return max(piece.digits + kInverseLn10 * log_unit(min(beside / piece.extent, real(1.0))), real(0.0)) * cost;
 }
 
-// The singularities over the slopes are the cauchy's density at t = i m, the factors 1 + t^2 at t = i, Fresnel's
-// coefficients, and the square roots at the breakpoints beyond the ends of the piece. Before a rule converges, it must
-// resolve the fall of the density over the piece, with nodes in proportion to the logarithm of the fall. A square root
-// at an end needs one node more: with the map that removes it, it raises the degree of the integrand by two.
+// Nodes of a piece. They depend on the singularities of the integrand: of the density (t = i m), of the factors 1 + t^2
+// (t = i), of Fresnel's coefficients, and square roots beyond the ends. Further nodes resolve the fall of the density
+// over the piece. A square root at an end needs one node more.
 real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, Piece piece) {
   real cost = piece_cost(piece, real_part_of_asinh(real(1.0) / shape.scale), real(0.5) * kPi);
   if (kDistribution == DOLP_CAUCHY) {
@@ -202,9 +196,8 @@ real arc_cost(Arc arc, Singularity at) {
   return nodes_per_digit(choose(arc.section == kSectionCircle, at.im, mu));
 }
 
-// Nodes per digit on an arc because of the pole of R_p at cos(beta) = -1 / sqrt(N^2 + 1), and of the branch point of w
-// = sqrt(N^2 - sin^2(beta)) at cos^2(beta) = 1 - N^2. With `facet` = (cos, sin) of its angle from the vertical,
-// cos(beta) = c facet.y + s x facet.x.
+// Nodes per digit on an arc because of the pole of R_p and the branch point of w (fresnel.glsl). `facet` is (cos, sin)
+// of the facet's angle from the vertical, so cos(beta) = c facet.y + s x facet.x.
 real bounce_cost(ThetaNode theta, IndexNode index, real2 facet, Arc arc) {
   real slant = theta.s * facet.x;
   real size = max(abs(slant), real(1e-15));
@@ -215,9 +208,8 @@ real bounce_cost(ThetaNode theta, IndexNode index, real2 facet, Arc arc) {
   return max(arc_cost(arc, pole), arc_cost(arc, branch));
 }
 
-// Nodes per digit on an arc beside the critical line, where total reflection begins. There w is proportional to the
-// abscissa v of the cluster. R_p has a pole at w = -N^2 cos(beta), which is v = -N^2 critical_cos / w_end with the
-// w_end of the arc's other end. On the side of total reflection w is imaginary.
+// Nodes per digit on an arc that ends at the critical line, where total reflection begins. In the abscissa of section
+// `cluster` (quadrature.glsl), which is 0 at this line, R_p has a pole at the distance v from the line.
 real critical_cost(ThetaNode theta, IndexNode index, real t, Arc arc) {
   real sec = sqrt(real(1.0) + t * t);
   real2 end = choose(arc.extent < real(0.0), arc.from, arc.to);
@@ -249,8 +241,8 @@ real fresnel_cost(RuleNode rule, ThetaNode theta, IndexNode index, real t, Arc a
   return kTotalReflection ? choose(arc.is_critical, critical_cost(theta, index, t, arc), cost) : cost;
 }
 
-// Nodes per digit on an arc because of the masking of the reflected ray: the density of in-plane slopes is singular at
-// cot(theta_r) = +- i m, and kappa of `integral` has a pole at cot(theta_r) = -t.
+// Nodes per digit on an arc because of the masking of the reflected ray. The density of in-plane slopes is singular at
+// cot(theta_r) = +- i m, and `integral` masking has a pole at cot(theta_r) = -t.
 real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
   if (kMasking != DOLP_MASKING_SMITH && kMasking != DOLP_MASKING_INTEGRAL) return real(0.0);
   real sec2 = real(1.0) + t * t;
@@ -271,11 +263,9 @@ real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
   return cost;
 }
 
-// Nodes of an arc because of smith's cusp. At the facet with t = tan(theta/2) and phi = 0, theta_r is 0. Near theta_r =
-// 0 Smith's Lambda behaves like |theta_r|^(2q - 2), which is smooth only if q is an integer. On the arc that begins at
-// phi = 0, the cusp lies at the imaginary azimuth phi = i y with cosh(y) = 1 + (1 + c) (t - tan(theta/2))^2 / (2 s t).
-// The Gaussian's Lambda is smooth, but grows without bound toward imaginary theta_r. For the required digits this
-// matters at |theta_r| = 1 / (m sqrt(digits ln 10)).
+// Nodes of an arc because of the cusp of smith masking at theta_r = 0. The facet with t = tan(theta/2) and phi = 0
+// reflects there. Near the cusp Lambda behaves like |theta_r|^(2q - 2). On the arc that begins at phi = 0, the cusp
+// lies at an imaginary azimuth i y with cosh(y) = 1 + `rise`. For the gaussian, `beside` moves it farther away.
 real cusp_nodes(ThetaNode theta, ShapeNode shape, real t, real digits, Arc arc) {
   if (kMasking != DOLP_MASKING_SMITH) return real(0.0);
   real away = t - theta.s / (real(1.0) + theta.c);
@@ -290,7 +280,7 @@ real cusp_nodes(ThetaNode theta, ShapeNode shape, real t, real digits, Arc arc) 
   return choose(shape.cusp_digits < real(-100.0), real(0.0), nodes);
 }
 
-// The arc gets a cluster of nodes at its beginning, if the arc begins a zone and the masking has a singularity there.
+// Clusters nodes at the beginning of the arc if the arc begins a zone and the masking has a singularity there.
 Arc masked_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_line, real t, real digits, Arc arc,
                int zone, bool is_first) {
   bool has_root = is_first && has_split_line;
@@ -308,9 +298,9 @@ Arc masked_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_l
   return arc;
 }
 
-// The arc gets a cluster of nodes at one end, if total reflection begins there: w^2 = cos^2(beta) - critical_cos^2 + i
-// Im N^2 vanishes or is small. The resolution is |w^2| there divided by the range of w^2 on the arc. If it is large,
-// the arc is ordinary. If it is negligible, the root counts as sharp, with an error of about resolution^(3/2).
+// Clusters nodes at one end of the arc if total reflection begins there, so that w^2 = cos^2(beta) - critical_cos^2 + i
+// Im N^2 is 0 or small. The resolution is |w^2| at this end, divided by the range of w^2 on the arc. If it is large,
+// the arc is ordinary. If it is negligible, the square root counts as sharp.
 Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc, bool at_end, bool is_beside) {
   real level = index.critical_cos * index.critical_cos;
   real r2 = real(1.0) / (real(1.0) + t * t);
@@ -331,15 +321,16 @@ Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc,
   return arc;
 }
 
-// Nodes for arcs that begin at the line b = pi/2 of `integral`, where the Gaussian's G behaves like exp(-1/distance^2).
+// Nodes for an arc that begins at the line b = pi/2 (single_lines() in arcs.glsl), where G is like exp(-1/distance^2).
 real line_nodes(ShapeNode shape, bool has_split_line, real digits, int zone) {
   if (kMasking != DOLP_MASKING_INTEGRAL || kDistribution != DOLP_GAUSSIAN) return real(0.0);
   bool is_line = has_split_line && zone == 2;
   return choose(is_line, essential_nodes(shape, digits), real(0.0));
 }
 
-// Nodes because of a square root that absorption smooths. In the abscissa v of place_on_arc the root has singularities
-// at v = asinh(sqrt(+-i)) / a = (0.76 +- 0.57 i) / a. Their share of the integral is about resolution^(3/2).
+// Nodes because of a square root that absorption smooths. In the abscissa of section `cluster`, moved by
+// place_on_arc(), the root has singularities at (0.76 +- 0.57 i) / a. They matter for about resolution^(3/2) of the
+// integral.
 real resolution_nodes(real digits, real resolution) {
   real wanted = max(digits + real(1.5) * kInverseLn10 * log_unit(resolution), real(0.0));
   real a = asinh_real(real(1.0) / sqrt(resolution));
@@ -354,8 +345,8 @@ real arc_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index,
   map = choose(arc.section == kSectionHalf, real(0.5) * map, map);
   map = choose(arc.section == kSectionCircle, real(0.0), map);
   real cost = max(max(map, fresnel_cost(rule, theta, index, t, arc)), masking_cost(theta, shape, t, arc, zone));
-  // Before a rule converges, it must resolve cos(phi) to cos(3 phi), with nodes in proportion to the arc's length, and
-  // the spreading e^(2 a v) of place_on_arc. In a cluster dphi is proportional to the abscissa: half a node more.
+  // To converge, a rule must resolve cos(phi), cos(2 phi) and cos(3 phi) over the length of the arc. A cluster needs
+  // half a node more, and nodes that place_on_arc() moves need `spread` more.
   real base = rule.phi_nodes * arc.span + choose(arc.section == kSectionCluster, real(1.0), real(0.5));
   if (kTotalReflection) {
     real spread = real(0.5) * asinh_real(real(1.0) / sqrt(arc.resolution));

@@ -1,9 +1,7 @@
 // The only file of the kernel source whose text depends on the language.
-//
-// GLSL: the build defines DOLP_DOUBLE when it compiles a module in double.
-// C++: the class that includes the kernel source lies in a namespace that defines `real`, its vectors real2 and real4
-// of GLM, and GLSL's functions (sqrt, clamp, ldexp ...). Functions that read data (masking_node, rule_node) are members
-// of the class.
+// GLSL: the build defines DOLP_DOUBLE if it compiles for double precision.
+// C++: the including file defines `real`, the GLM types real2 and real4, and the functions of GLSL (sqrt, clamp, ldexp
+// ...). The class that contains the kernel source has functions that read data (masking_node, rule_node).
 #ifdef __cplusplus
 #define CONST static constexpr
 #define precise

@@ -17,7 +17,7 @@ Row no_row() {
   return row;
 }
 
-// Masking toward one direction, for each entry of a row: with smith Lambda, with `integral` 1 - G1 for a given slope t.
+// Masking toward one direction, for each entry of a row. For smith it is Lambda, for `integral` 1 - G1 at one slope t.
 struct MaskingTerms {
   real value[DOLP_WIDTH];
 };
@@ -28,8 +28,8 @@ MaskingTerms unmasked() {
   return masked;
 }
 
-// The part of the masking that does not depend on the slope t. For smith it is Lambda, at 90 degrees so large that G is
-// 0. For `integral` it is l(cot(theta)) of masking.glsl.
+// The part of the masking that does not depend on the slope t: for smith Lambda, for `integral` l(cot(theta)), see
+// masking.glsl. At 90 degrees Lambda is so large that G is 0.
 MaskingTerms masking_of_direction(Row row, real cos_theta, real sin_theta) {
   MaskingTerms heights = unmasked();
   if (kMasking == DOLP_MASKING_SMITH) {
@@ -45,7 +45,7 @@ MaskingTerms masking_of_direction(Row row, real cos_theta, real sin_theta) {
   return heights;
 }
 
-// 1 - G1 of `integral`. All invocations compute `limited`: one that does not need it would wait for its neighbours.
+// 1 - G1 of `integral`. `limited` is computed even if it is not used: in lockstep all invocations wait for it anyway.
 MaskingTerms shadows(Row row, MaskingTerms heights, real cos_theta, real sin_theta, real t) {
   ShadowRange range = shadow_range(row.shape[0], cos_theta, sin_theta, t);
   TableCell cell = table_cell(row.shape[0], range.far);

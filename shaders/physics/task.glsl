@@ -49,7 +49,7 @@ struct Piece {
   bool root_at_b;
   real root_before;       // X of a square root at the start of the preceding piece, unless it is near a; else X at a
   real root_after;        // X of a square root at the end of the next piece, unless it is near b; else X at b
-  real mass[DOLP_WIDTH];  // share of the facets, for each entry of a row
+  real mass[DOLP_WIDTH];  // share of the facets on the piece, for each entry of a row
   real fall;              // logarithm of the share of facets steeper than a divided by the share steeper than b
   real digits;            // digits that the most demanding entry of a row requires
   int order;

@@ -24,7 +24,7 @@ constexpr std::size_t kMostSkyBreakpoints = 60;  // most breakpoints of a direct
 
 // Long ranges of slopes, as in grazing directions, are also divided at these slopes.
 constexpr std::array kPlainBreakpoints = {30.0, 3e5};
-constexpr std::array kSteepBreakpoints = {1e5, 3e8, 1e12};  // for grooves, which have no horizon
+constexpr std::array kSteepBreakpoints = {1e5, 3e8, 1e12};  // for grooves, from which every ray leaves
 
 double tan_deg(double angle_deg) {
   const CosSin a = cos_sin_deg(angle_deg);

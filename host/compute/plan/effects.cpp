@@ -29,8 +29,8 @@ bool add_nothing(const std::vector<EffectBounds>& bounds, Part part, const KeptE
       bounds, [&](const EffectBounds& variant_bounds) { return variant_bounds.adds_nothing(part, kept); });
 }
 
-/// The largest bound of `part` over all variants, with the effects `kept` and, except for moments and profile, also
-/// with all effects.
+/// The largest bound of `part` over all variants, with the effects `kept`. Except for moments and profile, the
+/// bounds with all effects count too.
 double worst_bound(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
   double worst = 0.0;
   for (const EffectBounds& variant_bounds : bounds) {

@@ -22,7 +22,8 @@ struct RuleModel {
 /// The fitted numbers of a masking or, for kMultiple, of grooves with all bounces.
 const RuleModel& rule_model(Masking masking, Scattering scattering = Scattering::kSingle);
 
-/// Digits that the finer rule needs. The coarser rule must meet the tolerance: its error is nearly the error bound.
+/// Digits that the finer rule needs. They let the coarser rule, whose error is about the error bound, meet the
+/// tolerance.
 double rule_digits(const RuleModel& model, double tolerance);
 
 kernel::RuleNode rule_node(const RuleModel& model, double tolerance);

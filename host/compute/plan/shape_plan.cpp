@@ -108,7 +108,7 @@ ShapeParameter sigma_parameter(Distribution distribution) {
   return {0.0, distribution == Distribution::kGaussian ? 0.78 : 1.15};
 }
 
-/// Domain: all directions are grazing, or none.
+/// Domain: either all directions of the request are grazing, or none is.
 ShapeParameter q_parameter(const MomentsRequest& request) {
   const bool needs_mean_slope =
       request.masking == Masking::kSmith ||

@@ -10,9 +10,7 @@ std::string_view embedded_hard_cases_csv();
 std::string_view embedded_materials_csv();
 std::string_view embedded_materials_sources_csv();
 std::string_view embedded_sun_csv();
-
 std::string_view embedded_stainless_steel_toml();
-
 std::string_view embedded_plot_fit_py();
 
 }  // namespace dolp

@@ -114,8 +114,7 @@ void Residuals::differentiate(Linearisation& point, Eigen::Index j, const Predic
 
 // The error of a central difference with step s has two parts: e/s if the values have the error e, and s^2 F/(6 L^3) if
 // the function has the size F and varies over the length L. The sum is smallest if the step changes the function by
-// (3 e F^2)^(1/3). If the values are far more accurate than an uncertainty, a change of a fifth of an uncertainty is
-// enough.
+// (3 e F^2)^(1/3). If the values are far more accurate than an uncertainty, a fifth of an uncertainty is enough.
 double Residuals::next_step(double step, const Linearisation& point, const Prediction& beside) const {
   const double change = (beside.components - point.components).cwiseAbs().maxCoeff();
   if (!std::isfinite(change) || change <= 0.0) return step;

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string_view>
+#include <boost/algorithm/string/replace.hpp>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -15,6 +15,7 @@
 namespace dolp::cli {
 namespace {
 
+using boost::algorithm::replace_all_copy;
 using Words = std::vector<std::string>;
 
 bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
@@ -83,18 +84,11 @@ std::string completing_words(const CLI::App& app, const Words& line) {
   return found;
 }
 
-std::string replaced(std::string text, std::string_view what, std::string_view by) {
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
-    text.replace(at, what.size(), by);
-  }
-  return text;
-}
-
 /// Escapes the characters that roff, the language of manual pages, would interpret.
 std::string roff(const std::string& text) {
-  std::string safe = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
+  std::string safe = replace_all_copy(replace_all_copy(text, "\\", "\\e"), "-", "\\-");
   if (safe.starts_with('.') || safe.starts_with('\'')) safe.insert(0, "\\&");
-  return replaced(safe, "\n", "\n.br\n");
+  return replace_all_copy(safe, "\n", "\n.br\n");
 }
 
 std::string manual_options(const CLI::App& command) {

@@ -12,9 +12,7 @@ std::string_view embedded_plot_view_py();      ///< a script that draws the plot
 std::string_view embedded_dolp_bash();
 std::string_view embedded_dolp_fish();
 std::string_view embedded_dolp_zsh();
-
-// Parts of the manual page, before and after the commands.
-std::string_view embedded_description_man();
-std::string_view embedded_end_man();
+std::string_view embedded_description_man();  ///< the part of the manual page before the commands
+std::string_view embedded_end_man();          ///< the part after the commands
 
 }  // namespace dolp

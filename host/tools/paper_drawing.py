@@ -25,7 +25,7 @@ SAMPLE_NAMES = {"steel": "stainless steel", "aluminium": "aviation aluminium"}
 
 
 def curve_look(curve, figure):
-    """Colour, line style and marker. The colour shows the distribution in figures 5 and 6, the sample in figure 7."""
+    """Colour, line style and marker of `curve`. Colours show distributions (figures 5, 6) or samples (figure 7)."""
     if curve.sample not in SAMPLE_COLOURS:
         return GREY, ":", "^"
     by_distribution = {"cauchy": BLUE, "gaussian": VERMILION}[curve.distribution]

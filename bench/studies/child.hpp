@@ -12,7 +12,7 @@ struct ChildOutcome {
   std::string out;
 };
 
-/// Whether a program's stderr is shown or discarded.
+/// Shows or discards the stderr of a program.
 enum class ChildErrors { kShown, kHidden };
 
 /// Runs a program to its end. Errors: Unavailable if the process does not start.

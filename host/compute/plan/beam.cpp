@@ -75,7 +75,7 @@ FacetReflection bare_reflection(const BeamAngles& angles, const BeamGeometry& ge
   const Complex n2m1((index.n - 1.0) * (index.n + 1.0) - index.k * index.k, 2.0 * index.n * index.k);
   const double c = geometry.node.cos_beta;
   const double sin2 = geometry.sin2_beta;
-  // Of the two forms of Re(w^2), the one with smaller terms loses fewer digits.
+  // The form of Re(w^2) with the smaller terms loses fewer digits.
   double w2 = sin2 < 0.5 ? n2_re - sin2 : n2m1.real() + c * c;
   if (std::hypot(w2, n2m1.imag()) <= kCritical * std::max(std::abs(n2_re), sin2)) w2 = exact_w_squared(angles, index);
   const Complex w = std::sqrt(Complex(w2, n2m1.imag()));

@@ -57,8 +57,8 @@ inline constexpr double kResponseRoundings = 4.0;  // rounding of a response's x
 // integral masking, then `dolp table` with smith masking and 16 x 6 x 6 entries at 1e-4 (theta to 85 degrees, sigma
 // 0.05 to 0.5, q 1.76 to 3).
 
-/// Fewest cells in the table of one function of the sky, and most cells of all functions together. For tolerances below
-/// kTightSky more cells are allowed than every device has room for.
+/// Fewest cells in the table of one function of the sky (glossary: host/README.md); most cells of all tables together;
+/// and this maximum for tolerances below kTightSky. Some devices have no room for the second maximum.
 inline constexpr std::uint32_t kLeastSkyCells = 512;
 inline constexpr std::uint32_t kMostSkyCells = 1U << 15U;
 inline constexpr std::uint32_t kMostTightSkyCells = 1U << 18U;

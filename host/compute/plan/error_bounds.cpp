@@ -100,9 +100,9 @@ double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index
   return least;
 }
 
-// Upper bound of the share of light that facets steeper than ShapeNode::cut reflect. With one bounce, a ray that leaves
-// the surface has cos(beta) > c sqrt(1 + t^2) / 2. In grooves, at least slope * min(pi/3, pi/2 - theta) - 1 bounces of
-// a ray have cos(beta) >= a/2, with a as in left_after().
+// Upper bound of the share of light that facets of a slope t > ShapeNode::cut reflect: the reflectance at the smallest
+// cos(beta), which is the largest. A ray that leaves after one bounce has cos(beta) > cos(theta) sqrt(1 + t^2) / 2. In
+// grooves, at least t min(pi/3, pi/2 - theta) - 1 bounces have cos(beta) >= a/2, with a as in left_after().
 double steep_reflectance(const KernelData& data, const kernel::IndexNode& index, const kernel::ThetaNode& theta,
                          const kernel::ShapeNode& shape) {
   if (data.scattering == Scattering::kSingle) {

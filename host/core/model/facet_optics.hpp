@@ -27,7 +27,7 @@ struct MeasuredReflectance {
   std::vector<double> r_p;
 };
 
-/// What a facet consists of: a bare medium, a medium under films, or a surface with measured reflectances.
+/// The material of a facet: a bare medium, a medium under films, or a surface with measured reflectances.
 struct FacetOptics {
   OpticalConstants index;   ///< n and k of the medium
   std::vector<Film> films;  ///< from the outside in; they interfere

@@ -58,7 +58,7 @@ DOLP_EXPORT std::string commit();
 /// How to cite the program and the model, in the Citation File Format.
 DOLP_EXPORT std::string citation();
 
-/// What a call computed, and the problems that it found.
+/// The report about a call: results, and the problems that it found.
 struct Report {
   std::string text;              ///< report as readable lines
   std::string json;              ///< all values as JSON, as the option --json of the program prints them

@@ -6,7 +6,7 @@
 
 namespace dolp {
 
-/// Whether Vulkan's validation layer checks all calls, for tests.
+/// Switches Vulkan's validation layer, which checks all calls, for tests.
 enum class ValidationMode {
   kFromEnvironment,  ///< used if the environment variable DOLP_VALIDATION is 1
   kOff,

@@ -68,8 +68,8 @@ class DirectSurface {
   /// The running beam in the direction with cosine cos_r > 0 and sine sin_r, with its part of the masking G.
   RunningBeam beam(double cos_r, double sin_r) const;
 
-  /// Masking G times M00 and M01 of the facet that reflects one beam into the other. M01 is 0 if the facet or the surface
-  /// has no plane of incidence.
+  /// Masking G times M00 and M01 of the facet that reflects one beam into the other. M01 is 0 if the facet or the
+  /// surface has no plane of incidence.
   Reflected reflected(const RunningBeam& beam, double cos_alpha, double tan_alpha, double cos_beta) const;
 
  private:

@@ -183,9 +183,9 @@ const std::vector<Control>& controls() {
   return all;
 }
 
-const Control& control(const std::string& key) {
+const Control& control(std::string_view key) {
   const auto found = std::ranges::find(controls(), key, [](const Control& known) { return known.key->key; });
-  if (found == controls().end()) throw std::logic_error("no control of " + key);
+  if (found == controls().end()) throw std::logic_error("no control of " + std::string(key));
   return *found;
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/temporary_folder.hpp"
@@ -36,7 +37,7 @@ const Key& described(const std::string& key);  ///< the key must exist
 /// The controls of all keys that the window can change. The keys of the films (n, k, thickness) come last.
 const std::vector<Control>& controls();
 
-const Control& control(const std::string& key);              ///< the key must have a control
+const Control& control(std::string_view key);                ///< the key must have a control
 Scale range_in(const Scene& scene, const Control& control);  ///< the part of the slider's range that the masking allows
 std::string table_of(const std::string& key);                ///< "surface.coating.1" of "surface.coating.1.n"
 std::string unit_text(const Key& key);                       ///< unit for display: "°" for "degree", "" for "1"

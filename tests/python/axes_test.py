@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests axes of materials, bands and temperatures, and lookups over keys. Usage: axes_test.py, package on PYTHONPATH."""
+"""Tests axes of materials, bands and temperatures, and lookups over keys."""
 import unittest
 import warnings
 

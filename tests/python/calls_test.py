@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests scenes as values, wrong calls, threads and processes. Usage: calls_test.py, with the package on PYTHONPATH."""
+"""Tests scenes as values, wrong calls, threads and processes."""
 import copy
 import multiprocessing
 import os

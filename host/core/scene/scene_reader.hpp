@@ -1,12 +1,11 @@
 #pragma once
 
 #include <dolp/key.hpp>
-#include <optional>
+#include <filesystem>
 #include <string>
 #include <vector>
 
-#include <filesystem>
-#include "scene/scene.hpp"
+#include "scene/scene_data.hpp"
 
 namespace dolp {
 
@@ -18,17 +17,6 @@ SceneValues read_scene(const std::string& path, const std::vector<Setting>& sett
 
 /// The scene after further settings. Domain: a scene that was read. Errors: InputErrors as those of read_scene.
 SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& settings);
-
-/// Data from a table file, with which the table was computed. They replace data files and built-in data.
-struct KnownData {
-  std::optional<Material> material = {};
-  std::vector<std::optional<Material>> layers = {};  ///< layers of a coating
-  std::vector<Material> materials = {};              ///< materials on the grid's axis
-  std::optional<ReflectanceTable> reflectance = {};
-  std::optional<SpectralTable> irradiance = {};
-  std::optional<SkyProfile> profile = {};
-  bool may_open_files = false;  ///< allows opening files for missing data; messages then do not quote the files
-};
 
 /// Makes a scene from a text. `path_name` appears in messages, and paths in the scene are relative to its folder. With
 /// `known`, the reader opens files only if `may_open_files` is set; otherwise missing data are an InputError.

@@ -1,0 +1,208 @@
+#!/usr/bin/env python3
+"""Tests scenes, points, tables and materials of the package."""
+import csv
+import doctest
+import importlib
+import tempfile
+import unittest
+
+import numpy as np
+import xarray as xr
+
+import dolp
+from package_case import TEXT, PackageCase
+
+
+class Package(PackageCase):
+    def test_examples_in_the_documentation_hold(self):
+        names = {"dolp": dolp, "np": np, "tempfile": tempfile, "scene": dolp.Scene(text="""
+[surface]
+n = 1.5
+k = 0.05
+sigma = 0.2
+q = 3.0
+masking = "smith"
+[emission]
+temperature_K = 300.0
+[spectrum]
+wavelength_um = 10.0
+[grid]
+theta_deg = {from = 0, to = 80, count = 5}
+""")}
+        rooms = [dolp, *(importlib.import_module(f"dolp.{room}") for room in ("_scene", "_runs", "_fit", "_response"))]
+        results = [doctest.testmod(room, extraglobs=names) for room in rooms]
+        self.assertEqual(sum(failed for failed, _ in results), 0)
+        self.assertGreater(sum(tried for _, tried in results), 25)
+
+    def test_a_table_is_what_the_file_holds(self):
+        (self.folder / "n.csv").write_text("wavelength_um,n,k\n8,1.5,0.1\n14,1.45,0.2\n")
+        material = {"surface.material_file": str(self.folder / "n.csv"), "source.preset": "sun",
+                    "spectrum.band_um": [8, 12]}
+        for scene in (self.scene, self.scene.with_(material), self.scene.with_({"grid.k": [0.1, 0.2], "grid.n": 1.5}),
+                      self.scene.with_({"emission.bracket": True, "grid.wavelength_um": [9, 10]}),
+                      self.scene.with_({"surface.distribution": "gaussian", "grid.wind_m_s": [5, 2]}),
+                      self.scene.with_({"title": "long " * 20000})):
+            for evaluator in ("cpu", "vulkan"):
+                dolp.write_table(scene, self.folder / "t.nc", evaluator=evaluator)
+                self.assert_same(dolp.table(scene, evaluator=evaluator), xr.load_dataset(self.folder / "t.nc"))
+        self.run_program("table", str(self.folder / "scene.toml"), "-o", "t.nc")
+        self.assert_same(dolp.table(self.scene), xr.load_dataset(self.folder / "t.nc"))
+
+    def test_points_have_the_bits_of_the_command_line(self):
+        random = np.random.default_rng(1)
+        columns = {"theta_deg": random.uniform(0, 89, 50), "sigma": random.uniform(0.05, 1, 50),
+                   "q": random.uniform(1.6, 6, 50), "n": random.uniform(1.2, 3, 50), "k": random.uniform(0, 1, 50)}
+        with open(self.folder / "p.csv", "w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(columns)
+            writer.writerows([[repr(float(x)) for x in row] for row in zip(*columns.values())])
+        self.run_program("eval", "scene.toml", "--points", "p.csv", "-o", "r.csv")
+        with open(self.folder / "r.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+        found = dolp.evaluate(self.scene, **columns)
+        for name in set(rows[0]) - set(columns):
+            expected = np.array([float(row[name]) for row in rows])
+            np.testing.assert_array_equal(found[name].values, expected, name)
+
+    def test_arrays_broadcast(self):
+        theta = np.array([0.0, 30.0, 60.0])
+        square = dolp.evaluate(self.scene, theta_deg=theta[:, None], sigma=[0.1, 0.2], n=1.7)
+        self.assertEqual(dict(square.sizes), {"theta": 3, "sigma": 2})
+        one = dolp.evaluate(self.scene, theta_deg=60, sigma=0.2, n=1.7)
+        self.assertEqual(one.dolp.shape, ())
+        self.assertEqual(float(one.dolp), float(square.dolp[2, 1]))
+        self.assertEqual(square.theta.attrs["units"], "degree")
+        named = dolp.evaluate(self.scene, theta_deg=xr.DataArray(theta, dims="ray"), sigma=xr.DataArray([0.1, 0.2], dims="part"))
+        self.assertEqual(named.dolp.dims, ("ray", "part"))
+        labelled = xr.DataArray(theta, dims="ray", coords={"theta": ("ray", theta, {"mine": 1})})
+        self.assertEqual(dolp.evaluate(self.scene, theta_deg=labelled).theta.attrs["units"], "degree")
+        self.assertEqual(labelled.theta.attrs, {"mine": 1})
+        paired = dolp.evaluate(self.scene, theta_deg=theta, sigma=[0.1, 0.2, 0.3])
+        self.assertEqual(paired.dolp.dims, ("point",))
+        self.assertEqual(paired.sigma.dims, ("point",))
+        with self.assertRaisesRegex(dolp.InputError, "do not broadcast"):
+            dolp.evaluate(self.scene, theta_deg=theta, sigma=[0.1, 0.2])
+
+    def test_given_coordinates_stay(self):
+        theta = xr.DataArray([10.0, 20.0], dims="ray", coords={"ray": ["a", "b"], "pixel": ("ray", [7, 8])})
+        sigma = xr.DataArray([0.1, 0.2, 0.3], dims="part", coords={"plate": ("part", [1, 2, 3])})
+        found = dolp.evaluate(self.scene, theta_deg=theta, sigma=sigma, evaluator="cpu")
+        self.assertEqual(set(found.coords), {"ray", "pixel", "plate", "theta", "sigma"})
+        self.assertEqual(found.pixel.dims + found.plate.dims, ("ray", "part"))
+
+    def test_a_complex_n_gives_n_and_k(self):
+        apart = dolp.evaluate(self.scene, theta_deg=60, n=[1.5, 2], k=[0.1, 3], evaluator="cpu")
+        self.assertEqual(dolp.Scene(self.scene, {"surface.n": 2 + 3j})["surface.k"], 3.0)
+        for index in ([1.5 + 0.1j, 2 + 3j], xr.DataArray([1.5 + 0.1j, 2 + 3j], dims="row")):
+            together = dolp.evaluate(self.scene, theta_deg=60, n=index, evaluator="cpu")
+            np.testing.assert_array_equal(together.dolp, apart.dolp)
+        for call in (lambda: dolp.evaluate(self.scene, theta_deg=60, n=2j, k=1),
+                     lambda: dolp.table(self.scene, theta_deg=60, n=1.5 + 1j)):
+            with self.assertRaisesRegex(dolp.InputError, "n: "):
+                call()
+
+    def test_any_number_of_the_scene_varies(self):
+        keys = {"emission.temperature_K": np.array([[280.0], [300.0]]), "surface.specular": [1, 0.5, 1]}
+        found = dolp.evaluate(self.scene, theta_deg=[20, 40, 60], evaluator="cpu", **keys)
+        self.assertEqual(found.dolp.shape, (2, 3))
+        for i, j in ((0, 0), (1, 2), (1, 1)):
+            own = self.scene.with_({"emission.temperature_K": (280, 300)[i], "surface.specular": (1, 0.5, 1)[j]})
+            one = dolp.evaluate(own, theta_deg=(20, 40, 60)[j], evaluator="cpu")
+            for name in ("dolp", "stokes_i", "status"):
+                self.assertEqual(float(one[name]), float(found[name][i, j]))
+        axes = {"emission.temperature_K": [280, 300], "surroundings.temperature_K": [240, 250, 260]}
+        table = dolp.table(self.scene, theta_deg=[20, 40], **axes)
+        self.assertEqual(table.dolp.dims, (*axes, "theta", "sigma", "q"))
+        self.assertEqual(table["emission.temperature_K"].units, "K")
+        xr.testing.assert_equal(table.dolp[1, 2].drop_vars([*axes]), dolp.table(self.scene.with_(
+            {"emission.temperature_K": 300, "surroundings.temperature_K": 260}), theta_deg=[20, 40]).dolp)
+        base = self.scene.with_({"emission.temperature_K": 310, "surface.specular": 0.9})
+        table = dolp.table(base, theta_deg=np.linspace(0, 80, 21), sigma=0.2, q=3, evaluator="cpu", **axes)
+        own = base.with_({"emission.temperature_K": 280, "surroundings.temperature_K": 250})
+        own = dolp.table(own, theta_deg=np.linspace(0, 80, 21), sigma=0.2, q=3, evaluator="cpu")
+        part = table.sel({"emission.temperature_K": 280})
+        with self.assertRaisesRegex(dolp.InputError, "has 3 values of surroundings.temperature_K; take one"):
+            dolp.lookup(part, theta_deg=33.3)
+        found = dolp.lookup(part.sel({"surroundings.temperature_K": 250}), theta_deg=33.3)
+        self.assertEqual(float(found.dolp), float(dolp.lookup(own, theta_deg=33.3).dolp))
+        for key in ("surface.sigma", "surface.masking", "emission.temperature"):
+            with self.assertRaisesRegex(dolp.InputError, key):
+                dolp.table(self.scene, **{key: [0.1, 2]})
+        for key in ("surface.masking", "emission.temperature", "surface.n"):
+            with self.assertRaisesRegex(dolp.InputError, key):
+                dolp.evaluate(self.scene, theta_deg=20, n=1.5, **{key: [1, 2]})
+
+    def test_a_sea_in_one_key(self):
+        sea = dolp.Scene(self.scene, {"surface.distribution": "gaussian", "surface.wind_m_s": 5})
+        sigma = np.sqrt((0.003 + 0.00512 * 5) / 2)
+        self.assertEqual((sea["surface.sigma"], sea["surface.wind_m_s"], sea["grid.sigma"]), (sigma, 5.0, [sigma]))
+        points = dolp.evaluate(sea, theta_deg=60, wind_m_s=[5, 10], evaluator="cpu")
+        self.assertEqual(float(points.dolp[0]), float(dolp.evaluate(sea, theta_deg=60, sigma=sigma, evaluator="cpu").dolp))
+        self.assertEqual(points.dolp.dims, ("wind_m_s",))
+        table = dolp.table(sea, theta_deg=[0, 60], wind_m_s=[5, 10], q=2, evaluator="cpu")
+        by_wind = table.swap_dims(sigma="wind_m_s").dolp.sel(theta=60, q=2)
+        np.testing.assert_array_equal(by_wind.sel(wind_m_s=[5, 10]), points.dolp)
+        np.testing.assert_array_equal(dolp.lookup(table, theta_deg=60, wind_m_s=[5, 10]).dolp, points.dolp)
+        self.assertEqual(dolp.table(sea, theta_deg=60, sigma=0.3, evaluator="cpu").sizes["sigma"], 1)
+        data = {"theta_deg": np.arange(10, 90, 10.0), "uncertainty": np.full(8, 1e-3),
+                "dolp": dolp.evaluate(sea, theta_deg=np.arange(10, 90, 10.0), wind_m_s=7, evaluator="cpu").dolp}
+        found = dolp.fit(sea, data, {"surface.wind_m_s": (1, 14)}, evaluator="cpu")
+        self.assertAlmostEqual(found.params["surface.wind_m_s"], 7, 2)
+        self.assertAlmostEqual(found.scene["surface.sigma"], np.sqrt((0.003 + 0.00512 * 7) / 2), 4)
+        for call in (lambda: dolp.evaluate(self.scene, theta_deg=60, wind_m_s=5, evaluator="cpu"),
+                     lambda: dolp.evaluate(sea, theta_deg=60, wind_m_s=5, sigma=0.1),
+                     lambda: dolp.table(self.scene, wind_m_s=5)):
+            with self.assertRaisesRegex(dolp.InputError, "wind_m_s"):
+                call()
+
+    def test_materials_have_n_and_k(self):
+        iron = dolp.material("iron")
+        again = dolp.Scene(self.scene, {"surface.material": "iron", "spectrum.wavelength_um": 10.6})
+        self.assertEqual(float(dolp.evaluate(again, theta_deg=60, evaluator="cpu").dolp),
+                         float(dolp.evaluate(self.scene, theta_deg=60, n=iron.n(10.6) + 1j * iron.k(10.6), wavelength_um=10.6,
+                                             evaluator="cpu").dolp))
+        self.assertEqual(iron.n([[8, 9, 10]]).shape, (1, 3))
+        self.assertIn("iron", repr(iron))
+        self.assertEqual(dolp.material("WATER").name, "water 25C")
+        axes = iron.plot()
+        self.assertEqual(([line.get_label() for line in axes.lines], axes.get_title()), (["n", "k"], "iron"))
+        for call in (lambda: dolp.material("irn"), lambda: iron.n(1000)):
+            with self.assertRaisesRegex(dolp.InputError, "iron"):
+                call()
+
+    def test_none_removes_a_table(self):
+        for nothing in (None, "none"):
+            for scene in (dolp.Scene(self.scene, {"surroundings": nothing}), self.scene.with_({"surroundings": nothing}),
+                          dolp.Scene(text=TEXT, overrides={"surroundings": nothing})):
+                self.assertNotIn("surroundings", scene.toml())
+        self.assertEqual(self.scene.without("surroundings").toml(), self.scene.with_({"surroundings": "none"}).toml())
+
+    def test_mueller_matrices_have_the_shape_of_the_points(self):
+        matrices = dolp.mueller(self.scene, theta_i_deg=[[10], [40]], theta_r_deg=[20, 30, 50], delta_phi_deg=180)
+        self.assertEqual(matrices.shape, (2, 3, 4, 4))
+        self.assertTrue((matrices[..., 0, 0] > 0).all())
+
+    def test_a_sky_over_zenith(self):
+        sky = self.folder / "sky.csv"
+        sky.write_text("zenith_deg,temperature_K\n0,230\n40,240\n70,262\n90,288\n")
+        scene = self.scene.with_({"surroundings.profile": "sky.csv"})
+        self.assertEqual((scene["surroundings.profile"], scene["surroundings.temperature_K"]), ("sky.csv", None))
+        theta = np.linspace(0, 80, 41)
+        table = dolp.table(scene, theta_deg=theta, sigma=0.2, q=3)
+        between, exact = (look(theta_deg=33.3) for look in (lambda **at: dolp.lookup(table, **at),
+                                                            lambda **at: dolp.evaluate(scene, sigma=0.2, q=3, **at)))
+        bound = float(between.error_estimate) + float(exact.error_estimate)
+        self.assertLessEqual(abs(float(between.dolp) - float(exact.dolp)), bound)
+        reference = dolp.evaluate(scene, theta_deg=60, sigma=0.2, q=3, evaluator="reference")
+        own = dolp.evaluate(scene, theta_deg=60, sigma=0.2, q=3)
+        self.assertLessEqual(abs(float(reference.dolp) - float(own.dolp)), float(own.error_estimate))
+        data = {"theta_deg": theta[5:], "q_over_i": table.q_over_i.values.ravel()[5:], "uncertainty": 1e-3}
+        found = dolp.fit(scene, data, {"surface.n": (1.2, 2)}, starts=4)
+        self.assertAlmostEqual(found.params["surface.n"], 1.5, delta=1e-3)
+        self.run_program("table", "scene.toml", "-o", "t.nc", "--set", "surroundings.profile=sky.csv")
+        sky.write_text("zenith_deg,temperature_K\n0,100\n90,100\n")  # the table keeps the sky with which it was computed
+        self.run_program("verify", "t.nc")
+
+
+if __name__ == "__main__":
+    unittest.main()

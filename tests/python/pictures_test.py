@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""Tests the pictures of tables and fits."""
+import pathlib
+import sys
+import unittest
+
+import numpy as np
+
+import dolp
+from package_case import PackageCase
+
+
+class Pictures(PackageCase):
+    def test_pictures_show_what_the_table_has(self):
+        host = pathlib.Path(__file__).resolve().parents[2] / "host"
+        sys.path[:0] = [str(host), str(host / "tools")]
+        import netCDF4
+        import plot_fit
+        import plot_table
+        del sys.path[:2]
+        self.assertLessEqual(set(plot_fit.SYMBOLS), {*dolp.keys()})
+        for wavelengths, spectrum, title in ((None, [3, 5], "Plate, 3–5 µm"), (None, [9, 9], "Plate, 9 µm"), (8, [9, 9], "Plate")):
+            report = {"title": "Plate, 8-14 um", "points": [{"wavelength_um": wavelengths}], "spectrum_um": spectrum}
+            self.assertEqual(plot_fit.title_of(report), title)
+        self.assertEqual(plot_fit.alike({"alike": [["a=1"], ["a=2"]],
+                                         "ranges": [{"key": "surface.n", "models": 3, "interval_95": [1.36, None]}]}),
+                         "\n2 models cannot be told apart; 95 % ranges over 3 models of ΔAIC up to 4:   n 1.36 to open")
+        self.assertEqual(plot_fit.alike({"alike": []}), "")
+        sea = {"title": "Sea, wind 8 m/s, 8-14 um", "surface.distribution": "gaussian", "surface.masking": "smith"}
+        theta = {"from": 0, "to": 85, "count": 10}
+        winds = {"from": 1, "to": 14, "count": 6}
+        for changes, panels, zenith, title, legend in (
+                ({"grid.sigma": 0.2}, 1, "zenith angle", "painted plate, 10 µm", "0.2"),
+                ({"title": "Plate, 8-14 um", "grid.sigma": [0.1, 0.2, 0.3]}, 1, "zenith angle", "Plate, 10 µm", "0.3"),
+                ({"spectrum.band_um": [3, 5], "grid.sigma": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]}, 2, "zenith angle",
+                 "painted plate, 3–5 µm", "0.6"),
+                ({"geometry.mode": "bistatic", "source.irradiance": 1, "grid.sigma": 0.2}, 1, "zenith of the source",
+                 "painted plate, 10 µm", "0.2"),
+                ({**sea, "grid.wind_m_s": winds, "emission.bracket": True}, 2, "zenith angle", "Sea, 10 µm", "14 m/s")):
+            dolp.write_table(self.scene.with_({"grid.theta_deg": theta, **changes}), self.folder / "t.nc", evaluator="cpu")
+            with netCDF4.Dataset(self.folder / "t.nc") as dataset:
+                table = plot_table.Slice(dataset, dict.fromkeys(plot_table.SYMBOLS))
+            plot_table.draw(table, self.folder / "t.png")
+            figure = plot_table.plt.gcf()
+            drawn = [axes for axes in figure.axes if axes.get_xlabel()]
+            self.assertEqual((len(drawn), table.title), (panels, title))
+            for axes in drawn:
+                self.assertIn(zenith, axes.get_xlabel())
+            self.assertIn(legend, " ".join(text.get_text() for text in drawn[0].get_legend().texts))
+            if table.bracket:
+                self.assertLess(np.nanmax(table.bracket), drawn[0].get_ylim()[1])
+            plot_table.plt.close(figure)
+        # By default a picture has the scene's q, n and k, and one of its curves has the scene's sigma.
+        own = self.scene.with_({"surface.n": 1.4, "surface.k": 0.2, "surface.q": 5, "surface.sigma": 0.24})
+        dolp.write_table(own, self.folder / "t.nc", evaluator="cpu", theta_deg=[0, 60], n=[1.4, 1.5, 1.6], k=[0.2],
+                         sigma=np.linspace(0.1, 0.5, 41), q=[2, 3, 5])
+        with netCDF4.Dataset(self.folder / "t.nc") as dataset:
+            table = plot_table.Slice(dataset, dict.fromkeys(plot_table.SYMBOLS))
+        self.assertEqual(table.place, "q = 5, n = 1.4, k = 0.2")
+        np.testing.assert_allclose(table.sigma[plot_table.drawn_columns(table)], [0.1, 0.18, 0.24, 0.34, 0.42, 0.5])
+        # The frame contains the peak of every curve. If DOLP is only a limit at 90 degrees, no line leads there.
+        for diffuse in (0, 0.1):
+            dolp.write_table(self.scene.with_({"surface.diffuse": diffuse, "surface.masking": "v-cavity"}), self.folder / "t.nc",
+                             evaluator="cpu", theta_deg=np.linspace(0, 90, 91), sigma=[0, *np.linspace(0.5, 2, 60)], q=2)
+            with netCDF4.Dataset(self.folder / "t.nc") as dataset:
+                table = plot_table.Slice(dataset, dict.fromkeys(plot_table.SYMBOLS))
+            self.assertEqual(np.isnan(table.dolp[-1]).all(), diffuse > 0)
+            table.dolp[40, 0] = peak = 3 * table.largest()
+            plot_table.draw(table, self.folder / "t.png")
+            self.assertGreater(plot_table.plt.gcf().axes[0].get_ylim()[1], peak)
+            plot_table.plt.close()
+
+
+if __name__ == "__main__":
+    unittest.main()

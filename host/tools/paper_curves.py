@@ -94,7 +94,7 @@ class Curve:
 
     def peak(self):
         """Angle and value of the largest DOLP. None at 0 or 90 degrees, or if the model fails at the next larger
-        angle."""
+        one."""
         held = np.where(self.holds(), self.dolp, -np.inf)
         top = int(np.argmax(held))
         is_inside = 0 < top < held.size - 1 and np.isfinite(held[top + 1])

@@ -33,7 +33,7 @@ class Curve {
   bool is_stale() const { return !points().empty() && !is_current(); }  ///< points() belong to an earlier scene
   const Scene& shown_scene() const { return points().empty() ? scene_ : shown_.scene; }  ///< the scene of points()
   const std::vector<Point>& points() const { return shown_.points; }
-  std::vector<Point> drawn() const;  ///< points(), and between them the maximum once it is known
+  std::vector<Point> drawn() const;  ///< points() and, once it is known, the maximum between them
   void set_peak(const Point& peak) { peak_ = peak; }
   const JobPart& finished() const { return finished_; }  ///< results of the last finished fine curve; empty at first
 

@@ -81,7 +81,7 @@ FitMarks marks_in(const std::vector<std::string>& texts, const std::string& loca
 }
 
 /// The settings as texts for the file `session`. If a setting names a temporary sky file (in `skies`), copies this file
-/// to the folder of `session`, and its text names the copy.
+/// to the folder of `session`, and the text names the copy.
 toml::array lasting_texts(std::vector<Setting> settings, const SkyFiles& skies, const fs::path& scene,
                           const fs::path& session) {
   for (Setting& setting : settings) {
@@ -126,7 +126,7 @@ toml::table view_table(const Session& session) {
   return table;
 }
 
-/// The value of `node`. Errors: InputError if the node is missing or has another type; its text begins with `location`.
+/// The value of `node`. Errors: InputError, beginning with `location`, if the node is missing or has another type.
 template <class T>
 T need(Node node, const std::string& location) {
   const std::optional<T> value = node ? node.value<T>() : std::nullopt;

@@ -35,7 +35,7 @@ const std::vector<AxisOfNumber>& axes_of_numbers() {
   return all;
 }
 
-/// The range of the values that the scene's grid has on an axis. If the grid has no values, returns axis.scale.
+/// The range of the values that the scene's grid has on an axis. If the grid has no range, returns axis.scale.
 Scale grid_range(const Scene& scene, const MapAxis& axis) {
   const std::vector<double> grid = axis.is_of_tables() ? scene.numbers("grid." + axis.column()) : std::vector<double>();
   if (grid.empty()) return axis.scale;

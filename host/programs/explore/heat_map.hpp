@@ -28,8 +28,8 @@ struct MapAxis {
 /// The range is extended to contain the scene's value.
 std::vector<MapAxis> map_axes(const Scene& scene, double theta_max_deg);
 
-/// The part of the wavelength axis `axis` in which n and k are known. It may be too short for a material from a file.
-/// If n and k are known at only one wavelength, both ends are this wavelength.
+/// The part of the wavelength axis `axis` in which n and k are known. For a material from a file, a short search finds
+/// the ends, so the part may be too small. If n and k are known at only one wavelength, both ends are equal.
 Scale known_part(const Scene& scene, const MapAxis& axis);
 
 std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range);  ///< why an axis cannot have `range`
@@ -56,7 +56,7 @@ class HeatMap {
   struct Level {
     std::size_t count;  ///< number of rows, and of columns
     double tolerance;   ///< the map has this tolerance or that of the scene, whichever is larger
-    std::size_t batch;  ///< a JobPart has the points at this number of values of slower()
+    std::size_t batch;  ///< number of values of slower() in a JobPart
   };
   // While the user drags a slider, the curve has to wait for the JobPart that is running. So the first parts are small.
   static constexpr std::array<Level, 3> kLevels = {{{16, 1e-2, 2}, {64, 1e-2, 8}, {128, 0.0, 4}}};
@@ -107,7 +107,7 @@ class HeatMap {
   const MapAxis& slower() const { return is_turned() ? x_ : y_; }
   const MapAxis& faster() const { return is_turned() ? y_ : x_; }
   std::size_t batch(std::size_t level) const { return slower().column().empty() ? 1 : kLevels[level].batch; }
-  PointList part(std::size_t level, std::size_t first) const;  ///< points at batch() values of slower(), from `first`
+  PointList part(std::size_t level, std::size_t first) const;  ///< batch() values of slower(), from number `first`
   const Point& point_at(std::size_t finest, std::size_t row, std::size_t column) const;
 
   std::string key_;

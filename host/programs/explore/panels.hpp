@@ -56,7 +56,7 @@ struct ImagePolarisation {
 
 /// The polarisation of a surface element in a camera's image. The normal of the element is tilted by `theta_deg` from
 /// the direction to the camera, towards `azimuth_deg` in the image. Interpolates in `curve`; empty if a neighbour of
-/// `theta_deg` is not good. The electric field of p light (Q < 0) points along the azimuth, of s light across it.
+/// `theta_deg` is not good. The electric field of p light (Q < 0) has the azimuth; of s light, azimuth + 90°.
 std::optional<ImagePolarisation> polarisation_at(const std::vector<Point>& curve, double theta_deg, double azimuth_deg);
 
 /// DOLP of a bistatic scene for all directions of the source: for each azimuth of the source a curve over its zenith.

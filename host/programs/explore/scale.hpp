@@ -36,7 +36,7 @@ struct Scale {
   Scale including(double value) const {
     return is_log && !(value > 0.0) ? *this : Scale{std::min(from, value), std::max(to, value), is_log};
   }
-  /// This range on a linear or logarithmic scale. If from <= 0, a logarithmic range starts at to/180, for 90° at 0.5°.
+  /// This range on a linear or logarithmic scale. If from <= 0, a logarithmic range starts at to/180: 0.5° of 90°.
   Scale with_log(bool wants_log) const;
 
   /// At most `most` (at least 2) round values in the range. A linear range has multiples of 1, 2 or 5 times a power of

@@ -31,12 +31,12 @@ struct Control {
   bool is_number() const { return key->type == Key::Type::kNumber; }
 };
 
-const Key& described(const std::string& key);  ///< the key must exist
+const Key& described(const std::string& key);  ///< description of a scene key, which must exist
 
 /// The controls of all keys that the window can change. The keys of the films (n, k, thickness) come last.
 const std::vector<Control>& controls();
 
-const Control& control(std::string_view key);                ///< the key must have a control
+const Control& control(std::string_view key);                ///< the control of a scene key, which must have one
 Scale range_in(const Scene& scene, const Control& control);  ///< the part of the slider's range that the masking allows
 std::string table_of(const std::string& key);                ///< "surface.coating.1" of "surface.coating.1.n"
 std::string unit_text(const Key& key);                       ///< unit for display: "°" for "degree", "" for "1"
@@ -64,7 +64,7 @@ class SceneEdits {
   const Scene& opened() const { return opened_; }
   bool is_changed() const { return changes() != saved_; }
   void note_saved() { saved_ = changes(); }  ///< makes is_changed() false until the next change
-  /// Takes scene and changes from `other`. Keeps its own last note_saved() if both have the same scene file.
+  /// Takes scene and changes from `other`. Keeps the state of the last note_saved() if both have the same scene file.
   void go_to(const SceneEdits& other);
   bool is_same_scene(const SceneEdits& other) const { return is_same_file(other) && changes() == other.changes(); }
   const std::vector<Setting>& changes() const { return scene_.settings(); }  ///< including the settings of opened()

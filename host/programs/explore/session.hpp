@@ -70,8 +70,8 @@ class Session {
 
   explicit Session(SceneEdits edits);
 
-  // Commands. If the scene refuses a command, message() has the reason and nothing else changes. If a command needs
-  // other choices, it makes them, and message() names them.
+  // Commands. If the scene refuses a command, message() has the reason and nothing else changes. If a command also has
+  // to change other keys, message() names them.
   void set(const std::string& key, const Value& value) { set({{key, value}}); }
   void set(const std::vector<Setting>& changes);
   void reset(const std::string& key);
@@ -207,7 +207,7 @@ class Session {
   std::optional<SceneEdits> visited_;    ///< the fitted scene at the minimum that the user visited
   std::size_t minimum_ = 0;
   std::vector<Effect> effects_;
-  std::pair<std::string, double> influences_of_;  ///< for which effects_ were estimated: key of the curve, zenith
+  std::pair<std::string, double> influences_of_;  ///< curve key and zenith for which effects_ were estimated
   Message message_;
   std::vector<std::string> remarks_;  ///< remarks on the scene that message() has shown before
   bool is_changed_ = true;

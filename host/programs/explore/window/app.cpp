@@ -130,7 +130,7 @@ std::string App::run_frames(std::size_t count, const std::string& screenshot_pat
   const bool wants_picture = !screenshot_path.empty();
   Clock::time_point start = Clock::now();
   for (std::size_t left = count; left > 0; --left) {
-    // Waits for all results before the last frames. There are several, because ImGui needs some frames for its layout.
+    // Waits for all results before the last frames. ImGui needs several frames to adapt its layout.
     if (wants_picture && left <= kFramesAfterEvent) {
       for (exchange(); !is_idle(); exchange()) std::this_thread::sleep_for(kPause);
       start = Clock::now();

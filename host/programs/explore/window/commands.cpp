@@ -123,7 +123,7 @@ namespace {
 
 using Path = const std::string&;
 
-/// A path for saving: the scene's file name with `ending`, in the folder chosen last for this scene; at first, its own.
+/// A path for saving: the scene file's name with `ending`, in the folder used last for this file, or in the file's own.
 std::string suggested_path(const Ui& ui, const std::string& ending) {
   const std::filesystem::path file = ui.session.scene().name();
   const std::filesystem::path folder = file == ui.saved.first ? ui.saved.second : file.parent_path();

@@ -258,7 +258,7 @@ void CurveView::choose_axes(const Session& session, Zoom& zoom, const Scale& zen
   if (has_zeniths) zoom.x = zoom.x->within(zeniths);
   x_ = has_zeniths ? *zoom.x : zeniths;
   const bool is_same = quantity_ == session.view().quantity && y_.is_log == values.is_log;
-  // Applies the range that the user chose only if it is logarithmic or linear as the axis is.
+  // Applies the range that the user chose only if its scale, linear or logarithmic, is the scale of the axis.
   if (zoom.y && zoom.y->is_log == values.is_log) {
     values = *zoom.y;
   } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left) && is_same) {

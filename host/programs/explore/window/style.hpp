@@ -60,7 +60,7 @@ inline constexpr float kFontPixels = 15.0F;  ///< default size of the font
 
 float scaled(float pixels);  ///< converts a length, given for text of kFontPixels, to the current text size
 std::string shown(std::string_view text);  ///< `text`, or ascii(text) if the font has no Greek
-std::string ascii(std::string_view text);  ///< names replace Greek letters and signs
+std::string ascii(std::string_view text);  ///< `text` with names instead of Greek letters and signs
 
 /// Breaks a text into lines of at most `width`, at spaces. A longer word stays whole.
 std::string in_lines(std::string text, float width);

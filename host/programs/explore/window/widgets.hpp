@@ -47,7 +47,7 @@ struct ListEntry {
 };
 
 /// Draws a list that opens on a click. The closed list shows `current`, and has the tooltip `note`. The area of the
-/// list has the name `id`. Returns the entry that the user clicks, unless it is `chosen`, the present one.
+/// list has the name `id`. Returns the entry that the user clicks, unless it is the entry `chosen`.
 std::optional<std::size_t> draw_list(const std::string& id, float width, const std::string& current,
                                      const std::string& note, std::optional<std::size_t> chosen,
                                      const std::vector<ListEntry>& entries);

@@ -1,8 +1,8 @@
 """The model's curves for figures 4-7 of the paper, computed by dolp, and numbers that check statements of the paper.
 
 The paper does not print k_s, k_d, c, q, E0 and the masking of its Gaussian curves. So each figure is computed for two
-choices of these values, called readings: `integral`, with the unchanged sample scenes, and `smith`, with other values.
-A Gaussian has the width sigma / sqrt(q - 1), and so the Cauchy distribution's density D(0) of horizontal facets.
+sets of these values, called readings. `integral` has the values of the sample scenes; `smith` replaces some of them.
+A Gaussian has the width sigma / sqrt(q - 1). Then its density D(0) of horizontal facets equals that of the Cauchy.
 """
 import csv
 import dataclasses
@@ -33,8 +33,8 @@ ANGLES_DEG = np.arange(90 * STEPS_PER_DEGREE + 1) / STEPS_PER_DEGREE
 MODEL_FAILS = 1 | 4 | 8  # status bits: rho outside [0, 1], outside the domain, I <= 0
 
 FIGURE4_SIGMA, FIGURE4_Q, FIGURE4_THETA_I_DEG = 0.3, 2.0, 30.0
-GRAZING_THETA_I_DEG = 85.0  # angle of incidence at which G (`integral`) over the view zenith has a sharp bend
-GRAZING_DEG = 90.0 - 1e-6  # stands for 90 degrees, where G would be a ratio of two infinite pBRDFs
+GRAZING_THETA_I_DEG = 85.0  # angle of incidence at which the curve of G (`integral`) over the view zenith has a corner
+GRAZING_DEG = 90.0 - 1e-6  # used instead of 90 degrees, where G would be a ratio of two infinite pBRDFs
 
 
 class CannotRun(Exception):
@@ -47,14 +47,14 @@ class CannotRun(Exception):
 
 @dataclasses.dataclass
 class Program:
-    """Runs dolp. `changes` has values for keys in UNPRINTED; they replace the values in READINGS."""
+    """Runs dolp. `changes` has values for keys in UNPRINTED, and has priority over READINGS."""
 
     path: pathlib.Path
     evaluator: str | None = None
     changes: dict = dataclasses.field(default_factory=dict)
 
     def columns(self, command, scene, settings, points, options=()):
-        """The columns that `dolp COMMAND` writes for the columns `points`, by name. Errors: CannotRun."""
+        """Runs `dolp COMMAND` for the columns `points`. Returns its output columns by name. Errors: CannotRun."""
         rows = [",".join(points), *(",".join(map(repr, row)) for row in zip(*(map(float, c) for c in points.values())))]
         line = [str(self.path), command, str(ROOT / "host" / "scenes" / f"{scene}.toml"), "--points", "-", "-o", "-",
                 "--quiet", *options, *(("--evaluator", self.evaluator) if self.evaluator else ())]
@@ -93,7 +93,8 @@ class Curve:
         return float(self.dolp[round(theta_deg * STEPS_PER_DEGREE)])
 
     def peak(self):
-        """Angle and value of the largest DOLP. None if it is at 0 or 90 degrees, or next to where the model fails."""
+        """Angle and value of the largest DOLP. None at 0 or 90 degrees, or if the model fails at the next larger
+        one."""
         held = np.where(self.holds(), self.dolp, -np.inf)
         top = int(np.argmax(held))
         is_inside = 0 < top < held.size - 1 and np.isfinite(held[top + 1])
@@ -112,12 +113,12 @@ def scene_value(sample, settings, key):
 
 
 def width(sigma, q, distribution):
-    """The sigma with which `distribution` has the D(0) of the Cauchy distribution with `sigma` and `q`."""
+    """The sigma with which `distribution` has the same D(0) as the Cauchy distribution with `sigma` and `q`."""
     return sigma / math.sqrt(q - 1.0) if distribution == "gaussian" else sigma
 
 
 def curve(program, sample, reading, mode, distribution, roughness_of=None):
-    """The DOLP curve of a sample, with the sigma of the sample `roughness_of` if this is not None."""
+    """The DOLP curve of a sample. If `roughness_of` names another sample, the curve has the sigma of that sample."""
     settings = READINGS[reading] | program.changes
     q = scene_value(sample, settings, "surface.q")
     sigma = width(scene_value(roughness_of or sample, settings, "surface.sigma"), q, distribution)
@@ -143,7 +144,7 @@ def dolp_curves(program, samples, roughened=False):
 
 def largest_difference(one, other, low, high):
     """The angle from `low` to `high` with the largest difference of DOLP, and this difference. Leaves out angles at
-    which the model fails for a curve."""
+    which the model fails for one of the curves."""
     where = (ANGLES_DEG >= low) & (ANGLES_DEG <= high) & one.holds() & other.holds()
     apart = np.where(where, one.dolp - other.dolp, 0.0)
     worst = int(np.argmax(np.abs(apart)))
@@ -151,8 +152,8 @@ def largest_difference(one, other, low, high):
 
 
 def ranges_above(one, other):
-    """Ranges [from, to] of angles in which the model holds for both curves, and the DOLP of `one` exceeds the DOLP of
-    `other` by more than both numerical errors together."""
+    """Ranges [from, to] of angles in which the DOLP of `one` exceeds the DOLP of `other` by more than the sum of both
+    error bounds. Leaves out angles at which the model fails for one of the curves."""
     is_above = (one.dolp - other.dolp > one.bound + other.bound) & one.holds() & other.holds()
     above = np.concatenate([[False], is_above, [False]])
     edges = np.flatnonzero(above[1:] != above[:-1])
@@ -176,7 +177,7 @@ class Attenuation:
         return np.diff(self.g) / np.radians(1.0 / STEPS_PER_DEGREE)
 
     def corner(self):
-        """Angle and size (1/rad) of the largest jump of dG/dtheta_r, found by one-sided differences of second order."""
+        """The corner of the curve: the angle of the largest jump of dG/dtheta_r, and this jump (1/rad)."""
         g, step = self.g, np.radians(1.0 / STEPS_PER_DEGREE)
         right = (-3.0 * g[2:-2] + 4.0 * g[3:-1] - g[4:]) / (2.0 * step)
         left = (3.0 * g[2:-2] - 4.0 * g[1:-3] + g[:-4]) / (2.0 * step)
@@ -185,7 +186,7 @@ class Attenuation:
 
 
 def attenuation(program, masking, distribution, theta_i_deg):
-    """The masking G: element m00 of the Mueller matrix with masking, divided by m00 without masking, for k_d = 0."""
+    """The masking G: element m00 of the Mueller matrix with masking, divided by m00 without. Sets k_d = 0 for both."""
     view = np.minimum(ANGLES_DEG, GRAZING_DEG)
     points = {"theta_i_deg": np.full(view.size, theta_i_deg), "theta_r_deg": view,
               "delta_phi_deg": np.full(view.size, 180.0)}

@@ -81,7 +81,7 @@ def corner_text(corner):
 
 
 def dolp_markdown(report):
-    """Markdown tables of DOLP: peaks; Cauchy minus Gaussian; where aluminium exceeds steel; all values."""
+    """Markdown tables: peaks of DOLP, Cauchy minus Gaussian, angles where aluminium exceeds steel, all values."""
     curves = report["curves"]
     column = {angle: i for i, angle in enumerate(model.PAPER_ANGLES_DEG)}
     heads = ["masking", "mode", "sample", "distribution", "peak", *(f"{angle}°" for angle in KEY_ANGLES_DEG),

@@ -30,7 +30,7 @@ MARKS = ".x+^sv"
 
 
 def curves(points):
-    """Yields for each data set, quantity and wavelength the columns of the points, as arrays sorted by zenith."""
+    """Yields, for each group of points with equal data set, quantity and wavelength, its columns sorted by zenith."""
     found = {}
     for point in points:
         found.setdefault((point["data"], point["quantity"], point["wavelength_um"]), []).append(point)
@@ -97,7 +97,7 @@ def names_in(points):
 
 
 def zeniths_of_a_spectrum(report):
-    """Zeniths at which to draw DOLP over wavelength. Empty if a plot over zenith can distinguish all wavelengths."""
+    """Zeniths for plots of DOLP over wavelength. Empty if so few wavelengths are measured that one plot is enough."""
     zeniths = sorted({point["theta_deg"] for point in report["points"]})
     wavelengths = {point["wavelength_um"] for point in report["points"]}
     if len(wavelengths) <= max(len(COLOURS), len(zeniths)):
@@ -135,7 +135,7 @@ def draw_spectrum(panels, lower, report, zeniths):
 
 
 def draw_pair(axes, report):
-    """Draws contours of chi^2 minus its minimum over two parameters; chi^2 is minimised over all other parameters."""
+    """Draws chi^2 minus its minimum as contours over two parameters. At each point, all others are fitted."""
     contours = report.get("contours")
     if contours is None:
         axes.set_axis_off()
@@ -185,7 +185,7 @@ def alike(report):
 
 
 def title_of(report):
-    """The scene's title without its wavelengths. If the data have no wavelengths, the scene's spectrum is added."""
+    """The scene's title without its wavelengths. Adds the scene's spectrum if the data have no wavelengths."""
     title = re.sub(r"[, ]*[\d.]+( *[-–] *[\d.]+)? *[uµ]m$", "", report["title"])
     if all(point["wavelength_um"] is None for point in report["points"]):
         ends = dict.fromkeys(f"{end:g}" for end in report["spectrum_um"])

@@ -47,7 +47,7 @@ def results(program, settings, sigma):
 
 
 def sky_exitance(program, sky, band):
-    """The table of a perfect mirror under a sky. Its column stokes_i is pi times the sky's radiance over zenith."""
+    """Table of a perfect mirror under a sky. Its column stokes_i is pi times the sky's radiance at each zenith."""
     return results(program, MIRROR + [sky, band], 0)
 
 

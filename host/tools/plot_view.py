@@ -57,7 +57,7 @@ def draw_curves(axes, plots):
                       markerfacecolor="none", elinewidth=0.8, label="measured")
     set_axes(axes, plots["x"], plots["y"])
     axes.grid(alpha=0.25, linewidth=0.6)
-    entries = {}  # one legend entry per curve, one for all brackets, one for all parts where the model fails
+    entries = {}  # one legend entry per curve, one for all areas BAND, one for all parts MODEL_FAILS
     for handle, label in zip(*axes.get_legend_handles_labels()):
         entries[label if label in (MODEL_FAILS, BAND) else handle] = (handle, label)
     axes.legend(*zip(*entries.values()), frameon=False, fontsize=8)

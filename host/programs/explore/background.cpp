@@ -90,7 +90,7 @@ void Worker::run() {
     try {
       part = advance(task);
     } catch (const Cancelled&) {
-      // want() dropped the job from the list, which cancelled it. If the list has it again, the loop repeats it.
+      // want() has dropped this job, or the worker ends. If want() lists the job again, a later round computes it.
     }
     lock.lock();
     is_running_ = false;

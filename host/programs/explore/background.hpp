@@ -27,11 +27,11 @@ std::jthread run_in_background(Work work, std::future<Result>& result, const std
 }
 
 template <class Result>
-bool is_ended(const std::future<Result>& result) {  // true also for a future without work
+bool is_ended(const std::future<Result>& result) {  // true also if no work was started
   return !result.valid() || result.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
-/// Runs one piece of work at a time on a separate thread. The work itself may call only set_phase().
+/// Runs one piece of work at a time on a separate thread. The work may call no function of this object but set_phase().
 class BackgroundTask {
  public:
   /// A function that finish() calls after the work, in the window's thread. Returns a message for the user. May throw.
@@ -46,7 +46,7 @@ class BackgroundTask {
 
   void start(const Work& work);  ///< does nothing while work is running
   void cancel() { is_cancelled_ = true; }
-  void finish();  ///< calls the Ending if the work has ended
+  void finish();  ///< if the work has ended, calls its Ending, and sets state() and message()
 
   State state() const { return state_; }
   bool is_running() const { return state_ == State::kRunning; }
@@ -79,8 +79,8 @@ class BackgroundTask {
 struct Job {
   std::string key;  ///< jobs with the same key have the same content
   Scene scene;
-  std::vector<PointList> parts;  ///< computed one by one; more urgent jobs may run in between
-  double tolerance = 0.0;        ///< replaces the scene's tolerance if that is lower
+  std::vector<PointList> parts;  ///< lists of points, computed one after the other; more urgent jobs may run in between
+  double tolerance = 0.0;        ///< the job has this tolerance or that of its scene, whichever is larger
   bool keep_all = false;
   bool wants_effects = false;
   bool is_brief = false;  ///< once begun, the job runs to its end even if it is no longer wanted
@@ -89,9 +89,9 @@ struct Job {
 struct JobPart {
   std::string key = {};
   std::size_t part = 0;  ///< position in Job::parts
-  Scene scene;           ///< Job::scene with the tolerance of the computation
+  Scene scene;           ///< Job::scene, with the tolerance with which the points were computed
   std::vector<Point> points = {};
-  std::string csv = {};  ///< the points with the columns of `dolp eval`, if the job wants effects
+  std::string csv = {};  ///< `points` as CSV with the columns of `dolp eval`; only for a job that wants effects
   bool is_last = false;
   // The members below belong to the whole job. Only the last part of a job has them.
   std::vector<Effect> effects = {};
@@ -99,14 +99,14 @@ struct JobPart {
   double evaluations = 0.0;
 };
 
-/// The points of a job that has one part. Until the points of a new job arrive, points() returns those of the old job.
+/// Holds the points of one job, which has one part. While a new job is computed, points() still returns the old points.
 class Sweep {
  public:
-  /// Makes `job` the job of wanted(). Its points differ in `column`, a column of their PointList.
+  /// Sets the job to compute. `column` is the column of the job's PointList that at() returns.
   void follow(Job job, const std::string& column = "theta_deg");
   std::optional<Job> wanted() const { return is_finished() ? std::nullopt : job_; }
   bool take(const JobPart& news);
-  bool is_finished() const { return job_ && shown_key_ == job_->key; }  ///< points() are those of the last follow()
+  bool is_finished() const { return job_ && shown_key_ == job_->key; }  ///< points() belong to the newest job
   const std::vector<Point>& points() const { return points_; }
   const std::vector<double>& at() const { return at_; }  ///< values of `column`, one per point
 
@@ -143,7 +143,7 @@ class Worker {
     arrived_.wait_for(lock, at_most, [this] { return !news_.empty() || is_ended(end_); });
   }
 
-  /// True if all wanted jobs are computed, or if an error ended the worker. take_news() may still return results.
+  /// True if all wanted jobs are computed, or if an error ended the worker. Results may still wait for take_news().
   bool is_idle() const {
     const std::scoped_lock lock(mutex_);
     return (!is_running_ && std::ranges::all_of(tasks_, &Task::is_done)) || is_ended(end_);

@@ -11,7 +11,7 @@
 namespace dolp::explore {
 namespace {
 
-constexpr std::size_t kStride = 10;  // true_error() checks every tenth point: steps of five degrees
+constexpr std::size_t kStride = 10;  // true_error() checks every tenth point of a fine curve: a point every 5 degrees
 
 double dolp_of(const Point& point) { return point[Quantity::kDolp]; }
 
@@ -20,7 +20,7 @@ double most_of(const Point& point) { return dolp_of(point) + point[Quantity::kEr
 struct Removal {
   const char* effect;
   bool radiates;
-  const char* key;  ///< key whose value tells whether a scene has the effect
+  const char* key;  ///< scene key; its value shows whether a scene has the effect
   Setting change;   ///< change of a scene that removes the effect
 
   bool is_in(const Scene& scene) const {
@@ -55,7 +55,7 @@ std::vector<WithoutEffect> without_each(const Scene& scene, const SceneEdits& ed
     try {
       without.push_back({removal.effect, removal.radiates, edits.scene().with({removal.change})});
     } catch (const InputError&) {
-      // The scene needs this effect, for example because nothing else radiates.
+      // Leaves out an effect that the scene needs, for example the only one that radiates.
     }
   }
   return without;

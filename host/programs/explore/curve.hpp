@@ -19,12 +19,12 @@ class Curve {
   explicit Curve(const Scene& scene, std::string name = "curve")
       : name_(std::move(name)), scene_(scene), shown_{.scene = scene}, finished_{.scene = scene} {}
 
-  /// Switches to `scene`, whose content_key() is `key`. points() stay those of the earlier scene until new ones arrive.
+  /// Switches to `scene`, whose content_key() is `key`. Until new points arrive, points() returns the old points.
   void follow(const std::string& key, const Scene& scene, bool keep_all);
 
   std::optional<Job> wanted(Stage stage) const;  ///< job that computes a stage; empty if the stage is done
-  bool take(const JobPart& news);                ///< takes results of the current scene; false for others
-  /// Takes coarse points of an earlier scene, unless points() belong to the current scene. False for other results.
+  bool take(const JobPart& news);  ///< stores results for the current scene; returns false for other results
+  /// Stores coarse points of an earlier scene if the current scene has no points yet. Returns false for other results.
   bool take_earlier(const JobPart& news);
 
   const Scene& scene() const { return scene_; }
@@ -33,9 +33,9 @@ class Curve {
   bool is_stale() const { return !points().empty() && !is_current(); }  ///< points() belong to an earlier scene
   const Scene& shown_scene() const { return points().empty() ? scene_ : shown_.scene; }  ///< the scene of points()
   const std::vector<Point>& points() const { return shown_.points; }
-  std::vector<Point> drawn() const;  ///< points(), with the point of the maximum once it is known
+  std::vector<Point> drawn() const;  ///< points() and, once it is known, the maximum between them
   void set_peak(const Point& peak) { peak_ = peak; }
-  const JobPart& finished() const { return finished_; }  ///< last finished fine curve; without points at first
+  const JobPart& finished() const { return finished_; }  ///< results of the last finished fine curve; empty at first
 
   double worst_error() const {  // largest error bound of DOLP among good points
     double worst = 0.0;
@@ -66,17 +66,17 @@ std::string true_error(const Curve& curve, const Progress& progress);
 /// The peak of a curve: the largest DOLP of its good points (Point::is_good).
 struct PeakAnswer {
   Point at;
-  // Range of zeniths around the peak in which the maximum may lie, because a DOLP may be wrong by its error bound.
+  // From the first to the last zenith around the peak at which DOLP may be largest, within the error bounds.
   double theta_low_deg = 0.0;
   double theta_high_deg = 0.0;
-  std::optional<double> rival_deg;  ///< zenith of another peak that may be higher, within the error bounds
-  bool is_at_end = false;           ///< true if no good point of the search has the next larger zenith
+  std::optional<double> rival_deg;  ///< zenith elsewhere on the curve where DOLP may be higher, within the error bounds
+  bool is_at_end = false;  ///< the peak is the last zenith of the search, or the model fails at the next zenith
 };
 
 /// A scene without one of its effects, and the result of this scene at the zenith of the peak.
 struct WithoutEffect {
-  std::string effect;  ///< Effect::name, or "roughness"
-  bool radiates;       ///< the effect is emission, source or surroundings, whose radiances add up
+  std::string effect;  ///< an Effect::name, or "roughness"
+  bool radiates;       ///< true for emission, source and surroundings: their contributions to Q/I add up
   Scene scene;
   std::optional<Point> result = {};  ///< empty until it is computed
 };
@@ -89,20 +89,20 @@ class Peak {
 
   explicit Peak(const Scene& scene) : scene_(scene) {}
 
-  /// Switches to the peak of a finished curve, at zeniths up to `theta_max_deg`. `edits` holds the scene of the curve.
+  /// Begins the search for the peak of `curve`, up to the zenith `theta_max_deg`. `edits` holds the scene of `curve`.
   void follow(const Curve& curve, const SceneEdits& edits, double theta_max_deg);
 
   std::vector<Job> wanted() const;
   bool take(const JobPart& news);
 
-  const std::optional<PeakAnswer>& answer() const { return answer_; }     ///< empty until known, or if no point is good
+  const std::optional<PeakAnswer>& answer() const { return answer_; }  ///< empty if not known yet or no point is good
   const std::vector<WithoutEffect>& without() const { return without_; }  ///< one per effect that can be removed
   bool is_complete() const {
     return answer_ &&
            std::ranges::all_of(without_, [](const WithoutEffect& removed) { return removed.result.has_value(); });
   }
 
-  /// The part of Q/I at the peak that one radiating effect causes: Stokes parameters of radiating effects add up.
+  /// The contribution of a radiating effect to Q/I at the peak. Contributions of radiating effects add up.
   double contribution(const WithoutEffect& removed) const {
     const Point& at = answer_->at;
     return (at[Quantity::kStokesQ] - (*removed.result)[Quantity::kStokesQ]) / at[Quantity::kStokesI];

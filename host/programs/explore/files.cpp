@@ -61,7 +61,7 @@ toml::array array_of(const Values& values, const TextOf& text_of) {
   return array;
 }
 
-std::string mark_text(const FitMarks::value_type& mark) {  // "KEY", or "KEY=LOW:HIGH" with a typed range
+std::string mark_text(const FitMarks::value_type& mark) {  // "KEY=LOW:HIGH" if the user typed a range, otherwise "KEY"
   const auto& [key, range] = mark;
   return range ? fmt::format("{}={}:{}", key, format_number(range->low), format_number(range->high)) : key;
 }
@@ -80,8 +80,8 @@ FitMarks marks_in(const std::vector<std::string>& texts, const std::string& loca
   return marks;
 }
 
-/// The settings as texts for the file `session`. The sky files in `skies` are temporary. So this function copies a
-/// named one to the folder of `session`, and the text names the copy.
+/// The settings as texts for the file `session`. If a setting names a temporary sky file (in `skies`), copies this file
+/// to the folder of `session`, and the text names the copy.
 toml::array lasting_texts(std::vector<Setting> settings, const SkyFiles& skies, const fs::path& scene,
                           const fs::path& session) {
   for (Setting& setting : settings) {
@@ -126,7 +126,7 @@ toml::table view_table(const Session& session) {
   return table;
 }
 
-/// The value of a node, which must exist. Error messages begin with `location`. Errors: InputError.
+/// The value of `node`. Errors: InputError, beginning with `location`, if the node is missing or has another type.
 template <class T>
 T need(Node node, const std::string& location) {
   const std::optional<T> value = node ? node.value<T>() : std::nullopt;
@@ -137,7 +137,7 @@ T need(Node node, const std::string& location) {
   return *value;
 }
 
-/// The position in `choices` of the choice whose name is the text of `node`. Errors: InputError if no choice has it.
+/// The position in `choices` of the choice whose name is the text of `node`. Errors: InputError if there is none.
 template <class Choices, class NameOf>
 std::size_t need_one_of(const Choices& choices, const NameOf& name_of, Node node, const std::string& location) {
   const auto name = need<std::string>(node, location);

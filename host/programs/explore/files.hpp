@@ -7,12 +7,12 @@
 
 namespace dolp::explore {
 
-/// Writes a session file. Its paths are relative to the folder of `path`. Copies the sky files of Session::skies() into
-/// this folder as NAME_sky_ZENITH_HORIZON.csv, where NAME is the stem of `path`. Errors: IoError.
+/// Writes a session file. Paths in the file are relative to its folder. Copies the temporary sky files,
+/// Session::skies(), to NAME_sky_ZENITH_HORIZON.csv in this folder, where NAME is the stem of `path`. Errors: IoError.
 void save_session(const Session& session, const std::string& path);
 
-/// Writes the scene as TOML and calls Session::note_saved(). If the scene names a sky file of Session::skies(), copies
-/// this file to NAME_sky.csv in the folder of `path`, and writes the name of the copy. Errors: IoError.
+/// Writes the scene as TOML and calls Session::note_saved(). If the scene uses a temporary sky file (Session::skies()),
+/// writes NAME_sky.csv with this sky beside the TOML file, which then names NAME_sky.csv. Errors: IoError.
 void save_scene(Session& session, const std::string& path);
 
 /// Writes the curve as CSV with the columns of `dolp eval`. Errors: InputError if the curve is not finished; IoError.
@@ -20,7 +20,7 @@ void save_curve(const Session& session, const std::string& path);
 
 bool is_session_file(const std::string& path);  ///< false also if the file cannot be read
 
-/// Opens a file with measured points (.csv), a scene or a session. Errors: InputError; `session` then stays unchanged.
+/// Opens measured points (a .csv file), a scene or a session. Errors: InputError; `session` then stays unchanged.
 void open_file(Session& session, const std::string& path);
 
 class Preferences {

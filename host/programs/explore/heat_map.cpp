@@ -13,7 +13,7 @@ namespace {
 
 struct AxisOfNumber {
   std::string name, key;
-  std::optional<Scale> range = {};  ///< range of the map's axis; empty: the range of the slider
+  std::optional<Scale> range = {};  ///< range of the map axis; if empty, the range of the slider for `key`
 };
 
 /// All axes except the zenith. Sigma and the wind speed have the same name, because no scene has sliders for both.
@@ -35,7 +35,7 @@ const std::vector<AxisOfNumber>& axes_of_numbers() {
   return all;
 }
 
-/// The range of the values that the scene's grid has on an axis. If the grid has no values, returns axis.scale.
+/// The range of the values that the scene's grid has on an axis. If the grid has no range, returns axis.scale.
 Scale grid_range(const Scene& scene, const MapAxis& axis) {
   const std::vector<double> grid = axis.is_of_tables() ? scene.numbers("grid." + axis.column()) : std::vector<double>();
   if (grid.empty()) return axis.scale;
@@ -49,7 +49,7 @@ struct Corner {
 };
 constexpr std::array<Corner, 4> kCorners = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};  // counterclockwise
 
-/// Adds the contour lines in the square whose lower left corner is (column, row).
+/// Adds the contour lines in one square of the map. Its lower left corner is the point (column, row) of `field`.
 void add_lines(const MapField& field, double level, std::size_t column, std::size_t row, std::vector<Segment>& lines) {
   std::array<double, 4> value{};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -68,7 +68,7 @@ void add_lines(const MapField& field, double level, std::size_t column, std::siz
     };
     crossings.emplace_back(between(column, &Corner::x), between(row, &Corner::y));
   }
-  // Two crossings on the border of the square give one line. Four crossings, around a saddle, give two lines.
+  // Two crossings on the border of the square give one line; four crossings, around a saddle point, give two lines.
   for (std::size_t i = 0; i + 1 < crossings.size(); i += 2)
     lines.push_back({crossings[i].first, crossings[i].second, crossings[i + 1].first, crossings[i + 1].second});
 }
@@ -164,7 +164,7 @@ PointList HeatMap::part(std::size_t level, std::size_t first) const {
     list[faster().column()] = fast;
     return list;
   }
-  // A grid has no axis for films. So lists all combinations as single points.
+  // A grid has no axis for films. So this list has one point for each combination of values.
   std::vector<double> all_slow, all_fast;
   for (const double value : slow) {
     all_fast.insert(all_fast.end(), fast.begin(), fast.end());

@@ -11,16 +11,16 @@ struct MapAxis {
   std::string key = {};  ///< scene key of the axis; empty for the zenith
   Scale scale = {0.0, 90.0};
 
-  /// Name of the axis in a PointList. Empty for the temperature, because a PointList sets it by PointList::changes.
+  /// Name of the axis in a PointList. Empty for the temperature, which is one of PointList::changes instead.
   std::string column() const {
     if (key.empty()) return "theta_deg";
     if (key == "emission.temperature_K") return {};
     return key.starts_with("surface.coating") ? key : key.substr(key.find('.') + 1);
   }
-  /// The map lists its points so that the axis with the smaller rank changes more slowly. Rank 0 is the temperature,
-  /// rank 1 a number of a film; from rank 2 the axes are those that tables can have, in the order of tables.
+  /// Of two axes, the one with the smaller rank changes more slowly along the list of points. Rank 0 is the
+  /// temperature, rank 1 a thickness of a film. From rank 2 the axes are those of tables, in the order of tables.
   std::size_t rank() const;
-  bool is_of_tables() const { return rank() >= 2; }  ///< true if tables can have this axis
+  bool is_of_tables() const { return rank() >= 2; }  ///< true if a table of `dolp table` can have this axis
   friend bool operator==(const MapAxis&, const MapAxis&) = default;
 };
 
@@ -28,8 +28,8 @@ struct MapAxis {
 /// The range is extended to contain the scene's value.
 std::vector<MapAxis> map_axes(const Scene& scene, double theta_max_deg);
 
-/// The part of the wavelength axis `axis` in which n and k are known. For a material from a file, the result may leave
-/// out some of that part. Both ends are equal if n and k are known at only one wavelength.
+/// The part of the wavelength axis `axis` in which n and k are known. For a material from a file, a short search finds
+/// the ends, so the part may be too small. If n and k are known at only one wavelength, both ends are equal.
 Scale known_part(const Scene& scene, const MapAxis& axis);
 
 std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range);  ///< why an axis cannot have `range`
@@ -37,7 +37,7 @@ std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range)
 /// Values of one quantity on a map: `count` rows of `count` values. x grows along a row, and y from row to row.
 struct MapField {
   std::size_t count = 0;
-  std::vector<double> values;  ///< NaN where there is no value, and for entries with a bad status
+  std::vector<double> values;  ///< NaN where the point is not good (Point::is_good) or has no value
   double min = 0.0;            ///< smallest value; `max` is the largest value
   double max = 0.0;
 };
@@ -55,26 +55,26 @@ class HeatMap {
  public:
   struct Level {
     std::size_t count;  ///< number of rows, and of columns
-    double tolerance;   ///< replaces the scene's tolerance if that is lower
-    std::size_t batch;  ///< number of values of slower() that are computed together, in one JobPart
+    double tolerance;   ///< the map has this tolerance or that of the scene, whichever is larger
+    std::size_t batch;  ///< number of values of slower() in a JobPart
   };
-  // While the user drags a slider, the curve waits for a JobPart of the first level. So its batch is only 2.
+  // While the user drags a slider, the curve has to wait for the JobPart that is running. So the first parts are small.
   static constexpr std::array<Level, 3> kLevels = {{{16, 1e-2, 2}, {64, 1e-2, 8}, {128, 0.0, 4}}};
 
   explicit HeatMap(const Scene& scene) : scene_(scene) {}
 
-  /// Switches to the map over the axes `x` and `y`. `key` identifies the map, whatever the scene's values on these axes
-  /// are. If neither axis is the zenith, the map is for the zenith `theta_deg`.
+  /// Switches to the map over the axes `x` and `y`. `key` identifies the map; it does not contain the scene's values on
+  /// these axes. If neither axis is the zenith, the map is for the zenith `theta_deg`.
   void follow(const std::string& key, const Scene& scene, bool keep_all, const MapAxis& x, const MapAxis& y,
               double theta_deg);
 
   std::optional<Job> wanted(std::size_t level) const;
-  /// Takes results of this map; returns false for others. The map shows the first level only when it is complete.
+  /// Stores results for this map; returns false for other results. The first level is shown only when it is complete.
   bool take(const JobPart& news);
   bool is_finished() const { return is_current() && is_complete(kLevels.size() - 1); }
   bool is_coarse_done() const { return is_current() && !points_[0].empty(); }
-  bool is_arriving() const { return arriving_key_ == key_ && !arriving_.empty(); }  ///< a part of level 0 has arrived
-  bool is_stale() const { return !shown_key_.empty() && !is_current(); }            ///< displays an earlier map
+  bool is_arriving() const { return arriving_key_ == key_ && !arriving_.empty(); }  ///< level 0 has some points
+  bool is_stale() const { return !shown_key_.empty() && !is_current(); }  ///< the map on display is an earlier one
 
   const MapAxis& x() const { return x_; }
   const MapAxis& y() const { return y_; }
@@ -95,7 +95,7 @@ class HeatMap {
   }
   std::size_t version() const { return version_; }  ///< changes whenever the field changes
 
-  /// The values on the grid of the finest level with points. Missing points get the value of a coarser point nearby.
+  /// Values on the grid of the finest level that has begun. A missing point has the value of the nearest coarser point.
   MapField field(Plotted quantity) const;
 
  private:
@@ -103,11 +103,11 @@ class HeatMap {
   bool is_current() const { return shown_key_ == key_; }
   bool is_complete(std::size_t level) const { return points_[level].size() == entries(level); }
   std::string key_of(std::size_t level) const { return "map " + std::to_string(kLevels[level].count) + ' ' + key_; }
-  bool is_turned() const { return x_.rank() < y_.rank(); }  ///< x is the slower axis
+  bool is_turned() const { return x_.rank() < y_.rank(); }  ///< true if x changes more slowly in lists of points
   const MapAxis& slower() const { return is_turned() ? x_ : y_; }
   const MapAxis& faster() const { return is_turned() ? y_ : x_; }
   std::size_t batch(std::size_t level) const { return slower().column().empty() ? 1 : kLevels[level].batch; }
-  PointList part(std::size_t level, std::size_t first) const;  ///< from value number `first` of slower()
+  PointList part(std::size_t level, std::size_t first) const;  ///< batch() values of slower(), from number `first`
   const Point& point_at(std::size_t finest, std::size_t row, std::size_t column) const;
 
   std::string key_;
@@ -116,7 +116,7 @@ class HeatMap {
   MapAxis x_, y_{.name = "sigma"};
   double theta_deg_ = 0.0;
   std::string shown_key_;                                  ///< key of the map on display
-  std::array<std::vector<Point>, kLevels.size()> points_;  ///< one list per level; faster() changes first
+  std::array<std::vector<Point>, kLevels.size()> points_;  ///< one list per level; neighbours differ in faster()
   std::string arriving_key_;
   std::vector<Point> arriving_;  ///< points of the first level while it is incomplete
   std::size_t version_ = 0;

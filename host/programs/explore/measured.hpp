@@ -7,7 +7,7 @@
 
 namespace dolp::explore {
 
-Plotted plotted(Observable observable);  ///< the plotted quantity that equals a measured one
+Plotted plotted(Observable observable);  ///< the quantity of the plot in which measured values of `observable` appear
 
 /// Reads measured points. Accepts only a regular file, because the window must not wait for a pipe. Errors: InputError.
 MeasuredData read_measured(const std::string& path);
@@ -54,15 +54,14 @@ struct FitJob {
   std::vector<FitRange> vary;
 };
 
-/// Fits as `dolp fit` does. Errors: InputError if no minimum was found, or if the scene does not allow the measured
-/// points or the varied numbers; the other errors of Evaluator::fit; Cancelled.
+/// Fits as `dolp fit` does. Errors: InputError if no minimum was found, and the errors of Evaluator::fit.
 Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress,
             const std::function<void(const std::string&)>& phase = {});
 
-/// The position in Fit::minima of the minimum nearest to the scene of `job`, with distances in FitRange::coordinate.
+/// Position in Fit::minima of the minimum nearest to the start. Each number is scaled to [0, 1] (FitRange::coordinate).
 std::size_t nearest_minimum(const Fit& fit, const FitJob& job);
 
-std::string fit_text(const Fit& fit, std::size_t chosen);  ///< one line about the chosen minimum
+std::string fit_text(const Fit& fit, std::size_t chosen);  ///< one line about minimum number `chosen`
 std::string interval_text(const FitInterval& interval);    ///< "1.2 to 1.5"; "open" for an end without a value
 
 }  // namespace dolp::explore

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kSpecularAzimuth_deg = 180.0;  // azimuth from the source to the mirror direction
 
-std::pair<double, double> known_um(const Scene& scene) {  // wavelengths of material_curve()
+std::pair<double, double> known_um(const Scene& scene) {  // range of the wavelengths in material_curve()
   const auto spectrum = spectrum_um(scene);
   for (const BuiltInMaterial& known : materials()) {
     if (known.name == scene.word("surface.material")) return {known.from_um, known.to_um};

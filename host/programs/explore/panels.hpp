@@ -30,8 +30,8 @@ struct MaterialCurve {
   std::vector<double> wavelength_um, n, k;
 };
 
-/// n and k of the surface at all known wavelengths of a built-in material. For other materials: over the scene's band,
-/// or from 20 % below to 25 % above the scene's wavelength.
+/// n and k of the surface over wavelength. A built-in material has all its known wavelengths. Any other material has
+/// the scene's band, or the range from 20 % below to 25 % above the scene's wavelength.
 MaterialCurve material_curve(const Scene& scene, std::size_t count);
 
 std::pair<double, double> spectrum_um(const Scene& scene);  ///< ends of the band; equal for a single wavelength
@@ -55,8 +55,8 @@ struct ImagePolarisation {
 };
 
 /// The polarisation of a surface element in a camera's image. The normal of the element is tilted by `theta_deg` from
-/// the direction to the camera, towards `azimuth_deg` in the image. Interpolates between the two neighbours of
-/// `theta_deg` in `curve`; empty if one of them is not good. The electric field of p light (Q < 0) has the azimuth.
+/// the direction to the camera, towards `azimuth_deg` in the image. Interpolates in `curve`; empty if a neighbour of
+/// `theta_deg` is not good. The electric field of p light (Q < 0) has the azimuth; of s light, azimuth + 90°.
 std::optional<ImagePolarisation> polarisation_at(const std::vector<Point>& curve, double theta_deg, double azimuth_deg);
 
 /// DOLP of a bistatic scene for all directions of the source: for each azimuth of the source a curve over its zenith.
@@ -65,7 +65,7 @@ class SourceSky {
   static constexpr std::size_t kZeniths = 31;   ///< 0 to 90 degrees
   static constexpr std::size_t kAzimuths = 37;  ///< 0 to 180 degrees; the other half of the sky is the mirror image
 
-  void follow(const std::string& key, const Scene& scene);  ///< `key`: content_key() for any azimuth
+  void follow(const std::string& key, const Scene& scene);  ///< `key`: content_key() without the azimuth of the source
   std::vector<Job> wanted() const {                         // one job for each azimuth that is not computed yet
     std::vector<Job> jobs;
     for (const Sweep& ring : rings_) {

@@ -11,10 +11,10 @@
 
 namespace dolp::explore {
 
-/// Points to compute: a grid with axes, or a list with columns. A column has a value per point, or one for all points.
+/// Points to compute: a grid with axes, or a list with columns. A column has a value for each point, or a single value.
 struct PointList {
   std::vector<std::pair<std::string, std::vector<double>>> values;  ///< columns or axes, named as in `dolp eval`
-  /// True: `values` are axes, and the points are all combinations of their values, in the order of the table's entries.
+  /// True: `values` are axes. The points are all combinations of their values, in the order of entries in a table.
   bool is_grid = false;
   std::vector<Setting> changes = {};  ///< settings of the scene that hold for all points
 
@@ -35,9 +35,9 @@ std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count); 
 
 Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list, const RunOptions& options);
 
-/// The results at a point, in the units of a table.
+/// The results at a point, in the units that `dolp table` uses.
 struct Point : PointResult {
-  double theta_deg = 0.0;  ///< not set if the point is part of a grid
+  double theta_deg = 0.0;  ///< meaningless if the point is part of a grid
 
   /// True if the status has no bit that makes DOLP meaningless or voids its error bound.
   bool is_good() const { return promises_dolp(status) && std::isfinite(values[Quantity::kDolp]); }
@@ -56,11 +56,11 @@ struct PlottedDescription {
   const char* name;               ///< name in UTF-8
   const char* meaning;            ///< text in UTF-8, with the equation
   bool in_percent;                ///< true: plots show 100 times the value
-  bool needs_rho;                 ///< true: computed from rho, so a run must keep all effects
+  bool needs_rho;                 ///< true: computed from rho; a run then keeps effects that change only rho
   double (*value)(const Point&);  ///< NaN where the model gives no value
   bool is_signed = false;
 
-  double shown(const Point& point) const { return scale() * value(point); }  ///< in the unit of the label
+  double shown(const Point& point) const { return scale() * value(point); }  ///< value() in the unit of label()
   double scale() const { return in_percent ? 100.0 : 1.0; }
   std::string label() const { return std::string(name) + (in_percent ? " [%]" : ""); }
 };

@@ -23,8 +23,8 @@ struct Part {
   double q_over_i;  ///< contribution of the effect to Q/I at the peak
 };
 
-/// The contributions of emission, source and surroundings, which add up to Q/I at the peak. If one of them cannot be
-/// removed from the scene, for example because nothing else radiates, it gets the rest of Q/I.
+/// The contributions of emission, source and surroundings to Q/I at the peak. If the scene needs one of them, so that
+/// Peak::without() lacks it, its contribution is the rest of Q/I.
 std::vector<Part> radiating_parts(const Session& session) {
   const Peak& peak = session.peak();
   double rest = peak.answer()->at[Quantity::kQOverI];

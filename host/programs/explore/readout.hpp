@@ -15,14 +15,14 @@ std::string peak_text(const Session& session);   ///< position of the maximum, a
 std::string cause_text(const Session& session);  ///< the parts of Q/I at the maximum: emission, source, surroundings
 std::string no_residuals_text(const Session& session, const Scale& theta);  ///< why the plot shows no residuals, or ""
 std::string cursor_text(const Session& session);
-/// Q/I at the maximum with all effects and without one, in percent: "-14.36 → -59.59 %". Empty if it is not known.
+/// Q/I in percent at the maximum, with all effects and without `effect`: "-14.36 → -59.59 %". Empty if not known.
 std::string without_text(const Session& session, const std::string& effect);
-/// A sentence about the numbers of without_text(). Empty without numbers, or if the model fails without the effect.
+/// The numbers of without_text() in a sentence. Empty if without_text() has no numbers.
 std::string without_words(const Session& session, const std::string& effect);
 std::vector<std::string> cost_lines(const Session& session);  ///< time, work and error of the finished curve
 std::string table_command(const SceneEdits& edits);           ///< a shell command that writes the scene's table
 /// JSON for tools/plot_view.py: the visible curves with the axes `x` and `y`, the measured points, and the map if the
-/// window shows it. Values are in the units of the labels; null where the model gives no value.
+/// window shows it. Values have the units of the labels. A value is null where the model gives none.
 std::string plot_json(const Session& session, const Scale& x, const Scale& y);
 
 }  // namespace dolp::explore

@@ -9,7 +9,7 @@
 namespace dolp::explore {
 namespace {
 
-constexpr double kRounding = 1e-9;  // a tick may lie outside the range by this share of the step between ticks
+constexpr double kRounding = 1e-9;  // relative rounding error by which a tick may lie outside the range
 
 std::vector<double> linear_ticks(double low, double high, std::size_t most) {
   const double rough = (high - low) / static_cast<double>(most);
@@ -44,7 +44,7 @@ std::vector<double> log_ticks(double low, double high, std::size_t a_decade) {
 }  // namespace
 
 std::string Scale::refusal() const {
-  constexpr double kLeastSpan = 1e-9;  // smallest (to - from)/max(|from|, |to|); below it, rounding errors move points
+  constexpr double kLeastSpan = 1e-9;  // least (to - from)/max(|from|, |to|), because of rounding errors
   if (!std::isfinite(to - from)) return "must be finite";
   if (!(from < to)) return "must be from < to";
   if (is_log && from <= 0.0) return "must be above 0 on a logarithmic axis";
@@ -95,7 +95,7 @@ Scale range_of(std::vector<double> values, bool is_log) {
   const auto [low, high] = std::ranges::minmax(values);
   if (is_log) {
     constexpr double kMostDecades = 1e6;
-    constexpr double kRoom = 4.0;  // the axis ends at kRoom * largest value; the mark of the maximum fits above
+    constexpr double kRoom = 4.0;  // the axis ends at kRoom * largest value, so that a mark fits above the maximum
     return {std::max(low / 1.5, kRoom * high / kMostDecades), kRoom * high, true};
   }
   const double room = 0.06 * std::max(high - low, 1e-9);

@@ -9,8 +9,8 @@
 
 namespace dolp::explore {
 
-/// A linear or logarithmic range of values. The position of a value is 0 at `from` and 1 at `to`. The functions other
-/// than refusal() need a range for which refusal() is empty.
+/// A linear or logarithmic range of values. The position of a value is 0 at `from` and 1 at `to`. Call other functions
+/// only if refusal() is empty.
 struct Scale {
   double from = 0.0;
   double to = 1.0;
@@ -36,12 +36,12 @@ struct Scale {
   Scale including(double value) const {
     return is_log && !(value > 0.0) ? *this : Scale{std::min(from, value), std::max(to, value), is_log};
   }
-  /// This range as a linear or logarithmic one. A logarithmic range that would begin at or below 0 begins at to/180.
+  /// This range on a linear or logarithmic scale. If from <= 0, a logarithmic range starts at to/180: 0.5° of 90°.
   Scale with_log(bool wants_log) const;
 
-  /// At most `most` (at least 2) round values in the range. On a linear range: multiples of 1, 2 or 5 times a power of
-  /// ten. On a logarithmic range: powers of ten, and 2 and 5 times these if there is room. If a logarithmic range has
-  /// fewer than three such values, returns those of a linear range.
+  /// At most `most` (at least 2) round values in the range. A linear range has multiples of 1, 2 or 5 times a power of
+  /// ten. A logarithmic range has powers of ten and, if they are not too many, 2 and 5 times these. If there are fewer
+  /// than three such values, a logarithmic range has the values of a linear range.
   std::vector<double> ticks(std::size_t most) const;
 
   friend bool operator==(const Scale&, const Scale&) = default;

@@ -30,7 +30,7 @@ std::string with_number(const Scene& scene, const char* symbol, const std::strin
   return fmt::format("{} {:.4g}{}", symbol, scene.number(key).value(), unit);
 }
 
-/// The material of the surface or of a film as text: a name, a file, or n and k. `table` is the table of its keys.
+/// The material in `table`, a TOML table such as "surface.coating.1", as text: a name, a file, or n and k.
 std::string material_of(const Scene& scene, const std::string& table) {
   if (table == "surface" && !has_index(scene)) return *scene.word("surface.reflectance_file");
   for (const char* name : {".material", ".material_file"}) {
@@ -121,7 +121,7 @@ Control film_control(const Key& key) {
 
 constexpr const char* kCoating = "surface.coating";
 
-/// True if `change` replaces or removes the value that an earlier change gave the key `other`.
+/// True if `change` replaces or removes an earlier setting of the key `other`.
 bool replaces(const Setting& change, const std::string& other) {
   const std::string& key = change.key;
   if (other == key || other == table_of(key)) return true;
@@ -131,8 +131,8 @@ bool replaces(const Setting& change, const std::string& other) {
   return std::ranges::count(described(key).rivals, other) > 0;
 }
 
-/// Settings that are compatible with every other choice. They replace a wind speed, which requires Gaussian slopes, by
-/// sigma, and remove the air, which requires a built-in sky.
+/// Settings with which all other choices are possible. Sigma replaces a wind speed, which requires Gaussian slopes. The
+/// temperature and vapour of the air, which require a built-in sky, are removed.
 std::vector<Setting> compatible_words(const Scene& scene) {
   std::vector<Setting> words = {{"surface.masking", "v-cavity"},    {"surface.scattering", "single"},
                                 {"emission.model", "moments"},      {"emission.bracket", false},

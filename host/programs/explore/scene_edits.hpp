@@ -18,7 +18,7 @@ struct Control {
   std::string label;     ///< symbol of a number, or name of a choice, in UTF-8
   const char* equation;  ///< formula or explanation for a tooltip, in UTF-8
   Scale slider = {};     ///< range of the slider; the user can also type other values
-  /// Returns false if the scene does not use the key; the window then hides the control. Null: the control never hides.
+  /// True if the scene uses the key; otherwise the window hides the control. Null: the window always shows the control.
   bool (*is_used)(const Scene& scene) = nullptr;
   std::optional<double> standard = {};  ///< default value of a number that a scene may omit
 
@@ -31,29 +31,29 @@ struct Control {
   bool is_number() const { return key->type == Key::Type::kNumber; }
 };
 
-const Key& described(const std::string& key);  ///< the key must exist
+const Key& described(const std::string& key);  ///< description of a scene key, which must exist
 
 /// The controls of all keys that the window can change. The keys of the films (n, k, thickness) come last.
 const std::vector<Control>& controls();
 
-const Control& control(std::string_view key);                ///< the key must have a control
+const Control& control(std::string_view key);                ///< the control of a scene key, which must have one
 Scale range_in(const Scene& scene, const Control& control);  ///< the part of the slider's range that the masking allows
 std::string table_of(const std::string& key);                ///< "surface.coating.1" of "surface.coating.1.n"
 std::string unit_text(const Key& key);                       ///< unit for display: "°" for "degree", "" for "1"
 bool is_bistatic(const Scene& scene);
 
-/// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1". Omits words about the roughness that
-/// also describe the surface of `other`. If the surfaces are equal, adds other numbers in which the scenes differ.
+/// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1". Leaves out words about roughness that
+/// the name of `other` has too. If the surfaces are equal, adds other numbers in which the scenes differ.
 std::string surface_name(const Scene& scene, const Scene* other = nullptr);
 
-/// A scene file with changes. `dolp eval` gives the results of the window if --set makes these changes.
+/// A scene file with changes. `dolp eval` computes the same results from the file if --set makes the same changes.
 class SceneEdits {
  public:
   explicit SceneEdits(const Scene& opened) : opened_(opened), scene_(opened), saved_(opened.settings()) {}
   SceneEdits(const Scene& opened, const std::vector<Setting>& changes) : SceneEdits(opened) { become(changes); }
 
-  /// A change of a key removes the alternatives of this key: `material` removes n and k. A table name with an empty
-  /// value, such as "source", removes the table. Errors: InputError; the scene then stays unchanged.
+  /// Sets keys. A new key removes its alternatives: `material` removes n and k. A table name with an empty value, such
+  /// as "source", removes the table. Errors: InputError; the scene then stays unchanged.
   void set(const std::vector<Setting>& changes);
 
   /// Restores a key or a whole table of the opened scene. Errors: the errors of set().
@@ -64,10 +64,10 @@ class SceneEdits {
   const Scene& opened() const { return opened_; }
   bool is_changed() const { return changes() != saved_; }
   void note_saved() { saved_ = changes(); }  ///< makes is_changed() false until the next change
-  /// Becomes `other`. If both have the same scene file, keeps the record of the state saved last (note_saved()).
+  /// Takes scene and changes from `other`. Keeps the state of the last note_saved() if both have the same scene file.
   void go_to(const SceneEdits& other);
   bool is_same_scene(const SceneEdits& other) const { return is_same_file(other) && changes() == other.changes(); }
-  const std::vector<Setting>& changes() const { return scene_.settings(); }  ///< these include the settings of opened()
+  const std::vector<Setting>& changes() const { return scene_.settings(); }  ///< including the settings of opened()
   std::vector<Setting> changes_without(const std::vector<std::string>& keys) const;
 
  private:
@@ -87,8 +87,8 @@ std::vector<Film> films_of(const Scene& scene);      ///< the outermost film fir
 Setting coating_of(const std::vector<Film>& films);  ///< setting that gives a scene these films
 std::string word_of(const Value& value);             ///< text of a value, without quotes
 
-/// Applies a change. If the scene refuses it because of other choices, changes as few of them as possible, and returns
-/// their new values. Errors: InputError if the scene still refuses; the edits then stay unchanged.
+/// Applies a change. If the scene refuses it because of other choices, also changes these choices, as few as possible,
+/// and returns their new values. Errors: InputError if the scene still refuses; the edits then stay unchanged.
 std::vector<Setting> change_with_needed(SceneEdits& edits, const std::function<void(SceneEdits&)>& change);
 
 /// A sky whose brightness temperature is a linear function of the zenith angle.
@@ -108,7 +108,7 @@ std::filesystem::path sky_file(const Scene& scene);  ///< empty if the scene has
 /// Temporary files for skies that the user edits, because a scene reads a sky from a file. The destructor removes them.
 class SkyFiles {
  public:
-  /// Writes a file with `sky` and returns the path. If the writing fails, the scene will refuse the path.
+  /// Writes `sky` to a file and returns its path. If the writing fails, returns a path that the scene will refuse.
   std::string path(const SkyPair& sky);
   bool hold(const std::filesystem::path& file) const { return folder_ && file.parent_path() == folder_->path(); }
 

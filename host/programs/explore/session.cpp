@@ -16,7 +16,7 @@ std::string text_of(const std::vector<Setting>& changes) {
   return join(texts);
 }
 
-/// True if `change` gives a number of the scene another value, as a slider does.
+/// True if `change` only gives a new value to a number that the scene has, as a slider does.
 bool moves_number(const Scene& scene, const Setting& change) {
   return std::ranges::any_of(
       controls(), [&](const Control& control) { return control.key->key == change.key && control.value(scene); });
@@ -31,7 +31,7 @@ struct JobList {
   void add(std::vector<Job> more) { std::ranges::move(more, std::back_inserter(jobs)); }
 };
 
-/// Sets axis.scale to the range that the user typed, or to known_part() of a wavelength axis. False without a range.
+/// Sets axis.scale to the typed range, or to known_part() for wavelengths. Returns false if the range cannot be drawn.
 bool find_range(const Scene& scene, const View& view, MapAxis& axis) {
   const std::optional<Scale> typed = view.range(axis.label);
   // The scene may have changed since the user typed the range, and may now refuse the range.
@@ -45,7 +45,7 @@ bool find_range(const Scene& scene, const View& view, MapAxis& axis) {
 
 constexpr const char* kWavelength = "spectrum.wavelength_um";
 
-/// The map axis called `name`. If the scene lacks this axis, returns an axis that is not called `other`.
+/// The map axis called `name`. If the scene lacks it, returns an axis that is not `other`, the map's second axis.
 MapAxis axis_or_another(const Scene& scene, const View& view, const std::string& name, const std::string& other) {
   std::vector<MapAxis> axes = map_axes(scene, view.theta_max_deg);
   const auto named = std::ranges::find(axes, name, &MapAxis::name);
@@ -304,7 +304,7 @@ void Session::follow_overlay(const std::string& content) {
 }
 
 void Session::follow_map() {
-  if (is_dragged() && map_.is_arriving()) return;  // during a drag, finishes the map that has begun
+  if (is_dragged() && map_.is_arriving()) return;  // during a drag, a map that has begun is finished
   const MapAxis x = axis_or_another(scene(), state_.view, state_.view.map_x, state_.view.map_y);
   const MapAxis y = axis_or_another(scene(), state_.view, state_.view.map_y, x.name);
   std::string key = content_key(scene(), state_.edits.changes_without({x.key, y.key}), keeps_all());

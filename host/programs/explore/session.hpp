@@ -13,7 +13,7 @@ namespace dolp::explore {
 /// A curve that stays in the plot while the scene changes.
 struct Pin {
   std::string name = {};   ///< name that the user typed; if empty, the legend describes the surface
-  std::size_t colour = 0;  ///< argument of pin_style()
+  std::size_t colour = 0;  ///< number of the colour, for pin_style()
   bool is_visible = true;
   Curve curve;
 };
@@ -27,7 +27,7 @@ struct View {
   double theta_max_deg = 90.0;  ///< largest zenith of the plots and of the search for the maximum
   std::string map_x = "theta";  ///< name of the x axis; if the scene lacks this axis, the map takes another one
   std::string map_y = "sigma";
-  /// Ranges that the user chose. The text is the label of a map axis, or one of the three names below.
+  /// Ranges that the user chose, by the name of the axis: the label of an axis of the heat map, or a name listed below.
   std::map<std::string, Scale> ranges = {};
   Panel panel = Panel::kMap;
   std::size_t mueller_row = 0;  ///< row and column, from 0, of the Mueller element in the view "pBRDF"
@@ -35,7 +35,7 @@ struct View {
 
   static constexpr const char* kZeniths = "curve zenith";
   static constexpr const char* kValues = "curve values";
-  static constexpr const char* kColours = "map colours";  ///< from the value of the first colour to the last
+  static constexpr const char* kColours = "map colours";  ///< range of the values that the colours show
 
   std::optional<Scale> range(const std::string& axis) const;
   void set_range(const std::string& axis, const std::optional<Scale>& range);
@@ -70,8 +70,8 @@ class Session {
 
   explicit Session(SceneEdits edits);
 
-  // Commands. If the scene refuses a command, message() has the reason and nothing else changes. If a choice requires
-  // other choices, the command changes these too, and message() names them.
+  // Commands. If the scene refuses a command, message() has the reason and nothing else changes. If a command also has
+  // to change other keys, message() names them.
   void set(const std::string& key, const Value& value) { set({{key, value}}); }
   void set(const std::vector<Setting>& changes);
   void reset(const std::string& key);
@@ -81,7 +81,7 @@ class Session {
   void go_to(const SceneEdits& edits) {
     attempt([&] { state_.edits.go_to(edits); });
   }
-  /// Replaces the state by a saved one, whose pins need no points. Keeps the states to which undo() goes.
+  /// Replaces the state by a saved one, and computes its pins again. undo() still goes back to the earlier scenes.
   void restore(const SessionState& saved, const std::optional<MeasuredData>& measured);
   void undo() { step(done_, undone_, "nothing to undo"); }
   void redo() { step(undone_, done_, "nothing to redo"); }
@@ -90,8 +90,8 @@ class Session {
   void hold(bool is_held);
   void note_saved() { state_.edits.note_saved(); }
   void pin();
-  /// Changes the view. A new quantity or is_log removes the typed ranges of values and colours, and a new is_theta_log
-  /// removes the typed range of zeniths, because these ranges no longer fit.
+  /// Changes the view. Removes typed ranges that no longer fit: the ranges of values and colours if the quantity or
+  /// is_log changes, and the range of zeniths if is_theta_log changes.
   void set_view(const View& view);
   template <class T>
   void set_view(T View::*part, const std::type_identity_t<T>& value) {
@@ -113,14 +113,14 @@ class Session {
   }
   /// Lets a number vary in fits over a typed range. Returns the reason if the range is refused, otherwise "".
   std::string set_fit_range(const std::string& key, const std::string& low, const std::string& high);
-  /// Stores a fit and calls visit_minimum() for nearest_minimum(), whose position it returns.
+  /// Stores a fit, and visits the minimum nearest to the start of the fit. Returns the position of this minimum.
   std::size_t take_fit(Fit fit, const FitJob& job);
   /// Sets the scene to the scene of the last fit, with the numbers of one minimum of this fit.
   void visit_minimum(std::size_t position);
   void tell(std::string text, bool is_error = false) { message_ = {std::move(text), is_error}; }
 
   std::vector<Job> wanted() const;                                   ///< the most urgent job first
-  bool take_changed() { return std::exchange(is_changed_, false); }  ///< true if wanted() may have changed
+  bool take_changed() { return std::exchange(is_changed_, false); }  ///< true if wanted() must be called again
   void take(const std::vector<JobPart>& news);
 
   const SceneEdits& edits() const { return state_.edits; }
@@ -135,7 +135,7 @@ class Session {
   const std::vector<Snapshot>& snapshots() const { return state_.snapshots; }
   const HeatMap& map() const { return map_; }
   const SourceSky& source_sky() const { return source_sky_; }
-  const Scene& spectral_scene() const { return spectral_scene_; }  ///< the scene at one wavelength
+  const Scene& spectral_scene() const { return spectral_scene_; }  ///< result of at_one_wavelength()
   const MapAxis& wavelengths() const { return wavelengths_; }      ///< axis of the plots over wavelength
   const Sweep& spectrum() const { return spectrum_; }              ///< results at the cursor's zenith, over wavelength
   const Sweep& smooth_spectrum() const { return smooth_spectrum_; }  ///< results for sigma = 0, over wavelength
@@ -150,7 +150,7 @@ class Session {
   bool has_unsaved_sky() const { return skies_.hold(sky_file(scene())); }
   std::optional<FitJob> fit_job() const;  ///< empty without measured points, or if no number may vary
   const std::optional<Fit>& last_fit() const { return fit_; }
-  /// Position in Fit::minima of the minimum whose numbers the scene has; empty if the user has changed the scene.
+  /// Position in Fit::minima of the minimum at which the sliders are. Empty after a change of the scene.
   std::optional<std::size_t> minimum() const {
     return fit_ && visited_->is_same_scene(state_.edits) ? std::optional(minimum_) : std::nullopt;
   }
@@ -160,14 +160,14 @@ class Session {
   bool is_dragged() const { return is_held_ && is_in_gesture_; }  ///< the mouse is down and has changed the scene
   /// True if a curve shows an earlier scene. False during a drag, because then every curve lags behind the slider.
   bool is_outdated(const Curve& curve) const { return curve.is_stale() && !is_dragged(); }
-  /// The effects of the last finished curve. Effect::influence of a kept effect is for the zenith of the cursor.
+  /// The effects of the last finished curve. Effect::influence of a kept effect is an estimate at the cursor's zenith.
   const std::vector<Effect>& effects() const { return effects_; }
-  /// The position, from 0 to 1 on an axis of the map, of the number that the scene has.
+  /// Where the scene's value lies on an axis of the map, from 0 to 1. For the zenith this is the cursor's value.
   double map_cursor(const MapAxis& axis) const {
     const double value = axis.key.empty() ? state_.theta_deg : scene().number(axis.key).value_or(axis.scale.from);
     return axis.scale.position(axis.scale.clamp(value));
   }
-  const Point* at_cursor() const;  ///< point of the curve nearest to the cursor; null if it has none
+  const Point* at_cursor() const;  ///< point of the curve nearest to the cursor; null if the curve has no points
 
  private:
   /// Runs `command` and records the previous state for undo(). The reason of an InputError becomes the message.
@@ -190,7 +190,7 @@ class Session {
 
   SkyFiles skies_;
   SessionState state_;
-  std::vector<SceneEdits> done_, undone_;  ///< states to which undo() and redo() go, the next state last
+  std::vector<SceneEdits> done_, undone_;  ///< earlier and undone states; the last is the next to restore
   bool is_held_ = false;
   bool is_in_gesture_ = false;
   Curve curve_;
@@ -207,11 +207,11 @@ class Session {
   std::optional<SceneEdits> visited_;    ///< the fitted scene at the minimum that the user visited
   std::size_t minimum_ = 0;
   std::vector<Effect> effects_;
-  std::pair<std::string, double> influences_of_;  ///< key of the curve and zenith that effects_ belong to
+  std::pair<std::string, double> influences_of_;  ///< curve key and zenith for which effects_ were estimated
   Message message_;
   std::vector<std::string> remarks_;  ///< remarks on the scene that message() has shown before
   bool is_changed_ = true;
-  // While the user drags a slider, the worker computes in turn: the curve, the map (or sky), the curve, the overlay.
+  // Whose turn it is while the user drags a slider. The order is: curve, map (or sky), curve, overlay.
   bool is_curve_next_ = true;
   bool is_map_next_ = false;
 };

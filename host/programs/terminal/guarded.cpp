@@ -16,14 +16,14 @@
 namespace dolp {
 namespace {
 
-/// True if lack of memory caused `error`. For example, std::thread throws such an error without memory for a stack.
+/// True if lack of memory caused `error`. For example, std::thread throws such an error if a stack needs more memory.
 bool is_of_memory(const std::system_error& error) {
   return error.code() == std::errc::not_enough_memory || error.code() == std::errc::resource_unavailable_try_again;
 }
 
 }  // namespace
 
-// fputs instead of fmt::print, which would throw if stderr cannot be written.
+// Uses fputs, because fmt::print would throw if stderr cannot be written.
 int fail(const std::string& program, int status, const std::string& message) {
   std::fputs((program + ": " + printable_line(message) + "\n").c_str(), stderr);
   return status;

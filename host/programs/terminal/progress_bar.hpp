@@ -7,8 +7,8 @@
 
 namespace dolp {
 
-/// A bar with rate and remaining time on stderr, if stderr is a terminal and `quiet` is false. From the first call of
-/// the function of callback(), signals only request the end of the run (watch_for_interrupts).
+/// Draws a bar with rate and remaining time on stderr, if stderr is a terminal and `quiet` is false. After the first
+/// call of the callback, a signal such as Ctrl+C does not end the program; instead, the callback returns false.
 class ProgressBar {
  public:
   explicit ProgressBar(bool quiet);
@@ -16,7 +16,7 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// A function that draws the bar and returns false after an interrupt. This object must outlive the function.
+  /// A function that draws the bar, and returns false after an interrupt. The ProgressBar must outlive this function.
   Progress callback();
 
   /// Restarts the time measurement. From now on the bar counts `what`, a plural, instead of "entries".

@@ -63,7 +63,7 @@ void App::catch_up() {
 
 void App::draw() {
   screen_.follow(actions_.preferences());
-  for (;;) {  // one frame of ImGui per event; the window shows only the last frame
+  for (;;) {  // one frame of ImGui per waiting event; only the last is shown
     input_.begin_frame();
     draw_all(ui_, [this] { catch_up(); });
     if (!input_.has_more()) break;
@@ -97,7 +97,7 @@ bool App::answer(const AfterFrame& after_frame) {
     if (after_frame) after_frame(seconds_since(start));
     if (!is_open) return false;
     const bool has_news = input_.take_news() || !actions_.picture_path.empty();
-    if (session_.is_dragged()) return true;  // one frame per mouse move leaves the processor to the curves
+    if (session_.is_dragged()) return true;  // draws no more frames, so that the curves get the processor
     left = has_news ? kFramesAfterEvent : left - 1;
   }
   return true;
@@ -130,7 +130,7 @@ std::string App::run_frames(std::size_t count, const std::string& screenshot_pat
   const bool wants_picture = !screenshot_path.empty();
   Clock::time_point start = Clock::now();
   for (std::size_t left = count; left > 0; --left) {
-    // Draws several last frames with all results, because ImGui adapts the layout over some frames.
+    // Waits for all results before the last frames. ImGui needs several frames to adapt its layout.
     if (wants_picture && left <= kFramesAfterEvent) {
       for (exchange(); !is_idle(); exchange()) std::this_thread::sleep_for(kPause);
       start = Clock::now();

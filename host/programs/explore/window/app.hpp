@@ -8,7 +8,7 @@ namespace dolp::explore {
 
 struct AppOptions {
   std::string device;                      ///< position of the device, or a part of its name
-  std::string command_line;                ///< history that the window writes into tables
+  std::string command_line;                ///< command line for the attribute "history" of tables
   std::filesystem::path preferences = {};  ///< file of Preferences; empty: no file
 };
 
@@ -28,7 +28,7 @@ class App {
   /// Takes input and results, and draws one frame. Returns false if the user has closed the window.
   /// Errors: DeviceError if no device can compute, or if the device is lost.
   bool frame();
-  /// Draws frames until the window shows the effect of all input. Returns false if the user has closed the window.
+  /// Draws frames until ImGui has shown all effects of the input. Returns false if the user has closed the window.
   bool answer(const AfterFrame& after_frame = {});
   void close();   ///< ends run(); any thread may call it
   void reopen();  ///< lets run() continue after close()
@@ -52,7 +52,7 @@ class App {
   Session session_;
   Screen screen_;
   Evaluator evaluator_;
-  std::atomic<bool> is_catching_up_ = false;  ///< true: catch_up() waits, so results wake no frame
+  std::atomic<bool> is_catching_up_ = false;  ///< true while catch_up() waits, because results then need not wake run()
   Worker worker_;
   Actions actions_;
   Input input_;

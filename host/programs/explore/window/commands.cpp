@@ -123,7 +123,7 @@ namespace {
 
 using Path = const std::string&;
 
-/// A path with the name of the scene's file, in the folder in which this file was saved last, or in the file's folder.
+/// A path for saving: the scene file's name with `ending`, in the folder used last for this file, or in the file's own.
 std::string suggested_path(const Ui& ui, const std::string& ending) {
   const std::filesystem::path file = ui.session.scene().name();
   const std::filesystem::path folder = file == ui.saved.first ? ui.saved.second : file.parent_path();
@@ -193,7 +193,7 @@ struct Command {
     if (key == '+') return is_pressed('=') || is_pressed(GLFW_KEY_KP_ADD);
     if (key == '-') return is_pressed(key) || is_pressed(GLFW_KEY_KP_SUBTRACT);
     if (key == '0') return is_pressed(key) || is_pressed(GLFW_KEY_KP_0);
-    return is_pressed(key);  // GLFW numbers letter keys by their letters
+    return is_pressed(key);  // GLFW's number of a letter key is the letter
   }
 };
 
@@ -244,7 +244,7 @@ constexpr Command kCommands[] = {
     {"Help", "Shortcuts and hints", "Ctrl+H", [](Ui& ui) { ui.shows_help = true; }},
 };
 
-/// Names the area of the menu or menu entry that is drawn next. Afterwards ImGui's last item could be an open menu.
+/// Names the area of the menu or entry that is drawn next. After an open menu, name_item() would name another item.
 void name_next(const std::string& name, const char* text) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   name_area(name, {corner, {corner.x + ImGui::CalcTextSize(text).x, corner.y + ImGui::GetTextLineHeight()}});

@@ -25,7 +25,7 @@ void heading(const char* text) {
   ImGui::Separator();
 }
 
-/// Draws the parts of a fitted interval as bars at the foot of the last slider. An open end reaches the slider's end.
+/// Draws a fitted interval as bars at the lower edge of the last slider. An open interval reaches the slider's end.
 void draw_interval(const Control& control, const FitInterval& interval) {
   const ImVec2 corner = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
   const auto at = [&](const std::optional<double>& value, double otherwise) {
@@ -91,7 +91,7 @@ struct Controls {
     return session.message().is_error ? session.message().text : "";
   }
 
-  /// Calls `draw`. If this ends the refusal of the text in the field `id`, also removes the session's message about it.
+  /// Calls `draw`. If the field `id` no longer has a refused text afterwards, also removes the message about the text.
   void draw_fields(const std::string& id, const std::function<void()>& draw) {
     const std::string before = fields.reason(id);
     draw();

@@ -21,7 +21,7 @@ struct Shown {
   CurveStyle style;
 };
 
-bool is_dim(const Session& session, const Curve& curve) {  // true if the curve shows another scene
+bool is_dim(const Session& session, const Curve& curve) {  // the curve is old, or belongs to another scene file
   return session.is_outdated(curve) || session.is_foreign(curve.scene());
 }
 
@@ -258,7 +258,7 @@ void CurveView::choose_axes(const Session& session, Zoom& zoom, const Scale& zen
   if (has_zeniths) zoom.x = zoom.x->within(zeniths);
   x_ = has_zeniths ? *zoom.x : zeniths;
   const bool is_same = quantity_ == session.view().quantity && y_.is_log == values.is_log;
-  // Without a curve `values` is linear; then a logarithmic range that the user chose does not apply yet.
+  // Applies the range that the user chose only if its scale, linear or logarithmic, is the scale of the axis.
   if (zoom.y && zoom.y->is_log == values.is_log) {
     values = *zoom.y;
   } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left) && is_same) {

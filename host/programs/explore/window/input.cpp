@@ -13,7 +13,7 @@ namespace dolp::explore {
 namespace {
 
 #if IMGUI_VERSION_NUM < 18700
-// Nothing to do: in this version ImGui's GLFW backend takes Ctrl, Shift and Alt from the last event that it got.
+// Empty, because ImGui's GLFW backend in this version already takes Ctrl, Shift and Alt from the last event.
 void set_modifiers(int, int, int) {}
 
 void set_mouse(ImVec2 position, const std::array<bool, 5>& buttons) {
@@ -37,7 +37,7 @@ void set_modifiers(int key, int action, int modifiers) {
 
 void set_mouse(ImVec2 position, const std::array<bool, 5>& buttons) {
   ImGuiIO& io = ImGui::GetIO();
-  io.ConfigInputTrickleEventQueue = false;  // all these events belong to one frame
+  io.ConfigInputTrickleEventQueue = false;  // handles all these events in one frame
   io.AddMousePosEvent(position.x, position.y);
   for (int i = 0; i < 5; ++i) io.AddMouseButtonEvent(i, buttons[static_cast<std::size_t>(i)]);
 }

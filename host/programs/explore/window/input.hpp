@@ -28,12 +28,12 @@ struct Area {
 /// and up between two frames. So each event gets a frame of ImGui, and the window shows only the last frame.
 class Input {
  public:
-  /// Uses GLFW's user pointer of `window`. `on_drop` gets the path of each file that the user drops on the window.
+  /// Occupies GLFW's user pointer of `window`. `on_drop` gets the path of each file that the user drops on the window.
   Input(GLFWwindow* window, std::function<void(const std::string&)> on_drop);
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
 
-  void begin_frame();  ///< begins a frame of ImGui with the next event, if any
+  void begin_frame();  ///< applies the next event, if there is one, and begins a frame of ImGui
   bool has_more() const { return !events_.empty(); }
   int pressed_key() const { return pressed_key_; }  ///< GLFW's number of the key that goes down in this frame
   /// True if there were events since the last call of take_news().

@@ -49,7 +49,7 @@ class Plot {
   ImVec2 at_position(double x, double y) const { return area_.at(static_cast<float>(x), 1.0F - static_cast<float>(y)); }
   bool is_dragged() const { return is_dragged_; }  ///< the left button went down in the plot and is still down
   bool is_hovered() const { return is_hovered_; }
-  /// Changes `zoom` as the mouse demands in this frame: the wheel zooms (with Shift only x, with Alt only y), the right
+  /// Changes `zoom` by the mouse input of this frame: the wheel zooms (with Shift only x, with Alt only y), the right
   /// button moves the range, a double click removes the zoom. `all_x` is the largest range of x.
   void follow_mouse(Zoom& zoom, const Scale& all_x) const;
   /// The position in the plot that is nearest to the mouse: from 0 to 1 along both axes.
@@ -75,7 +75,7 @@ class Plot {
   bool is_hovered_ = false;
 };
 
-/// draw_line() draws a line through `points`. The point kGap makes a gap. scaled() scales the width and the dashes.
+/// A point that makes a gap in a line. draw_line() scales the width and the dashes with the size of the text.
 inline const ImVec2 kGap{std::numeric_limits<float>::quiet_NaN(), 0.0F};
 void draw_line(ImDrawList* list, const std::vector<ImVec2>& points, const CurveStyle& style, float width);
 

@@ -21,7 +21,7 @@ class Texture {
 
   /// Replaces the image by `count` rows of `count` colours, the lowest row first; a row begins on the left.
   void set(const std::vector<ImU32>& colours, std::size_t count);
-  /// Draws the image between two corners. The middles of the outermost colours lie on the edges of the image.
+  /// Draws the image so that `min` and `max` are the middles of its corner cells, which are therefore cut.
   void draw(ImDrawList* list, ImVec2 min, ImVec2 max) const;
 
  private:
@@ -39,7 +39,7 @@ class Screen {
 
   GLFWwindow* window() const { return window_; }
   void follow(const Preferences& wanted);  ///< applies theme and size of the text; call it between two frames
-  /// Shows ImGui's frame, unless the window is empty. If `wants_picture` is true, returns the frame as a PNG file.
+  /// Shows ImGui's frame, unless the window has no area. If `wants_picture` is true, returns the frame as a PNG file.
   std::string show(bool wants_picture) const;
 
  private:

@@ -58,9 +58,9 @@ inline constexpr Themed kCursorColour{IM_COL32(255, 255, 255, 200), IM_COL32(40,
 void load_font(float pixels);
 inline constexpr float kFontPixels = 15.0F;  ///< default size of the font
 
-float scaled(float pixels);                ///< `pixels` for text of kFontPixels, converted to the current text size
+float scaled(float pixels);  ///< converts a length, given for text of kFontPixels, to the current text size
 std::string shown(std::string_view text);  ///< `text`, or ascii(text) if the font has no Greek
-std::string ascii(std::string_view text);  ///< names replace Greek letters and signs
+std::string ascii(std::string_view text);  ///< `text` with names instead of Greek letters and signs
 
 /// Breaks a text into lines of at most `width`, at spaces. A longer word stays whole.
 std::string in_lines(std::string text, float width);

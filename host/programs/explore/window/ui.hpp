@@ -18,9 +18,9 @@ class Actions {
   /// Runs `body`. Then Session::message() is `done`, or the reason why `body` failed.
   void attempt(const std::string& done, const std::function<void()>& body);
   void open(const std::string& path);  ///< opens a scene, a session or measured points
-  /// Saves a picture of the window when the dialog has disappeared in which the user chose `path`. Errors: IoError.
+  /// Saves a picture of the window to `path` when the dialog that asked for `path` has disappeared. Errors: IoError.
   void save_picture(const std::string& path);
-  // The next four functions start work in the background. save_plot() writes curves and map as .svg, .pdf or .png.
+  // The next four functions start work in the background. save_plot() makes an .svg, .pdf or .png of curves and map.
   void save_plot(const std::string& path, const Scale& x, const Scale& y);
   void export_table(const std::string& path);
   void find_true_error();
@@ -29,7 +29,7 @@ class Actions {
   const Preferences& preferences() const { return preferences_; }
 
   void finish();  ///< calls BackgroundTask::finish() of all tasks
-  /// Path of the picture to save with this frame; empty if there is none, or if the dialog has not yet disappeared.
+  /// Path of the picture to save with this frame. Empty if no picture is wanted, or while the dialog still disappears.
   std::string due_picture() const { return Clock::now() < picture_time_ ? "" : picture_path; }
   bool is_true_error_old() const;  ///< the true error belongs to an earlier curve
 
@@ -44,7 +44,7 @@ class Actions {
   // Table and fit have separate evaluators, so that neither waits for the other.
   Evaluator table_evaluator_, fit_evaluator_;
   BackgroundTask plot_task_;
-  std::string true_error_key_;  ///< key of the curve whose true error is known or being computed
+  std::string true_error_key_;  ///< key of the curve in the last call of find_true_error()
   Clock::time_point picture_time_;
 };
 
@@ -60,12 +60,12 @@ struct Ui {
   PathDialog dialog = {};
   std::pair<std::string, std::filesystem::path> saved = {};  ///< scene file, and the folder in which it was saved last
   bool is_narrow = false;
-  std::string page = "curve";  ///< what a narrow window shows; empty: the view of View::panel
+  std::string page = "curve";  ///< page of a narrow window: "curve", "effects", "accuracy"; empty: View::panel
   bool shows_help = false;
 };
 
-/// Draws everything. Call this function between ImGui's NewFrame and Render. It calls `catch_up` after it has drawn the
-/// controls, so that the plots, drawn last, show what the user changed by the controls.
+/// Draws everything. Call this function between ImGui's NewFrame and Render. Calls `catch_up` after drawing the
+/// controls and before drawing the plots, so that the plots show what the user changed by the controls.
 void draw_all(Ui& ui, const std::function<void()>& catch_up);
 
 void run_shortcuts(Ui& ui);

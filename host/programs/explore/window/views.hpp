@@ -29,7 +29,7 @@ class CurveView {
   const Scale& y() const { return y_; }
 
  private:
-  /// Sets x_ and y_ to the ranges of `zoom`; where that is empty, to the automatic ranges `zeniths` and `values`.
+  /// Sets x_ and y_ to the ranges that the user chose, `zoom`, or else to the automatic ranges `zeniths` and `values`.
   void choose_axes(const Session& session, Zoom& zoom, const Scale& zeniths, Scale& values);
   void edit_axes(View& view, AxisEditor& editor, const Plot& plot, const std::string& values);
 
@@ -75,7 +75,7 @@ void draw_fit_result(Session& session);
 
 void draw_sky(const Session& session, ImVec2 size);  ///< DOLP over the directions of the source, as a polar map
 
-/// Stores a range that the user typed for a wavelength axis or a map axis in View::ranges.
+/// Stores in View::ranges the range that the user typed for an axis of wavelengths or of the map.
 void set_range(Session& session, const MapAxis& axis, const AxisEditor::Change& change);
 
 /// Draws map, contour lines, colour bar and cursor. A click or drag calls Session::set_map_cursor().

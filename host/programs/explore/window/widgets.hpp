@@ -17,8 +17,8 @@ class NumberFields {
 
   /// Draws a field with `value`, or with the text that the user types. The name of the field's area is "field ID".
   void draw(const std::string& id, double value, const Apply& apply);
-  /// Draws the field for one end of a range. `end` is 0 or 1; the ID of the field is `id` with " 0" or " 1". Applies
-  /// the texts of both ends together, because a text may be refused only until the other end changes.
+  /// Draws the field for one end of a range. `end` is 0 or 1; the ID of the field is `id` with " 0" or " 1". `apply`
+  /// gets the texts of both ends, because one new end may be allowed only together with the other.
   void draw_end(const std::string& id, std::size_t end, const std::array<double, 2>& ends, const ApplyEnds& apply);
   std::string text(const std::string& id) const {  // text that is typed but not applied; "" if none
     const auto typed = typed_.find(id);
@@ -46,15 +46,15 @@ struct ListEntry {
   bool is_enabled = true;
 };
 
-/// Draws a list that opens on a click. The closed list shows `current`, and `note` as a tooltip. `id` names its area.
-/// Returns the entry that the user clicks, unless this is the entry `chosen`.
+/// Draws a list that opens on a click. The closed list shows `current`, and has the tooltip `note`. The area of the
+/// list has the name `id`. Returns the entry that the user clicks, unless it is the entry `chosen`.
 std::optional<std::size_t> draw_list(const std::string& id, float width, const std::string& current,
                                      const std::string& note, std::optional<std::size_t> chosen,
                                      const std::vector<ListEntry>& entries);
 
 void row_label(const std::string& text);  ///< draws a label, and the next control beside it
 
-/// Draws a text field for a name, which a right click on the last item opens. Returns a name that the user has changed.
+/// After a right click on the last item, draws a field with the item's name. Returns the name if the user changes it.
 std::optional<std::string> typed_name(std::string name, const std::string& hint = {});
 
 /// A small window in which the user types the range of an axis. A double click on the numbers of the axis opens it.
@@ -66,7 +66,7 @@ class AxisEditor {
   };
   using Check = std::function<std::string(const Scale& range)>;  ///< why the range is refused, or ""
 
-  /// Draws the small window if the user opened it for the axis `label`. `numbers` is the area of the numbers beside it.
+  /// Draws the small window if the user opened it for the axis `label`. `numbers` is the area of the axis's numbers.
   std::optional<Change> draw(const std::string& label, const Area& numbers, const Scale& now, const Check& check);
 
   bool is_open() const { return !shown_.empty(); }
@@ -94,14 +94,14 @@ class PathDialog {
 
  private:
   void enter(const std::filesystem::path& folder);
-  bool draw_list();  ///< returns true if the user clicks the chosen file again
+  bool draw_list();  ///< true if the user clicks on the file that is already chosen
   std::filesystem::path path() const { return folder_ / name_; }
 
   Request request_;
   bool is_opening_ = false;
   bool wants_focus_ = false;
   std::filesystem::path folder_;     ///< folder on display; empty: the working folder
-  std::vector<std::string> listed_;  ///< names of its folders, then of its files
+  std::vector<std::string> listed_;  ///< names in this folder: first the folders, then the files
   std::string name_;
 };
 

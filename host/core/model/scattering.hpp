@@ -61,7 +61,7 @@ struct Scattered {
   double error = 0.0;  ///< bound of the absolute error of i, q, u and v
 };
 
-/// Bounds of the error of a ScatteringMatrix with rounding, relative to its first element (tests MuellerAccuracy.*).
+/// Bounds of the error of a ScatteringMatrix, with rounding, as a share of its first element (tests MuellerAccuracy.*).
 constexpr double kScatteringErrorFloat = 1e-5;
 constexpr double kScatteringErrorDouble = 1e-11;
 

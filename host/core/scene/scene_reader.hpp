@@ -19,7 +19,7 @@ SceneValues read_scene(const std::string& path, const std::vector<Setting>& sett
 /// The scene after further settings. Domain: a scene that was read. Errors: InputErrors as those of read_scene.
 SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& settings);
 
-/// Data from a table file, with which the table was computed. They replace data files and built-in data.
+/// Data from a table file. The table was computed with them, so they replace data files and built-in data.
 struct KnownData {
   std::optional<Material> material = {};
   std::vector<std::optional<Material>> layers = {};  ///< layers of a coating
@@ -27,11 +27,11 @@ struct KnownData {
   std::optional<ReflectanceTable> reflectance = {};
   std::optional<SpectralTable> irradiance = {};
   std::optional<SkyProfile> profile = {};
-  bool may_open_files = false;  ///< allows opening files for missing data; messages then do not quote the files
+  bool may_open_files = false;  ///< allows opening files for missing data; then messages do not quote these files
 };
 
-/// Makes a scene from a text. `path_name` appears in messages, and paths in the scene are relative to its folder. With
-/// `known`, the reader opens files only if `may_open_files` is set; otherwise missing data are an InputError.
+/// Makes a scene from a text. `path_name` appears in messages. Relative paths in the scene begin in its folder. If
+/// `known` is given, missing data are an InputError, unless `may_open_files` allows opening files.
 SceneValues parse_scene(const std::string& text, const std::string& path_name,
                         const std::vector<Setting>& settings = {}, const KnownData* known = nullptr);
 

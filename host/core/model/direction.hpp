@@ -10,7 +10,7 @@ enum class Treatment {
   kIntegrated,  ///< an evaluator integrates them
   /// Moments of a smooth surface. Used if sigma is so small that the slope density overflows a float.
   kMirror,
-  /// At 90 degrees the moments of a heavy-tailed distribution diverge. Only quotients such as r_q / r_i have limits.
+  /// Moments of a heavy-tailed distribution at 90 degrees. They diverge; only quotients such as r_q / r_i have limits.
   kDivergentLimit,
 };
 

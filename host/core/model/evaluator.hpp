@@ -12,7 +12,7 @@ namespace dolp {
 
 struct Work {
   double evaluations = 0.0;  ///< number of evaluations of the integrand
-  double kernel_s = 0.0;     ///< time of the kernels: timestamps of the device, or time of the loop on the CPU
+  double kernel_s = 0.0;     ///< time of the kernels, from timestamps of the device or from a clock on the CPU
   double sums_s = 0.0;       ///< host time to sum over slopes, interpolate, and add up responses (response_basis.hpp)
   std::uint64_t dispatches = 0;
   std::uint64_t interpolated = 0;         ///< entries with moments from interpolation or from responses

@@ -18,7 +18,7 @@ namespace dolp {
 class ResponseBasis;
 class SkyBasis;
 
-/// Tightest tolerance of a quadrature rule in float. At a tighter tolerance rounding errors would dominate.
+/// Tightest tolerance that a quadrature rule can meet in float. At a tighter one, rounding errors would dominate.
 inline constexpr double kLeastFloatTolerance = 2e-6;
 
 struct MomentsPoint {
@@ -41,8 +41,8 @@ struct Response {
   Of of = Of::kReflected;
 };
 
-/// A grid has all combinations of `optics`, `theta_deg`, `sigma` and `q`; q varies fastest. In a list each of these
-/// four vectors has one value per entry. The position in this order identifies an entry.
+/// The entries form a grid or a list. A grid has all combinations of `optics`, `theta_deg`, `sigma` and `q`; q varies
+/// fastest. In a list each of these four vectors has one value per entry. The number of an entry is its position.
 struct MomentsRequest {
   enum class Layout { kGrid, kList };
 

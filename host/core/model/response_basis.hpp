@@ -34,7 +34,7 @@ class ResponseBasis {
   /// Distance from the cosines [0, 1] to the nearest complex cosine at which u or a reflectance is singular.
   double bend() const { return bend_; }
   const ResponseWeights& of_reference() const { return of_reference_; }
-  /// Nullopt if the index needs more than count() responses, for example because of total reflection.
+  /// Weights for moments of `index`; nullopt if it needs more than count() responses, as with total reflection.
   std::optional<ResponseWeights> weights_of(const FacetOptics& index) const;
 
  private:

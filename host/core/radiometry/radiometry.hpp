@@ -35,7 +35,7 @@ class Radiometry {
   /// degrees, the status is 1 | 4 (1: rho outside [0, 1]), rho and Stokes parameters are NaN, and dolp is its limit.
   PointResult point(const Direction& direction, std::span<const Moments> moments) const;
 
-  /// Facet optics of each spectral sample, and the diffuse reflection of a surface with these optics.
+  /// For each spectral sample: the optics of the facets, and the diffuse reflection of a surface with these optics.
   struct Optics {
     std::vector<FacetOptics> facets;
     std::vector<DiffuseReflection> diffuse;

@@ -83,7 +83,7 @@ struct Source {
   enum class Kind { kFlat, kRelative, kTabulated };
   Kind kind = Kind::kFlat;
   double irradiance = 0.0;           ///< for kFlat: W m-2 um-1, constant over a band
-  double relative_irradiance = 0.0;  ///< for kRelative: E0 / (pi B(T)) at each wavelength, with T of the emission
+  double relative_irradiance = 0.0;  ///< for kRelative: E0 / (pi B(T)) at each wavelength, T = emission.temperature_K
   SpectralTable table;               ///< for kTabulated: W m-2 um-1
   double scale = 1.0;                ///< E0 is multiplied by this
 };
@@ -155,7 +155,7 @@ struct SceneValues : SceneModel {
   std::vector<double> wind_m_s;    ///< winds from which the grid's sigmas follow; empty if the scene gives sigmas
   std::string path_name;           ///< path of the scene as the user gave it, for messages
   std::string text;                ///< text of the scene file, unchanged
-  std::vector<std::string> files;  ///< paths with which the process opens the files that the scene names
+  std::vector<std::string> files;  ///< paths of the files that the scene names, as the process opens them
   std::vector<Setting> settings;   ///< settings that were applied to the text
   std::shared_ptr<const SceneDocument> document;  ///< text and settings as TOML; null without a text
 };

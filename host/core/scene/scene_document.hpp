@@ -50,7 +50,7 @@ class SceneDocument {
 
   std::string name_;
   toml::table root_;
-  std::map<std::string, std::string, std::less<>> origins_;  // for each key that a setting gave: that setting
+  std::map<std::string, std::string, std::less<>> origins_;  // key -> the setting that gave it
 };
 
 }  // namespace dolp

@@ -14,7 +14,7 @@ struct KeptEffects {
   bool source = true;
   bool surroundings = true;
   bool profile = true;        ///< a sky profile, minus its mean
-  bool path_radiance = true;  ///< radiance of the path; its transmittance cancels in DOLP and always stays
+  bool path_radiance = true;  ///< radiance of the path; the transmittance is always kept, and cancels in DOLP
   bool diffuse = true;
   bool further_bounces = true;  ///< bounces in V-grooves after the first one
   bool moments = true;          ///< specular part of rho at theta; in bistatic mode, at the zenith of the view

@@ -74,7 +74,7 @@ class CsvColumns {
   /// For each cell of a row, the position of its column in the list of known columns; nullopt if the column is ignored.
   const std::vector<std::optional<std::size_t>>& cells() const { return cells_; }
 
-  /// The number of `row` in column `name`; nullopt if the file lacks the column. Errors: InputError for a wrong value.
+  /// The number of `row` in column `name`; nullopt without this column. Errors: a wrong value, or those of check_width.
   std::optional<double> number(const CsvReader& row, std::string_view name) const;
   double number_at(const CsvReader& row, std::size_t cell) const;
 
